@@ -1,0 +1,13 @@
+# Third-party packages. Each folder links what it needs privately; no public header of ours shows their types, but for
+# Eigen (poses) and the standard library.
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(Boost 1.74 REQUIRED)        # headers only: lock-free queue
+find_package(tinyxml2 REQUIRED)
+find_package(fastcdr REQUIRED)
+find_package(fastrtps REQUIRED)

@@ -1,0 +1,49 @@
+# The one place that says which folder may link (and include) which. cellmirror_library() refuses anything else, and
+# tests/support/check_includes.py reads this table to check the #include lines.
+# Format: folder: folders it may use directly or through another.
+set(CELLMIRROR_LAYERS
+  "rt_core/base:"
+  "rt_core/rt: rt_core/base"
+  "rt_core/ports: rt_core/base"
+  "ipc/wire: rt_core/base rt_core/ports"
+  "rt_core/cell: rt_core/base rt_core/ports"
+  "rt_core/engine: rt_core/base rt_core/rt rt_core/ports"
+  "config: rt_core/base rt_core/ports rt_core/cell"
+  "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "ipc/sysv: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "scripts/lang: rt_core/base rt_core/ports"
+  "scripts/commands: rt_core/base rt_core/ports scripts/lang"
+  "sim_devices: rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds"
+  "app: *"
+  "tests: *")
+
+# In the order in which CMake has to see them.
+set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/engine config drivers/can
+  drivers/dds ipc/sysv ipc/control scripts/lang scripts/commands sim_devices app tests)
+
+function(cellmirror_allowed_folders folder result)
+  foreach(row IN LISTS CELLMIRROR_LAYERS)
+    string(REGEX MATCH "^([^:]+):(.*)$" _ "${row}")
+    if(CMAKE_MATCH_1 STREQUAL folder)
+      string(STRIP "${CMAKE_MATCH_2}" allowed)
+      separate_arguments(allowed)
+      set(${result} ${allowed} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  message(FATAL_ERROR "${folder} is not in the table of cmake/Layers.cmake: say there what it may use")
+endfunction()
+
+function(cellmirror_check_layer folder)
+  cellmirror_allowed_folders(${folder} allowed)
+  if("*" IN_LIST allowed)
+    return()
+  endif()
+  foreach(used IN LISTS ARGN)
+    if(NOT used IN_LIST allowed)
+      message(FATAL_ERROR "${folder} may not use ${used}: cmake/Layers.cmake")
+    endif()
+  endforeach()
+endfunction()

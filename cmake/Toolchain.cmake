@@ -1,0 +1,34 @@
+# Compiler and linker settings for everything that is ours. Warnings are errors; a sanitizer covers the whole build.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
+endif()
+# Line tables are enough for back traces and keep the build small and fast.
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
+set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O2 -g1")
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+find_program(MOLD_PROGRAM mold)
+if(MOLD_PROGRAM)
+  add_link_options(-fuse-ld=mold)
+endif()
+
+find_package(Threads REQUIRED)
+
+add_library(cellmirror_flags INTERFACE)
+target_compile_options(cellmirror_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+  $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Woverloaded-virtual>)
+target_include_directories(cellmirror_flags INTERFACE ${CMAKE_SOURCE_DIR})
+
+if(CELLMIRROR_SANITIZE)
+  add_compile_options(-fsanitize=${CELLMIRROR_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${CELLMIRROR_SANITIZE})
+  if(CELLMIRROR_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+  add_compile_definitions(CELLMIRROR_SANITIZED=1)
+endif()

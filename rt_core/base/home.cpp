@@ -1,0 +1,123 @@
+#include "rt_core/base/home.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_inside(const fs::path& path, const fs::path& root) {
+  const auto [at_root, at_path] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
+  static_cast<void>(at_path);
+  return at_root == root.end();
+}
+
+Result<void> check_name(std::string_view name) {
+  constexpr std::size_t kLongest = 512;
+  const std::string shown = printable(name);
+  if (name.empty()) return fail("a file name is empty");
+  if (name.size() > kLongest) return fail(fmt::format("the file name {} is too long", shown));
+  if (name.find('\0') != std::string_view::npos) return fail(fmt::format("the file name {} holds a NUL byte", shown));
+  if (fs::path(name).is_absolute()) {
+    return fail(fmt::format("the path {} is absolute", shown), "name files relative to the cell's home");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<KismetHome> KismetHome::open(const fs::path& root) {
+  std::error_code error;
+  fs::path canonical = fs::canonical(root, error);
+  if (error) return fail(fmt::format("the cell's home {} cannot be opened: {}", root.string(), error.message()));
+  if (!fs::is_directory(canonical, error)) return fail(fmt::format("the cell's home {} is no folder", root.string()));
+  return KismetHome(std::move(canonical));
+}
+
+Result<KismetHome> KismetHome::of_cell(const fs::path& cell_file) {
+  const char* from_environment = std::getenv("kis_home");
+  if (from_environment != nullptr && *from_environment != '\0') return open(from_environment);
+  const fs::path folder = cell_file.parent_path();
+  return open(folder.empty() ? fs::path(".") : folder);
+}
+
+Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name, std::string_view extension) const {
+  if (auto named = check_name(name); !named) return std::unexpected(named.error());
+  std::error_code error;
+  fs::path wanted = root_ / folder / name;
+  if (!extension.empty() && wanted.extension().empty() && !fs::exists(wanted, error)) wanted += extension;
+  const fs::path found = fs::canonical(wanted, error);
+  const std::string shown = (fs::path(folder) / printable(name)).string();
+  if (error == std::errc::no_such_file_or_directory) {
+    return fail(fmt::format("the file {} does not exist in the cell's home {}", shown, root_.string()));
+  }
+  if (error) return fail(fmt::format("the file {} cannot be opened: {}", shown, error.message()));
+  if (!is_inside(found, root_)) {
+    return fail(fmt::format("the path {} leaves the cell's home {}", shown, root_.string()), "put the file into the home");
+  }
+  if (fs::is_directory(found, error)) return fail(fmt::format("{} is a folder, not a file", shown));
+  if (!fs::is_regular_file(found, error)) return fail(fmt::format("{} is no regular file", shown));
+  if (access(found.c_str(), R_OK) != 0) return fail(fmt::format("the file {} is not readable: {}", shown, std::strerror(errno)));
+  return found;
+}
+
+Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_view name) const {
+  if (auto named = check_name(name); !named) return std::unexpected(named.error());
+  if (name.find('/') != std::string_view::npos || name == "." || name == "..") {
+    return fail(fmt::format("{} is not a plain file name", printable(name)), "give a name without folders");
+  }
+  std::error_code error;
+  const fs::path parent = root_ / folder;
+  fs::create_directories(parent, error);
+  if (error) return fail(fmt::format("the folder {} cannot be made: {}", parent.string(), error.message()));
+  const fs::path canonical_parent = fs::canonical(parent, error);
+  if (error || !is_inside(canonical_parent, root_)) return fail(fmt::format("the path {} leaves the cell's home", parent.string()));
+  const fs::path target = canonical_parent / name;
+  const fs::file_status status = fs::symlink_status(target, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return fail(fmt::format("{} exists and is no regular file", target.string()));
+  return target;
+}
+
+Result<std::string> read_text_file(const fs::path& path, std::size_t limit) {
+  // O_NONBLOCK: opening a FIFO that somebody put in place of a file must not wait for its writer.
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) return fail(fmt::format("{} cannot be opened: {}", path.string(), std::strerror(errno)));
+  struct Closer {
+    int fd;
+    ~Closer() { ::close(fd); }
+  } const closer{fd};
+  struct stat info {};
+  if (fstat(fd, &info) != 0) return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
+  if (S_ISDIR(info.st_mode)) return fail(fmt::format("{} is a folder, not a file", path.string()));
+  if (!S_ISREG(info.st_mode)) return fail(fmt::format("{} is no regular file", path.string()));
+  if (static_cast<std::size_t>(info.st_size) > limit) {
+    return fail(fmt::format("{} has {} bytes, more than the {} that are read", path.string(), info.st_size, limit));
+  }
+  std::string text(static_cast<std::size_t>(info.st_size), '\0');
+  std::size_t filled = 0;
+  while (filled < text.size()) {
+    const ssize_t got = ::read(fd, text.data() + filled, text.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+  }
+  text.resize(filled);
+  return text;
+}
+
+}  // namespace cellmirror

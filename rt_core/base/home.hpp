@@ -1,0 +1,38 @@
+// The KISMET home of a cell: the one folder from which names in cell files and SCRIPT may reach files.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror {
+
+class KismetHome {
+ public:
+  // `root` is the cell's folder, or $kis_home where that is set. Fails where it is no readable folder.
+  static Result<KismetHome> open(const std::filesystem::path& root);
+  // The home of the cell file at `cell_file`: $kis_home if set, else the file's own folder.
+  static Result<KismetHome> of_cell(const std::filesystem::path& cell_file);
+
+  // The regular, readable file `name` in `folder` ("scripts", "envlib", "robots", "" for the home itself), with
+  // `extension` (".spt") added where the name has none and no file without it exists. Refused: absolute names, names
+  // that leave the home (also through links), folders, missing and unreadable files; the message says which.
+  [[nodiscard]] Result<std::filesystem::path> file(std::string_view folder, std::string_view name,
+                                                   std::string_view extension = {}) const;
+  // A path for a file that will be written; the same rules, but the file need not exist. Makes `folder` where missing.
+  [[nodiscard]] Result<std::filesystem::path> file_to_write(std::string_view folder, std::string_view name) const;
+
+  [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+
+ private:
+  explicit KismetHome(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path root_;  // canonical
+};
+
+// The whole content of a regular file, at most `limit` bytes; larger, missing, unreadable and other kinds are refused.
+[[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& path, std::size_t limit);
+
+}  // namespace cellmirror

@@ -1,0 +1,84 @@
+#include "rt_core/base/log.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <map>
+#include <mutex>
+
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+spdlog::level::level_enum spdlog_level(LogLevel level) {
+  switch (level) {
+    case LogLevel::debug: return spdlog::level::debug;
+    case LogLevel::info: return spdlog::level::info;
+    case LogLevel::warning: return spdlog::level::warn;
+    case LogLevel::error: return spdlog::level::err;
+  }
+  return spdlog::level::err;
+}
+
+spdlog::logger& logger() {
+  static const auto instance = [] {
+    auto made = spdlog::stderr_color_mt("cellmirror");
+    made->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    made->set_level(spdlog::level::warn);
+    return made;
+  }();
+  return *instance;
+}
+
+struct Allowance {
+  Timestamp window_start;
+  int written = 0;
+  std::uint64_t swallowed = 0;
+};
+
+// Answers whether a message of this kind may pass now, and how many were swallowed since the last one that did.
+class RateLimit {
+ public:
+  bool pass(std::string_view kind, std::uint64_t& swallowed) {
+    const std::scoped_lock lock(mutex_);
+    constexpr std::size_t kKinds = 4096;  // kinds may hold names from outside: bounded, forgetting all at once
+    if (allowances_.size() >= kKinds) allowances_.clear();
+    Allowance& allowance = allowances_[std::string(kind)];
+    const Timestamp now = SystemClock().now();
+    if (!allowance.window_start.known() || now - allowance.window_start > std::chrono::seconds(1)) {
+      allowance.window_start = now;
+      allowance.written = 0;
+    }
+    if (allowance.written >= kLogBurst) {
+      ++allowance.swallowed;
+      return false;
+    }
+    ++allowance.written;
+    swallowed = std::exchange(allowance.swallowed, 0);
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, Allowance, std::less<>> allowances_;
+};
+
+}  // namespace
+
+void set_log_level(LogLevel level) { logger().set_level(spdlog_level(level)); }
+
+void log_text(LogLevel level, std::string_view kind, std::string_view message) {
+  static RateLimit limit;
+  if (!logger().should_log(spdlog_level(level))) return;
+  std::uint64_t swallowed = 0;
+  if (!limit.pass(kind, swallowed)) return;
+  if (swallowed > 0) {
+    logger().log(spdlog_level(level), "[{}] {} ({} more of this kind were not written)", kind, message, swallowed);
+  } else {
+    logger().log(spdlog_level(level), "[{}] {}", kind, message);
+  }
+}
+
+}  // namespace cellmirror

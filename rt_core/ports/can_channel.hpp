@@ -1,0 +1,67 @@
+// A CAN controller as the protocols see it: frames in, frames out, and the health of the bus.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror {
+
+inline constexpr std::size_t kCanMaxData = 64;
+
+// One classic or FD frame. Data beyond `length` is zero.
+struct CanFrame {
+  std::uint32_t id = 0;  // 11 or 29 bits, without flags
+  bool extended = false;
+  bool remote = false;
+  bool error = false;  // an error frame of SocketCAN: `id` holds the CAN_ERR_* classes
+  bool fd = false;
+  bool bit_rate_switch = false;
+  bool error_state_indicator = false;
+  std::uint8_t length = 0;  // bytes of data
+  std::array<std::uint8_t, kCanMaxData> data{};
+
+  [[nodiscard]] std::span<const std::uint8_t> payload() const { return {data.data(), length}; }
+};
+
+struct ReceivedCanFrame {
+  CanFrame frame;
+  Timestamp receive_time;
+};
+
+enum class CanBusState : std::uint8_t { unknown, active, warning, passive, bus_off, down };
+
+// Counters of a channel since it was opened. A copy.
+struct CanChannelStatus {
+  std::string endpoint;  // as in the cell file: "socketcan:can0", "udp:239.74.163.2:43113", "log:FILE"
+  CanBusState bus = CanBusState::unknown;
+  std::uint64_t received = 0;
+  std::uint64_t sent = 0;
+  std::uint64_t send_refused = 0;   // ENOBUFS and the like: the frame was not sent
+  std::uint64_t receive_dropped = 0;  // told by the kernel (SO_RXQ_OVFL)
+  std::uint64_t malformed = 0;      // datagrams or log lines that are no frames
+  std::uint64_t error_frames = 0;
+  std::uint64_t reopened = 0;       // how often the channel recovered by itself
+  std::string last_error;
+};
+
+enum class CanReceive : std::uint8_t { frame, timeout, down, end };
+
+// One user thread. The channel recovers by itself from ENETDOWN, a vanished interface and the like: meanwhile receive()
+// answers `down` (after waiting out its timeout) and send() refuses.
+class CanChannel {
+ public:
+  virtual ~CanChannel() = default;
+  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end.
+  virtual CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) = 0;
+  // Never waits. False where the frame could not be sent (counted).
+  virtual bool send(const CanFrame& frame) = 0;
+  [[nodiscard]] virtual CanChannelStatus status() const = 0;  // any thread
+};
+
+}  // namespace cellmirror

@@ -1,0 +1,62 @@
+// The state of robots as it leaves the gateway: over the SENSOR channel, over DDS, to whoever shows it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/pose.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+
+namespace cellmirror {
+
+enum class JointKind : std::uint8_t { revolute, continuous, prismatic };
+
+struct RobotJointState {
+  std::string name;
+  JointKind kind = JointKind::revolute;
+  double position = 0;  // rad or m
+  double velocity = 0;  // rad/s or m/s
+  double effort = 0;    // Nm or N
+  DataState state = DataState::none;  // `none` for a robot that is not mirrored
+  Timestamp source_time;
+  Timestamp receive_time;
+};
+
+// One robot at one tick.
+struct RobotState {
+  std::string id;
+  bool online = false;     // mirrored
+  std::uint64_t sequence = 0;  // of the sample, or of the tick where not mirrored
+  DataState state = DataState::none;
+  std::vector<RobotJointState> joints;
+  Pose X_BT = Pose::Identity();  // TCP in the robot's base
+  Pose X_WT = Pose::Identity();  // TCP in the world
+};
+
+// The pose of one frame for /tf: child in parent.
+struct FramePose {
+  std::string parent;
+  std::string child;
+  Pose X_PC = Pose::Identity();
+};
+
+// Somebody to whom robot states are given at the cell file's rate, off the tick. One calling thread (the publisher).
+// Never blocks for long; what cannot be delivered is dropped and counted by the implementation.
+class RobotStateOutput {
+ public:
+  virtual ~RobotStateOutput() = default;
+  // `time`: the tick's instant. `robots`: those for which output is switched on (`ROBOT <id> send_on`).
+  virtual void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) = 0;
+  // {"sent", n}, {"dropped", n}, ...; any thread.
+  [[nodiscard]] virtual std::vector<std::pair<std::string, std::uint64_t>> counters() const = 0;
+  [[nodiscard]] virtual std::string name() const = 0;
+};
+
+}  // namespace cellmirror

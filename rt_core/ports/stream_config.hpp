@@ -1,0 +1,131 @@
+// What a cell file says about the channel to a robot's controller. Plain data: config/ fills it, drivers/ read it.
+// Paths are absolute and already checked; numbers are SI.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror {
+
+// Common to all kinds: when a value is too old.
+struct StreamAges {
+  Nanoseconds stale_after{100'000'000};  // no new value for this long: stale
+  Nanoseconds lost_after{1'000'000'000};
+};
+
+// "socketcan:can0" | "udp:GROUP:PORT" (python-can's udp_multicast; IPv4 or [IPv6] group) | "log:FILE" (candump log)
+struct CanChannelConfig {
+  std::string endpoint;
+  bool fd = false;
+  std::string interface = "lo";    // udp: the network interface that joins the group; loopback by default
+  bool log_as_fast_as_possible = false;  // log: ignore the time stamps
+  bool log_repeat = false;
+};
+
+// One entry of a PDO: which object, how many bits, in the order of the bits of the frame.
+struct PdoEntryConfig {
+  std::uint16_t index = 0;     // 0: filler bits
+  std::uint8_t subindex = 0;
+  std::uint8_t bits = 0;
+};
+
+struct TpdoConfig {
+  std::uint8_t number = 1;      // 1..4 for the predefined COB-IDs, up to 512 with an explicit one
+  std::uint32_t cob_id = 0;     // 0: the predefined one (0x80 + 0x100 * number + node)
+  std::uint8_t transmission_type = 255;  // 0..240 with SYNC, 254/255 event driven
+  std::uint16_t inhibit_time_100us = 0;
+  std::uint16_t event_timer_ms = 0;
+  std::vector<PdoEntryConfig> entries;
+};
+
+// One drive = one joint.
+struct Cia402NodeConfig {
+  std::uint8_t node_id = 0;  // 1..127
+  std::size_t joint = 0;     // the joint's number in the robot
+  std::string joint_name;    // for messages
+  // position [rad or m] = sign * raw * scale + offset; raw = object 0x6064 in the drive's increments.
+  double scale = 1.0;        // rad (or m) an increment, positive
+  double sign = 1.0;         // +1 or -1
+  double offset = 0.0;       // rad or m
+  double velocity_scale = 0.0;  // rad/s (m/s) a unit of 0x606C; 0: same increments a second as `scale`
+  double torque_scale = 0.0;    // Nm (N) a unit of 0x6077 (often a thousandth of the rated torque); 0: effort is not known
+  std::string eds_file;      // an EDS or DCF with the PDO mapping; may be empty
+  std::vector<TpdoConfig> tpdos;  // from the cell file; they win over the EDS
+  bool configure = false;    // write the mapping to the drive by SDO before NMT start
+};
+
+struct Cia402StreamConfig {
+  CanChannelConfig channel;
+  StreamAges ages;
+  std::vector<Cia402NodeConfig> nodes;
+  bool start_nodes = true;                // send NMT start to the nodes, at open and after each boot-up
+  Nanoseconds sync_period{0};             // > 0: this stream produces SYNC
+  Nanoseconds heartbeat_timeout{500'000'000};  // no heartbeat for this long: the node is lost; 0: heartbeats are not watched
+  Nanoseconds sdo_timeout{500'000'000};
+  std::uint16_t heartbeat_producer_ms = 0;  // > 0 and `configure`: written to object 0x1017 of each node
+};
+
+// One signal of a DBC = one quantity of one joint.
+enum class JointQuantity : std::uint8_t { position, velocity, effort };
+
+struct DbcSignalConfig {
+  std::string message;  // name in the DBC
+  std::string signal;
+  std::size_t joint = 0;
+  std::string joint_name;
+  JointQuantity quantity = JointQuantity::position;
+  // value [SI] = physical * scale + offset; physical = the DBC's own raw * factor + offset.
+  double scale = 1.0;
+  double offset = 0.0;
+};
+
+struct DbcStreamConfig {
+  CanChannelConfig channel;
+  StreamAges ages;
+  std::string dbc_file;
+  std::vector<DbcSignalConfig> signals;
+};
+
+// ROS 2's sensor_msgs/msg/JointState.
+struct DdsJointConfig {
+  std::string ros_name;  // as in JointState.name
+  std::size_t joint = 0;
+  double scale = 1.0;    // value = message * scale + offset
+  double offset = 0.0;
+};
+
+struct DdsStreamConfig {
+  int domain = 0;
+  std::string topic = "rt/joint_states";
+  std::string interface_address = "127.0.0.1";  // loopback by default
+  StreamAges ages;
+  std::vector<DdsJointConfig> joints;
+  bool reliable = false;  // best effort matches every publisher
+};
+
+using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig>;
+
+// What the gateway publishes on DDS.
+struct DdsOutputConfig {
+  bool enabled = false;
+  int domain = 0;
+  std::string interface_address = "127.0.0.1";
+  std::string joint_states_topic = "rt/cellmirror/joint_states";
+  std::string tf_topic = "rt/tf";
+  double rate_hz = 50.0;
+};
+
+// The System V queues of an instance.
+struct QueueConfig {
+  std::int32_t script_key = 2351;  // manual 1.1
+  std::int32_t sensor_key = 1990;  // manual 1.2.1, ROBOT send_on
+  std::int32_t reply_key = 2352;   // ours: acknowledgements
+  std::uint32_t mode = 0600;       // permissions of the queues
+  double sensor_rate_hz = 50.0;    // robot-parameter messages a second and robot
+};
+
+}  // namespace cellmirror
