@@ -15,13 +15,15 @@ set(CELLMIRROR_LAYERS
   "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
+  "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
   "sim_devices: rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds"
   "app: *"
   "tests: *")
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/engine config drivers/can
-  drivers/dds ipc/sysv ipc/control scripts/lang scripts/commands sim_devices app tests)
+  drivers/dds ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
+  sim_devices app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

@@ -67,11 +67,13 @@ Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name
   }
   if (error) return fail(fmt::format("the file {} cannot be opened: {}", shown, error.message()));
   if (!is_inside(found, root_)) {
-    return fail(fmt::format("the path {} leaves the cell's home {}", shown, root_.string()), "put the file into the home");
+    return fail(fmt::format("the path {} leaves the cell's home {}", shown, root_.string()),
+                "put the file into the home");
   }
   if (fs::is_directory(found, error)) return fail(fmt::format("{} is a folder, not a file", shown));
   if (!fs::is_regular_file(found, error)) return fail(fmt::format("{} is no regular file", shown));
-  if (access(found.c_str(), R_OK) != 0) return fail(fmt::format("the file {} is not readable: {}", shown, std::strerror(errno)));
+  if (access(found.c_str(), R_OK) != 0)
+    return fail(fmt::format("the file {} is not readable: {}", shown, std::strerror(errno)));
   return found;
 }
 
@@ -85,10 +87,12 @@ Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_
   fs::create_directories(parent, error);
   if (error) return fail(fmt::format("the folder {} cannot be made: {}", parent.string(), error.message()));
   const fs::path canonical_parent = fs::canonical(parent, error);
-  if (error || !is_inside(canonical_parent, root_)) return fail(fmt::format("the path {} leaves the cell's home", parent.string()));
+  if (error || !is_inside(canonical_parent, root_))
+    return fail(fmt::format("the path {} leaves the cell's home", parent.string()));
   const fs::path target = canonical_parent / name;
   const fs::file_status status = fs::symlink_status(target, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) return fail(fmt::format("{} exists and is no regular file", target.string()));
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return fail(fmt::format("{} exists and is no regular file", target.string()));
   return target;
 }
 
@@ -100,7 +104,7 @@ Result<std::string> read_text_file(const fs::path& path, std::size_t limit) {
     int fd;
     ~Closer() { ::close(fd); }
   } const closer{fd};
-  struct stat info {};
+  struct stat info{};
   if (fstat(fd, &info) != 0) return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
   if (S_ISDIR(info.st_mode)) return fail(fmt::format("{} is a folder, not a file", path.string()));
   if (!S_ISREG(info.st_mode)) return fail(fmt::format("{} is no regular file", path.string()));

@@ -8,7 +8,8 @@ namespace cellmirror {
 Eigen::Matrix3d rotation_from_rpy(double roll, double pitch, double yaw) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
-  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) * AngleAxisd(roll, Vector3d::UnitX()))
+  return (AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
+          AngleAxisd(roll, Vector3d::UnitX()))
       .toRotationMatrix();
 }
 

@@ -32,7 +32,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::string lower_case(std::string_view text) {
@@ -78,7 +79,8 @@ std::vector<std::string> nearest(std::string_view wrong, std::span<const std::st
   const std::size_t far = std::max<std::size_t>(2, wrong.size() / 3);
   std::vector<std::pair<std::size_t, const std::string*>> near;
   for (const std::string& candidate : candidates) {
-    if (candidate.size() > kLongest || candidate.size() > wrong.size() + far || wrong.size() > candidate.size() + far) continue;
+    if (candidate.size() > kLongest || candidate.size() > wrong.size() + far || wrong.size() > candidate.size() + far)
+      continue;
     const std::size_t distance = edit_distance(wrong, candidate);
     if (distance <= far) near.emplace_back(distance, &candidate);
   }

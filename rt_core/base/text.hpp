@@ -22,7 +22,8 @@ namespace cellmirror {
 [[nodiscard]] std::optional<long long> parse_integer(std::string_view text);
 
 // Up to `most` of the candidates, nearest to `wrong` by edit distance first; only such that a person may have meant.
-[[nodiscard]] std::vector<std::string> nearest(std::string_view wrong, std::span<const std::string> candidates, std::size_t most = 3);
+[[nodiscard]] std::vector<std::string> nearest(std::string_view wrong, std::span<const std::string> candidates,
+                                               std::size_t most = 3);
 // "did you mean A, B or C?", or empty where nothing is near.
 [[nodiscard]] std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates);
 

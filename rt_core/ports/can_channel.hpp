@@ -42,11 +42,11 @@ struct CanChannelStatus {
   CanBusState bus = CanBusState::unknown;
   std::uint64_t received = 0;
   std::uint64_t sent = 0;
-  std::uint64_t send_refused = 0;   // ENOBUFS and the like: the frame was not sent
+  std::uint64_t send_refused = 0;     // ENOBUFS and the like: the frame was not sent
   std::uint64_t receive_dropped = 0;  // told by the kernel (SO_RXQ_OVFL)
-  std::uint64_t malformed = 0;      // datagrams or log lines that are no frames
+  std::uint64_t malformed = 0;        // datagrams or log lines that are no frames
   std::uint64_t error_frames = 0;
-  std::uint64_t reopened = 0;       // how often the channel recovered by itself
+  std::uint64_t reopened = 0;  // how often the channel recovered by itself
   std::string last_error;
 };
 

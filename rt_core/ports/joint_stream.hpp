@@ -21,14 +21,15 @@ enum class DataState : std::uint8_t {
   fresh,    // younger than the cell file's stale_after_s; standing still but still sending is fresh
   stale,    // older than stale_after_s
   lost,     // older than lost_after_s, or the source itself said that it is gone
-  invalid,  // the newest sample was refused (not finite, wrong length, beyond plausibility); the value is the last good one
+  invalid,  // the newest sample was refused (not finite, wrong length, beyond plausibility); the value is the last good
+            // one
 };
 
 // Joint values that one source sent for one robot at one instant. SI: rad, rad/s, Nm for revolute joints, m, m/s, N for
 // prismatic ones, after scale, sign and offset of the cell file. Index = the joint's number in the robot.
 struct JointSample {
-  Timestamp receive_time;  // when its last byte was taken from the operating system
-  Timestamp source_time;   // the source's own stamp, moved to our clock; "never" where the protocol has none
+  Timestamp receive_time;      // when its last byte was taken from the operating system
+  Timestamp source_time;       // the source's own stamp, moved to our clock; "never" where the protocol has none
   std::uint64_t sequence = 0;  // counted by the source where it counts, else by the driver, from 1
   std::uint32_t present = 0;   // bit i: joint i has a valid new position
   std::uint32_t refused = 0;   // bit i: joint i was in the message but refused (NaN, implausible); others stay usable
@@ -55,8 +56,9 @@ struct JointStreamStatus {
   std::uint64_t rejected = 0;  // messages or values refused
   double rate_hz = 0;          // samples over the last second
   std::string condition;       // one line, e.g. "operational", "bus-off, waiting for the bus", "no publisher"
-  std::vector<std::pair<std::string, std::string>> details;  // e.g. {"node 3", "operation enabled"}, {"last EMCY", "node 3 0x8611 ..."}
-  std::vector<std::string> last_errors;                      // newest last, bounded
+  std::vector<std::pair<std::string, std::string>>
+      details;                           // e.g. {"node 3", "operation enabled"}, {"last EMCY", "node 3 0x8611 ..."}
+  std::vector<std::string> last_errors;  // newest last, bounded
 };
 
 // The stream of one robot. Life: made (closed) -> open() -> close() -> open() ... Destroying closes. It recovers by

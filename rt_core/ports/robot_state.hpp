@@ -21,9 +21,9 @@ enum class JointKind : std::uint8_t { revolute, continuous, prismatic };
 struct RobotJointState {
   std::string name;
   JointKind kind = JointKind::revolute;
-  double position = 0;  // rad or m
-  double velocity = 0;  // rad/s or m/s
-  double effort = 0;    // Nm or N
+  double position = 0;                // rad or m
+  double velocity = 0;                // rad/s or m/s
+  double effort = 0;                  // Nm or N
   DataState state = DataState::none;  // `none` for a robot that is not mirrored
   Timestamp source_time;
   Timestamp receive_time;
@@ -32,7 +32,7 @@ struct RobotJointState {
 // One robot at one tick.
 struct RobotState {
   std::string id;
-  bool online = false;     // mirrored
+  bool online = false;         // mirrored
   std::uint64_t sequence = 0;  // of the sample, or of the tick where not mirrored
   DataState state = DataState::none;
   std::vector<RobotJointState> joints;

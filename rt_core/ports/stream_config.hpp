@@ -21,21 +21,21 @@ struct StreamAges {
 struct CanChannelConfig {
   std::string endpoint;
   bool fd = false;
-  std::string interface = "lo";    // udp: the network interface that joins the group; loopback by default
+  std::string interface = "lo";          // udp: the network interface that joins the group; loopback by default
   bool log_as_fast_as_possible = false;  // log: ignore the time stamps
   bool log_repeat = false;
 };
 
 // One entry of a PDO: which object, how many bits, in the order of the bits of the frame.
 struct PdoEntryConfig {
-  std::uint16_t index = 0;     // 0: filler bits
+  std::uint16_t index = 0;  // 0: filler bits
   std::uint8_t subindex = 0;
   std::uint8_t bits = 0;
 };
 
 struct TpdoConfig {
-  std::uint8_t number = 1;      // 1..4 for the predefined COB-IDs, up to 512 with an explicit one
-  std::uint32_t cob_id = 0;     // 0: the predefined one (0x80 + 0x100 * number + node)
+  std::uint8_t number = 1;               // 1..4 for the predefined COB-IDs, up to 512 with an explicit one
+  std::uint32_t cob_id = 0;              // 0: the predefined one (0x80 + 0x100 * number + node)
   std::uint8_t transmission_type = 255;  // 0..240 with SYNC, 254/255 event driven
   std::uint16_t inhibit_time_100us = 0;
   std::uint16_t event_timer_ms = 0;
@@ -48,23 +48,25 @@ struct Cia402NodeConfig {
   std::size_t joint = 0;     // the joint's number in the robot
   std::string joint_name;    // for messages
   // position [rad or m] = sign * raw * scale + offset; raw = object 0x6064 in the drive's increments.
-  double scale = 1.0;        // rad (or m) an increment, positive
-  double sign = 1.0;         // +1 or -1
-  double offset = 0.0;       // rad or m
+  double scale = 1.0;           // rad (or m) an increment, positive
+  double sign = 1.0;            // +1 or -1
+  double offset = 0.0;          // rad or m
   double velocity_scale = 0.0;  // rad/s (m/s) a unit of 0x606C; 0: same increments a second as `scale`
-  double torque_scale = 0.0;    // Nm (N) a unit of 0x6077 (often a thousandth of the rated torque); 0: effort is not known
-  std::string eds_file;      // an EDS or DCF with the PDO mapping; may be empty
+  double torque_scale =
+      0.0;               // Nm (N) a unit of 0x6077 (often a thousandth of the rated torque); 0: effort is not known
+  std::string eds_file;  // an EDS or DCF with the PDO mapping; may be empty
   std::vector<TpdoConfig> tpdos;  // from the cell file; they win over the EDS
-  bool configure = false;    // write the mapping to the drive by SDO before NMT start
+  bool configure = false;         // write the mapping to the drive by SDO before NMT start
 };
 
 struct Cia402StreamConfig {
   CanChannelConfig channel;
   StreamAges ages;
   std::vector<Cia402NodeConfig> nodes;
-  bool start_nodes = true;                // send NMT start to the nodes, at open and after each boot-up
-  Nanoseconds sync_period{0};             // > 0: this stream produces SYNC
-  Nanoseconds heartbeat_timeout{500'000'000};  // no heartbeat for this long: the node is lost; 0: heartbeats are not watched
+  bool start_nodes = true;     // send NMT start to the nodes, at open and after each boot-up
+  Nanoseconds sync_period{0};  // > 0: this stream produces SYNC
+  Nanoseconds heartbeat_timeout{
+      500'000'000};  // no heartbeat for this long: the node is lost; 0: heartbeats are not watched
   Nanoseconds sdo_timeout{500'000'000};
   std::uint16_t heartbeat_producer_ms = 0;  // > 0 and `configure`: written to object 0x1017 of each node
 };
@@ -94,7 +96,7 @@ struct DbcStreamConfig {
 struct DdsJointConfig {
   std::string ros_name;  // as in JointState.name
   std::size_t joint = 0;
-  double scale = 1.0;    // value = message * scale + offset
+  double scale = 1.0;  // value = message * scale + offset
   double offset = 0.0;
 };
 

@@ -1,0 +1,136 @@
+// All that SCRIPT knows of the gateway. The handlers of the commands talk to these interfaces and to nothing else; the
+// gateway implements them. Every call comes from the thread that owns the cell. Quantities are SI. A refusal says why
+// and what to do; a refused call changes nothing.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/pose.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
+#include "rt_core/ports/robot_state.hpp"
+
+namespace cellmirror {
+
+// What a name in a command must be the name of.
+enum class NameKind : std::uint8_t { frame_node, robot, camera, sensor, workframe };
+
+// Names and facts that checking a command needs; also offline, for `cellmirror check --cell`.
+class NameDirectory {
+ public:
+  virtual ~NameDirectory() = default;
+  // For frame_node a dotted path; an ambiguous shortened path is not known, and explain() says so.
+  [[nodiscard]] virtual bool knows(NameKind kind, std::string_view name) const = 0;
+  // Why an unknown name is not known: with the nearest names, or the candidates of an ambiguous one.
+  [[nodiscard]] virtual Error explain(NameKind kind, std::string_view name) const = 0;
+  // The kinds of the robot's joints in the order of its .mpc file; empty for an unknown robot.
+  [[nodiscard]] virtual std::span<const JointKind> joints(std::string_view robot) const = 0;
+  // Names of the robot's joints, same order (MASTER_SLAVE).
+  [[nodiscard]] virtual std::vector<std::string> joint_names(std::string_view robot) const = 0;
+  // The robot that ROBACT made active; empty when there is none.
+  [[nodiscard]] virtual std::string_view active_robot() const = 0;
+  // All names of a kind, for completion.
+  [[nodiscard]] virtual std::vector<std::string> all(NameKind kind) const = 0;
+};
+
+// The tree of the cell (manual 1.2.1).
+class WorldHost {
+ public:
+  virtual ~WorldHost() = default;
+  virtual Result<void> activate(std::string_view node) = 0;
+  virtual Result<void> deactivate(std::string_view node) = 0;
+  virtual Result<void> delete_node(std::string_view node) = 0;
+  virtual Result<void> swap_node(std::string_view node) = 0;
+  virtual Result<void> level_down(std::string_view node) = 0;
+  virtual Result<void> level_up(std::string_view node) = 0;
+  // X_PF: the frame's new pose in its kinematic predecessor.
+  virtual Result<void> set_placement(std::string_view node, const Pose& X_PF) = 0;
+  // `predecessor` becomes the kinematic predecessor of `part`, whose world pose stays.
+  virtual Result<void> connect(std::string_view part, std::string_view predecessor) = 0;
+  // The same with the relative pose of the workframe: the part jumps there.
+  virtual Result<void> attach_at_workframe(std::string_view part, std::string_view predecessor,
+                                           std::string_view workframe) = 0;
+  // Recalculates the kinematics with everything commanded so far and publishes the result.
+  virtual Result<void> draw_scene() = 0;
+};
+
+// A parameter with one value a joint, or with one number (manual 1.2.2). Values arrive in SI.
+enum class JointParameter : std::uint8_t {
+  max_range,
+  min_range,
+  start_position,
+  reference_position,
+  max_velocity,
+  min_velocity,
+  active_velocity,
+  max_acceleration,
+  active_acceleration,
+};
+enum class ScalarParameter : std::uint8_t {
+  linear_velocity,
+  linear_acceleration,
+  rotational_velocity,
+  rotational_acceleration,
+  velocity_scale,
+  acceleration_scale,
+  program_delay,
+};
+
+// Robots (manual 1.2.1 and 1.2.2). The parameter calls concern the active robot and are refused when there is none.
+class RobotHost {
+ public:
+  virtual ~RobotHost() = default;
+  virtual Result<void> set_active_robot(std::string_view robot) = 0;
+  virtual Result<void> set_online(std::string_view robot, bool online) = 0;    // ROBOT online / offline
+  virtual Result<void> set_sending(std::string_view robot, bool sending) = 0;  // ROBOT send_on / send_off
+  // POS_ROB JOINT_ABS, JOINT_INC: fewer values than joints leave the others where they are. All or nothing.
+  virtual Result<void> move_joints_to(std::string_view robot, std::span<const double> positions) = 0;
+  virtual Result<void> move_joints_by(std::string_view robot, std::span<const double> increments) = 0;
+  virtual Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) = 0;
+  virtual Result<void> set_scalar_parameter(ScalarParameter which, double value) = 0;
+  virtual Result<void> set_fly(FlyType type, double parameter) = 0;
+  virtual Result<void> set_ptp_mode(PtpMode mode) = 0;
+  virtual Result<void> set_velocity_profile(VelocityProfile profile) = 0;
+  virtual Result<void> set_inverse_class(InverseClass inverse_class) = 0;
+  virtual Result<void> set_point_of_reference(const Pose& X_FP) = 0;
+  virtual Result<void> set_tool_center_point(const Pose& X_PT) = 0;
+};
+
+enum class RobotLanguage : std::uint8_t { irdata, srcl, jet_boom, jet_tarm };
+
+class ProgramHost {
+ public:
+  virtual ~ProgramHost() = default;
+  virtual Result<void> set_language(RobotLanguage language) = 0;
+  // True while a robot program or a view sequence runs: what WAIT waits for.
+  [[nodiscard]] virtual bool busy() const = 0;
+};
+
+class ViewHost {
+ public:
+  virtual ~ViewHost() = default;
+  virtual Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) = 0;
+  virtual Result<void> show_message(std::string_view text) = 0;  // hot_message
+};
+
+// Of ours: what the manual does not have.
+class DiagnosisHost {
+ public:
+  virtual ~DiagnosisHost() = default;
+  virtual Result<void> save_flight_record(std::string_view file_name) = 0;  // SAVE_FLIGHT, into the home's records/
+};
+
+struct CommandHost {
+  NameDirectory& names;
+  WorldHost& world;
+  RobotHost& robots;
+  ProgramHost& programs;
+  ViewHost& views;
+  DiagnosisHost& diagnosis;
+};
+
+}  // namespace cellmirror
