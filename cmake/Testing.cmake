@@ -1,3 +1,6 @@
+# Each test carries its kind (tests/<kind>/<subject>) as a label; integration and stress tests run alone, since they watch
+# the clock or share ports.
+#
 # cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...])      a GoogleTest program, one ctest entry
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
 #   CELLMIRROR_FUZZERS a libFuzzer program, always also <name>_replay, which runs the corpus as an ordinary test.
@@ -7,9 +10,30 @@ if(CELLMIRROR_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)
 endif()
-if(CELLMIRROR_BENCHMARKS)
+if(CELLMIRROR_TESTS AND CELLMIRROR_BENCHMARKS)
   find_package(benchmark REQUIRED)
 endif()
+
+# cellmirror_describe_test(name): kind label, serial where needed, and what every test may rely on in its environment.
+# For tests added with add_test() by hand too. Sanitizers make a program up to ten times slower.
+function(cellmirror_describe_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+  file(RELATIVE_PATH place ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REGEX MATCH "^[^/]+" kind ${place})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  if(CELLMIRROR_SANITIZE)
+    math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * 3")
+  endif()
+  if(kind MATCHES "^(integration|stress|bench)$")
+    set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)
+  endif()
+  list(APPEND ARG_LABELS ${kind})
+  list(REMOVE_DUPLICATES ARG_LABELS)
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_RETURN_CODE 77
+    ENVIRONMENT "CELLMIRROR_SOURCE_DIR=${CMAKE_SOURCE_DIR};CELLMIRROR_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+endfunction()
 
 function(cellmirror_test name)
   if(NOT CELLMIRROR_TESTS)
@@ -17,12 +41,8 @@ function(cellmirror_test name)
   endif()
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;USES;LINK;LABELS" ${ARGN})
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK})
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 120)
-  endif()
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
-    ENVIRONMENT "CELLMIRROR_SOURCE_DIR=${CMAKE_SOURCE_DIR};CELLMIRROR_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  cellmirror_describe_test(${name} TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABELS})
 endfunction()
 
 function(cellmirror_fuzz_target name)
@@ -32,16 +52,16 @@ function(cellmirror_fuzz_target name)
   cmake_parse_arguments(ARG "" "SOURCE;CORPUS" "USES;LINK" ${ARGN})
   cellmirror_executable(${name}_replay SOURCES ${ARG_SOURCE} ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_main.cpp USES ${ARG_USES} LINK ${ARG_LINK})
   add_test(NAME ${name}_replay COMMAND ${name}_replay ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
-  set_tests_properties(${name}_replay PROPERTIES TIMEOUT 120 LABELS fuzz)
+  cellmirror_describe_test(${name}_replay LABELS fuzz)
   if(CELLMIRROR_FUZZERS)
     cellmirror_executable(${name} SOURCES ${ARG_SOURCE} USES ${ARG_USES} LINK ${ARG_LINK} -fsanitize=fuzzer)
     add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/tests/support/fuzz_for.sh $<TARGET_FILE:${name}> ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 300 LABELS fuzz)
+    cellmirror_describe_test(${name} LABELS fuzz libfuzzer)
   endif()
 endfunction()
 
 function(cellmirror_benchmark name)
-  if(NOT CELLMIRROR_BENCHMARKS)
+  if(NOT (CELLMIRROR_TESTS AND CELLMIRROR_BENCHMARKS))
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;USES;LINK" ${ARGN})
