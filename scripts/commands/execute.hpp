@@ -1,0 +1,40 @@
+// Executes one parsed command on the gateway. Called by the thread that owns the cell.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/result.hpp"
+#include "scripts/commands/host.hpp"
+#include "scripts/lang/parsed_command.hpp"
+
+namespace cellmirror::script {
+
+// What came of a command.
+struct Outcome {
+  enum class Kind : std::uint8_t {
+    done,
+    refused,      // `error` says why and what to do; nothing was changed
+    call_script,  // EXEC_SCRIPT: the runner calls `script`
+    wait,         // WAIT: the runner suspends the script
+  };
+
+  Kind kind = Kind::done;
+  Error error;
+  std::string_view script;  // points into the command's text
+
+  static Outcome done() { return {}; }
+  static Outcome refused(Error why) { return {Kind::refused, std::move(why), {}}; }
+  static Outcome of(Result<void> result) { return result ? done() : refused(std::move(result.error())); }
+};
+
+// The command must have been parsed with host.names. Commands whose subsystem is not there yet are refused with
+// "<name> is not available yet: <subsystem>".
+[[nodiscard]] Outcome execute(const ParsedCommand& command, CommandHost& host);
+
+// Whether a handler is registered for the form; all commands of the table have one, conventions have none.
+[[nodiscard]] bool has_handler(FormId id);
+
+}  // namespace cellmirror::script

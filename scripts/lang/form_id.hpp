@@ -1,0 +1,122 @@
+// The identity of every row of the command table, in the order of the index of the manual; ours stand behind it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cellmirror::script {
+
+enum class FormId : std::uint8_t {
+  // 1.2.1 General
+  comment,
+  activate,
+  deactivate,
+  delete_node,
+  swap_node,
+  level_down,
+  level_up,
+  robot_language,
+  robact,
+  tf_load,
+  tf_run,
+  tf_delete,
+  load_views,
+  exec_script,
+  draw_scene,
+  connect,
+  frame_to_wfrm,
+  pos_rob_joint_abs,
+  pos_rob_joint_inc,
+  pos_rob_frame_abs,
+  pos_rob_frame_inc,
+  pos_rob_tool_inc,
+  pos_rob_screen_inc,
+  set_frame_render,
+  set_frame_placement,
+  set_abstract_render,
+  robot_online,
+  robot_sending,
+  set_campar,
+  set_usspar_active,
+  set_usspar_sendmode,
+  set_usspar_range,
+  tag_drawlen,
+  cam_tracking,
+  cam_view_pyramid,
+  cam_online,
+  // 1.2.2 Robot parameters
+  rob_cart_lin_vel,
+  rob_cart_lin_acc,
+  rob_cart_rot_vel,
+  rob_cart_rot_acc,
+  rob_cart_vel_scal,
+  rob_cart_acc_scal,
+  rob_cart_fly_radius,
+  rob_program_delays,
+  rob_jnt_max_range,
+  rob_jnt_min_range,
+  rob_jnt_start_pos,
+  rob_jnt_ref_pos,
+  rob_jnt_max_vel,
+  rob_jnt_min_vel,
+  rob_jnt_act_vel,
+  rob_jnt_max_acc,
+  rob_jnt_act_acc,
+  rob_ptp_mode,
+  rob_por_def,
+  rob_tcp_def,
+  rob_vel_profile,
+  rob_inverse_class,
+  arc,
+  // 1.2.3 Animation
+  stdp,
+  stvw,
+  covw,
+  set_mode,
+  bfrm,
+  fldr,
+  shad,
+  wait,
+  // 1.2.4 Multibody dynamics
+  set_force_arrow,
+  set_torque_limit,
+  set_ext_tcp_test,
+  set_frc_arr_special,
+  master_slave,
+  // 1.2.5 Elastodynamic objects
+  eladyn_geo_def_flags,
+  eladyn_geo_def_token,
+  eladyn_hyper_name,
+  eladyn_show_def,
+  eladyn_model_reset,
+  eladyn_plaus_param,
+  effects_pulse,
+  effects_bleeding,
+  effects_pool_ripples,
+  effects_reset_pool,
+  effects_clean_endoscopic_lense,
+  // 1.2.6 Deformable object control and I/O channels
+  eladyn_calc,
+  rob_ela_interact,
+  ela_clip_def,
+  eladyn_geo_def_cylinders,
+  rob_ela_shm,
+  bin_ela_shm,
+  binary_input_files,
+  bin_ela,
+  hot_message,
+  // 1.2.7 Voxel volumes
+  vv_clip,
+  vv_clip_pos,
+  vv_set_lut,
+  vv_set_lut_par_medical,
+  vv_set_lut_par,
+  vv_reload_luts,
+  // Ours
+  save_flight,
+};
+
+inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
+inline constexpr std::size_t kForms = static_cast<std::size_t>(FormId::save_flight) + 1;
+
+}  // namespace cellmirror::script

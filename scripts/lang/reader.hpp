@@ -1,0 +1,70 @@
+// Reads SCRIPT text command by command: lexing, parsing, checking. Never throws, allocates nothing unless it finds an
+// error, and goes on behind an error with the next command, so that one pass shows them all.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/diagnostics.hpp"
+#include "scripts/lang/lexer.hpp"
+#include "scripts/lang/names.hpp"
+#include "scripts/lang/parsed_command.hpp"
+
+namespace cellmirror::script {
+
+enum class TextKind : std::uint8_t {
+  file,     // commands end with ';'; the last one may lack it
+  message,  // one command; a ';' behind it is tolerated
+};
+
+enum class NameCheck : std::uint8_t {
+  for_execution,  // a name must exist now
+  ahead,          // before execution: what an earlier command may bring into being is a warning
+};
+
+class CommandReader {
+ public:
+  enum class Step : std::uint8_t {
+    command,  // `out` holds a command
+    comment,  // a message that holds a comment only
+    error,    // a command was skipped; the reasons were added to the diagnostics
+    end,
+  };
+
+  // `text` must stay where it is while the reader and the commands it filled are used. `source` names it in
+  // diagnostics. Text beyond kMaxScriptBytes is refused as a whole.
+  CommandReader(std::string_view text, std::string_view source, TextKind kind);
+
+  // The next command. Without `names` only syntax, counts, types, units and ranges are checked.
+  Step next(const NameDirectory* names, ParsedCommand& out, Diagnostics& diagnostics);
+
+  void set_name_check(NameCheck check) { name_check_ = check; }
+  // Where the reader stands.
+  [[nodiscard]] Position position() const { return lexer_.position(); }
+
+ private:
+  Step read_command(const Token& head, const NameDirectory* names, ParsedCommand& out, Diagnostics& diagnostics);
+  Step finish_message(Step step, Diagnostics& diagnostics);
+
+  std::string source_;
+  TextKind kind_;
+  NameCheck name_check_ = NameCheck::for_execution;
+  bool started_ = false;
+  bool finished_ = false;
+  Lexer lexer_;
+};
+
+// Checks a whole text; adds every finding. With `names` ROBACT is followed, so that joint lists are checked against the
+// robot that will be active. Returns the number of commands read, correct or not.
+std::size_t check_script(std::string_view text, std::string_view source, const NameDirectory* names,
+                         Diagnostics& diagnostics);
+
+// Limits on input.
+inline constexpr std::size_t kMaxScriptBytes = 32UL * 1024 * 1024;  // of one file
+inline constexpr std::size_t kMaxCommandBytes = 16UL * 1024;        // of one command
+inline constexpr std::size_t kMaxFramePath = 512;                   // of a dotted path
+
+}  // namespace cellmirror::script

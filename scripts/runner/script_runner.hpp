@@ -1,0 +1,125 @@
+// Runs SCRIPT files and messages for the thread that owns the cell: step by step, several files side by side, so that
+// a long or waiting script never keeps messages waiting. Every function is called from that one thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/diagnostics.hpp"
+#include "rt_core/base/home.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "scripts/commands/execute.hpp"
+#include "scripts/commands/host.hpp"
+
+namespace cellmirror::script {
+
+class ScriptRun;
+
+enum class CommandSource : std::uint8_t { file, message };
+
+// received = done + refused, but for a command that is being executed.
+struct SourceCounters {
+  std::uint64_t received = 0;
+  std::uint64_t done = 0;
+  std::uint64_t refused = 0;
+};
+
+struct ScriptCounters {
+  SourceCounters file;
+  SourceCounters message;
+  std::uint64_t scripts_started = 0;
+  std::uint64_t scripts_ended = 0;
+  std::uint64_t scripts_refused = 0;  // missing, unreadable, with syntax errors, recursive, ...
+
+  [[nodiscard]] SourceCounters all() const {
+    return {file.received + message.received, file.done + message.done, file.refused + message.refused};
+  }
+};
+
+// A run that has ended (or was stopped).
+struct RunReport {
+  std::uint64_t id = 0;
+  std::string file;  // relative to the home, as in diagnostics
+  SourceCounters counters;
+  bool stopped = false;
+  Diagnostics diagnostics;
+};
+
+// A run that is under way.
+struct RunStatus {
+  std::uint64_t id = 0;
+  std::vector<std::string> stack;  // "scripts/a.spt:12", the outermost first
+  bool waiting = false;            // in WAIT
+};
+
+class ScriptRunner {
+ public:
+  static constexpr std::size_t kMaxRuns = 32;                        // side by side
+  static constexpr std::size_t kMaxTextBytes = 128UL * 1024 * 1024;  // of all files of all runs together
+  static constexpr std::size_t kKeptErrors = 20;                     // last_errors
+  static constexpr std::size_t kSlice = 64;                          // commands of one run before the next has its turn
+
+  // The host, the home and the clock must outlive the runner. The clock only dates errors.
+  ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock);
+  ~ScriptRunner();
+  ScriptRunner(const ScriptRunner&) = delete;
+  ScriptRunner& operator=(const ScriptRunner&) = delete;
+
+  // Starts a file of the home's scripts/ folder (default extension .spt) as a run of its own; nothing of it has been
+  // executed yet when the call returns. Refused: missing, unreadable, outside of the home, too large, with syntax
+  // errors (then nothing of it runs; the findings are in the error's text and, with `findings`, one by one). Returns
+  // the run's id.
+  Result<std::uint64_t> start_file(std::string_view name, Diagnostics* findings = nullptr);
+  // The same for a file that the operator named on the command line: it may lie anywhere.
+  Result<std::uint64_t> start_path(const std::filesystem::path& path, Diagnostics* findings = nullptr);
+
+  // Executes one command now, whatever the files do; returns a text for the acknowledgement. EXEC_SCRIPT starts the
+  // file and returns when it was accepted; WAIT is refused. `source` names the sender in errors.
+  Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
+
+  // Executes up to `budget` commands of the files, in turn; returns how many. 0: every run waits, or there is none.
+  std::size_t step(std::size_t budget);
+
+  [[nodiscard]] bool idle() const { return runs_.empty(); }
+  [[nodiscard]] std::vector<RunStatus> runs() const;
+  // Ends a run, or all of them, before their next command.
+  bool stop(std::uint64_t id);
+  void stop_all();
+
+  [[nodiscard]] const ScriptCounters& counters() const { return counters_; }
+  // "2026-11-21T10:00:00Z scripts/a.spt:3:1: error: ...", the newest last; at most kKeptErrors.
+  [[nodiscard]] std::vector<std::string> last_errors() const { return {last_errors_.begin(), last_errors_.end()}; }
+  // Called when a run ends.
+  void on_run_ended(std::function<void(const RunReport&)> callback) { run_ended_ = std::move(callback); }
+
+ private:
+  Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
+  void step_run(ScriptRun& run, std::size_t most, std::size_t& executed);
+  void call(ScriptRun& run, const ParsedCommand& command, std::string_view name);
+  void refuse(ScriptRun& run, const Position& place, Error why);
+  void end_run(std::size_t index, bool stopped);
+  void remember(const Diagnostic& diagnostic);
+  [[nodiscard]] std::size_t text_bytes() const;
+
+  CommandHost host_;
+  const KismetHome& home_;
+  const Clock& clock_;
+  std::vector<std::unique_ptr<ScriptRun>> runs_;
+  std::size_t next_run_ = 0;
+  std::uint64_t last_id_ = 0;
+  ScriptCounters counters_;
+  std::deque<std::string> last_errors_;
+  std::function<void(const RunReport&)> run_ended_;
+  ParsedCommand command_;  // reused
+};
+
+}  // namespace cellmirror::script
