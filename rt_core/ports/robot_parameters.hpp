@@ -45,6 +45,28 @@ enum class InverseClass : std::uint8_t {
   boom_6,
 };
 
+// A parameter with one value a joint, or with one number (manual 1.2.2). Values arrive in SI.
+enum class JointParameter : std::uint8_t {
+  max_range,
+  min_range,
+  start_position,
+  reference_position,
+  max_velocity,
+  min_velocity,
+  active_velocity,
+  max_acceleration,
+  active_acceleration,
+};
+enum class ScalarParameter : std::uint8_t {
+  linear_velocity,
+  linear_acceleration,
+  rotational_velocity,
+  rotational_acceleration,
+  velocity_scale,
+  acceleration_scale,
+  program_delay,
+};
+
 struct RobotParameters {
   // Joint space. Positions rad or m; velocities rad/s or m/s; accelerations rad/s2 or m/s2.
   JointValues max_range{};

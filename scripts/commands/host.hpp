@@ -36,28 +36,6 @@ class WorldHost {
   virtual Result<void> draw_scene() = 0;
 };
 
-// A parameter with one value a joint, or with one number (manual 1.2.2). Values arrive in SI.
-enum class JointParameter : std::uint8_t {
-  max_range,
-  min_range,
-  start_position,
-  reference_position,
-  max_velocity,
-  min_velocity,
-  active_velocity,
-  max_acceleration,
-  active_acceleration,
-};
-enum class ScalarParameter : std::uint8_t {
-  linear_velocity,
-  linear_acceleration,
-  rotational_velocity,
-  rotational_acceleration,
-  velocity_scale,
-  acceleration_scale,
-  program_delay,
-};
-
 // Robots (manual 1.2.1 and 1.2.2). The parameter calls concern the active robot and are refused when there is none.
 class RobotHost {
  public:

@@ -1,0 +1,77 @@
+// Loads a cell: its cell.toml with every component, URDF and referenced file. The keys are described in
+// docs/cell-files.md. Not for the tick; any thread, one at a time a call.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rt_core/base/diagnostics.hpp"
+#include "rt_core/base/home.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror {
+
+enum class RealTimePolicy : std::uint8_t {
+  require,  // no SCHED_FIFO or no locked memory: the gateway does not start
+  prefer,   // takes what the machine allows and says what it did not get
+  off,
+};
+
+struct LoopSettings {
+  double rate_hz = 1000.0;  // 100..4000
+  RealTimePolicy real_time = RealTimePolicy::prefer;
+  int priority = 80;  // of SCHED_FIFO, 1..98
+};
+
+// The stream of one robot.
+struct RobotStream {
+  std::string robot;
+  StreamConfig config;
+};
+
+// What the cell file says about the message queues; only what it says.
+struct QueueOverrides {
+  std::optional<std::int32_t> script_key;
+  std::optional<std::int32_t> sensor_key;
+  std::optional<std::int32_t> reply_key;
+  std::optional<std::uint32_t> mode;
+  std::optional<double> sensor_rate_hz;
+
+  void apply_to(QueueConfig& queues) const;
+};
+
+// Reserved for the monitor page; read and checked, not used yet.
+struct WebSettings {
+  bool enabled = true;
+  int port = 8080;
+};
+
+struct LoadedCell {
+  std::string name;
+  std::string description;
+  std::filesystem::path file;  // as given
+  KismetHome home;
+  LoopSettings loop;
+  std::vector<RobotStream> streams;  // each of another robot
+  DdsOutputConfig dds;
+  QueueOverrides queues;
+  WebSettings web;
+  std::string startup_script;                // name of a file in the home's scripts/, which exists; empty: none
+  std::vector<std::filesystem::path> files;  // every component file that was read
+  Cell cell;
+};
+
+// Nothing where there is any error; all findings of all files in `diagnostics`, each with file:line:column.
+[[nodiscard]] std::optional<LoadedCell> load_cell(const std::filesystem::path& path, Diagnostics& diagnostics);
+
+// `cellmirror check` of a .toml (with all it refers to), .mpc or .urdf file. The home of a component is $kis_home, else
+// the nearest folder above it that holds a cell.toml, else its own folder. Other extensions are an error.
+void check_file(const std::filesystem::path& path, Diagnostics& diagnostics);
+// Whether check_file() knows the extension.
+[[nodiscard]] bool is_checkable(const std::filesystem::path& path);
+
+}  // namespace cellmirror

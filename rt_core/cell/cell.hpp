@@ -1,0 +1,92 @@
+// The model of the workcell: the tree of frames, joints and workframes with the detail levels of its components, and
+// the robots. Changed by one thread, its owner; everybody else reads the compiled pictures that compile() makes. What
+// SCRIPT's commands mean (manual 1.2.1) is written in docs/cell-files.md, "Detail levels". Every operation that is
+// refused changes nothing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/diagnostics.hpp"
+#include "rt_core/base/pose.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/cell/component.hpp"
+#include "rt_core/cell/names.hpp"
+#include "rt_core/cell/node.hpp"
+#include "rt_core/cell/robot_model.hpp"
+
+namespace cellmirror {
+
+class Cell {
+ public:
+  // The cell that `root` (the cell file) describes, with every component that is to be loaded at the start. Nothing,
+  // and all findings in `diagnostics`, where something is wrong.
+  static std::optional<Cell> build(std::shared_ptr<const Component> root, std::shared_ptr<ComponentSource> source,
+                                   Diagnostics& diagnostics);
+  Cell(Cell&&) noexcept;
+  Cell& operator=(Cell&&) noexcept;
+  ~Cell();
+
+  // --- Names. Paths are dotted; levels may be skipped where one node only matches.
+  // Fast for paths that were asked before.
+  [[nodiscard]] bool knows(std::string_view path, PathKind kind = PathKind::any) const;
+  // An error names the candidates of an ambiguous path or the nearest names.
+  [[nodiscard]] Result<NodeId> find(std::string_view path, PathKind kind = PathKind::any) const;
+  [[nodiscard]] Error explain(std::string_view path, PathKind kind = PathKind::any) const;
+  [[nodiscard]] std::vector<std::string> paths(PathKind kind) const;  // full paths of all nodes in memory
+  [[nodiscard]] std::string path(NodeId node) const;
+  [[nodiscard]] const Node& node(NodeId node) const;
+  [[nodiscard]] std::size_t node_count() const;
+
+  // --- Detail levels.
+  Result<void> activate(std::string_view node);
+  Result<void> deactivate(std::string_view node);
+  Result<void> delete_node(std::string_view node);
+  Result<void> swap_node(std::string_view node);
+  Result<void> level_down(std::string_view node);
+  Result<void> level_up(std::string_view node);
+  // In the tree of names, and so drawn and tested for collision, as what it is or within its father's coarse geometry.
+  [[nodiscard]] bool visible(NodeId node) const;
+
+  // --- Places.
+  // X_PF: the frame's pose in its kinematic predecessor. A joint is refused.
+  Result<void> set_placement(std::string_view node, const Pose& X_PF);
+  // `part` hangs on `predecessor` from now on and keeps its world pose at the joint positions q[slot][joint].
+  Result<void> connect(std::string_view part, std::string_view predecessor, std::span<const JointValues> q);
+  // `part` hangs on `predecessor` with the pose that the workframe has in its own parent.
+  Result<void> attach_at_workframe(std::string_view part, std::string_view predecessor, std::string_view workframe);
+  Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad);
+
+  // --- Robots. Pointers are valid until a component is loaded or deleted.
+  [[nodiscard]] const RobotModel* robot(std::string_view id) const;  // nullptr: unknown; one hash look-up
+  [[nodiscard]] const RobotModel* robot(std::size_t slot) const;
+  // For changing its parameters; counts as a change of the cell.
+  [[nodiscard]] RobotModel* edit_robot(std::string_view id);
+  [[nodiscard]] Error explain_robot(std::string_view id) const;
+  [[nodiscard]] std::vector<std::string> robot_ids() const;  // in the order of the slots
+  // Start positions of all robots by slot, kMaxRobots entries; zero where there is no robot.
+  [[nodiscard]] std::vector<JointValues> start_positions() const;
+  // Asked before a component with a robot is deleted: true where that robot is on line. Default: none is.
+  void set_online_query(std::function<bool(std::string_view robot)> query);
+
+  // --- Pictures. The revision counts changes; compile() gives the same picture as long as it stays.
+  [[nodiscard]] std::uint64_t revision() const;
+  [[nodiscard]] std::shared_ptr<const CompiledCell> compile() const;
+
+ private:
+  friend class CellBuilder;
+  struct State;
+  explicit Cell(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cellmirror

@@ -1,0 +1,33 @@
+// What is drawn and tested for collision at a node. Plain data, SI.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rt_core/base/pose.hpp"
+
+namespace cellmirror {
+
+// Primitives are centred at the origin of their own frame G; cylinder and capsule lie along its z axis.
+enum class Shape : std::uint8_t { box, cylinder, sphere, capsule, mesh };
+
+struct Geometry {
+  std::string name;  // may be empty
+  Shape shape = Shape::box;
+  // box: edge lengths x, y, z. cylinder: radius, length, 0. sphere: radius, 0, 0. capsule: radius, length of the
+  // cylindrical part, 0. mesh: scale factors. Metres (mesh: none); all positive where used.
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  std::string mesh_file;                                 // absolute path, checked for existence, kind and size
+  Pose X_NG = Pose::Identity();                          // pose in the node
+  std::array<float, 4> rgba{0.72F, 0.72F, 0.74F, 1.0F};  // 0..1
+  bool drawn = true;
+  bool collides = true;
+  // Names of child nodes whose details this coarse geometry stands for: it is there only while at least one of them is
+  // shown coarsely (docs/cell-files.md, "Detail levels"). Empty: ordinary geometry, there whenever its node is.
+  std::vector<std::string> stands_for;
+};
+
+}  // namespace cellmirror
