@@ -1,0 +1,19 @@
+// Joint streams from ROS 2's sensor_msgs/JointState on DDS.
+#pragma once
+
+#include <memory>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror::dds {
+
+// The stream of one robot, closed. Streams with the same domain, interface, topic and reliability share one DDS reader,
+// each taking the joints that it knows. Fails where the configuration is wrong in itself (domain, topic, joints); what
+// the machine lacks (the interface's address) is told by open(). `clock` outlives the stream.
+// Samples are pushed on a thread of the DDS library, one at a time.
+[[nodiscard]] Result<std::unique_ptr<JointStream>> make_dds_stream(const DdsStreamConfig& config, const Clock& clock);
+
+}  // namespace cellmirror::dds

@@ -1,0 +1,51 @@
+#include "drivers/dds/internal/bytes_writer.hpp"
+
+#include <fmt/core.h>
+
+#include <exception>
+#include <utility>
+
+namespace cellmirror::dds {
+
+namespace {
+constexpr int kMaxDepth = 400;  // the library's default of max_samples_per_instance
+}
+
+BytesWriter::BytesWriter(std::shared_ptr<Participant> participant) : participant_(std::move(participant)) {}
+
+Result<std::unique_ptr<BytesWriter>> BytesWriter::make(std::shared_ptr<Participant> participant,
+                                                       const EndpointConfig& config) {
+  if (config.depth < 1 || config.depth > kMaxDepth) {
+    return fail(fmt::format("a history of {} samples for topic {}", config.depth, config.topic),
+                fmt::format("use 1 to {}", kMaxDepth));
+  }
+  std::unique_ptr<BytesWriter> made(new BytesWriter(participant));
+  const auto writer = participant->add_writer(config, made.get());
+  if (!writer) return std::unexpected(writer.error());
+  made->writer_ = *writer;
+  return made;
+}
+
+BytesWriter::~BytesWriter() {
+  if (writer_ != nullptr) participant_->remove(writer_);
+}
+
+bool BytesWriter::write() {
+  try {
+    return writer_->write(&sample_);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+bool BytesWriter::all_confirmed() const {
+  return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t{0, 0}) ==
+         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+}
+
+void BytesWriter::on_publication_matched(eprosima::fastdds::dds::DataWriter*,
+                                         const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
+  matched_.store(status.current_count, std::memory_order_relaxed);
+}
+
+}  // namespace cellmirror::dds

@@ -1,0 +1,38 @@
+#include "drivers/dds/internal/library_log.hpp"
+
+#include <fastdds/dds/log/Log.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::dds {
+
+namespace {
+
+using eprosima::fastdds::dds::Log;
+
+class ToOurLog final : public eprosima::fastdds::dds::LogConsumer {
+ public:
+  // On the library's log thread.
+  void Consume(const Log::Entry& entry) override {
+    const LogLevel level = entry.kind == Log::Kind::Error ? LogLevel::warning : LogLevel::info;
+    const std::string category = entry.context.category != nullptr ? entry.context.category : "";
+    log_text(level, "dds.library " + category, printable(entry.message, 400));
+  }
+};
+
+}  // namespace
+
+void redirect_library_log() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    Log::ClearConsumers();
+    Log::RegisterConsumer(std::make_unique<ToOurLog>());
+    Log::SetVerbosity(Log::Kind::Warning);
+  });
+}
+
+}  // namespace cellmirror::dds

@@ -1,0 +1,59 @@
+// The process's DDS participants, and endpoints on them.
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror::dds {
+
+struct EndpointConfig {
+  std::string topic;
+  std::string_view type;
+  bool reliable = false;
+  int depth = 1;
+};
+
+[[nodiscard]] Result<void> check_domain(int domain);
+[[nodiscard]] Result<void> check_topic(std::string_view topic);
+
+// One for each domain and interface in use; lives as long as somebody holds it. Any thread.
+class Participant {
+ public:
+  // `interface_address`: an IPv4 address of this machine; nothing leaves by other interfaces.
+  [[nodiscard]] static Result<std::shared_ptr<Participant>> shared(int domain, const std::string& interface_address);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  // The listener outlives the endpoint, which is deleted by remove() before the participant goes.
+  [[nodiscard]] Result<eprosima::fastdds::dds::DataReader*> add_reader(
+      const EndpointConfig& config, eprosima::fastdds::dds::DataReaderListener* listener);
+  [[nodiscard]] Result<eprosima::fastdds::dds::DataWriter*> add_writer(
+      const EndpointConfig& config, eprosima::fastdds::dds::DataWriterListener* listener);
+  void remove(eprosima::fastdds::dds::DataReader* reader);
+  void remove(eprosima::fastdds::dds::DataWriter* writer);
+
+ private:
+  explicit Participant(std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory);
+  [[nodiscard]] Result<eprosima::fastdds::dds::Topic*> topic(const EndpointConfig& config);
+
+  std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory_;  // outlives the participant
+  std::mutex mutex_;                                                           // making and removing endpoints
+  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+};
+
+}  // namespace cellmirror::dds
