@@ -1,4 +1,5 @@
-# Each test carries its kind (tests/<kind>/<subject>) as a label; integration and stress tests run alone, since they watch
+# Each test carries its kind (tests/<kind>/<subject>) as a label; LABELS adds others, e.g. concurrency: runs under
+# ThreadSanitizer as well, as every stress test does. Integration and stress tests run alone, since they watch
 # the clock or share ports.
 #
 # cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...])      a GoogleTest program, one ctest entry
@@ -13,6 +14,11 @@ endif()
 if(CELLMIRROR_TESTS AND CELLMIRROR_BENCHMARKS)
   find_package(benchmark REQUIRED)
 endif()
+
+# tests_<label>: builds the test programs of one label.
+foreach(label unit integration golden fuzz stress concurrency)
+  add_custom_target(tests_${label})
+endforeach()
 
 # cellmirror_describe_test(name): kind label, serial where needed, and what every test may rely on in its environment.
 # For tests added with add_test() by hand too. Sanitizers make a program up to ten times slower.
@@ -31,6 +37,11 @@ function(cellmirror_describe_test name)
   endif()
   list(APPEND ARG_LABELS ${kind})
   list(REMOVE_DUPLICATES ARG_LABELS)
+  foreach(label IN LISTS ARG_LABELS)
+    if(TARGET ${name} AND TARGET tests_${label})
+      add_dependencies(tests_${label} ${name})
+    endif()
+  endforeach()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_RETURN_CODE 77
     ENVIRONMENT "CELLMIRROR_SOURCE_DIR=${CMAKE_SOURCE_DIR};CELLMIRROR_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
 endfunction()

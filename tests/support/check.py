@@ -1,0 +1,111 @@
+"""The stages of ./check: builds, tests, lint, sanitizers, fuzzers; a table of them and one closing line of counts."""
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from test_report import Report, run_tests
+
+ROOT = Path(__file__).resolve().parents[2]
+
+SANITIZER_OPTIONS = {
+    "ASAN_OPTIONS": "detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1",
+    "UBSAN_OPTIONS": "print_stacktrace=1:halt_on_error=1",
+    "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={ROOT}/tests/support/tsan.supp",
+}
+
+
+def shell(command: str) -> bool:
+    """Runs a function of cmake/setup.sh, which prints progress and failures itself."""
+    return subprocess.run(["bash", "-uc", f". cmake/setup.sh; {command}"], cwd=ROOT).returncode == 0
+
+
+class Check:
+    def __init__(self, options: argparse.Namespace):
+        self.options = options
+        self.total = Report()
+        self.rows: list[tuple[str, float, str]] = []
+
+    def stage(self, name: str, action) -> bool:
+        """Runs `action`, which gives a Report; False when something in it failed."""
+        print(f"== {name}", file=sys.stderr, flush=True)
+        start = time.monotonic()
+        report = action()
+        self.rows.append((name, time.monotonic() - start, str(report)))
+        for failure in report.failed:
+            print(f"FAILED {failure.name}\n{failure.detail}\n", file=sys.stderr, flush=True)
+        self.total.add(report, name)
+        return not report.failed
+
+    def build(self, preset: str, folder: str, *targets: str, configure_arguments: str = "") -> bool:
+        command = f"configure {preset} {folder} {configure_arguments} && build {folder} {' '.join(targets)}"
+
+        def action() -> Report:
+            report = Report()
+            if shell(command):
+                report.notes.append("built")
+            else:
+                report.fail(f"build {folder}", "see above")
+            return report
+
+        return self.stage(f"build {folder}", action)
+
+    def tests(self, name: str, folder: str, *selection: str, **environment: str) -> bool:
+        return self.stage(name, lambda: run_tests(ROOT / folder, name, list(selection), environment))
+
+    def release(self) -> None:
+        cache = ROOT / "build/CMakeCache.txt"
+        without_tests = cache.exists() and "CELLMIRROR_TESTS:BOOL=OFF" in cache.read_text()
+        if not self.build("release", "build", configure_arguments="-DCELLMIRROR_TESTS=ON" if without_tests else ""):
+            return
+        if self.options.label:
+            self.tests("tests", "build", "-L", f"^({self.options.label})$")
+        elif self.options.quick:
+            self.tests("tests", "build", "-LE", "^(integration|stress|bench)$")
+        else:
+            self.tests("tests", "build")
+
+    def sanitizers(self) -> None:
+        # One clang build serves the address and undefined-behaviour sanitizers and the fuzzers.
+        if self.build("fuzz", "build-fuzz"):
+            seconds = os.environ.get("FUZZ_SECONDS", "10")
+            self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
+            self.tests(f"fuzzing, {seconds} s each", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds, **SANITIZER_OPTIONS)
+        if self.build("tsan", "build-tsan", "tests_stress", "tests_concurrency"):
+            self.tests("threads", "build-tsan", "-L", "^(stress|concurrency)$", **SANITIZER_OPTIONS)
+
+    def tidy(self) -> None:
+        self.stage("clang-tidy", lambda: __import__("clang_tidy").run(ROOT / "build-fuzz"))
+
+    def finish(self) -> int:
+        print()
+        width = max(len(name) for name, _, _ in self.rows)
+        for name, seconds, result in self.rows:
+            print(f"{name:<{width}}  {seconds:7.1f} s  {result}")
+        started = os.environ.get("CHECK_STARTED")
+        if started:
+            print(f"{'in all':<{width}}  {time.time() - float(started):7.1f} s")
+        self.total.print_skipped()
+        for failure in self.total.failed:
+            print(f"failed: {failure.name}")
+        print(f"{self.total.passed} passed, {len(self.total.failed)} failed, {len(self.total.skipped)} skipped", flush=True)
+        return 1 if self.total.failed else 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="./check", description="Sets up, builds and runs every test.")
+    parser.add_argument("--quick", action="store_true", help="release build only: lint and the tests that need no clock")
+    parser.add_argument("--label", help="only the release tests with this label: unit, integration, golden, fuzz, stress, lint, docs, bench")
+    check = Check(parser.parse_args())
+    check.release()
+    if not check.options.quick and not check.options.label:
+        check.sanitizers()
+        check.tidy()
+    return check.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
