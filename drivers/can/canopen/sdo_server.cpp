@@ -1,0 +1,184 @@
+#include "drivers/can/canopen/sdo_server.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "drivers/can/canopen/bytes.hpp"
+#include "drivers/can/canopen/cob_id.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+// Client command specifiers in bits 7..5 (CiA 301, 7.2.4.3).
+enum class Request : std::uint8_t {
+  download_segment = 0,
+  start_download = 1,
+  start_upload = 2,
+  upload_segment = 3,
+  abort = 4,
+  block_upload = 5,
+  block_download = 6,
+  unused = 7,
+};
+constexpr unsigned kDownloadStarted = 3;
+constexpr unsigned kUploadStarted = 2;
+constexpr unsigned kDownloadSegmentTaken = 1;
+constexpr std::size_t kSegment = 7;
+
+SdoAbort missing(const ObjectDictionary& objects, ObjectAddress address) {
+  return objects.has_index(address.index) ? SdoAbort::no_such_subindex : SdoAbort::no_such_object;
+}
+
+}  // namespace
+
+std::expected<std::vector<std::uint8_t>, SdoAbort> read_object(const ObjectDictionary& objects, ObjectAddress address) {
+  const ObjectEntry* entry = objects.find(address);
+  if (entry == nullptr) return std::unexpected(missing(objects, address));
+  if (entry->access == ObjectAccess::write_only) return std::unexpected(SdoAbort::write_only);
+  if (entry->value.empty()) return std::unexpected(SdoAbort::no_data);
+  return entry->value;
+}
+
+std::optional<SdoAbort> check_write(const ObjectDictionary& objects, ObjectAddress address,
+                                    std::span<const std::uint8_t> value) {
+  const ObjectEntry* entry = objects.find(address);
+  if (entry == nullptr) return missing(objects, address);
+  if (entry->access == ObjectAccess::constant || entry->access == ObjectAccess::read_only) return SdoAbort::read_only;
+  const std::size_t size = size_of(entry->type);
+  if (size == 0) return {};
+  if (value.size() > size) return SdoAbort::too_long;
+  if (value.size() < size) return SdoAbort::too_short;
+  if (!is_integer_type(entry->type)) return {};
+  const std::uint64_t raw = get_le(value, size);
+  const std::int64_t number =
+      is_signed_type(entry->type) ? sign_extended(raw, 8 * size) : static_cast<std::int64_t>(raw);
+  if (entry->high_limit && number > *entry->high_limit) return SdoAbort::value_too_high;
+  if (entry->low_limit && number < *entry->low_limit) return SdoAbort::value_too_low;
+  return {};
+}
+
+std::optional<SdoAbort> write_object(ObjectDictionary& objects, ObjectAddress address,
+                                     std::span<const std::uint8_t> value) {
+  if (const auto abort = check_write(objects, address, value)) return abort;
+  objects.find(address)->value.assign(value.begin(), value.end());
+  return {};
+}
+
+SdoServer::SdoServer(std::uint8_t node, SdoObjects& objects) : node_(node), objects_(&objects) {
+  CELLMIRROR_EXPECTS(node >= 1 && node <= kMaxNodeId);
+}
+
+std::optional<CanFrame> SdoServer::receive(const CanFrame& frame) {
+  if (!is_service_frame(frame) || frame.id != kSdoRequestBase + node_ || frame.length != 8) return {};
+  switch (static_cast<Request>(frame.data[0] >> 5)) {
+    case Request::start_download:
+      return start_download(frame);
+    case Request::download_segment:
+      return download_segment(frame);
+    case Request::start_upload:
+      return start_upload(frame);
+    case Request::upload_segment:
+      return upload_segment(frame);
+    case Request::abort:
+      transfer_ = Transfer::none;
+      return {};
+    case Request::block_upload:
+    case Request::block_download:
+    case Request::unused:
+      break;
+  }
+  return refuse(sdo_address(frame), SdoAbort::unknown_command);
+}
+
+CanFrame SdoServer::start_download(const CanFrame& frame) {
+  const unsigned command = frame.data[0];
+  const ObjectAddress address = sdo_address(frame);
+  const bool expedited = (command & 2U) != 0;
+  const bool size_told = (command & 1U) != 0;
+  if (expedited) {
+    std::size_t size = size_told ? 4 - (command >> 2 & 3U) : 4;
+    if (!size_told) {
+      // Without a told size the value fills the object: as many bytes as the object has now.
+      if (const auto now = objects_->read(address); now && now->size() <= 4) size = now->size();
+    }
+    const std::span<const std::uint8_t> value(frame.data.data() + 4, size);
+    if (const auto abort = objects_->write(address, value)) return refuse(address, *abort);
+    transfer_ = Transfer::none;
+    return answer(kDownloadStarted << 5, address);
+  }
+  announced_ = size_told ? get_le32(std::span(frame.data).subspan(4)) : 0;
+  if (announced_ > kMaxSdoValue) return refuse(address, SdoAbort::out_of_memory);
+  transfer_ = Transfer::download;
+  address_ = address;
+  value_.clear();
+  toggle_ = false;
+  return answer(kDownloadStarted << 5, address);
+}
+
+CanFrame SdoServer::download_segment(const CanFrame& frame) {
+  const unsigned command = frame.data[0];
+  if (transfer_ != Transfer::download) return refuse(address_, SdoAbort::unknown_command);
+  if (((command >> 4 & 1U) != 0) != toggle_) return refuse(address_, SdoAbort::toggle_not_alternated);
+  const std::size_t size = kSegment - (command >> 1 & 7U);
+  if (value_.size() + size > kMaxSdoValue) return refuse(address_, SdoAbort::out_of_memory);
+  value_.insert(value_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + static_cast<std::ptrdiff_t>(size));
+  const unsigned taken = kDownloadSegmentTaken << 5 | (toggle_ ? 1U << 4 : 0U);
+  toggle_ = !toggle_;
+  if ((command & 1U) != 0) {
+    if (announced_ != 0 && announced_ != value_.size()) return refuse(address_, SdoAbort::length_mismatch);
+    if (value_.empty()) return refuse(address_, SdoAbort::too_short);
+    if (const auto abort = objects_->write(address_, value_)) return refuse(address_, *abort);
+    transfer_ = Transfer::none;
+  }
+  return make_frame(kSdoResponseBase + node_, {static_cast<std::uint8_t>(taken), 0, 0, 0, 0, 0, 0, 0});
+}
+
+CanFrame SdoServer::start_upload(const CanFrame& frame) {
+  const ObjectAddress address = sdo_address(frame);
+  auto value = objects_->read(address);
+  if (!value) return refuse(address, value.error());
+  if (value->empty()) return refuse(address, SdoAbort::no_data);
+  if (value->size() <= 4) {
+    transfer_ = Transfer::none;
+    const auto unused = static_cast<unsigned>(4 - value->size());
+    CanFrame given = answer(kUploadStarted << 5 | unused << 2 | 3U, address);
+    std::copy(value->begin(), value->end(), given.data.begin() + 4);
+    return given;
+  }
+  transfer_ = Transfer::upload;
+  address_ = address;
+  value_ = std::move(*value);
+  sent_ = 0;
+  toggle_ = false;
+  CanFrame given = answer(kUploadStarted << 5 | 1U, address);
+  put_le(std::span(given.data).subspan(4), value_.size(), 4);
+  return given;
+}
+
+CanFrame SdoServer::upload_segment(const CanFrame& frame) {
+  if (transfer_ != Transfer::upload) return refuse(address_, SdoAbort::unknown_command);
+  if (((frame.data[0] >> 4 & 1U) != 0) != toggle_) return refuse(address_, SdoAbort::toggle_not_alternated);
+  const std::size_t take = std::min(kSegment, value_.size() - sent_);
+  const bool last = sent_ + take == value_.size();
+  CanFrame given = make_frame(kSdoResponseBase + node_, {0, 0, 0, 0, 0, 0, 0, 0});
+  given.data[0] = static_cast<std::uint8_t>((toggle_ ? 1U << 4 : 0U) | (kSegment - take) << 1 | (last ? 1U : 0U));
+  std::copy_n(value_.begin() + static_cast<std::ptrdiff_t>(sent_), take, given.data.begin() + 1);
+  sent_ += take;
+  toggle_ = !toggle_;
+  if (last) transfer_ = Transfer::none;
+  return given;
+}
+
+CanFrame SdoServer::answer(unsigned command, ObjectAddress address) const {
+  CanFrame frame =
+      make_frame(kSdoResponseBase + node_, {static_cast<std::uint8_t>(command), 0, 0, address.subindex, 0, 0, 0, 0});
+  put_le(std::span(frame.data).subspan(1), address.index, 2);
+  return frame;
+}
+
+CanFrame SdoServer::refuse(ObjectAddress address, SdoAbort abort) {
+  transfer_ = Transfer::none;
+  return encode_sdo_abort(kSdoResponseBase + node_, address, abort);
+}
+
+}  // namespace cellmirror::can
