@@ -11,8 +11,9 @@ set(CELLMIRROR_LAYERS
   "config: rt_core/base rt_core/ports rt_core/cell"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
-  "ipc/sysv: rt_core/base rt_core/rt rt_core/ports ipc/wire"
-  "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "ipc/runtime: rt_core/base"
+  "ipc/sysv: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
+  "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
@@ -22,7 +23,7 @@ set(CELLMIRROR_LAYERS
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/engine config drivers/can
-  drivers/dds ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
+  drivers/dds ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
   sim_devices app tests)
 
 function(cellmirror_allowed_folders folder result)

@@ -1,0 +1,52 @@
+// Answers questions about the running gateway on a Unix-domain socket. Protocol: docs/messages.md, "The control
+// socket".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror {
+
+inline constexpr std::size_t kMaxControlRequestBytes = 65'536;
+inline constexpr std::size_t kMaxControlReplyBytes = std::size_t{16} * 1024 * 1024;
+
+struct ControlServerStatus {
+  std::uint64_t answered = 0;
+  std::uint64_t refused = 0;  // other users, requests too long, too many at once
+  std::uint64_t cut = 0;      // clients that sent or read too slowly
+};
+
+// One thread serves up to kMaxClients at once; nobody waits for a slow one, who is cut off after the time-out. Only
+// processes of the same user, and root, are heard (SO_PEERCRED).
+class ControlServer {
+ public:
+  static constexpr std::size_t kMaxClients = 32;
+  // Is given one request line without its line break and returns one JSON document. Called from the server's thread:
+  // what takes long delays the other clients.
+  using Handler = std::function<std::string(std::string_view request)>;
+
+  // Makes the socket (0600) at `path`, replacing one that was left behind: call it with the instance's claim held.
+  [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const std::filesystem::path& path, Handler handler,
+                                                                    Nanoseconds client_timeout = Nanoseconds{
+                                                                        5'000'000'000});
+  ~ControlServer();  // stops, cuts off who is there, removes the socket
+  ControlServer(const ControlServer&) = delete;
+  ControlServer& operator=(const ControlServer&) = delete;
+
+  [[nodiscard]] ControlServerStatus status() const;  // any thread
+
+ private:
+  struct Impl;
+  explicit ControlServer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cellmirror

@@ -1,0 +1,55 @@
+// A lock that ends with its process, however that ends.
+#pragma once
+
+#include <sys/types.h>
+
+#include <expected>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror {
+
+struct LockHolder {
+  pid_t pid = 0;
+  std::string note;  // one word about the holder, e.g. its instance
+};
+
+// A file under flock(2). The kernel releases it when the last descriptor closes, also by kill -9; a file that is left
+// behind is therefore no lock. Moved, not copied.
+class LockFile {
+ public:
+  enum class Refusal { held, failed };
+  struct Refused {
+    Refusal why = Refusal::failed;
+    LockHolder holder;  // of `held`; pid 0 where it could not be read
+    Error error;
+  };
+
+  // Takes the lock and writes this process and `note` into the file. Does not wait, but for the moment in which another
+  // process looks whether the lock is free. Links are refused.
+  static std::expected<LockFile, Refused> take(const std::filesystem::path& path, std::string_view note);
+
+  LockFile() = default;
+  LockFile(LockFile&& other) noexcept;
+  LockFile& operator=(LockFile&& other) noexcept;
+  ~LockFile();  // removes the file, then lets go
+
+  [[nodiscard]] bool held() const { return fd_ >= 0; }
+  // Whether the file at the path is still the locked one: logind empties a user's runtime folder at log-out.
+  [[nodiscard]] bool in_place() const;
+  void release();
+
+ private:
+  LockFile(int fd, std::filesystem::path path) : fd_(fd), path_(std::move(path)) {}
+  int fd_ = -1;
+  std::filesystem::path path_;
+};
+
+// Who holds the lock at `path`, if anybody does.
+[[nodiscard]] std::optional<LockHolder> lock_holder(const std::filesystem::path& path);
+
+}  // namespace cellmirror

@@ -1,0 +1,72 @@
+// A System V message queue that this process made, keeps alive and removes.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+
+#include "ipc/sysv/key_lock.hpp"
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror {
+
+// What became of a call that does not wait.
+enum class QueueOutcome { done, full, empty, gone, failed };
+
+class OwnedQueue {
+ public:
+  struct Options {
+    std::string purpose;  // for messages, e.g. "SCRIPT input"
+    std::int32_t key = 0;
+    std::uint32_t mode = 0600;
+    std::string instance = "default";
+  };
+
+  // Takes the key's lock and makes the queue. A queue that is already there was left behind by a process that is gone:
+  // it is removed with all its messages (discarded() tells how many) and made anew. Refused, with the remedy: a key
+  // that another gateway holds, a queue of another user, one that lets in more than `mode`.
+  static Result<std::unique_ptr<OwnedQueue>> make(Options options);
+
+  ~OwnedQueue();  // removes the queue, unless it is no longer ours
+  OwnedQueue(const OwnedQueue&) = delete;
+  OwnedQueue& operator=(const OwnedQueue&) = delete;
+
+  // Never waits. `type` > 0.
+  [[nodiscard]] QueueOutcome send_now(long type, std::span<const char> text);
+  // Takes the oldest message of `type` (0: of any) out and forgets it. Never waits.
+  [[nodiscard]] QueueOutcome discard_oldest(long type);
+  // Waits until a message of any type comes (done), or the queue is removed (gone). `text` is at least one byte longer
+  // than the longest message expected: longer ones are cut, which their length then tells.
+  [[nodiscard]] QueueOutcome receive(long& type, std::span<char> text, std::size_t& length);
+
+  // After `gone`: makes the queue anew. Fails where the key was lost to somebody else in the meantime, and after
+  // close(). Any thread.
+  [[nodiscard]] Result<void> recreate();
+  // Removes the queue for good: receive() in another thread ends with `gone`. Any thread.
+  void close();
+  [[nodiscard]] bool closed() const { return closed_.load(std::memory_order_acquire); }
+
+  [[nodiscard]] const Options& options() const { return options_; }
+  [[nodiscard]] std::uint64_t discarded() const { return discarded_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t recreated() const { return recreated_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t waiting() const;     // messages in it now
+  [[nodiscard]] std::int32_t last_sender() const;  // the process that sent last; 0 where unknown
+
+ private:
+  OwnedQueue(Options options, KeyLock lock, int id, std::uint64_t discarded);
+  [[nodiscard]] int id() const { return id_.load(std::memory_order_acquire); }
+
+  Options options_;
+  KeyLock lock_;
+  std::mutex mutex_;  // making and removing
+  std::atomic<int> id_;
+  std::atomic<bool> closed_{false};
+  std::atomic<std::uint64_t> discarded_;
+  std::atomic<std::uint64_t> recreated_{0};
+};
+
+}  // namespace cellmirror

@@ -1,0 +1,34 @@
+// Robot-parameter messages on the SENSOR channel (manual 1.2.1, ROBOT send_on: key 1990, type 5).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/robot_state.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror {
+
+// Never waits for a reader: a full queue loses its oldest records, which is counted. A queue that is removed from
+// outside is made anew. Nothing of FramePose is sent here.
+// Counters: sent, dropped (old records taken out unread), refused (new ones that found no room at all), recreated,
+// discarded (left behind by an earlier process), waiting.
+class SensorQueueOutput final : public RobotStateOutput {
+ public:
+  // Fails where the queue cannot be had; see OwnedQueue::make.
+  static Result<std::unique_ptr<SensorQueueOutput>> open(const QueueConfig& config, const std::string& instance);
+  ~SensorQueueOutput() override;  // removes the queue
+
+  void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) override;
+  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override;
+  [[nodiscard]] std::string name() const override;  // "sensor queue 0x7c6 (1990)"
+
+ private:
+  struct Impl;
+  explicit SensorQueueOutput(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cellmirror
