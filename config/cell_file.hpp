@@ -10,16 +10,11 @@
 
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
+#include "rt_core/base/real_time.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
 namespace cellmirror {
-
-enum class RealTimePolicy : std::uint8_t {
-  require,  // no SCHED_FIFO or no locked memory: the gateway does not start
-  prefer,   // takes what the machine allows and says what it did not get
-  off,
-};
 
 struct LoopSettings {
   double rate_hz = 1000.0;  // 100..4000

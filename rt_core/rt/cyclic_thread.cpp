@@ -143,6 +143,7 @@ void CyclicThread::loop(Timestamp first_slot) noexcept {
   const Nanoseconds period = options_.period;
   Timestamp slot = first_slot;
   std::uint64_t skipped = 0;  // since the last cycle
+  Nanoseconds last_compute{0};
   for (std::uint64_t number = 0;; ++number) {
     sleep_until(slot);
     // Relaxed: stop() joins, nothing else is ordered by the flag.
@@ -159,12 +160,18 @@ void CyclicThread::loop(Timestamp first_slot) noexcept {
 
     {
       const AllocationGuard guard;
-      cycle_.run(CycleContext{.now = woken, .scheduled = slot, .cycle = number, .missed = skipped, .period = period});
+      cycle_.run(CycleContext{.now = woken,
+                              .scheduled = slot,
+                              .cycle = number,
+                              .missed = skipped,
+                              .period = period,
+                              .last_compute = last_compute});
       add(heap_calls_, guard.allocations() + guard.frees());
     }
     add(cycles_, 1);
     const Timestamp done = monotonic_now();
-    compute_time_.record(done - woken);
+    last_compute = done - woken;
+    compute_time_.record(last_compute);
 
     skipped = 0;
     slot = slot + period;

@@ -26,6 +26,7 @@ struct CycleContext {
   std::uint64_t cycle = 0;   // number of this cycle, from 0; skipped slots have no number
   std::uint64_t missed = 0;  // slots skipped since the cycle before
   Nanoseconds period{0};
+  Nanoseconds last_compute{0};  // how long the cycle before this one took; 0 in the first
 };
 
 // What is run.

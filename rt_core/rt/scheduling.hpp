@@ -7,15 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "rt_core/base/real_time.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror {
-
-enum class RealTimePolicy : std::uint8_t {
-  require,  // without it the gateway does not start
-  prefer,   // taken where the machine allows it, else told and done without
-  off,      // not asked for
-};
 
 // The outcome of asking for real-time scheduling, or the state of a thread. Data for `status` and `doctor`.
 struct SchedulingOutcome {
