@@ -1,0 +1,142 @@
+#include "rt_core/engine/engine.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "rt_core/base/contract.hpp"
+
+namespace cellmirror::engine {
+
+namespace {
+
+std::uint32_t saturated_ns(Nanoseconds d) CELL_RT {
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(d.count(), 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+}  // namespace
+
+Engine::Engine(Watchdog& watchdog) : watchdog_(watchdog) {
+  inlets_.reserve(kMaxRobots);
+  for (std::size_t i = 0; i < kMaxRobots; ++i) inlets_.push_back(std::make_unique<Inlet>());
+}
+
+void Engine::run(const CycleContext& context) CELL_RT {
+  head_.tick = context.cycle;
+  head_.time = context.now;
+  head_.missed_periods += context.missed;
+  const int commands = take_commands(context.now);
+  const int samples = take_samples();
+  for (RobotSlot& slot : slots_) {
+    if (slot.used()) slot.update(context.now);
+  }
+  publish(for_owner_);
+  publish(for_publisher_);
+  record_tick(context, commands, samples);
+  watchdog_.beat();
+}
+
+int Engine::take_commands(Timestamp now) CELL_RT {
+  int taken = 0;
+  Command command;
+  while (taken < kCommandsPerTick && commands_.pop(command)) {
+    ++taken;
+    const bool done = command.slot < kMaxRobots && slots_[command.slot].apply(command);
+    head_.commands_done = command.id;
+    if (!done) ++head_.commands_refused;
+    if (!done || command.kind == CommandKind::set_positions) {
+      record_robot(done ? FlightEvent::setpoint : FlightEvent::refused_command, command.slot, now, command.id);
+    }
+  }
+  return taken;
+}
+
+int Engine::take_samples() CELL_RT {
+  int taken = 0;
+  JointSample sample;
+  for (std::size_t slot = 0; slot < kMaxRobots; ++slot) {
+    int of_this_robot = 0;
+    while (of_this_robot < kSamplesPerTick && inlets_[slot]->queue.pop(sample)) {
+      ++of_this_robot;
+      // Samples that a stream left behind when it was closed fall away here: the slot is not mirrored any more.
+      slots_[slot].take(sample);
+      record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
+    }
+    taken += of_this_robot;
+  }
+  return taken;
+}
+
+void Engine::publish(Latest<TickState>& edge) CELL_RT {
+  TickState& out = edge.writable();
+  out.tick = head_.tick;
+  out.time = head_.time;
+  out.missed_periods = head_.missed_periods;
+  out.commands_done = head_.commands_done;
+  out.commands_refused = head_.commands_refused;
+  // Each buffer of the edge remembers an older state of its own, so a slot that is not used any more has to be cleared
+  // in every one of them.
+  for (std::size_t i = 0; i < kMaxRobots; ++i) {
+    if (slots_[i].used()) {
+      out.robots[i] = slots_[i].state();
+    } else {
+      out.robots[i].mode = RobotMode::absent;
+    }
+  }
+  edge.publish();
+}
+
+void Engine::record_tick(const CycleContext& context, int commands, int samples) CELL_RT {
+  FlightTick record;
+  record.tick = context.cycle;
+  record.time = context.now;
+  record.wakeup_latency_ns = saturated_ns(context.now - context.scheduled);
+  record.compute_ns = saturated_ns(context.last_compute);
+  record.missed_periods =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(context.missed, std::numeric_limits<std::uint32_t>::max()));
+  record.commands = static_cast<std::uint16_t>(std::min(commands, 0xffff));
+  record.samples = static_cast<std::uint16_t>(std::min(samples, 0xffff));
+  flight_ticks_.push(record);
+}
+
+void Engine::record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT {
+  FlightRobot record;
+  record.tick = head_.tick;
+  record.time = time;
+  record.sequence = sequence;
+  record.event = event;
+  record.slot = static_cast<std::uint8_t>(slot);
+  if (slot < kMaxRobots) {
+    const RobotTickState& state = slots_[slot].state();
+    record.joint_count = state.joint_count;
+    for (std::size_t i = 0; i < state.joint_count; ++i)
+      record.position[i] = static_cast<float>(state.joints[i].position);
+  }
+  flight_robots_.push(record);
+}
+
+std::uint64_t Engine::send(Command command) {
+  command.id = next_command_;
+  if (!commands_.push(command)) return 0;
+  return next_command_++;
+}
+
+JointSampleSink& Engine::inlet(std::size_t slot) {
+  CELLMIRROR_EXPECTS(slot < kMaxRobots);
+  return *inlets_[slot];
+}
+
+std::vector<FlightTick> Engine::flight_ticks() const { return flight_ticks_.newest(); }
+
+std::vector<FlightRobot> Engine::flight_robots() const { return flight_robots_.newest(); }
+
+QueueStatus Engine::command_queue() const {
+  return {"commands", commands_.capacity(), commands_.high_water(), commands_.pushed(), commands_.dropped()};
+}
+
+QueueStatus Engine::sample_queue(std::size_t slot) const {
+  CELLMIRROR_EXPECTS(slot < kMaxRobots);
+  const auto& queue = inlets_[slot]->queue;
+  return {"samples", queue.capacity(), queue.high_water(), queue.pushed(), queue.dropped()};
+}
+
+}  // namespace cellmirror::engine

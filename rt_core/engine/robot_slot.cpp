@@ -1,0 +1,121 @@
+#include "rt_core/engine/robot_slot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "rt_core/engine/limiter.hpp"
+
+namespace cellmirror::engine {
+
+bool RobotSlot::apply(const Command& command) CELL_RT {
+  switch (command.kind) {
+    case CommandKind::add_robot:
+      add(command);
+      return true;
+    case CommandKind::remove_robot:
+      state_ = RobotTickState{};
+      return true;
+    case CommandKind::set_mode:
+      set_mode(command);
+      return true;
+    case CommandKind::set_positions:
+      return set_positions(command);
+    case CommandKind::set_limits:
+      lower_ = command.lower;
+      upper_ = command.upper;
+      return true;
+  }
+  return false;
+}
+
+void RobotSlot::add(const Command& command) CELL_RT {
+  state_ = RobotTickState{};
+  state_.mode = RobotMode::simulated;
+  state_.joint_count = std::min(command.joint_count, static_cast<std::uint8_t>(kMaxJointsPerRobot));
+  lower_ = command.lower;
+  upper_ = command.upper;
+  for (std::size_t i = 0; i < state_.joint_count; ++i) state_.joints[i].position = command.values[i];
+}
+
+void RobotSlot::set_mode(const Command& command) CELL_RT {
+  if (!used()) return;
+  state_.mode = command.mode;
+  ages_ = command.ages;
+  state_.sequence = 0;
+  state_.receive_time = Timestamp{};
+  state_.samples = 0;
+  state_.refused_values = 0;
+  state_.state = DataState::none;
+  // Positions stay: a robot that goes offline stays where it was, one that goes online stays until its first sample.
+  for (JointTickState& joint : state_.joints) {
+    joint.velocity = 0;
+    joint.effort = 0;
+    joint.receive_time = Timestamp{};
+    joint.source_time = Timestamp{};
+    joint.state = DataState::none;
+  }
+}
+
+bool RobotSlot::set_positions(const Command& command) CELL_RT {
+  if (state_.mode != RobotMode::simulated) return false;
+  const std::size_t n = state_.joint_count;
+  const LimiterVerdict verdict =
+      check_setpoints(std::span(command.values).first(n), std::span(lower_).first(n), std::span(upper_).first(n));
+  if (verdict != LimiterVerdict::passed) {
+    ++state_.refused_setpoints;
+    return false;
+  }
+  for (std::size_t i = 0; i < n; ++i) state_.joints[i].position = command.values[i];
+  return true;
+}
+
+void RobotSlot::take(const JointSample& sample) CELL_RT {
+  if (state_.mode != RobotMode::mirrored) return;
+  ++state_.samples;
+  state_.sequence = sample.sequence;
+  state_.receive_time = sample.receive_time;
+  for (std::size_t i = 0; i < state_.joint_count; ++i) {
+    JointTickState& joint = state_.joints[i];
+    const bool present = (sample.present >> i & 1U) != 0;
+    const bool finite =
+        std::isfinite(sample.position[i]) && std::isfinite(sample.velocity[i]) && std::isfinite(sample.effort[i]);
+    if ((sample.refused >> i & 1U) != 0 || (present && !finite)) {
+      ++state_.refused_values;
+      joint.state = DataState::invalid;
+      continue;
+    }
+    if (!present) continue;
+    joint.position = sample.position[i];
+    joint.velocity = sample.velocity[i];
+    joint.effort = sample.effort[i];
+    joint.receive_time = sample.receive_time;
+    joint.source_time = sample.source_time;
+    joint.state = DataState::fresh;
+  }
+}
+
+void RobotSlot::update(Timestamp now) CELL_RT {
+  if (state_.mode != RobotMode::mirrored) return;
+  DataState worst = DataState::fresh;
+  for (std::size_t i = 0; i < state_.joint_count; ++i) {
+    JointTickState& joint = state_.joints[i];
+    if (joint.receive_time.known()) {
+      const Nanoseconds age = now - joint.receive_time;
+      if (age > ages_.lost_after) {
+        joint.state = DataState::lost;
+      } else if (age > ages_.stale_after) {
+        joint.state = joint.state == DataState::invalid ? DataState::invalid : DataState::stale;
+      }
+    }
+    // By gravity, not by the order of the enumeration: nothing at all < invalid < lost < stale < fresh.
+    constexpr auto gravity = [](DataState s) {
+      constexpr std::array<int, 5> kGravity = {4, 0, 1, 2, 3};  // none, fresh, stale, lost, invalid
+      return kGravity[static_cast<std::size_t>(s)];
+    };
+    if (gravity(joint.state) > gravity(worst)) worst = joint.state;
+  }
+  state_.state = worst;
+}
+
+}  // namespace cellmirror::engine

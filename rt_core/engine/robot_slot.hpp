@@ -1,0 +1,36 @@
+// One robot inside the tick: its mode, its newest joint values and how old they are.
+#pragma once
+
+#include "rt_core/base/real_time.hpp"
+#include "rt_core/engine/command.hpp"
+#include "rt_core/engine/tick_state.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+
+namespace cellmirror::engine {
+
+// Tick thread only.
+class RobotSlot {
+ public:
+  // False where the command does not fit the slot's mode or the limiter refused it.
+  bool apply(const Command& command) CELL_RT;
+  // Takes over a sample of the stream. Values that are not finite are refused joint by joint; the joint keeps its last
+  // good value and becomes invalid.
+  void take(const JointSample& sample) CELL_RT;
+  // Ages every joint by `now`.
+  void update(Timestamp now) CELL_RT;
+
+  [[nodiscard]] const RobotTickState& state() const CELL_RT { return state_; }
+  [[nodiscard]] bool used() const CELL_RT { return state_.mode != RobotMode::absent; }
+
+ private:
+  bool set_positions(const Command& command) CELL_RT;
+  void add(const Command& command) CELL_RT;
+  void set_mode(const Command& command) CELL_RT;
+
+  RobotTickState state_;
+  StreamAges ages_;
+  JointValues lower_{};
+  JointValues upper_{};
+};
+
+}  // namespace cellmirror::engine

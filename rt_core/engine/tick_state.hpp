@@ -1,0 +1,50 @@
+// What the tick publishes: the state of every robot at one instant. Fixed size, so that it crosses threads in a Latest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
+
+namespace cellmirror::engine {
+
+enum class RobotMode : std::uint8_t {
+  absent,     // the slot is not used
+  simulated,  // the model is moved by commands
+  mirrored,   // the model follows a stream (`ROBOT <id> online`)
+};
+
+struct JointTickState {
+  double position = 0;  // rad or m; the last good value, whatever its age
+  double velocity = 0;  // rad/s or m/s
+  double effort = 0;    // Nm or N
+  Timestamp receive_time;
+  Timestamp source_time;
+  DataState state = DataState::none;
+};
+
+struct RobotTickState {
+  RobotMode mode = RobotMode::absent;
+  std::uint8_t joint_count = 0;
+  DataState state = DataState::none;    // the worst of the joints
+  std::uint64_t sequence = 0;           // of the newest sample
+  Timestamp receive_time;               // of the newest sample
+  std::uint64_t samples = 0;            // taken from the stream's queue since the robot went online
+  std::uint64_t refused_values = 0;     // not finite, or named as refused by the driver
+  std::uint64_t refused_setpoints = 0;  // by the limiter
+  std::array<JointTickState, kMaxJointsPerRobot> joints{};
+};
+
+struct TickState {
+  std::uint64_t tick = 0;
+  Timestamp time;                    // the one reading of the clock of that tick
+  std::uint64_t missed_periods = 0;  // since the start
+  std::uint64_t commands_done = 0;   // id of the newest command that was carried out
+  std::uint64_t commands_refused = 0;
+  std::array<RobotTickState, kMaxRobots> robots{};
+};
+
+}  // namespace cellmirror::engine

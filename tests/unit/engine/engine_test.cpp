@@ -1,0 +1,260 @@
+#include "rt_core/engine/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "rt_core/rt/allocation_guard.hpp"
+
+namespace cellmirror::engine {
+namespace {
+
+constexpr Nanoseconds kPeriod{1'000'000};
+
+class EngineTest : public testing::Test {
+ protected:
+  void tick(Nanoseconds after = kPeriod) {
+    now_ = now_ + after;
+    CycleContext context;
+    context.now = now_;
+    context.scheduled = now_;
+    context.cycle = cycle_++;
+    context.period = kPeriod;
+    sut_->run(context);
+  }
+
+  std::uint64_t add_robot(std::size_t slot = 3, std::uint8_t joints = 2) {
+    Command command;
+    command.kind = CommandKind::add_robot;
+    command.slot = static_cast<std::uint8_t>(slot);
+    command.joint_count = joints;
+    command.values = {0.1, 0.2};
+    command.lower.fill(-1.0);
+    command.upper.fill(1.0);
+    return sut_->send(command);
+  }
+
+  void mirror(std::size_t slot = 3) {
+    Command command;
+    command.kind = CommandKind::set_mode;
+    command.slot = static_cast<std::uint8_t>(slot);
+    command.mode = RobotMode::mirrored;
+    command.ages = {std::chrono::milliseconds(10), std::chrono::milliseconds(50)};
+    sut_->send(command);
+  }
+
+  std::uint64_t set_positions(double a, double b, std::size_t slot = 3) {
+    Command command;
+    command.kind = CommandKind::set_positions;
+    command.slot = static_cast<std::uint8_t>(slot);
+    command.values = {a, b};
+    return sut_->send(command);
+  }
+
+  [[nodiscard]] JointSample sample(std::uint64_t sequence, double a, double b, std::uint32_t present = 3) const {
+    JointSample out;
+    out.receive_time = now_;
+    out.sequence = sequence;
+    out.present = present;
+    out.position = {a, b};
+    return out;
+  }
+
+  const RobotTickState& robot(std::size_t slot = 3) { return sut_->owner_view().robots[slot]; }
+
+  Watchdog watchdog_{std::chrono::milliseconds(100), {}};
+  std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  Timestamp now_{1'000'000'000};
+  std::uint64_t cycle_ = 0;
+};
+
+TEST_F(EngineTest, PublishesAnAddedRobotWithItsPositions) {
+  const std::uint64_t id = add_robot();
+  tick();
+  EXPECT_EQ(sut_->owner_view().commands_done, id);
+  EXPECT_EQ(robot().mode, RobotMode::simulated);
+  EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.2);
+  EXPECT_EQ(sut_->publisher_view().robots[3].joint_count, 2);
+}
+
+TEST_F(EngineTest, RemovedRobotStaysAbsentInEveryBufferOfTheEdge) {
+  add_robot();
+  for (int i = 0; i < 5; ++i) tick();
+  Command command;
+  command.kind = CommandKind::remove_robot;
+  command.slot = 3;
+  sut_->send(command);
+  for (int i = 0; i < 5; ++i) {
+    tick();
+    EXPECT_EQ(robot().mode, RobotMode::absent);
+  }
+}
+
+TEST_F(EngineTest, SetPointsPassTheLimiterAsAWholeOrNotAtAll) {
+  add_robot();
+  set_positions(0.5, 0.6);
+  tick();
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.5);
+  const std::uint64_t refused = set_positions(0.9, 1.1);
+  tick();
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.5);
+  EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.6);
+  EXPECT_EQ(robot().refused_setpoints, 1U);
+  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+  EXPECT_EQ(sut_->owner_view().commands_done, refused);
+}
+
+TEST_F(EngineTest, MirroredRobotFollowsItsStreamAndRefusesSetPoints) {
+  add_robot();
+  mirror();
+  sut_->inlet(3).push(sample(1, 0.3, 5.0));  // beyond the model's limit: what the real robot says is shown
+  set_positions(0.0, 0.0);
+  tick();
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.3);
+  EXPECT_DOUBLE_EQ(robot().joints[1].position, 5.0);
+  EXPECT_EQ(robot().state, DataState::fresh);
+  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+}
+
+TEST_F(EngineTest, StandingStillButSendingIsFreshAndSilenceAges) {
+  add_robot();
+  mirror();
+  for (std::uint64_t i = 1; i <= 30; ++i) {
+    sut_->inlet(3).push(sample(i, 0.3, 0.3));
+    tick();
+    ASSERT_EQ(robot().state, DataState::fresh);
+  }
+  tick(std::chrono::milliseconds(11));
+  EXPECT_EQ(robot().state, DataState::stale);
+  tick(std::chrono::milliseconds(50));
+  EXPECT_EQ(robot().state, DataState::lost);
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.3);
+  sut_->inlet(3).push(sample(31, 0.4, 0.4));
+  tick();
+  EXPECT_EQ(robot().state, DataState::fresh);  // recovers by itself
+}
+
+TEST_F(EngineTest, MirroredRobotWithoutASampleHasNoneAndKeepsItsPlace) {
+  add_robot();
+  mirror();
+  tick();
+  EXPECT_EQ(robot().state, DataState::none);
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.1);
+}
+
+TEST_F(EngineTest, JointsOfOneRobotAgeApart) {
+  add_robot();
+  mirror();
+  sut_->inlet(3).push(sample(1, 0.1, 0.1));
+  tick();
+  tick(std::chrono::milliseconds(8));
+  sut_->inlet(3).push(sample(2, 0.2, 0.0, 1));  // only the first joint
+  tick(std::chrono::milliseconds(8));
+  EXPECT_EQ(robot().joints[0].state, DataState::fresh);
+  EXPECT_EQ(robot().joints[1].state, DataState::stale);
+  EXPECT_EQ(robot().state, DataState::stale);
+}
+
+TEST_F(EngineTest, NotFiniteAndRefusedValuesLeaveTheLastGoodOneAndMarkItInvalid) {
+  add_robot();
+  mirror();
+  sut_->inlet(3).push(sample(1, 0.1, 0.2));
+  tick();
+  JointSample bad = sample(2, std::numeric_limits<double>::quiet_NaN(), 0.25);
+  sut_->inlet(3).push(bad);
+  tick();
+  EXPECT_EQ(robot().joints[0].state, DataState::invalid);
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.1);
+  EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.25);
+  bad = sample(3, 0.11, 0, 1);
+  bad.refused = 2;
+  sut_->inlet(3).push(bad);
+  tick();
+  EXPECT_EQ(robot().joints[0].state, DataState::fresh);
+  EXPECT_EQ(robot().joints[1].state, DataState::invalid);
+  EXPECT_EQ(robot().refused_values, 2U);
+}
+
+TEST_F(EngineTest, RobotThatGoesOfflineStaysWhereItWas) {
+  add_robot();
+  mirror();
+  sut_->inlet(3).push(sample(1, 0.7, -0.7));
+  tick();
+  Command command;
+  command.kind = CommandKind::set_mode;
+  command.slot = 3;
+  command.mode = RobotMode::simulated;
+  sut_->send(command);
+  sut_->inlet(3).push(sample(2, 0.9, 0.9));  // left behind by a stream that is closed
+  tick();
+  EXPECT_EQ(robot().mode, RobotMode::simulated);
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.7);
+}
+
+TEST_F(EngineTest, FullSampleQueueRefusesAndCounts) {
+  add_robot();
+  mirror();
+  for (std::size_t i = 0; i < kSampleQueue + 5; ++i) sut_->inlet(3).push(sample(i, 0, 0));
+  EXPECT_EQ(sut_->sample_queue(3).dropped, 5U);
+  // The tick takes a bounded number a period, and all of them in the end.
+  tick();
+  EXPECT_EQ(robot().samples, static_cast<std::uint64_t>(kSamplesPerTick));
+  tick();
+  EXPECT_EQ(robot().samples, kSampleQueue);
+}
+
+TEST_F(EngineTest, CommandFloodIsTakenABoundedNumberATick) {
+  add_robot();
+  tick();
+  std::uint64_t last = 0;
+  for (int i = 0; i < kCommandsPerTick + 10; ++i) last = set_positions(0, 0);
+  tick();
+  EXPECT_EQ(sut_->owner_view().commands_done, last - 10);
+  tick();
+  EXPECT_EQ(sut_->owner_view().commands_done, last);
+}
+
+TEST_F(EngineTest, FullCommandQueueRefuses) {
+  for (std::size_t i = 0; i < kCommandQueue; ++i) ASSERT_NE(set_positions(0, 0), 0U);
+  EXPECT_EQ(set_positions(0, 0), 0U);
+  EXPECT_EQ(sut_->command_queue().dropped, 1U);
+}
+
+TEST_F(EngineTest, FlightRecorderHoldsTicksSamplesAndSetPoints) {
+  add_robot();
+  set_positions(0.5, 0.5);
+  tick();
+  mirror();
+  sut_->inlet(3).push(sample(42, 0.6, 0.6));
+  tick();
+  const auto ticks = sut_->flight_ticks();
+  ASSERT_EQ(ticks.size(), 2U);
+  EXPECT_EQ(ticks[1].tick, 1U);
+  EXPECT_EQ(ticks[1].samples, 1U);
+  const auto robots = sut_->flight_robots();
+  ASSERT_EQ(robots.size(), 2U);
+  EXPECT_EQ(robots[0].event, FlightEvent::setpoint);
+  EXPECT_EQ(robots[1].event, FlightEvent::sample);
+  EXPECT_EQ(robots[1].sequence, 42U);
+  EXPECT_FLOAT_EQ(robots[1].position[0], 0.6F);
+}
+
+TEST_F(EngineTest, TickTouchesNoHeap) {
+  if (!AllocationGuard::armed()) GTEST_SKIP() << "skipped: the allocation guard is not armed in this build";
+  for (std::size_t slot = 0; slot < kMaxRobots; ++slot) {
+    add_robot(slot, kMaxJointsPerRobot);
+    mirror(slot);
+  }
+  const AllocationGuard guard;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    for (std::size_t slot = 0; slot < kMaxRobots; ++slot) sut_->inlet(slot).push(sample(i, 0.1, 0.1));
+    tick();
+  }
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_EQ(guard.frees(), 0U);
+}
+
+}  // namespace
+}  // namespace cellmirror::engine
