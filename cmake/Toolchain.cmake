@@ -26,6 +26,8 @@ find_package(Threads REQUIRED)
 add_library(cellmirror_flags INTERFACE)
 target_compile_options(cellmirror_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
   $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Woverloaded-virtual>)
+# clang sees std::stable_sort of libstdc++ 12 use a function that the same header marks deprecated.
+target_compile_options(cellmirror_flags INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-deprecated-declarations>)
 target_include_directories(cellmirror_flags INTERFACE ${CMAKE_SOURCE_DIR})
 
 if(CELLMIRROR_SANITIZE)

@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+import clang_tidy
 from test_report import Report, run_tests
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -78,7 +79,7 @@ class Check:
             self.tests("threads", "build-tsan", "-L", "^(stress|concurrency)$", **SANITIZER_OPTIONS)
 
     def tidy(self) -> None:
-        self.stage("clang-tidy", lambda: __import__("clang_tidy").run(ROOT / "build-fuzz"))
+        self.stage("clang-tidy", lambda: clang_tidy.run(ROOT / "build-fuzz"))
 
     def finish(self) -> int:
         print()
