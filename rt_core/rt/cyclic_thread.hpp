@@ -41,7 +41,7 @@ struct CyclicThreadOptions {
   Nanoseconds period{1'000'000};
   RealTimePolicy policy = RealTimePolicy::prefer;
   int priority = 80;                                   // SCHED_FIFO, 1..99
-  std::optional<int> cpu;                              // bind the thread to this processor
+  std::optional<int> cpu{};                            // bind the thread to this processor
   std::size_t stack_bytes = std::size_t{1024} * 1024;  // at least 256 KiB
 };
 

@@ -18,8 +18,6 @@ namespace cellmirror {
 // where neither side is the tick.
 template <class T>
 class Latest {
-  static_assert(std::is_default_constructible_v<T>);
-
  public:
   // What the reader sees. `value` stays valid and unchanged until the reader's next read().
   struct Reading {
