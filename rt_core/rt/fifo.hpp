@@ -51,7 +51,10 @@ class Fifo {
   }
 
   // Producer. Whether a push would be refused now; only the consumer can change a yes.
-  [[nodiscard]] bool full() const CELL_RT { return queue_.write_available() == 0; }
+  [[nodiscard]] bool full() const CELL_RT {
+    // Acquire: pairs with the release in pop(), for the push() that relies on the answer.
+    return pushed_.load(std::memory_order_relaxed) - popped_.load(std::memory_order_acquire) == Capacity;
+  }
 
   // Consumer. False where the queue was empty; `value` is untouched then.
   bool pop(T& value) CELL_RT {
