@@ -36,17 +36,17 @@ struct RosTime {
 [[nodiscard]] RosTime ros_time(std::int64_t wall_clock_ns);
 
 struct Header {
-  RosTime stamp;
-  std::string frame_id;
+  RosTime stamp = {};
+  std::string frame_id = {};
 };
 
 // sensor_msgs/JointState. `position`, `velocity` and `effort` are each empty or as long as `name`.
 struct JointState {
-  Header header;
-  std::vector<std::string> name;
-  std::vector<double> position;  // rad or m
-  std::vector<double> velocity;  // rad/s or m/s
-  std::vector<double> effort;    // Nm or N
+  Header header = {};
+  std::vector<std::string> name = {};
+  std::vector<double> position = {};  // rad or m
+  std::vector<double> velocity = {};  // rad/s or m/s
+  std::vector<double> effort = {};    // Nm or N
 };
 
 // The same, looking into a payload. Reuse one object: decoding the same shape again does not allocate.

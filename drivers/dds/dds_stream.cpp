@@ -1,0 +1,126 @@
+#include "drivers/dds/dds_stream.hpp"
+
+#include <fmt/core.h>
+
+#include <mutex>
+#include <utility>
+
+#include "drivers/dds/internal/joint_state_topic.hpp"
+#include "rt_core/base/contract.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::dds {
+
+namespace {
+
+std::string publishers_in_words(int n) { return fmt::format("{} publisher{}", n, n == 1 ? "" : "s"); }
+
+class DdsStream final : public JointStream {
+ public:
+  DdsStream(DdsStreamConfig config, std::unique_ptr<RobotFeed> feed, const Clock& clock)
+      : config_(std::move(config)), feed_(std::move(feed)), clock_(clock) {}
+  ~DdsStream() override { close(); }
+  DdsStream(const DdsStream&) = delete;
+  DdsStream& operator=(const DdsStream&) = delete;
+
+  Result<void> open(JointSampleSink& sink) override {
+    const std::scoped_lock lock(mutex_);
+    CELLMIRROR_EXPECTS(topic_ == nullptr);
+    auto topic = JointStateTopic::shared(config_, clock_);
+    if (!topic) return std::unexpected(topic.error());
+    topic_ = std::move(*topic);
+    topic_->add(*feed_, sink);
+    log_info("dds.stream", "reading {}", endpoint());
+    return {};
+  }
+
+  void close() override {
+    const std::scoped_lock lock(mutex_);
+    if (topic_ == nullptr) return;
+    topic_->remove(*feed_);
+    topic_.reset();
+  }
+
+  [[nodiscard]] JointStreamStatus status() const override {
+    const std::scoped_lock lock(mutex_);
+    std::unique_lock<std::mutex> feed_lock;
+    if (topic_ != nullptr) feed_lock = topic_->lock();
+    const Timestamp now = clock_.now();
+    const FeedCounters& counters = feed_->counters();
+    JointStreamStatus status;
+    status.kind = "dds";
+    status.endpoint = endpoint();
+    status.open = topic_ != nullptr;
+    status.received = counters.received;
+    status.lost = counters.lost;
+    status.rejected = counters.rejected;
+    status.rate_hz = feed_->rate_hz(now);
+    status.condition = condition(now);
+    status.details = details();
+    status.last_errors = feed_->last_errors();
+    return status;
+  }
+
+ private:
+  [[nodiscard]] std::string endpoint() const {
+    return fmt::format("domain {} topic {} on {}", config_.domain, config_.topic, config_.interface_address);
+  }
+
+  // With both locks held.
+  [[nodiscard]] std::string condition(Timestamp now) const {
+    if (topic_ == nullptr) return "closed";
+    const TopicStatus& topic = topic_->status();
+    if (topic.publishers == 0) {
+      return topic.incompatible > 0 && config_.reliable
+                 ? fmt::format("the publisher on {} is best effort, but reliable = true asks for more", config_.topic)
+                 : fmt::format("no publisher on {} in domain {}", config_.topic, config_.domain);
+    }
+    const std::string publishers = publishers_in_words(topic.publishers);
+    const Timestamp last = feed_->last_receive_time();
+    if (!last.known()) {
+      return publishers + (topic.messages == 0 ? ", nothing received yet" : ", no message names a joint of this robot");
+    }
+    const Nanoseconds silence = now - last;
+    if (silence > config_.ages.lost_after) return fmt::format("{}, silent for {:.1f} s", publishers, seconds(silence));
+    return publishers;
+  }
+
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> details() const {
+    const FeedCounters& counters = feed_->counters();
+    std::vector<std::pair<std::string, std::string>> found;
+    if (topic_ != nullptr) {
+      found.emplace_back("publishers", fmt::format("{}", topic_->status().publishers));
+      found.emplace_back("messages on the topic", fmt::format("{}", topic_->status().messages));
+    }
+    const std::pair<const char*, std::uint64_t> counts[] = {
+        {"malformed samples", counters.malformed},
+        {"messages with arrays of wrong length", counters.wrong_length},
+        {"velocities and efforts not known (NaN)", counters.unknown},
+        {"bad time stamps", counters.bad_stamps},
+        {"samples dropped because the queue was full", counters.sink_full},
+    };
+    for (const auto& [name, count] : counts) {
+      if (count > 0) found.emplace_back(name, fmt::format("{}", count));
+    }
+    return found;
+  }
+
+  DdsStreamConfig config_;
+  std::unique_ptr<RobotFeed> feed_;  // guarded by the topic's lock while open
+  const Clock& clock_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<JointStateTopic> topic_;  // open: not null
+};
+
+}  // namespace
+
+Result<std::unique_ptr<JointStream>> make_dds_stream(const DdsStreamConfig& config, const Clock& clock) {
+  if (auto ok = check_domain(config.domain); !ok) return std::unexpected(ok.error());
+  if (auto ok = check_topic(config.topic); !ok) return std::unexpected(ok.error());
+  auto feed = RobotFeed::make(config.joints);
+  if (!feed) return std::unexpected(feed.error());
+  return std::make_unique<DdsStream>(config, std::move(*feed), clock);
+}
+
+}  // namespace cellmirror::dds
