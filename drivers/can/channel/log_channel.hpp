@@ -1,0 +1,22 @@
+// Plays a candump log file as if it came from a bus.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/can_channel.hpp"
+
+namespace cellmirror::can {
+
+struct LogChannelOptions {
+  std::string file;
+  bool as_fast_as_possible = false;  // ignores the stamps; else the first frame comes at once and the others by theirs
+  bool repeat = false;               // from the start again, for ever
+};
+
+// Fails where the file cannot be read. Lines that are no frames are counted as malformed and told with file:line;
+// send() is refused. All interfaces of the log are played as one bus.
+[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_log_channel(const LogChannelOptions& options);
+
+}  // namespace cellmirror::can

@@ -1,0 +1,151 @@
+#include "drivers/can/channel/socket_channel.hpp"
+
+#include <poll.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "drivers/can/channel/error_frame.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kFirstBackOff = 50ms;
+constexpr Nanoseconds kLongestBackOff = 1s;
+constexpr Nanoseconds kLookPeriod = 500ms;
+constexpr std::int64_t kOldestStamp_ns = 1'000'000'000;
+
+std::int64_t now_ns(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+}  // namespace
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  if (this != &other) {
+    reset();
+    fd_ = other.fd_;
+    other.fd_ = -1;
+  }
+  return *this;
+}
+
+void Descriptor::reset() {
+  if (fd_ >= 0) close(fd_);
+  fd_ = -1;
+}
+
+void set_receive_buffer(int fd, int bytes) {
+  if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes) == 0) return;
+  setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+}
+
+ClockPair ClockPair::read() { return {now_ns(CLOCK_MONOTONIC), now_ns(CLOCK_REALTIME)}; }
+
+Timestamp ClockPair::monotonic(std::int64_t stamp_real_ns) const {
+  const std::int64_t age = real_ns - stamp_real_ns;
+  if (stamp_real_ns == 0 || age < 0 || age > kOldestStamp_ns) return {monotonic_ns};
+  return {monotonic_ns - age};
+}
+
+Ancillary Ancillary::of(msghdr& message) {
+  Ancillary result;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+    if (c->cmsg_level != SOL_SOCKET) continue;
+    if (c->cmsg_type == SO_TIMESTAMPNS && c->cmsg_len >= CMSG_LEN(sizeof(timespec))) {
+      timespec stamp{};
+      std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
+      result.stamp_real_ns = std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec;
+    } else if (c->cmsg_type == SO_RXQ_OVFL && c->cmsg_len >= CMSG_LEN(sizeof(std::uint32_t))) {
+      std::memcpy(&result.dropped, CMSG_DATA(c), sizeof result.dropped);
+      result.has_dropped = true;
+    }
+  }
+  return result;
+}
+
+CanReceive SocketChannel::receive(ReceivedCanFrame& frame, Nanoseconds timeout) {
+  if (give(frame)) return CanReceive::frame;
+  const Timestamp deadline = clock_.now() + timeout;
+  for (;;) {
+    if (socket_.is_open() && !fill()) socket_.reset();
+    if (give(frame)) return CanReceive::frame;
+    const Timestamp now = clock_.now();
+    look_after(now);
+    if (now >= deadline) break;
+    if (!socket_.is_open()) reopen_when_due(now);
+    wait(deadline - now);
+  }
+  const bool down = !socket_.is_open() || board_.copy().bus == CanBusState::down;
+  return down ? CanReceive::down : CanReceive::timeout;
+}
+
+bool SocketChannel::give(ReceivedCanFrame& frame) {
+  if (next_ == batch_size_) {
+    next_ = 0;
+    batch_size_ = 0;
+    return false;
+  }
+  frame = batch_[next_++];
+  return true;
+}
+
+void SocketChannel::put(const CanFrame& frame, Timestamp receive_time) {
+  if (batch_size_ < batch_.size()) batch_[batch_size_++] = {frame, receive_time};
+}
+
+void SocketChannel::wait(Nanoseconds time) {
+  if (!socket_.is_open()) {
+    std::this_thread::sleep_for(std::min(time, kFirstBackOff));
+    return;
+  }
+  time = std::min(time, kLookPeriod);
+  const timespec limit{time.count() / 1'000'000'000, time.count() % 1'000'000'000};
+  pollfd descriptor{socket_.get(), POLLIN, 0};
+  const int ready = ppoll(&descriptor, 1, &limit, nullptr);
+  // An error that reading does not clear would make this loop spin.
+  if (ready > 0 && (descriptor.revents & POLLIN) == 0) std::this_thread::sleep_for(1ms);
+}
+
+void SocketChannel::look_after(Timestamp now) {
+  if (now < next_look_) return;
+  next_look_ = now + kLookPeriod;
+  if (socket_.is_open() && !is_current()) socket_.reset();
+}
+
+void SocketChannel::reopen_when_due(Timestamp now) {
+  if (now < next_try_) return;
+  last_dropped_ = 0;
+  if (const auto opened = open_socket(); !opened) {
+    go_down(opened.error().text());
+    back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kLongestBackOff);
+    next_try_ = now + back_off_;
+    return;
+  }
+  back_off_ = Nanoseconds{0};
+  board_.update([](CanChannelStatus& status) { ++status.reopened; });
+}
+
+void SocketChannel::note_dropped(const Ancillary& ancillary) {
+  if (!ancillary.has_dropped || ancillary.dropped == last_dropped_) return;
+  const std::uint32_t more = ancillary.dropped - last_dropped_;  // the kernel's counter may wrap
+  last_dropped_ = ancillary.dropped;
+  board_.update([more](CanChannelStatus& status) { status.receive_dropped += more; });
+}
+
+void SocketChannel::go_down(const std::string& why) {
+  board_.update([&why](CanChannelStatus& status) {
+    status.bus = CanBusState::down;
+    status.last_error = why;
+  });
+}
+
+}  // namespace cellmirror::can

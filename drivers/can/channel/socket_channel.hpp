@@ -1,0 +1,100 @@
+// What the channels over sockets share: waiting, batches, re-opening with back-off, moving the kernel's receive stamps
+// to our clock.
+#pragma once
+
+#include <sys/socket.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include "drivers/can/channel/status_board.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/can_channel.hpp"
+
+namespace cellmirror::can {
+
+// A file descriptor that is closed with its owner.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() { reset(); }
+  Descriptor(Descriptor&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  void reset();
+
+ private:
+  int fd_ = -1;
+};
+
+// As large as the machine allows, at most `bytes`; privileged first.
+void set_receive_buffer(int fd, int bytes);
+
+// Both clocks read together, to move stamps of CLOCK_REALTIME (SO_TIMESTAMPNS) to the monotonic clock.
+struct ClockPair {
+  std::int64_t monotonic_ns = 0;
+  std::int64_t real_ns = 0;
+
+  [[nodiscard]] static ClockPair read();
+  // A stamp that cannot be right (in the future, older than a second) gives the time of the read.
+  [[nodiscard]] Timestamp monotonic(std::int64_t stamp_real_ns) const;
+};
+
+// What the kernel tells beside the data.
+struct Ancillary {
+  std::int64_t stamp_real_ns = 0;  // 0: none
+  std::uint32_t dropped = 0;       // SO_RXQ_OVFL: since the socket was opened
+  bool has_dropped = false;
+
+  [[nodiscard]] static Ancillary of(msghdr& message);
+};
+
+inline constexpr std::size_t kReceiveBatch = 32;
+inline constexpr std::size_t kControlCapacity = 128;
+
+class SocketChannel : public CanChannel {
+ public:
+  CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) final;
+  [[nodiscard]] CanChannelStatus status() const final { return board_.copy(); }
+
+ protected:
+  explicit SocketChannel(std::string endpoint) : board_(std::move(endpoint)) {}
+
+  // Opens or re-opens; leaves `socket_` closed where it fails.
+  [[nodiscard]] virtual Result<void> open_socket() = 0;
+  // Takes what has arrived into the batch, without waiting. False: the socket is of no use any more.
+  [[nodiscard]] virtual bool fill() = 0;
+  // Once in a while: is the interface still the one that was opened? False: re-open.
+  [[nodiscard]] virtual bool is_current() = 0;
+
+  void put(const CanFrame& frame, Timestamp receive_time);
+  // Counts and remembers the kernel's drop counter.
+  void note_dropped(const Ancillary& ancillary);
+  void go_down(const std::string& why);
+
+  Descriptor socket_;
+  StatusBoard board_;
+  SystemClock clock_;
+
+ private:
+  void reopen_when_due(Timestamp now);
+  void look_after(Timestamp now);
+  void wait(Nanoseconds time);
+  [[nodiscard]] bool give(ReceivedCanFrame& frame);
+
+  std::array<ReceivedCanFrame, kReceiveBatch> batch_;
+  std::size_t batch_size_ = 0;
+  std::size_t next_ = 0;
+  Timestamp next_try_;
+  Nanoseconds back_off_{0};
+  Timestamp next_look_;
+  std::uint32_t last_dropped_ = 0;
+};
+
+}  // namespace cellmirror::can

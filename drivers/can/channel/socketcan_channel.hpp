@@ -1,0 +1,16 @@
+// A CAN interface of Linux: CAN_RAW with FD frames and error frames.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/can_channel.hpp"
+
+namespace cellmirror::can {
+
+// Fails where the kernel has no CAN, the interface does not exist or is no CAN interface, or permission lacks. An
+// interface that is down, is deleted and comes back, a bus that goes bus-off: survived and told by status().
+[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_socketcan_channel(const std::string& interface);
+
+}  // namespace cellmirror::can

@@ -1,0 +1,250 @@
+#include "drivers/can/channel/udp_channel.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "drivers/can/channel/error_frame.hpp"
+#include "drivers/can/channel/socket_channel.hpp"
+#include "drivers/can/channel/udp_datagram.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+constexpr int kReceiveBuffer = 16'000'000;  // bytes: some 20,000 datagrams with the kernel's book-keeping
+
+// An IPv4 or IPv6 address with port.
+struct Address {
+  sockaddr_storage storage{};
+  socklen_t size = 0;
+
+  [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
+  [[nodiscard]] sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
+
+  [[nodiscard]] static Address of(const UdpEndpoint& endpoint, unsigned interface_index) {
+    Address address;
+    if (endpoint.ipv6) {
+      sockaddr_in6 v6{};
+      v6.sin6_family = AF_INET6;
+      v6.sin6_port = htons(endpoint.port);
+      v6.sin6_scope_id = interface_index;
+      inet_pton(AF_INET6, endpoint.group.c_str(), &v6.sin6_addr);
+      std::memcpy(&address.storage, &v6, sizeof v6);
+      address.size = sizeof v6;
+    } else {
+      sockaddr_in v4{};
+      v4.sin_family = AF_INET;
+      v4.sin_port = htons(endpoint.port);
+      inet_pton(AF_INET, endpoint.group.c_str(), &v4.sin_addr);
+      std::memcpy(&address.storage, &v4, sizeof v4);
+      address.size = sizeof v4;
+    }
+    return address;
+  }
+};
+
+bool same_sender(const sockaddr_storage& a, const sockaddr_storage& b) {
+  if (a.ss_family != b.ss_family) return false;
+  if (a.ss_family == AF_INET) {
+    sockaddr_in x{};
+    sockaddr_in y{};
+    std::memcpy(&x, &a, sizeof x);
+    std::memcpy(&y, &b, sizeof y);
+    return x.sin_port == y.sin_port && x.sin_addr.s_addr == y.sin_addr.s_addr;
+  }
+  sockaddr_in6 x{};
+  sockaddr_in6 y{};
+  std::memcpy(&x, &a, sizeof x);
+  std::memcpy(&y, &b, sizeof y);
+  return x.sin6_port == y.sin6_port && std::memcmp(&x.sin6_addr, &y.sin6_addr, sizeof x.sin6_addr) == 0;
+}
+
+std::unexpected<Error> socket_failure(std::string_view what) {
+  return fail(fmt::format("udp channel: {}: {}", what, std::strerror(errno)),
+              "check that the interface is up and has an address ('ip address')");
+}
+
+class UdpChannel final : public SocketChannel {
+ public:
+  UdpChannel(const std::string& text, UdpEndpoint endpoint, std::string interface)
+      : SocketChannel(text), endpoint_(std::move(endpoint)), interface_(std::move(interface)) {}
+
+  [[nodiscard]] Result<void> open_socket() override;
+  bool send(const CanFrame& frame) override;
+
+ private:
+  [[nodiscard]] bool fill() override;
+  [[nodiscard]] bool is_current() override;
+  [[nodiscard]] Result<Descriptor> open_receiver() const;
+  [[nodiscard]] Result<Descriptor> open_sender() const;
+  [[nodiscard]] int family() const { return endpoint_.ipv6 ? AF_INET6 : AF_INET; }
+  void take(std::span<const std::uint8_t> datagram, bool cut, Timestamp receive_time);
+
+  UdpEndpoint endpoint_;
+  std::string interface_;
+  unsigned index_ = 0;
+  Descriptor sender_;
+  sockaddr_storage own_address_{};
+};
+
+Result<Descriptor> UdpChannel::open_receiver() const {
+  Descriptor fd(socket(family(), SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!fd.is_open()) return socket_failure("no socket");
+  const int on = 1;
+  setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  setsockopt(fd.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+  setsockopt(fd.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  set_receive_buffer(fd.get(), kReceiveBuffer);
+  // Bound to the group, not to any address: other groups on the same port stay out.
+  const Address address = Address::of(endpoint_, index_);
+  if (bind(fd.get(), address.get(), address.size) != 0) return socket_failure("cannot bind to the group");
+  int joined = -1;
+  if (endpoint_.ipv6) {
+    ipv6_mreq request{};
+    inet_pton(AF_INET6, endpoint_.group.c_str(), &request.ipv6mr_multiaddr);
+    request.ipv6mr_interface = index_;
+    joined = setsockopt(fd.get(), IPPROTO_IPV6, IPV6_JOIN_GROUP, &request, sizeof request);
+  } else {
+    ip_mreqn request{};
+    inet_pton(AF_INET, endpoint_.group.c_str(), &request.imr_multiaddr);
+    request.imr_ifindex = static_cast<int>(index_);
+    joined = setsockopt(fd.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request);
+  }
+  if (joined != 0) return socket_failure("cannot join the group");
+  return fd;
+}
+
+Result<Descriptor> UdpChannel::open_sender() const {
+  Descriptor fd(socket(family(), SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!fd.is_open()) return socket_failure("no socket");
+  const int one = 1;
+  if (endpoint_.ipv6) {
+    setsockopt(fd.get(), IPPROTO_IPV6, IPV6_MULTICAST_HOPS, &one, sizeof one);
+    setsockopt(fd.get(), IPPROTO_IPV6, IPV6_MULTICAST_LOOP, &one, sizeof one);
+    setsockopt(fd.get(), IPPROTO_IPV6, IPV6_MULTICAST_IF, &index_, sizeof index_);
+  } else {
+    ip_mreqn request{};
+    request.imr_ifindex = static_cast<int>(index_);
+    setsockopt(fd.get(), IPPROTO_IP, IP_MULTICAST_TTL, &one, sizeof one);
+    setsockopt(fd.get(), IPPROTO_IP, IP_MULTICAST_LOOP, &one, sizeof one);
+    setsockopt(fd.get(), IPPROTO_IP, IP_MULTICAST_IF, &request, sizeof request);
+  }
+  const Address group = Address::of(endpoint_, index_);
+  if (connect(fd.get(), group.get(), group.size) != 0) return socket_failure("cannot send to the group");
+  return fd;
+}
+
+Result<void> UdpChannel::open_socket() {
+  index_ = if_nametoindex(interface_.c_str());
+  if (index_ == 0) return fail("there is no network interface " + interface_, "name one that 'ip link' shows");
+  auto sender = open_sender();
+  if (!sender) return std::unexpected(sender.error());
+  socklen_t size = sizeof own_address_;
+  if (getsockname(sender->get(), reinterpret_cast<sockaddr*>(&own_address_), &size) != 0) {
+    return socket_failure("no address of its own");
+  }
+  auto receiver = open_receiver();
+  if (!receiver) return std::unexpected(receiver.error());
+  sender_ = std::move(*sender);
+  socket_ = std::move(*receiver);
+  board_.update([](CanChannelStatus& status) { status.bus = CanBusState::active; });
+  return {};
+}
+
+bool UdpChannel::is_current() {
+  if (if_nametoindex(interface_.c_str()) == index_) return true;
+  go_down("the interface " + interface_ + " was removed");
+  return false;
+}
+
+bool UdpChannel::fill() {
+  std::array<std::array<std::uint8_t, kUdpDatagramCapacity>, kReceiveBatch> data;
+  std::array<iovec, kReceiveBatch> buffers;
+  std::array<sockaddr_storage, kReceiveBatch> senders;
+  std::array<std::array<char, kControlCapacity>, kReceiveBatch> control;
+  std::array<mmsghdr, kReceiveBatch> messages{};
+  for (std::size_t i = 0; i < kReceiveBatch; ++i) {
+    buffers[i] = {data[i].data(), data[i].size()};
+    messages[i].msg_hdr.msg_name = &senders[i];
+    messages[i].msg_hdr.msg_namelen = sizeof senders[i];
+    messages[i].msg_hdr.msg_iov = &buffers[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+    messages[i].msg_hdr.msg_control = control[i].data();
+    messages[i].msg_hdr.msg_controllen = control[i].size();
+  }
+  const int count = recvmmsg(socket_.get(), messages.data(), kReceiveBatch, MSG_DONTWAIT, nullptr);
+  if (count < 0) {
+    if (errno == EAGAIN || errno == EINTR) return true;
+    go_down(fmt::format("{}: {}", interface_, std::strerror(errno)));
+    return false;
+  }
+  const ClockPair clocks = ClockPair::read();
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Ancillary ancillary = Ancillary::of(messages[k].msg_hdr);
+    note_dropped(ancillary);
+    if (same_sender(senders[k], own_address_)) continue;
+    const bool cut = (messages[k].msg_hdr.msg_flags & MSG_TRUNC) != 0;
+    take(std::span(data[k]).first(messages[k].msg_len), cut, clocks.monotonic(ancillary.stamp_real_ns));
+  }
+  return true;
+}
+
+void UdpChannel::take(std::span<const std::uint8_t> datagram, bool cut, Timestamp receive_time) {
+  const auto frame = decode_udp_datagram(datagram);
+  if (cut || !frame) {
+    board_.update([&](CanChannelStatus& status) {
+      ++status.malformed;
+      status.last_error = fmt::format("datagram refused: {}", cut ? "too long" : frame.error());
+    });
+    return;
+  }
+  board_.update([&](CanChannelStatus& status) {
+    if (!frame->error) {
+      ++status.received;
+      return;
+    }
+    ++status.error_frames;
+    status.last_error = error_words(*frame);
+    if (const auto bus = bus_state_of_error(*frame)) status.bus = *bus;
+  });
+  put(*frame, receive_time);
+}
+
+bool UdpChannel::send(const CanFrame& frame) {
+  const double now_s = 1e-9 * static_cast<double>(ClockPair::read().real_ns);
+  const UdpDatagram datagram = encode_udp_datagram(frame, now_s);
+  ssize_t written = -1;
+  int error = ENOTCONN;
+  if (sender_.is_open()) {
+    written = ::send(sender_.get(), datagram.bytes.data(), datagram.size, MSG_DONTWAIT);
+    error = errno;
+  }
+  const bool sent = written == static_cast<ssize_t>(datagram.size);
+  board_.update([&](CanChannelStatus& status) {
+    if (sent) {
+      ++status.sent;
+    } else {
+      ++status.send_refused;
+      status.last_error = fmt::format("send: {}", std::strerror(error));
+    }
+  });
+  return sent;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CanChannel>> open_udp_channel(const std::string& text, const UdpEndpoint& endpoint,
+                                                     const std::string& interface) {
+  auto channel = std::make_unique<UdpChannel>(text, endpoint, interface);
+  if (const auto opened = channel->open_socket(); !opened) return std::unexpected(opened.error());
+  return channel;
+}
+
+}  // namespace cellmirror::can

@@ -1,0 +1,19 @@
+// A CAN bus over IP multicast in python-can's udp_multicast format.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "drivers/can/channel/endpoint.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/can_channel.hpp"
+
+namespace cellmirror::can {
+
+// `interface`: the network interface that joins the group and sends; others hear nothing of it. Hop limit 1. What this
+// channel sends does not come back to it, but reaches every other member on this machine. Datagrams that are no frames
+// are counted as malformed. Fails where the interface does not exist or cannot join.
+[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_udp_channel(const std::string& text, const UdpEndpoint& endpoint,
+                                                                   const std::string& interface);
+
+}  // namespace cellmirror::can
