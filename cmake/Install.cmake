@@ -1,0 +1,12 @@
+# cmake --install build --prefix /usr: programs, the cells that come along, the systemd unit and its system user.
+include(GNUInstallDirs)
+foreach(program cellmirror sim_robot sim_haptic sim_footswitch sim_camera_head)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/config/cells DESTINATION ${CMAKE_INSTALL_DATADIR}/cellmirror)
+install(FILES ${CMAKE_SOURCE_DIR}/config/systemd/cellmirror@.service DESTINATION lib/systemd/system)
+install(FILES ${CMAKE_SOURCE_DIR}/config/systemd/cellmirror.sysusers DESTINATION lib/sysusers.d RENAME cellmirror.conf)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
