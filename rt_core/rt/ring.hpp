@@ -51,23 +51,29 @@ class Ring {
     }
     // Even: entry `number` is complete. Release: pairs with the first acquire load of the sequence in copy_entry().
     slot.sequence.store(2 * number + 2, std::memory_order_release);
-    // Release: pairs with the acquire in newest(): who sees the count finds the entry complete or replaced by a newer.
+    // Release: pairs with the acquire in newest().
     written_.store(number + 1, std::memory_order_release);
   }
 
   // Any thread; not for the tick (its time grows with the number of entries). Fills `out` from its front with the
-  // newest entries, oldest first, at most out.size() and Capacity of them; returns how many. Entries that were
-  // overwritten while they were being copied are left out and counted in torn(): only the oldest ones are in that
-  // danger.
+  // newest entries, oldest first and without gaps, at most out.size() and Capacity of them; returns how many. The
+  // oldest ones that were overwritten while the copy was made are left out and counted in torn().
   std::size_t newest(std::span<T> out) const noexcept {
-    const std::uint64_t written = written_.load(std::memory_order_acquire);
-    const std::uint64_t wanted = std::min<std::uint64_t>({written, out.size(), Capacity});
     std::size_t copied = 0;
-    for (std::uint64_t number = written - wanted; number < written; ++number) {
-      if (copy_entry(number, out[copied])) {
+    // Once more where the writer went round the whole ring before the first entry was copied.
+    for (int attempt = 0; attempt < kAttempts && copied == 0; ++attempt) {
+      // Acquire: pairs with the release in push(); the entries before the count are complete, or replaced by newer
+      // ones.
+      const std::uint64_t written = written_.load(std::memory_order_acquire);
+      const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>({written, out.size(), Capacity}));
+      // Backwards: the writer replaces the oldest first, so from the first entry that is gone all older ones are.
+      while (copied < wanted && copy_entry(written - 1 - copied, out[wanted - 1 - copied])) {
         ++copied;
-      } else {
-        torn_.fetch_add(1, std::memory_order_relaxed);  // statistics: many readers, nothing else is published by it
+      }
+      std::move(out.begin() + (wanted - copied), out.begin() + wanted, out.begin());
+      torn_.fetch_add(wanted - copied, std::memory_order_relaxed);  // statistics, by many readers
+      if (wanted == 0) {
+        break;
       }
     }
     return copied;
@@ -86,6 +92,7 @@ class Ring {
   [[nodiscard]] std::uint64_t torn() const CELL_RT { return torn_.load(std::memory_order_relaxed); }
 
  private:
+  static constexpr int kAttempts = 4;
   static constexpr std::size_t kWords = (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
 
   struct Slot {
