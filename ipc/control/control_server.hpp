@@ -20,12 +20,13 @@ inline constexpr std::size_t kMaxControlReplyBytes = std::size_t{16} * 1024 * 10
 
 struct ControlServerStatus {
   std::uint64_t answered = 0;
-  std::uint64_t refused = 0;  // other users, requests too long, too many at once
+  std::uint64_t refused = 0;  // other users, requests too long
   std::uint64_t cut = 0;      // clients that sent or read too slowly
 };
 
-// One thread serves up to kMaxClients at once; nobody waits for a slow one, who is cut off after the time-out. Only
-// processes of the same user, and root, are heard (SO_PEERCRED).
+// One thread serves up to kMaxClients at once; nobody waits for a slow one, who is cut off after the time-out, or
+// earlier where another one comes and there is no room. Only processes of the same user, and root, are heard
+// (SO_PEERCRED).
 class ControlServer {
  public:
   static constexpr std::size_t kMaxClients = 32;

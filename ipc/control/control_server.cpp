@@ -1,0 +1,224 @@
+#include "ipc/control/control_server.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <exception>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "ipc/control/control_connection.hpp"
+#include "ipc/control/control_request.hpp"
+#include "ipc/control/unix_address.hpp"
+#include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/log.hpp"
+
+namespace cellmirror {
+namespace {
+
+using Progress = ControlConnection::Progress;
+
+Timestamp now() { return SystemClock().now(); }
+
+bool may_ask(int socket) {
+  ucred peer{};
+  socklen_t length = sizeof peer;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &length) != 0) return false;
+  return peer.uid == ::geteuid() || peer.uid == 0;
+}
+
+}  // namespace
+
+struct ControlServer::Impl {
+  std::filesystem::path path;
+  Handler handler;
+  Nanoseconds client_timeout{0};
+  Descriptor listener;
+  Descriptor wake_up;
+  std::vector<ControlConnection> connections;
+  std::thread thread;
+  std::atomic<bool> stopping{false};
+  std::atomic<std::uint64_t> answered{0};
+  std::atomic<std::uint64_t> refused{0};
+  std::atomic<std::uint64_t> cut{0};
+
+  Result<void> listen();
+  void serve();
+  void accept_one();
+  // False: the connection is over.
+  bool go_on(ControlConnection& connection, short events);
+  bool respond(ControlConnection& connection, std::string text);
+  std::string handled(std::string_view request);
+  [[nodiscard]] int poll_timeout_ms() const;
+  void cut_off_late();
+  void make_room();
+};
+
+Result<void> ControlServer::Impl::listen() {
+  const auto address = unix_address(path);
+  if (!address) return std::unexpected(address.error());
+  listener = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  wake_up = Descriptor(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
+  const auto failed = [&] {
+    return fail(fmt::format("cannot listen at {}: {}", path.native(), system_error_text(errno)));
+  };
+  if (!listener.valid() || !wake_up.valid()) return failed();
+  ::unlink(path.c_str());
+  if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) return failed();
+  // The folder lets nobody else in; the mode is the second door.
+  if (::chmod(path.c_str(), 0600) != 0) return failed();
+  if (::listen(listener.get(), static_cast<int>(kMaxClients)) != 0) return failed();
+  return {};
+}
+
+void ControlServer::Impl::serve() {
+  ::pthread_setname_np(::pthread_self(), "control-socket");
+  std::vector<pollfd> polled;
+  while (!stopping.load(std::memory_order_acquire)) {
+    polled.clear();
+    polled.push_back({wake_up.get(), POLLIN, 0});
+    polled.push_back({listener.get(), POLLIN, 0});
+    for (const ControlConnection& connection : connections) {
+      polled.push_back({connection.fd(), static_cast<short>(connection.answering() ? POLLOUT : POLLIN), 0});
+    }
+    if (::poll(polled.data(), polled.size(), poll_timeout_ms()) < 0 && errno != EINTR) return;
+    // From behind, so that the places of the others stay.
+    for (std::size_t i = connections.size(); i-- > 0;) {
+      if (!go_on(connections[i], polled[i + 2].revents)) {
+        std::swap(connections[i], connections.back());
+        connections.pop_back();
+      }
+    }
+    cut_off_late();
+    if ((polled[1].revents & POLLIN) != 0) accept_one();
+  }
+}
+
+void ControlServer::Impl::accept_one() {
+  Descriptor socket(::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!socket.valid()) {
+    if (errno == EMFILE || errno == ENFILE) {
+      log_error("ipc.control-descriptors", "no descriptor left for a client of the control socket");
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));  // else poll would wake at once again
+    }
+    return;
+  }
+  if (connections.size() == kMaxClients) make_room();
+  const bool allowed = may_ask(socket.get());
+  connections.emplace_back(std::move(socket), now() + client_timeout);
+  if (allowed) return;
+  refused.fetch_add(1, std::memory_order_relaxed);
+  connections.back().answer(control_error({"only the gateway's user and root may ask", "run this as that user"}),
+                            now() + client_timeout);
+}
+
+bool ControlServer::Impl::go_on(ControlConnection& connection, short events) {
+  if (events == 0) return true;
+  if (connection.answering()) {
+    const Progress progress = connection.write_some();
+    if (progress == Progress::finished) return false;
+    if (progress == Progress::failed) cut.fetch_add(1, std::memory_order_relaxed);
+    return progress == Progress::waiting;
+  }
+  switch (connection.read_some()) {
+    case Progress::waiting:
+      return true;
+    case Progress::request_complete: {
+      std::string text = handled(connection.request());
+      answered.fetch_add(1, std::memory_order_relaxed);
+      return respond(connection, std::move(text));
+    }
+    case Progress::too_long:
+      refused.fetch_add(1, std::memory_order_relaxed);
+      return respond(connection,
+                     control_error({fmt::format("the request is longer than {} bytes", kMaxControlRequestBytes), ""}));
+    default:
+      cut.fetch_add(1, std::memory_order_relaxed);
+      return false;
+  }
+}
+
+// Most answers fit the socket's buffer and are gone at once.
+bool ControlServer::Impl::respond(ControlConnection& connection, std::string text) {
+  connection.answer(std::move(text), now() + client_timeout);
+  return connection.write_some() == Progress::waiting;
+}
+
+std::string ControlServer::Impl::handled(std::string_view request) {
+  try {
+    std::string text = handler(request);
+    if (text.size() < kMaxControlReplyBytes) return text;
+    return control_error({fmt::format("the answer is longer than {} bytes", kMaxControlReplyBytes), ""});
+  } catch (const std::exception& error) {
+    log_error("ipc.control-request", "{}", error.what());
+    return control_error({fmt::format("the request failed: {}", error.what()), "this is a bug, please report it"});
+  }
+}
+
+int ControlServer::Impl::poll_timeout_ms() const {
+  if (connections.empty()) return -1;
+  Timestamp next = connections.front().deadline();
+  for (const ControlConnection& connection : connections) next = std::min(next, connection.deadline());
+  const std::int64_t left_ms = (next - now()).count() / 1'000'000 + 1;
+  return static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 60'000));
+}
+
+void ControlServer::Impl::cut_off_late() {
+  const Timestamp time = now();
+  const auto late = std::remove_if(connections.begin(), connections.end(),
+                                   [&](const ControlConnection& c) { return c.deadline() <= time; });
+  cut.fetch_add(static_cast<std::uint64_t>(connections.end() - late), std::memory_order_relaxed);
+  connections.erase(late, connections.end());
+}
+
+// Who has been there longest has had the most time: stalled clients cannot keep newcomers out.
+void ControlServer::Impl::make_room() {
+  connections.erase(std::min_element(connections.begin(), connections.end(),
+                                     [](const auto& a, const auto& b) { return a.deadline() < b.deadline(); }));
+  cut.fetch_add(1, std::memory_order_relaxed);
+}
+
+Result<std::unique_ptr<ControlServer>> ControlServer::start(const std::filesystem::path& path, Handler handler,
+                                                            Nanoseconds client_timeout) {
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  impl->handler = std::move(handler);
+  impl->client_timeout = client_timeout;
+  if (const auto listening = impl->listen(); !listening) return std::unexpected(listening.error());
+  Impl* server = impl.get();
+  try {
+    impl->thread = std::thread([server] { server->serve(); });
+  } catch (const std::system_error& error) {
+    ::unlink(path.c_str());
+    return fail(fmt::format("no thread for the control socket: {}", error.what()), "raise the limit of processes");
+  }
+  return std::unique_ptr<ControlServer>(new ControlServer(std::move(impl)));
+}
+
+ControlServer::ControlServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+ControlServer::~ControlServer() {
+  impl_->stopping.store(true, std::memory_order_release);
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t woken = ::write(impl_->wake_up.get(), &one, sizeof one);
+  impl_->thread.join();
+  ::unlink(impl_->path.c_str());
+}
+
+ControlServerStatus ControlServer::status() const {
+  return {impl_->answered.load(std::memory_order_relaxed), impl_->refused.load(std::memory_order_relaxed),
+          impl_->cut.load(std::memory_order_relaxed)};
+}
+
+}  // namespace cellmirror

@@ -1,0 +1,194 @@
+#include "ipc/wire/robot_record.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "ipc/wire/little_endian.hpp"
+#include "ipc/wire/utf8.hpp"
+
+namespace cellmirror {
+namespace {
+
+using namespace little_endian;
+using namespace robot_record_offset;
+
+PoseRecord pose_record(const Pose& X) {
+  Eigen::Quaterniond q(X.linear());
+  q.normalize();
+  // q and -q are the same rotation: one of them is sent, so that equal poses have equal bytes.
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const auto& p = X.translation();
+  return {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}};
+}
+
+double age_at(Timestamp time, Timestamp then) {
+  if (!then.known()) return std::numeric_limits<double>::quiet_NaN();
+  return std::max(0.0, seconds(time - then));  // what came during the tick is 0 old
+}
+
+void put_name(std::span<std::byte> bytes, std::size_t offset, std::string_view name) {
+  const auto field = bytes.subspan(offset, kRecordNameBytes);
+  std::fill(field.begin(), field.end(), std::byte{0});
+  // A NUL within a name would hide the rest from the reader's own check.
+  const std::string_view text = cut_utf8(name.substr(0, name.find('\0')), kRecordNameBytes - 1);
+  std::transform(text.begin(), text.end(), field.begin(), [](char c) { return static_cast<std::byte>(c); });
+}
+
+Result<std::string> get_name(std::span<const std::byte> bytes, std::size_t offset) {
+  const auto field = bytes.subspan(offset, kRecordNameBytes);
+  const auto end = std::find(field.begin(), field.end(), std::byte{0});
+  if (end == field.end()) return fail(fmt::format("the name at byte {} has no NUL behind it", offset));
+  if (std::any_of(end, field.end(), [](std::byte b) { return b != std::byte{0}; })) {
+    return fail(fmt::format("the name at byte {} has text behind its NUL", offset));
+  }
+  std::string name(static_cast<std::size_t>(end - field.begin()), '\0');
+  std::transform(field.begin(), end, name.begin(), [](std::byte b) { return static_cast<char>(b); });
+  return name;
+}
+
+void put_pose(std::span<std::byte> bytes, std::size_t offset, const PoseRecord& pose) {
+  for (std::size_t i = 0; i < 3; ++i) put(bytes, offset + kPosePosition + 8 * i, pose.position[i]);
+  for (std::size_t i = 0; i < 4; ++i) put(bytes, offset + kPoseQuaternion + 8 * i, pose.quaternion[i]);
+}
+
+PoseRecord get_pose(std::span<const std::byte> bytes, std::size_t offset) {
+  PoseRecord pose;
+  for (std::size_t i = 0; i < 3; ++i) pose.position[i] = get<double>(bytes, offset + kPosePosition + 8 * i);
+  for (std::size_t i = 0; i < 4; ++i) pose.quaternion[i] = get<double>(bytes, offset + kPoseQuaternion + 8 * i);
+  return pose;
+}
+
+void put_joint(std::span<std::byte> joint, const JointRecord& record) {
+  put_name(joint, kJointName, record.name);
+  put(joint, kJointKind, static_cast<std::uint8_t>(record.kind));
+  put(joint, kJointState, static_cast<std::uint8_t>(record.state));
+  put(joint, kJointPosition, record.position);
+  put(joint, kJointVelocity, record.velocity);
+  put(joint, kJointEffort, record.effort);
+  put(joint, kJointAge, record.age);
+  put(joint, kJointSourceAge, record.source_age);
+}
+
+Result<DataState> get_state(std::span<const std::byte> bytes, std::size_t offset) {
+  const auto state = get<std::uint8_t>(bytes, offset);
+  if (state > static_cast<std::uint8_t>(DataState::invalid)) return fail(fmt::format("state {} is unknown", state));
+  return static_cast<DataState>(state);
+}
+
+Result<JointRecord> get_joint(std::span<const std::byte> joint) {
+  JointRecord record;
+  auto name = get_name(joint, kJointName);
+  if (!name) return std::unexpected(name.error());
+  record.name = std::move(*name);
+  const auto kind = get<std::uint8_t>(joint, kJointKind);
+  if (kind > static_cast<std::uint8_t>(JointKind::prismatic))
+    return fail(fmt::format("joint kind {} is unknown", kind));
+  record.kind = static_cast<JointKind>(kind);
+  const auto state = get_state(joint, kJointState);
+  if (!state) return std::unexpected(state.error());
+  record.state = *state;
+  const auto reserved = joint.subspan(kJointReserved, kJointPosition - kJointReserved);
+  if (std::any_of(reserved.begin(), reserved.end(), [](std::byte b) { return b != std::byte{0}; })) {
+    return fail("reserved bytes of a joint are not 0");
+  }
+  record.position = get<double>(joint, kJointPosition);
+  record.velocity = get<double>(joint, kJointVelocity);
+  record.effort = get<double>(joint, kJointEffort);
+  record.age = get<double>(joint, kJointAge);
+  record.source_age = get<double>(joint, kJointSourceAge);
+  return record;
+}
+
+// All of the payload before the joints; their number goes to `joint_count`.
+Result<RobotRecord> get_robot(std::span<const std::byte> bytes, std::size_t& joint_count) {
+  RobotRecord record;
+  auto id = get_name(bytes, kId);
+  if (!id) return std::unexpected(id.error());
+  record.id = std::move(*id);
+  const auto online = get<std::uint8_t>(bytes, kOnline);
+  if (online > 1) return fail(fmt::format("online flag {}, it is 0 or 1", online));
+  record.online = online == 1;
+  const auto state = get_state(bytes, kState);
+  if (!state) return std::unexpected(state.error());
+  record.state = *state;
+  if (get<std::uint32_t>(bytes, kReserved) != 0) return fail("reserved bytes of the robot are not 0");
+  record.sample_sequence = get<std::uint64_t>(bytes, kSampleSequence);
+  record.base_tcp = get_pose(bytes, kBaseTcp);
+  record.world_tcp = get_pose(bytes, kWorldTcp);
+  joint_count = get<std::uint16_t>(bytes, kJointCount);
+  if (joint_count > kMaxJointsPerRobot || bytes.size() != kJoints + joint_count * kJointBytes) {
+    return fail(fmt::format("{} joints do not fit a record of {} bytes", joint_count, bytes.size()));
+  }
+  return record;
+}
+
+}  // namespace
+
+RobotRecord robot_record_of(const RobotState& robot, Timestamp time) {
+  RobotRecord record;
+  record.header.time_ns = time.ns;
+  record.id = robot.id;
+  record.online = robot.online;
+  record.state = robot.state;
+  record.sample_sequence = robot.sequence;
+  record.base_tcp = pose_record(robot.X_BT);
+  record.world_tcp = pose_record(robot.X_WT);
+  record.joints.reserve(robot.joints.size());
+  for (const RobotJointState& joint : robot.joints) {
+    record.joints.push_back({joint.name, joint.kind, joint.state, joint.position, joint.velocity, joint.effort,
+                             age_at(time, joint.receive_time), age_at(time, joint.source_time)});
+  }
+  return record;
+}
+
+Result<std::size_t> encode_robot_record(const RobotRecord& record, std::span<std::byte> bytes) {
+  if (record.joints.size() > kMaxJointsPerRobot) {
+    return fail(
+        fmt::format("robot {} has {} joints, a record holds {}", record.id, record.joints.size(), kMaxJointsPerRobot));
+  }
+  const std::size_t length = kJoints + record.joints.size() * kJointBytes;
+  if (bytes.size() < length) return fail(fmt::format("a robot record of {} bytes into {}", length, bytes.size()));
+  const auto out = bytes.first(length);
+  std::fill(out.begin(), out.end(), std::byte{0});
+  RecordHeader header = record.header;
+  header.kind = RecordKind::robot_parameters;
+  encode_record_header(header, out);
+  put_name(out, kId, record.id);
+  put(out, kOnline, static_cast<std::uint8_t>(record.online ? 1 : 0));
+  put(out, kState, static_cast<std::uint8_t>(record.state));
+  put(out, kJointCount, static_cast<std::uint16_t>(record.joints.size()));
+  put(out, kSampleSequence, record.sample_sequence);
+  put_pose(out, kBaseTcp, record.base_tcp);
+  put_pose(out, kWorldTcp, record.world_tcp);
+  for (std::size_t i = 0; i < record.joints.size(); ++i) {
+    put_joint(out.subspan(kJoints + i * kJointBytes, kJointBytes), record.joints[i]);
+  }
+  return length;
+}
+
+Result<RobotRecord> decode_robot_record(std::span<const std::byte> bytes) {
+  const auto header = decode_record_header(bytes);
+  if (!header) return std::unexpected(header.error());
+  if (header->kind != RecordKind::robot_parameters) {
+    return fail(fmt::format("a record of kind {}, not of robot parameters", static_cast<int>(header->kind)));
+  }
+  if (bytes.size() < kJoints)
+    return fail(fmt::format("a robot record of {} bytes; it has {} at least", bytes.size(), kJoints));
+  std::size_t joint_count = 0;
+  auto record = get_robot(bytes, joint_count);
+  if (!record) return record;
+  record->header = *header;
+  record->joints.reserve(joint_count);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    auto joint = get_joint(bytes.subspan(kJoints + i * kJointBytes, kJointBytes));
+    if (!joint) return fail(fmt::format("joint {}: {}", i, joint.error().what));
+    record->joints.push_back(std::move(*joint));
+  }
+  return record;
+}
+
+}  // namespace cellmirror
