@@ -17,17 +17,21 @@ namespace {
 
 // A transform takes some 120 bytes: so many stay within one UDP datagram.
 constexpr std::size_t kTransformsInMessage = 256;
+// Readers confirm some milliseconds after a heartbeat. At higher rates there is always a sample on its way, so that one
+// cannot tell a reader that stands still from one that follows.
+constexpr double kMostCountedRateHz = 100;
 constexpr int kLeastDepth = 32;
 constexpr int kMostDepth = 400;
 
 // A writer that knows when it overwrites what a reliable reader has not confirmed yet.
 class CountingWriter {
  public:
-  CountingWriter(std::unique_ptr<BytesWriter> writer, int depth) : writer_(std::move(writer)), depth_(depth) {}
+  CountingWriter(std::unique_ptr<BytesWriter> writer, int depth, bool counts_overwritten)
+      : writer_(std::move(writer)), depth_(depth), counts_overwritten_(counts_overwritten) {}
 
   [[nodiscard]] std::vector<std::byte>& payload() { return writer_->payload(); }
   void write() {
-    if (writer_->all_confirmed()) {
+    if (!counts_overwritten_ || writer_->all_confirmed()) {
       unconfirmed_ = 0;
     } else if (unconfirmed_ >= depth_) {
       add(dropped_);
@@ -49,6 +53,7 @@ class CountingWriter {
 
   std::unique_ptr<BytesWriter> writer_;
   int depth_;
+  bool counts_overwritten_;
   int unconfirmed_ = 0;
   std::atomic<std::uint64_t> sent_{0};
   std::atomic<std::uint64_t> dropped_{0};
@@ -103,10 +108,11 @@ class DdsOutput final : public RobotStateOutput {
 };
 
 Result<std::unique_ptr<CountingWriter>> make_writer(const std::shared_ptr<Participant>& participant,
-                                                    const std::string& topic, std::string_view type, int depth) {
+                                                    const std::string& topic, std::string_view type, int depth,
+                                                    bool counts_overwritten) {
   auto writer = BytesWriter::make(participant, {topic, type, true, depth});
   if (!writer) return std::unexpected(writer.error());
-  return std::make_unique<CountingWriter>(std::move(*writer), depth);
+  return std::make_unique<CountingWriter>(std::move(*writer), depth, counts_overwritten);
 }
 
 }  // namespace
@@ -117,12 +123,13 @@ Result<std::unique_ptr<RobotStateOutput>> make_dds_output(const DdsOutputConfig&
   }
   auto participant = Participant::shared(config.domain, config.interface_address);
   if (!participant) return std::unexpected(participant.error());
+  const bool counts = config.rate_hz <= kMostCountedRateHz;
   // About a second of history, for repetition to readers that missed something.
   const int depth = static_cast<int>(std::clamp(config.rate_hz, double{kLeastDepth}, double{kMostDepth}));
-  auto joint_states = make_writer(*participant, config.joint_states_topic, kJointStateType, depth);
+  auto joint_states = make_writer(*participant, config.joint_states_topic, kJointStateType, depth, counts);
   if (!joint_states) return std::unexpected(joint_states.error());
   // Many frames make many messages a time.
-  auto transforms = make_writer(*participant, config.tf_topic, kTfMessageType, kMostDepth);
+  auto transforms = make_writer(*participant, config.tf_topic, kTfMessageType, kMostDepth, counts);
   if (!transforms) return std::unexpected(transforms.error());
   return std::make_unique<DdsOutput>(config, std::move(*joint_states), std::move(*transforms));
 }

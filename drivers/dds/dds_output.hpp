@@ -11,7 +11,7 @@ namespace cellmirror::dds {
 
 // Fails where the configuration is wrong, or the interface's address is none of this machine's. Whether the output is
 // enabled is the caller's to check. publish() waits neither for the network nor for readers: what a slow reliable
-// reader has not confirmed is overwritten and counted as "dropped". Not for the tick (DDS allocates).
+// reader has not confirmed is overwritten and, up to 100 Hz, counted as "dropped". Not for the tick (DDS allocates).
 [[nodiscard]] Result<std::unique_ptr<RobotStateOutput>> make_dds_output(const DdsOutputConfig& config);
 
 }  // namespace cellmirror::dds

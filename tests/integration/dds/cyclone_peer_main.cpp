@@ -1,0 +1,43 @@
+// A Cyclone DDS peer in a process of its own, to be stopped and killed by tests.
+//   dds_cyclone_peer write DOMAIN TOPIC PERIOD_MS   publishes {"a": n} for n = 1, 2, ... until it is ended
+//   dds_cyclone_peer read DOMAIN TOPIC              a reliable reader; prints a line for each message
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "cyclone_peer.hpp"
+
+using cellmirror::dds::test::CyclonePeer;
+
+namespace {
+
+int write(CyclonePeer& peer, const std::string& topic, int period_ms) {
+  const dds_entity_t writer = peer.joint_state_writer(topic, true);
+  for (double n = 1;; ++n) {
+    CyclonePeer::write(writer, {.name = {"a"}, .position = {n}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(period_ms));
+  }
+}
+
+int read(CyclonePeer& peer, const std::string& topic) {
+  const dds_entity_t reader = peer.joint_state_reader(topic, true);
+  for (;;) {
+    for (const auto& message : CyclonePeer::take_joint_states(reader)) {
+      std::printf("%zu joints\n", message.name.size());
+      std::fflush(stdout);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) return 2;
+  CyclonePeer peer(std::atoi(argv[2]));
+  if (std::string(argv[1]) == "write" && argc == 5) return write(peer, argv[3], std::atoi(argv[4]));
+  if (std::string(argv[1]) == "read") return read(peer, argv[3]);
+  return 2;
+}
