@@ -17,7 +17,7 @@ set(CELLMIRROR_LAYERS
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
-  "sim_devices: rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds"
+  "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds"
   "app: *"
   "tests: *")
 

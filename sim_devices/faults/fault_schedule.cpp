@@ -86,4 +86,14 @@ bool FaultSchedule::alive(Timestamp now, Source source) const {
   });
 }
 
+Timestamp FaultSchedule::next_life_change(Timestamp now) const {
+  Timestamp next = kNeverEnds;
+  for (const ScheduledFault& fault : faults_) {
+    if (fault.spec.kind != FaultKind::death) continue;
+    if (fault.from > now) next = std::min(next, fault.from);
+    if (fault.until > now) next = std::min(next, fault.until);
+  }
+  return next;
+}
+
 }  // namespace cellmirror::sim

@@ -59,6 +59,8 @@ class FaultSchedule {
   void shape(Timestamp now, Source source, JointValue& value);
   // False while the device is dead. `joint` 0 asks for the robot as a whole.
   [[nodiscard]] bool alive(Timestamp now, Source source) const;
+  // When alive() may change next; kNeverEnds where it will not.
+  [[nodiscard]] Timestamp next_life_change(Timestamp now) const;
 
  private:
   std::uint64_t seed_;

@@ -27,8 +27,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 Result<void> read_source(std::string_view word, Source& source) {
   const std::size_t equals = word.find('=');
   const std::string_view name = word.substr(0, equals);
-  const long long number =
-      equals == std::string_view::npos ? -1 : parse_integer(word.substr(equals + 1)).value_or(-1);
+  const long long number = equals == std::string_view::npos ? -1 : parse_integer(word.substr(equals + 1)).value_or(-1);
   if ((name != "robot" && name != "joint") || number < 1 || number > 127) {
     return fail(fmt::format("'{}' names no robot or joint", printable(word)),
                 "write robot=N or joint=N, counted from 1");
