@@ -133,6 +133,8 @@ bool CyclicThread::prepare() {
     }
   }
   prefault_stack();
+  // The first reading of the clock maps the kernel's time page, which mlockall cannot do.
+  static_cast<void>(monotonic_now());
   if (start_error_) {
     tid_.store(0, std::memory_order_relaxed);
   }

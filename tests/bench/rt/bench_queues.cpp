@@ -1,0 +1,143 @@
+// What a value costs on its way through a bounded queue of one producer and one consumer: ours, Boost.Lockfree's and
+// (where the package libreaderwriterqueue-dev is installed) moodycamel's. Compare figures of one run only, with
+//   rt_bench_queues --benchmark_repetitions=7 --benchmark_enable_random_interleaving=true
+//                   --benchmark_report_aggregates_only=true
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <thread>
+
+#include "rt_core/rt/fifo.hpp"
+
+#if __has_include(<readerwriterqueue/readerwriterqueue.h>)
+#include <readerwriterqueue/readerwriterqueue.h>
+#define CELLMIRROR_HAS_READERWRITERQUEUE 1
+#endif
+
+namespace cellmirror {
+namespace {
+
+constexpr std::size_t kCapacity = 1023;  // moodycamel rounds up to a power of two, less one
+
+template <std::size_t Words>
+struct Value {
+  std::array<std::uint64_t, Words> words{};
+};
+using Small = Value<1>;
+using JointSampleSized = Value<52>;  // as large as a JointSample
+
+template <class T>
+struct Ours {
+  Fifo<T, kCapacity> queue;
+  bool push(const T& value) { return queue.push(value); }
+  bool pop(T& value) { return queue.pop(value); }
+};
+
+template <class T>
+struct Boost {
+  boost::lockfree::spsc_queue<T, boost::lockfree::capacity<kCapacity>> queue;
+  bool push(const T& value) { return queue.push(value); }
+  bool pop(T& value) { return queue.pop(value); }
+};
+
+// Boost's with the statistics that a Fifo keeps, as a Fifo on top of it would be.
+template <class T>
+struct BoostCounting {
+  boost::lockfree::spsc_queue<T, boost::lockfree::capacity<kCapacity>> queue;
+  alignas(64) std::atomic<std::uint64_t> pushed{0};
+  std::atomic<std::uint64_t> dropped{0};
+  std::atomic<std::size_t> high_water{0};
+
+  static void increment(std::atomic<std::uint64_t>& counter) {
+    counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
+  bool push(const T& value) {
+    if (!queue.push(value)) {
+      increment(dropped);
+      return false;
+    }
+    increment(pushed);
+    const std::size_t level = kCapacity - queue.write_available();
+    if (level > high_water.load(std::memory_order_relaxed)) {
+      high_water.store(level, std::memory_order_relaxed);
+    }
+    return true;
+  }
+  bool pop(T& value) { return queue.pop(value); }
+};
+
+#ifdef CELLMIRROR_HAS_READERWRITERQUEUE
+template <class T>
+struct Moodycamel {
+  moodycamel::ReaderWriterQueue<T, kCapacity + 1> queue{kCapacity};
+  bool push(const T& value) { return queue.try_enqueue(value); }
+  bool pop(T& value) { return queue.try_dequeue(value); }
+};
+#endif
+
+// One thread: push and pop of one value; nothing moves between processors.
+template <class Queue, class T>
+void one_thread(benchmark::State& state) {
+  const auto queue = std::make_unique<Queue>();
+  T in{};
+  T out{};
+  for (auto _ : state) {
+    in.words[0] += 1;
+    benchmark::DoNotOptimize(queue->push(in));
+    benchmark::DoNotOptimize(queue->pop(out));
+    benchmark::DoNotOptimize(out);
+  }
+}
+
+// Two threads, as fast as they can; real time a value. Whoever finds the queue full or empty gives its processor away.
+template <class Queue, class T>
+void two_threads(benchmark::State& state) {
+  constexpr std::uint64_t kValues = 200'000;
+  const auto queue = std::make_unique<Queue>();
+  for (auto _ : state) {
+    std::thread producer([&queue] {
+      T in{};
+      for (std::uint64_t n = 0; n < kValues; ++n) {
+        in.words[0] = n;
+        while (!queue->push(in)) {
+          std::this_thread::yield();
+        }
+      }
+    });
+    T out{};
+    for (std::uint64_t n = 0; n < kValues; ++n) {
+      while (!queue->pop(out)) {
+        std::this_thread::yield();
+      }
+      if (out.words[0] != n) {
+        state.SkipWithError("a value was lost");
+      }
+    }
+    producer.join();
+  }
+  state.counters["per_value"] =
+      benchmark::Counter(kValues, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+#define CELLMIRROR_BENCH_QUEUE(Queue, name)                                                             \
+  BENCHMARK(one_thread<Queue<Small>, Small>)->Name("one_thread/8_bytes/" name);                         \
+  BENCHMARK(one_thread<Queue<JointSampleSized>, JointSampleSized>)->Name("one_thread/416_bytes/" name); \
+  BENCHMARK(two_threads<Queue<Small>, Small>)->Name("two_threads/8_bytes/" name)->UseRealTime();        \
+  BENCHMARK(two_threads<Queue<JointSampleSized>, JointSampleSized>)->Name("two_threads/416_bytes/" name)->UseRealTime()
+
+CELLMIRROR_BENCH_QUEUE(Ours, "ours");
+CELLMIRROR_BENCH_QUEUE(Boost, "boost_raw");
+CELLMIRROR_BENCH_QUEUE(BoostCounting, "boost_with_statistics");
+#ifdef CELLMIRROR_HAS_READERWRITERQUEUE
+CELLMIRROR_BENCH_QUEUE(Moodycamel, "moodycamel_raw");
+#endif
+
+}  // namespace
+}  // namespace cellmirror
+
+BENCHMARK_MAIN();
