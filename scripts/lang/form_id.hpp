@@ -117,6 +117,6 @@ enum class FormId : std::uint8_t {
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kForms = static_cast<std::size_t>(FormId::save_flight) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::save_flight) + 1;
 
 }  // namespace cellmirror::script

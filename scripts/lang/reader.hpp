@@ -2,9 +2,9 @@
 // error, and goes on behind an error with the next command, so that one pass shows them all.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,9 +21,12 @@ enum class TextKind : std::uint8_t {
 };
 
 enum class NameCheck : std::uint8_t {
-  for_execution,  // a name must exist now
-  ahead,          // before execution: what an earlier command may bring into being is a warning
+  for_execution,        // names must exist now
+  ahead,                // before execution: without an active robot only a warning, since a caller may set one
+  ahead_after_loading,  // besides, unknown frames only a warning, since an earlier command may have loaded them
 };
+
+inline constexpr std::size_t kMaxWords = kMaxValues + 8;  // of one command
 
 class CommandReader {
  public:
@@ -46,6 +49,7 @@ class CommandReader {
   [[nodiscard]] Position position() const { return lexer_.position(); }
 
  private:
+  bool start(Diagnostics& diagnostics);
   Step read_command(const Token& head, const NameDirectory* names, ParsedCommand& out, Diagnostics& diagnostics);
   Step finish_message(Step step, Diagnostics& diagnostics);
 
@@ -55,6 +59,7 @@ class CommandReader {
   bool started_ = false;
   bool finished_ = false;
   Lexer lexer_;
+  std::array<Token, kMaxWords> words_;  // of the command that is being read; kept to spare their initialisation
 };
 
 // Checks a whole text; adds every finding. With `names` ROBACT is followed, so that joint lists are checked against the

@@ -2,7 +2,6 @@
 // a long or waiting script never keeps messages waiting. Every function is called from that one thread.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -19,9 +18,11 @@
 #include "rt_core/base/time.hpp"
 #include "scripts/commands/execute.hpp"
 #include "scripts/commands/host.hpp"
+#include "scripts/lang/parsed_command.hpp"
 
 namespace cellmirror::script {
 
+class ScriptFile;
 class ScriptRun;
 
 enum class CommandSource : std::uint8_t { file, message };
@@ -103,12 +104,14 @@ class ScriptRunner {
 
  private:
   Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
+  Result<std::unique_ptr<ScriptFile>> load(const std::filesystem::path& path, Diagnostics& findings);
   void step_run(ScriptRun& run, std::size_t most, std::size_t& executed);
-  void call(ScriptRun& run, const ParsedCommand& command, std::string_view name);
-  void refuse(ScriptRun& run, const Position& place, Error why);
+  void execute_command(ScriptRun& run);
+  Result<void> call(ScriptRun& run, std::string_view name, Diagnostics& findings);
+  void refuse(ScriptRun& run, const Diagnostics& findings);
+  Result<std::string> accept_message(const Outcome& outcome);
   void end_run(std::size_t index, bool stopped);
   void remember(const Diagnostic& diagnostic);
-  [[nodiscard]] std::size_t text_bytes() const;
 
   CommandHost host_;
   const KismetHome& home_;

@@ -1,0 +1,130 @@
+// Manual 1.2.1.
+#include <array>
+
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/pose.hpp"
+#include "scripts/commands/registry.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+Outcome activate(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.activate(command.text(0)));
+}
+Outcome deactivate(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.deactivate(command.text(0)));
+}
+Outcome delete_node(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.delete_node(command.text(0)));
+}
+Outcome swap_node(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.swap_node(command.text(0)));
+}
+Outcome level_down(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.level_down(command.text(0)));
+}
+Outcome level_up(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.level_up(command.text(0)));
+}
+
+Outcome robot_language(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.set_language(static_cast<RobotLanguage>(command.choice(0))));
+}
+
+Outcome robact(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.robots.set_active_robot(command.text(0)));
+}
+
+Outcome exec_script(const ParsedCommand& command, CommandHost& /*host*/) {
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::call_script;
+  outcome.script = command.text(0);
+  return outcome;
+}
+
+Outcome draw_scene(const ParsedCommand& /*command*/, CommandHost& host) { return Outcome::of(host.world.draw_scene()); }
+
+Outcome connect(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.connect(command.text(0), command.text(1)));
+}
+
+Outcome frame_to_workframe(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.world.attach_at_workframe(command.text(0), command.text(1), command.text(2)));
+}
+
+// The joint values stand behind the robot's name.
+std::span<const double> joint_values(const ParsedCommand& command, std::array<double, kMaxJointsPerRobot>& storage) {
+  return std::span(storage).first(command.numbers(1, storage));
+}
+
+Outcome move_joints_to(const ParsedCommand& command, CommandHost& host) {
+  std::array<double, kMaxJointsPerRobot> storage;
+  return Outcome::of(host.robots.move_joints_to(command.text(0), joint_values(command, storage)));
+}
+Outcome move_joints_by(const ParsedCommand& command, CommandHost& host) {
+  std::array<double, kMaxJointsPerRobot> storage;
+  return Outcome::of(host.robots.move_joints_by(command.text(0), joint_values(command, storage)));
+}
+
+Outcome set_placement(const ParsedCommand& command, CommandHost& host) {
+  const Eigen::Vector3d rpy(command.number(1), command.number(2), command.number(3));
+  const Eigen::Vector3d xyz(command.number(4), command.number(5), command.number(6));
+  return Outcome::of(host.world.set_placement(command.text(0), pose_from_xyz_rpy(xyz, rpy)));
+}
+
+// The first choice of both switches is "on".
+Outcome set_online(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.robots.set_online(command.text(0), command.choice(1) == 0));
+}
+Outcome set_sending(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.robots.set_sending(command.text(0), command.choice(1) == 0));
+}
+
+Outcome set_camera(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.views.set_camera(command.text(0), command.number(1), command.number(2)));
+}
+
+constexpr Registration kHandlers[] = {
+    {FormId::activate, activate},
+    {FormId::deactivate, deactivate},
+    {FormId::delete_node, delete_node},
+    {FormId::swap_node, swap_node},
+    {FormId::level_down, level_down},
+    {FormId::level_up, level_up},
+    {FormId::robot_language, robot_language},
+    {FormId::robact, robact},
+    {FormId::tf_load, not_available},
+    {FormId::tf_run, not_available},
+    {FormId::tf_delete, not_available},
+    {FormId::load_views, not_available},
+    {FormId::exec_script, exec_script},
+    {FormId::draw_scene, draw_scene},
+    {FormId::connect, connect},
+    {FormId::frame_to_wfrm, frame_to_workframe},
+    {FormId::pos_rob_joint_abs, move_joints_to},
+    {FormId::pos_rob_joint_inc, move_joints_by},
+    {FormId::pos_rob_frame_abs, not_available},
+    {FormId::pos_rob_frame_inc, not_available},
+    {FormId::pos_rob_tool_inc, not_available},
+    {FormId::pos_rob_screen_inc, not_available},
+    {FormId::set_frame_render, not_available},
+    {FormId::set_frame_placement, set_placement},
+    {FormId::set_abstract_render, not_available},
+    {FormId::robot_online, set_online},
+    {FormId::robot_sending, set_sending},
+    {FormId::set_campar, set_camera},
+    {FormId::set_usspar_active, not_available},
+    {FormId::set_usspar_sendmode, not_available},
+    {FormId::set_usspar_range, not_available},
+    {FormId::tag_drawlen, not_available},
+    {FormId::cam_tracking, not_available},
+    {FormId::cam_view_pyramid, not_available},
+    {FormId::cam_online, not_available},
+};
+
+}  // namespace
+
+std::span<const Registration> general_handlers() { return kHandlers; }
+
+}  // namespace cellmirror::script

@@ -1,0 +1,120 @@
+// Manual 1.2.3: commands for animation.
+#include "scripts/lang/table_parts.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+using namespace parts;
+
+constexpr std::string_view kSection = "1.2.3";
+constexpr std::string_view kPicture = "the synthetic view";
+constexpr std::string_view kViews = "views";
+
+constexpr Range kViewIds{0, 6};
+
+constexpr Choice kFull[] = {{"FULL", "full screen"}, {"FULL_OFF", "normal"}};
+constexpr Choice kModes[] = {
+    {"WFRM_display", "workframes drawn"},
+    {"SMEAR", "trace of the active robot's TCP"},
+    {"BFRM", "backface removal by the graphics system"},
+    {"CPU_BFRM", "backface removal by the CPU"},
+    {"CAM_MAINVIEW", "camera view in the main display area"},
+    {"LGT_TWOSIDE", "lighting of both sides"},
+    {"TCP_DRAW", "TCP frame of the active robot"},
+    {"ZPF_DRAW", "ZP frame of the active robot"},
+    {"FLDR", "floor"},
+    {"GEO_VIS_TEST", "visibility test of geometries"},
+    {"SHAD", "shadows; needs the floor"},
+    {"BEEP", "sound with messages"},
+    {"TEXTURES", "textures"},
+    {"ANTIALIAS", "antialiasing"},
+};
+
+constexpr Parameter kDisplay[] = {integer("display_id", "display", {1, 6}),
+                                  optional(choice("FULL | FULL_OFF", "screen", kFull), "FULL_OFF")};
+constexpr Parameter kStvw[] = {
+    integer("view_id", "view", kViewIds),
+    optional_labelled("VP", number("x y z", "viewpoint", Unit::mm), 3),
+    optional_labelled("LP", number("x y z", "lookpoint", Unit::mm), 3),
+    optional_labelled("TW", number("twist", "twist angle", Unit::degree)),
+    optional_labelled("VA", number("angle", "viewing angle", Unit::degree, kOpeningAngle)),
+    optional_labelled("FCP", number("d", "distance of the front clipping plane", Unit::mm, kNotNegative)),
+    optional_labelled("BCP", number("d", "distance of the back clipping plane", Unit::mm, kNotNegative)),
+    optional_labelled("STEPS", integer("n", "number of steps", {1, 1e6}), 1, 1),
+    optional_labelled("TIME", number("s", "time", Unit::second, kNotNegative), 1, 1),
+};
+constexpr Parameter kCovw[] = {integer("view_id", "view", kViewIds), camera()};
+constexpr Parameter kMode[] = {choice("mode", "mode", kModes), on_off()};
+constexpr Parameter kSwitch[] = {on_off()};
+
+constexpr Form kForms[] = {
+    {.id = FormId::stdp,
+     .name = "STDP",
+     .syntax = "STDP <display_id> [FULL | FULL_OFF]",
+     .section = kSection,
+     .parameters = kDisplay,
+     .help = "sets the display: 1 perspective, 2 top and side, 3 top, 4 side, 5 side in perspective, 6 bird's eye",
+     .example = "STDP 1 FULL",
+     .missing = kPicture,
+     .definition = "without FULL or FULL_OFF: FULL_OFF"},
+    {.id = FormId::stvw,
+     .name = "STVW",
+     .syntax = "STVW <view_id> [VP x y z] [LP x y z] [TW twist] [VA angle] [FCP d] [BCP d] [STEPS n | TIME s]",
+     .section = kSection,
+     .parameters = kStvw,
+     .help = "sets parameters of a view, at once or as a sequence of n updates or s seconds",
+     .example = "STVW 0 VP 519.7 -539 -850 LP 2183 9570 3391 TIME 15.0",
+     .missing = kViews,
+     .definition = "the groups come in any order, each at most once; with neither STEPS nor TIME: at once"},
+    {.id = FormId::covw,
+     .name = "COVW",
+     .syntax = "COVW <view_id> <cam_id>",
+     .section = kSection,
+     .parameters = kCovw,
+     .help = "binds a view to a camera, which it then follows",
+     .example = "COVW 0 UMG_Kamera_1",
+     .missing = kViews},
+    {.id = FormId::set_mode,
+     .name = "SET_MODE",
+     .syntax = "SET_MODE <mode> [on | off]",
+     .section = kSection,
+     .parameters = kMode,
+     .help = "switches a mode of the display",
+     .missing = kPicture},
+    {.id = FormId::bfrm,
+     .name = "BFRM",
+     .syntax = "BFRM [on | off]",
+     .section = kSection,
+     .parameters = kSwitch,
+     .help = "switches backface removal",
+     .missing = kPicture},
+    {.id = FormId::fldr,
+     .name = "FLDR",
+     .syntax = "FLDR [on | off]",
+     .section = kSection,
+     .parameters = kSwitch,
+     .help = "switches the floor",
+     .missing = kPicture},
+    {.id = FormId::shad,
+     .name = "SHAD",
+     .syntax = "SHAD [on | off]",
+     .section = kSection,
+     .parameters = kSwitch,
+     .help = "switches shadows",
+     .missing = kPicture},
+    {.id = FormId::wait,
+     .name = "WAIT",
+     .syntax = "WAIT",
+     .section = kSection,
+     .help = "suspends the SCRIPT file that contains it until all robot programs and view sequences have ended",
+     .example = "WAIT",
+     .definition = "messages and other SCRIPT files go on; refused as a message of its own",
+     .effect = LoopEffect::blocking},
+};
+
+}  // namespace
+
+std::span<const Form> animation_forms() { return kForms; }
+
+}  // namespace cellmirror::script

@@ -1,0 +1,139 @@
+// Manual 1.2.6: control of deformable objects, and the I/O channels.
+#include "rt_core/base/capacity.hpp"
+#include "scripts/lang/table_parts.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+using namespace parts;
+
+constexpr std::string_view kSection = "1.2.6";
+constexpr std::string_view kTissue = "deformable objects";
+constexpr std::string_view kHaptics = "haptic devices";
+constexpr std::string_view kSwitches = "foot switches";
+
+constexpr Choice kTests[] = {{"0", "no test, interaction off"},
+                             {"1", "value >= testval1"},
+                             {"2", "value < testval1"},
+                             {"3", "testval1 <= value <= testval2"},
+                             {"4", "value < testval1 or value > testval2"}};
+constexpr Choice kInstruments[] = {{"0", "gripper"},
+                                   {"1", "clip applicator"},
+                                   {"2", "scissors"},
+                                   {"3", "coagulation hook"},
+                                   {"4", "coagulation forceps"}};
+
+constexpr Range kEffectorJoint{1, static_cast<double>(kMaxJointsPerRobot)};
+constexpr Range kForceBytes{12, 1048576};  // at least force x, y, z as float32; at most 1 MiB
+constexpr Range kSwitchBytes{1, 1048576};
+
+constexpr Parameter kCalc[] = {on_off()};
+constexpr Parameter kInteract[] = {
+    integer("int_jnt", "effector joint", kEffectorJoint), choice("test_function", "test function", kTests),
+    number("testval1", "first test value", Unit::by_effector_joint),
+    number("testval2", "second test value", Unit::by_effector_joint), choice("inst_type", "instrument", kInstruments)};
+constexpr Parameter kClip[] = {
+    file("clip_file", "clip geometry (.mpo)"),      number("rx", "rotation about x", Unit::degree),
+    number("ry", "rotation about y", Unit::degree), number("rz", "rotation about z", Unit::degree),
+    number("tx", "translation along x", Unit::mm),  number("ty", "translation along y", Unit::mm),
+    number("tz", "translation along z", Unit::mm)};
+constexpr Parameter kCylinders[] = {identifier("geo_name", "geometry of the effector"),
+                                    integer("flags", "flags", kUnsigned),
+                                    number("geom1", "shaft diameter", Unit::mm, kNotNegative),
+                                    number("geom2", "mean distance of the surface", Unit::mm, kNotNegative),
+                                    number("geom3", "third value", Unit::none),
+                                    number("geom4", "fourth value", Unit::none)};
+constexpr Parameter kForceMemory[] = {integer("send_type", "protocol", kUnsigned),
+                                      integer("re_shmkey", "shared memory key", kSharedMemoryKey),
+                                      integer("re_buflen", "size", kForceBytes, Unit::byte)};
+constexpr Parameter kSwitchMemory[] = {integer("send_type", "protocol", kUnsigned),
+                                       integer("be_shmkey", "shared memory key", kSharedMemoryKey),
+                                       integer("be_buflen", "size", kSwitchBytes, Unit::byte)};
+constexpr Parameter kBinary[] = {choice("online | offline", "processing", kOnlineOffline)};
+constexpr Parameter kMessage[] = {{.name = "text", .meaning = "message", .kind = ParameterKind::text}};
+
+constexpr Form kForms[] = {
+    {.id = FormId::eladyn_calc,
+     .name = "eladyn_calc",
+     .syntax = "eladyn_calc [on | off]",
+     .section = kSection,
+     .parameters = kCalc,
+     .help = "lets the elastodynamic calculation run, or stand still",
+     .missing = kTissue,
+     .effect = LoopEffect::queued},
+    {.id = FormId::rob_ela_interact,
+     .name = "rob_ela_interact",
+     .syntax = "rob_ela_interact <int_jnt> <test_function> <testval1> <testval2> <inst_type>",
+     .section = kSection,
+     .parameters = kInteract,
+     .help = "sets which joint of the active robot triggers its instrument's action, and when",
+     .missing = kTissue,
+     .definition = "joints count from 1 in the order of the component file; test values in mm or degrees by its kind",
+     .effect = LoopEffect::queued,
+     .needs_active_robot = true},
+    {.id = FormId::ela_clip_def,
+     .name = "ela_clip_def",
+     .syntax = "ela_clip_def <clip_file> <rx> <ry> <rz> <tx> <ty> <tz>",
+     .section = kSection,
+     .parameters = kClip,
+     .help = "sets geometry and pose of a clip at the effector",
+     .missing = kTissue,
+     .definition = "rotations first, about fixed axes: x, then y, then z"},
+    {.id = FormId::eladyn_geo_def_cylinders,
+     .name = "eladyn_geo_def",
+     .syntax = "eladyn_geo_def <geo_name> <flags> <geom1> <geom2> <geom3> <geom4>",
+     .section = kSection,
+     .parameters = kCylinders,
+     .help = "sets the virtual cylinders of the active robot's effector for the contact test",
+     .missing = kTissue,
+     .definition = "what geom3 and geom4 mean is not said: kept as numbers",
+     .selector = Selector::by_shape,
+     .needs_active_robot = true},
+    {.id = FormId::rob_ela_shm,
+     .name = "rob_ela_shm",
+     .syntax = "rob_ela_shm <send_type> <re_shmkey> <re_buflen>",
+     .section = kSection,
+     .parameters = kForceMemory,
+     .help = "sets the shared memory through which forces and joint torques go to a haptic device's process",
+     .missing = kHaptics,
+     .definition = "at least 12 bytes, force x, y, z; the key also in hexadecimal, not 0",
+     .effect = LoopEffect::queued},
+    {.id = FormId::bin_ela_shm,
+     .name = "bin_ela_shm",
+     .syntax = "bin_ela_shm <send_type> <be_shmkey> <be_buflen>",
+     .section = kSection,
+     .parameters = kSwitchMemory,
+     .help = "sets the shared memory from which binary inputs (foot switches) are read",
+     .missing = kSwitches,
+     .definition = "bit 0 of the first byte is BININP1; the key also in hexadecimal, not 0",
+     .effect = LoopEffect::queued},
+    {.id = FormId::binary_input_files,
+     .name = "BININPn_ON.spt, BININPn_OFF.spt",
+     .syntax = "files for n = 1..8, bit n-1",
+     .section = kSection,
+     .help = "the SCRIPT files that run when a binary input goes on or off",
+     .missing = kSwitches,
+     .kind = FormKind::convention},
+    {.id = FormId::bin_ela,
+     .name = "BIN_ELA",
+     .syntax = "BIN_ELA [online | offline]",
+     .section = kSection,
+     .parameters = kBinary,
+     .help = "switches the processing of binary inputs",
+     .missing = kSwitches,
+     .effect = LoopEffect::queued},
+    {.id = FormId::hot_message,
+     .name = "hot_message",
+     .syntax = "hot_message <text>",
+     .section = kSection,
+     .parameters = kMessage,
+     .help = "shows a text for about 5 s",
+     .definition = "the text is the rest of the command, UTF-8; in status and log while there is no display"},
+};
+
+}  // namespace
+
+std::span<const Form> channel_forms() { return kForms; }
+
+}  // namespace cellmirror::script

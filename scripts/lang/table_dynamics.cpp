@@ -1,0 +1,81 @@
+// Manual 1.2.4: commands for the simulation of multibody dynamics.
+#include "scripts/lang/parsed_command.hpp"
+#include "scripts/lang/table_parts.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+using namespace parts;
+
+constexpr std::string_view kSection = "1.2.4";
+constexpr std::string_view kDynamics = "multibody dynamics";
+
+constexpr Choice kArrows[] = {
+    {"0", "none"}, {"1", "x component"}, {"2", "y component"}, {"3", "z component"}, {"4", "resultant"}};
+
+constexpr Parameter kForceArrow[] = {choice("int_1", "arrows of joint forces", kArrows),
+                                     choice("int_2", "arrows of joint torques", kArrows),
+                                     choice("int_3", "arrow of the TCP force", kArrows)};
+constexpr Parameter kTorqueLimit[] = {number("max_force", "force limit", Unit::newton, kNotNegative),
+                                      number("max_torque", "torque limit", Unit::newton_metre, kNotNegative)};
+constexpr Parameter kTcpTest[] = {
+    on_off("test mode"), number("v1", "force along x", Unit::newton), number("v2", "force along y", Unit::newton),
+    number("v3", "force along z", Unit::newton), number("v4", "torque about the tool axis", Unit::newton_metre)};
+constexpr Parameter kSpecial[] = {on_off()};
+constexpr Parameter kMasterSlave[] = {on_off("coupling"), robot("master_robot", "master"),
+                                      integer("n_slaves", "number of slaves", {1, kMaxSlaves}),
+                                      Parameter{.name = "slave_robot n_dof master_joint slave_joint ...",
+                                                .meaning = "slaves with their pairs of joints",
+                                                .kind = ParameterKind::slaves}};
+
+constexpr Form kForms[] = {
+    {.id = FormId::set_force_arrow,
+     .name = "SET_FORCE_ARROW",
+     .syntax = "SET_FORCE_ARROW <int_1> <int_2> <int_3>",
+     .section = kSection,
+     .parameters = kForceArrow,
+     .help = "sets which components of force arrows are drawn",
+     .missing = kDynamics,
+     .definition = "int_1 joint forces, int_2 joint torques, int_3 TCP force; 0 none, 1 x, 2 y, 3 z, 4 resultant"},
+    {.id = FormId::set_torque_limit,
+     .name = "SET_TORQUE_LIMIT",
+     .syntax = "SET_TORQUE_LIMIT <max_force> <max_torque>",
+     .section = kSection,
+     .parameters = kTorqueLimit,
+     .help = "sets limits beyond which forces that go to shared memory 1313 raise a warning; 0: no limit",
+     .missing = kDynamics},
+    {.id = FormId::set_ext_tcp_test,
+     .name = "SET_EXT_TCP_TEST",
+     .syntax = "SET_EXT_TCP_TEST [on | off] <v1> <v2> <v3> <v4>",
+     .section = kSection,
+     .parameters = kTcpTest,
+     .help = "writes test values to shared memory 1313 in place of simulated ones, or not",
+     .missing = kDynamics,
+     .definition = "force x, y, z [N] and torque about the tool axis [Nm]",
+     .effect = LoopEffect::queued},
+    {.id = FormId::set_frc_arr_special,
+     .name = "SET_FRC_ARR_SPECIAL",
+     .syntax = "SET_FRC_ARR_SPECIAL [on | off]",
+     .section = kSection,
+     .parameters = kSpecial,
+     .help = "shows of forces and torques only what the motors bear, or all",
+     .missing = kDynamics},
+    {.id = FormId::master_slave,
+     .name = "MASTER_SLAVE",
+     .syntax = "MASTER_SLAVE [on | off] <master_robot> <n_slaves> { <slave_robot> <n_dof> { <master_joint> "
+               "<slave_joint> } }",
+     .section = kSection,
+     .parameters = kMasterSlave,
+     .help = "lets joints of up to five slaves follow joints of a master, or no longer",
+     .missing = "master-slave coupling",
+     .definition = "a slave is not its own master, and each of its joints follows one joint only",
+     .effect = LoopEffect::queued,
+     .commas = true},
+};
+
+}  // namespace
+
+std::span<const Form> dynamics_forms() { return kForms; }
+
+}  // namespace cellmirror::script

@@ -1,0 +1,189 @@
+// Manual 1.2.2: parameters of the active robot.
+#include "scripts/lang/table_parts.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+using namespace parts;
+
+constexpr std::string_view kSection = "1.2.2";
+
+constexpr Range kScale{0.01, 1.0};
+
+constexpr Choice kPtpModes[] = {{"sync", "all axes end together, the default"}, {"async", "each at its own time"}};
+constexpr Choice kProfiles[] = {{"sine", "sinusoidal, the default"}, {"ramp", "with a jump of the acceleration"}};
+// In the order of InverseClass.
+constexpr Choice kInverseClasses[] = {
+    {"align_FRAME", "position and orientation"},
+    {"align_POS", "position only"},
+    {"align_X_AXIS", "position along x; orientation as well as possible"},
+    {"align_Y_AXIS", "position along y; orientation as well as possible"},
+    {"align_Z_AXIS", "position along z; orientation as well as possible"},
+    {"align_XY_AXIS", "position in xy; orientation as well as possible"},
+    {"align_YZ_AXIS", "position in yz; orientation as well as possible"},
+    {"align_XZ_AXIS", "position in xz; orientation as well as possible"},
+    {"align_N_AXIS", "position and the n vector"},
+    {"align_S_AXIS", "position and the s vector"},
+    {"align_A_AXIS", "position and the a vector"},
+    {"align_XY_N_AXIS", "position in xy and the n vector"},
+    {"align_XY_S_AXIS", "position in xy and the s vector"},
+    {"align_XY_A_AXIS", "position in xy and the a vector"},
+    {"align_XZ_N_AXIS", "position in xz and the n vector"},
+    {"align_XZ_S_AXIS", "position in xz and the s vector"},
+    {"align_XZ_A_AXIS", "position in xz and the a vector"},
+    {"align_YZ_N_AXIS", "position in yz and the n vector"},
+    {"align_YZ_S_AXIS", "position in yz and the s vector"},
+    {"align_YZ_A_AXIS", "position in yz and the a vector"},
+    {"EDITH", "redundant boom in the horizontal plane"},
+    {"BOOM_3", "redundant boom in the horizontal plane"},
+    {"BOOM_4", "redundant boom in the horizontal plane"},
+    {"BOOM_5", "redundant boom in the horizontal plane"},
+    {"BOOM_6", "redundant boom in the horizontal plane"},
+};
+
+constexpr Parameter kLinearVelocity[] = {number("lin_vel", "velocity", Unit::mm_per_s, kPositive)};
+constexpr Parameter kLinearAcceleration[] = {number("lin_acc", "acceleration", Unit::mm_per_s2, kPositive)};
+constexpr Parameter kAngularVelocity[] = {number("ang_vel", "angular velocity", Unit::degree_per_s, kPositive)};
+constexpr Parameter kAngularAcceleration[] = {
+    number("ang_acc", "angular acceleration", Unit::degree_per_s2, kPositive)};
+constexpr Parameter kVelocityScale[] = {number("scale", "velocity scale", Unit::none, kScale)};
+constexpr Parameter kAccelerationScale[] = {number("scale", "acceleration scale", Unit::none, kScale)};
+constexpr Parameter kFly[] = {integer("fly_type", "fly type", {0, 2}),
+                              number("fly_parameter", "fly parameter", Unit::by_fly_type, kNotNegative)};
+constexpr Parameter kDelay[] = {number("delay", "delay", Unit::second, kNotNegative)};
+constexpr Parameter kMaxRange[] = {joints("upper limit", Unit::joint_position)};
+constexpr Parameter kMinRange[] = {joints("lower limit", Unit::joint_position)};
+constexpr Parameter kStart[] = {joints("start position", Unit::joint_position)};
+constexpr Parameter kReference[] = {joints("reference position", Unit::joint_position)};
+constexpr Parameter kMaxVelocity[] = {joints("maximum velocity", Unit::joint_velocity, kPositive)};
+constexpr Parameter kMinVelocity[] = {joints("minimum velocity", Unit::joint_velocity, kNotNegative)};
+constexpr Parameter kActiveVelocity[] = {joints("velocity", Unit::joint_velocity, kPositive)};
+constexpr Parameter kMaxAcceleration[] = {joints("maximum acceleration", Unit::joint_acceleration, kPositive)};
+constexpr Parameter kActiveAcceleration[] = {joints("acceleration", Unit::joint_acceleration, kPositive)};
+constexpr Parameter kPtp[] = {choice("sync | async", "PTP mode", kPtpModes)};
+constexpr Parameter kOffset[] = {number("X", "x", Unit::mm),         number("Y", "y", Unit::mm),
+                                 number("Z", "z", Unit::mm),         number("P", "roll", Unit::degree),
+                                 number("R", "pitch", Unit::degree), number("Y", "yaw", Unit::degree)};
+constexpr Parameter kProfile[] = {choice("sine | ramp", "velocity profile", kProfiles)};
+constexpr Parameter kInverse[] = {choice("solution_hint", "inverse kinematics class", kInverseClasses)};
+constexpr Parameter kArc[] = {on_off("welding spark")};
+
+constexpr std::string_view kOneForEachJoint = "one value for each joint of the active robot, neither more nor fewer";
+constexpr std::string_view kOffsetOrder = "translation, then roll, pitch, yaw; with or without commas";
+
+constexpr Form joint_form(FormId id, std::string_view name, std::string_view syntax,
+                          std::span<const Parameter> parameters, std::string_view help, std::string_view example) {
+  return {.id = id,
+          .name = name,
+          .syntax = syntax,
+          .section = kSection,
+          .parameters = parameters,
+          .help = help,
+          .example = example,
+          .definition = kOneForEachJoint,
+          .effect = LoopEffect::queued,
+          .needs_active_robot = true};
+}
+
+constexpr Form scalar_form(FormId id, std::string_view name, std::string_view syntax,
+                           std::span<const Parameter> parameters, std::string_view help, std::string_view example) {
+  return {.id = id,
+          .name = name,
+          .syntax = syntax,
+          .section = kSection,
+          .parameters = parameters,
+          .help = help,
+          .example = example,
+          .effect = LoopEffect::queued,
+          .needs_active_robot = true};
+}
+
+constexpr Form kForms[] = {
+    scalar_form(FormId::rob_cart_lin_vel, "rob_cart_lin_vel", "rob_cart_lin_vel <lin_vel>", kLinearVelocity,
+                "sets the active robot's greatest velocity in linear moves", "rob_cart_lin_vel 1200.0"),
+    scalar_form(FormId::rob_cart_lin_acc, "rob_cart_lin_acc", "rob_cart_lin_acc <lin_acc>", kLinearAcceleration,
+                "sets its greatest acceleration in linear moves", "rob_cart_lin_acc 4800.0"),
+    scalar_form(FormId::rob_cart_rot_vel, "rob_cart_rot_vel", "rob_cart_rot_vel <ang_vel>", kAngularVelocity,
+                "sets its greatest angular velocity of the tool in linear moves", "rob_cart_rot_vel 360.0"),
+    scalar_form(FormId::rob_cart_rot_acc, "rob_cart_rot_acc", "rob_cart_rot_acc <ang_acc>", kAngularAcceleration,
+                "sets its greatest angular acceleration of the tool in linear moves", "rob_cart_rot_acc 720.0"),
+    scalar_form(FormId::rob_cart_vel_scal, "rob_cart_vel_scal", "rob_cart_vel_scal <scale>", kVelocityScale,
+                "scales its linear and angular velocity in linear moves", "rob_cart_vel_scal 0.3"),
+    scalar_form(FormId::rob_cart_acc_scal, "rob_cart_acc_scal", "rob_cart_acc_scal <scale>", kAccelerationScale,
+                "scales its acceleration in linear moves", "rob_cart_acc_scal 0.65"),
+    scalar_form(FormId::rob_cart_fly_radius, "rob_cart_fly_radius", "rob_cart_fly_radius <fly_type> <fly_parameter>",
+                kFly,
+                "sets where a linear move flies past its target: 0 below a fraction of the velocity, 1 within a "
+                "distance, 2 within an angle",
+                "rob_cart_fly_radius 1 5.0"),
+    scalar_form(FormId::rob_program_delays, "rob_program_delays", "rob_program_delays <delay>", kDelay,
+                "sets the delay between TF_RUN and the start of a program", ""),
+    joint_form(FormId::rob_jnt_max_range, "rob_jnt_max_range", "rob_jnt_max_range <n values>", kMaxRange,
+               "sets the upper limits of the joints", "rob_jnt_max_range 162.5 110.0 145.0 187.5 115.5 270.0"),
+    joint_form(FormId::rob_jnt_min_range, "rob_jnt_min_range", "rob_jnt_min_range <n values>", kMinRange,
+               "sets the lower limits of the joints", "rob_jnt_min_range -162.5 -110.0 -145.0 -187.5 -115.5 -270.0"),
+    joint_form(FormId::rob_jnt_start_pos, "rob_jnt_start_pos", "rob_jnt_start_pos <n values>", kStart,
+               "sets the position at the start of the simulation",
+               "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0"),
+    joint_form(FormId::rob_jnt_ref_pos, "rob_jnt_ref_pos", "rob_jnt_ref_pos <n values>", kReference,
+               "sets the controller's reference position", "rob_jnt_ref_pos 17.35 0 -12.79307 1.507E-03 0.0 15.2003"),
+    joint_form(FormId::rob_jnt_max_vel, "rob_jnt_max_vel", "rob_jnt_max_vel <n values>", kMaxVelocity,
+               "sets the greatest velocities of the joints",
+               "rob_jnt_max_vel 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
+    joint_form(FormId::rob_jnt_min_vel, "rob_jnt_min_vel", "rob_jnt_min_vel <n values>", kMinVelocity,
+               "sets the smallest velocities of the joints (stepper motors)",
+               "rob_jnt_min_vel 8.5 3.14159E-04 4.014257E-04"),
+    joint_form(FormId::rob_jnt_act_vel, "rob_jnt_act_vel", "rob_jnt_act_vel <n values>", kActiveVelocity,
+               "sets the velocities that hold until a program sets others", "rob_jnt_act_vel 1300.0 3.14159 1.5707963"),
+    joint_form(FormId::rob_jnt_max_acc, "rob_jnt_max_acc", "rob_jnt_max_acc <n values>", kMaxAcceleration,
+               "sets the greatest accelerations of the joints",
+               "rob_jnt_max_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
+    joint_form(FormId::rob_jnt_act_acc, "rob_jnt_act_acc", "rob_jnt_act_acc <n values>", kActiveAcceleration,
+               "sets the accelerations that hold until a program sets others",
+               "rob_jnt_act_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
+    scalar_form(FormId::rob_ptp_mode, "rob_PTPmode", "rob_PTPmode [sync | async]", kPtp,
+                "lets the axes of a point-to-point move end together, or each at its own time", "rob_PTPmode sync"),
+    {.id = FormId::rob_por_def,
+     .name = "rob_por_def",
+     .syntax = "rob_por_def <X Y Z P R Y>",
+     .section = kSection,
+     .parameters = kOffset,
+     .help = "sets the offset of the point of reference",
+     .example = "rob_por_def 418.0 0.0 -78.0 90.0 -45.0 0.0",
+     .definition = kOffsetOrder,
+     .effect = LoopEffect::queued,
+     .needs_active_robot = true,
+     .commas = true},
+    {.id = FormId::rob_tcp_def,
+     .name = "rob_tcp_def",
+     .syntax = "rob_tcp_def <X Y Z P R Y>",
+     .section = kSection,
+     .parameters = kOffset,
+     .help = "sets the offset of the tool centre point",
+     .example = "rob_tcp_def 83.0 -170.0 0.0 -90.0 0.0 -30.0",
+     .definition = kOffsetOrder,
+     .effect = LoopEffect::queued,
+     .needs_active_robot = true,
+     .commas = true},
+    scalar_form(FormId::rob_vel_profile, "rob_vel_profile", "rob_vel_profile [sine | ramp]", kProfile,
+                "sets the shape of the velocity profile", "rob_vel_profile ramp"),
+    scalar_form(FormId::rob_inverse_class, "rob_inverse_class", "rob_inverse_class <solution_hint>", kInverse,
+                "sets which part of a pose the inverse kinematics must meet, and how redundancy is resolved",
+                "rob_inverse_class align_POS"),
+    {.id = FormId::arc,
+     .name = "ARC",
+     .syntax = "ARC [on | off]",
+     .section = kSection,
+     .parameters = kArc,
+     .help = "draws a welding spark at the active robot's TCP, or not",
+     .example = "ARC on",
+     .missing = "the synthetic view",
+     .needs_active_robot = true},
+};
+
+}  // namespace
+
+std::span<const Form> robot_parameter_forms() { return kForms; }
+
+}  // namespace cellmirror::script

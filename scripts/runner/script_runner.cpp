@@ -1,0 +1,304 @@
+#include "scripts/runner/script_runner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <system_error>
+#include <utility>
+
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/log.hpp"
+#include "scripts/lang/reader.hpp"
+#include "scripts/runner/script_run.hpp"
+
+namespace cellmirror::script {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kFolder = "scripts";
+constexpr std::string_view kExtension = ".spt";
+
+std::string utc_text(Timestamp now) {
+  const auto whole_seconds = static_cast<std::time_t>(to_wall_clock_ns(now) / 1'000'000'000);
+  std::tm utc{};
+  gmtime_r(&whole_seconds, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+// Relative to the home where the file lies in it.
+std::string shown_name(const fs::path& path, const fs::path& home) {
+  const fs::path relative = path.lexically_relative(home);
+  return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
+}
+
+// All findings in one line, for the answer to a message: "1:9: what; remedy | 1:20: ...".
+Error as_error(const Diagnostics& findings) {
+  constexpr std::size_t kShown = 8;
+  Error error;
+  std::size_t shown = 0;
+  for (const Diagnostic& finding : findings.all()) {
+    if (finding.severity != Severity::error) continue;
+    if (++shown > kShown) break;
+    if (shown > 1) error.what += " | ";
+    error.what += fmt::format("{}:{}: {}", finding.place.line, finding.place.column, finding.message);
+    if (shown == 1) error.remedy = finding.remedy;
+  }
+  return error;
+}
+
+}  // namespace
+
+ScriptRunner::ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock)
+    : host_(host), home_(home), clock_(clock) {}
+
+ScriptRunner::~ScriptRunner() = default;
+
+Result<std::uint64_t> ScriptRunner::start_file(std::string_view name, Diagnostics* findings) {
+  auto path = home_.file(kFolder, name, kExtension);
+  if (!path) {
+    ++counters_.scripts_refused;
+    return std::unexpected(std::move(path.error()));
+  }
+  return start(*path, findings);
+}
+
+Result<std::uint64_t> ScriptRunner::start_path(const fs::path& path, Diagnostics* findings) {
+  std::error_code error;
+  const fs::path canonical = fs::canonical(path, error);
+  if (error) {
+    ++counters_.scripts_refused;
+    return fail(fmt::format("the SCRIPT file {} cannot be opened: {}", path.string(), error.message()));
+  }
+  return start(canonical, findings);
+}
+
+Result<std::uint64_t> ScriptRunner::start(const fs::path& path, Diagnostics* findings) {
+  if (runs_.size() == kMaxRuns) {
+    ++counters_.scripts_refused;
+    return fail(fmt::format("{} SCRIPT files run already", kMaxRuns), "wait until one of them has ended");
+  }
+  Diagnostics own;
+  Diagnostics& found = findings == nullptr ? own : *findings;
+  auto file = load(path, found);
+  for (const Diagnostic& diagnostic : found.all()) remember(diagnostic);
+  if (!file) return std::unexpected(std::move(file.error()));
+  ++counters_.scripts_started;
+  runs_.push_back(std::make_unique<ScriptRun>(++last_id_, std::move(*file)));
+  return last_id_;
+}
+
+// A file with syntax errors is refused as a whole, so that nothing is done by halves. Names are looked up when each
+// command is executed, since the commands before it may create them.
+Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Diagnostics& findings) {
+  const auto refused = [this](Error why) {
+    ++counters_.scripts_refused;
+    return std::unexpected(std::move(why));
+  };
+  auto text = read_text_file(path, kMaxScriptBytes);
+  if (!text) return refused(std::move(text.error()));
+  std::size_t bytes = text->size();
+  for (const auto& run : runs_) {
+    for (const auto& file : run->stack) bytes += file->text().size();
+  }
+  const std::string name = shown_name(path, home_.root());
+  if (bytes > kMaxTextBytes) {
+    return refused({fmt::format("{} does not fit beside the SCRIPT files that run: {} bytes are allowed together", name,
+                                kMaxTextBytes),
+                    "wait until one of them has ended"});
+  }
+  const std::size_t errors_before = findings.errors();
+  check_script(*text, name, nullptr, findings);
+  const std::size_t errors = findings.errors() - errors_before;
+  if (errors != 0) {
+    const auto first = std::find_if(findings.all().begin(), findings.all().end(),
+                                    [](const Diagnostic& d) { return d.severity == Severity::error; });
+    return refused({fmt::format("{} has {} error{}, nothing of it runs; the first: {}", name, errors,
+                                errors == 1 ? "" : "s", first->text()),
+                    "`cellmirror check` shows all of them"});
+  }
+  return std::make_unique<ScriptFile>(path, name, std::move(*text));
+}
+
+std::size_t ScriptRunner::step(std::size_t budget) {
+  std::size_t executed = 0;
+  std::size_t without_progress = 0;
+  while (executed < budget && without_progress < runs_.size()) {
+    if (next_run_ >= runs_.size()) next_run_ = 0;
+    ScriptRun& run = *runs_[next_run_];
+    const std::size_t before = executed;
+    step_run(run, std::min(kSlice, budget - executed), executed);
+    if (run.ended()) {
+      end_run(next_run_, false);
+      without_progress = 0;
+      continue;  // the run behind it has moved to its place
+    }
+    without_progress = executed == before ? without_progress + 1 : 0;
+    ++next_run_;
+  }
+  return executed;
+}
+
+void ScriptRunner::step_run(ScriptRun& run, std::size_t most, std::size_t& executed) {
+  if (run.waiting) {
+    if (host_.programs.busy()) return;
+    run.waiting = false;
+  }
+  Diagnostics findings;
+  for (std::size_t n = 0; n < most && !run.stack.empty() && !run.waiting;) {
+    const CommandReader::Step step = run.stack.back()->reader().next(&host_.names, command_, findings);
+    if (step == CommandReader::Step::end) {
+      run.stack.pop_back();
+      continue;
+    }
+    ++n;
+    ++executed;
+    ++run.report.counters.received;
+    ++counters_.file.received;
+    if (step == CommandReader::Step::command) {
+      execute_command(run);
+      continue;
+    }
+    refuse(run, findings);
+    findings = {};
+  }
+}
+
+void ScriptRunner::execute_command(ScriptRun& run) {
+  const ScriptFile& file = *run.stack.back();
+  const Position place = command_.begin();
+  Outcome outcome = execute(command_, host_);
+  Diagnostics findings;
+  if (outcome.kind == Outcome::Kind::wait) run.waiting = true;
+  if (outcome.kind == Outcome::Kind::call_script) {
+    // The file may be gone from the stack's top afterwards: the name is copied.
+    const std::string caller = file.name();
+    if (auto called = call(run, outcome.script, findings); !called) {
+      findings.error({caller, place.line, place.column}, called.error().what, called.error().remedy);
+    }
+  }
+  if (outcome.kind == Outcome::Kind::refused) {
+    findings.error({file.name(), place.line, place.column}, std::move(outcome.error.what),
+                   std::move(outcome.error.remedy));
+  }
+  if (!findings.ok()) {
+    refuse(run, findings);
+    return;
+  }
+  ++run.report.counters.done;
+  ++counters_.file.done;
+}
+
+Result<void> ScriptRunner::call(ScriptRun& run, std::string_view name, Diagnostics& findings) {
+  const auto refused = [this](std::string what, std::string remedy = {}) {
+    ++counters_.scripts_refused;
+    return fail(std::move(what), std::move(remedy));
+  };
+  auto path = home_.file(kFolder, name, kExtension);
+  if (!path) return refused(std::move(path.error().what), std::move(path.error().remedy));
+  const std::string shown = shown_name(*path, home_.root());
+  if (run.stack.back()->path() == *path) return refused(fmt::format("EXEC_SCRIPT: {} calls itself", shown));
+  std::string callers;
+  bool on_stack = false;
+  for (const auto& file : run.stack) {
+    on_stack = on_stack || file->path() == *path;
+    if (on_stack) callers += file->name() + " > ";
+  }
+  if (on_stack) return refused(fmt::format("EXEC_SCRIPT: {} is being executed already: {}{}", shown, callers, shown));
+  if (run.stack.size() >= kMaxScriptDepth) {
+    return refused(fmt::format("EXEC_SCRIPT: {} SCRIPT files are called within each other already", kMaxScriptDepth));
+  }
+  auto file = load(*path, findings);
+  if (!file) return std::unexpected(std::move(file.error()));
+  run.stack.push_back(std::move(*file));
+  return {};
+}
+
+void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
+  ++run.report.counters.refused;
+  ++counters_.file.refused;
+  run.report.diagnostics.take(findings);
+  for (const Diagnostic& diagnostic : findings.all()) remember(diagnostic);
+}
+
+Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
+  ++counters_.message.received;
+  CommandReader reader(text, source, TextKind::message);
+  Diagnostics findings;
+  const CommandReader::Step step = reader.next(&host_.names, command_, findings);
+  Result<std::string> answer;
+  if (step == CommandReader::Step::error) {
+    for (const Diagnostic& finding : findings.all()) remember(finding);
+    answer = std::unexpected(as_error(findings));
+  } else if (step == CommandReader::Step::command) {
+    answer = accept_message(execute(command_, host_));
+    if (!answer) {
+      remember({Severity::error,
+                {std::string(source), command_.begin().line, command_.begin().column},
+                answer.error().what,
+                answer.error().remedy});
+    }
+  }
+  ++(answer ? counters_.message.done : counters_.message.refused);
+  return answer;
+}
+
+Result<std::string> ScriptRunner::accept_message(const Outcome& outcome) {
+  switch (outcome.kind) {
+    case Outcome::Kind::done:
+      return std::string{};
+    case Outcome::Kind::refused:
+      return std::unexpected(outcome.error);
+    case Outcome::Kind::wait:
+      return fail("WAIT suspends the SCRIPT file that contains it; a message has none",
+                  "put WAIT into a SCRIPT file and call it with EXEC_SCRIPT");
+    case Outcome::Kind::call_script: {
+      const auto id = start_file(outcome.script);
+      if (!id) return std::unexpected(id.error());
+      return fmt::format("{} started as run {}", runs_.back()->report.file, *id);
+    }
+  }
+  return std::string{};
+}
+
+void ScriptRunner::end_run(std::size_t index, bool stopped) {
+  const std::unique_ptr<ScriptRun> run = std::move(runs_[index]);
+  runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(index));
+  ++counters_.scripts_ended;
+  run->report.stopped = stopped;
+  if (run_ended_) run_ended_(run->report);
+}
+
+bool ScriptRunner::stop(std::uint64_t id) {
+  const auto found = std::find_if(runs_.begin(), runs_.end(), [id](const auto& run) { return run->report.id == id; });
+  if (found == runs_.end()) return false;
+  end_run(static_cast<std::size_t>(found - runs_.begin()), true);
+  return true;
+}
+
+void ScriptRunner::stop_all() {
+  for (std::size_t count = runs_.size(); count > 0; --count) end_run(count - 1, true);
+}
+
+std::vector<RunStatus> ScriptRunner::runs() const {
+  std::vector<RunStatus> all;
+  for (const auto& run : runs_) {
+    RunStatus status{run->report.id, {}, run->waiting};
+    for (const auto& file : run->stack)
+      status.stack.push_back(fmt::format("{}:{}", file->name(), file->reader().position().line));
+    all.push_back(std::move(status));
+  }
+  return all;
+}
+
+void ScriptRunner::remember(const Diagnostic& diagnostic) {
+  const std::string text = diagnostic.text();
+  log_text(LogLevel::warning, "script", text);
+  last_errors_.push_back(utc_text(clock_.now()) + " " + text);
+  if (last_errors_.size() > kKeptErrors) last_errors_.pop_front();
+}
+
+}  // namespace cellmirror::script

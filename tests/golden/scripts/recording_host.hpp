@@ -1,0 +1,145 @@
+// A gateway for tests: writes down each call as one canonical line in SI. Refuses what it is told to refuse.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/pose.hpp"
+#include "scripts/commands/host.hpp"
+#include "tests/golden/scripts/fake_names.hpp"
+
+namespace cellmirror::testing {
+
+class RecordingHost final : public WorldHost,
+                            public RobotHost,
+                            public ProgramHost,
+                            public ViewHost,
+                            public DiagnosisHost {
+ public:
+  std::vector<std::string> calls;
+  FakeNames names;
+  std::string refused_call;     // the first word of calls that are refused
+  mutable int busy_checks = 0;  // how many more times busy() answers true
+
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] std::string trace() const {
+    std::string text;
+    for (const std::string& call : calls) text += call + "\n";
+    return text;
+  }
+
+  Result<void> activate(std::string_view node) override {
+    if (!names.knows(NameKind::frame_node, node)) return std::unexpected(names.explain(NameKind::frame_node, node));
+    return record("activate {}", node);
+  }
+  Result<void> deactivate(std::string_view node) override { return record("deactivate {}", node); }
+  Result<void> delete_node(std::string_view node) override { return record("delete_node {}", node); }
+  Result<void> swap_node(std::string_view node) override { return record("swap_node {}", node); }
+  Result<void> level_down(std::string_view node) override { return record("level_down {}", node); }
+  Result<void> level_up(std::string_view node) override { return record("level_up {}", node); }
+  Result<void> set_placement(std::string_view node, const Pose& X_PF) override {
+    return record("set_placement {} {}", node, pose_text(X_PF));
+  }
+  Result<void> connect(std::string_view part, std::string_view predecessor) override {
+    return record("connect {} to {}", part, predecessor);
+  }
+  Result<void> attach_at_workframe(std::string_view part, std::string_view predecessor,
+                                   std::string_view workframe) override {
+    return record("attach_at_workframe {} to {} at {}", part, predecessor, workframe);
+  }
+  Result<void> draw_scene() override { return record("draw_scene"); }
+
+  Result<void> set_active_robot(std::string_view robot) override {
+    names.active = robot;
+    return record("set_active_robot {}", robot);
+  }
+  Result<void> set_online(std::string_view robot, bool online) override {
+    return record("set_online {} {}", robot, online);
+  }
+  Result<void> set_sending(std::string_view robot, bool sending) override {
+    return record("set_sending {} {}", robot, sending);
+  }
+  Result<void> move_joints_to(std::string_view robot, std::span<const double> positions) override {
+    return record("move_joints_to {} {}", robot, list_text(positions));
+  }
+  Result<void> move_joints_by(std::string_view robot, std::span<const double> increments) override {
+    return record("move_joints_by {} {}", robot, list_text(increments));
+  }
+  Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) override {
+    constexpr std::array<std::string_view, 9> kNames = {
+        "max_range",    "min_range",       "start_position",   "reference_position", "max_velocity",
+        "min_velocity", "active_velocity", "max_acceleration", "active_acceleration"};
+    return record("set_joint_parameter {} {}", kNames[static_cast<std::size_t>(which)], list_text(values));
+  }
+  Result<void> set_scalar_parameter(ScalarParameter which, double value) override {
+    constexpr std::array<std::string_view, 7> kNames = {
+        "linear_velocity", "linear_acceleration", "rotational_velocity", "rotational_acceleration",
+        "velocity_scale",  "acceleration_scale",  "program_delay"};
+    return record("set_scalar_parameter {} {:.9g}", kNames[static_cast<std::size_t>(which)], value);
+  }
+  Result<void> set_fly(FlyType type, double parameter) override {
+    constexpr std::array<std::string_view, 3> kNames = {"speed_fraction", "distance", "angle"};
+    return record("set_fly {} {:.9g}", kNames[static_cast<std::size_t>(type)], parameter);
+  }
+  Result<void> set_ptp_mode(PtpMode mode) override {
+    return record("set_ptp_mode {}", mode == PtpMode::synchronous ? "synchronous" : "asynchronous");
+  }
+  Result<void> set_velocity_profile(VelocityProfile profile) override {
+    return record("set_velocity_profile {}", profile == VelocityProfile::sine ? "sine" : "ramp");
+  }
+  Result<void> set_inverse_class(InverseClass inverse_class) override {
+    return record("set_inverse_class {}", static_cast<int>(inverse_class));
+  }
+  Result<void> set_point_of_reference(const Pose& X_FP) override {
+    return record("set_point_of_reference {}", pose_text(X_FP));
+  }
+  Result<void> set_tool_center_point(const Pose& X_PT) override {
+    return record("set_tool_center_point {}", pose_text(X_PT));
+  }
+
+  Result<void> set_language(RobotLanguage language) override {
+    constexpr std::array<std::string_view, 4> kNames = {"irdata", "srcl", "jet_boom", "jet_tarm"};
+    return record("set_language {}", kNames[static_cast<std::size_t>(language)]);
+  }
+  [[nodiscard]] bool busy() const override { return busy_checks > 0 && busy_checks-- > 0; }
+
+  Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) override {
+    return record("set_camera {} {:.9g} {:.9g}", camera, focal_distance_m, fovy_rad);
+  }
+  Result<void> show_message(std::string_view text) override { return record("show_message [{}]", text); }
+  Result<void> save_flight_record(std::string_view file_name) override {
+    return record("save_flight_record {}", file_name);
+  }
+
+ private:
+  template <class... Args>
+  Result<void> record(fmt::format_string<Args...> format, Args&&... args) {
+    const std::string line = fmt::format(format, std::forward<Args>(args)...);
+    if (!refused_call.empty() && line.starts_with(refused_call)) return fail("the test refuses " + line);
+    calls.push_back(line);
+    return {};
+  }
+  static double tidy(double value) { return std::abs(value) < 5e-13 ? 0.0 : value; }  // no -0 and no rounding dust
+  static std::string list_text(std::span<const double> values) {
+    std::string text;
+    for (const double value : values) text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", tidy(value));
+    return text;
+  }
+  // Row by row, so that no convention of angles is needed to read it.
+  static std::string pose_text(const Pose& X) {
+    std::string text;
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      text += fmt::format("{}[{:.6g} {:.6g} {:.6g} | {:.9g}]", row == 0 ? "" : " ", tidy(X.matrix()(row, 0)),
+                          tidy(X.matrix()(row, 1)), tidy(X.matrix()(row, 2)), tidy(X.matrix()(row, 3)));
+    }
+    return text;
+  }
+};
+
+}  // namespace cellmirror::testing
