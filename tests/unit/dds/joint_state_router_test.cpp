@@ -1,0 +1,266 @@
+#include "drivers/dds/joint_state_router.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "golden.hpp"
+#include "rt_core/rt/allocation_guard.hpp"
+
+namespace cellmirror::dds::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+class RecordingSink final : public JointSampleSink {
+ public:
+  bool push(const JointSample& sample) noexcept override {
+    if (full) return false;
+    samples.push_back(sample);
+    return true;
+  }
+  std::vector<JointSample> samples;
+  bool full = false;
+};
+
+std::vector<std::byte> encoded(const JointState& message) {
+  std::vector<std::byte> out;
+  encode(message, out);
+  return out;
+}
+
+struct Robot {
+  explicit Robot(const std::vector<DdsJointConfig>& joints) : feed(RobotFeed::make(joints).value()) {}
+  std::unique_ptr<RobotFeed> feed;
+  RecordingSink sink;
+};
+
+class JointStateRouterTest : public testing::Test {
+ protected:
+  void accept(const JointState& message, MessageOrigin origin = {}) {
+    now_ = now_ + Nanoseconds(1'000'000);
+    sut_.accept(encoded(message), now_, origin);
+  }
+
+  Robot arm_{{{"shoulder", 0, 1.0, 0.0}, {"elbow", 1, 1.0, 0.0}, {"wrist", 2, 1.0, 0.0}}};
+  Timestamp now_{1'000'000'000};
+  JointStateRouter sut_;
+};
+
+TEST_F(JointStateRouterTest, MatchesReorderedAndPartialMessagesByName) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"wrist", "shoulder"}, .position = {3.0, 1.0}, .velocity = {0.3, 0.1}, .effort = {30, 10}});
+  ASSERT_EQ(arm_.sink.samples.size(), 1U);
+  const JointSample& sample = arm_.sink.samples[0];
+  EXPECT_EQ(sample.present, 0b101U);
+  EXPECT_EQ(sample.position[0], 1.0);
+  EXPECT_EQ(sample.position[2], 3.0);
+  EXPECT_EQ(sample.velocity[2], 0.3);
+  EXPECT_EQ(sample.effort[0], 10.0);
+  EXPECT_EQ(sample.receive_time, now_);
+  EXPECT_EQ(sample.source_time, Timestamp{});
+  EXPECT_EQ(sample.sequence, 1U);
+}
+
+TEST_F(JointStateRouterTest, LeavesOtherRobotsMessagesAlone) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"somebody", "else"}, .position = {1.0}});
+  EXPECT_TRUE(arm_.sink.samples.empty());
+  EXPECT_EQ(arm_.feed->counters().rejected, 0U);
+}
+
+TEST_F(JointStateRouterTest, ServesSeveralRobotsFromOneMessage) {
+  Robot other{{{"boom", 0, 1.0, 0.0}, {"elbow", 5, 1.0, 0.0}}};
+  sut_.add(*arm_.feed, arm_.sink);
+  sut_.add(*other.feed, other.sink);
+  accept({.name = {"boom", "elbow"}, .position = {7.0, 8.0}});
+  ASSERT_EQ(arm_.sink.samples.size(), 1U);
+  ASSERT_EQ(other.sink.samples.size(), 1U);
+  EXPECT_EQ(arm_.sink.samples[0].present, 0b10U);
+  EXPECT_EQ(other.sink.samples[0].present, 0b100001U);
+  EXPECT_EQ(other.sink.samples[0].position[5], 8.0);
+}
+
+TEST_F(JointStateRouterTest, ScalesAndShifts) {
+  Robot robot{{{"j", 0, -2.0, 0.5}}};
+  sut_.add(*robot.feed, robot.sink);
+  accept({.name = {"j"}, .position = {3.0}, .velocity = {4.0}, .effort = {8.0}});
+  EXPECT_EQ(robot.sink.samples.at(0).position[0], -5.5);
+  EXPECT_EQ(robot.sink.samples.at(0).velocity[0], -8.0);
+  EXPECT_EQ(robot.sink.samples.at(0).effort[0], -4.0) << "power stays the same";
+}
+
+TEST_F(JointStateRouterTest, RefusesPositionsThatAreNotFiniteJointByJoint) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"shoulder", "elbow", "wrist"}, .position = {kNan, 2.0, -kInf}});
+  ASSERT_EQ(arm_.sink.samples.size(), 1U);
+  EXPECT_EQ(arm_.sink.samples[0].present, 0b010U);
+  EXPECT_EQ(arm_.sink.samples[0].refused, 0b101U);
+  EXPECT_EQ(arm_.feed->counters().rejected, 2U);
+  EXPECT_EQ(arm_.feed->last_errors().size(), 2U);
+}
+
+TEST_F(JointStateRouterTest, RefusesWhatScalingMakesInfinite) {
+  Robot robot{{{"j", 0, 1e10, 0.0}}};
+  sut_.add(*robot.feed, robot.sink);
+  accept({.name = {"j"}, .position = {1e300}});
+  EXPECT_EQ(robot.sink.samples.at(0).refused, 1U);
+}
+
+TEST_F(JointStateRouterTest, TakesNanVelocityAndEffortAsNotMeasured) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"shoulder"}, .position = {1.0}, .velocity = {kNan}, .effort = {kNan}});
+  EXPECT_EQ(arm_.sink.samples.at(0).present, 1U);
+  EXPECT_EQ(arm_.sink.samples.at(0).velocity[0], 0.0);
+  EXPECT_EQ(arm_.feed->counters().rejected, 0U);
+  EXPECT_EQ(arm_.feed->counters().unknown, 2U);
+  accept({.name = {"shoulder"}, .position = {1.0}, .velocity = {kInf}});
+  EXPECT_EQ(arm_.sink.samples.at(1).present, 1U);
+  EXPECT_EQ(arm_.feed->counters().rejected, 1U);
+}
+
+TEST_F(JointStateRouterTest, RefusesMessagesWhoseArraysDoNotFit) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0}});
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0, 2.0, 3.0}});
+  accept({.name = {"shoulder", "elbow"}, .position = {}, .velocity = {1.0, 2.0}});
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0, 2.0}, .velocity = {1.0}});
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0, 2.0}, .velocity = {}, .effort = {1.0}});
+  EXPECT_TRUE(arm_.sink.samples.empty());
+  EXPECT_EQ(arm_.feed->counters().rejected, 5U);
+  EXPECT_EQ(arm_.feed->counters().wrong_length, 5U);
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0, 2.0}});
+  EXPECT_EQ(arm_.sink.samples.size(), 1U) << "and goes on";
+}
+
+TEST_F(JointStateRouterTest, RefusesAJointThatIsNamedTwice) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"elbow", "shoulder", "elbow"}, .position = {1.0, 2.0, 3.0}});
+  EXPECT_EQ(arm_.sink.samples.at(0).present, 0b01U);
+  EXPECT_EQ(arm_.sink.samples.at(0).refused, 0b10U);
+  EXPECT_EQ(arm_.sink.samples.at(0).position[1], 0.0);
+}
+
+TEST_F(JointStateRouterTest, CountsPayloadsThatAreNoJointState) {
+  sut_.add(*arm_.feed, arm_.sink);
+  sut_.accept(bytes({0xff, 0xff, 0xff, 0xff, 0xff}), now_);
+  sut_.accept({}, now_);
+  EXPECT_EQ(arm_.feed->counters().malformed, 2U);
+  EXPECT_EQ(arm_.feed->counters().rejected, 2U);
+}
+
+TEST_F(JointStateRouterTest, MovesStampsToOurClock) {
+  SystemClock clock;
+  sut_.add(*arm_.feed, arm_.sink);
+  const Timestamp then = clock.now();
+  accept({.header = {.stamp = ros_time(to_wall_clock_ns(then))}, .name = {"elbow"}, .position = {1.0}});
+  EXPECT_NEAR(seconds(arm_.sink.samples.at(0).source_time - then), 0.0, 1e-3);
+  accept({.header = {.stamp = {7, 1'000'000'000}}, .name = {"elbow"}, .position = {1.0}});
+  EXPECT_FALSE(arm_.sink.samples.at(1).source_time.known());
+  EXPECT_EQ(arm_.feed->counters().bad_stamps, 1U);
+}
+
+TEST_F(JointStateRouterTest, CountsWhatIsMissingInAPublishersSequence) {
+  sut_.add(*arm_.feed, arm_.sink);
+  const JointState message{.name = {"elbow"}, .position = {1.0}};
+  accept(message, {.publisher = 1, .sequence = 100});
+  accept(message, {.publisher = 1, .sequence = 101});
+  EXPECT_EQ(arm_.feed->counters().lost, 0U);
+  accept(message, {.publisher = 1, .sequence = 105});
+  EXPECT_EQ(arm_.feed->counters().lost, 3U);
+  accept(message, {.publisher = 2, .sequence = 1});
+  EXPECT_EQ(arm_.feed->counters().lost, 3U) << "another publisher has its own sequence";
+  accept(message, {.publisher = 1, .sequence = 104});
+  accept(message, {.publisher = 1, .sequence = 106});
+  EXPECT_EQ(arm_.feed->counters().lost, 3U);
+  sut_.forget(1);
+  accept(message, {.publisher = 1, .sequence = 900});
+  EXPECT_EQ(arm_.feed->counters().lost, 3U) << "a new life of the publisher";
+}
+
+TEST_F(JointStateRouterTest, GivesEachGapToOneMessagesRobotsOnly) {
+  Robot other{{{"boom", 0, 1.0, 0.0}}};
+  sut_.add(*arm_.feed, arm_.sink);
+  sut_.add(*other.feed, other.sink);
+  accept({.name = {"elbow"}, .position = {1.0}}, {1, 1});
+  accept({.name = {"boom"}, .position = {1.0}}, {1, 2});
+  accept({.name = {"elbow"}, .position = {1.0}}, {1, 4});
+  EXPECT_EQ(arm_.feed->counters().lost + other.feed->counters().lost, 1U);
+  accept({.name = {"stranger"}, .position = {1.0}}, {1, 6});
+  accept({.name = {"boom"}, .position = {1.0}}, {1, 7});
+  EXPECT_EQ(arm_.feed->counters().lost + other.feed->counters().lost, 2U);
+}
+
+TEST_F(JointStateRouterTest, CountsWhatAFullSinkRefuses) {
+  sut_.add(*arm_.feed, arm_.sink);
+  arm_.sink.full = true;
+  accept({.name = {"elbow"}, .position = {1.0}});
+  EXPECT_EQ(arm_.feed->counters().received, 0U);
+  EXPECT_EQ(arm_.feed->counters().sink_full, 1U);
+}
+
+TEST_F(JointStateRouterTest, PushesNothingAfterRemoval) {
+  sut_.add(*arm_.feed, arm_.sink);
+  sut_.remove(*arm_.feed);
+  accept({.name = {"elbow"}, .position = {1.0}});
+  EXPECT_TRUE(arm_.sink.samples.empty());
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"elbow"}, .position = {1.0}});
+  EXPECT_EQ(arm_.sink.samples.size(), 1U);
+}
+
+TEST_F(JointStateRouterTest, KeepsFewErrorsAndTheNewest) {
+  sut_.add(*arm_.feed, arm_.sink);
+  for (std::size_t n = 2; n < 40; ++n) {
+    accept({.name = {"elbow"}, .position = std::vector<double>(n, 1.0)});
+    accept({.name = {"elbow"}, .position = std::vector<double>(n, 1.0)});
+  }
+  EXPECT_EQ(arm_.feed->last_errors().size(), RobotFeed::kKeptErrors);
+  EXPECT_NE(arm_.feed->last_errors().back().find("39 positions"), std::string::npos);
+}
+
+TEST_F(JointStateRouterTest, LeavesTheHeapAloneForMessagesOfAShapeSeenBefore) {
+  if (!AllocationGuard::armed()) GTEST_SKIP() << "skipped: the allocation guard is not armed in this build";
+  class CountingSink final : public JointSampleSink {
+   public:
+    bool push(const JointSample&) noexcept override { return ++count > 0; }
+    int count = 0;
+  } sink;
+  sut_.add(*arm_.feed, sink);
+  const std::vector<std::byte> payload = encoded(
+      {.name = {"shoulder", "elbow", "wrist"}, .position = {1, 2, 3}, .velocity = {1, 2, 3}, .effort = {1, 2, 3}});
+  sut_.accept(payload, now_, {1, 1});
+  const AllocationGuard guard;
+  for (std::uint64_t i = 2; i < 100; ++i) sut_.accept(payload, now_, {1, i});
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_EQ(sink.count, 99);
+}
+
+TEST(RobotFeed, RefusesMappingsThatCannotBeMeant) {
+  EXPECT_FALSE(RobotFeed::make({}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"", 0, 1.0, 0.0}}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"a", kMaxJointsPerRobot, 1.0, 0.0}}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"a", 0, 0.0, 0.0}}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"a", 0, kNan, 0.0}}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"a", 0, 1.0, kInf}}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"a", 0, 1.0, 0.0}, {"a", 1, 1.0, 0.0}}).has_value());
+  EXPECT_FALSE(RobotFeed::make({{"a", 0, 1.0, 0.0}, {"b", 0, 1.0, 0.0}}).has_value());
+}
+
+TEST(RateMeter, TellsEventsOfTheLastSecond) {
+  RateMeter sut;
+  Timestamp now{5'000'000'000};
+  for (int i = 0; i < 2000; ++i) {
+    now = now + Nanoseconds(2'000'000);
+    sut.count(now);
+  }
+  EXPECT_NEAR(sut.per_second(now), 500.0, 1.0);
+  EXPECT_NEAR(sut.per_second(now + Nanoseconds(500'000'000)), 250.0, 51.0);
+  EXPECT_EQ(sut.per_second(now + Nanoseconds(1'200'000'000)), 0.0);
+  EXPECT_EQ(sut.per_second(now + Nanoseconds(100'000'000'000)), 0.0);
+}
+
+}  // namespace
+}  // namespace cellmirror::dds::test
