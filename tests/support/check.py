@@ -49,7 +49,7 @@ class Check:
             if shell(command):
                 report.notes.append("built")
             else:
-                report.fail(f"build {folder}", "see above")
+                report.fail("it does not build", "see above")
             return report
 
         return self.stage(f"build {folder}", action)
@@ -71,7 +71,7 @@ class Check:
 
     def sanitizers(self) -> None:
         # One clang build serves the address and undefined-behaviour sanitizers and the fuzzers.
-        if self.build("fuzz", "build-fuzz"):
+        if self.build("fuzz", "build-fuzz", "tests_unit", "tests_golden", "tests_fuzz"):
             seconds = os.environ.get("FUZZ_SECONDS", "10")
             self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
             self.tests(f"fuzzing, {seconds} s each", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds, **SANITIZER_OPTIONS)

@@ -31,7 +31,8 @@ def sources(build: Path) -> list[Path]:
     """The translation units of the build's folder that are ours and not tests."""
     commands = json.loads((build / "compile_commands.json").read_text())
     units = {Path(command["file"]) for command in commands}
-    return sorted(unit for unit in units if unit.is_relative_to(ROOT) and unit.relative_to(ROOT).parts[0] != "tests")
+    ours = {unit: unit.relative_to(ROOT).parts[0] for unit in units if unit.is_relative_to(ROOT)}
+    return sorted(unit for unit, top in ours.items() if top != "tests" and not top.startswith("build"))
 
 
 def check(build: Path, unit: Path) -> tuple[Path, str]:
