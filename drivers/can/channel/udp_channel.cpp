@@ -66,6 +66,11 @@ bool same_sender(const sockaddr_storage& a, const sockaddr_storage& b) {
 }
 
 std::unexpected<Error> socket_failure(std::string_view what) {
+  if (errno == ENETUNREACH) {
+    return fail(
+        fmt::format("udp channel: {}: {}", what, std::strerror(errno)),
+        "the interface has no route for multicast; on the loopback interface use an IPv4 group such as 239.74.163.2");
+  }
   return fail(fmt::format("udp channel: {}: {}", what, std::strerror(errno)),
               "check that the interface is up and has an address ('ip address')");
 }

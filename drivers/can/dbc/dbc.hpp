@@ -1,0 +1,81 @@
+// DBC: which signals lie where in which frames. Own reader; what decoding does not need is skipped.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "rt_core/base/diagnostics.hpp"
+#include "rt_core/ports/can_channel.hpp"
+
+namespace cellmirror::can {
+
+enum class ByteOrder : std::uint8_t {
+  little_endian,  // @1, Intel: the start bit is the least significant one
+  big_endian,     // @0, Motorola: the start bit is the most significant one, counted in the saw-tooth way
+};
+enum class DbcValueType : std::uint8_t { integer, float32, float64 };
+
+struct DbcSignal {
+  std::string name;
+  std::uint16_t start = 0;   // bit, 0..511
+  std::uint16_t length = 0;  // bits, 1..64
+  ByteOrder order = ByteOrder::little_endian;
+  bool is_signed = false;
+  DbcValueType type = DbcValueType::integer;  // SIG_VALTYPE_
+  double factor = 1.0;                        // physical = raw * factor + offset
+  double offset = 0.0;
+  double minimum = 0.0;  // both 0: no limits
+  double maximum = 0.0;
+  std::string unit;
+  bool is_multiplexer = false;  // M
+  bool is_multiplexed = false;  // m<n>: only there while the multiplexer has one of the values
+  // The multiplexer's name; empty: the message's own (M). Named by SG_MUL_VAL_ where multiplexers are nested.
+  std::string multiplexer;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> multiplexer_values;  // ranges, ends included
+  int line = 0;
+};
+
+struct DbcMessage {
+  std::string name;
+  std::uint32_t id = 0;  // 11 or 29 bits
+  bool extended = false;
+  std::uint8_t length = 0;  // bytes, 0..64
+  std::vector<DbcSignal> signals;
+  int line = 0;
+
+  [[nodiscard]] const DbcSignal* find(std::string_view signal) const;
+  [[nodiscard]] const DbcSignal* multiplexer() const;
+};
+
+struct Dbc {
+  std::vector<DbcMessage> messages;
+
+  [[nodiscard]] const DbcMessage* find(std::string_view message) const;
+};
+
+// Reads the whole text; finds all mistakes in one pass. What could be read is returned even where there were errors.
+// Signals that reach beyond their message, doubled names and numbers out of range are errors; the signal is left out.
+[[nodiscard]] Dbc parse_dbc(std::string_view text, const std::string& file, Diagnostics& diagnostics);
+// The same from a file; none where it cannot be read (told in `diagnostics`). At most 16 MiB.
+[[nodiscard]] std::optional<Dbc> read_dbc(const std::string& file, Diagnostics& diagnostics);
+
+// Whether the signal is in these data of the message: always, but for multiplexed ones. `data` has the message's
+// length.
+[[nodiscard]] bool is_present(const DbcMessage& message, const DbcSignal& signal, std::span<const std::uint8_t> data);
+
+// Bytes of data that the signal needs.
+[[nodiscard]] std::size_t bytes_needed(const DbcSignal& signal);
+// The signal's bits as a number, zero extended. `data` has at least bytes_needed().
+[[nodiscard]] std::uint64_t raw_value(const DbcSignal& signal, std::span<const std::uint8_t> data);
+// raw * factor + offset, by the signal's type; may be NaN or infinite for float signals.
+[[nodiscard]] double physical_value(const DbcSignal& signal, std::span<const std::uint8_t> data);
+// Puts a physical value into the data (the inverse; rounds and clamps integers to their range).
+void put_physical_value(const DbcSignal& signal, double value, std::span<std::uint8_t> data);
+
+}  // namespace cellmirror::can
