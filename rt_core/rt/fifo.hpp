@@ -17,8 +17,8 @@ namespace cellmirror {
 // by the constructor, so that no push meets a page fault: put large ones on the heap as part of their owner.
 //
 // A ring buffer between two counters (Lamport 1977), where each side keeps a copy of the other's counter and looks at
-// the real one only when the copy says full or empty (Lee, Bu, Chandranmenon, ANCS 2009): in the usual case no cache line
-// but that of the data moves between processors. docs/decisions/0002-queues.md says why it is our own.
+// the real one only when the copy says full or empty (Lee, Bu, Chandranmenon, ANCS 2009): in the usual case no cache
+// line but that of the data moves between processors. docs/decisions/0002-queues.md says why it is our own.
 //
 // The producer's and the consumer's role may move to another thread where something else orders the two (a join, a
 // lock); two threads in one role at the same time are a bug that this class cannot see.
@@ -43,7 +43,8 @@ class Fifo {
         return false;
       }
     }
-    slots_[pushed % Capacity] = value;
+    slots_[next_in_] = value;
+    next_in_ = next_in_ + 1 == Capacity ? 0 : next_in_ + 1;
     // Release: pairs with the acquire in pop(); the slot is written before the consumer may see it.
     pushed_.store(pushed + 1, std::memory_order_release);
     note_fill_level(pushed + 1);
@@ -66,7 +67,8 @@ class Fifo {
         return false;
       }
     }
-    value = slots_[popped % Capacity];
+    value = slots_[next_out_];
+    next_out_ = next_out_ + 1 == Capacity ? 0 : next_out_ + 1;
     // Release: pairs with the acquire in push(); our look at the slot is over before the producer reuses it.
     popped_.store(popped + 1, std::memory_order_release);
     return true;
@@ -107,10 +109,12 @@ class Fifo {
   // lie on lines of their own.
   alignas(64) std::atomic<std::uint64_t> pushed_{0};
   std::uint64_t popped_seen_ = 0;  // the producer's own: popped_ as it last saw it
+  std::size_t next_in_ = 0;        // the producer's own: pushed_ % Capacity
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::size_t> high_water_{0};
   alignas(64) std::atomic<std::uint64_t> popped_{0};
   std::uint64_t pushed_seen_ = 0;  // the consumer's own: pushed_ as it last saw it
+  std::size_t next_out_ = 0;       // the consumer's own: popped_ % Capacity
   alignas(64) std::array<T, Capacity> slots_{};
 };
 
