@@ -47,6 +47,9 @@ class Cell {
   [[nodiscard]] const Node& node(NodeId node) const;
   [[nodiscard]] std::size_t node_count() const;
 
+  // World pose at the joint positions q[slot][joint].
+  [[nodiscard]] Pose world_pose(NodeId node, std::span<const JointValues> q) const;
+
   // --- Detail levels.
   Result<void> activate(std::string_view node);
   Result<void> deactivate(std::string_view node);
@@ -82,9 +85,9 @@ class Cell {
   [[nodiscard]] std::uint64_t revision() const;
   [[nodiscard]] std::shared_ptr<const CompiledCell> compile() const;
 
+  struct State;  // private to this folder
+
  private:
-  friend class CellBuilder;
-  struct State;
   explicit Cell(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

@@ -82,6 +82,9 @@ struct CompiledCell {
   [[nodiscard]] const CompiledRobot* robot(std::size_t slot) const;
 };
 
+// The motion of a joint: rotation about or translation along its axis (a unit vector), by rad or m.
+[[nodiscard]] Pose joint_motion(JointKind kind, const Eigen::Vector3d& axis, double position) CELL_RT;
+
 // World poses of all nodes of a CompiledCell, kept from one computation to the next so that what cannot move is not
 // computed again.
 struct CellPoses {

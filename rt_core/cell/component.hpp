@@ -137,8 +137,8 @@ class ComponentSource {
  public:
   virtual ~ComponentSource() = default;
   // The component in `file`, from memory where it is known already. An error says the first finding and how many there
-  // are. Findings go to `diagnostics` too, each once, where that is not null.
-  virtual Result<std::shared_ptr<const Component>> component(std::string_view file, Diagnostics* diagnostics) = 0;
+  // are.
+  virtual Result<std::shared_ptr<const Component>> component(std::string_view file) = 0;
 };
 
 }  // namespace cellmirror

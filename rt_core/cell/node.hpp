@@ -22,10 +22,11 @@ struct JointBinding {
 
 struct Node {
   std::string name;
-  NodeId parent = kNoNode;       // in the tree of names; never changes
-  NodeId predecessor = kNoNode;  // kinematic; changed by CONNECT and FRAME_TO_WFRM
-  Pose X_PF = Pose::Identity();  // in the predecessor, at joint position zero
-  std::vector<NodeId> children;  // in the tree of names
+  NodeId parent = kNoNode;             // in the tree of names; never changes
+  NodeId predecessor = kNoNode;        // kinematic; changed by CONNECT and FRAME_TO_WFRM
+  NodeId first_predecessor = kNoNode;  // at the start
+  Pose X_PF = Pose::Identity();        // in the predecessor, at joint position zero
+  std::vector<NodeId> children;        // in the tree of names
   std::shared_ptr<const Component> declared_in;
   const ComponentNode* definition = nullptr;  // in declared_in
   std::shared_ptr<const Component> content;   // of its ABSTRACT file; null: none, or not in memory

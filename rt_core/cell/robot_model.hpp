@@ -69,6 +69,8 @@ class RobotModel {
 
  private:
   friend class CellBuilder;
+  [[nodiscard]] Result<void> check_position(std::size_t joint, double value) const;
+  [[nodiscard]] Result<void> check_count(std::size_t values) const;
 
   std::string id_;
   std::size_t slot_;

@@ -1,0 +1,109 @@
+#include "config/cell_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <memory>
+#include <utility>
+
+#include "config/cell_reader.hpp"
+#include "config/component_files.hpp"
+#include "config/parse.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace fs = std::filesystem;
+
+std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnostics) {
+  const Place whole_file{path.string(), 0, 0};
+  const auto refuse = [&](const Error& error) {
+    diagnostics.error(whole_file, error.what, error.remedy);
+    return std::nullopt;
+  };
+  const auto text = read_text_file(path, kLargestText);
+  if (!text) return refuse(text.error());
+  auto home = KismetHome::of_cell(path);
+  if (!home) return refuse(home.error());
+  const HomeFiles files(*home);
+  CellReader reader(path.string(), files);
+  const bool readable = reader.read(*text);
+  auto source = std::make_shared<ComponentFiles>(files);
+  Diagnostics of_components;
+  std::optional<Cell> cell;
+  if (readable) {
+    source->load(reader.root, of_components);
+    reader.read_streams(source->robots(), true);
+    // Findings so far keep Cell::build() from giving a cell, but not from looking on.
+    Diagnostics building = of_components;
+    building.take(reader.findings);
+    const std::size_t before = building.all().size();
+    cell = Cell::build(std::make_shared<const Component>(reader.root), source, building);
+    for (std::size_t i = before; i < building.all().size(); ++i) reader.findings.add(building.all()[i]);
+  }
+  take_sorted(diagnostics, reader.findings);
+  diagnostics.take(of_components);
+  source->release();
+  if (!cell) return std::nullopt;
+  return LoadedCell{std::move(reader.name),
+                    std::move(reader.description),
+                    path,
+                    std::move(*home),
+                    reader.loop,
+                    std::move(reader.streams),
+                    reader.dds,
+                    reader.queues,
+                    reader.web,
+                    std::move(reader.startup_script),
+                    source->files(),
+                    std::move(*cell)};
+}
+
+namespace {
+
+// The home of a component: $kis_home, else the nearest folder above it with a cell.toml, else its own folder.
+Result<KismetHome> home_of_component(const fs::path& path) {
+  const char* from_environment = std::getenv("kis_home");
+  if (from_environment != nullptr && *from_environment != '\0') return KismetHome::open(from_environment);
+  std::error_code error;
+  const fs::path full = fs::weakly_canonical(path, error);
+  if (error) return fail(fmt::format("{} cannot be opened: {}", path.string(), error.message()));
+  constexpr int kHighest = 32;
+  fs::path folder = full.parent_path();
+  for (int i = 0; i < kHighest && folder.has_relative_path(); ++i) {
+    if (fs::exists(folder / "cell.toml", error)) return KismetHome::open(folder);
+    folder = folder.parent_path();
+  }
+  return KismetHome::open(full.parent_path());
+}
+
+}  // namespace
+
+bool is_checkable(const fs::path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  return extension == ".toml" || extension == ".mpc" || extension == ".urdf";
+}
+
+void check_file(const fs::path& path, Diagnostics& diagnostics) {
+  if (!is_checkable(path)) {
+    diagnostics.error({path.string(), 0, 0}, "this kind of file cannot be checked here",
+                      "cells are .toml, components .mpc or .urdf");
+    return;
+  }
+  if (lower_case(path.extension().string()) == ".toml") {
+    static_cast<void>(load_cell(path, diagnostics));
+    return;
+  }
+  const auto home = home_of_component(path);
+  if (!home) {
+    diagnostics.error({path.string(), 0, 0}, home.error().what, home.error().remedy);
+    return;
+  }
+  const HomeFiles files(*home);
+  const auto component = read_component_file(path, files, diagnostics);
+  if (!component) return;
+  ComponentFiles others(files);
+  others.load(*component, diagnostics);
+}
+
+}  // namespace cellmirror

@@ -1,0 +1,153 @@
+#include "config/cell_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "config/node_reader.hpp"
+#include "config/stream_reader.hpp"
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+constexpr Range kOutputRate{0.0, 1000.0, true};
+
+// "0600": permissions as people write them.
+std::optional<std::uint32_t> octal(std::string_view text) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 8);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || value > 0777U) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void QueueOverrides::apply_to(QueueConfig& config) const {
+  config.script_key = script_key.value_or(config.script_key);
+  config.sensor_key = sensor_key.value_or(config.sensor_key);
+  config.reply_key = reply_key.value_or(config.reply_key);
+  config.mode = mode.value_or(config.mode);
+  config.sensor_rate_hz = sensor_rate_hz.value_or(config.sensor_rate_hz);
+}
+
+bool CellReader::read(std::string_view text) {
+  table_ = parse_toml(text, file_, findings);
+  if (!table_) return false;
+  TableReader top(*table_, file_, "", findings);
+  top.require("format");
+  top.integer("format", 1, 1);
+  top.require("name");
+  name = top.name("name").value_or("");
+  description = top.text("description").value_or("");
+  root.file = file_;
+  root.description = description;
+  root.geometry = read_geometry(top, files_);
+  NodeReader nodes(root, files_, true);
+  for (TableReader& node : top.tables("node", kMaxNodes)) nodes.read(node);
+  nodes.finish(findings);
+  for (const ComponentNode& node : root.nodes) {
+    if (node.joint)
+      findings.error(root.place(node), fmt::format("the joint {} stands in a cell file", node.name),
+                     "joints belong to component files with a [robot]");
+  }
+  read_loop(top);
+  read_dds_output(top);
+  read_queues(top);
+  read_web(top);
+  read_startup(top);
+  constexpr std::size_t kMostStreams = kMaxRobots;
+  stream_tables_ = top.tables("stream", kMostStreams);
+  top.finish();
+  return true;
+}
+
+void CellReader::read_streams(const RobotDirectory& robots, bool complete) {
+  for (TableReader& table : stream_tables_) {
+    auto stream = read_stream(table, robots, complete, files_);
+    if (!stream) continue;
+    const bool twice = std::ranges::any_of(
+        streams, [&](const RobotStream& other) { return !other.robot.empty() && other.robot == stream->robot; });
+    if (twice) table.error("robot", fmt::format("there is another stream of {}", printable(stream->robot)));
+    streams.push_back(std::move(*stream));
+  }
+}
+
+void CellReader::read_loop(TableReader& top) {
+  auto table = top.table("loop");
+  if (!table) return;
+  loop.rate_hz = table->number("rate_hz", {100.0, 4000.0}).value_or(loop.rate_hz);
+  loop.real_time = table
+                       ->choice<RealTimePolicy>("real_time", {{"require", RealTimePolicy::require},
+                                                              {"prefer", RealTimePolicy::prefer},
+                                                              {"off", RealTimePolicy::off}})
+                       .value_or(loop.real_time);
+  loop.priority = static_cast<int>(table->integer("priority", 1, 98).value_or(loop.priority));
+  table->finish();
+}
+
+void CellReader::read_dds_output(TableReader& top) {
+  auto table = top.table("dds_output");
+  if (!table) return;
+  dds.enabled = table->boolean("enabled").value_or(true);
+  constexpr long long kHighestDomain = 232;
+  dds.domain = static_cast<int>(table->integer("domain", 0, kHighestDomain).value_or(dds.domain));
+  dds.interface_address = table->text("interface_address").value_or(dds.interface_address);
+  if (!is_address(dds.interface_address)) {
+    table->error("interface_address", fmt::format("\"{}\" is no numeric address", printable(dds.interface_address)),
+                 "e.g. 127.0.0.1");
+  }
+  dds.joint_states_topic = table->text("joint_states_topic").value_or(dds.joint_states_topic);
+  dds.tf_topic = table->text("tf_topic").value_or(dds.tf_topic);
+  dds.rate_hz = table->number("rate_hz", kOutputRate).value_or(dds.rate_hz);
+  table->finish();
+}
+
+void CellReader::read_queues(TableReader& top) {
+  auto table = top.table("queues");
+  if (!table) return;
+  const auto key = [&](const char* which) -> std::optional<std::int32_t> {
+    const auto value = table->integer(which, 1, 0x7FFF'FFFF);
+    if (!value) return std::nullopt;
+    return static_cast<std::int32_t>(*value);
+  };
+  queues.script_key = key("script_key");
+  queues.sensor_key = key("sensor_key");
+  queues.reply_key = key("reply_key");
+  if (const auto mode = table->text("mode")) {
+    queues.mode = octal(*mode);
+    if (!queues.mode)
+      table->error("mode", fmt::format("mode \"{}\" is no permission", printable(*mode)), "write e.g. mode = \"0660\"");
+  }
+  queues.sensor_rate_hz = table->number("sensor_rate_hz", kOutputRate);
+  QueueConfig all;
+  queues.apply_to(all);
+  if (all.script_key == all.sensor_key || all.script_key == all.reply_key || all.sensor_key == all.reply_key)
+    table->error({}, "two queues have the same key", "the keys by default are 2351, 1990 and 2352");
+  table->finish();
+}
+
+void CellReader::read_web(TableReader& top) {
+  auto table = top.table("web");
+  if (!table) return;
+  web.enabled = table->boolean("enabled").value_or(true);
+  web.port = static_cast<int>(table->integer("port", 1, 65535).value_or(web.port));
+  table->finish();
+}
+
+void CellReader::read_startup(TableReader& top) {
+  auto table = top.table("startup");
+  if (!table) return;
+  table->require("script");
+  if (const auto script = table->text("script")) {
+    startup_script = *script;
+    if (const auto found = files_.find(FileUse::script, *script); !found)
+      table->error("script", found.error().what, found.error().remedy);
+  }
+  table->finish();
+}
+
+}  // namespace cellmirror

@@ -1,0 +1,50 @@
+// Reads the text of a cell file. Private to this folder.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/cell_file.hpp"
+#include "config/component_files.hpp"
+#include "config/table_reader.hpp"
+
+namespace cellmirror {
+
+class CellReader {
+ public:
+  CellReader(std::string file, const FileFinder& files) : file_(std::move(file)), files_(files) {}
+  CellReader(const CellReader&) = delete;
+  CellReader& operator=(const CellReader&) = delete;
+
+  // Everything but the streams. False where the text is no TOML.
+  bool read(std::string_view text);
+  // `complete`: all robots of the cell are in `robots`.
+  void read_streams(const RobotDirectory& robots, bool complete);
+
+  std::string name;
+  std::string description;
+  Component root;
+  LoopSettings loop;
+  std::vector<RobotStream> streams;
+  DdsOutputConfig dds;
+  QueueOverrides queues;
+  WebSettings web;
+  std::string startup_script;
+  Diagnostics findings;
+
+ private:
+  void read_loop(TableReader& top);
+  void read_dds_output(TableReader& top);
+  void read_queues(TableReader& top);
+  void read_web(TableReader& top);
+  void read_startup(TableReader& top);
+
+  std::string file_;
+  const FileFinder& files_;
+  std::optional<toml::table> table_;
+  std::vector<TableReader> stream_tables_;
+};
+
+}  // namespace cellmirror

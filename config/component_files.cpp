@@ -1,0 +1,115 @@
+#include "config/component_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/parse.hpp"
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kDeepest = 32;
+
+bool is_urdf(const fs::path& path) { return equal_ignoring_case(path.extension().string(), ".urdf"); }
+bool is_component(const fs::path& path) { return equal_ignoring_case(path.extension().string(), ".mpc"); }
+
+}  // namespace
+
+std::shared_ptr<const Component> read_component_file(const fs::path& path, const FileFinder& files,
+                                                     Diagnostics& diagnostics) {
+  const std::string file = path.string();
+  if (!is_urdf(path) && !is_component(path)) {
+    diagnostics.error({file, 0, 0}, "the file is no component", "component files are .mpc or .urdf");
+    return nullptr;
+  }
+  const auto text = read_text_file(path, kLargestText);
+  if (!text) {
+    diagnostics.error({file, 0, 0}, text.error().what, text.error().remedy);
+    return nullptr;
+  }
+  auto component = is_urdf(path) ? parse_urdf(*text, file, path, files, diagnostics)
+                                 : parse_component(*text, file, files, diagnostics);
+  return component ? std::make_shared<const Component>(std::move(*component)) : nullptr;
+}
+
+Result<std::shared_ptr<const Component>> ComponentFiles::component(std::string_view file) {
+  const auto path = files_.find(FileUse::component, file);
+  if (!path) return std::unexpected(path.error());
+  Entry& entry = entries_[path->string()];
+  if (entry.held) return entry.held;
+  if (auto used = entry.used.lock()) return used;
+  Diagnostics diagnostics;
+  auto component = read_component_file(*path, files_, diagnostics);
+  if (!diagnostics.ok() || !component) {
+    const auto& all = diagnostics.all();
+    const auto first = std::ranges::find(all, Severity::error, &Diagnostic::severity);
+    const std::string what = first == all.end() ? fmt::format("{} is no component", file) : first->text();
+    return fail(diagnostics.errors() > 1 ? fmt::format("{} (and {} more)", what, diagnostics.errors() - 1) : what,
+                fmt::format("cellmirror check {} shows all", path->string()));
+  }
+  entry.used = component;
+  return component;
+}
+
+void ComponentFiles::load(const Component& root, Diagnostics& diagnostics) {
+  visits_ = 0;
+  visit(root, true, 0, diagnostics);
+}
+
+void ComponentFiles::visit(const Component& component, bool loaded, std::size_t depth, Diagnostics& diagnostics) {
+  // The limits on depth and nodes are told by Cell::build(); here they only bound the work.
+  if (depth > kDeepest || ++visits_ > kMaxNodes) return;
+  for (const ComponentNode& node : component.nodes) {
+    if (node.abstract) visit_node(component, node, loaded && node.abstract->loaded, depth, diagnostics);
+  }
+}
+
+void ComponentFiles::visit_node(const Component& component, const ComponentNode& node, bool loaded, std::size_t depth,
+                                Diagnostics& diagnostics) {
+  const auto path = files_.find(FileUse::component, node.abstract->file);
+  if (!path) {
+    // Told once for each place in a file, however often that file is used.
+    const std::string place = fmt::format("{}:{}:{}", component.file, node.line, node.column);
+    if (faulty_references_.emplace(place, true).second)
+      diagnostics.error(component.place(node), path.error().what, path.error().remedy);
+    return;
+  }
+  auto [at, is_new] = entries_.try_emplace(path->string());
+  if (is_new) {
+    at->second.held = read_component_file(*path, files_, diagnostics);
+    at->second.used = at->second.held;
+  }
+  if (!at->second.held) return;
+  if (loaded) note_robot(*at->second.held, *node.abstract);
+  // A file that is not loaded is looked through once; its robots are not there yet.
+  if (is_new || loaded) visit(*at->second.held, loaded, depth + 1, diagnostics);
+}
+
+void ComponentFiles::note_robot(const Component& component, const AbstractReference& reference) {
+  if (!component.robot) return;
+  RobotFacts facts;
+  for (const int joint : component.robot->joints) {
+    const ComponentNode& node = component.nodes[static_cast<std::size_t>(joint)];
+    facts.joint_names.push_back(node.name);
+    facts.joint_kinds.push_back(node.joint->kind);
+  }
+  robots_.emplace(reference.robot_id.empty() ? component.robot->id : reference.robot_id, std::move(facts));
+}
+
+void ComponentFiles::release() {
+  for (auto& [path, entry] : entries_) entry.held.reset();
+}
+
+std::vector<fs::path> ComponentFiles::files() const {
+  std::vector<fs::path> all;
+  for (const auto& [path, entry] : entries_) all.emplace_back(path);
+  return all;
+}
+
+}  // namespace cellmirror

@@ -1,0 +1,63 @@
+// The component files of a cell: finds, reads and shares them. Private to this folder but for its type.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/file_finder.hpp"
+#include "rt_core/base/diagnostics.hpp"
+#include "rt_core/cell/component.hpp"
+#include "rt_core/ports/robot_state.hpp"
+
+namespace cellmirror {
+
+struct RobotFacts {
+  std::vector<std::string> joint_names;
+  std::vector<JointKind> joint_kinds;
+};
+// Robots by id.
+using RobotDirectory = std::map<std::string, RobotFacts, std::less<>>;
+
+class ComponentFiles final : public ComponentSource {
+ public:
+  explicit ComponentFiles(HomeFiles files) : files_(std::move(files)) {}
+
+  // After load(): from memory as long as somebody uses it, else read again.
+  Result<std::shared_ptr<const Component>> component(std::string_view file) override;
+
+  // Reads every file that `root` names, directly or through others, and reports all findings; also of those that are
+  // not loaded at the start. Between load() and release() everything stays in memory, faulty files as far as
+  // understood.
+  void load(const Component& root, Diagnostics& diagnostics);
+  void release();
+  // The robots that are there at the start.
+  [[nodiscard]] const RobotDirectory& robots() const { return robots_; }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
+
+ private:
+  struct Entry {
+    std::weak_ptr<const Component> used;
+    std::shared_ptr<const Component> held;  // while loading
+  };
+  void visit(const Component& component, bool loaded, std::size_t depth, Diagnostics& diagnostics);
+  void visit_node(const Component& component, const ComponentNode& node, bool loaded, std::size_t depth,
+                  Diagnostics& diagnostics);
+  void note_robot(const Component& component, const AbstractReference& reference);
+
+  HomeFiles files_;
+  std::map<std::string, Entry> entries_;  // by canonical path
+  std::map<std::string, bool> faulty_references_;
+  RobotDirectory robots_;
+  std::size_t visits_ = 0;
+};
+
+// Reads a component or URDF by its extension. What could be understood, even where there are findings.
+[[nodiscard]] std::shared_ptr<const Component> read_component_file(const std::filesystem::path& path,
+                                                                   const FileFinder& files, Diagnostics& diagnostics);
+
+}  // namespace cellmirror

@@ -1,0 +1,120 @@
+#include "config/file_finder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <system_error>
+
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kPackage = "package://";
+constexpr std::string_view kFile = "file://";
+
+const char* folder_of(FileUse use, std::string_view name) {
+  switch (use) {
+    case FileUse::component:
+      return equal_ignoring_case(fs::path(name).extension().string(), ".urdf") ? "robots" : "envlib";
+    case FileUse::mesh:
+      return "envlib";
+    case FileUse::description:
+      return "robots";
+    case FileUse::script:
+      return "scripts";
+    case FileUse::log:
+      return "";
+  }
+  return "";
+}
+
+// The place of `path` seen from `root`, where it lies in it.
+std::string below(const fs::path& root, const fs::path& path) {
+  const fs::path relative = path.lexically_relative(root);
+  if (relative.empty() || *relative.begin() == "..") return {};
+  return relative.string();
+}
+
+// The folders in which a package may lie: those above the URDF (up to `root`), and robots/ in the home.
+Result<fs::path> find_in_package(const KismetHome& root, const fs::path& urdf, std::string_view rest) {
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string_view::npos || slash == 0)
+    return fail(fmt::format("package://{} names no file", printable(rest)));
+  const fs::path package(rest.substr(0, slash));
+  const fs::path inside(rest.substr(slash + 1));
+  fs::path folder = urdf.parent_path();
+  constexpr int kHighest = 8;
+  for (int i = 0; i < kHighest; ++i) {
+    const std::string here = below(root.root(), folder);
+    if (here.empty()) break;
+    for (const fs::path& base : {folder.filename() == package ? folder : fs::path(), folder / package}) {
+      if (base.empty()) continue;
+      if (auto found = root.file("", below(root.root(), (base / inside).lexically_normal()))) return found;
+    }
+    if (here == ".") break;
+    folder = folder.parent_path();
+  }
+  if (auto found = root.file("robots", (package / inside).string())) return found;
+  return fail(fmt::format("there is no file package://{} above the URDF or in robots/", printable(rest)),
+              fmt::format("put the folder {} beside the URDF", printable(package.string())));
+}
+
+}  // namespace
+
+Result<fs::path> HomeFiles::find(FileUse use, std::string_view name) const {
+  return home_.file(folder_of(use, name), name, use == FileUse::script ? ".spt" : "");
+}
+
+Result<fs::path> HomeFiles::find_mesh_of_urdf(const fs::path& urdf, std::string_view name) const {
+  std::error_code error;
+  const fs::path at = fs::weakly_canonical(urdf, error);
+  if (error) return fail(fmt::format("{} cannot be opened: {}", urdf.string(), error.message()));
+  const bool in_home = !below(home_.root(), at).empty();
+  auto root = in_home ? Result<KismetHome>(home_) : KismetHome::open(at.parent_path());
+  if (!root) return std::unexpected(root.error());
+  if (name.starts_with(kPackage)) return find_in_package(*root, at, name.substr(kPackage.size()));
+  if (name.starts_with(kFile)) name.remove_prefix(kFile.size());
+  if (name.find("://") != std::string_view::npos)
+    return fail(fmt::format("the mesh {} is not a file", printable(name)), "use a path relative to the URDF");
+  if (fs::path(name).is_absolute())
+    return fail(fmt::format("the path {} is absolute", printable(name)), "use a path relative to the URDF");
+  const fs::path wanted = (at.parent_path() / name).lexically_normal();
+  const std::string inside = below(root->root(), wanted);
+  if (inside.empty() || name.empty()) {
+    return fail(fmt::format("the path {} leaves {}", printable(name), root->root().string()),
+                "put the mesh beside the URDF");
+  }
+  return root->file("", inside);
+}
+
+Result<fs::path> AnyFile::find(FileUse, std::string_view name) const { return fs::path("/") / fs::path(name); }
+
+Result<fs::path> AnyFile::find_mesh_of_urdf(const fs::path&, std::string_view name) const {
+  return fs::path("/") / fs::path(name);
+}
+
+Result<void> check_mesh(const fs::path& file) {
+  static constexpr std::array<std::string_view, 6> kKinds{".stl", ".obj", ".dae", ".ply", ".gltf", ".glb"};
+  const std::string extension = lower_case(file.extension().string());
+  if (std::ranges::find(kKinds, extension) == kKinds.end()) {
+    return fail(fmt::format("{} is no mesh file", file.filename().string()),
+                "meshes are .stl, .obj, .dae, .ply, .gltf or .glb");
+  }
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  if (error) return {};  // AnyFile's names are on no disk; real ones were opened when they were found
+  if (size == 0) return fail(fmt::format("the mesh {} is empty", file.filename().string()));
+  if (size > kLargestMesh) {
+    return fail(fmt::format("the mesh {} has {} bytes, more than {}", file.filename().string(), size, kLargestMesh),
+                "reduce it");
+  }
+  return {};
+}
+
+}  // namespace cellmirror

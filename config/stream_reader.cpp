@@ -1,0 +1,161 @@
+#include "config/stream_reader.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+enum class StreamKind { cia402, dbc, dds };
+
+// "GROUP:PORT" of a udp channel, with an IPv6 group in brackets.
+bool is_group_and_port(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) return false;
+  std::string group(text.substr(0, colon));
+  const auto port = parse_integer(text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535) return false;
+  if (group.starts_with('[') && group.ends_with(']')) {
+    in6_addr v6{};
+    group = group.substr(1, group.size() - 2);
+    return inet_pton(AF_INET6, group.c_str(), &v6) == 1 && v6.s6_addr[0] == 0xFF;
+  }
+  in_addr v4{};
+  return inet_pton(AF_INET, group.c_str(), &v4) == 1 && (ntohl(v4.s_addr) >> 28U) == 0xEU;
+}
+
+bool is_interface_name(std::string_view text) {
+  constexpr std::size_t kLongest = 15;  // IFNAMSIZ
+  return !text.empty() && text.size() <= kLongest &&
+         std::ranges::all_of(text, [](char c) { return c > ' ' && c < 0x7F && c != '/' && c != ':'; });
+}
+
+}  // namespace
+
+bool is_address(std::string_view text) {
+  const std::string address(text);
+  in_addr v4{};
+  in6_addr v6{};
+  return inet_pton(AF_INET, address.c_str(), &v4) == 1 || inet_pton(AF_INET6, address.c_str(), &v6) == 1;
+}
+
+std::optional<Nanoseconds> read_seconds(TableReader& reader, std::string_view key, double max, bool zero_allowed) {
+  const auto value = reader.number(key, {0.0, max, !zero_allowed});
+  if (!value) return std::nullopt;
+  return Nanoseconds(static_cast<std::int64_t>(std::llround(*value * 1e9)));
+}
+
+StreamAges read_ages(TableReader& reader) {
+  constexpr double kLongest = 3600.0;
+  StreamAges ages;
+  ages.stale_after = read_seconds(reader, "stale_after_s", kLongest, false).value_or(ages.stale_after);
+  const auto lost = read_seconds(reader, "lost_after_s", kLongest, false);
+  ages.lost_after = lost.value_or(std::max(ages.lost_after, ages.stale_after));
+  if (lost && *lost < ages.stale_after)
+    reader.error("lost_after_s", "a value would be lost before it is stale", "make lost_after_s the larger one");
+  return ages;
+}
+
+CanChannelConfig read_channel(TableReader& reader, const FileFinder& files) {
+  CanChannelConfig channel;
+  reader.require("channel");
+  channel.fd = reader.boolean("fd").value_or(false);
+  channel.interface = reader.text("interface").value_or("lo");
+  if (!is_interface_name(channel.interface))
+    reader.error("interface", fmt::format("\"{}\" is no name of a network interface", printable(channel.interface)));
+  channel.log_as_fast_as_possible = reader.boolean("log_as_fast_as_possible").value_or(false);
+  channel.log_repeat = reader.boolean("log_repeat").value_or(false);
+  const auto endpoint = reader.text("channel");
+  if (!endpoint) return channel;
+  channel.endpoint = *endpoint;
+  const std::size_t colon = endpoint->find(':');
+  const std::string_view kind = std::string_view(*endpoint).substr(0, colon);
+  const std::string_view rest =
+      colon == std::string::npos ? std::string_view() : std::string_view(*endpoint).substr(colon + 1);
+  const bool is_log = kind == "log";
+  if (kind == "socketcan") {
+    if (!is_interface_name(rest))
+      reader.error("channel", fmt::format("\"{}\" is no name of a CAN interface", printable(rest)),
+                   "e.g. socketcan:can0");
+  } else if (kind == "udp") {
+    if (!is_group_and_port(rest))
+      reader.error("channel", fmt::format("\"{}\" is no multicast group and port", printable(rest)),
+                   "e.g. udp:239.74.163.2:43113 or udp:[ff15::1]:43113");
+  } else if (is_log) {
+    const auto found = files.find(FileUse::log, rest);
+    if (!found) {
+      reader.error("channel", found.error().what, found.error().remedy);
+    } else {
+      channel.endpoint = "log:" + found->string();
+    }
+  } else {
+    reader.error("channel", fmt::format("\"{}\" is no channel", printable(*endpoint)),
+                 "it is socketcan:INTERFACE, udp:GROUP:PORT or log:FILE");
+  }
+  for (const char* key : {"log_as_fast_as_possible", "log_repeat"}) {
+    if (reader.has(key) && !is_log) reader.error(key, fmt::format("{} belongs to a log: channel", key));
+  }
+  return channel;
+}
+
+std::optional<JointReference> read_joint_reference(TableReader& reader, const RobotFacts* robot) {
+  reader.require("joint");
+  const auto name = reader.text("joint");
+  if (!name) return std::nullopt;
+  if (robot == nullptr) return std::nullopt;  // the robot is unknown, and that was told
+  const auto at = std::ranges::find(robot->joint_names, *name);
+  if (at == robot->joint_names.end()) {
+    std::string remedy = did_you_mean(*name, robot->joint_names);
+    if (remedy.empty()) remedy = fmt::format("its joints are {}", fmt::join(robot->joint_names, ", "));
+    reader.error("joint", fmt::format("the robot has no joint {}", printable(*name)), remedy);
+    return std::nullopt;
+  }
+  const auto number = static_cast<std::size_t>(at - robot->joint_names.begin());
+  return JointReference{number, *name, robot->joint_kinds[number]};
+}
+
+std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory& robots, bool complete,
+                                       const FileFinder& files) {
+  RobotStream stream;
+  reader.require("robot");
+  reader.require("kind");
+  const auto robot = reader.text("robot");
+  const RobotFacts* facts = nullptr;
+  if (robot) {
+    stream.robot = *robot;
+    reader.set_where("stream of " + printable(*robot));
+    const auto at = robots.find(*robot);
+    if (at != robots.end()) facts = &at->second;
+    if (at == robots.end() && complete) {
+      std::vector<std::string> ids;
+      for (const auto& [id, other] : robots) ids.push_back(id);
+      std::string remedy = did_you_mean(*robot, ids);
+      if (remedy.empty() && !ids.empty()) remedy = fmt::format("the robots are {}", fmt::join(ids, ", "));
+      reader.error("robot", fmt::format("there is no robot {}", printable(*robot)), remedy);
+    }
+  }
+  const auto kind = reader.choice<StreamKind>(
+      "kind", {{"can-cia402", StreamKind::cia402}, {"can-dbc", StreamKind::dbc}, {"dds", StreamKind::dds}});
+  if (!kind) return std::nullopt;  // which keys belong here depends on it
+  switch (*kind) {
+    case StreamKind::cia402:
+      stream.config = read_cia402(reader, facts, files);
+      break;
+    case StreamKind::dbc:
+      stream.config = read_dbc(reader, facts, files);
+      break;
+    case StreamKind::dds:
+      stream.config = read_dds(reader, facts);
+      break;
+  }
+  reader.finish();
+  return stream;
+}
+
+}  // namespace cellmirror

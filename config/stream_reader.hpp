@@ -1,0 +1,37 @@
+// Reads [[stream]] tables. Private to this folder.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "config/cell_file.hpp"
+#include "config/component_files.hpp"
+#include "config/table_reader.hpp"
+
+namespace cellmirror {
+
+// `complete`: all robots of the cell are in `robots`, so that an unknown one is an error.
+[[nodiscard]] std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory& robots, bool complete,
+                                                     const FileFinder& files);
+
+// The number of a joint that a table names with the key "joint"; nothing, with an error, where it is unknown.
+struct JointReference {
+  std::size_t number = 0;
+  std::string name;
+  JointKind kind = JointKind::revolute;
+};
+[[nodiscard]] std::optional<JointReference> read_joint_reference(TableReader& reader, const RobotFacts* robot);
+
+[[nodiscard]] Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
+[[nodiscard]] DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
+[[nodiscard]] DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot);
+[[nodiscard]] CanChannelConfig read_channel(TableReader& reader, const FileFinder& files);
+[[nodiscard]] StreamAges read_ages(TableReader& reader);
+// An IPv4 or IPv6 address as text, numeric.
+[[nodiscard]] bool is_address(std::string_view text);
+// Seconds in the key, within 0 and `max`; the value as nanoseconds.
+[[nodiscard]] std::optional<Nanoseconds> read_seconds(TableReader& reader, std::string_view key, double max,
+                                                      bool zero_allowed);
+
+}  // namespace cellmirror

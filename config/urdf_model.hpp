@@ -1,0 +1,48 @@
+// The links and joints of a URDF as its file lists them, before they become a tree. Private to this folder.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/file_finder.hpp"
+#include "config/urdf_xml.hpp"
+#include "rt_core/cell/component.hpp"
+
+namespace cellmirror {
+
+struct UrdfLink {
+  std::string name;
+  std::vector<Geometry> geometry;
+  BodyInertia inertia;
+  int line = 0;
+};
+
+struct UrdfJoint {
+  std::string name;
+  std::string parent;
+  std::string child;
+  Pose X_PJ = Pose::Identity();
+  std::optional<JointDefinition> joint;  // nothing: fixed
+  int line = 0;
+};
+
+struct UrdfModel {
+  std::string name;
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+};
+
+// Reads all <link> and <joint> elements; those that cannot be understood are left out, with findings.
+[[nodiscard]] UrdfModel read_urdf_elements(const tinyxml2::XMLElement& robot, const UrdfXml& xml,
+                                           const std::filesystem::path& path, const FileFinder& files);
+[[nodiscard]] std::optional<UrdfJoint> read_urdf_joint(const tinyxml2::XMLElement& element, const UrdfXml& xml);
+using UrdfMaterials = std::map<std::string, std::array<float, 4>, std::less<>>;
+[[nodiscard]] std::optional<UrdfLink> read_urdf_link(const tinyxml2::XMLElement& element, const UrdfXml& xml,
+                                                     const UrdfMaterials& materials, const std::filesystem::path& path,
+                                                     const FileFinder& files);
+[[nodiscard]] std::optional<std::array<float, 4>> read_urdf_color(const tinyxml2::XMLElement& material,
+                                                                  const UrdfXml& xml);
+
+}  // namespace cellmirror
