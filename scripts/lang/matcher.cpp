@@ -231,16 +231,24 @@ double Matcher::value_of(const Parameter& parameter, const Token& word, JointKin
   const bool integer = parameter.kind == ParameterKind::integer;
   const std::optional<double> value = integer ? integer_of(word) : number_of(word);
   if (!value) {
-    findings_.error(word.begin,
-                    fmt::format("{} {} {}", parameter.meaning, printable(word.text), why_no_number(word, integer)),
-                    expected());
+    if (word.first_in_line && !forms_of(word.text).empty()) {
+      surplus(word);
+    } else {
+      findings_.error(word.begin,
+                      fmt::format("{} {} {}", parameter.meaning, printable(word.text), why_no_number(word, integer)),
+                      expected());
+    }
     return 0;
   }
   const Unit unit = unit_of(parameter);
   const Range range = range_of(parameter);
   if (!range.holds(*value)) {
-    findings_.error(word.begin, fmt::format("{} {} is not in range", parameter.meaning, printable(word.text)),
-                    fmt::format("allowed: {}", range_text(range, unit)));
+    const std::string allowed = range_text(range, unit);
+    const bool from_to = allowed.find("..") != std::string::npos;
+    findings_.error(
+        word.begin,
+        fmt::format("{} {} is not {}{}", parameter.meaning, printable(word.text), from_to ? "in " : "", allowed),
+        expected());
     return 0;
   }
   return to_si(*value, unit, kind);

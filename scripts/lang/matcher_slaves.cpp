@@ -29,6 +29,7 @@ constexpr Parameter kSlaveJoint{.name = "slave_joint", .meaning = "joint of the 
 void Matcher::match_slaves() {
   const std::string_view master = out_.text(kMasterSlot);
   const auto count = static_cast<std::size_t>(out_.integer(kCountSlot));
+  if (count == 0) next_ = words_.size();  // the count was wrong: what follows cannot be told apart
   for (std::size_t i = 0; i < count; ++i) {
     if (!match_slave(i, master)) {
       next_ = words_.size();

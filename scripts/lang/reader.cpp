@@ -179,7 +179,11 @@ CommandReader::Step CommandReader::read_command(const Token& head, const NameDir
   const std::span<const Form* const> forms = forms_of(head.text);
   if (forms.empty() || head.commas_before != 0) {
     Findings findings(diagnostics, source_, {});
-    unknown_command(head, findings);
+    if (forms.empty()) {
+      unknown_command(head, findings);
+    } else {
+      findings.error(head.begin, fmt::format("a comma before {} does not belong here", printable(head.text)));
+    }
     lexer_.skip_command();
     return Step::error;
   }

@@ -1,0 +1,69 @@
+// A gateway for benchmarks and fuzzing: accepts everything, remembers only which robot is active.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "scripts/commands/host.hpp"
+#include "tests/golden/scripts/fake_names.hpp"
+
+namespace cellmirror::testing {
+
+class QuietHost final : public WorldHost, public RobotHost, public ProgramHost, public ViewHost, public DiagnosisHost {
+ public:
+  FakeNames names;
+  std::size_t calls = 0;
+
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this}; }
+
+  Result<void> activate(std::string_view /*node*/) override { return called(); }
+  Result<void> deactivate(std::string_view /*node*/) override { return called(); }
+  Result<void> delete_node(std::string_view /*node*/) override { return called(); }
+  Result<void> swap_node(std::string_view /*node*/) override { return called(); }
+  Result<void> level_down(std::string_view /*node*/) override { return called(); }
+  Result<void> level_up(std::string_view /*node*/) override { return called(); }
+  Result<void> set_placement(std::string_view /*node*/, const Pose& /*X_PF*/) override { return called(); }
+  Result<void> connect(std::string_view /*part*/, std::string_view /*predecessor*/) override { return called(); }
+  Result<void> attach_at_workframe(std::string_view /*part*/, std::string_view /*predecessor*/,
+                                   std::string_view /*workframe*/) override {
+    return called();
+  }
+  Result<void> draw_scene() override { return called(); }
+  Result<void> set_active_robot(std::string_view robot) override {
+    names.active = robot;
+    return called();
+  }
+  Result<void> set_online(std::string_view /*robot*/, bool /*online*/) override { return called(); }
+  Result<void> set_sending(std::string_view /*robot*/, bool /*sending*/) override { return called(); }
+  Result<void> move_joints_to(std::string_view /*robot*/, std::span<const double> /*positions*/) override {
+    return called();
+  }
+  Result<void> move_joints_by(std::string_view /*robot*/, std::span<const double> /*increments*/) override {
+    return called();
+  }
+  Result<void> set_joint_parameter(JointParameter /*which*/, std::span<const double> /*values*/) override {
+    return called();
+  }
+  Result<void> set_scalar_parameter(ScalarParameter /*which*/, double /*value*/) override { return called(); }
+  Result<void> set_fly(FlyType /*type*/, double /*parameter*/) override { return called(); }
+  Result<void> set_ptp_mode(PtpMode /*mode*/) override { return called(); }
+  Result<void> set_velocity_profile(VelocityProfile /*profile*/) override { return called(); }
+  Result<void> set_inverse_class(InverseClass /*inverse_class*/) override { return called(); }
+  Result<void> set_point_of_reference(const Pose& /*X_FP*/) override { return called(); }
+  Result<void> set_tool_center_point(const Pose& /*X_PT*/) override { return called(); }
+  Result<void> set_language(RobotLanguage /*language*/) override { return called(); }
+  [[nodiscard]] bool busy() const override { return false; }
+  Result<void> set_camera(std::string_view /*camera*/, double /*focal_distance_m*/, double /*fovy_rad*/) override {
+    return called();
+  }
+  Result<void> show_message(std::string_view /*text*/) override { return called(); }
+  Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
+
+ private:
+  Result<void> called() {
+    ++calls;
+    return {};
+  }
+};
+
+}  // namespace cellmirror::testing
