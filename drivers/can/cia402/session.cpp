@@ -1,0 +1,263 @@
+#include "drivers/can/cia402/session.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "drivers/can/canopen/bytes.hpp"
+#include "drivers/can/canopen/cob_id.hpp"
+#include "drivers/can/cia402/drive_objects.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+// Without SYNC for this many periods of silence a synchronous TPDO is taken as it comes.
+constexpr Nanoseconds kSyncSilence{1'000'000'000};
+
+constexpr bool is_synchronous(std::uint8_t transmission_type) { return transmission_type <= 240; }
+
+}  // namespace
+
+Cia402Session::Cia402Session(Cia402Plan plan, Cia402SessionOutput& output) : plan_(std::move(plan)), output_(&output) {
+  CELLMIRROR_EXPECTS(plan_.nodes.size() <= kMaxJointsPerRobot);
+  for (const Cia402NodePlan& node_plan : plan_.nodes) {
+    Node node;
+    node.plan = node_plan;
+    node.status.node_id = node_plan.config.node_id;
+    node.status.joint_name = node_plan.config.joint_name;
+    if (node_plan.config.configure) {
+      node.sdo.emplace(node_plan.config.node_id, plan_.config.sdo_timeout);
+      node.steps = steps_of(plan_, node_plan);
+    }
+    for (const TpdoConfig& config : node_plan.tpdos) {
+      const auto field = [&config](ObjectAddress address) {
+        const auto found = find_in_mapping(config.entries, address.index, address.subindex);
+        return found ? Quantity{found->first_bit, found->bits} : Quantity{};
+      };
+      Tpdo tpdo;
+      tpdo.node = nodes_.size();
+      tpdo.extended = (config.cob_id & kCobIdExtended) != 0;
+      tpdo.cob_id = config.cob_id & (tpdo.extended ? 0x1FFF'FFFFU : 0x7FFU);
+      tpdo.number = config.number;
+      tpdo.length = static_cast<std::uint8_t>(pdo_length(config.entries));
+      tpdo.synchronous = is_synchronous(config.transmission_type);
+      tpdo.every = config.transmission_type == 0 ? 1 : config.transmission_type;
+      tpdo.statusword = field(kStatusword);
+      tpdo.position = field(kPositionActual);
+      tpdo.velocity = field(kVelocityActual);
+      tpdo.torque = field(kTorqueActual);
+      tpdos_.push_back(tpdo);
+      has_extended_ |= tpdo.extended;
+      if (!tpdo.extended) tpdo_of_id_[tpdo.cob_id] = static_cast<std::uint16_t>(tpdos_.size());
+    }
+    nodes_.push_back(std::move(node));
+    node_of_id_[node_plan.config.node_id] = static_cast<std::uint8_t>(nodes_.size());
+  }
+}
+
+void Cia402Session::start(Timestamp now) {
+  if (plan_.config.sync_period.count() > 0) next_sync_ = now + plan_.config.sync_period;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (plan_.config.heartbeat_timeout.count() > 0) {
+      nodes_[i].heartbeat_deadline = now + plan_.config.heartbeat_timeout;
+    }
+    bring_up(i, now);
+  }
+}
+
+void Cia402Session::receive(const CanFrame& frame, Timestamp now) {
+  if (frame.error || frame.remote) return;
+  if (frame.extended) {
+    for (Tpdo& tpdo : tpdos_) {
+      if (has_extended_ && tpdo.extended && tpdo.cob_id == frame.id) on_tpdo(tpdo, frame, now);
+    }
+    return;
+  }
+  if (frame.id >= 0x800) return;
+  if (const std::uint16_t tpdo = tpdo_of_id_[frame.id]; tpdo != 0) {
+    on_tpdo(tpdos_[tpdo - 1U], frame, now);
+    return;
+  }
+  if (is_sync(frame)) {
+    // Another node's: where this session produces SYNC itself, a second producer is none of its cycles.
+    if (plan_.config.sync_period.count() == 0) on_sync(now);
+    return;
+  }
+  const std::uint8_t node = node_of_id_[frame.id & 0x7F];
+  if (node == 0) return;
+  const std::size_t index = node - 1U;
+  switch (frame.id & ~0x7FU) {
+    case kHeartbeatBase:
+      if (const auto heartbeat = decode_heartbeat(frame)) {
+        on_heartbeat(index, heartbeat->state, now);
+      } else {
+        reject(index, fmt::format("heartbeat of {} bytes or of an unknown state", frame.length));
+      }
+      return;
+    case kEmcyBase:
+      if (const auto emcy = decode_emcy(frame)) {
+        on_emcy(index, *emcy);
+      } else {
+        reject(index, fmt::format("EMCY of {} bytes instead of 8", frame.length));
+      }
+      return;
+    case kSdoResponseBase:
+      if (!nodes_[index].sdo) return;
+      if (frame.length != 8) {
+        reject(index, fmt::format("SDO answer of {} bytes instead of 8", frame.length));
+        return;
+      }
+      if (const auto request = nodes_[index].sdo->receive(frame, now)) output_->send(*request);
+      on_sdo_progress(index, now);
+      return;
+    default:
+      return;
+  }
+}
+
+void Cia402Session::on_tpdo(Tpdo& tpdo, const CanFrame& frame, Timestamp now) {
+  Node& node = nodes_[tpdo.node];
+  node.status.heard = true;
+  if (frame.length != tpdo.length) {
+    reject(tpdo.node, fmt::format("TPDO{} of {} bytes, its mapping has {}", tpdo.number, frame.length, tpdo.length));
+    return;
+  }
+  node.status.last_tpdo = now;
+  sample_.receive_time = now;
+  decode(tpdo, frame);
+  tpdo.expected = false;
+  tpdo.syncs = 0;
+  if (tpdo.synchronous) node.answering = true;
+  const bool cyclic = tpdo.synchronous && in_cycle_ && now - cycle_start_ < kSyncSilence;
+  if (cyclic) {
+    if (!cycle_is_complete()) return;
+  } else if (tpdo.position.bits == 0) {
+    return;  // waits for the position, whose TPDO makes the sample
+  }
+  emit();
+}
+
+void Cia402Session::decode(const Tpdo& tpdo, const CanFrame& frame) {
+  Node& node = nodes_[tpdo.node];
+  const Cia402NodeConfig& config = node.plan.config;
+  const auto raw = [&frame](const Quantity& field) {
+    return static_cast<double>(sign_extended(get_bits(frame.payload(), field.first_bit, field.bits), field.bits));
+  };
+  if (tpdo.statusword.bits != 0) {
+    node.status.statusword =
+        static_cast<std::uint16_t>(get_bits(frame.payload(), tpdo.statusword.first_bit, tpdo.statusword.bits));
+    node.status.state = decode_statusword(node.status.statusword);
+  }
+  if (tpdo.velocity.bits != 0) {
+    const double scale = config.velocity_scale != 0.0 ? config.velocity_scale : config.scale;
+    sample_.velocity[config.joint] = config.sign * raw(tpdo.velocity) * scale;
+  }
+  if (tpdo.torque.bits != 0) sample_.effort[config.joint] = config.sign * raw(tpdo.torque) * config.torque_scale;
+  if (tpdo.position.bits != 0) {
+    sample_.position[config.joint] = config.sign * raw(tpdo.position) * config.scale + config.offset;
+    sample_.present |= 1U << config.joint;
+  }
+}
+
+bool Cia402Session::cycle_is_complete() const {
+  for (const Tpdo& tpdo : tpdos_) {
+    if (tpdo.expected) return false;
+  }
+  return true;
+}
+
+void Cia402Session::emit() {
+  if (sample_.present == 0) return;
+  sample_.sequence = ++counters_.samples;
+  output_->sample(sample_);
+  sample_.present = 0;
+}
+
+void Cia402Session::on_sync(Timestamp now) {
+  ++counters_.syncs;
+  if (in_cycle_) {
+    count_missing();
+    emit();  // what came of an incomplete cycle
+  }
+  in_cycle_ = true;
+  cycle_start_ = now;
+  for (Tpdo& tpdo : tpdos_) {
+    const Node& node = nodes_[tpdo.node];
+    const bool sleeping = node.status.nmt && *node.status.nmt != NmtState::operational;
+    const bool due = tpdo.synchronous && ++tpdo.syncs >= tpdo.every;
+    tpdo.expected = due && node.answering && !node.status.heartbeat_lost && !sleeping;
+  }
+}
+
+void Cia402Session::count_missing() {
+  for (Tpdo& tpdo : tpdos_) {
+    if (!tpdo.expected) continue;
+    ++counters_.lost;
+    tell(Cia402EventKind::tpdo_missing, tpdo.node, fmt::format("TPDO{} did not follow a SYNC", tpdo.number));
+  }
+}
+
+void Cia402Session::produce_sync(Timestamp now) {
+  const Nanoseconds period = plan_.config.sync_period;
+  if (output_->send(encode_sync())) {
+    on_sync(now);
+  } else {
+    ++counters_.syncs_missed;
+    // Nobody was asked, so nobody fails to answer.
+    for (Tpdo& tpdo : tpdos_) tpdo.expected = false;
+    emit();
+    in_cycle_ = false;
+  }
+  next_sync_ = next_sync_ + period;
+  if (next_sync_ <= now) {
+    const std::int64_t late = (now - next_sync_) / period + 1;
+    counters_.syncs_missed += static_cast<std::uint64_t>(late);
+    next_sync_ = next_sync_ + late * period;  // the phase stays
+  }
+}
+
+void Cia402Session::advance(Timestamp now) {
+  if (next_sync_.known() && now >= next_sync_) produce_sync(now);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    watch(i, now);
+    Node& node = nodes_[i];
+    if (!node.sdo) continue;
+    if (const auto abort = node.sdo->advance(now)) {
+      output_->send(*abort);
+      on_sdo_progress(i, now);
+    }
+    if (node.retry.known() && now >= node.retry) bring_up(i, now);
+  }
+}
+
+Timestamp Cia402Session::next_due() const {
+  Timestamp due = next_sync_;
+  const auto take = [&due](Timestamp candidate) {
+    if (candidate.known() && (!due.known() || candidate < due)) due = candidate;
+  };
+  for (const Node& node : nodes_) {
+    take(node.heartbeat_deadline);
+    take(node.retry);
+    if (node.sdo) take(node.sdo->due());
+  }
+  return due;
+}
+
+void Cia402Session::reject(std::size_t node, std::string why) {
+  ++counters_.rejected;
+  tell(Cia402EventKind::rejected, node, std::move(why));
+}
+
+void Cia402Session::tell(Cia402EventKind kind, std::size_t node, std::string what) {
+  const Cia402NodeStatus& status = nodes_[node].status;
+  output_->event({kind, node, fmt::format("node {} ({}): {}", status.node_id, status.joint_name, what)});
+}
+
+std::vector<Cia402NodeStatus> Cia402Session::nodes() const {
+  std::vector<Cia402NodeStatus> result;
+  result.reserve(nodes_.size());
+  for (const Node& node : nodes_) result.push_back(node.status);
+  return result;
+}
+
+}  // namespace cellmirror::can

@@ -1,0 +1,86 @@
+// Joint samples from frames that a DBC describes. Protocol only, without I/O and without a clock.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/can/dbc/dbc.hpp"
+#include "rt_core/base/diagnostics.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/can_channel.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror::can {
+
+struct DbcPlan {
+  struct Mapped {
+    std::size_t message = 0;  // in dbc.messages
+    std::size_t signal = 0;   // in its signals
+    DbcSignalConfig config;
+  };
+  DbcStreamConfig config;
+  Dbc dbc;
+  std::vector<Mapped> mapped;
+};
+
+// Reads the DBC and finds the configured signals in it; unknown names are answered with the nearest ones. All mistakes
+// are told; none where there was one.
+[[nodiscard]] std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Diagnostics& diagnostics);
+// The same with a DBC that was read already.
+[[nodiscard]] std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics);
+
+class DbcSessionOutput {
+ public:
+  virtual ~DbcSessionOutput() = default;
+  virtual void sample(const JointSample& sample) = 0;
+  // A frame or a value was refused: "Joint_3: 4 bytes, the DBC says 8".
+  virtual void rejected(const std::string& why) = 0;
+};
+
+struct DbcCounters {
+  std::uint64_t samples = 0;
+  std::uint64_t rejected = 0;
+};
+
+class DbcSession {
+ public:
+  // `output` outlives the session.
+  DbcSession(DbcPlan plan, DbcSessionOutput& output);
+  DbcSession(const DbcSession&) = delete;  // points into its own plan
+  DbcSession& operator=(const DbcSession&) = delete;
+
+  // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with the
+  // next one. Frames shorter than the DBC says are refused, longer ones (FD padding) are taken.
+  void receive(const CanFrame& frame, Timestamp now);
+
+  [[nodiscard]] const DbcCounters& counters() const { return counters_; }
+
+ private:
+  struct Field {
+    const DbcSignal* signal = nullptr;
+    std::size_t joint = 0;
+    JointQuantity quantity = JointQuantity::position;
+    double scale = 1.0;
+    double offset = 0.0;
+  };
+  struct Source {
+    const DbcMessage* message = nullptr;
+    std::vector<Field> fields;
+  };
+
+  void take(const Source& source, const Field& field, const CanFrame& frame);
+  void reject(const std::string& why);
+
+  DbcPlan plan_;
+  DbcSessionOutput* output_;
+  std::map<std::pair<bool, std::uint32_t>, Source> sources_;  // by extended, identifier
+  JointSample sample_;
+  DbcCounters counters_;
+};
+
+}  // namespace cellmirror::can

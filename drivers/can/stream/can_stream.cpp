@@ -1,0 +1,160 @@
+#include "drivers/can/stream/can_stream.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "drivers/can/channel/error_frame.hpp"
+#include "drivers/can/channel/open_channel.hpp"
+#include "rt_core/base/contract.hpp"
+#include "rt_core/base/log.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kLongestWait = 50ms;  // how long close() may have to wait for the thread
+constexpr std::size_t kErrorsKept = 16;
+
+}  // namespace
+
+CanStream::CanStream(std::string kind, CanChannelConfig channel, const Clock& clock, CanStreamOptions options,
+                     MakeProtocol make_protocol)
+    : kind_(std::move(kind)),
+      channel_config_(std::move(channel)),
+      clock_(&clock),
+      options_(std::move(options)),
+      make_protocol_(std::move(make_protocol)) {
+  if (!options_.open_channel) options_.open_channel = open_can_channel;
+}
+
+CanStream::~CanStream() { close(); }
+
+Result<void> CanStream::open(JointSampleSink& sink) {
+  CELLMIRROR_EXPECTS(!thread_.joinable());
+  auto channel = options_.open_channel(channel_config_);
+  if (!channel) return std::unexpected(channel.error());
+  const std::lock_guard lock(mutex_);
+  channel_ = std::move(*channel);
+  protocol_ = make_protocol_(*this);
+  sink_ = &sink;
+  rate_ = {};
+  last_errors_.clear();
+  bus_ = CanBusState::unknown;
+  ended_ = false;
+  stop_ = false;
+  thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+void CanStream::close() {
+  if (!thread_.joinable()) return;
+  stop_ = true;
+  thread_.join();
+  const std::lock_guard lock(mutex_);
+  channel_.reset();
+  sink_ = nullptr;
+}
+
+void CanStream::prepare_thread() const {
+  pthread_setname_np(pthread_self(), options_.thread_name.substr(0, 15).c_str());
+  if (options_.fifo_priority <= 0) return;
+  sched_param parameters{};
+  parameters.sched_priority = options_.fifo_priority;
+  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) != 0) {
+    log_warning("can.scheduler " + channel_config_.endpoint, "SCHED_FIFO is not allowed: the stream runs without it");
+  }
+}
+
+void CanStream::run() {
+  prepare_thread();
+  Timestamp due;
+  {
+    const std::lock_guard lock(mutex_);
+    protocol_->start(clock_->now());
+    due = protocol_->next_due();
+  }
+  ReceivedCanFrame frame;
+  CanReceive last = CanReceive::timeout;
+  while (!stop_) {
+    const Nanoseconds until_due = due.known() ? due - clock_->now() : kLongestWait;
+    const CanReceive received = channel_->receive(frame, std::clamp<Nanoseconds>(until_due, 0ns, kLongestWait));
+    const std::lock_guard lock(mutex_);
+    const bool is_frame = received == CanReceive::frame;
+    if (is_frame && !frame.frame.error) protocol_->receive(frame.frame, frame.receive_time);
+    if (const Timestamp now = clock_->now(); due.known() && now >= due) protocol_->advance(now);
+    due = protocol_->next_due();
+    ended_ = received == CanReceive::end;
+    // The state of the bus can only have changed where no ordinary frame came.
+    if (!is_frame || frame.frame.error || last != CanReceive::frame) watch_bus();
+    last = received;
+  }
+}
+
+void CanStream::watch_bus() {
+  const CanChannelStatus status = channel_->status();
+  if (status.bus == bus_) return;
+  const bool was_bad = bus_ == CanBusState::bus_off || bus_ == CanBusState::down;
+  bus_ = status.bus;
+  const bool is_bad = bus_ != CanBusState::active && bus_ != CanBusState::unknown;
+  if (!was_bad && !is_bad) return;
+  note("bus", fmt::format("bus: {}{}{}", words(bus_), is_bad && !status.last_error.empty() ? ": " : "",
+                          is_bad ? status.last_error : ""));
+}
+
+bool CanStream::send(const CanFrame& frame) { return channel_->send(frame); }
+
+void CanStream::push(const JointSample& sample) {
+  rate_.note(clock_->now());
+  sink_->push(sample);
+}
+
+void CanStream::note(std::string_view kind, const std::string& text) {
+  log_warning(fmt::format("can.{} {}", kind, channel_config_.endpoint), "{}", text);
+  if (!last_errors_.empty() && last_errors_.back() == text) return;
+  last_errors_.push_back(text);
+  if (last_errors_.size() > kErrorsKept) last_errors_.pop_front();
+}
+
+std::string CanStream::bus_condition(const CanChannelStatus& bus) const {
+  if (ended_) return "the log has ended";
+  if (bus.bus == CanBusState::bus_off) return "bus-off: waiting for the bus";
+  if (bus.bus == CanBusState::down) return bus.last_error.empty() ? "bus down: waiting for it" : bus.last_error;
+  return {};
+}
+
+JointStreamStatus CanStream::status() const {
+  JointStreamStatus status;
+  status.kind = kind_;
+  status.endpoint = channel_config_.endpoint;
+  const std::lock_guard lock(mutex_);
+  status.open = channel_ != nullptr;
+  status.condition = "closed";
+  if (protocol_ == nullptr) return status;
+  const Timestamp now = clock_->now();
+  protocol_->describe(status, now);
+  status.last_errors.assign(last_errors_.begin(), last_errors_.end());
+  if (channel_ == nullptr) {
+    status.condition = "closed";
+    return status;
+  }
+  status.rate_hz = rate_.hz(now);
+  const CanChannelStatus bus = channel_->status();
+  status.lost += bus.receive_dropped;
+  status.rejected += bus.malformed;
+  if (const std::string condition = bus_condition(bus); !condition.empty()) status.condition = condition;
+  status.details.emplace_back("bus", words(bus.bus));
+  status.details.emplace_back(
+      "channel", fmt::format("{} received, {} sent, {} refused, {} dropped, {} malformed, {} error frames, {} reopened",
+                             bus.received, bus.sent, bus.send_refused, bus.receive_dropped, bus.malformed,
+                             bus.error_frames, bus.reopened));
+  if (!bus.last_error.empty()) status.details.emplace_back("last channel error", bus.last_error);
+  return status;
+}
+
+}  // namespace cellmirror::can

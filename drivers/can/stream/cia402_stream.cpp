@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "drivers/can/cia402/session.hpp"
+#include "drivers/can/stream/can_stream.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+std::string_view log_kind(Cia402EventKind kind) {
+  switch (kind) {
+    case Cia402EventKind::boot_up:
+      return "boot-up";
+    case Cia402EventKind::node_lost:
+    case Cia402EventKind::node_resolved:
+      return "heartbeat";
+    case Cia402EventKind::emcy:
+      return "emcy";
+    case Cia402EventKind::configured:
+    case Cia402EventKind::configuration_failed:
+      return "configuration";
+    case Cia402EventKind::tpdo_missing:
+      return "tpdo";
+    case Cia402EventKind::rejected:
+      return "rejected";
+  }
+  return "event";
+}
+
+class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
+ public:
+  Cia402Protocol(const Cia402Plan& plan, CanProtocolHost& host) : host_(&host), session_(plan, *this) {}
+
+  void start(Timestamp now) override { session_.start(now); }
+  void receive(const CanFrame& frame, Timestamp now) override { session_.receive(frame, now); }
+  void advance(Timestamp now) override { session_.advance(now); }
+  [[nodiscard]] Timestamp next_due() const override { return session_.next_due(); }
+
+  void describe(JointStreamStatus& status, Timestamp now) const override {
+    const Cia402Counters& counters = session_.counters();
+    status.received = counters.samples;
+    status.lost = counters.lost;
+    status.rejected = counters.rejected;
+    const auto nodes = session_.nodes();
+    status.condition = condition(nodes, now);
+    for (const Cia402NodeStatus& node : nodes) {
+      status.details.emplace_back(fmt::format("node {} ({})", node.node_id, node.joint_name), words(node, now));
+      if (node.last_emcy) {
+        status.details.emplace_back(fmt::format("last EMCY of node {}", node.node_id), text(*node.last_emcy));
+      }
+    }
+    if (counters.syncs + counters.syncs_missed > 0) {
+      status.details.emplace_back("SYNC", fmt::format("{} cycles, {} missed", counters.syncs, counters.syncs_missed));
+    }
+  }
+
+ private:
+  bool send(const CanFrame& frame) override { return host_->send(frame); }
+  void sample(const JointSample& sample) override { host_->push(sample); }
+  void event(const Cia402Event& event) override { host_->note(log_kind(event.kind), event.text); }
+
+  CanProtocolHost* host_;
+  Cia402Session session_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<JointStream>> make_cia402_stream(const Cia402StreamConfig& config, const Clock& clock,
+                                                        CanStreamOptions options) {
+  Diagnostics diagnostics;
+  auto plan = plan_cia402(config, diagnostics);
+  if (!plan) return fail("the CiA 402 stream cannot be set up:\n" + diagnostics.text());
+  return std::make_unique<CanStream>("can-cia402", config.channel, clock, std::move(options),
+                                     [plan = std::move(*plan)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
+                                       return std::make_unique<Cia402Protocol>(plan, host);
+                                     });
+}
+
+}  // namespace cellmirror::can

@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "drivers/can/dbc/session.hpp"
+#include "drivers/can/stream/can_stream.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
+ public:
+  DbcProtocol(const DbcPlan& plan, CanProtocolHost& host)
+      : host_(&host), ages_(plan.config.ages), session_(plan, *this) {}
+
+  void start(Timestamp now) override { started_ = now; }
+  void receive(const CanFrame& frame, Timestamp now) override { session_.receive(frame, now); }
+  void advance(Timestamp) override {}
+  [[nodiscard]] Timestamp next_due() const override { return {}; }
+
+  void describe(JointStreamStatus& status, Timestamp now) const override {
+    status.received = session_.counters().samples;
+    status.rejected = session_.counters().rejected;
+    if (!last_sample_.known()) {
+      status.condition = fmt::format("no frame of the DBC's messages since {:.1f} s", seconds(now - started_));
+    } else if (now - last_sample_ > ages_.stale_after) {
+      status.condition = fmt::format("no frame since {:.1f} s", seconds(now - last_sample_));
+    } else {
+      status.condition = "operational";
+    }
+  }
+
+ private:
+  void sample(const JointSample& sample) override {
+    last_sample_ = sample.receive_time;
+    host_->push(sample);
+  }
+  void rejected(const std::string& why) override { host_->note("rejected", why); }
+
+  CanProtocolHost* host_;
+  StreamAges ages_;
+  DbcSession session_;
+  Timestamp started_;
+  Timestamp last_sample_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& config, const Clock& clock,
+                                                     CanStreamOptions options) {
+  Diagnostics diagnostics;
+  auto plan = plan_dbc(config, diagnostics);
+  if (!plan) return fail("the DBC stream cannot be set up:\n" + diagnostics.text());
+  return std::make_unique<CanStream>("can-dbc", config.channel, clock, std::move(options),
+                                     [plan = std::move(*plan)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
+                                       return std::make_unique<DbcProtocol>(plan, host);
+                                     });
+}
+
+}  // namespace cellmirror::can

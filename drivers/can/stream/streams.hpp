@@ -1,0 +1,33 @@
+// Joint streams over CAN, ready to use: a channel, a protocol session and a thread of their own each.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/can_channel.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror::can {
+
+using ChannelOpener = std::function<Result<std::unique_ptr<CanChannel>>(const CanChannelConfig&)>;
+
+struct CanStreamOptions {
+  std::string thread_name = "can";  // at most 15 bytes are shown by the system
+  int fifo_priority = 0;            // > 0: SCHED_FIFO with this priority where the machine allows it
+  ChannelOpener open_channel;       // empty: open_can_channel(); tests give a virtual bus
+};
+
+// Reads and checks the EDS, DCF or DBC files now; the channel is opened by open(). Fails with all mistakes found.
+// `clock` outlives the stream. Latency from a frame's arrival to the sample in the sink: microseconds after the wake-up
+// of the stream's thread, which blocks in poll; SYNC is produced by the poll's timeout.
+[[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_stream(const Cia402StreamConfig& config,
+                                                                      const Clock& clock,
+                                                                      CanStreamOptions options = {});
+[[nodiscard]] Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& config, const Clock& clock,
+                                                                   CanStreamOptions options = {});
+
+}  // namespace cellmirror::can
