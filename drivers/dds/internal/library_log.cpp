@@ -2,7 +2,6 @@
 
 #include <fastdds/dds/log/Log.hpp>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "rt_core/base/log.hpp"
@@ -24,15 +23,24 @@ class ToOurLog final : public eprosima::fastdds::dds::LogConsumer {
   }
 };
 
-}  // namespace
-
-void redirect_library_log() {
-  static std::once_flag once;
-  std::call_once(once, [] {
+// The library's log thread outlives our log at the end of the process unless it is stopped before.
+struct Redirection {
+  Redirection() {
+    log_text(LogLevel::debug, "dds.library", "redirected");  // our log exists first, so that it goes last
     Log::ClearConsumers();
     Log::RegisterConsumer(std::make_unique<ToOurLog>());
     Log::SetVerbosity(Log::Kind::Warning);
-  });
-}
+  }
+  ~Redirection() {
+    Log::ClearConsumers();
+    Log::KillThread();
+  }
+  Redirection(const Redirection&) = delete;
+  Redirection& operator=(const Redirection&) = delete;
+};
+
+}  // namespace
+
+void redirect_library_log() { static const Redirection redirection; }
 
 }  // namespace cellmirror::dds
