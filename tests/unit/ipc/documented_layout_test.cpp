@@ -1,0 +1,153 @@
+// docs/messages.md, docs/examples/cellmirror_messages.h and the codec tell the same offsets.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+
+#include "docs/examples/cellmirror_messages.h"
+#include "ipc/wire/robot_record.hpp"
+#include "ipc/wire/script_message.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror {
+namespace {
+
+namespace header = record_offset;
+namespace robot = robot_record_offset;
+
+struct Row {
+  std::size_t offset;
+  std::string type;
+};
+using Table = std::map<std::string, Row>;  // by name
+
+// The table behind the heading "### `title`".
+Table documented(const std::string& title) {
+  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
+  std::ifstream in(std::string(source == nullptr ? "." : source) + "/docs/messages.md");
+  EXPECT_TRUE(in) << "docs/messages.md is missing; CELLMIRROR_SOURCE_DIR names the sources";
+  const std::regex row(R"(\| (\d+) \| (\S+) \| (\w+) \|.*)");
+  Table table;
+  std::string line;
+  bool here = false;
+  while (std::getline(in, line)) {
+    if (line.starts_with("#")) here = line == "### " + title;
+    std::smatch match;
+    if (here && std::regex_match(line, match, row)) table[match[3]] = {std::stoul(match[1]), match[2]};
+  }
+  return table;
+}
+
+struct Field {
+  const char* name;
+  const char* type;
+  std::size_t codec;
+  std::size_t in_struct;
+  std::size_t macro;
+};
+
+void expect_agreement(const std::string& title, std::initializer_list<Field> fields) {
+  const Table table = documented(title);
+  EXPECT_EQ(table.size(), fields.size()) << title;
+  for (const Field& field : fields) {
+    const auto row = table.find(field.name);
+    ASSERT_NE(row, table.end()) << title << ": " << field.name << " is not documented";
+    EXPECT_EQ(row->second.offset, field.codec) << title << ": " << field.name;
+    EXPECT_EQ(row->second.type, field.type) << title << ": " << field.name;
+    EXPECT_EQ(field.in_struct, field.codec) << title << ": " << field.name;
+    EXPECT_EQ(field.macro, field.codec) << title << ": " << field.name;
+  }
+}
+
+TEST(DocumentedLayout, OfTheHeader) {
+  using Struct = cellmirror_header;
+  expect_agreement(
+      "Header", {{"magic", "u32", header::kMagic, offsetof(Struct, magic), CELLMIRROR_HEADER_OFFSET_MAGIC},
+                 {"version", "u16", header::kVersion, offsetof(Struct, version), CELLMIRROR_HEADER_OFFSET_VERSION},
+                 {"kind", "u16", header::kKind, offsetof(Struct, kind), CELLMIRROR_HEADER_OFFSET_KIND},
+                 {"length", "u32", header::kLength, offsetof(Struct, length), CELLMIRROR_HEADER_OFFSET_LENGTH},
+                 {"reserved", "u32", header::kReserved, offsetof(Struct, reserved), header::kReserved},
+                 {"sequence", "u64", header::kSequence, offsetof(Struct, sequence), CELLMIRROR_HEADER_OFFSET_SEQUENCE},
+                 {"time_ns", "i64", header::kTime, offsetof(Struct, time_ns), CELLMIRROR_HEADER_OFFSET_TIME_NS},
+                 {"wall_time_ns", "i64", header::kWallTime, offsetof(Struct, wall_time_ns),
+                  CELLMIRROR_HEADER_OFFSET_WALL_TIME_NS}});
+  EXPECT_EQ(sizeof(Struct), header::kHeaderBytes);
+  EXPECT_EQ(std::size_t{CELLMIRROR_HEADER_BYTES}, header::kHeaderBytes);
+}
+
+TEST(DocumentedLayout, OfARobot) {
+  using Struct = cellmirror_robot;
+  expect_agreement(
+      "Robot parameters (kind 1)",
+      {{"id", "char[64]", robot::kId, offsetof(Struct, id), CELLMIRROR_ROBOT_OFFSET_ID},
+       {"online", "u8", robot::kOnline, offsetof(Struct, online), CELLMIRROR_ROBOT_OFFSET_ONLINE},
+       {"state", "u8", robot::kState, offsetof(Struct, state), CELLMIRROR_ROBOT_OFFSET_STATE},
+       {"joint_count", "u16", robot::kJointCount, offsetof(Struct, joint_count), CELLMIRROR_ROBOT_OFFSET_JOINT_COUNT},
+       {"reserved", "u32", robot::kReserved, offsetof(Struct, reserved), robot::kReserved},
+       {"sample_sequence", "u64", robot::kSampleSequence, offsetof(Struct, sample_sequence),
+        CELLMIRROR_ROBOT_OFFSET_SAMPLE_SEQUENCE},
+       {"base_tcp", "pose", robot::kBaseTcp, offsetof(Struct, base_tcp), CELLMIRROR_ROBOT_OFFSET_BASE_TCP},
+       {"world_tcp", "pose", robot::kWorldTcp, offsetof(Struct, world_tcp), CELLMIRROR_ROBOT_OFFSET_WORLD_TCP},
+       {"joints", "joint[joint_count]", robot::kJoints, offsetof(Struct, joints), CELLMIRROR_ROBOT_OFFSET_JOINTS}});
+  EXPECT_EQ(sizeof(Struct), kMaxRobotRecordBytes);
+}
+
+TEST(DocumentedLayout, OfAPose) {
+  using Struct = cellmirror_pose;
+  expect_agreement("Pose", {{"position", "f64[3]", robot::kPosePosition, offsetof(Struct, position), 0},
+                            {"quaternion", "f64[4]", robot::kPoseQuaternion, offsetof(Struct, quaternion), 24}});
+  EXPECT_EQ(sizeof(Struct), robot::kPoseBytes);
+}
+
+TEST(DocumentedLayout, OfAJoint) {
+  using Struct = cellmirror_joint;
+  expect_agreement(
+      "Joint",
+      {{"name", "char[64]", robot::kJointName, offsetof(Struct, name), CELLMIRROR_JOINT_OFFSET_NAME},
+       {"kind", "u8", robot::kJointKind, offsetof(Struct, kind), CELLMIRROR_JOINT_OFFSET_KIND},
+       {"state", "u8", robot::kJointState, offsetof(Struct, state), CELLMIRROR_JOINT_OFFSET_STATE},
+       {"reserved", "u8[6]", robot::kJointReserved, offsetof(Struct, reserved), robot::kJointReserved},
+       {"position", "f64", robot::kJointPosition, offsetof(Struct, position), CELLMIRROR_JOINT_OFFSET_POSITION},
+       {"velocity", "f64", robot::kJointVelocity, offsetof(Struct, velocity), CELLMIRROR_JOINT_OFFSET_VELOCITY},
+       {"effort", "f64", robot::kJointEffort, offsetof(Struct, effort), CELLMIRROR_JOINT_OFFSET_EFFORT},
+       {"age_s", "f64", robot::kJointAge, offsetof(Struct, age_s), CELLMIRROR_JOINT_OFFSET_AGE_S},
+       {"source_age_s", "f64", robot::kJointSourceAge, offsetof(Struct, source_age_s),
+        CELLMIRROR_JOINT_OFFSET_SOURCE_AGE_S}});
+  EXPECT_EQ(sizeof(Struct), robot::kJointBytes);
+  EXPECT_EQ(std::size_t{CELLMIRROR_JOINT_BYTES}, robot::kJointBytes);
+}
+
+TEST(DocumentedLayout, ConstantsOfTheCHeader) {
+  const QueueConfig queues;
+  EXPECT_EQ(CELLMIRROR_SCRIPT_KEY, queues.script_key);
+  EXPECT_EQ(CELLMIRROR_SENSOR_KEY, queues.sensor_key);
+  EXPECT_EQ(CELLMIRROR_REPLY_KEY, queues.reply_key);
+  EXPECT_EQ(CELLMIRROR_MESSAGE_TYPE, kScriptMessageType);
+  EXPECT_EQ(CELLMIRROR_MESSAGE_TYPE, kSensorMessageType);
+  EXPECT_EQ(CELLMIRROR_MAX_MESSAGE_BYTES, kMaxScriptMessageBytes);
+  EXPECT_EQ(CELLMIRROR_MAX_MESSAGE_BYTES, kMaxRecordBytes);
+  EXPECT_EQ(CELLMIRROR_MAX_REPLY_BYTES, kMaxReplyBytes);
+  EXPECT_EQ(CELLMIRROR_MAX_TAG, kMaxReplyTag);
+  EXPECT_EQ(CELLMIRROR_RECORD_MAGIC, kRecordMagic);
+  EXPECT_EQ(CELLMIRROR_RECORD_VERSION, kRecordVersion);
+  EXPECT_EQ(CELLMIRROR_KIND_ROBOT, static_cast<unsigned>(RecordKind::robot_parameters));
+  EXPECT_EQ(CELLMIRROR_KIND_RANGE, static_cast<unsigned>(RecordKind::ultrasonic_range));
+  EXPECT_EQ(CELLMIRROR_KIND_RANGE_ARRAY, static_cast<unsigned>(RecordKind::ultrasonic_range_array));
+  EXPECT_EQ(CELLMIRROR_KIND_CAMERA, static_cast<unsigned>(RecordKind::camera_parameters));
+  EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_NAME_BYTES), kRecordNameBytes);
+  EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_MAX_JOINTS), kMaxJointsPerRobot);
+  EXPECT_EQ(CELLMIRROR_STATE_NONE, static_cast<int>(DataState::none));
+  EXPECT_EQ(CELLMIRROR_STATE_FRESH, static_cast<int>(DataState::fresh));
+  EXPECT_EQ(CELLMIRROR_STATE_STALE, static_cast<int>(DataState::stale));
+  EXPECT_EQ(CELLMIRROR_STATE_LOST, static_cast<int>(DataState::lost));
+  EXPECT_EQ(CELLMIRROR_STATE_INVALID, static_cast<int>(DataState::invalid));
+  EXPECT_EQ(CELLMIRROR_JOINT_REVOLUTE, static_cast<int>(JointKind::revolute));
+  EXPECT_EQ(CELLMIRROR_JOINT_CONTINUOUS, static_cast<int>(JointKind::continuous));
+  EXPECT_EQ(CELLMIRROR_JOINT_PRISMATIC, static_cast<int>(JointKind::prismatic));
+}
+
+}  // namespace
+}  // namespace cellmirror
