@@ -4,11 +4,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "rt_core/base/result.hpp"
 #include "sim_devices/robot/device.hpp"
 #include "sim_devices/robot/runner.hpp"
 
@@ -32,8 +29,5 @@ struct ParsedCommandLine {
   Job job;
 };
 [[nodiscard]] ParsedCommandLine parse_command_line(int argc, const char* const* argv);
-
-// "1-6", "1,2,5", "1-3,7": 1..127, each once, in the order given.
-[[nodiscard]] Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text);
 
 }  // namespace cellmirror::sim

@@ -1,0 +1,160 @@
+#include "sim_devices/robot/dbc_robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::sim {
+namespace {
+
+constexpr int kMostNestedMultiplexers = 8;
+
+Nanoseconds period_of(double rate_hz) { return Nanoseconds(std::max<std::int64_t>(std::llround(1e9 / rate_hz), 1)); }
+
+std::span<std::uint8_t> data_of(CanFrame& frame) { return {frame.data.data(), frame.length}; }
+
+// Sets the multiplexers so that `signal` is in the frame, from the inmost outwards.
+void select(const can::DbcMessage& message, const can::DbcSignal& signal, CanFrame& frame) {
+  const can::DbcSignal* inner = &signal;
+  for (int depth = 0; inner->is_multiplexed && depth < kMostNestedMultiplexers; ++depth) {
+    const can::DbcSignal* outer = inner->multiplexer.empty() ? message.multiplexer() : message.find(inner->multiplexer);
+    if (outer == nullptr || inner->multiplexer_values.empty()) return;
+    const auto raw = static_cast<double>(inner->multiplexer_values.front().first);
+    can::put_physical_value(*outer, raw * outer->factor + outer->offset, data_of(frame));
+    inner = outer;
+  }
+}
+
+double quantity_of(const JointValue& value, JointQuantity quantity) {
+  switch (quantity) {
+    case JointQuantity::position:
+      return value.position;
+    case JointQuantity::velocity:
+      return value.velocity;
+    case JointQuantity::effort:
+      return value.effort;
+  }
+  return 0;
+}
+
+}  // namespace
+
+DbcRobot::DbcRobot(const DbcRobotConfig& config, std::unique_ptr<MotionSource> motion,
+                   std::unique_ptr<CanChannel> channel)
+    : FaultyDevice(config.seed),
+      config_(config),
+      motion_(std::move(motion)),
+      channel_(std::move(channel)),
+      values_(config.joints),
+      pacer_({}, period_of(config.rate_hz)) {
+  counters_.endpoint = config.endpoint;
+  counters_.first_robot = config.robot;
+  counters_.robots = 1;
+  counters_.samples_of_robot.resize(1);
+}
+
+Result<std::unique_ptr<DbcRobot>> DbcRobot::make(const DbcRobotConfig& config, const can::Dbc& dbc,
+                                                 std::unique_ptr<MotionSource> motion,
+                                                 std::unique_ptr<CanChannel> channel) {
+  std::unique_ptr<DbcRobot> robot(new DbcRobot(config, std::move(motion), std::move(channel)));
+  std::string problems;
+  for (const DbcSignalConfig& wanted : config.signals) {
+    const can::DbcMessage* message = dbc.find(wanted.message);
+    const can::DbcSignal* signal = message == nullptr ? nullptr : message->find(wanted.signal);
+    if (signal != nullptr) {
+      robot->take_in(*message, *signal, wanted);
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const can::DbcMessage& known : dbc.messages) {
+      for (const can::DbcSignal& one : known.signals) names.push_back(known.name + "." + one.name);
+    }
+    const std::string guess = did_you_mean(wanted.message + "." + wanted.signal, names);
+    problems += fmt::format("{}the DBC has no signal '{}.{}'{}{}", problems.empty() ? "" : "; ",
+                            printable(wanted.message), printable(wanted.signal), guess.empty() ? "" : ", ", guess);
+  }
+  if (!problems.empty()) return fail(problems);
+  return robot;
+}
+
+void DbcRobot::take_in(const can::DbcMessage& message, const can::DbcSignal& signal, const DbcSignalConfig& config) {
+  CanFrame start;
+  start.id = message.id;
+  start.extended = message.extended;
+  start.length = message.length;
+  start.fd = message.length > 8;
+  select(message, signal, start);
+  const int joint = static_cast<int>(config.joint) + 1;
+  const auto same = std::find_if(frames_.begin(), frames_.end(), [&](const Frame& frame) {
+    return frame.start.id == start.id && frame.start.extended == start.extended && frame.start.data == start.data;
+  });
+  if (same == frames_.end()) {
+    frames_.push_back({message, start, {{signal, config}}, joint});
+    return;
+  }
+  same->entries.push_back({signal, config});
+  if (same->joint != joint) same->joint = 0;
+}
+
+void DbcRobot::start(Timestamp now) {
+  start_motion(now);
+  pacer_ = Pacer(now, pacer_.period());
+}
+
+Timestamp DbcRobot::next() const { return std::min(pacer_.next(), pipeline_.next()); }
+
+void DbcRobot::work(Timestamp now) {
+  if (pacer_.due(now)) {
+    note_lateness(pacer_.next(), now);
+    pacer_.advance(now);
+    std::fill(values_.begin(), values_.end(), JointValue{});
+    motion_->at(motion_time_s(now), values_);
+    pipeline_.schedule().shape(now, config_.robot, values_);
+    for (const Frame& frame : frames_) send_frame(frame, now);
+  }
+  flush(now);
+}
+
+void DbcRobot::send_frame(const Frame& frame, Timestamp now) {
+  const Source source{config_.robot, frame.joint};
+  if (!pipeline_.schedule().alive(now, source)) return;
+  CanFrame filled = frame.start;
+  for (const Entry& entry : frame.entries) {
+    const double value = quantity_of(values_[entry.config.joint], entry.config.quantity);
+    can::put_physical_value(entry.signal, (value - entry.config.offset) / entry.config.scale, data_of(filled));
+  }
+  pipeline_.push(now, {now, source, MessageKind::sample, filled});
+}
+
+void DbcRobot::wait_until(Timestamp t) {
+  // Nobody's frames concern it, but receiving lets the channel see the state of its bus.
+  const SystemClock clock;
+  ReceivedCanFrame ignored;
+  for (Nanoseconds left = t - clock.now(); left.count() > 0; left = t - clock.now()) {
+    if (channel_->receive(ignored, left) == CanReceive::frame) continue;
+    sleep_until(t);
+  }
+}
+
+Result<void> DbcRobot::check(const FaultSpec& spec) const {
+  if (spec.kind == FaultKind::nan) {
+    const bool any = std::any_of(frames_.begin(), frames_.end(), [](const Frame& frame) {
+      return std::any_of(frame.entries.begin(), frame.entries.end(),
+                         [](const Entry& entry) { return entry.signal.type != can::DbcValueType::integer; });
+    });
+    if (!any) return fail("an integer signal cannot be NaN", "use jump or corrupt");
+  }
+  return {};
+}
+
+DeviceStatus DbcRobot::status(Timestamp now) const {
+  DeviceStatus status = common_status(now);
+  status.missed_periods = pacer_.missed();
+  status.details.emplace_back("frames_of_a_sample", frames_.size());
+  return status;
+}
+
+}  // namespace cellmirror::sim
