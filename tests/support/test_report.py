@@ -1,9 +1,10 @@
-"""Runs ctest and counts test cases: those of a GoogleTest program one by one, any other test as one.
+"""Runs ctest and counts test cases: those of a GoogleTest or Python unittest program one by one, any other test as one.
 
-A GoogleTest program that skips some of its cases still counts as passed for ctest, so the cases are read from the XML
-report that each program writes."""
+A program that skips some of its cases still counts as passed for ctest, so the cases are read from the XML report of
+GoogleTest, and from what unittest prints."""
 
 import os
+import re
 import shutil
 import subprocess
 import xml.etree.ElementTree as ElementTree
@@ -71,6 +72,23 @@ def count_cases(path: Path, report: Report) -> None:
             report.passed += 1
 
 
+def count_unittest(output: str, report: Report) -> bool:
+    """Adds the cases of a Python unittest program; False where it is none."""
+    ran = re.search(r"^Ran (\d+) tests? in ", output, re.MULTILINE)
+    if not ran:
+        return False
+    counts = {word: int(n) for word, n in re.findall(r"(failures|errors|skipped)=(\d+)", output[ran.end():])}
+    reasons = re.findall(r"^(\w+) \(.*\.\.\. skipped ['\"](.*)['\"]$", output, re.MULTILINE)
+    for name, reason in reasons:
+        report.skip(name, reason_of(reason))
+    for number in range(len(reasons), counts.get("skipped", 0)):
+        report.skip(f"case {number + 1}", "its reason shows with unittest's verbosity 2")
+    for name in re.findall(r"^(?:FAIL|ERROR): (\w+) ", output, re.MULTILINE):
+        report.fail(name, tail(output, 80))
+    report.passed += max(0, int(ran[1]) - sum(counts.values()))
+    return True
+
+
 def add_test(test: ElementTree.Element, reports: Path, total: Report) -> None:
     """Adds one ctest entry: its own cases where it is a GoogleTest program, else itself."""
     name = test.get("name")
@@ -82,14 +100,16 @@ def add_test(test: ElementTree.Element, reports: Path, total: Report) -> None:
             count_cases(xml, cases)
         except ElementTree.ParseError:
             pass  # the program died while writing; ctest knows that it failed
+    counted = xml.exists() or count_unittest(output or "", cases)
     if test.find("failure") is not None or test.get("status") == "fail":
         if not cases.failed:
             failure = test.find("failure")
-            cases.fail("ended badly" if xml.exists() else "failed",
+            cases.fail("ended badly" if counted else "failed",
                        f"{failure.get('message') if failure is not None else ''}\n{tail(output)}")
     elif test.find("skipped") is not None or test.get("status") in ("notrun", "disabled"):
+        cases = Report()
         cases.skip("all of it", reason_of(output or ""))
-    elif not xml.exists():
+    elif not counted:
         cases.passed += 1
     total.add(cases, name)
 
@@ -123,7 +143,7 @@ def run_tests(build: Path, name: str, selection: list[str], environment: dict[st
     reports.mkdir(parents=True)
     junit = reports / "ctest.junit"
     command = ["ctest", "--test-dir", str(build), "-j", str(os.cpu_count() or 2), "--output-junit", str(junit),
-               "--output-on-failure", "--test-output-size-passed", "4096", "--test-output-size-failed", "65536",
+               "--output-on-failure", "--test-output-size-passed", "1000000", "--test-output-size-failed", "1000000",
                *selection]
     own_ipc_namespace()
     before = system_v_objects()
