@@ -14,7 +14,7 @@ namespace cellmirror::script {
 
 namespace {
 
-constexpr double kLargestExactInteger = 9007199254740992.0;  // 2^53
+constexpr long long kLargestExactInteger = 1LL << 53;  // every whole number up to it is a double
 
 // A number with its typographic dashes made plain; longer words are no numbers.
 class PlainNumber {
@@ -49,23 +49,26 @@ class PlainNumber {
   [[nodiscard]] std::string_view text() const { return text_; }
 
  private:
-  std::array<char, 64> buffer_{};
+  std::array<char, 64> buffer_;  // of words that are not plain
   std::string_view text_;
 };
+
+bool has_two_signs(std::string_view text) { return text.starts_with("+-"); }
 
 }  // namespace
 
 std::optional<double> number_of(const Token& token) {
-  if (token.plain) return parse_number(token.text);
-  return parse_number(PlainNumber(token).text());
+  const PlainNumber plain(token);
+  if (has_two_signs(plain.text())) return std::nullopt;
+  return parse_number(plain.text());
 }
 
 std::optional<double> integer_of(const Token& token) {
-  const std::optional<long long> value = parse_integer(token.plain ? token.text : PlainNumber(token).text());
-  if (!value) return std::nullopt;
-  const auto exact = static_cast<double>(*value);
-  if (exact > kLargestExactInteger || exact < -kLargestExactInteger) return std::nullopt;
-  return exact;
+  const PlainNumber plain(token);
+  if (has_two_signs(plain.text())) return std::nullopt;
+  const std::optional<long long> value = parse_integer(plain.text());
+  if (!value || *value > kLargestExactInteger || *value < -kLargestExactInteger) return std::nullopt;
+  return static_cast<double>(*value);
 }
 
 std::string_view why_no_number(const Token& token, bool integer) {

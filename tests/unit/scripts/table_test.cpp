@@ -1,0 +1,227 @@
+// Index, table, handlers and reference page agree.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "scripts/commands/execute.hpp"
+#include "scripts/lang/command_table.hpp"
+#include "scripts/lang/help.hpp"
+#include "tests/golden/scripts/recording_host.hpp"
+#include "tests/unit/scripts/test_text.hpp"
+
+namespace cellmirror::script {
+namespace {
+
+std::vector<std::vector<std::string>> index_rows() {
+  std::ifstream in(source_folder() / "tests" / "data" / "commands.tsv");
+  std::vector<std::vector<std::string>> rows;
+  std::string line;
+  std::getline(in, line);  // the names of the columns
+  while (std::getline(in, line)) {
+    std::vector<std::string> row;
+    std::istringstream columns(line);
+    for (std::string cell; std::getline(columns, cell, '\t');) row.push_back(cell);
+    if (!row.empty()) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string file_content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::size_t count_of(std::string_view text, std::string_view part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size())) ++count;
+  return count;
+}
+
+TEST(CommandTable, HasARowForEachRowOfTheIndexInItsOrder) {
+  const auto rows = index_rows();
+  ASSERT_EQ(rows.size(), kIndexRows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Form& sut = *forms()[i];
+    EXPECT_EQ(sut.section, rows[i][0]) << sut.syntax;
+    EXPECT_EQ(sut.name, rows[i][1]) << sut.syntax;
+    EXPECT_EQ(sut.syntax, rows[i][2]);
+    EXPECT_EQ(sut.origin, Origin::manual) << sut.syntax;
+    EXPECT_EQ(static_cast<std::size_t>(sut.id), i) << sut.syntax;
+    if (rows[i].size() > 4 && !rows[i][4].empty()) {
+      EXPECT_EQ(sut.example, rows[i][4]);
+    }
+  }
+}
+
+TEST(CommandTable, MarksWhatStandsBehindTheIndexAsOurs) {
+  ASSERT_EQ(forms().size(), kFormCount);
+  for (std::size_t i = kIndexRows; i < forms().size(); ++i) EXPECT_EQ(forms()[i]->origin, Origin::ours);
+}
+
+TEST(CommandTable, EveryCommandHasAHandlerAndNoConventionHas) {
+  for (const Form* form : forms()) EXPECT_EQ(has_handler(form->id), form->kind == FormKind::command) << form->syntax;
+}
+
+TEST(CommandTable, EveryRowHasOneLineOfHelp) {
+  for (const Form* form : forms()) {
+    EXPECT_FALSE(form->help.empty()) << form->syntax;
+    EXPECT_EQ(form->help.find('\n'), std::string_view::npos) << form->syntax;
+  }
+}
+
+TEST(CommandTable, AvailableNowIsWhatTheFirstIssueAsksFor) {
+  const std::set<std::string_view> names = {
+      "#",          "ACTIVATE",       "DEACTIVATE",  "DELETE_NODE", "SWAP_NODE", "LEVEL_DOWN",    "LEVEL_UP",
+      "ROBACT",     "ROBOT_LANGUAGE", "DRAW_SCENE",  "EXEC_SCRIPT", "CONNECT",   "FRAME_TO_WFRM", "ROBOT",
+      "SET_CAMPAR", "WAIT",           "hot_message", "SAVE_FLIGHT"};
+  for (const Form* form : forms()) {
+    bool expected = names.contains(form->name) || (form->section == "1.2.2" && form->id != FormId::arc);
+    expected = expected || form->id == FormId::pos_rob_joint_abs || form->id == FormId::pos_rob_joint_inc ||
+               form->id == FormId::set_frame_placement;
+    EXPECT_EQ(form->available(), expected) << form->syntax;
+  }
+}
+
+TEST(CommandTable, FindsCommandsWithoutRegardToCaseAndNothingElse) {
+  for (const std::string& name : command_names()) {
+    ASSERT_FALSE(forms_of(name).empty()) << name;
+    EXPECT_EQ(forms_of(name).front()->name, name);
+    EXPECT_EQ(forms_of(lower_case(name)).data(), forms_of(name).data());
+    EXPECT_TRUE(forms_of(name + "x").empty());
+    EXPECT_TRUE(forms_of(name.substr(0, name.size() - 1)).empty() || name == "VV_SET_LUT_PAR") << name;
+  }
+  EXPECT_EQ(forms_of("POS_ROB").size(), 6U);
+  EXPECT_EQ(forms_of("eladyn_geo_def").size(), 3U);
+  EXPECT_TRUE(forms_of("#").empty());
+  EXPECT_TRUE(forms_of("").empty());
+}
+
+// A row of the manual without an example gets one here, so that each row is parsed and executed once.
+TEST(CommandTable, UnavailableCommandsAreRefusedBySubsystemAndChangeNothing) {
+  const std::pair<FormId, const char*> samples[] = {
+      {FormId::pos_rob_screen_inc, "POS_ROB MANTEC_RM3 SCREEN_INC X 1"},
+      {FormId::set_abstract_render, "SET_ABSTRACT Testlab_1 RENDER 2"},
+      {FormId::set_mode, "SET_MODE SMEAR on"},
+      {FormId::bfrm, "BFRM on"},
+      {FormId::fldr, "FLDR on"},
+      {FormId::shad, "SHAD on"},
+      {FormId::set_force_arrow, "SET_FORCE_ARROW 1 2 3"},
+      {FormId::set_torque_limit, "SET_TORQUE_LIMIT 1 2"},
+      {FormId::set_ext_tcp_test, "SET_EXT_TCP_TEST on 1 2 3 4"},
+      {FormId::set_frc_arr_special, "SET_FRC_ARR_SPECIAL on"},
+      {FormId::master_slave, "MASTER_SLAVE on PUMA_762 1 MANTEC_RM3 1 J_1 J_1"},
+      {FormId::eladyn_geo_def_flags, "eladyn_geo_def ALL 1"},
+      {FormId::eladyn_geo_def_token, "eladyn_geo_def ALL VISIBLE on"},
+      {FormId::eladyn_hyper_name, "eladyn_hyper_name a"},
+      {FormId::eladyn_show_def, "eladyn_show_def 1"},
+      {FormId::eladyn_model_reset, "eladyn_model_reset"},
+      {FormId::eladyn_plaus_param, "eladyn_plaus_param NODE_FORCE 1 2"},
+      {FormId::effects_pulse, "EFFECTS PULSE ON"},
+      {FormId::effects_bleeding, "EFFECTS BLEEDING ON"},
+      {FormId::effects_pool_ripples, "EFFECTS POOL_RIPPLES ON"},
+      {FormId::effects_reset_pool, "EFFECTS RESET_POOL"},
+      {FormId::effects_clean_endoscopic_lense, "EFFECTS CLEAN_ENDOSCOPIC_LENSE"},
+      {FormId::eladyn_calc, "eladyn_calc on"},
+      {FormId::rob_ela_interact, "rob_ela_interact 1 1 2 3 4"},
+      {FormId::ela_clip_def, "ela_clip_def a.mpo 1 2 3 4 5 6"},
+      {FormId::eladyn_geo_def_cylinders, "eladyn_geo_def jaw 1 2 3 4 5"},
+      {FormId::rob_ela_shm, "rob_ela_shm 0 1 64"},
+      {FormId::bin_ela_shm, "bin_ela_shm 0 1 64"},
+      {FormId::bin_ela, "BIN_ELA online"},
+      {FormId::vv_clip, "VV_CLIP CLP1 off"},
+      {FormId::vv_clip_pos, "VV_CLIP_POS CLP1 ELE 1 AZI 2 DIST 3"},
+      {FormId::vv_set_lut, "VV_SET_LUT LIN_LUT"},
+      {FormId::vv_set_lut_par_medical, "VV_SET_LUT_PAR MEDICAL_LUT 0 0 0 0"},
+      {FormId::vv_set_lut_par, "VV_SET_LUT_PAR LIN_LUT 1 1 1 1"},
+      {FormId::vv_reload_luts, "VV_RELOAD_LUTS"},
+  };
+  for (const Form* form : forms()) {
+    if (form->kind != FormKind::command || form->available()) continue;
+    const auto* sample = std::find_if(std::begin(samples), std::end(samples),
+                                      [form](const auto& candidate) { return candidate.first == form->id; });
+    const std::string_view text = sample == std::end(samples) ? form->example : sample->second;
+    cellmirror::testing::RecordingHost gateway;
+    gateway.names.active = "MANTEC_RM3";
+    const Read read(text, &gateway.names);
+    ASSERT_TRUE(read.fine);
+    ASSERT_EQ(read.command.id(), form->id) << text;
+    CommandHost host = gateway.host();
+    const Outcome sut = execute(read.command, host);
+    EXPECT_EQ(sut.kind, Outcome::Kind::refused) << text;
+    EXPECT_EQ(sut.error.what, fmt::format("{} is not available yet: {}", form->name, form->missing));
+    EXPECT_TRUE(gateway.calls.empty()) << text;
+  }
+}
+
+TEST(ReferencePage, IsTheCommittedOne) {
+  const std::filesystem::path page = source_folder() / "docs" / "script-reference.md";
+  if (std::getenv("CELLMIRROR_UPDATE_GOLDEN") != nullptr) std::ofstream(page, std::ios::binary) << reference_page();
+  EXPECT_EQ(reference_page(), file_content(page))
+      << "run this test with CELLMIRROR_UPDATE_GOLDEN=1 and commit the page";
+}
+
+TEST(ReferencePage, HasAnEntryForEachForm) {
+  const std::string page = reference_page();
+  for (const Form* form : forms()) EXPECT_EQ(count_of(page, fmt::format("\n{}\n", form->syntax)), 1U) << form->syntax;
+  EXPECT_EQ(count_of(page, "\n```\n\n"), kFormCount);
+}
+
+TEST(CommandsAsJson, HasTheBindingKeysForEachForm) {
+  const nlohmann::json document = nlohmann::json::parse(commands_as_json());
+  ASSERT_EQ(document["commands"].size(), kFormCount);
+  for (std::size_t i = 0; i < kFormCount; ++i) {
+    const nlohmann::json& row = document["commands"][i];
+    EXPECT_EQ(row["name"], forms()[i]->name);
+    EXPECT_EQ(row["syntax"], forms()[i]->syntax);
+    EXPECT_EQ(row["section"], forms()[i]->section);
+    EXPECT_EQ(row["help"], forms()[i]->help);
+    EXPECT_EQ(row["implemented"], forms()[i]->available());
+  }
+  EXPECT_EQ(document["our_tables"]["A.1"].size(), object_attributes().size());
+}
+
+TEST(CommandsAsText, ShowsEachFormAndOurTables) {
+  const std::string text = commands_as_text();
+  for (const Form* form : forms()) EXPECT_NE(text.find(form->syntax), std::string::npos) << form->syntax;
+  for (const Attribute& row : object_attributes()) EXPECT_NE(text.find(row.token), std::string::npos);
+  for (const PlausibilityToken& row : plausibility_tokens()) EXPECT_NE(text.find(row.token), std::string::npos);
+}
+
+TEST(Help, ShowsSynopsisUnitsAndOurDefinition) {
+  const std::string sut = help_text("set_campar");
+  EXPECT_NE(sut.find("SET_CAMPAR <CAM_id> <view_dist> <fovy_angle>"), std::string::npos);
+  EXPECT_NE(sut.find("more than 0 m"), std::string::npos);
+  EXPECT_NE(help_text("POS_ROB").find("SCREEN_INC"), std::string::npos);
+  EXPECT_EQ(help_text("ROBAKT"), "there is no command ROBAKT; did you mean ROBACT or ROBOT?\n");
+}
+
+TEST(Completion, OffersWhatMayStandNext) {
+  const cellmirror::testing::FakeNames names;
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(complete("rob_cart_v", &names), Words{"rob_cart_vel_scal"});
+  EXPECT_EQ(complete("ROB", &names).size(), 27U);
+  EXPECT_EQ(complete("ROBACT PU", &names), Words{"PUMA_762"});
+  EXPECT_EQ(complete("POS_ROB PUMA_762 ", &names),
+            (Words{"JOINT_ABS", "JOINT_INC", "FRAME_ABS", "FRAME_INC", "TOOL_INC", "SCREEN_INC"}));
+  EXPECT_EQ(complete("POS_ROB PUMA_762 FRAME_INC X 1 ", &names), (Words{"Y", "Z", "A", "B", "C"}));
+  EXPECT_EQ(complete("STVW 0 TIME 3 ", &names), (Words{"VP", "LP", "TW", "VA", "FCP", "BCP"}));
+  EXPECT_EQ(complete("STVW 0 VP 1 ", &names), Words{});
+  EXPECT_EQ(complete("ROBOT PUMA_762 s", &names), (Words{"send_on", "send_off"}));
+  EXPECT_EQ(complete("CONNECT Toolbox.Tool1 ", &names), Words{"TO"});
+  EXPECT_EQ(complete("FRAME_TO_WFRM Toolbox.Tool1 TO Mantec_1.HAND ", &names), Words{"Tool1_WFRM"});
+  EXPECT_EQ(complete("EFFECTS P", nullptr), (Words{"PULSE", "POOL_RIPPLES"}));
+  EXPECT_EQ(complete("NO_SUCH ", &names), Words{});
+  EXPECT_EQ(complete("", nullptr).size(), command_names().size());
+}
+
+}  // namespace
+}  // namespace cellmirror::script
