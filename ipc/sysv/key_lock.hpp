@@ -19,6 +19,7 @@ class KeyLock {
 
   // Takes the lock anew where its file was removed under it (log-out); fails where another gateway was faster.
   [[nodiscard]] Result<void> confirm();
+  void release() { file_.release(); }
   [[nodiscard]] std::int32_t key() const { return key_; }
 
   // Whether any process of this user holds the key.

@@ -164,6 +164,7 @@ void OwnedQueue::close() {
   const std::lock_guard guard(mutex_);
   if (closed_.exchange(true)) return;
   ::msgctl(id(), IPC_RMID, nullptr);
+  lock_.release();
 }
 
 std::uint64_t OwnedQueue::waiting() const {

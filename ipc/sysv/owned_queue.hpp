@@ -46,7 +46,7 @@ class OwnedQueue {
   // After `gone`: makes the queue anew. Fails where the key was lost to somebody else in the meantime, and after
   // close(). Any thread.
   [[nodiscard]] Result<void> recreate();
-  // Removes the queue for good: receive() in another thread ends with `gone`. Any thread.
+  // Removes the queue for good and gives the key back: receive() in another thread ends with `gone`. Any thread.
   void close();
   [[nodiscard]] bool closed() const { return closed_.load(std::memory_order_acquire); }
 
