@@ -1,12 +1,10 @@
 // Streams fed by Cyclone DDS.
 #include <gtest/gtest.h>
+#include <tinyxml2.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <regex>
 #include <string>
 
 #include "cyclone_peer.hpp"
@@ -170,6 +168,7 @@ TEST_F(DdsStreamTest, SurvivesBytesThatAreNoJointState) {
       {std::byte{0}},
       std::vector<std::byte>(4, std::byte{0xff}),
       std::vector<std::byte>(60'000, std::byte{0xff}),
+      std::vector<std::byte>(3U << 20U, std::byte{0xff}),
       {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}, std::byte{1}},
   };
   for (const auto& bytes : bad) (*publisher)->publish_bytes(bytes);
@@ -219,11 +218,13 @@ TEST_F(DdsStreamTest, RefusesWhatCannotWork) {
 }
 
 std::vector<std::string> moving_joints(const std::filesystem::path& urdf) {
-  std::ifstream in(urdf);
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const std::regex joint(R"re(<joint\s+name="([^"]+)"\s+type="(revolute|continuous|prismatic)")re");
   std::vector<std::string> names;
-  for (std::sregex_iterator i(text.begin(), text.end(), joint), end; i != end; ++i) names.push_back((*i)[1]);
+  tinyxml2::XMLDocument document;
+  if (document.LoadFile(urdf.c_str()) != tinyxml2::XML_SUCCESS) return names;
+  const tinyxml2::XMLElement* joint = document.FirstChildElement("robot")->FirstChildElement("joint");
+  for (; joint != nullptr; joint = joint->NextSiblingElement("joint")) {
+    if (!joint->Attribute("type", "fixed")) names.emplace_back(joint->Attribute("name"));
+  }
   return names;
 }
 
