@@ -11,6 +11,7 @@
 #include <cstddef>
 
 // The C library's implementations, exported under these names for replacements to use.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 void* __libc_malloc(std::size_t size) noexcept;
 void* __libc_calloc(std::size_t count, std::size_t size) noexcept;
@@ -18,6 +19,7 @@ void* __libc_realloc(void* block, std::size_t size) noexcept;
 void __libc_free(void* block) noexcept;
 void* __libc_memalign(std::size_t alignment, std::size_t size) noexcept;
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace {
 
