@@ -1,0 +1,137 @@
+#include "app/gateway/cell_owner.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "rt_core/rt/scheduling.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::size_t kScriptBudget = 256;  // commands of files before messages have their turn
+constexpr int kMessageBudget = 64;
+constexpr Nanoseconds kPicturePeriod{20'000'000};           // at most so old while commands keep coming
+constexpr std::chrono::milliseconds kIdleWait{50};          // messages expire from the picture
+constexpr std::chrono::milliseconds kWaitingScriptWait{2};  // how soon WAIT notices its end
+
+}  // namespace
+
+CellOwner::CellOwner(Parts parts)
+    : cell_(std::move(parts.cell)),
+      home_(std::move(parts.home)),
+      board_(parts.board),
+      clock_(parts.clock),
+      reply_(std::move(parts.reply)),
+      names_(cell_),
+      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_)),
+      world_(cell_, *fleet_, [this] { hang_up_picture(); }),
+      robots_(cell_, *fleet_, names_),
+      views_(cell_, clock_),
+      diagnosis_(std::move(parts.save_flight_record)) {
+  runner_ = std::make_unique<script::ScriptRunner>(CommandHost{names_, world_, robots_, programs_, views_, diagnosis_},
+                                                   home_, clock_);
+}
+
+CellOwner::~CellOwner() { stop(); }
+
+Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
+  if (auto followed = fleet_->follow_cell(); !followed) return followed;
+  hang_up_picture();
+  if (script.empty()) return {};
+  auto started = is_path ? runner_->start_path(script) : runner_->start_file(script);
+  if (!started) return std::unexpected(started.error());
+  return {};
+}
+
+void CellOwner::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+}
+
+void CellOwner::stop() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  wake_.wake();
+  thread_.join();
+  fleet_.reset();
+}
+
+void CellOwner::submit(const ScriptMessage& message) {
+  QueuedCommand queued;
+  queued.text.assign(message.text);
+  queued.tag = message.tag;
+  queued.sender_pid = message.sender_pid;
+  while (queue_.full() && !thread_.get_stop_token().stop_requested()) {
+    room_.wait(std::chrono::milliseconds(10));
+  }
+  queue_.push(queued);
+  wake_.wake();
+}
+
+engine::QueueStatus CellOwner::command_queue() const {
+  return {"script", kCommandQueue, queue_.high_water(), queue_.pushed(), queue_.dropped()};
+}
+
+void CellOwner::execute(const QueuedCommand& queued) {
+  const std::string source =
+      queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid) : std::string("message");
+  const Result<std::string> result = runner_->execute_message(queued.text.view(), source);
+  if (queued.tag == 0) return;
+  reply_(queued.tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
+}
+
+bool CellOwner::execute_messages() {
+  QueuedCommand queued;
+  int executed = 0;
+  while (executed < kMessageBudget && queue_.pop(queued)) {
+    execute(queued);
+    ++executed;
+  }
+  if (executed > 0) room_.wake();
+  return executed > 0;
+}
+
+void CellOwner::loop(const std::stop_token& stop) {
+  set_thread_name("cell");
+  bool changed = true;
+  while (!stop.stop_requested()) {
+    bool busy = execute_messages();
+    busy = runner_->step(kScriptBudget) > 0 || busy;
+    changed = changed || busy;
+    const bool due = clock_.now() - last_picture_ > kPicturePeriod;
+    if (changed && (due || !busy)) {
+      hang_up_picture();
+      changed = false;
+    }
+    if (!busy) {
+      wake_.wait(runner_->idle() ? kIdleWait : kWaitingScriptWait);
+      changed = true;
+    }
+  }
+  runner_->stop_all();
+}
+
+void CellOwner::hang_up_picture() {
+  auto picture = std::make_shared<OwnerPicture>();
+  picture->cell = cell_.compile();
+  for (const CompiledRobot& compiled : picture->cell->robots) {
+    const FleetRobot* robot = fleet_->find(compiled.id);
+    if (robot == nullptr) continue;
+    picture->robots.push_back(
+        {robot->id, robot->slot, robot->online, robot->sending, robot->stream, cell_.robot(robot->id)->parameters()});
+  }
+  picture->active_robot = names_.active_robot();
+  picture->language = programs_.language();
+  picture->script = runner_->counters();
+  picture->runs = runner_->runs();
+  picture->script_errors = runner_->last_errors();
+  const Timestamp now = clock_.now();
+  for (const ShownMessage& message : views_.messages()) {
+    if (now - message.time < CellViews::kMessageTime) picture->messages.push_back(message);
+  }
+  board_.hang_up(std::move(picture));
+  last_picture_ = now;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,87 @@
+// The thread that owns the cell: it executes SCRIPT from messages and files, and nobody else changes the model.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "app/gateway/fleet.hpp"
+#include "app/gateway/hosts.hpp"
+#include "app/gateway/picture.hpp"
+#include "app/gateway/wake_signal.hpp"
+#include "ipc/sysv/script_message_receiver.hpp"
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/fixed_text.hpp"
+#include "rt_core/base/home.hpp"
+#include "rt_core/rt/fifo.hpp"
+#include "scripts/runner/script_runner.hpp"
+
+namespace cellmirror::app {
+
+// A command on its way from the receiver's thread to the owner.
+struct QueuedCommand {
+  FixedText<8192> text;
+  std::int64_t tag = 0;
+  std::int32_t sender_pid = 0;
+};
+
+class CellOwner {
+ public:
+  static constexpr std::size_t kCommandQueue = 64;  // beside what waits in the System V queue
+
+  struct Parts {
+    Cell cell;
+    KismetHome home;
+    std::map<std::string, StreamConfig, std::less<>> streams;
+    engine::Engine& engine;
+    PictureBoard& board;
+    const Clock& clock;
+    std::function<Result<void>(std::string_view file_name)> save_flight_record;
+    std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
+  };
+
+  explicit CellOwner(Parts parts);
+  ~CellOwner();
+  CellOwner(const CellOwner&) = delete;
+  CellOwner& operator=(const CellOwner&) = delete;
+
+  // Before start(): gives the tick its robots, hangs up the first picture, and begins the startup script, if any
+  // (`script`: a file of the home's scripts/, or any path where `is_path`).
+  Result<void> prepare(const std::string& script, bool is_path);
+  void start();
+  // Ends the thread, then closes the streams.
+  void stop();
+
+  // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up.
+  void submit(const ScriptMessage& message);
+  [[nodiscard]] engine::QueueStatus command_queue() const;
+
+ private:
+  void loop(const std::stop_token& stop);
+  bool execute_messages();
+  void execute(const QueuedCommand& queued);
+  void hang_up_picture();
+
+  Cell cell_;
+  KismetHome home_;
+  PictureBoard& board_;
+  const Clock& clock_;
+  std::function<void(std::int64_t tag, const ScriptReply& reply)> reply_;
+  CellNames names_;
+  std::unique_ptr<Fleet> fleet_;
+  CellWorld world_;
+  CellRobots robots_;
+  CellPrograms programs_;
+  CellViews views_;
+  CellDiagnosis diagnosis_;
+  std::unique_ptr<script::ScriptRunner> runner_;
+  Fifo<QueuedCommand, kCommandQueue> queue_;
+  WakeSignal wake_;
+  WakeSignal room_;  // wakes the receiver's thread when the queue has room again
+  Timestamp last_picture_;
+  std::jthread thread_;
+};
+
+}  // namespace cellmirror::app

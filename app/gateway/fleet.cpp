@@ -1,0 +1,233 @@
+#include "app/gateway/fleet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "app/gateway/robot_streams.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+// The tick empties its queue in a few periods unless it stands still.
+constexpr std::chrono::milliseconds kTickPatience{200};
+constexpr std::chrono::microseconds kTickPoll{200};
+
+Error tick_stands_still() {
+  return {"the loop does not take commands", "see cellmirror status; a fault record says why it stands still"};
+}
+
+StreamAges ages_of(const StreamConfig& config) {
+  return std::visit(
+      [](const auto& stream) -> StreamAges {
+        if constexpr (requires { stream.ages; }) {
+          return stream.ages;
+        } else {
+          return {};
+        }
+      },
+      config);
+}
+
+}  // namespace
+
+Fleet::Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
+             const Clock& clock)
+    : cell_(cell), engine_(engine), streams_(std::move(streams)), clock_(clock), positions_(cell.start_positions()) {
+  cell_.set_online_query([this](std::string_view id) {
+    const FleetRobot* robot = find(id);
+    return robot != nullptr && robot->online;
+  });
+}
+
+Fleet::~Fleet() {
+  cell_.set_online_query({});
+  for (auto& [id, robot] : robots_) {
+    if (robot.online) robot.stream->close();
+  }
+}
+
+const FleetRobot* Fleet::find(std::string_view id) const {
+  const auto found = robots_.find(id);
+  return found == robots_.end() ? nullptr : &found->second;
+}
+
+Result<std::uint64_t> Fleet::send(const engine::Command& command) {
+  const Timestamp give_up = clock_.now() + kTickPatience;
+  for (;;) {
+    const std::uint64_t id = engine_.send(command);
+    if (id != 0) {
+      last_command_ = id;
+      return id;
+    }
+    if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
+    std::this_thread::sleep_for(kTickPoll);
+  }
+}
+
+Result<void> Fleet::settle() {
+  const Timestamp give_up = clock_.now() + kTickPatience;
+  while (engine_.owner_view().commands_done < last_command_) {
+    if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
+    std::this_thread::sleep_for(kTickPoll);
+  }
+  return {};
+}
+
+Result<void> Fleet::follow_cell() {
+  for (auto robot = robots_.begin(); robot != robots_.end();) {
+    if (cell_.robot(robot->first) != nullptr) {
+      ++robot;
+      continue;
+    }
+    engine::Command command;
+    command.kind = engine::CommandKind::remove_robot;
+    command.slot = static_cast<std::uint8_t>(robot->second.slot);
+    if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+    robot = robots_.erase(robot);
+  }
+  for (const std::string& id : cell_.robot_ids()) {
+    if (robots_.contains(id)) continue;
+    if (auto added = add(*cell_.robot(id)); !added) return added;
+  }
+  return {};
+}
+
+Result<void> Fleet::add(const RobotModel& robot) {
+  engine::Command command;
+  command.kind = engine::CommandKind::add_robot;
+  command.slot = static_cast<std::uint8_t>(robot.slot());
+  command.joint_count = static_cast<std::uint8_t>(robot.joint_count());
+  command.values = robot.parameters().start_position;
+  command.lower = robot.parameters().min_range;
+  command.upper = robot.parameters().max_range;
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  FleetRobot added;
+  added.id = robot.id();
+  added.slot = robot.slot();
+  added.commanded = robot.parameters().start_position;
+  robots_.emplace(robot.id(), std::move(added));
+  return {};
+}
+
+Result<void> Fleet::update_limits(const RobotModel& robot) {
+  engine::Command command;
+  command.kind = engine::CommandKind::set_limits;
+  command.slot = static_cast<std::uint8_t>(robot.slot());
+  command.lower = robot.parameters().min_range;
+  command.upper = robot.parameters().max_range;
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  return {};
+}
+
+Result<void> Fleet::set_online(std::string_view id, bool online) {
+  const auto found = robots_.find(id);
+  if (found == robots_.end()) return std::unexpected(cell_.explain_robot(id));
+  FleetRobot& robot = found->second;
+  if (robot.online == online) return {};
+  return online ? bring_online(robot) : take_offline(robot);
+}
+
+Result<void> Fleet::bring_online(FleetRobot& robot) {
+  const auto config = streams_.find(robot.id);
+  if (config == streams_.end()) {
+    return fail(fmt::format("the cell file names no stream for the robot {}", robot.id),
+                fmt::format("add a [[stream]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
+  }
+  if (!robot.stream) {
+    auto made = make_robot_stream(config->second, clock_);
+    if (!made) return std::unexpected(made.error());
+    robot.stream = std::move(*made);
+  }
+  engine::Command command;
+  command.kind = engine::CommandKind::set_mode;
+  command.slot = static_cast<std::uint8_t>(robot.slot);
+  command.mode = engine::RobotMode::mirrored;
+  command.ages = ages_of(config->second);
+  // The mode first: commands are taken before samples, so the first sample already finds a mirrored robot.
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) {
+    command.mode = engine::RobotMode::simulated;
+    if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+    return opened;
+  }
+  robot.online = true;
+  return {};
+}
+
+Result<void> Fleet::take_offline(FleetRobot& robot) {
+  robot.stream->close();
+  robot.online = false;
+  engine::Command command;
+  command.kind = engine::CommandKind::set_mode;
+  command.slot = static_cast<std::uint8_t>(robot.slot);
+  command.mode = engine::RobotMode::simulated;
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  if (auto settled = settle(); !settled) return settled;
+  // The model stays where the real robot was seen last.
+  const engine::RobotTickState& state = engine_.owner_view().robots[robot.slot];
+  for (std::size_t i = 0; i < state.joint_count; ++i) robot.commanded[i] = state.joints[i].position;
+  return {};
+}
+
+Result<void> Fleet::set_sending(std::string_view id, bool sending) {
+  const auto found = robots_.find(id);
+  if (found == robots_.end()) return std::unexpected(cell_.explain_robot(id));
+  found->second.sending = sending;
+  return {};
+}
+
+Result<FleetRobot*> Fleet::simulated(std::string_view id) {
+  const auto found = robots_.find(id);
+  if (found == robots_.end()) return std::unexpected(cell_.explain_robot(id));
+  if (found->second.online) {
+    return fail(fmt::format("the robot {} is online and follows its controller", id),
+                fmt::format("command it after ROBOT {} offline", id));
+  }
+  return &found->second;
+}
+
+Result<void> Fleet::set_positions(FleetRobot& robot, const JointValues& positions) {
+  engine::Command command;
+  command.kind = engine::CommandKind::set_positions;
+  command.slot = static_cast<std::uint8_t>(robot.slot);
+  command.values = positions;
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  robot.commanded = positions;
+  return {};
+}
+
+Result<void> Fleet::move_to(std::string_view id, std::span<const double> positions) {
+  auto robot = simulated(id);
+  if (!robot) return std::unexpected(robot.error());
+  auto wanted = cell_.robot(id)->positions_to(positions, (*robot)->commanded);
+  if (!wanted) return std::unexpected(wanted.error());
+  return set_positions(**robot, *wanted);
+}
+
+Result<void> Fleet::move_by(std::string_view id, std::span<const double> increments) {
+  auto robot = simulated(id);
+  if (!robot) return std::unexpected(robot.error());
+  auto wanted = cell_.robot(id)->positions_by(increments, (*robot)->commanded);
+  if (!wanted) return std::unexpected(wanted.error());
+  return set_positions(**robot, *wanted);
+}
+
+std::span<const JointValues> Fleet::positions() {
+  const engine::TickState& view = engine_.owner_view();
+  for (const auto& [id, robot] : robots_) {
+    JointValues& out = positions_[robot.slot];
+    if (!robot.online) {
+      out = robot.commanded;
+      continue;
+    }
+    const engine::RobotTickState& state = view.robots[robot.slot];
+    for (std::size_t i = 0; i < state.joint_count; ++i) out[i] = state.joints[i].position;
+  }
+  return positions_;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,76 @@
+// The robots of the running cell: where the model, the tick and the streams of the real robots meet.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror::app {
+
+// One robot of the fleet, beside its RobotModel in the cell.
+struct FleetRobot {
+  std::string id;
+  std::size_t slot = 0;
+  bool online = false;
+  bool sending = false;
+  JointValues commanded{};              // rad or m; what the tick was told last while simulated
+  std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
+};
+
+// Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.
+class Fleet {
+ public:
+  Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
+        const Clock& clock);
+  // Closes all streams.
+  ~Fleet();
+
+  // Adds robots that came with a component to the tick, and removes those that were deleted. After every change of the
+  // tree.
+  Result<void> follow_cell();
+  // Tells the tick the robot's present limits.
+  Result<void> update_limits(const RobotModel& robot);
+
+  [[nodiscard]] const FleetRobot* find(std::string_view id) const;
+  [[nodiscard]] const std::map<std::string, FleetRobot, std::less<>>& robots() const { return robots_; }
+
+  Result<void> set_online(std::string_view id, bool online);
+  Result<void> set_sending(std::string_view id, bool sending);
+  // Values of the first joints; all or nothing. Refused for a robot that is online.
+  Result<void> move_to(std::string_view id, std::span<const double> positions);
+  Result<void> move_by(std::string_view id, std::span<const double> increments);
+
+  // Joint positions by slot as far as they are known now: commanded ones, and the newest mirrored ones.
+  [[nodiscard]] std::span<const JointValues> positions();
+  // Waits until the tick has carried out everything that was sent so far.
+  Result<void> settle();
+
+ private:
+  Result<std::uint64_t> send(const engine::Command& command);
+  Result<void> add(const RobotModel& robot);
+  Result<void> bring_online(FleetRobot& robot);
+  Result<void> take_offline(FleetRobot& robot);
+  Result<FleetRobot*> simulated(std::string_view id);
+  Result<void> set_positions(FleetRobot& robot, const JointValues& positions);
+
+  Cell& cell_;
+  engine::Engine& engine_;
+  std::map<std::string, StreamConfig, std::less<>> streams_;
+  const Clock& clock_;
+  std::map<std::string, FleetRobot, std::less<>> robots_;
+  std::vector<JointValues> positions_;
+  std::uint64_t last_command_ = 0;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,246 @@
+#include "app/gateway/gateway.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "app/gateway/cell_owner.hpp"
+#include "app/gateway/fault_monitor.hpp"
+#include "app/gateway/flight_file.hpp"
+#include "app/gateway/outputs.hpp"
+#include "app/gateway/picture.hpp"
+#include "app/gateway/publisher.hpp"
+#include "app/gateway/status_document.hpp"
+#include "config/cell_file.hpp"
+#include "ipc/control/control_request.hpp"
+#include "ipc/control/control_server.hpp"
+#include "ipc/control/instance.hpp"
+#include "ipc/sysv/script_message_receiver.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/rt/cyclic_thread.hpp"
+#include "rt_core/rt/memory_lock.hpp"
+#include "rt_core/rt/watchdog.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLoopStandsStillAfter{100};
+constexpr std::int32_t kIdleWakeLimitUs = 10;  // keeps idle processors out of states that cost the loop its phase
+
+Result<LoadedCell> load(const GatewayOptions& options) {
+  Diagnostics diagnostics;
+  std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics);
+  if (!loaded) {
+    return fail(fmt::format("the cell {} has {} errors:\n{}", options.cell_file.string(), diagnostics.errors(),
+                            diagnostics.text()),
+                fmt::format("mend them and look again with: cellmirror check {}", options.cell_file.string()));
+  }
+  for (const Diagnostic& diagnostic : diagnostics.all()) log_warning("cell", "{}", diagnostic.text());
+  if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
+  return std::move(*loaded);
+}
+
+}  // namespace
+
+// In the order in which they are made; they end in the reverse order.
+struct Gateway::Parts {
+  SystemClock clock;
+  Timestamp started = clock.now();
+  std::string cell_name;
+  std::optional<KismetHome> home;
+  LoopSettings loop_settings;
+  QueueConfig queues;
+  MemoryLockOutcome memory;
+  std::unique_ptr<CpuLatencyRequest> processors_awake;
+  std::optional<Instance> instance;
+  Watchdog watchdog{kLoopStandsStillAfter, {}};
+  std::unique_ptr<engine::Engine> engine;
+  PictureBoard board;
+  std::unique_ptr<ScriptMessageReceiver> messages;
+  std::unique_ptr<CellOwner> owner;
+  std::unique_ptr<CyclicThread> loop;
+  std::unique_ptr<Publisher> publisher;
+  std::unique_ptr<FaultMonitor> faults;
+  RobotStateBuilder status_builder;  // the control server's thread
+  std::unique_ptr<ControlServer> control;
+
+  ~Parts() {
+    control.reset();
+    faults.reset();
+    publisher.reset();
+    // The receiver's handler may wait for the owner to take a command, so it has to end first.
+    if (messages) messages->stop();
+    owner.reset();
+    if (loop) loop->stop();
+  }
+
+  Result<void> prepare_machine();
+  Result<void> take_instance(const GatewayOptions& options);
+  Result<void> make_owner(LoadedCell loaded, const GatewayOptions& options);
+  Result<void> start_loop();
+  Result<void> start_messages();
+  Result<void> start_outputs(const DdsOutputConfig& dds);
+  void start_fault_monitor();
+  Result<void> start_control();
+
+  Result<std::string> write_flight_record(const std::string& file_name, const std::string& reason);
+  std::string answer(std::string_view request);
+  std::string status();
+};
+
+Result<void> Gateway::Parts::prepare_machine() {
+  memory = lock_memory(loop_settings.real_time);
+  if (auto enforced = enforce(loop_settings.real_time, memory); !enforced) return enforced;
+  if (!memory.ok) log_warning("memory", "memory is not locked: {}; {}", memory.why_not, memory.remedy);
+  if (loop_settings.real_time != RealTimePolicy::off)
+    processors_awake = std::make_unique<CpuLatencyRequest>(kIdleWakeLimitUs);
+  return {};
+}
+
+Result<void> Gateway::Parts::take_instance(const GatewayOptions& options) {
+  auto claimed = Instance::claim({options.instance, getpid(), options.cell_file.string(), queues});
+  if (!claimed) return std::unexpected(claimed.error());
+  instance.emplace(std::move(*claimed));
+  return {};
+}
+
+Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions& options) {
+  std::map<std::string, StreamConfig, std::less<>> streams;
+  for (RobotStream& stream : loaded.streams) streams.emplace(stream.robot, std::move(stream.config));
+  const auto save = [this](std::string_view name) -> Result<void> {
+    auto written = write_flight_record(std::string(name), "request");
+    if (!written) return std::unexpected(written.error());
+    return {};
+  };
+  const auto reply = [this](std::int64_t tag, const ScriptReply& text) { messages->reply(tag, text); };
+  owner = std::make_unique<CellOwner>(
+      CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams), *engine, board, clock, save, reply});
+  const bool is_path = options.startup_script.has_value();
+  return owner->prepare(is_path ? *options.startup_script : loaded.startup_script, is_path);
+}
+
+Result<void> Gateway::Parts::start_loop() {
+  CyclicThreadOptions options;
+  options.name = "tick";
+  options.period = Nanoseconds(static_cast<std::int64_t>(1e9 / loop_settings.rate_hz + 0.5));
+  options.policy = loop_settings.real_time;
+  options.priority = loop_settings.priority;
+  loop = std::make_unique<CyclicThread>(*engine, options);
+  if (auto started_loop = loop->start(); !started_loop) return started_loop;
+  const SchedulingOutcome& outcome = loop->scheduling();
+  if (!outcome.ok) log_warning("scheduling", "the loop is not real time: {}; {}", outcome.why_not, outcome.remedy);
+  return {};
+}
+
+Result<void> Gateway::Parts::start_messages() {
+  messages = std::make_unique<ScriptMessageReceiver>(queues, instance->info().name);
+  return messages->start([this](const ScriptMessage& message) { owner->submit(message); });
+}
+
+Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
+  auto outputs = make_outputs(queues, dds, instance->info().name);
+  if (!outputs) return std::unexpected(outputs.error());
+  publisher = std::make_unique<Publisher>(*engine, board, clock, loop->options().period, std::move(*outputs));
+  return {};
+}
+
+void Gateway::Parts::start_fault_monitor() {
+  faults = std::make_unique<FaultMonitor>(*loop, watchdog, clock, [this](const std::string& reason) {
+    const auto wall_seconds = to_wall_clock_ns(clock.now()) / 1'000'000'000;
+    return write_flight_record(fmt::format("fault-{}.jsonl", wall_seconds), reason);
+  });
+}
+
+Result<void> Gateway::Parts::start_control() {
+  auto server =
+      ControlServer::start(instance->control_socket(), [this](std::string_view request) { return answer(request); });
+  if (!server) return std::unexpected(server.error());
+  control = std::move(*server);
+  return {};
+}
+
+Result<std::string> Gateway::Parts::write_flight_record(const std::string& file_name, const std::string& reason) {
+  auto path = home->file_to_write("records", file_name);
+  if (!path) return std::unexpected(path.error());
+  FlightFileHeader header{reason, cell_name, instance->info().name, loop_settings.rate_hz, {}};
+  for (const RobotPicture& robot : board.look()->robots) {
+    if (header.robots.size() <= robot.slot) header.robots.resize(robot.slot + 1);
+    header.robots[robot.slot] = robot.id;
+  }
+  auto written = write_flight_file(*path, header, engine->flight_ticks(), engine->flight_robots());
+  if (!written) return std::unexpected(written.error());
+  return path->string();
+}
+
+std::string Gateway::Parts::answer(std::string_view line) {
+  const Result<ControlRequest> request = parse_control_request(line);
+  if (!request) return control_error(request.error());
+  if (request->request == "status") return status();
+  return control_error({fmt::format("the request {} is not known", request->request), "known: status"});
+}
+
+std::string Gateway::Parts::status() {
+  const std::shared_ptr<const OwnerPicture> picture = board.look();
+  const engine::TickState& tick = engine->status_view();
+  std::vector<engine::QueueStatus> thread_queues{engine->command_queue(), owner->command_queue()};
+  for (const RobotPicture& robot : picture->robots) {
+    if (!robot.stream) continue;
+    thread_queues.push_back(engine->sample_queue(robot.slot));
+    thread_queues.back().name = "samples " + robot.id;
+  }
+  std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
+  for (const PublishedOutput& output : publisher->outputs())
+    outputs.emplace_back(output.output->name(), output.output->counters());
+  const FaultStatus fault_status = faults->status();
+  const ScriptMessageStatus message_status = messages->status();
+  const Timestamp now = clock.now();
+  return status_document({instance->info().name, cell_name, home->root().string(), seconds(now - started),
+                          loop_settings.rate_hz, now, *loop, memory, fault_status, *picture, tick,
+                          status_builder.build(*picture, tick), message_status, std::move(thread_queues),
+                          std::move(outputs)});
+}
+
+Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Gateway::~Gateway() = default;
+
+Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
+  auto loaded = load(options);
+  if (!loaded) return std::unexpected(loaded.error());
+  auto parts = std::make_unique<Parts>();
+  parts->cell_name = loaded->name;
+  parts->home = loaded->home;
+  parts->loop_settings = loaded->loop;
+  parts->queues = default_queues(options.instance);
+  loaded->queues.apply_to(parts->queues);
+  parts->engine = std::make_unique<engine::Engine>(parts->watchdog);
+  const DdsOutputConfig dds = loaded->dds;
+  Result<void> step = check_instance_name(options.instance);
+  if (step) step = parts->prepare_machine();
+  if (step) step = parts->take_instance(options);
+  if (step) step = parts->make_owner(std::move(*loaded), options);
+  if (step) step = parts->start_messages();
+  if (step) step = parts->start_loop();
+  if (step) step = parts->start_outputs(dds);
+  if (!step) return std::unexpected(step.error());
+  parts->start_fault_monitor();
+  if (step = parts->start_control(); !step) return std::unexpected(step.error());
+  // Last: the startup script finds everything running.
+  parts->owner->start();
+  return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));
+}
+
+std::string Gateway::greeting() const {
+  const Parts& parts = *parts_;
+  return fmt::format(
+      "cell {} with {} robots runs at {:.0f} Hz ({}); instance {}, SCRIPT messages on key {}; Ctrl-C ends it",
+      parts.cell_name, parts.board.look()->robots.size(), parts.loop_settings.rate_hz,
+      parts.loop->scheduling().scheduler, parts.instance->info().name, parts.queues.script_key);
+}
+
+}  // namespace cellmirror::app

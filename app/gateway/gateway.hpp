@@ -1,0 +1,39 @@
+// The running gateway: everything joined. Only app/ knows all of it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror::app {
+
+struct GatewayOptions {
+  std::filesystem::path cell_file;
+  std::optional<std::string> startup_script;  // instead of the cell file's own
+  std::optional<double> rate_hz;              // instead of the cell file's own
+  std::string instance = "default";
+};
+
+class Gateway {
+ public:
+  // Loads the cell, takes the instance and its queues, starts all threads. Nothing is left behind where it fails.
+  static Result<std::unique_ptr<Gateway>> start(const GatewayOptions& options);
+  // Stops all threads in the reverse order and removes queues and sockets.
+  ~Gateway();
+  Gateway(const Gateway&) = delete;
+  Gateway& operator=(const Gateway&) = delete;
+
+  // One line for the person who started it: cell, robots, rate, keys.
+  [[nodiscard]] std::string greeting() const;
+
+ private:
+  struct Parts;
+  explicit Gateway(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,57 @@
+// What the owner of the cell lets the other threads see: an immutable picture, replaced as a whole.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/gateway/hosts.hpp"
+#include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
+#include "scripts/runner/script_runner.hpp"
+
+namespace cellmirror::app {
+
+struct RobotPicture {
+  std::string id;
+  std::size_t slot = 0;
+  bool online = false;
+  bool sending = false;
+  std::shared_ptr<const JointStream> stream;  // null where it was never opened
+  RobotParameters parameters;
+};
+
+struct OwnerPicture {
+  std::shared_ptr<const CompiledCell> cell;
+  std::vector<RobotPicture> robots;  // in the order of the slots
+  std::string active_robot;
+  RobotLanguage language = RobotLanguage::irdata;
+  script::ScriptCounters script;
+  std::vector<script::RunStatus> runs;
+  std::vector<std::string> script_errors;
+  std::vector<ShownMessage> messages;
+};
+
+// Between workers only; the tick has no part in it, so a lock is allowed.
+class PictureBoard {
+ public:
+  void hang_up(std::shared_ptr<const OwnerPicture> picture) {
+    const std::scoped_lock lock(mutex_);
+    picture_ = std::move(picture);
+  }
+  // Never null after the first one was hung up.
+  [[nodiscard]] std::shared_ptr<const OwnerPicture> look() const {
+    const std::scoped_lock lock(mutex_);
+    return picture_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const OwnerPicture> picture_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,84 @@
+#include "app/gateway/publisher.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "rt_core/rt/scheduling.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+// So long after the tick woke, its state is published even on a busy machine.
+constexpr Nanoseconds kBehindTick{150'000};
+constexpr Nanoseconds kLongestSleep{100'000'000};  // how long stopping may take
+
+void sleep_until(Timestamp t) {
+  const timespec wanted{t.ns / 1'000'000'000, t.ns % 1'000'000'000};
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wanted, nullptr);
+}
+
+}  // namespace
+
+Publisher::Publisher(engine::Engine& engine, const PictureBoard& board, const Clock& clock, Nanoseconds tick_period,
+                     std::vector<PublishedOutput> outputs)
+    : engine_(engine),
+      board_(board),
+      clock_(clock),
+      tick_period_(tick_period),
+      outputs_(std::move(outputs)),
+      due_(outputs_.size(), clock.now()),
+      thread_([this](const std::stop_token& stop) { loop(stop); }) {}
+
+Publisher::~Publisher() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void Publisher::loop(const std::stop_token& stop) {
+  set_thread_name("publisher");
+  while (!stop.stop_requested()) {
+    const Timestamp now = clock_.now();
+    const Timestamp due = std::min(publish_due(now), now + kLongestSleep);
+    // The first tick at or after the due time, and a little later.
+    const Timestamp tick = engine_.publisher_view().time;
+    const std::int64_t periods =
+        tick.known() ? std::max<std::int64_t>(1, (due - tick + tick_period_ / 2) / tick_period_) : 0;
+    sleep_until(tick.known() ? std::max(tick + periods * tick_period_ + kBehindTick, now + kBehindTick) : due);
+  }
+}
+
+void Publisher::select_sending(const OwnerPicture& picture, std::span<const RobotState> robots) {
+  std::size_t n = 0;
+  wanted_.assign(robots.size(), false);
+  if (sending_.size() < robots.size()) sending_.resize(robots.size());
+  for (std::size_t i = 0; i < robots.size() && i < picture.robots.size(); ++i) {
+    if (!picture.robots[i].sending) continue;
+    wanted_[i] = true;
+    sending_[n++] = robots[i];
+  }
+  sending_.resize(n);
+}
+
+Timestamp Publisher::publish_due(Timestamp now) {
+  Timestamp next = now + kLongestSleep;
+  const bool any_due =
+      std::any_of(due_.begin(), due_.end(), [now, this](Timestamp due) { return due <= now + tick_period_ / 2; });
+  if (any_due) {
+    const std::shared_ptr<const OwnerPicture> picture = board_.look();
+    const engine::TickState& state = engine_.publisher_view();
+    select_sending(*picture, builder_.build(*picture, state));
+    const std::span<const FramePose> frames = builder_.frames(*picture, wanted_);
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      if (due_[i] > now + tick_period_ / 2) continue;
+      if (!sending_.empty()) outputs_[i].output->publish(state.time, sending_, frames);
+      due_[i] = due_[i] + outputs_[i].period;
+      if (due_[i] < now) due_[i] = now + outputs_[i].period;  // it was late by more than a period
+    }
+  }
+  for (const Timestamp due : due_) next = std::min(next, due);
+  return next;
+}
+
+}  // namespace cellmirror::app

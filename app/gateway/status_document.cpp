@@ -1,0 +1,274 @@
+#include "app/gateway/status_document.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "rt_core/rt/allocation_guard.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+using nlohmann::json;
+
+const char* word(DataState state) {
+  switch (state) {
+    case DataState::none:
+      return "none";
+    case DataState::fresh:
+      return "fresh";
+    case DataState::stale:
+      return "stale";
+    case DataState::lost:
+      return "lost";
+    case DataState::invalid:
+      return "invalid";
+  }
+  return "none";
+}
+
+const char* word(RobotLanguage language) {
+  switch (language) {
+    case RobotLanguage::irdata:
+      return "irdata";
+    case RobotLanguage::srcl:
+      return "srcl";
+    case RobotLanguage::jet_boom:
+      return "jet_boom";
+    case RobotLanguage::jet_tarm:
+      return "jet_tarm";
+  }
+  return "irdata";
+}
+
+const char* word(InverseClass inverse_class) {
+  // In the order of the enumeration; the words of the manual (1.2.2, rob_inverse_class).
+  static constexpr std::array<const char*, 25> kWords = {
+      "align_FRAME",     "align_POS",       "align_X_AXIS",    "align_Y_AXIS",    "align_Z_AXIS",
+      "align_XY_AXIS",   "align_YZ_AXIS",   "align_XZ_AXIS",   "align_N_AXIS",    "align_S_AXIS",
+      "align_A_AXIS",    "align_XY_N_AXIS", "align_XY_S_AXIS", "align_XY_A_AXIS", "align_XZ_N_AXIS",
+      "align_XZ_S_AXIS", "align_XZ_A_AXIS", "align_YZ_N_AXIS", "align_YZ_S_AXIS", "align_YZ_A_AXIS",
+      "EDITH",           "BOOM_3",          "BOOM_4",          "BOOM_5",          "BOOM_6"};
+  return kWords.at(static_cast<std::size_t>(inverse_class));
+}
+
+json age_s(Timestamp now, Timestamp then) { return then.known() ? json(seconds(now - then)) : json(nullptr); }
+
+json percentiles_us(const LatencyHistogram& histogram) {
+  const HistogramSnapshot snapshot = histogram.snapshot();
+  const auto us = [](Nanoseconds d) { return static_cast<double>(d.count()) * 1e-3; };
+  return {{"p50", us(snapshot.percentile(50))},
+          {"p99", us(snapshot.percentile(99))},
+          {"p999", us(snapshot.percentile(99.9))},
+          {"max", us(snapshot.max())}};
+}
+
+std::string note(const std::string& why_not, const std::string& remedy) {
+  return why_not.empty() || remedy.empty() ? why_not : why_not + "; " + remedy;
+}
+
+json loop_json(const StatusSources& sources) {
+  const SchedulingOutcome& scheduling = sources.loop.scheduling();
+  const std::string priority = scheduling.priority > 0 ? fmt::format(" {}", scheduling.priority) : std::string();
+  return {{"rate_hz", sources.rate_hz},
+          {"scheduler", scheduling.scheduler + priority},
+          {"scheduler_note", note(scheduling.why_not, scheduling.remedy)},
+          {"memory_locked", sources.memory.level == MemoryLockLevel::all},
+          {"memory_note", note(sources.memory.why_not, sources.memory.remedy)},
+          {"ticks", sources.loop.cycles()},
+          {"missed", sources.loop.missed()},
+          {"wakeup_latency_us", percentiles_us(sources.loop.wakeup_latency())},
+          {"compute_us", percentiles_us(sources.loop.compute_time())},
+          {"allocations", AllocationGuard::armed() ? json(sources.loop.heap_calls()) : json(nullptr)},
+          {"faults", sources.faults.faults},
+          {"fault_latched", sources.faults.latched},
+          {"last_fault", sources.faults.last}};
+}
+
+json stream_json(const RobotPicture& robot, const engine::RobotTickState& tick, Timestamp now) {
+  if (!robot.stream) {
+    return {{"kind", "none"},
+            {"endpoint", ""},
+            {"state", "off"},
+            {"age_s", nullptr},
+            {"rate_hz", 0.0},
+            {"received", 0},
+            {"lost", 0},
+            {"rejected", 0},
+            {"condition", "not opened"},
+            {"details", json::object()},
+            {"last_errors", json::array()}};
+  }
+  const JointStreamStatus status = robot.stream->status();
+  json details = json::object();
+  for (const auto& [key, value] : status.details) details[key] = value;
+  return {{"kind", status.kind},
+          {"endpoint", status.endpoint},
+          {"state", robot.online ? word(tick.state) : "off"},
+          {"age_s", age_s(now, tick.receive_time)},
+          {"rate_hz", status.rate_hz},
+          {"received", status.received},
+          {"lost", status.lost},
+          {"rejected", status.rejected},
+          {"condition", status.condition},
+          {"details", std::move(details)},
+          {"last_errors", status.last_errors}};
+}
+
+json joints_json(const RobotState& robot, Timestamp now) {
+  json out = json::array();
+  for (const RobotJointState& joint : robot.joints) {
+    out.push_back({{"name", joint.name},
+                   {"position", joint.position},
+                   {"unit", joint.kind == JointKind::prismatic ? "m" : "rad"},
+                   {"velocity", joint.velocity},
+                   {"effort", joint.effort},
+                   {"state", word(joint.state)},
+                   {"age_s", age_s(now, joint.receive_time)}});
+  }
+  return out;
+}
+
+json pose_json(const Pose& X) {
+  const Eigen::Quaterniond q(X.linear());
+  return {{"position_m", {X.translation().x(), X.translation().y(), X.translation().z()}},
+          {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+json parameters_json(const RobotParameters& p, std::size_t joints) {
+  const auto list = [joints](const JointValues& values) {
+    return json(std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(joints)));
+  };
+  return {{"max_range", list(p.max_range)},
+          {"min_range", list(p.min_range)},
+          {"start_position", list(p.start_position)},
+          {"reference_position", list(p.reference_position)},
+          {"max_velocity", list(p.max_velocity)},
+          {"min_velocity", list(p.min_velocity)},
+          {"active_velocity", list(p.active_velocity)},
+          {"max_acceleration", list(p.max_acceleration)},
+          {"active_acceleration", list(p.active_acceleration)},
+          {"linear_velocity_m_s", p.linear_velocity},
+          {"linear_acceleration_m_s2", p.linear_acceleration},
+          {"rotational_velocity_rad_s", p.rotational_velocity},
+          {"rotational_acceleration_rad_s2", p.rotational_acceleration},
+          {"velocity_scale", p.velocity_scale},
+          {"acceleration_scale", p.acceleration_scale},
+          {"fly_type", static_cast<int>(p.fly_type)},
+          {"fly_parameter", p.fly_parameter},
+          {"program_delay_s", p.program_delay_s},
+          {"ptp_mode", p.ptp_mode == PtpMode::synchronous ? "sync" : "async"},
+          {"velocity_profile", p.velocity_profile == VelocityProfile::sine ? "sine" : "ramp"},
+          {"inverse_class", word(p.inverse_class)},
+          {"point_of_reference", pose_json(p.X_FP)},
+          {"tool_center_point", pose_json(p.X_PT)}};
+}
+
+json robots_json(const StatusSources& sources) {
+  json out = json::array();
+  for (std::size_t i = 0; i < sources.robots.size() && i < sources.picture.robots.size(); ++i) {
+    const RobotPicture& picture = sources.picture.robots[i];
+    const RobotState& state = sources.robots[i];
+    const engine::RobotTickState& tick = sources.tick.robots[picture.slot];
+    out.push_back({{"id", picture.id},
+                   {"mode", state.online ? "mirrored" : "simulated"},
+                   {"active", picture.id == sources.picture.active_robot},
+                   {"sending", picture.sending},
+                   {"stream", stream_json(picture, tick, sources.now)},
+                   {"joints", joints_json(state, sources.now)},
+                   {"tcp", pose_json(state.X_WT)},
+                   {"parameters", parameters_json(picture.parameters, state.joints.size())},
+                   {"refused_values", tick.refused_values}});
+  }
+  return out;
+}
+
+json script_json(const StatusSources& sources) {
+  const script::SourceCounters all = sources.picture.script.all();
+  json runs = json::array();
+  for (const script::RunStatus& run : sources.picture.runs) {
+    runs.push_back({{"id", run.id}, {"stack", run.stack}, {"waiting", run.waiting}});
+  }
+  const ScriptMessageStatus& messages = sources.messages;
+  // A message that is no SCRIPT at all was received and refused too, before the interpreter saw it.
+  return {{"received", all.received + messages.malformed},
+          {"done", all.done},
+          {"refused", all.refused + messages.malformed},
+          {"running", sources.picture.runs.size()},
+          {"runs", std::move(runs)},
+          {"language", word(sources.picture.language)},
+          {"last_errors", sources.picture.script_errors},
+          {"last_malformed", messages.last_errors}};
+}
+
+json queues_json(const StatusSources& sources) {
+  json out = json::array();
+  for (const engine::QueueStatus& queue : sources.queues) {
+    out.push_back({{"name", queue.name},
+                   {"capacity", queue.capacity},
+                   {"high_water", queue.high_water},
+                   {"passed", queue.passed},
+                   {"dropped", queue.dropped}});
+  }
+  const ScriptMessageStatus& m = sources.messages;
+  out.push_back({{"name", "script messages"},
+                 {"passed", m.received},
+                 {"waiting", m.waiting},
+                 {"dropped", m.malformed + m.wrong_type + m.discarded},
+                 {"wrong_type", m.wrong_type},
+                 {"discarded", m.discarded},
+                 {"recreated", m.recreated}});
+  out.push_back({{"name", "script replies"}, {"passed", m.replies}, {"dropped", m.replies_dropped}});
+  for (const auto& [name, counters] : sources.outputs) {
+    json queue = {{"name", name}, {"dropped", 0}};
+    for (const auto& [key, value] : counters) queue[key] = value;
+    out.push_back(std::move(queue));
+  }
+  return out;
+}
+
+json messages_json(const StatusSources& sources) {
+  json out = json::array();
+  for (const ShownMessage& message : sources.picture.messages) {
+    out.push_back({{"text", message.text}, {"age_s", age_s(sources.now, message.time)}});
+  }
+  return out;
+}
+
+json cameras_json(const CompiledCell& cell) {
+  json out = json::array();
+  for (const CompiledCamera& camera : cell.cameras) {
+    out.push_back({{"id", camera.name}, {"focal_distance_m", camera.focal_distance_m}, {"fovy_rad", camera.fovy_rad}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string status_document(const StatusSources& sources) {
+  const CompiledCell& cell = *sources.picture.cell;
+  const auto visible = std::count(cell.visible.begin(), cell.visible.end(), std::uint8_t{1});
+  const json document = {{"version", CELLMIRROR_VERSION},
+                         {"instance", sources.instance},
+                         {"pid", getpid()},
+                         {"cell", sources.cell},
+                         {"home", sources.home},
+                         {"uptime_s", sources.uptime_s},
+                         {"loop", loop_json(sources)},
+                         {"robots", robots_json(sources)},
+                         {"script", script_json(sources)},
+                         {"queues", queues_json(sources)},
+                         {"messages", messages_json(sources)},
+                         {"cameras", cameras_json(cell)},
+                         {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
+  // Text from outside (names, messages) may hold bytes that are no UTF-8.
+  return document.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace cellmirror::app

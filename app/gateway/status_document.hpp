@@ -1,0 +1,40 @@
+// Writes the status document (docs/status.md).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/gateway/fault_monitor.hpp"
+#include "app/gateway/picture.hpp"
+#include "ipc/control/control_server.hpp"
+#include "ipc/sysv/script_message_receiver.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/robot_state.hpp"
+#include "rt_core/rt/cyclic_thread.hpp"
+#include "rt_core/rt/memory_lock.hpp"
+
+namespace cellmirror::app {
+
+// What the document is made of, as of one moment.
+struct StatusSources {
+  std::string instance;
+  std::string cell;
+  std::string home;
+  double uptime_s = 0;
+  double rate_hz = 0;
+  Timestamp now;
+  const CyclicThread& loop;
+  const MemoryLockOutcome& memory;
+  const FaultStatus& faults;
+  const OwnerPicture& picture;
+  const engine::TickState& tick;
+  std::span<const RobotState> robots;  // of the same tick
+  const ScriptMessageStatus& messages;
+  std::vector<engine::QueueStatus> queues;  // of the threads
+  std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
+};
+
+[[nodiscard]] std::string status_document(const StatusSources& sources);
+
+}  // namespace cellmirror::app

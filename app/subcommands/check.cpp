@@ -1,0 +1,110 @@
+// cellmirror check FILE...: all diagnostics of cell files, components, SCRIPT and bus descriptions.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/gateway/hosts.hpp"
+#include "app/subcommands/check_bus_files.hpp"
+#include "app/subcommands/subcommand.hpp"
+#include "config/cell_file.hpp"
+#include "rt_core/base/home.hpp"
+#include "scripts/lang/reader.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct CheckOptions {
+  std::vector<std::string> files;
+  std::string cell;      // for the names in SCRIPT files
+  std::string language;  // of robot programs
+  bool json = false;
+};
+
+// A text beyond this is no SCRIPT file; the reader has its own, smaller limit and says so.
+constexpr std::size_t kLargestText = std::size_t{256} << 20;
+
+void check_script_file(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
+  const auto text = read_text_file(path, kLargestText);
+  if (!text) {
+    diagnostics.error({path.string()}, text.error().what, text.error().remedy);
+    return;
+  }
+  script::check_script(*text, path.string(), names, diagnostics);
+}
+
+void check_one(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
+  if (path.extension() == ".spt") return check_script_file(path, names, diagnostics);
+  if (is_bus_file(path)) return check_bus_file(path, diagnostics);
+  if (is_checkable(path)) return check_file(path, diagnostics);
+  diagnostics.error({path.string()}, "files of this kind cannot be checked",
+                    "known: .spt .toml .mpc .urdf .dbc .eds .dcf");
+}
+
+const char* word(Severity severity) {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "error";
+}
+
+void print_json(const Diagnostics& diagnostics) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    list.push_back({{"severity", word(diagnostic.severity)},
+                    {"file", diagnostic.place.file},
+                    {"line", diagnostic.place.line},
+                    {"column", diagnostic.place.column},
+                    {"message", diagnostic.message},
+                    {"remedy", diagnostic.remedy}});
+  }
+  const nlohmann::json document = {
+      {"errors", diagnostics.errors()}, {"warnings", diagnostics.warnings()}, {"diagnostics", std::move(list)}};
+  std::printf("%s\n", document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+int check(const CheckOptions& options) {
+  if (!options.language.empty()) return refuse("robot programs (--language) are not available yet");
+  Diagnostics diagnostics;
+  std::optional<LoadedCell> cell;
+  std::optional<CellNames> names;
+  if (!options.cell.empty()) {
+    cell = load_cell(options.cell, diagnostics);
+    if (cell) names.emplace(cell->cell);
+  }
+  for (const std::string& file : options.files) check_one(file, names ? &*names : nullptr, diagnostics);
+  if (options.json) {
+    print_json(diagnostics);
+  } else {
+    std::fputs(diagnostics.text().c_str(), stderr);
+    if (diagnostics.ok())
+      std::printf("%zu files, no errors, %zu warnings\n", options.files.size(), diagnostics.warnings());
+  }
+  return diagnostics.ok() ? kExitDone : kExitRefused;
+}
+
+}  // namespace
+
+void add_check(CLI::App& cli, Action& action) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* sub = cli.add_subcommand("check", "Check files and print everything that is wrong with them");
+  sub->add_option("files", options->files, ".spt .toml .mpc .urdf .dbc .eds .dcf")->required();
+  sub->add_option("--cell", options->cell, "check the names in SCRIPT files against this cell");
+  sub->add_option("--language", options->language, "language of robot programs (not available yet)")
+      ->check(CLI::IsMember({"irdata", "srcl", "jet_boom", "jet_tarm"}));
+  sub->add_flag("--json", options->json, "one JSON document: errors, warnings, diagnostics");
+  sub->footer("Example: cellmirror check scripts/demo.spt --cell cell.toml");
+  sub->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace cellmirror::app

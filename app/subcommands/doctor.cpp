@@ -1,0 +1,109 @@
+// cellmirror doctor: what this machine allows, and the command that mends what it does not.
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/subcommands/subcommand.hpp"
+#include "ipc/sysv/limits.hpp"
+#include "rt_core/rt/memory_lock.hpp"
+#include "rt_core/rt/scheduling.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct Finding {
+  std::string name;
+  std::string value;
+  bool ok = true;
+  std::string remedy;
+};
+
+constexpr int kPriority = 80;  // the default of the loop
+
+Finding scheduling_finding() {
+  const SchedulingOutcome outcome = probe_real_time_scheduling(kPriority);
+  return {"SCHED_FIFO", outcome.ok ? "allowed" : outcome.why_not, outcome.ok, outcome.remedy};
+}
+
+Finding memory_finding() {
+  const MemoryLockOutcome outcome = probe_memory_lock();
+  return {"memory locking", outcome.ok ? "allowed" : outcome.why_not, outcome.ok, outcome.remedy};
+}
+
+Finding idle_finding() {
+  const CpuLatencyRequest request(0);
+  return {"/dev/cpu_dma_latency", request.ok() ? "allowed" : request.why_not(), request.ok(), request.remedy()};
+}
+
+Finding can_finding() {
+  const int fd = socket(AF_CAN, SOCK_RAW | SOCK_CLOEXEC, 1);
+  if (fd < 0) {
+    return {"SocketCAN", std::strerror(errno), false,
+            "modprobe can_raw; a kernel without CAN can still use the channels udp: and log:"};
+  }
+  close(fd);
+  return {"SocketCAN", "available", true, {}};
+}
+
+Finding interface_finding() {
+  std::string names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/net", error)) {
+    const std::string name = entry.path().filename();
+    if (name.starts_with("can") || name.starts_with("vcan") || name.starts_with("vxcan"))
+      names += (names.empty() ? "" : " ") + name;
+  }
+  if (!names.empty()) return {"CAN interfaces", names, true, {}};
+  return {"CAN interfaces", "none", false,
+          "ip link add dev vcan0 type vcan && ip link set vcan0 up (a virtual one, for tests)"};
+}
+
+std::vector<Finding> examine() {
+  std::vector<Finding> findings = {scheduling_finding(), memory_finding(), idle_finding(), can_finding(),
+                                   interface_finding()};
+  for (const IpcFinding& finding : ipc_findings(read_sysv_limits(), read_remove_ipc())) {
+    findings.push_back({finding.name, finding.value, finding.ok, finding.remedy});
+  }
+  findings.push_back({"GL renderer", "not available yet", true, {}});
+  return findings;
+}
+
+int doctor(bool json) {
+  const std::vector<Finding> findings = examine();
+  if (json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Finding& finding : findings) {
+      list.push_back(
+          {{"name", finding.name}, {"value", finding.value}, {"ok", finding.ok}, {"remedy", finding.remedy}});
+    }
+    std::printf("%s\n", nlohmann::json{{"findings", list}}.dump().c_str());
+    return kExitDone;
+  }
+  for (const Finding& finding : findings) {
+    std::printf("%-4s %-22s %s\n", finding.ok ? "ok" : "--", finding.name.c_str(), finding.value.c_str());
+    if (!finding.ok && !finding.remedy.empty()) std::printf("     mend: %s\n", finding.remedy.c_str());
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& cli, Action& action) {
+  auto json = std::make_shared<bool>(false);
+  CLI::App* sub = cli.add_subcommand("doctor", "Tell what this machine allows, and how to mend what it does not");
+  sub->add_flag("--json", *json, "one JSON document");
+  sub->callback([json, &action] { action = [json] { return doctor(*json); }; });
+}
+
+}  // namespace cellmirror::app

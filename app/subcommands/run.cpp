@@ -1,0 +1,91 @@
+// cellmirror run CELL.toml: the gateway until it is told to end.
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+
+#include "app/gateway/gateway.hpp"
+#include "app/subcommands/subcommand.hpp"
+#include "rt_core/base/log.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct RunOptions {
+  GatewayOptions gateway;
+  std::string script;
+  double rate_hz = 0;
+  double seconds = 0;  // 0: until a signal
+  int port = 0;
+  bool no_web = false;
+  bool headless = false;
+  bool verbose = false;
+};
+
+// SIGINT and SIGTERM are blocked in every thread and taken here, so that ending is ordinary code.
+sigset_t block_end_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return set;
+}
+
+void wait_for_end(const sigset_t& set, double seconds) {
+  if (seconds <= 0) {
+    int signal = 0;
+    while (sigwait(&set, &signal) == EINTR) {
+    }
+    return;
+  }
+  const SystemClock clock;
+  const Timestamp end = clock.now() + Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
+  for (Timestamp now = clock.now(); now < end; now = clock.now()) {
+    const std::int64_t left = (end - now).count();
+    const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
+    if (sigtimedwait(&set, nullptr, &timeout) > 0) return;
+  }
+}
+
+int run(const RunOptions& options) {
+  set_log_level(options.verbose ? LogLevel::info : LogLevel::warning);
+  if (options.port != 0) return refuse("the monitor page is not available yet; leave out --port");
+  const sigset_t signals = block_end_signals();
+  GatewayOptions gateway_options = options.gateway;
+  if (!options.script.empty()) gateway_options.startup_script = options.script;
+  if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
+  auto gateway = Gateway::start(gateway_options);
+  if (!gateway) return refuse(gateway.error().text());
+  std::printf("%s\n", (*gateway)->greeting().c_str());
+  std::fflush(stdout);
+  wait_for_end(signals, options.seconds);
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_run(CLI::App& cli, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* sub = cli.add_subcommand("run", "Start the gateway of a cell; Ctrl-C ends it");
+  sub->add_option("cell", options->gateway.cell_file, "the cell file, e.g. config/cells/transfer_cell/cell.toml")
+      ->required();
+  sub->add_option("--script", options->script, "startup SCRIPT, instead of the cell file's own");
+  sub->add_option("--for", options->seconds, "end after so many seconds")->check(CLI::PositiveNumber);
+  sub->add_option("--rate", options->rate_hz, "periods of the loop a second, 100 to 4000")
+      ->check(CLI::Range(100.0, 4000.0));
+  auto* port = sub->add_option("--port", options->port, "port of the monitor page (not available yet)")
+                   ->check(CLI::Range(1, 65535));
+  sub->add_flag("--no-web", options->no_web, "without the monitor page")->excludes(port);
+  sub->add_flag("--headless", options->headless, "without pictures");
+  sub->add_option("--instance", options->gateway.instance, "name of this gateway where several run beside each other");
+  sub->add_flag("--verbose", options->verbose, "log what is going on");
+  sub->footer("Example: cellmirror run config/cells/transfer_cell/cell.toml --for 60 --instance test");
+  sub->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,47 @@
+// cellmirror send 'COMMAND': one SCRIPT command by message, with its acknowledgement.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/subcommands/subcommand.hpp"
+#include "ipc/control/instance.hpp"
+#include "ipc/sysv/script_client.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct SendOptions {
+  std::string command;
+  double timeout_s = 5.0;
+  std::string instance{kDefaultInstance};
+};
+
+int send(const SendOptions& options) {
+  const auto instance = find_instance(options.instance);
+  if (!instance) return refuse(instance.error().text());
+  const Nanoseconds timeout(static_cast<std::int64_t>(options.timeout_s * 1e9));
+  const auto reply = send_command(instance->queues, options.command, timeout);
+  if (!reply) return refuse(reply.error().text());
+  if (!reply->done) return refuse("refused: " + reply->text);
+  std::printf("done%s%s\n", reply->text.empty() ? "" : " ", reply->text.c_str());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_send(CLI::App& cli, Action& action) {
+  auto options = std::make_shared<SendOptions>();
+  CLI::App* sub =
+      cli.add_subcommand("send", "Send one SCRIPT command to the running gateway and print its acknowledgement");
+  sub->add_option("command", options->command, "the command, in quotes")->required();
+  sub->add_option("--timeout", options->timeout_s, "seconds to wait for the acknowledgement")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  sub->add_option("--instance", options->instance, "name of the gateway")->capture_default_str();
+  sub->footer("Example: cellmirror send 'ROBOT PUMA_762 online'\nList of commands: cellmirror commands");
+  sub->callback([options, &action] { action = [options] { return send(*options); }; });
+}
+
+}  // namespace cellmirror::app

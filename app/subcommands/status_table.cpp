@@ -1,0 +1,143 @@
+#include "app/subcommands/status_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "rt_core/base/units.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kCommandErrorsShown = 5;
+
+class TableWriter {
+ public:
+  explicit TableWriter(bool colour) : colour_(colour) {}
+
+  std::string write(const json& status) {
+    write_head(status);
+    write_loop(status.at("loop"));
+    for (const json& robot : status.at("robots")) write_robot(robot);
+    write_script(status);
+    write_queues(status.at("queues"));
+    return std::move(out_);
+  }
+
+ private:
+  template <class... Args>
+  void line(fmt::format_string<Args...> format, Args&&... args) {
+    out_ += fmt::format(format, std::forward<Args>(args)...) + "\n";
+  }
+
+  [[nodiscard]] std::string state(const std::string& word) const {
+    if (!colour_ || word == "off" || word == "none") return word;
+    if (word == "fresh") return "\x1b[32m" + word + "\x1b[0m";
+    if (word == "stale") return "\x1b[33m" + word + "\x1b[0m";
+    return "\x1b[31m" + word + "\x1b[0m";
+  }
+
+  static std::string age(const json& age_s) {
+    if (!age_s.is_number()) return "-";
+    const double value = age_s.get<double>();
+    return value < 1.0 ? fmt::format("{:.0f} ms", value * 1e3) : fmt::format("{:.1f} s", value);
+  }
+
+  void write_head(const json& status) {
+    line("cellmirror {}   cell {}   instance {}   up {:.0f} s", status.at("version").get<std::string>(),
+         status.at("cell").get<std::string>(), status.at("instance").get<std::string>(),
+         status.at("uptime_s").get<double>());
+  }
+
+  void write_loop(const json& loop) {
+    const json& wake = loop.at("wakeup_latency_us");
+    const json& compute = loop.at("compute_us");
+    line(
+        "loop {:.0f} Hz, {}: {} ticks, {} missed; wake-up p50 {:.0f} p99 {:.0f} max {:.0f} us; tick p50 {:.0f} p99 "
+        "{:.0f} us",
+        loop.at("rate_hz").get<double>(), loop.at("scheduler").get<std::string>(),
+        loop.at("ticks").get<std::uint64_t>(), loop.at("missed").get<std::uint64_t>(), wake.at("p50").get<double>(),
+        wake.at("p99").get<double>(), wake.at("max").get<double>(), compute.at("p50").get<double>(),
+        compute.at("p99").get<double>());
+    for (const char* key : {"scheduler_note", "memory_note"}) {
+      if (loop.contains(key) && !loop.at(key).get<std::string>().empty())
+        line("  note: {}", loop.at(key).get<std::string>());
+    }
+    if (loop.at("faults").get<std::uint64_t>() > 0) line("  fault: {}", loop.at("last_fault").get<std::string>());
+  }
+
+  void write_robot(const json& robot) {
+    const json& stream = robot.at("stream");
+    std::string marks;
+    if (robot.at("active").get<bool>()) marks += " active";
+    if (robot.at("sending").get<bool>()) marks += " sending";
+    line("");
+    line("{}  {}{}", robot.at("id").get<std::string>(), robot.at("mode").get<std::string>(), marks);
+    if (robot.at("mode").get<std::string>() == "mirrored") {
+      line("  {} {}: {}, age {}, {:.1f} Hz, {} received, {} lost, {} rejected; {}",
+           stream.at("kind").get<std::string>(), stream.at("endpoint").get<std::string>(),
+           state(stream.at("state").get<std::string>()), age(stream.at("age_s")), stream.at("rate_hz").get<double>(),
+           stream.at("received").get<std::uint64_t>(), stream.at("lost").get<std::uint64_t>(),
+           stream.at("rejected").get<std::uint64_t>(), stream.at("condition").get<std::string>());
+    }
+    std::string joints;
+    for (const json& joint : robot.at("joints")) joints += joint_text(joint);
+    line("  {}", joints);
+  }
+
+  [[nodiscard]] std::string joint_text(const json& joint) const {
+    const double position = joint.at("position").get<double>();
+    const bool angle = joint.at("unit").get<std::string>() == "rad";
+    const std::string value =
+        angle ? fmt::format("{:.2f} deg", deg_from_rad(position)) : fmt::format("{:.1f} mm", mm_from_m(position));
+    const std::string word = joint.at("state").get<std::string>();
+    const bool remarkable = word == "stale" || word == "lost" || word == "invalid";
+    return fmt::format("{} {}{}   ", joint.at("name").get<std::string>(), value,
+                       remarkable ? " (" + state(word) + ")" : "");
+  }
+
+  void write_script(const json& status) {
+    const json& script = status.at("script");
+    line("");
+    line("SCRIPT  {} received, {} done, {} refused, {} files running, language {}",
+         script.at("received").get<std::uint64_t>(), script.at("done").get<std::uint64_t>(),
+         script.at("refused").get<std::uint64_t>(), script.at("running").get<std::uint64_t>(),
+         script.at("language").get<std::string>());
+    const json& errors = script.at("last_errors");
+    const std::size_t first = errors.size() > kCommandErrorsShown ? errors.size() - kCommandErrorsShown : 0;
+    for (std::size_t i = first; i < errors.size(); ++i) line("  {}", errors.at(i).get<std::string>());
+    for (const json& message : status.at("messages")) {
+      line("  message {} ago: {}", age(message.at("age_s")), message.at("text").get<std::string>());
+    }
+  }
+
+  void write_queues(const json& queues) {
+    std::string dropped;
+    for (const json& queue : queues) {
+      const auto count = queue.at("dropped").get<std::uint64_t>();
+      if (count > 0) dropped += fmt::format("{} {}   ", queue.at("name").get<std::string>(), count);
+    }
+    line("queues  {}", dropped.empty() ? fmt::format("{}, nothing dropped", queues.size()) : "dropped: " + dropped);
+  }
+
+  bool colour_;
+  std::string out_;
+};
+
+}  // namespace
+
+Result<std::string> status_table(std::string_view text, bool colour) {
+  try {
+    return TableWriter(colour).write(json::parse(text));
+  } catch (const json::exception& error) {
+    return fail(fmt::format("the gateway's status cannot be read: {}", error.what()),
+                "gateway and this program may be of different versions");
+  }
+}
+
+}  // namespace cellmirror::app

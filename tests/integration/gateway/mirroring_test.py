@@ -1,0 +1,125 @@
+"""Robots of the cell follow simulated controllers over real protocols; every fault is seen, counted and recovered from."""
+
+import time
+import unittest
+
+import gateway as g
+
+CAN_ROBOT = "MANTEC_R3"  # CiA 402 over udp multicast in the transfer cell
+DDS_ROBOT = "PUMA_762"   # JointState in the transfer cell
+
+
+class Mirroring(unittest.TestCase):
+    def setUp(self):
+        self.scratch = g.Scratch()
+        self.gateway = g.Gateway(self.scratch)
+        self.simulators = []
+
+    def tearDown(self):
+        for simulator in self.simulators:
+            simulator.close()
+        status = self.gateway.stop()
+        self.gateway.close()
+        self.scratch.remove()
+        self.assertEqual(status, 0)
+
+    def simulate(self, *arguments):
+        simulator = g.sim_robot(*arguments)
+        self.simulators.append(simulator)
+        return simulator
+
+    def can(self, *more):
+        return self.simulate("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100",
+                             "--motion", "sine:amplitude=0.3,period=2", *more)
+
+    def dds(self, *more):
+        return self.simulate("dds", "--joint-names", "J_1,J_2,J_3,J_4,J_5,J_6", "--rate", "100",
+                             "--motion", "sine:amplitude=0.3,period=2", *more)
+
+    def online(self, robot):
+        done = self.scratch.send(f"ROBOT {robot} online")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def wait_state(self, robot, state, timeout=10):
+        seen = g.eventually(lambda: self.scratch.robot(robot)["stream"]["state"] == state, timeout)
+        self.assertTrue(seen, f"{robot} never became {state}: {self.scratch.robot(robot)['stream']}")
+
+    def moves(self, robot):
+        first = [j["position"] for j in self.scratch.robot(robot)["joints"]]
+        return g.eventually(
+            lambda: any(abs(a - j["position"]) > 0.01 for a, j in zip(first, self.scratch.robot(robot)["joints"])))
+
+    def test_robots_of_both_buses_are_mirrored_at_once(self):
+        self.can()
+        self.dds()
+        for robot in (CAN_ROBOT, DDS_ROBOT):
+            self.online(robot)
+        for robot in (CAN_ROBOT, DDS_ROBOT):
+            self.wait_state(robot, "fresh")
+            self.assertTrue(self.moves(robot), robot)
+            state = self.scratch.robot(robot)
+            self.assertEqual(state["mode"], "mirrored")
+            self.assertGreater(state["stream"]["rate_hz"], 50)
+            self.assertEqual(state["stream"]["rejected"], 0, state["stream"])
+
+    def test_robot_without_a_sender_is_told_as_such(self):
+        self.online(DDS_ROBOT)
+        state = self.scratch.robot(DDS_ROBOT)
+        self.assertEqual(state["stream"]["state"], "none")
+        self.assertIn("no publisher", state["stream"]["condition"])
+
+    def check_death_and_return(self, robot, start):
+        simulator = start()
+        self.online(robot)
+        self.wait_state(robot, "fresh")
+        simulator.kill()
+        self.wait_state(robot, "lost")
+        start()
+        self.wait_state(robot, "fresh", 20)
+        self.assertTrue(self.moves(robot))
+
+    def test_dead_can_robot_is_lost_and_comes_back_by_itself(self):
+        self.check_death_and_return(CAN_ROBOT, self.can)
+
+    def test_dead_dds_robot_is_lost_and_comes_back_by_itself(self):
+        self.check_death_and_return(DDS_ROBOT, self.dds)
+
+    def test_gateway_started_before_the_robot_finds_it(self):
+        self.online(CAN_ROBOT)
+        time.sleep(0.3)
+        self.can()
+        self.wait_state(CAN_ROBOT, "fresh", 20)
+
+    def test_robot_taken_offline_stays_where_it_was_and_obeys_commands_again(self):
+        self.dds()
+        self.online(DDS_ROBOT)
+        self.wait_state(DDS_ROBOT, "fresh")
+        refused = self.scratch.send(f"POS_ROB {DDS_ROBOT} JOINT_INC 1")
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("offline", refused.stderr)
+        self.assertEqual(self.scratch.send(f"ROBOT {DDS_ROBOT} offline").returncode, 0)
+        first = [j["position"] for j in self.scratch.robot(DDS_ROBOT)["joints"]]
+        time.sleep(0.3)
+        second = [j["position"] for j in self.scratch.robot(DDS_ROBOT)["joints"]]
+        self.assertEqual(first, second)
+        self.assertEqual(self.scratch.send(f"POS_ROB {DDS_ROBOT} JOINT_INC 1").returncode, 0)
+        moved = g.eventually(lambda: abs(self.scratch.robot(DDS_ROBOT)["joints"][0]["position"] - second[0] - 0.0174533) < 1e-5)
+        self.assertTrue(moved)
+
+    def test_robot_that_stands_still_but_sends_is_fresh(self):
+        self.simulate("dds", "--joint-names", "J_1,J_2,J_3,J_4,J_5,J_6", "--rate", "100", "--motion", "hold")
+        self.online(DDS_ROBOT)
+        self.wait_state(DDS_ROBOT, "fresh")
+        time.sleep(1.0)
+        self.assertEqual(self.scratch.robot(DDS_ROBOT)["stream"]["state"], "fresh")
+
+    def test_values_that_are_no_numbers_are_refused_and_counted(self):
+        self.dds("--fault", "nan:p=0.2", "--seed", "3")
+        self.online(DDS_ROBOT)
+        self.assertTrue(g.eventually(lambda: self.scratch.robot(DDS_ROBOT)["stream"]["rejected"] > 5))
+        for joint in self.scratch.robot(DDS_ROBOT)["joints"]:
+            self.assertTrue(abs(joint["position"]) < 10)
+
+
+if __name__ == "__main__":
+    g.main()

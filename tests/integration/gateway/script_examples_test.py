@@ -1,0 +1,97 @@
+"""Every example of the manual on the transfer cell: done, or refused for the stated reason."""
+
+import json
+import unittest
+
+import gateway as g
+
+# Examples that change the tree start from a fresh cell each, so that one does not take another's node away.
+TREE = {"ACTIVATE", "DEACTIVATE", "DELETE_NODE", "SWAP_NODE", "LEVEL_DOWN", "LEVEL_UP", "CONNECT", "FRAME_TO_WFRM",
+        "SET_FRAME"}
+# The examples of 1.2.2 fit robots with so many joints; ROBACT comes first, as the manual says.
+ROBOT_OF_COUNT = {6: "MANTEC_R3", 3: "ZELLENKRAN"}
+
+
+def examples():
+    """(section, command, example, implemented) of every form with an example."""
+    done = g.subprocess.run([g.BIN / "cellmirror", "commands", "--json"], capture_output=True, text=True, check=True)
+    for form in json.loads(done.stdout)["commands"]:
+        example = (form.get("example") or "").strip().rstrip(";").strip()
+        if example and not example.startswith("#"):
+            yield form["section"], form["name"], example, form["implemented"]
+
+
+class Examples(unittest.TestCase):
+    def check(self, scratch, example, implemented):
+        done = scratch.send(example)
+        if implemented:
+            self.assertEqual(done.returncode, 0, f"{example}: {done.stderr}")
+        else:
+            self.assertEqual(done.returncode, 1, example)
+            self.assertIn("not available yet", done.stderr, example)
+
+    def test_examples_that_change_the_tree(self):
+        for _, name, example, implemented in examples():
+            if name not in TREE:
+                continue
+            with self.subTest(example=example):
+                scratch = g.Scratch()
+                gateway = g.Gateway(scratch)
+                try:
+                    self.check(scratch, example, implemented)
+                finally:
+                    gateway.close()
+                    scratch.remove()
+
+    def test_all_other_examples(self):
+        scratch = g.Scratch()
+        gateway = g.Gateway(scratch, "--script", scratch.home / "scripts" / "empty.spt") if (
+            scratch.home / "scripts" / "empty.spt").exists() else g.Gateway(scratch)
+        try:
+            count = 0
+            for section, name, example, implemented in examples():
+                if name in TREE:
+                    continue
+                with self.subTest(example=example):
+                    if section == "1.2.2":
+                        robot = ROBOT_OF_COUNT.get(len(example.split()) - 1, "MANTEC_R3")
+                        self.assertEqual(scratch.send(f"ROBACT {robot}").returncode, 0)
+                    self.check(scratch, example, implemented)
+                    count += 1
+            self.assertGreater(count, 40)
+            self.assertTrue(gateway.running())
+        finally:
+            gateway.close()
+            scratch.remove()
+
+    def test_every_command_that_is_not_available_says_so_and_none_pretends(self):
+        scratch = g.Scratch()
+        gateway = g.Gateway(scratch)
+        try:
+            for command in ("STDP 1", "COVW 0 UMG_Kamera_1", "BFRM on", "EFFECTS PULSE ON", "VV_RELOAD_LUTS",
+                            "eladyn_calc on", "SET_USSPAR sendmode 1", "TF_LOAD r3demo mantec_R3", "ARC on"):
+                done = scratch.send(command)
+                self.assertEqual(done.returncode, 1, command)
+                self.assertIn("not available yet", done.stderr)
+        finally:
+            gateway.close()
+            scratch.remove()
+
+    def test_the_manuals_script_runs_and_refuses_only_what_is_not_there_yet(self):
+        scratch = g.Scratch()
+        gateway = g.Gateway(scratch)
+        try:
+            self.assertEqual(scratch.send("EXEC_SCRIPT trsys_demo.spt").returncode, 0)
+            g.eventually(lambda: scratch.status()["script"]["running"] == 0)
+            errors = [error for error in scratch.status()["script"]["last_errors"] if "trsys_demo" in error]
+            for error in errors:
+                self.assertIn("not available yet", error)
+            # TF_LOAD twice, LOAD_VIEWS, TF_RUN; the rest of the script is done.
+            self.assertEqual(len(errors), 4, errors)
+        finally:
+            gateway.close()
+            scratch.remove()
+
+
+if __name__ == "__main__":
+    g.main()

@@ -1,0 +1,142 @@
+"""Runs the real programs for integration tests. Standard library only; every process is ended by the one who started it.
+
+A test module is a unittest module that runs as `python3 module.py`; programs are found in $CELLMIRROR_BIN_DIR.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+
+SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
+BIN = pathlib.Path(os.environ.get("CELLMIRROR_BIN_DIR", SOURCE / "build" / "bin"))
+CELLS = SOURCE / "config" / "cells"
+
+
+def eventually(condition, timeout=10.0, every=0.05):
+    """The first true value of condition(), or its last value after the timeout."""
+    end = time.monotonic() + timeout
+    while True:
+        value = condition()
+        if value or time.monotonic() > end:
+            return value
+        time.sleep(every)
+
+
+class Scratch:
+    """A folder with a copy of a cell, and a runtime folder of its own, so that tests never meet another gateway."""
+
+    def __init__(self, cell="transfer_cell"):
+        self.root = pathlib.Path(tempfile.mkdtemp(prefix="cellmirror-test-"))
+        self.runtime = self.root / "runtime"
+        self.runtime.mkdir(mode=0o700)
+        self.home = self.root / "cell"
+        shutil.copytree(CELLS / cell, self.home)
+        self.cell_file = self.home / "cell.toml"
+        self.instance = "t" + uuid.uuid4().hex[:12]
+        self.environment = dict(os.environ, CELLMIRROR_RUNTIME_DIR=str(self.runtime))
+        self.environment.pop("kis_home", None)
+
+    def remove(self):
+        shutil.rmtree(self.root, ignore_errors=True)
+
+    def cellmirror(self, *arguments, timeout=30, instance=None):
+        """Runs the program to its end; the completed process."""
+        command = [str(BIN / "cellmirror"), *arguments]
+        if instance is not False and arguments and arguments[0] in ("send", "status"):
+            command += ["--instance", instance or self.instance]
+        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=timeout)
+
+    def send(self, command, **keywords):
+        return self.cellmirror("send", command, **keywords)
+
+    def status(self, **keywords):
+        done = self.cellmirror("status", "--json", **keywords)
+        if done.returncode != 0:
+            raise AssertionError(f"status failed: {done.stderr}")
+        return json.loads(done.stdout)
+
+    def robot(self, robot_id):
+        return next(robot for robot in self.status()["robots"] if robot["id"] == robot_id)
+
+
+class Process:
+    """A child in the background; its output goes to a file that error messages show."""
+
+    def __init__(self, command, environment=None, log=None, stdin=None):
+        self.log = open(log or tempfile.mktemp(prefix="cellmirror-log-"), "w+b")
+        self.child = subprocess.Popen(
+            [str(part) for part in command], env=environment, stdout=self.log, stderr=subprocess.STDOUT,
+            stdin=subprocess.PIPE if stdin else subprocess.DEVNULL)
+
+    def output(self):
+        self.log.flush()
+        with open(self.log.name, "rb") as file:
+            return file.read().decode(errors="replace")
+
+    def running(self):
+        return self.child.poll() is None
+
+    def kill(self):
+        if self.running():
+            self.child.kill()
+        self.child.wait()
+
+    def stop(self, timeout=10):
+        """Ends it as Ctrl-C would; its exit status."""
+        if self.running():
+            self.child.send_signal(signal.SIGINT)
+        try:
+            return self.child.wait(timeout)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            raise AssertionError(f"did not end within {timeout} s:\n{self.output()}") from None
+
+    def close(self):
+        self.kill()
+        self.log.close()
+        pathlib.Path(self.log.name).unlink(missing_ok=True)
+
+
+class Gateway(Process):
+    """A running gateway on a scratch cell, ready to be asked when the constructor returns."""
+
+    def __init__(self, scratch, *arguments, instance=None, wait=True):
+        self.scratch = scratch
+        self.instance = instance or scratch.instance
+        super().__init__(
+            [BIN / "cellmirror", "run", scratch.cell_file, "--no-web", "--headless", "--instance", self.instance,
+             *arguments], scratch.environment)
+        if wait:
+            self.wait_ready()
+
+    def wait_ready(self, timeout=15):
+        def ready():
+            if not self.running():
+                raise AssertionError(f"the gateway ended with {self.child.returncode}:\n{self.output()}")
+            return "Ctrl-C ends it" in self.output()
+
+        if not eventually(ready, timeout):
+            raise AssertionError(f"the gateway did not start:\n{self.output()}")
+
+
+def sim_robot(*arguments, environment=None):
+    return Process([BIN / "sim_robot", *arguments], environment, stdin=True)
+
+
+def require(path, why):
+    """For setUpModule: skips the module visibly where a program is missing."""
+    import unittest
+    if shutil.which(str(path)) is None:
+        raise unittest.SkipTest(f"skipped: {why}")
+
+
+def main():
+    import unittest
+    unittest.main(module="__main__", verbosity=2, argv=sys.argv)

@@ -1,0 +1,49 @@
+#include "app/subcommands/status_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cellmirror::app {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kDocument = R"({
+  "version":"0.1.0","instance":"default","cell":"demo","uptime_s":12.0,
+  "loop":{"rate_hz":1000,"scheduler":"SCHED_OTHER","scheduler_note":"not permitted; run as root","memory_note":"","ticks":5,
+          "missed":2,"wakeup_latency_us":{"p50":1,"p99":2,"p999":3,"max":4},"compute_us":{"p50":1,"p99":2,"p999":3,"max":4},
+          "faults":1,"last_fault":"the loop stood still"},
+  "robots":[{"id":"PUMA","mode":"mirrored","active":true,"sending":false,
+    "stream":{"kind":"dds","endpoint":"domain 0","state":"stale","age_s":0.25,"rate_hz":100,"received":3,"lost":1,"rejected":2,
+              "condition":"no publisher"},
+    "joints":[{"name":"J_1","position":1.5707963267948966,"unit":"rad","state":"stale"},
+              {"name":"J_2","position":0.25,"unit":"m","state":"fresh"}]}],
+  "script":{"received":3,"done":2,"refused":1,"running":0,"language":"irdata","last_errors":["bad command"]},
+  "messages":[{"text":"hello","age_s":1.5}],
+  "queues":[{"name":"commands","dropped":0},{"name":"sensor","dropped":4}]})";
+
+TEST(StatusTable, ShowsWhatIsStaleLateRefusedAndDropped) {
+  const auto table = status_table(kDocument, false);
+  ASSERT_TRUE(table);
+  EXPECT_THAT(*table, HasSubstr("stale, age 250 ms"));
+  EXPECT_THAT(*table, HasSubstr("J_1 90.00 deg (stale)"));
+  EXPECT_THAT(*table, HasSubstr("J_2 250.0 mm "));
+  EXPECT_THAT(*table, HasSubstr("no publisher"));
+  EXPECT_THAT(*table, HasSubstr("not permitted; run as root"));
+  EXPECT_THAT(*table, HasSubstr("fault: the loop stood still"));
+  EXPECT_THAT(*table, HasSubstr("bad command"));
+  EXPECT_THAT(*table, HasSubstr("sensor 4"));
+}
+
+TEST(StatusTable, ColoursOnlyWhereItIsAskedFor) {
+  EXPECT_THAT(*status_table(kDocument, true), HasSubstr("\x1b[33mstale"));
+  EXPECT_THAT(*status_table(kDocument, false), testing::Not(HasSubstr("\x1b")));
+}
+
+TEST(StatusTable, RefusesADocumentOfAnotherShape) {
+  EXPECT_FALSE(status_table("{}", false));
+  EXPECT_FALSE(status_table("not json", false));
+}
+
+}  // namespace
+}  // namespace cellmirror::app
