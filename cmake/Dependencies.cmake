@@ -7,7 +7,7 @@ find_package(spdlog REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(Boost 1.74 REQUIRED)        # headers only: lock-free queue
+find_package(Boost 1.74 REQUIRED)        # headers only: the yardstick of tests/bench/rt
 find_package(tinyxml2 REQUIRED)
 find_package(fastcdr REQUIRED)
 find_package(fastrtps REQUIRED)
