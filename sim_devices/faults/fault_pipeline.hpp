@@ -30,6 +30,8 @@ class FaultPipeline {
  public:
   // What may wait inside (delayed, held); beyond it messages are dropped and counted.
   static constexpr std::size_t kMostWaiting = 200'000;
+  static constexpr std::size_t kMostHeld = 10'000;
+  static constexpr unsigned kMostCopiesOfOne = 10'000;
   static constexpr int kMostInsertionsAtOnce = 1000;
   static constexpr Nanoseconds kLongestHold{1'000'000'000};
 
@@ -39,7 +41,10 @@ class FaultPipeline {
   [[nodiscard]] const FaultSchedule& schedule() const { return schedule_; }
 
   // Takes a message that the device sends at `now`; it leaves at message.time or later.
-  void push(Timestamp now, Outgoing<M> message) { run(0, now, std::move(message)); }
+  void push(Timestamp now, Outgoing<M> message) {
+    copies_left_ = kMostCopiesOfOne;
+    run(0, now, std::move(message));
+  }
 
   // Appends what leaves at `now`, in its order.
   void poll(Timestamp now, std::vector<Outgoing<M>>& out) {
@@ -115,6 +120,11 @@ class FaultPipeline {
       if (fault.spec.kind == FaultKind::loss) return;
       if (fault.spec.kind == FaultKind::repeat) {
         for (unsigned copy = 1; copy <= fault.spec.number; ++copy) {
+          if (copies_left_ == 0) {
+            ++overflowed_;
+            break;
+          }
+          --copies_left_;
           Outgoing<M> again = message;
           again.time = message.time + nanoseconds(fault.spec.seconds * copy);
           run(i + 1, now, std::move(again));
@@ -169,7 +179,7 @@ class FaultPipeline {
   }
 
   void reorder(ScheduledFault& fault, std::size_t i, Timestamp now, Outgoing<M> message) {
-    if (FaultSchedule::strikes(fault, now, message.source, message.kind)) {
+    if (held_.size() < kMostHeld && FaultSchedule::strikes(fault, now, message.source, message.kind)) {
       held_.push_back({fault.id, fault.spec.number, now + kLongestHold, std::move(message)});
       return;
     }
@@ -192,14 +202,11 @@ class FaultPipeline {
   }
 
   void release_overdue(Timestamp now) {
-    for (auto held = held_.begin(); held != held_.end();) {
-      if (held->latest > now) {
-        ++held;
-        continue;
-      }
-      enqueue(std::move(held->message));
-      held = held_.erase(held);
-    }
+    std::erase_if(held_, [&](Held& held) {
+      if (held.latest > now) return false;
+      enqueue(std::move(held.message));
+      return true;
+    });
   }
 
   void insert(ScheduledFault& fault, Timestamp now) {
@@ -254,6 +261,7 @@ class FaultPipeline {
   std::vector<Held> held_;        // messages that others have to pass
   std::uint64_t sequence_ = 0;
   std::uint64_t overflowed_ = 0;
+  unsigned copies_left_ = kMostCopiesOfOne;  // of the message under way: repetitions of repetitions multiply
 };
 
 }  // namespace cellmirror::sim

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace cellmirror::sim {
 namespace {
@@ -19,9 +18,10 @@ bool concerns(const FaultSpec& spec, Source source) {
 
 template <class Condition>
 std::vector<ScheduledFault> take_out(std::vector<ScheduledFault>& faults, Condition condition) {
-  const auto kept = std::stable_partition(faults.begin(), faults.end(), [&](const auto& f) { return !condition(f); });
-  std::vector<ScheduledFault> removed(std::make_move_iterator(kept), std::make_move_iterator(faults.end()));
-  faults.erase(kept, faults.end());
+  std::vector<ScheduledFault> removed;
+  std::vector<ScheduledFault> kept;
+  for (ScheduledFault& fault : faults) (condition(fault) ? removed : kept).push_back(std::move(fault));
+  faults = std::move(kept);
   return removed;
 }
 

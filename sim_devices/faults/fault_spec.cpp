@@ -106,7 +106,7 @@ const std::array<Kind, kFaultKinds> kKinds{{
      false,
      "",
      "insert:rate=50,id=0x7AA"},
-    {FaultKind::reorder, "reorder", "a message is held until n later ones have passed it (a second at most)",
+    {FaultKind::reorder, "reorder", "a message, each second one by default, is held until n later ones have passed it",
      kNumberKeys, kMessageKeys, true, "", "reorder:p=0.1,n=2"},
     {FaultKind::corrupt, "corrupt", "n bits flip", kNumberKeys, kMessageKeys, true, "",
      "corrupt:p=0.001,n=3,only=sample"},
@@ -262,6 +262,8 @@ Result<FaultSpec> parse_fault(std::string_view text) {
     needed_seen = needed_seen || trimmed(item.substr(0, item.find('='))) == found->needed;
     rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
   }
+  // Were every message held, none could pass.
+  if (spec.kind == FaultKind::reorder && spec.every == 0 && spec.probability >= 1) spec.every = 2;
   if (!needed_seen) {
     return refused(text, fmt::format("{} needs {}=", found->name, found->needed),
                    fmt::format("e.g. {}", found->example));

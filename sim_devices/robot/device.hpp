@@ -58,10 +58,15 @@ class SimulatedDevice {
 template <class M>
 class FaultyDevice : public SimulatedDevice {
  public:
+  static constexpr std::size_t kMostFaults = 256;
+
   explicit FaultyDevice(std::uint64_t seed) : pipeline_(seed) {}
 
   Result<std::string> obey(const ControlCommand& command, Timestamp now) override {
     if (const auto* add = std::get_if<AddFault>(&command)) {
+      if (pipeline_.schedule().all().size() >= kMostFaults) {
+        return fail("there are " + std::to_string(kMostFaults) + " faults already", "`clear` ends them");
+      }
       if (auto fits = check(add->spec); !fits) return std::unexpected(fits.error());
       return "fault " + std::to_string(pipeline_.schedule().add(add->spec, now));
     }

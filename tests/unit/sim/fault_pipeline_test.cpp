@@ -179,7 +179,7 @@ TEST_F(FaultPipelineTest, ReorderLetsLaterMessagesPass) {
 }
 
 TEST_F(FaultPipelineTest, AHeldMessageLeavesAfterASecondEvenIfNothingPasses) {
-  add("reorder");
+  add("reorder:every=1");
   sut.push(at_ms(0), numbered(7, at_ms(0)));
   EXPECT_EQ(sut.next(), at_ms(1000));
   poll(999);
@@ -280,6 +280,14 @@ TEST_F(FaultPipelineTest, FaultsActOneAfterTheOther) {
   add("loss:every=2");
   feed(3);
   EXPECT_THAT(numbers(), ElementsAre(0, 1, 2));  // of each pair one is lost
+}
+
+TEST_F(FaultPipelineTest, RepetitionsOfRepetitionsAreBounded) {
+  for (int i = 0; i < 5; ++i) add("repeat:n=1000");
+  sut.push(kStart, numbered(0, kStart));
+  poll(0);
+  EXPECT_LE(sent.size(), FaultPipeline<CanFrame>::kMostCopiesOfOne + 1);
+  EXPECT_GT(sut.overflowed(), 0U);
 }
 
 TEST_F(FaultPipelineTest, WhatWaitsIsBounded) {
