@@ -18,6 +18,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// What a step may do is bounded by work, not by commands, so that a script that loads large files or asks for a
+// thousand unknown names does not keep messages waiting: a refusal looks for the nearest names, a file is checked when
+// loaded.
+constexpr std::size_t kWorkOfRefusal = 15;
+constexpr std::size_t kBytesOfWork = 256;
+
 constexpr std::string_view kFolder = "scripts";
 constexpr std::string_view kExtension = ".spt";
 
@@ -104,6 +110,7 @@ Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Dia
   for (const auto& run : runs_) {
     for (const auto& file : run->stack) bytes += file->text().size();
   }
+  work_ += text->size() / kBytesOfWork;
   const std::string name = shown_name(path, home_.root());
   if (bytes > kMaxTextBytes) {
     return refused({fmt::format("{} does not fit beside the SCRIPT files that run: {} bytes are allowed together", name,
@@ -124,38 +131,38 @@ Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Dia
 }
 
 std::size_t ScriptRunner::step(std::size_t budget) {
-  std::size_t executed = 0;
+  const std::uint64_t received_before = counters_.file.received;
   std::size_t without_progress = 0;
-  while (executed < budget && without_progress < runs_.size()) {
+  work_ = 0;
+  while (work_ < budget && without_progress < runs_.size()) {
     if (next_run_ >= runs_.size()) next_run_ = 0;
     ScriptRun& run = *runs_[next_run_];
-    const std::size_t before = executed;
-    step_run(run, std::min(kSlice, budget - executed), executed);
+    const std::size_t work_before = work_;
+    step_run(run, work_ + std::min(kSlice, budget - work_));
     if (run.ended()) {
       end_run(next_run_, false);
       without_progress = 0;
       continue;  // the run behind it has moved to its place
     }
-    without_progress = executed == before ? without_progress + 1 : 0;
+    without_progress = work_ == work_before ? without_progress + 1 : 0;
     ++next_run_;
   }
-  return executed;
+  return static_cast<std::size_t>(counters_.file.received - received_before);
 }
 
-void ScriptRunner::step_run(ScriptRun& run, std::size_t most, std::size_t& executed) {
+void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
   if (run.waiting) {
     if (host_.programs.busy()) return;
     run.waiting = false;
   }
   Diagnostics findings;
-  for (std::size_t n = 0; n < most && !run.stack.empty() && !run.waiting;) {
+  while (work_ < until && !run.stack.empty() && !run.waiting) {
     const CommandReader::Step step = run.stack.back()->reader().next(&host_.names, command_, findings);
     if (step == CommandReader::Step::end) {
       run.stack.pop_back();
       continue;
     }
-    ++n;
-    ++executed;
+    ++work_;
     ++run.report.counters.received;
     ++counters_.file.received;
     if (step == CommandReader::Step::command) {
@@ -218,6 +225,7 @@ Result<void> ScriptRunner::call(ScriptRun& run, std::string_view name, Diagnosti
 }
 
 void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
+  work_ += kWorkOfRefusal;
   ++run.report.counters.refused;
   ++counters_.file.refused;
   run.report.diagnostics.take(findings);

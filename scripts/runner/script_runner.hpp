@@ -87,7 +87,8 @@ class ScriptRunner {
   // file and returns when it was accepted; WAIT is refused. `source` names the sender in errors.
   Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
 
-  // Executes up to `budget` commands of the files, in turn; returns how many. 0: every run waits, or there is none.
+  // Executes up to `budget` commands of the files, in turn; fewer where they are refused (each counts 16) or load files
+  // (each 256 bytes count 1). Returns how many were executed or refused. 0: every run waits, or there is none.
   std::size_t step(std::size_t budget);
 
   [[nodiscard]] bool idle() const { return runs_.empty(); }
@@ -105,7 +106,7 @@ class ScriptRunner {
  private:
   Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
   Result<std::unique_ptr<ScriptFile>> load(const std::filesystem::path& path, Diagnostics& findings);
-  void step_run(ScriptRun& run, std::size_t most, std::size_t& executed);
+  void step_run(ScriptRun& run, std::size_t until);
   void execute_command(ScriptRun& run);
   Result<void> call(ScriptRun& run, std::string_view name, Diagnostics& findings);
   void refuse(ScriptRun& run, const Diagnostics& findings);
@@ -118,6 +119,7 @@ class ScriptRunner {
   const Clock& clock_;
   std::vector<std::unique_ptr<ScriptRun>> runs_;
   std::size_t next_run_ = 0;
+  std::size_t work_ = 0;  // done in this step
   std::uint64_t last_id_ = 0;
   ScriptCounters counters_;
   std::deque<std::string> last_errors_;

@@ -200,6 +200,28 @@ TEST_F(ScriptRunnerTest, StepKeepsToItsBudget) {
   EXPECT_EQ(sut_->step(3), 1U);
 }
 
+TEST_F(ScriptRunnerTest, StepEndsEarlyBehindALargeFile) {
+  write("large.spt", std::string(1'000'000, '\n') + "DRAW_SCENE;");
+  std::string calls;
+  for (int i = 0; i < 50; ++i) calls += "EXEC_SCRIPT large;";
+  write("a.spt", calls);
+  ASSERT_TRUE(sut_->start_file("a"));
+  EXPECT_EQ(sut_->step(1000), 1U);
+  EXPECT_EQ(sut_->step(1000), 2U);
+  run_all();
+  EXPECT_EQ(gateway_.calls.size(), 50U);
+}
+
+TEST_F(ScriptRunnerTest, StepEndsEarlyWhereCommandsAreRefused) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "ROBACT nobody;";
+  write("a.spt", text);
+  ASSERT_TRUE(sut_->start_file("a"));
+  EXPECT_LT(sut_->step(1000), 100U);
+  run_all();
+  EXPECT_EQ(sut_->counters().file.refused, 1000U);
+}
+
 TEST_F(ScriptRunnerTest, RefusesFilesThatItCannotOrMayNotRead) {
   fs::create_directories(folder_ / "scripts" / "folder.spt");
   fs::create_symlink("/etc/hostname", folder_ / "scripts" / "link.spt");
