@@ -302,9 +302,10 @@ void Cia402Drive::send_tpdo(Tpdo& tpdo, Timestamp now) {
   tpdo.sent = now;
   tpdo.pending = false;
   if (tpdo.event_timer.count() > 0) {
-    // From the due time, so that the period is kept; from now where the owner called late.
+    // From the due time, so that the period is kept; from now where it was sent early, or the owner called late.
     const Timestamp next = tpdo.event_due + tpdo.event_timer;
-    tpdo.event_due = tpdo.event_due.known() && next > now ? next : now + tpdo.event_timer;
+    const bool in_time = tpdo.event_due.known() && now >= tpdo.event_due && next > now;
+    tpdo.event_due = in_time ? next : now + tpdo.event_timer;
   }
   output_->send(pack_pdo(tpdo.cob_id, tpdo.entries, tpdo.last));
 }

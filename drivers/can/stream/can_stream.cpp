@@ -91,16 +91,21 @@ void CanStream::run() {
     due = protocol_->next_due();
     ended_ = received == CanReceive::end;
     // The state of the bus can only have changed where no ordinary frame came.
-    if (!is_frame || frame.frame.error || last != CanReceive::frame) watch_bus();
+    const bool is_error = is_frame && frame.frame.error;
+    if (!is_frame || is_error || last != CanReceive::frame) {
+      watch_bus(is_error ? bus_state_of_error(frame.frame) : std::nullopt);
+    }
     last = received;
   }
 }
 
-void CanStream::watch_bus() {
+// `told`: what an error frame said; the channel may have moved on since.
+void CanStream::watch_bus(std::optional<CanBusState> told) {
   const CanChannelStatus status = channel_->status();
-  if (status.bus == bus_) return;
+  const CanBusState bus = told.value_or(status.bus);
+  if (bus == bus_) return;
   const bool was_bad = bus_ == CanBusState::bus_off || bus_ == CanBusState::down;
-  bus_ = status.bus;
+  bus_ = bus;
   const bool is_bad = bus_ != CanBusState::active && bus_ != CanBusState::unknown;
   if (!was_bad && !is_bad) return;
   note("bus", fmt::format("bus: {}{}{}", words(bus_), is_bad && !status.last_error.empty() ? ": " : "",

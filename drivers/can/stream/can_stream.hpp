@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -55,7 +56,7 @@ class CanStream final : public JointStream, private CanProtocolHost {
 
   void run();
   void prepare_thread() const;
-  void watch_bus();
+  void watch_bus(std::optional<CanBusState> told);
   [[nodiscard]] std::string bus_condition(const CanChannelStatus& bus) const;
 
   std::string kind_;

@@ -1,0 +1,253 @@
+// Channels that every machine has: logs and the virtual bus; UDP on the loopback interface.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/can/error.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "drivers/can/channel/endpoint.hpp"
+#include "drivers/can/channel/error_frame.hpp"
+#include "drivers/can/channel/open_channel.hpp"
+#include "drivers/can/channel/virtual_bus.hpp"
+#include "tests/unit/can/frames.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+constexpr Nanoseconds kLong = 5s;  // never waited out where the code works
+
+TEST(Endpoint, NamesTheKinds) {
+  EXPECT_EQ(std::get<SocketCanEndpoint>(*parse_endpoint("socketcan:can0")).interface, "can0");
+  const auto v4 = std::get<UdpEndpoint>(*parse_endpoint("udp:239.74.163.2:43113"));
+  EXPECT_EQ(v4.group, "239.74.163.2");
+  EXPECT_EQ(v4.port, 43113);
+  const auto v6 = std::get<UdpEndpoint>(*parse_endpoint("udp:[ff15:7079:7468:6f6e:6465:6d6f:6d63:6173]:43113"));
+  EXPECT_TRUE(v6.ipv6);
+  EXPECT_EQ(v6.group, "ff15:7079:7468:6f6e:6465:6d6f:6d63:6173");
+  EXPECT_EQ(std::get<LogEndpoint>(*parse_endpoint("log:/tmp/a:b.log")).file, "/tmp/a:b.log");
+}
+
+TEST(Endpoint, RefusesOthersWithARemedy) {
+  for (const char* text :
+       {"", "can0", "socketcan:", "socketcan:a/b", "socketcan:a_name_that_is_too_long", "udp:1.2.3.4",
+        "udp:192.168.0.1:43113", "udp:239.74.163.2:0", "udp:239.74.163.2:99999", "udp:[::1]:43113", "log:"}) {
+    const auto sut = parse_endpoint(text);
+    ASSERT_FALSE(sut) << text;
+    EXPECT_FALSE(sut.error().remedy.empty()) << text;
+  }
+}
+
+TEST(ErrorFrame, TellsTheStateOfTheBus) {
+  CanFrame sut = frame(CAN_ERR_BUSOFF, {0, 0, 0, 0, 0, 0, 0, 0});
+  sut.error = true;
+  EXPECT_EQ(bus_state_of_error(sut), CanBusState::bus_off);
+  EXPECT_EQ(error_words(sut), "bus-off");
+  sut.id = CAN_ERR_CRTL;
+  sut.data[1] = CAN_ERR_CRTL_TX_PASSIVE;
+  EXPECT_EQ(bus_state_of_error(sut), CanBusState::passive);
+  sut.data[1] = CAN_ERR_CRTL_RX_WARNING;
+  EXPECT_EQ(bus_state_of_error(sut), CanBusState::warning);
+  EXPECT_EQ(error_words(sut), "controller, receive warning");
+  sut.id = CAN_ERR_RESTARTED;
+  EXPECT_EQ(bus_state_of_error(sut), CanBusState::active);
+  sut.id = CAN_ERR_ACK;
+  EXPECT_FALSE(bus_state_of_error(sut));
+}
+
+struct LogTest : testing::Test {
+  LogTest() { path = testing::TempDir() + "can_log_test_" + std::to_string(getpid()) + ".log"; }
+  ~LogTest() override { std::filesystem::remove(path); }
+  std::unique_ptr<CanChannel> open(const std::string& text, bool fast = true, bool repeat = false) {
+    std::ofstream(path, std::ios::binary) << text;
+    CanChannelConfig config;
+    config.endpoint = "log:" + path;
+    config.log_as_fast_as_possible = fast;
+    config.log_repeat = repeat;
+    auto channel = open_can_channel(config);
+    EXPECT_TRUE(channel);
+    return channel ? std::move(*channel) : nullptr;
+  }
+  std::string path;
+  ReceivedCanFrame got;
+};
+
+TEST_F(LogTest, PlaysItsFramesAndEnds) {
+  const auto sut = open("(1.000000) vcan0 123#11\n(1000.000000) vcan0 124#22");
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame, frame(0x123, {0x11}));
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame, frame(0x124, {0x22}));
+  EXPECT_EQ(sut->receive(got, 1ms), CanReceive::end);
+  EXPECT_EQ(sut->status().received, 2U);
+  EXPECT_FALSE(sut->send(frame(1, {})));
+  EXPECT_EQ(sut->status().send_refused, 1U);
+}
+
+TEST_F(LogTest, KeepsTheTimeBetweenItsFrames) {
+  const auto sut = open("(1.000) vcan0 123#\n(1.040) vcan0 124#\n(0.5) vcan0 125#\n", false);
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  const Timestamp first = got.receive_time;
+  EXPECT_EQ(sut->receive(got, 1ms), CanReceive::timeout);
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_GE(got.receive_time - first, 40ms);
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame) << "a stamp that goes back is due at once";
+}
+
+TEST_F(LogTest, BrokenLinesAreCountedWithTheirPlace) {
+  const auto sut = open("\n(1.0) vcan0 123#\nnonsense\n(1.0) vcan0 " + std::string(2000, 'x') + "\n(1.0) vcan0 124#\n");
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame.id, 0x124U);
+  EXPECT_EQ(sut->status().malformed, 2U);
+  EXPECT_EQ(sut->status().last_error, path + ":4: the line is too long or holds a NUL byte");
+}
+
+TEST_F(LogTest, RepeatsFromTheStart) {
+  const auto sut = open("(1.0) vcan0 123#\n(1.0) vcan0 124#\n", true, true);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(sut->receive(got, kLong), CanReceive::frame);
+    EXPECT_EQ(got.frame.id, i % 2 == 0 ? 0x123U : 0x124U);
+  }
+}
+
+TEST_F(LogTest, RepeatingALogWithoutFramesEnds) {
+  const auto sut = open("nonsense\n", true, true);
+  CanReceive result = CanReceive::timeout;
+  for (int i = 0; i < 10 && result != CanReceive::end; ++i) result = sut->receive(got, 1ms);
+  EXPECT_EQ(result, CanReceive::end);
+}
+
+TEST(LogChannel, MissingFilesAndFoldersAreRefused) {
+  CanChannelConfig config;
+  config.endpoint = "log:/does/not/exist";
+  EXPECT_FALSE(open_can_channel(config));
+  config.endpoint = "log:/";
+  EXPECT_THAT(open_can_channel(config).error().what, HasSubstr("no regular file"));
+}
+
+TEST(SocketCanChannel, WithoutCanOrInterfaceItFailsWithARemedy) {
+  CanChannelConfig config;
+  config.endpoint = "socketcan:nosuchcan9";
+  const auto sut = open_can_channel(config);
+  ASSERT_FALSE(sut);
+  EXPECT_FALSE(sut.error().remedy.empty());
+}
+
+struct VirtualBusTest : testing::Test {
+  VirtualCanBus sut;
+  std::unique_ptr<CanChannel> a = sut.connect("a");
+  std::unique_ptr<CanChannel> b = sut.connect("b");
+  ReceivedCanFrame got;
+};
+
+TEST_F(VirtualBusTest, DeliversToTheOthers) {
+  EXPECT_TRUE(a->send(frame(0x123, {1})));
+  EXPECT_EQ(b->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame, frame(0x123, {1}));
+  EXPECT_EQ(a->receive(got, 0ns), CanReceive::timeout);
+}
+
+TEST_F(VirtualBusTest, BusOffRefusesAndIsToldByAnErrorFrame) {
+  sut.set_state(CanBusState::bus_off);
+  EXPECT_FALSE(a->send(frame(1, {})));
+  EXPECT_EQ(a->status().bus, CanBusState::bus_off);
+  EXPECT_EQ(a->receive(got, kLong), CanReceive::frame);
+  EXPECT_TRUE(got.frame.error);
+  EXPECT_EQ(a->status().error_frames, 1U);
+  sut.set_state(CanBusState::active);
+  EXPECT_TRUE(a->send(frame(1, {})));
+}
+
+TEST_F(VirtualBusTest, DownIsTold) {
+  sut.set_state(CanBusState::down);
+  EXPECT_EQ(a->receive(got, 0ns), CanReceive::down);
+  EXPECT_FALSE(a->send(frame(1, {})));
+}
+
+TEST_F(VirtualBusTest, FilterLosesAndRepeats) {
+  sut.set_filter([](const CanFrame& f) -> std::vector<CanFrame> {
+    if (f.id == 1) return {};
+    return {f, f};
+  });
+  a->send(frame(1, {}));
+  a->send(frame(2, {}));
+  EXPECT_EQ(b->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame.id, 2U);
+  EXPECT_EQ(b->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(b->receive(got, 0ns), CanReceive::timeout);
+}
+
+TEST_F(VirtualBusTest, DelayHoldsFramesBack) {
+  sut.set_delay(20ms);
+  const Timestamp sent = SystemClock().now();
+  a->send(frame(1, {}));
+  EXPECT_EQ(b->receive(got, 0ns), CanReceive::timeout);
+  EXPECT_EQ(b->receive(got, kLong), CanReceive::frame);
+  EXPECT_GE(got.receive_time - sent, 20ms);
+}
+
+TEST_F(VirtualBusTest, FullQueuesDropTheOldestAndCountIt) {
+  VirtualCanBus small(2);
+  const auto x = small.connect("x");
+  const auto y = small.connect("y");
+  for (std::uint32_t i = 0; i < 5; ++i) x->send(frame(i, {}));
+  EXPECT_EQ(y->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame.id, 3U);
+  EXPECT_EQ(y->status().receive_dropped, 3U);
+}
+
+TEST_F(VirtualBusTest, RefusedSendsAreCounted) {
+  sut.refuse_sends(1);
+  EXPECT_FALSE(a->send(frame(1, {})));
+  EXPECT_TRUE(a->send(frame(1, {})));
+  EXPECT_EQ(a->status().send_refused, 1U);
+}
+
+// A group and a port of this process alone, so that test runs beside each other do not hear each other.
+std::string own_group() {
+  const int pid = getpid();
+  return "udp:239.74." + std::to_string(pid >> 8 & 0xFF) + "." + std::to_string(pid & 0xFF) + ":" +
+         std::to_string(20000 + pid % 20000);
+}
+
+TEST(UdpChannel, MembersHearEachOtherButNotThemselves) {
+  CanChannelConfig config;
+  config.endpoint = own_group();
+  auto a = open_can_channel(config);
+  auto b = open_can_channel(config);
+  if (!a || !b) GTEST_SKIP() << "skipped: no multicast on the loopback interface: " << a.error().text();
+  CanFrame sent = extended_frame(0x1ABCDEF0, {1, 2, 3});
+  sent.fd = true;
+  sent.bit_rate_switch = true;
+  ASSERT_TRUE((*a)->send(sent));
+  ReceivedCanFrame got;
+  ASSERT_EQ((*b)->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame, sent);
+  EXPECT_LT(SystemClock().now() - got.receive_time, 2s);
+  EXPECT_GE(SystemClock().now() - got.receive_time, 0s);
+  ASSERT_TRUE((*b)->send(frame(7, {})));
+  ASSERT_EQ((*a)->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(got.frame.id, 7U) << "the first that a hears is b's";
+  EXPECT_EQ((*a)->status().sent, 1U);
+  EXPECT_EQ((*a)->status().received, 1U);
+  EXPECT_EQ((*a)->status().bus, CanBusState::active);
+}
+
+TEST(UdpChannel, UnknownInterfaceIsRefused) {
+  CanChannelConfig config;
+  config.endpoint = own_group();
+  config.interface = "nosuchif9";
+  EXPECT_THAT(open_can_channel(config).error().what, HasSubstr("nosuchif9"));
+}
+
+}  // namespace
+}  // namespace cellmirror::can

@@ -1,0 +1,276 @@
+// Golden frames by hand: Intel start bit = LSB, Motorola start bit = MSB in saw-tooth numbering.
+#include "drivers/can/dbc/dbc.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "drivers/can/dbc/session.hpp"
+#include "tests/unit/can/frames.hpp"
+#include "tests/unit/can/test_data.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+using testing::HasSubstr;
+
+Dbc axes() {
+  Diagnostics diagnostics;
+  const auto dbc = read_dbc(can_data("axes.dbc"), diagnostics);
+  EXPECT_EQ(diagnostics.text(), "");
+  return dbc.value_or(Dbc{});
+}
+
+double value(const Dbc& dbc, const char* message, const char* signal, const CanFrame& frame) {
+  return physical_value(*dbc.find(message)->find(signal), frame.payload());
+}
+
+TEST(Dbc, ReadsMessagesAndSignals) {
+  const Dbc sut = axes();
+  ASSERT_EQ(sut.messages.size(), 4U);
+  const DbcMessage& axis_1 = *sut.find("Axis_1");
+  EXPECT_EQ(axis_1.id, 256U);
+  EXPECT_FALSE(axis_1.extended);
+  EXPECT_EQ(axis_1.length, 8);
+  EXPECT_EQ(axis_1.signals.size(), 3U);
+  EXPECT_EQ(axis_1.find("Position")->unit, "deg");
+  EXPECT_EQ(axis_1.find("Position")->minimum, -180.0);
+  const DbcMessage& axis_2 = *sut.find("Axis_2");
+  EXPECT_TRUE(axis_2.extended) << "bit 31 of the identifier";
+  EXPECT_EQ(axis_2.id, 2566844416U - 0x80000000U);
+}
+
+TEST(Dbc, IntelSignals) {
+  const Dbc sut = axes();
+  // -90.5 deg = -90500 = 0xFFFE9E7C; -1.2 deg/s = -12 = 0xFFF4; counter 5 in the low nibble of byte 6.
+  const CanFrame golden = frame(0x100, {0x7C, 0x9E, 0xFE, 0xFF, 0xF4, 0xFF, 0xA5, 0x00});
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_1", "Position", golden), -90.5);
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_1", "Velocity", golden), -1.2);
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_1", "Counter", golden), 5.0);
+}
+
+TEST(Dbc, MotorolaSignalOfWholeBytes) {
+  const Dbc sut = axes();
+  // 7|16@0-: byte 0 is the high byte. 0x0FA0 = 4000 -> 40 - 90 = -50; 0xFFFF = -1 -> -90.01.
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_2", "Position", frame(0, {0x0F, 0xA0, 0, 0, 0, 0, 0, 0})), -50.0);
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_2", "Position", frame(0, {0xFF, 0xFF, 0, 0, 0, 0, 0, 0})), -90.01);
+}
+
+TEST(Dbc, MotorolaSignalAcrossBytes) {
+  DbcSignal sut;
+  sut.order = ByteOrder::big_endian;
+  // 12 bits from bit 2: bits 2..0 of byte 0, then all of byte 1, then bit 7 of byte 2.
+  sut.start = 2;
+  sut.length = 12;
+  const CanFrame golden = frame(0, {0x05, 0xAB, 0x80});
+  EXPECT_EQ(bytes_needed(sut), 3U);
+  EXPECT_EQ(raw_value(sut, golden.payload()), 0b1'0110'1010'111U);
+}
+
+TEST(Dbc, FloatSignals) {
+  const Dbc sut = axes();
+  // double 1.5 = 0x3FF8000000000000, float -2.5 = 0xC0200000, little-endian.
+  const CanFrame golden = frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 0x00, 0x00, 0x20, 0xC0});
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_3", "Position", golden), 1.5);
+  EXPECT_DOUBLE_EQ(value(sut, "Axis_3", "Torque", golden), -2.5);
+}
+
+TEST(Dbc, MultiplexedSignalsAreThereForTheirValueOnly) {
+  const Dbc sut = axes();
+  const DbcMessage& message = *sut.find("Axes");
+  const auto present = [&](const char* signal, const CanFrame& f) {
+    return is_present(message, *message.find(signal), f.payload());
+  };
+  const CanFrame zero = frame(0x102, {0, 0x10, 0x27, 0, 0, 0, 0, 0});
+  EXPECT_TRUE(present("Axis", zero));
+  EXPECT_TRUE(present("First", zero));
+  EXPECT_FALSE(present("Second", zero));
+  EXPECT_TRUE(present("Second", frame(0x102, {1, 0, 0, 0, 0, 0, 0, 0})));
+  EXPECT_TRUE(present("Deep", frame(0x102, {2, 4, 0, 0, 0, 0, 0, 0}))) << "nested: Axis 2, Page 4";
+  EXPECT_TRUE(present("Deep", frame(0x102, {2, 9, 0, 0, 0, 0, 0, 0})));
+  EXPECT_FALSE(present("Deep", frame(0x102, {2, 6, 0, 0, 0, 0, 0, 0})));
+  EXPECT_FALSE(present("Deep", frame(0x102, {3, 4, 0, 0, 0, 0, 0, 0}))) << "Page itself is not there";
+}
+
+TEST(Dbc, PutIsTheInverseOfGet) {
+  DbcSignal sut;
+  sut.factor = 0.5;
+  sut.offset = -3.0;
+  sut.is_signed = true;
+  for (const ByteOrder order : {ByteOrder::little_endian, ByteOrder::big_endian}) {
+    sut.order = order;
+    sut.start = 11;
+    sut.length = 10;
+    CanFrame frame;
+    frame.length = 8;
+    put_physical_value(sut, -20.5, std::span(frame.data).first(8));
+    EXPECT_DOUBLE_EQ(physical_value(sut, frame.payload()), -20.5);
+    put_physical_value(sut, 1e9, std::span(frame.data).first(8));
+    EXPECT_DOUBLE_EQ(physical_value(sut, frame.payload()), 511 * 0.5 - 3.0) << "clamped to ten bits";
+    put_physical_value(sut, -1e9, std::span(frame.data).first(8));
+    EXPECT_DOUBLE_EQ(physical_value(sut, frame.payload()), -512 * 0.5 - 3.0);
+  }
+}
+
+TEST(Dbc, TellsAllMistakesWithTheirPlaces) {
+  const std::string text =
+      "BO_ 1 A: 8 X\n"
+      " SG_ Far : 60|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ Zero : 0|8@1+ (0,0) [0|0] \"\" X\n"
+      " SG_ Order : 0|8@2+ (1,0) [0|0] \"\" X\n"
+      " SG_ Twice : 0|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ Twice : 8|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ Alone m1 : 8|8@1+ (1,0) [0|0] \"\" X\n"
+      "BO_ 4096 B: 8 X\n"
+      "BO_ 2 C: 65 X\n"
+      "BO_ 1 D: 8 X\n"
+      "BO_ x E: 8 X\n"
+      "SIG_VALTYPE_ 1 Twice : 1;\n"
+      "CM_ \"never ends\n";
+  Diagnostics diagnostics;
+  const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
+  const std::string told = diagnostics.text();
+  for (const char* expected :
+       {"f.dbc:2: error: the signal Far reaches to byte 9, the message A has 8 bytes",
+        "f.dbc:3:", "a factor other than 0", "f.dbc:4:", "the byte order, 0 or 1",
+        "f.dbc:6: error: the signal Twice stands twice in A",
+        "f.dbc:7: error: the signal Alone has no multiplexer in A",
+        "f.dbc:8: error: message B: 4096 is no CAN identifier",
+        "f.dbc:9: error: message C: 65 bytes, a CAN frame holds at most 64",
+        "f.dbc:10: error: message D: the identifier 1 stands twice", "f.dbc:11:", "f.dbc:13: error: a string"}) {
+    EXPECT_THAT(told, HasSubstr(expected));
+  }
+}
+
+TEST(Dbc, ReadsFilesOfOthers) {
+  const auto folder = shared_data() / "dbc";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "skipped: no shared DBC files on this machine";
+  Diagnostics diagnostics;
+  const auto motohawk = read_dbc((folder / "cantools_motohawk.dbc").string(), diagnostics);
+  ASSERT_TRUE(motohawk);
+  // Temperature 0|12@0-: bit 0 of byte 0, all of byte 1, bits 7..5 of byte 2; 250 + 0.01 * raw.
+  const CanFrame golden = frame(496, {0xC0, 0x06, 0xE0, 0, 0, 0, 0, 0});
+  EXPECT_DOUBLE_EQ(value(*motohawk, "ExampleMessage", "Temperature", golden), 250.0 + 0.01 * 55);
+  EXPECT_DOUBLE_EQ(value(*motohawk, "ExampleMessage", "Enable", golden), 1.0);
+  EXPECT_DOUBLE_EQ(value(*motohawk, "ExampleMessage", "AverageRadius", golden), 3.2);
+
+  const auto odrive = read_dbc((folder / "odrive-cansimple.dbc").string(), diagnostics);
+  ASSERT_TRUE(odrive);
+  EXPECT_EQ(odrive->find("Axis0_Get_Encoder_Estimates")->find("Pos_Estimate")->type, DbcValueType::float32);
+  const auto actuator = read_dbc((folder / "cantools_open_actuator.dbc").string(), diagnostics);
+  ASSERT_TRUE(actuator);
+  EXPECT_EQ(diagnostics.text(), "");
+}
+
+struct Recorder : DbcSessionOutput {
+  std::vector<JointSample> samples;
+  std::vector<std::string> reasons;
+  void sample(const JointSample& s) override { samples.push_back(s); }
+  void rejected(const std::string& why) override { reasons.push_back(why); }
+};
+
+DbcSignalConfig mapped(const char* message, const char* signal, std::size_t joint,
+                       JointQuantity quantity = JointQuantity::position, double scale = 1.0, double offset = 0.0) {
+  return {message, signal, joint, "J", quantity, scale, offset};
+}
+
+struct DbcSessionTest : testing::Test {
+  DbcSessionTest() {
+    DbcStreamConfig config;
+    config.signals = {mapped("Axis_1", "Position", 0, JointQuantity::position, std::numbers::pi / 180, 0.25),
+                      mapped("Axis_1", "Velocity", 0, JointQuantity::velocity, std::numbers::pi / 180),
+                      mapped("Axis_2", "Position", 1),
+                      mapped("Axis_3", "Position", 2),
+                      mapped("Axis_3", "Torque", 2, JointQuantity::effort),
+                      mapped("Axes", "First", 3),
+                      mapped("Axes", "Second", 4)};
+    Diagnostics diagnostics;
+    auto plan = plan_dbc(config, axes(), diagnostics);
+    EXPECT_EQ(diagnostics.text(), "");
+    sut = std::make_unique<DbcSession>(std::move(*plan), recorder);
+  }
+  Recorder recorder;
+  std::unique_ptr<DbcSession> sut;
+};
+
+TEST_F(DbcSessionTest, MakesASampleOfAFrame) {
+  sut->receive(frame(0x100, {0x7C, 0x9E, 0xFE, 0xFF, 0xF4, 0xFF, 0, 0}), {5});
+  ASSERT_EQ(recorder.samples.size(), 1U);
+  const JointSample& sample = recorder.samples[0];
+  EXPECT_EQ(sample.present, 1U);
+  EXPECT_EQ(sample.sequence, 1U);
+  EXPECT_EQ(sample.receive_time.ns, 5);
+  EXPECT_DOUBLE_EQ(sample.position[0], -90.5 * std::numbers::pi / 180 + 0.25);
+  EXPECT_DOUBLE_EQ(sample.velocity[0], -1.2 * std::numbers::pi / 180);
+}
+
+TEST_F(DbcSessionTest, KeepsExtendedAndBaseIdentifiersApart) {
+  const std::uint32_t id = 2566844416U - 0x80000000U;
+  sut->receive(frame(id & 0x7FF, {0, 0, 0, 0, 0, 0, 0, 0}), {1});
+  EXPECT_TRUE(recorder.samples.empty());
+  sut->receive(extended_frame(id, {0x0F, 0xA0, 0, 0, 0, 0, 0, 0}), {1});
+  ASSERT_EQ(recorder.samples.size(), 1U);
+  EXPECT_EQ(recorder.samples[0].present, 2U);
+  EXPECT_DOUBLE_EQ(recorder.samples[0].position[1], -50.0);
+}
+
+TEST_F(DbcSessionTest, FdFrameLongerThanTheMessageIsTaken) {
+  CanFrame fd = frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 0x00, 0x00, 0x20, 0xC0, 0, 0, 0, 0});
+  fd.fd = true;
+  sut->receive(fd, {1});
+  ASSERT_EQ(recorder.samples.size(), 1U);
+  EXPECT_DOUBLE_EQ(recorder.samples[0].position[2], 1.5);
+  EXPECT_DOUBLE_EQ(recorder.samples[0].effort[2], -2.5);
+}
+
+TEST_F(DbcSessionTest, RefusesShortFramesAndCountsThem) {
+  sut->receive(frame(0x100, {1, 2, 3, 4}), {1});
+  EXPECT_TRUE(recorder.samples.empty());
+  EXPECT_EQ(sut->counters().rejected, 1U);
+  EXPECT_EQ(recorder.reasons[0], "Axis_1: 4 bytes, the DBC says 8");
+}
+
+TEST_F(DbcSessionTest, RefusesValuesThatAreNotFinite) {
+  // A quiet NaN as double.
+  sut->receive(frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F, 0, 0, 0x80, 0x3F}), {1});
+  ASSERT_EQ(recorder.samples.size(), 1U);
+  EXPECT_EQ(recorder.samples[0].present, 0U);
+  EXPECT_EQ(recorder.samples[0].refused, 4U);
+  EXPECT_EQ(recorder.samples[0].position[2], 0.0);
+  EXPECT_EQ(recorder.samples[0].effort[2], 1.0) << "the other values of the frame stay usable";
+  EXPECT_EQ(sut->counters().rejected, 1U);
+}
+
+TEST_F(DbcSessionTest, MultiplexedSignalsOfOneMessageReachTheirJoints) {
+  sut->receive(frame(0x102, {0, 0x10, 0x27, 0, 0, 0, 0, 0}), {1});
+  sut->receive(frame(0x102, {1, 0xF0, 0xD8, 0, 0, 0, 0, 0}), {2});
+  ASSERT_EQ(recorder.samples.size(), 2U);
+  EXPECT_EQ(recorder.samples[0].present, 8U);
+  EXPECT_EQ(recorder.samples[0].position[3], 10000.0);
+  EXPECT_EQ(recorder.samples[1].present, 16U);
+  EXPECT_EQ(recorder.samples[1].position[4], -10000.0);
+  EXPECT_EQ(recorder.samples[1].position[3], 10000.0) << "the newest value of the other joints goes along";
+}
+
+TEST(DbcPlan, TellsAllUnknownNamesWithTheNearest) {
+  DbcStreamConfig config;
+  config.signals = {mapped("Axis1", "Position", 0), mapped("Axis_1", "Positon", 1), mapped("Axis_1", "Position", 99)};
+  Diagnostics diagnostics;
+  EXPECT_FALSE(plan_dbc(config, axes(), diagnostics));
+  EXPECT_EQ(diagnostics.errors(), 3U);
+  EXPECT_THAT(diagnostics.text(), HasSubstr("Axis_1"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("did you mean Position"));
+}
+
+TEST(DbcPlan, MissingFileIsTold) {
+  DbcStreamConfig config;
+  config.dbc_file = "/does/not/exist.dbc";
+  Diagnostics diagnostics;
+  EXPECT_FALSE(plan_dbc(config, diagnostics));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("cannot read the DBC file"));
+}
+
+}  // namespace
+}  // namespace cellmirror::can

@@ -1,0 +1,213 @@
+// Golden bytes from CiA 301, 7.2.4.3 (SDO protocol).
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "drivers/can/canopen/bytes.hpp"
+#include "drivers/can/canopen/sdo_client.hpp"
+#include "drivers/can/canopen/sdo_server.hpp"
+#include "tests/unit/can/frames.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+using namespace std::chrono_literals;
+
+class DictionaryObjects : public SdoObjects {
+ public:
+  ObjectDictionary objects;
+
+  std::expected<std::vector<std::uint8_t>, SdoAbort> read(ObjectAddress address) override {
+    return read_object(objects, address);
+  }
+  std::optional<SdoAbort> write(ObjectAddress address, std::span<const std::uint8_t> value) override {
+    return write_object(objects, address, value);
+  }
+};
+
+struct SdoServerTest : testing::Test {
+  SdoServerTest() {
+    device.objects.set_integer({0x1017, 0}, DataType::unsigned16, ObjectAccess::read_write, 1000);
+    device.objects.set_integer({0x1000, 0}, DataType::unsigned32, ObjectAccess::read_only, 0x00020192);
+    device.objects.set_integer({0x2000, 1}, DataType::integer8, ObjectAccess::write_only, 0);
+    device.objects.set_integer({0x6060, 0}, DataType::integer8, ObjectAccess::read_write, 8);
+    device.objects.find({0x6060, 0})->low_limit = -1;
+    device.objects.find({0x6060, 0})->high_limit = 10;
+    ObjectEntry name;
+    name.type = DataType::visible_string;
+    name.access = ObjectAccess::read_write;
+    name.value = {'s', 'e', 'r', 'v', 'o', ' ', 'd', 'r', 'i', 'v', 'e'};
+    device.objects.set({0x1008, 0}, name);
+  }
+  DictionaryObjects device;
+  SdoServer sut{5, device};
+};
+
+TEST_F(SdoServerTest, ExpeditedUpload) {
+  // Two bytes: scs 2, n 2, e 1, s 1 = 0x4B.
+  EXPECT_EQ(sut.receive(frame(0x605, {0x40, 0x17, 0x10, 0x00, 0, 0, 0, 0})),
+            frame(0x585, {0x4B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0})),
+            frame(0x585, {0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00}));
+}
+
+TEST_F(SdoServerTest, ExpeditedDownload) {
+  EXPECT_EQ(sut.receive(frame(0x605, {0x2B, 0x17, 0x10, 0x00, 0x64, 0x00, 0, 0})),
+            frame(0x585, {0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
+  EXPECT_EQ(device.objects.integer({0x1017, 0}), 100);
+}
+
+TEST_F(SdoServerTest, ExpeditedDownloadWithoutSizeFillsTheObject) {
+  EXPECT_EQ(sut.receive(frame(0x605, {0x22, 0x17, 0x10, 0x00, 0x64, 0x00, 0x77, 0x77})),
+            frame(0x585, {0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0}));
+  EXPECT_EQ(device.objects.integer({0x1017, 0}), 100);
+}
+
+TEST_F(SdoServerTest, SegmentedUpload) {
+  EXPECT_EQ(sut.receive(frame(0x605, {0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0})),
+            frame(0x585, {0x41, 0x08, 0x10, 0x00, 0x0B, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0})),
+            frame(0x585, {0x00, 's', 'e', 'r', 'v', 'o', ' ', 'd'}));
+  // Four bytes left: t 1, n 3, c 1 = 0x17.
+  EXPECT_EQ(sut.receive(frame(0x605, {0x70, 0, 0, 0, 0, 0, 0, 0})), frame(0x585, {0x17, 'r', 'i', 'v', 'e', 0, 0, 0}));
+}
+
+TEST_F(SdoServerTest, SegmentedDownload) {
+  EXPECT_EQ(sut.receive(frame(0x605, {0x21, 0x08, 0x10, 0x00, 0x08, 0, 0, 0})),
+            frame(0x585, {0x60, 0x08, 0x10, 0x00, 0, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'})),
+            frame(0x585, {0x20, 0, 0, 0, 0, 0, 0, 0}));
+  // One byte left: t 1, n 6, c 1 = 0x1D.
+  EXPECT_EQ(sut.receive(frame(0x605, {0x1D, 'h', 0, 0, 0, 0, 0, 0})), frame(0x585, {0x30, 0, 0, 0, 0, 0, 0, 0}));
+  const auto& value = device.objects.find({0x1008, 0})->value;
+  EXPECT_EQ(std::string(value.begin(), value.end()), "abcdefgh");
+}
+
+struct Refusal {
+  CanFrame request;
+  SdoAbort abort;
+};
+
+TEST_F(SdoServerTest, RefusesWithTheCodeOfTheReason) {
+  const Refusal refusals[] = {
+      {frame(0x605, {0x40, 0x00, 0x30, 0x00, 0, 0, 0, 0}), SdoAbort::no_such_object},
+      {frame(0x605, {0x40, 0x00, 0x20, 0x05, 0, 0, 0, 0}), SdoAbort::no_such_subindex},
+      {frame(0x605, {0x40, 0x00, 0x20, 0x01, 0, 0, 0, 0}), SdoAbort::write_only},
+      {frame(0x605, {0x23, 0x00, 0x10, 0x00, 1, 0, 0, 0}), SdoAbort::read_only},
+      {frame(0x605, {0x23, 0x17, 0x10, 0x00, 1, 0, 0, 0}), SdoAbort::too_long},
+      {frame(0x605, {0x2F, 0x17, 0x10, 0x00, 1, 0, 0, 0}), SdoAbort::too_short},
+      {frame(0x605, {0x2F, 0x60, 0x60, 0x00, 11, 0, 0, 0}), SdoAbort::value_too_high},
+      {frame(0x605, {0x2F, 0x60, 0x60, 0x00, 0xFE, 0, 0, 0}), SdoAbort::value_too_low},
+  };
+  for (const Refusal& refusal : refusals) {
+    const CanFrame& request = refusal.request;
+    CanFrame expected = frame(0x585, {0x80, request.data[1], request.data[2], request.data[3], 0, 0, 0, 0});
+    put_le(std::span(expected.data).subspan(4), static_cast<std::uint32_t>(refusal.abort), 4);
+    EXPECT_EQ(sut.receive(request), expected) << words(refusal.abort);
+  }
+}
+
+TEST_F(SdoServerTest, RefusesBlockTransferSoThatTheClientFallsBack) {
+  // 0x05040001 command specifier not valid or unknown.
+  const CanFrame refused = frame(0x585, {0x80, 0x08, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05});
+  EXPECT_EQ(sut.receive(frame(0x605, {0xA0, 0x08, 0x10, 0x00, 0x7F, 0, 0, 0})), refused);
+  EXPECT_EQ(sut.receive(frame(0x605, {0xC2, 0x08, 0x10, 0x00, 0x10, 0, 0, 0})), refused);
+}
+
+TEST_F(SdoServerTest, RefusesASegmentWithTheWrongToggleBitAndForgetsTheTransfer) {
+  (void)sut.receive(frame(0x605, {0x21, 0x08, 0x10, 0x00, 0x08, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x10, 'a', 'b', 'c', 'd', 'e', 'f', 'g'})),
+            frame(0x585, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}))->data[0], 0x80);
+}
+
+TEST_F(SdoServerTest, BoundsWhatAClientAnnouncesAndSends) {
+  EXPECT_EQ(sut.receive(frame(0x605, {0x21, 0x08, 0x10, 0x00, 0, 0, 0, 0x7F}))->data[0], 0x80);
+  (void)sut.receive(frame(0x605, {0x20, 0x08, 0x10, 0x00, 0, 0, 0, 0}));  // without a size
+  int segments = 0;
+  for (int toggle = 0; segments < 10'000; ++segments, toggle ^= 0x10) {
+    if (sut.receive(frame(0x605, {toggle, 1, 2, 3, 4, 5, 6, 7}))->data[0] == 0x80) break;
+  }
+  EXPECT_EQ(segments, static_cast<int>(kMaxSdoValue / 7));
+}
+
+TEST_F(SdoServerTest, IgnoresWhatIsNotForIt) {
+  EXPECT_FALSE(sut.receive(frame(0x606, {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0})));
+  EXPECT_FALSE(sut.receive(frame(0x605, {0x40, 0x00, 0x10, 0x00})));
+  EXPECT_FALSE(sut.receive(frame(0x605, {0x80, 0x00, 0x10, 0x00, 0, 0, 0, 0})));
+}
+
+TEST(SdoClient, ExpeditedDownload) {
+  SdoClient sut(5, 100ms);
+  const std::uint8_t value[] = {0xE8, 0x03};
+  EXPECT_EQ(sut.download({0x1017, 0}, value, {1}), frame(0x605, {0x2B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0, 0}));
+  EXPECT_FALSE(sut.receive(frame(0x585, {0x60, 0x17, 0x10, 0x00, 0, 0, 0, 0}), {2}));
+  EXPECT_EQ(sut.state(), SdoClient::State::done);
+}
+
+TEST(SdoClient, ExpeditedUpload) {
+  SdoClient sut(5, 100ms);
+  EXPECT_EQ(sut.upload({0x1000, 0}, {1}), frame(0x605, {0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}));
+  EXPECT_FALSE(sut.receive(frame(0x585, {0x43, 0x00, 0x10, 0x00, 0x92, 0x01, 0x02, 0x00}), {2}));
+  ASSERT_EQ(sut.state(), SdoClient::State::done);
+  EXPECT_EQ(get_le32(sut.value()), 0x00020192U);
+}
+
+TEST(SdoClient, SegmentedDownload) {
+  SdoClient sut(5, 100ms);
+  const std::uint8_t value[] = {'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'};
+  EXPECT_EQ(sut.download({0x1008, 0}, value, {1}), frame(0x605, {0x21, 0x08, 0x10, 0x00, 0x08, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x585, {0x60, 0x08, 0x10, 0x00, 0, 0, 0, 0}), {2}),
+            frame(0x605, {0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}));
+  EXPECT_EQ(sut.receive(frame(0x585, {0x20, 0, 0, 0, 0, 0, 0, 0}), {3}), frame(0x605, {0x1D, 'h', 0, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(sut.receive(frame(0x585, {0x30, 0, 0, 0, 0, 0, 0, 0}), {4}));
+  EXPECT_EQ(sut.state(), SdoClient::State::done);
+}
+
+TEST(SdoClient, SegmentedUpload) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x1008, 0}, {1});
+  EXPECT_EQ(sut.receive(frame(0x585, {0x41, 0x08, 0x10, 0x00, 0x09, 0, 0, 0}), {2}),
+            frame(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x585, {0x00, '1', '2', '3', '4', '5', '6', '7'}), {3}),
+            frame(0x605, {0x70, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_FALSE(sut.receive(frame(0x585, {0x1B, '8', '9', 0, 0, 0, 0, 0}), {4}));
+  ASSERT_EQ(sut.state(), SdoClient::State::done);
+  EXPECT_EQ(std::string(sut.value().begin(), sut.value().end()), "123456789");
+}
+
+TEST(SdoClient, TellsWhyTheServerRefused) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x3000, 0}, {1});
+  EXPECT_FALSE(sut.receive(frame(0x585, {0x80, 0x00, 0x30, 0x00, 0x00, 0x00, 0x02, 0x06}), {2}));
+  EXPECT_EQ(sut.state(), SdoClient::State::failed);
+  EXPECT_EQ(words(sut.abort()), "object does not exist");
+}
+
+TEST(SdoClient, AbortsAfterTheTimeout) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x1000, 0}, {1'000'000});
+  EXPECT_EQ(sut.due().ns, 101'000'000);
+  EXPECT_FALSE(sut.advance({100'999'999}));
+  // 0x05040000 SDO protocol timed out.
+  EXPECT_EQ(sut.advance({101'000'000}), frame(0x605, {0x80, 0x00, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}));
+  EXPECT_EQ(sut.state(), SdoClient::State::failed);
+}
+
+TEST(SdoClient, IgnoresALateAnswerToAnotherTransfer) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x1000, 0}, {1});
+  EXPECT_FALSE(sut.receive(frame(0x585, {0x4B, 0x17, 0x10, 0x00, 0xE8, 0x03, 0, 0}), {2}));
+  EXPECT_EQ(sut.state(), SdoClient::State::busy);
+}
+
+TEST(SdoClient, RefusesAnUploadBeyondItsBound) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x1008, 0}, {1});
+  const auto answer = sut.receive(frame(0x585, {0x41, 0x08, 0x10, 0x00, 0xFF, 0xFF, 0xFF, 0x7F}), {2});
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->data[0], 0x80);
+}
+
+}  // namespace
+}  // namespace cellmirror::can
