@@ -30,15 +30,19 @@ def eventually(condition, timeout=10.0, every=0.05):
 
 
 class Scratch:
-    """A folder with a copy of a cell, and a runtime folder of its own, so that tests never meet another gateway."""
+    """A folder with a copy of a cell, and a runtime folder of its own, so that tests never meet another gateway.
 
-    def __init__(self, cell="transfer_cell"):
+    The cell's startup script is emptied unless `startup` is true: nothing is online or sending by itself."""
+
+    def __init__(self, cell="transfer_cell", startup=False):
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="cellmirror-test-"))
         self.runtime = self.root / "runtime"
         self.runtime.mkdir(mode=0o700)
         self.home = self.root / "cell"
         shutil.copytree(CELLS / cell, self.home)
         self.cell_file = self.home / "cell.toml"
+        if not startup:
+            (self.home / "scripts" / "startup.spt").write_text("# empty for tests\n")
         self.instance = "t" + uuid.uuid4().hex[:12]
         self.environment = dict(os.environ, CELLMIRROR_RUNTIME_DIR=str(self.runtime))
         self.environment.pop("kis_home", None)
@@ -100,6 +104,8 @@ class Process:
 
     def close(self):
         self.kill()
+        if self.child.stdin:
+            self.child.stdin.close()
         self.log.close()
         pathlib.Path(self.log.name).unlink(missing_ok=True)
 

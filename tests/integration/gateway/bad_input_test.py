@@ -85,7 +85,8 @@ class BadInput(unittest.TestCase):
 
     def test_script_with_a_syntax_error_is_refused_as_a_whole_with_every_place(self):
         (self.scripts / "wrong.spt").write_text("hot_message must not appear;\nROBACT;\n\nSET_CAMPAR CAMERA_5 x 1;\n")
-        self.refused("EXEC_SCRIPT wrong.spt", "wrong.spt:2", "wrong.spt:4")
+        self.refused("EXEC_SCRIPT wrong.spt", "2 errors", "wrong.spt:2")
+        self.assertIn("wrong.spt:4", str(self.scratch.status()["script"]["last_errors"]))
         self.assertNotIn("must not appear", str(self.scratch.status()["messages"]))
 
     def test_large_script_runs_while_messages_are_answered(self):

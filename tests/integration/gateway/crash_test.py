@@ -10,6 +10,7 @@ import unittest
 import gateway as g
 
 ROUNDS = 50
+PUMA_JOINTS = ",".join(f"puma_762_joint_{i}" for i in range(1, 7))
 
 
 def queues():
@@ -74,7 +75,7 @@ class Crash(unittest.TestCase):
             self.assertEqual(self.scratch.send("ROBOT PUMA_762 online").returncode, 0)
             chance = random.Random(11)
             for _ in range(10):
-                simulator = g.sim_robot("dds", "--joint-names", "J_1,J_2,J_3,J_4,J_5,J_6", "--rate", "100")
+                simulator = g.sim_robot("dds", "--joint-names", PUMA_JOINTS, "--rate", "100")
                 time.sleep(chance.uniform(0.05, 0.5))
                 simulator.kill()
                 simulator.close()

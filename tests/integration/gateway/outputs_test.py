@@ -51,6 +51,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(self.scratch.send("ROBOT MANTEC_R3 send_off").returncode, 0)
 
     def test_flight_record_is_written_on_request(self):
+        self.assertTrue(g.eventually(lambda: self.scratch.status()["loop"]["ticks"] > 200))
         done = self.scratch.send("SAVE_FLIGHT test.jsonl")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = (self.scratch.home / "records" / "test.jsonl").read_text().splitlines()
