@@ -17,8 +17,8 @@ namespace {
 class Table {
  public:
   Table() {
-    for (const auto section : {general_forms(), robot_parameter_forms(), animation_forms(), dynamics_forms(),
-                               elastodynamic_forms(), channel_forms(), volume_forms(), own_forms()}) {
+    for (const auto section : {general_forms(), device_forms(), robot_parameter_forms(), animation_forms(),
+                               dynamics_forms(), elastodynamic_forms(), channel_forms(), volume_forms(), own_forms()}) {
       for (const Form& form : section) add(form);
     }
     for (const Form* form : forms_) CELLMIRROR_EXPECTS(form != nullptr);

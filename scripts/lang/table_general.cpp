@@ -1,4 +1,4 @@
-// Manual 1.2.1: general commands.
+// Manual 1.2.1: general commands, but for those that concern one robot, camera or sensor.
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -9,17 +9,11 @@ using namespace parts;
 
 constexpr std::string_view kSection = "1.2.1";
 constexpr std::string_view kPrograms = "robot programs";
-constexpr std::string_view kInverseKinematics = "inverse kinematics";
-constexpr std::string_view kPicture = "the synthetic view";
 constexpr std::string_view kViews = "views";
-constexpr std::string_view kSensors = "ultrasonic sensors";
 
 constexpr Choice kLanguages[] = {
     {"irdata", "IRDATA, the default"}, {"srcl", "SRCL"}, {"jet_boom", "JET boom"}, {"jet_tarm", "JET telescopic arm"}};
-constexpr Choice kRenderModes[] = {{"2", "wireframe"}, {"3", "flat"}, {"4", "Gouraud"}, {"20", "transparent"}};
-constexpr Choice kSending[] = {{"send_on", "start"}, {"send_off", "stop"}};
 constexpr Choice kExecWait[] = {{"exec_wait", "queue behind the robot's running program"}};
-constexpr Choice kSendModes[] = {{"0", "one message a sensor"}, {"1", "one message with all ranges"}};
 
 constexpr Parameter kComment[] = {{.name = "text", .meaning = "comment", .kind = ParameterKind::text}};
 constexpr Parameter kFrame[] = {frame()};
@@ -41,52 +35,6 @@ constexpr Parameter kConnect[] = {frame("frame_2", "frame that is attached"), wo
 constexpr Parameter kFrameToWorkframe[] = {frame("frame_2", "frame that is attached"), word("TO"),
                                            frame("frame_1", "frame that becomes its predecessor"),
                                            named(NameKind::workframe, "WFRM_name1", "workframe")};
-constexpr Parameter kJointAbs[] = {robot(), word("JOINT_ABS"), some_joints("joint position")};
-constexpr Parameter kJointInc[] = {robot(), word("JOINT_INC"), some_joints("joint increment")};
-constexpr Parameter kFrameAbs[] = {robot(),
-                                   word("FRAME_ABS"),
-                                   number("x", "x", Unit::mm),
-                                   number("y", "y", Unit::mm),
-                                   number("z", "z", Unit::mm),
-                                   number("r", "roll", Unit::degree),
-                                   number("p", "pitch", Unit::degree),
-                                   number("y", "yaw", Unit::degree)};
-
-constexpr Parameter kX = optional_labelled("X", number("x", "increment along x", Unit::mm));
-constexpr Parameter kY = optional_labelled("Y", number("y", "increment along y", Unit::mm));
-constexpr Parameter kZ = optional_labelled("Z", number("z", "increment along z", Unit::mm));
-constexpr Parameter kA = optional_labelled("A", number("r", "roll increment", Unit::degree));
-constexpr Parameter kB = optional_labelled("B", number("p", "pitch increment", Unit::degree));
-constexpr Parameter kC = optional_labelled("C", number("y", "yaw increment", Unit::degree));
-constexpr Parameter kFrameInc[] = {robot(), word("FRAME_INC"), kX, kY, kZ, kA, kB, kC};
-constexpr Parameter kToolInc[] = {robot(), word("TOOL_INC"), kX, kY, kZ, kA, kB, kC};
-constexpr Parameter kScreenInc[] = {robot(), word("SCREEN_INC"), kX, kY, kZ, kA, kB, kC};
-
-constexpr Parameter kRender[] = {frame(), word("RENDER"), choice("mode", "rendering mode", kRenderModes)};
-constexpr Parameter kPlacement[] = {frame(),
-                                    word("PLACEMENT"),
-                                    number("wx", "rotation about x", Unit::degree),
-                                    number("wy", "rotation about y", Unit::degree),
-                                    number("wz", "rotation about z", Unit::degree),
-                                    number("dx", "translation along x", Unit::mm),
-                                    number("dy", "translation along y", Unit::mm),
-                                    number("dz", "translation along z", Unit::mm)};
-constexpr Parameter kRobotOnline[] = {robot(), choice("online | offline", "monitoring", kOnlineOffline)};
-constexpr Parameter kRobotSending[] = {robot(), choice("send_on | send_off", "sending", kSending)};
-constexpr Parameter kCameraParameters[] = {camera("CAM_id"),
-                                           number("view_dist", "focal distance", Unit::metre, kPositive),
-                                           number("fovy_angle", "opening angle", Unit::degree, kOpeningAngle)};
-constexpr Parameter kSensorActive[] = {word("active"), named(NameKind::sensor, "USS_id", "sensor"),
-                                       choice("0 | 1", "switch", kZeroOne)};
-constexpr Parameter kSensorSendMode[] = {word("sendmode"), choice("0 | 1", "sending mode", kSendModes)};
-constexpr Parameter kSensorRange[] = {word("range"), named(NameKind::sensor, "USS_id", "sensor"),
-                                      number("USS_range", "range", Unit::mm, kPositive)};
-constexpr Parameter kDrawLength[] = {number("len_value", "length", Unit::mm, kPositive)};
-constexpr Parameter kTracking[] = {camera(), on_off("tracking"), optional(frame("frame_id", "target frame"))};
-constexpr Parameter kCameraSwitch[] = {camera(), on_off()};
-
-constexpr std::string_view kIncSyntaxNote =
-    "the groups come in any order, each at most once, with or without commas between them";
 
 constexpr Form kForms[] = {
     {.id = FormId::comment,
@@ -235,187 +183,6 @@ constexpr Form kForms[] = {
      .example = "FRAME_TO_WFRM Toolbox.Tool1 TO Mantec_1.HAND Tool1_WFRM",
      .definition = "frame_2 is what moves along, as in CONNECT; making a frame its own ancestor is refused",
      .effect = LoopEffect::queued},
-    {.id = FormId::pos_rob_joint_abs,
-     .name = "POS_ROB",
-     .syntax = "POS_ROB <Robot_id> JOINT_ABS <j1> ... <jn>",
-     .section = kSection,
-     .parameters = kJointAbs,
-     .help = "puts a robot's joints at positions",
-     .example = "POS_ROB MANTEC_RM3 JOINT_ABS 27.5 -17.38 -11.02 37.338 0.9 -12.271",
-     .definition = "fewer values than joints: the others stay; more, or one beyond a limit: refused, nothing moves",
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word},
-    {.id = FormId::pos_rob_joint_inc,
-     .name = "POS_ROB",
-     .syntax = "POS_ROB <Robot_id> JOINT_INC <j1> ... <jn>",
-     .section = kSection,
-     .parameters = kJointInc,
-     .help = "moves a robot's joints by increments",
-     .example = "POS_ROB MANTEC_RM3 JOINT_INC -0.1 0 0 0.85 0 -0.3",
-     .definition = "fewer values than joints: the others stay; more, or one beyond a limit: refused, nothing moves",
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word},
-    {.id = FormId::pos_rob_frame_abs,
-     .name = "POS_ROB",
-     .syntax = "POS_ROB <Robot_id> FRAME_ABS <x> <y> <z> <r> <p> <y>",
-     .section = kSection,
-     .parameters = kFrameAbs,
-     .help = "puts a robot's TCP at a pose in its ZP frame",
-     .example = "POS_ROB MANTEC_RM3 FRAME_ABS 1000.0 0 0 -90.0 0 -90.0",
-     .missing = kInverseKinematics,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word},
-    {.id = FormId::pos_rob_frame_inc,
-     .name = "POS_ROB",
-     .syntax = "POS_ROB <Robot_id> FRAME_INC [X x] [Y y] [Z z] [A r] [B p] [C y]",
-     .section = kSection,
-     .parameters = kFrameInc,
-     .help = "moves a robot's TCP by an increment in its ZP frame",
-     .example = "POS_ROB MANTEC_RM3 FRAME_INC X -0.1 Y 0.5 A -0.01",
-     .missing = kInverseKinematics,
-     .definition = kIncSyntaxNote,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word,
-     .commas = true,
-     .at_least_one = true},
-    {.id = FormId::pos_rob_tool_inc,
-     .name = "POS_ROB",
-     .syntax = "POS_ROB <Robot_id> TOOL_INC [X x] [Y y] [Z z] [A r] [B p] [C y]",
-     .section = kSection,
-     .parameters = kToolInc,
-     .help = "moves a robot's TCP by an increment in its TCP frame",
-     .example = "POS_ROB MANTEC_RM3 TOOL_INC Z 0.182 B 0.001",
-     .missing = kInverseKinematics,
-     .definition = kIncSyntaxNote,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word,
-     .commas = true,
-     .at_least_one = true},
-    {.id = FormId::pos_rob_screen_inc,
-     .name = "POS_ROB",
-     .syntax = "POS_ROB <Robot_id> SCREEN_INC [X x] [Y y] [Z z] [A r] [B p] [C y]",
-     .section = kSection,
-     .parameters = kScreenInc,
-     .help = "moves a robot's TCP by an increment in the space of the display: x right, y up, z out of it",
-     .missing = kInverseKinematics,
-     .definition = kIncSyntaxNote,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word,
-     .commas = true,
-     .at_least_one = true},
-    {.id = FormId::set_frame_render,
-     .name = "SET_FRAME",
-     .syntax = "SET_FRAME <frame_node> RENDER <mode>",
-     .section = kSection,
-     .parameters = kRender,
-     .help = "sets the rendering mode of a frame's geometry",
-     .example = "SET_FRAME Testlab_1.FL_Klein.Flansch_Typ1 RENDER 2",
-     .missing = kPicture,
-     .selector = Selector::by_second_word},
-    {.id = FormId::set_frame_placement,
-     .name = "SET_FRAME",
-     .syntax = "SET_FRAME <frame_node> PLACEMENT <wx> <wy> <wz> <dx> <dy> <dz>",
-     .section = kSection,
-     .parameters = kPlacement,
-     .help = "sets the pose of a frame in its predecessor; what follows it moves along",
-     .example = "SET_FRAME Testlab_1.FL_Klein.Flansch_Typ1 PLACEMENT -88.5 16.32851 -180.0 -11920.0 2517.3 912.7",
-     .definition = "rotations first, about fixed axes: x, then y, then z",
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word},
-    {.id = FormId::set_abstract_render,
-     .name = "SET_ABSTRACT",
-     .syntax = "SET_ABSTRACT <frame_node> RENDER <mode>",
-     .section = kSection,
-     .parameters = kRender,
-     .help = "sets the rendering mode of a frame and of all detail levels below it",
-     .missing = kPicture},
-    {.id = FormId::robot_online,
-     .name = "ROBOT",
-     .syntax = "ROBOT <Robot_id> [online | offline]",
-     .section = kSection,
-     .parameters = kRobotOnline,
-     .help = "opens or closes the channel to the real controller that drives the model",
-     .example = "ROBOT MANTEC_R3 online",
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word},
-    {.id = FormId::robot_sending,
-     .name = "ROBOT",
-     .syntax = "ROBOT <Robot_id> [send_on | send_off]",
-     .section = kSection,
-     .parameters = kRobotSending,
-     .help = "starts or stops robot-parameter messages on the SENSOR channel (key 1990, type 5)",
-     .example = "ROBOT MANTEC_R3 send_off",
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_second_word},
-    {.id = FormId::set_campar,
-     .name = "SET_CAMPAR",
-     .syntax = "SET_CAMPAR <CAM_id> <view_dist> <fovy_angle>",
-     .section = kSection,
-     .parameters = kCameraParameters,
-     .help = "sets focal distance and opening angle of a camera's viewing pyramid",
-     .example = "SET_CAMPAR CAMERA_5 4.85 15.71"},
-    {.id = FormId::set_usspar_active,
-     .name = "SET_USSPAR",
-     .syntax = "SET_USSPAR active <USS_id> [0 | 1]",
-     .section = kSection,
-     .parameters = kSensorActive,
-     .help = "switches the simulation of an ultrasonic sensor on or off",
-     .example = "SET_USSPAR active USS_1B 0",
-     .missing = kSensors,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_first_word},
-    {.id = FormId::set_usspar_sendmode,
-     .name = "SET_USSPAR",
-     .syntax = "SET_USSPAR sendmode [0 | 1]",
-     .section = kSection,
-     .parameters = kSensorSendMode,
-     .help = "sends one message a sensor (0, the default), or one with all ranges (1)",
-     .example = "SET_USSPAR sendmode 1",
-     .missing = kSensors,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_first_word},
-    {.id = FormId::set_usspar_range,
-     .name = "SET_USSPAR",
-     .syntax = "SET_USSPAR range <USS_id> <USS_range>",
-     .section = kSection,
-     .parameters = kSensorRange,
-     .help = "sets the range within which a sensor sees obstacles",
-     .example = "SET_USSPAR range USS_5 3500.0",
-     .missing = kSensors,
-     .effect = LoopEffect::queued,
-     .selector = Selector::by_first_word},
-    {.id = FormId::tag_drawlen,
-     .name = "TAG_DRAWLEN",
-     .syntax = "TAG_DRAWLEN <len_value>",
-     .section = kSection,
-     .parameters = kDrawLength,
-     .help = "sets the length at which the axes of workframes are drawn; 250 mm by default",
-     .example = "TAG_DRAWLEN 50.0",
-     .missing = kPicture},
-    {.id = FormId::cam_tracking,
-     .name = "CAM_TRACKING",
-     .syntax = "CAM_TRACKING <cam_id> [on | off] (<frame_id>)",
-     .section = kSection,
-     .parameters = kTracking,
-     .help = "keeps a camera looking at a frame; the frame is given with on, and only then",
-     .example = "CAM_TRACKING UMG_Kamera_1 on Gantry.J_2.Hand",
-     .missing = kViews},
-    {.id = FormId::cam_view_pyramid,
-     .name = "CAM_VIEW_PYRAMID",
-     .syntax = "CAM_VIEW_PYRAMID <cam_id> [on | off]",
-     .section = kSection,
-     .parameters = kCameraSwitch,
-     .help = "draws a camera's viewing pyramid, or not",
-     .example = "CAM_VIEW_PYRAMID UMG_Kamera_1 on",
-     .missing = kPicture},
-    {.id = FormId::cam_online,
-     .name = "CAM_ONLINE",
-     .syntax = "CAM_ONLINE <cam_id> [on | off]",
-     .section = kSection,
-     .parameters = kCameraSwitch,
-     .help = "sends a camera's current parameters to the camera-control process, or not",
-     .example = "CAM_ONLINE UMG_Kamera_1 on",
-     .missing = "camera control"},
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 namespace cellmirror::script {
 
 std::span<const Form> general_forms();
+std::span<const Form> device_forms();
 std::span<const Form> robot_parameter_forms();
 std::span<const Form> animation_forms();
 std::span<const Form> dynamics_forms();
