@@ -31,6 +31,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   }
   publish(for_owner_);
   publish(for_publisher_);
+  publish(for_status_);
   record_tick(context, commands, samples);
   watchdog_.beat();
 }

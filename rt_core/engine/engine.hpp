@@ -36,8 +36,8 @@ struct QueueStatus {
 };
 
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
-// owner_view() to the owner; publisher_view() to the publisher; each inlet() to the one driver thread of its stream;
-// the rest to any thread.
+// owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions; each
+// inlet() to the one driver thread of its stream; the rest to any thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
@@ -53,6 +53,7 @@ class Engine final : public Cycle {
   // The newest published state. The reference stays valid and unchanged until the same reader asks again.
   [[nodiscard]] const TickState& owner_view() { return for_owner_.read().value; }
   [[nodiscard]] const TickState& publisher_view() { return for_publisher_.read().value; }
+  [[nodiscard]] const TickState& status_view() { return for_status_.read().value; }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -79,6 +80,7 @@ class Engine final : public Cycle {
   std::vector<std::unique_ptr<Inlet>> inlets_;
   Latest<TickState> for_owner_;
   Latest<TickState> for_publisher_;
+  Latest<TickState> for_status_;
   Watchdog& watchdog_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;
