@@ -52,15 +52,15 @@ void RobotFeed::take(const DdsJointConfig& joint, const JointStateView& message,
   if (!std::isfinite(position)) return refuse(joint, "its position is not finite");
   sample_.present |= bit;
   sample_.position[joint.joint] = position;
-  sample_.velocity[joint.joint] = joint.scale * derivative(joint, message.velocity, i, "velocity");
-  sample_.effort[joint.joint] = derivative(joint, message.effort, i, "effort") / joint.scale;
+  sample_.velocity[joint.joint] = derivative(joint, message.velocity, i, joint.scale, "velocity");
+  sample_.effort[joint.joint] = derivative(joint, message.effort, i, 1.0 / joint.scale, "effort");
 }
 
 // Velocities scale like positions; efforts inversely, so that the power stays the same.
 double RobotFeed::derivative(const DdsJointConfig& joint, const DoubleSequenceView& values, std::size_t i,
-                             std::string_view what) {
+                             double factor, std::string_view what) {
   if (values.empty()) return 0.0;
-  const double value = values[i];
+  const double value = values[i] * factor;  // which may be infinite although both are finite
   if (std::isfinite(value)) return value;
   if (std::isnan(value)) {
     ++counters_.unknown;

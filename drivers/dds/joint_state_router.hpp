@@ -51,7 +51,7 @@ class RobotFeed {
   void take(const DdsJointConfig& joint, const JointStateView& message, std::size_t i);
   void refuse(const DdsJointConfig& joint, std::string_view why);
   [[nodiscard]] double derivative(const DdsJointConfig& joint, const DoubleSequenceView& values, std::size_t i,
-                                  std::string_view what);
+                                  double factor, std::string_view what);
   void note_error(std::string text);
   void finish();
 

@@ -107,6 +107,10 @@ TEST_F(JointStateRouterTest, RefusesWhatScalingMakesInfinite) {
   sut_.add(*robot.feed, robot.sink);
   accept({.name = {"j"}, .position = {1e300}});
   EXPECT_EQ(robot.sink.samples.at(0).refused, 1U);
+  accept({.name = {"j"}, .position = {1.0}, .velocity = {1e300}});
+  EXPECT_EQ(robot.sink.samples.at(1).present, 1U);
+  EXPECT_EQ(robot.sink.samples.at(1).velocity[0], 0.0);
+  EXPECT_EQ(robot.feed->counters().rejected, 2U);
 }
 
 TEST_F(JointStateRouterTest, TakesNanVelocityAndEffortAsNotMeasured) {
