@@ -22,6 +22,10 @@ Result<void> check_connection(const Cell::State& state, NodeId part, NodeId pred
     return fail(fmt::format("{} is part of the mechanism of the robot {}", name, robot->id()),
                 fmt::format("connect {} instead", state.names.path(robot->component())));
   }
+  if (state.at(part).shown == Shown::coarse) {
+    return fail(fmt::format("{} is shown by the geometry of its father, which cannot be carried away", name),
+                fmt::format("SWAP_NODE {} first", name));
+  }
   if (part == predecessor) return fail(fmt::format("{} cannot be its own predecessor", name));
   if (state.hangs_on(predecessor, part)) {
     return fail(fmt::format("{} hangs on {} and cannot become its predecessor", state.names.path(predecessor), name));

@@ -1,0 +1,306 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "config/cell_file.hpp"
+#include "tests/unit/config/temporary_home.hpp"
+
+namespace cellmirror {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kArm = R"(format = 1
+[[node]]
+name = "J_1"
+joint = { type = "revolute", axis = [0, 0, 1], range_rad = [-1, 1], velocity_rad_s = 1 }
+[[node]]
+name = "J_2"
+parent = "J_1"
+joint = { type = "prismatic", axis = [0, 0, 1], range_m = [0, 1], velocity_m_s = 1 }
+[robot]
+id = "ARM"
+flange = "J_2"
+)";
+
+struct CellFile : testing::Test {
+  CellFile() { home.write("envlib/arm.mpc", kArm); }
+  std::optional<LoadedCell> load(const std::string& text) {
+    diagnostics = {};
+    return load_cell(home.write("cell.toml", "format = 1\nname = \"c\"\n" + text), diagnostics);
+  }
+  std::string findings() const { return diagnostics.text(); }
+  TemporaryHome home;
+  Diagnostics diagnostics;
+};
+
+TEST_F(CellFile, hasDefaultsForEverythingButFormatAndName) {
+  const auto sut = load("");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->name, "c");
+  EXPECT_EQ(sut->loop.rate_hz, 1000.0);
+  EXPECT_EQ(sut->loop.real_time, RealTimePolicy::prefer);
+  EXPECT_FALSE(sut->dds.enabled);
+  EXPECT_FALSE(sut->queues.script_key);
+  EXPECT_TRUE(sut->startup_script.empty());
+  EXPECT_TRUE(sut->streams.empty());
+}
+
+TEST_F(CellFile, readsItsSettings) {
+  home.write("scripts/start.spt", "# nothing\n");
+  const auto sut = load(R"(
+[loop]
+rate_hz = 250
+real_time = "require"
+priority = 70
+[dds_output]
+domain = 3
+joint_states_topic = "rt/x"
+rate_hz = 20
+[queues]
+script_key = 5000
+mode = "0660"
+[web]
+port = 9000
+[startup]
+script = "start"
+)");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->loop.rate_hz, 250.0);
+  EXPECT_EQ(sut->loop.real_time, RealTimePolicy::require);
+  EXPECT_EQ(sut->loop.priority, 70);
+  EXPECT_TRUE(sut->dds.enabled) << "a table dds_output switches it on";
+  EXPECT_EQ(sut->dds.domain, 3);
+  EXPECT_EQ(sut->web.port, 9000);
+  EXPECT_EQ(sut->startup_script, "start");
+  QueueConfig queues;
+  queues.sensor_key = 77;
+  sut->queues.apply_to(queues);
+  EXPECT_EQ(queues.script_key, 5000);
+  EXPECT_EQ(queues.sensor_key, 77) << "the file does not say it";
+  EXPECT_EQ(queues.mode, 0660U);
+}
+
+TEST_F(CellFile, readsCia402Streams) {
+  home.write("robots/drive.eds", "[x]");
+  const auto sut = load(R"(
+[[node]]
+name = "Arm"
+abstract = "arm.mpc"
+[[stream]]
+robot = "ARM"
+kind = "can-cia402"
+channel = "socketcan:can0"
+stale_after_s = 0.05
+lost_after_s = 0.5
+sync_period_s = 0.01
+heartbeat_timeout_s = 0
+[[stream.node]]
+id = 5
+joint = "J_2"
+increments_per_m = 1000
+sign = -1
+offset_m = 0.5
+force_n_per_unit = 0.1
+[[stream.node]]
+id = 4
+joint = "J_1"
+rad_per_increment = 0.001
+eds = "drive.eds"
+configure = true
+tpdo = [{ number = 1, transmission_type = 1, event_timer_s = 0.01, entries = [{ index = 0x6041, bits = 16 }, { index = 0x6064, bits = 32 }] }]
+)");
+  ASSERT_TRUE(sut) << findings();
+  const auto& stream = std::get<Cia402StreamConfig>(sut->streams.at(0).config);
+  EXPECT_EQ(stream.ages.stale_after, std::chrono::milliseconds(50));
+  EXPECT_EQ(stream.sync_period, std::chrono::milliseconds(10));
+  EXPECT_EQ(stream.heartbeat_timeout.count(), 0);
+  EXPECT_EQ(stream.nodes.at(0).joint, 1U);
+  EXPECT_EQ(stream.nodes.at(0).scale, 0.001);
+  EXPECT_EQ(stream.nodes.at(0).sign, -1.0);
+  EXPECT_EQ(stream.nodes.at(0).torque_scale, 0.1);
+  EXPECT_EQ(stream.nodes.at(1).eds_file, (home.root() / "robots/drive.eds").string());
+  EXPECT_EQ(stream.nodes.at(1).tpdos.at(0).entries.at(1).index, 0x6064);
+  EXPECT_EQ(stream.nodes.at(1).tpdos.at(0).event_timer_ms, 10);
+}
+
+TEST_F(CellFile, channelsHaveTheirForms) {
+  home.write("run.log", "(1.0) can0 123#00\n");
+  const auto channel = [&](const std::string& endpoint, const std::string& more = "") {
+    const auto sut = load(
+        "[[node]]\nname = \"Arm\"\nabstract = \"arm.mpc\"\n[[stream]]\nrobot = \"ARM\"\n"
+        "kind = \"can-cia402\"\nchannel = \"" +
+        endpoint + "\"\n" + more + "node = [{ id = 1, joint = \"J_1\", increments_per_rad = 1 }]\n");
+    return sut ? std::get<Cia402StreamConfig>(sut->streams[0].config).channel.endpoint : std::string();
+  };
+  EXPECT_EQ(channel("udp:239.74.163.2:43113"), "udp:239.74.163.2:43113");
+  EXPECT_EQ(channel("udp:[ff15::1]:43113"), "udp:[ff15::1]:43113");
+  EXPECT_EQ(channel("log:run.log", "log_repeat = true\n"), "log:" + (home.root() / "run.log").string());
+  for (const char* faulty :
+       {"", "can0", "socketcan:", "socketcan:a/b", "socketcan:0123456789abcdef", "udp:127.0.0.1:1", "udp:239.74.163.2",
+        "udp:239.74.163.2:0", "udp:[::1]:5", "log:", "log:missing.log", "log:../x", "log:scripts", "tcp:1.2.3.4:5"}) {
+    EXPECT_EQ(channel(faulty), "") << faulty;
+    EXPECT_EQ(diagnostics.errors(), 1U) << faulty << "\n" << findings();
+  }
+}
+
+TEST_F(CellFile, tenErrorsInSeveralFilesAreTenFindings) {
+  home.write("envlib/faulty.mpc", "format = 1\n[[node]]\nname = \"A\"\nxyz_m = [0, 0]\n[[node]]\nname = \"A\"\n");
+  EXPECT_FALSE(load(R"(
+colour = "red"
+[[node]]
+name = "Arm"
+abstract = "arm.mpc"
+[[node]]
+name = "Bad"
+abstract = "faulty.mpc"
+[[node]]
+name = "Gone"
+abstract = "gone.mpc"
+[[node]]
+name = "Lost"
+predecessor = "Arm.J_9"
+[loop]
+rate_hz = 5000
+real_time = "sometimes"
+[[stream]]
+robot = "ARMM"
+kind = "dds"
+[[stream]]
+robot = "ARM"
+kind = "dds"
+topic = 5
+[startup]
+script = "missing.spt"
+)"));
+  EXPECT_EQ(diagnostics.errors(), 10U) << findings();
+  for (const char* expected :
+       {"cell.toml:4:1: error: the key colour", "cell.toml:11:1: error: the file envlib/gone.mpc",
+        "cell.toml:14:1: error: there is no", "cell.toml:18:11: error: [loop]: rate_hz is 5000",
+        "cell.toml:19:13: error: [loop]: real_time cannot be \"sometimes\"",
+        "cell.toml:21:9: error: stream of ARMM: there is no robot ARMM; did you mean ARM?",
+        "cell.toml:26:9: error: stream of ARM: topic must be a text", "cell.toml:28:10: error",
+        "faulty.mpc:4:9: error: node A: xyz_m", "faulty.mpc:6:8: error: node A: there is another node A"}) {
+    EXPECT_THAT(findings(), HasSubstr(expected));
+  }
+}
+
+TEST_F(CellFile, refusesWhatIsNoReadableFile) {
+  const auto refused = [&](const std::filesystem::path& path) {
+    Diagnostics found;
+    EXPECT_FALSE(load_cell(path, found));
+    EXPECT_EQ(found.errors(), 1U);
+    return found.text();
+  };
+  EXPECT_THAT(refused(home.root() / "none.toml"), HasSubstr("No such file"));
+  EXPECT_THAT(refused(home.root()), HasSubstr("is a folder"));
+  EXPECT_THAT(refused(home.write("noise.toml", std::string("\xff\xfe\x00\x01", 4))), HasSubstr("noise.toml"));
+}
+
+TEST_F(CellFile, pathsDoNotLeaveTheHome) {
+  EXPECT_FALSE(
+      load("[[node]]\nname = \"A\"\nabstract = \"../../other.mpc\"\n[[node]]\nname = \"B\"\n"
+           "abstract = \"/etc/passwd\"\n[[node]]\nname = \"C\"\nabstract = \"meshes\"\n"));
+  EXPECT_EQ(diagnostics.errors(), 3U) << findings();
+}
+
+TEST_F(CellFile, filesOfHiddenComponentsAreCheckedButNotKept) {
+  home.write("envlib/later.mpc", "format = 1\nkey = 1\n");
+  EXPECT_FALSE(load("[[node]]\nname = \"A\"\nabstract = \"later.mpc\"\nshown = \"hidden\"\n"));
+  EXPECT_THAT(findings(), HasSubstr("later.mpc:2:1"));
+  home.write("envlib/later.mpc", "format = 1\n[[node]]\nname = \"X\"\n");
+  auto sut = load("[[node]]\nname = \"A\"\nabstract = \"later.mpc\"\nshown = \"hidden\"\n");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_FALSE(sut->cell.knows("A.X"));
+  home.write("envlib/later.mpc", "format = 1\n[[node]]\nname = \"Y\"\n");
+  ASSERT_TRUE(sut->cell.activate("A"));
+  EXPECT_TRUE(sut->cell.knows("A.Y")) << "read again, because it was not kept";
+  home.write("envlib/later.mpc", "format = 1\nkey = 1\n");
+  ASSERT_TRUE(sut->cell.delete_node("A"));
+  const auto refused = sut->cell.activate("A");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("later.mpc:2:1"));
+}
+
+TEST_F(CellFile, componentsThatContainEachOtherAreFoundWhenLoaded) {
+  home.write("envlib/a.mpc", "format = 1\n[[node]]\nname = \"B\"\nabstract = \"b.mpc\"\n");
+  home.write("envlib/b.mpc", "format = 1\n[[node]]\nname = \"A\"\nabstract = \"a.mpc\"\n");
+  EXPECT_FALSE(load("[[node]]\nname = \"A\"\nabstract = \"a.mpc\"\n"));
+  EXPECT_THAT(findings(), HasSubstr("would contain itself"));
+}
+
+TEST_F(CellFile, componentsThatMultiplyAreStopped) {
+  for (int i = 0; i < 30; ++i) {
+    std::string text = "format = 1\n";
+    for (int k = 0; k < 4; ++k) {
+      text += "[[node]]\nname = \"N" + std::to_string(k) + "\"\nabstract = \"m" + std::to_string(i + 1) + ".mpc\"\n";
+    }
+    home.write("envlib/m" + std::to_string(i) + ".mpc", text);
+  }
+  home.write("envlib/m30.mpc", "format = 1\n");
+  EXPECT_FALSE(load("[[node]]\nname = \"A\"\nabstract = \"m0.mpc\"\n"));
+  EXPECT_THAT(findings(), HasSubstr("more than 20000 nodes"));
+}
+
+TEST_F(CellFile, aUrdfMayStandWhereAComponentMay) {
+  home.write("robots/r.urdf",
+             "<robot name=\"u\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"continuous\">"
+             "<parent link=\"a\"/><child link=\"b\"/><limit velocity=\"1\" effort=\"1\"/></joint></robot>");
+  auto sut = load("[[node]]\nname = \"U\"\nabstract = \"r.urdf\"\nrobot_id = \"URDF_1\"\nrobot_flange = \"a\"\n");
+  ASSERT_TRUE(sut) << findings();
+  const RobotModel* robot = sut->cell.robot("URDF_1");
+  ASSERT_NE(robot, nullptr);
+  EXPECT_EQ(sut->cell.path(robot->flange()), "U.a");
+  EXPECT_FALSE(load("[[node]]\nname = \"U\"\nabstract = \"r.urdf\"\nrobot_flange = \"c\"\n"));
+}
+
+TEST_F(CellFile, theHomeMayBeGivenByTheEnvironment) {
+  const TemporaryHome other;
+  other.write("envlib/there.mpc", "format = 1\n");
+  setenv("kis_home", other.root().c_str(), 1);
+  EXPECT_TRUE(load("[[node]]\nname = \"A\"\nabstract = \"there.mpc\"\n")) << findings();
+  unsetenv("kis_home");
+  EXPECT_FALSE(load("[[node]]\nname = \"A\"\nabstract = \"there.mpc\"\n"));
+}
+
+// 200 components, 20 of them robots, each of a file of its own.
+TEST_F(CellFile, aLargeCellLoadsInUnderTwoSeconds) {
+  std::string cell;
+  for (int i = 0; i < 200; ++i) {
+    const std::string n = std::to_string(i);
+    std::string text = "format = 1\ngeometry = [{ box_m = [1, 1, 1] }]\n";
+    for (int k = 0; k < 10; ++k) {
+      const std::string m = std::to_string(k);
+      text += "[[node]]\nname = \"N" + m + "\"\nxyz_m = [0, 0, 0.1]\n" +
+              (k == 0 ? "" : "parent = \"N" + std::to_string(k - 1) + "\"\n") +
+              "geometry = [{ box_m = [0.1, 0.1, 0.1] }, { sphere_m = 0.2, xyz_m = [0, 0, 0.1] }]\n";
+      if (i < 20 && k < 7)
+        text += "joint = { type = \"revolute\", axis = [0, 0, 1], range_rad = [-3, 3], velocity_rad_s = 1 }\n";
+    }
+    if (i < 20) text += "[robot]\nid = \"R" + n + "\"\nflange = \"N9\"\n";
+    home.write("envlib/c" + n + ".mpc", text);
+    cell += "[[node]]\nname = \"C" + n + "\"\nabstract = \"c" + n + ".mpc\"\nxyz_m = [" + n + ", 0, 0]\n";
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const auto sut = load(cell);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->cell.robot_ids().size(), 20U);
+  EXPECT_EQ(sut->cell.node_count(), 2201U);
+  EXPECT_LT(took.count(), 2.0);
+}
+
+TEST(CheckFile, knowsItsKinds) {
+  EXPECT_TRUE(is_checkable("a/b.MPC"));
+  EXPECT_FALSE(is_checkable("a.spt"));
+  Diagnostics diagnostics;
+  check_file("a.spt", diagnostics);
+  EXPECT_EQ(diagnostics.errors(), 1U);
+}
+
+}  // namespace
+}  // namespace cellmirror

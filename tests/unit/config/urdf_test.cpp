@@ -1,0 +1,272 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <numbers>
+#include <random>
+
+#include "config/cell_file.hpp"
+#include "config/parse.hpp"
+#include "rt_core/base/pose.hpp"
+#include "tests/unit/config/temporary_home.hpp"
+
+namespace cellmirror {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+struct Parsed {
+  std::optional<Component> component;
+  Diagnostics diagnostics;
+};
+
+Parsed parse(const std::string& inside) {
+  Parsed parsed;
+  parsed.component =
+      parse_urdf("<robot name=\"r\">\n" + inside + "</robot>", "r.urdf", "/r.urdf", AnyFile(), parsed.diagnostics);
+  return parsed;
+}
+
+std::string joint(const std::string& name, const std::string& parent, const std::string& child,
+                  const std::string& type = "fixed", const std::string& more = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/>" + more + "</joint>\n";
+}
+const std::string kLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"5\"/>";
+
+TEST(Urdf, becomesNodesAndARobot) {
+  const Parsed sut = parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" +
+                           joint("ab", "a", "b", "revolute", "<axis xyz=\"0 0 2\"/>" + kLimit) +
+                           joint("bc", "b", "c", "fixed", "<origin xyz=\"1 2 3\"/>"));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  ASSERT_EQ(sut.component->nodes.size(), 4U);
+  EXPECT_EQ(sut.component->nodes[1].name, "ab");
+  EXPECT_EQ(sut.component->nodes[1].joint->axis, Eigen::Vector3d::UnitZ()) << "normalized";
+  EXPECT_EQ(sut.component->nodes[3].name, "c");
+  EXPECT_EQ(sut.component->nodes[3].X_PF.translation(), Eigen::Vector3d(1, 2, 3));
+  ASSERT_TRUE(sut.component->robot);
+  EXPECT_EQ(sut.component->robot->id, "r");
+  EXPECT_EQ(sut.component->robot->flange, 3);
+  EXPECT_EQ(sut.component->robot->parameters.max_velocity[0], 2.0);
+}
+
+TEST(Urdf, mimicJointsFollowAndAreNotCommanded) {
+  const Parsed sut =
+      parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("ab", "a", "b", "revolute", kLimit) +
+            joint("bc", "b", "c", "prismatic", kLimit + "<mimic joint=\"ab\" multiplier=\"0.5\" offset=\"0.1\"/>"));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_EQ(sut.component->robot->joints.size(), 1U);
+  EXPECT_EQ(sut.component->nodes[3].joint->mimic->multiplier, 0.5);
+}
+
+struct Fault {
+  const char* name;
+  std::string text;
+  const char* message;
+};
+struct FaultyUrdf : testing::TestWithParam<Fault> {};
+
+TEST_P(FaultyUrdf, isRefusedWithAPlace) {
+  const Parsed sut = parse(GetParam().text);
+  EXPECT_FALSE(sut.diagnostics.ok());
+  EXPECT_THAT(sut.diagnostics.text(), HasSubstr(GetParam().message));
+  EXPECT_THAT(sut.diagnostics.text(), HasSubstr("r.urdf"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FaultyUrdf,
+    testing::Values(
+        Fault{"twoRoots", "<link name=\"a\"/><link name=\"b\"/>", "is a root link"},
+        Fault{"circle", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a"), "circle"},
+        Fault{"circleBesideTheRoot",
+              "<link name=\"r\"/><link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a"),
+              "circle"},
+        Fault{"itself", "<link name=\"a\"/>" + joint("x", "a", "a"), "to itself"},
+        Fault{"twoParents",
+              "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("x", "a", "c") + joint("y", "b", "c"),
+              "two parents"},
+        Fault{"unknownLink", "<link name=\"base\"/>" + joint("x", "bsae", "base"), "did you mean base"},
+        Fault{"twoLinks", "<link name=\"a\"/><link name=\"a\"/>", "two links a"},
+        Fault{"twoJoints",
+              "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("x", "a", "b") + joint("x", "b", "c"),
+              "two joints x"},
+        Fault{"noLimit", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute"), "needs <limit>"},
+        Fault{"limitsTurnedRound",
+              "<link name=\"a\"/><link name=\"b\"/>" +
+                  joint("x", "a", "b", "revolute", "<limit lower=\"1\" upper=\"-1\" velocity=\"1\" effort=\"1\"/>"),
+              "is not below"},
+        Fault{"notANumber",
+              "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin xyz=\"0 nan 0\"/>"),
+              "no number"},
+        Fault{"twoNumbers",
+              "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin xyz=\"0 0\"/>"),
+              "must hold 3 numbers"},
+        Fault{
+            "noAxis",
+            "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute", "<axis xyz=\"0 0 0\"/>" + kLimit),
+            "no direction"},
+        Fault{"type", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "floating"), "cannot be used"},
+        Fault{
+            "mimicOfNothing",
+            "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute", kLimit + "<mimic joint=\"y\"/>"),
+            "does not exist"},
+        Fault{"name", "<link name=\"a.b\"/>", "no name"},
+        Fault{"shape", "<link name=\"a\"><visual><geometry><cone/></geometry></visual></link>", "no shape"},
+        Fault{"size", "<link name=\"a\"><collision><geometry><sphere radius=\"-1\"/></geometry></collision></link>",
+              "must be positive"},
+        Fault{"mass", "<link name=\"a\"><inertial><mass value=\"-1\"/></inertial></link>", "mass is negative"},
+        Fault{"nothing", "", "no link"}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST(Urdf, hostileTextsAreRefused) {
+  const auto refused = [](const std::string& text, const char* message) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(parse_urdf(text, "r.urdf", "/r.urdf", AnyFile(), diagnostics).has_value());
+    EXPECT_THAT(diagnostics.text(), HasSubstr(message));
+  };
+  refused("", "XML is faulty");
+  refused("<robot", "XML is faulty");
+  refused("<!DOCTYPE robot [<!ENTITY x SYSTEM \"file:///etc/passwd\">]><robot name=\"r\">&x;</robot>", "definition");
+  refused("<sdf/>", "<robot>");
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  refused("<robot name=\"r\">" + deep, "XML is faulty");
+  refused(std::string("<robot name=\"r\">\0</robot>", 25), "NUL");
+}
+
+TEST(Urdf, longChainsDoNotExhaustTheStack) {
+  std::string text = "<link name=\"l0\"/>";
+  for (int i = 1; i < 9'000; ++i) {
+    text += "<link name=\"l" + std::to_string(i) + "\"/>";
+    text += joint("j" + std::to_string(i), "l" + std::to_string(i - 1), "l" + std::to_string(i));
+  }
+  const Parsed sut = parse(text);
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_EQ(sut.component->nodes.size(), 9'000U);
+}
+
+TEST(UrdfMeshes, areFoundBesideTheFileAndInPackagesAndNowhereElse) {
+  const TemporaryHome home;
+  home.write("robots/arm/meshes/a.stl", "solid");
+  home.write("secret.stl", "solid");
+  const auto check = [&](const std::string& mesh) {
+    const auto path = home.write("robots/arm/urdf/arm.urdf",
+                                 "<robot name=\"r\"><link name=\"a\"><visual><geometry><mesh filename=\"" + mesh +
+                                     "\"/></geometry></visual></link></robot>");
+    home.write("cell.toml", "");
+    Diagnostics diagnostics;
+    check_file(path, diagnostics);
+    return diagnostics.text();
+  };
+  EXPECT_EQ(check("../meshes/a.stl"), "");
+  EXPECT_EQ(check("package://arm/meshes/a.stl"), "");
+  EXPECT_THAT(check("../../../../etc/passwd"), HasSubstr("leaves"));
+  EXPECT_THAT(check("/etc/passwd"), HasSubstr("absolute"));
+  EXPECT_THAT(check("package://arm/../../../../../etc/passwd"), HasSubstr("error"));
+  EXPECT_THAT(check("http://host/a.stl"), HasSubstr("not a file"));
+  EXPECT_THAT(check("package://other/meshes/a.stl"), HasSubstr("no file package://other"));
+  EXPECT_THAT(check("../meshes"), HasSubstr("folder"));
+  EXPECT_THAT(check("../meshes/missing.stl"), HasSubstr("does not exist"));
+}
+
+// --- against urdfdom, on the robots of the shared data
+// ------------------------------------------------------------------
+
+fs::path shared_data() {
+  if (const char* folder = std::getenv("CELLMIRROR_SHARED_DATA")) return folder;
+  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
+  return source != nullptr ? fs::path(source).parent_path() / "shared/data" : fs::path();
+}
+
+Pose pose_of(const urdf::Pose& X) {
+  Pose out = Pose::Identity();
+  out.translation() = Eigen::Vector3d(X.position.x, X.position.y, X.position.z);
+  out.linear() = Eigen::Quaterniond(X.rotation.w, X.rotation.x, X.rotation.y, X.rotation.z).toRotationMatrix();
+  return out;
+}
+
+Pose link_pose(const urdf::ModelInterface& model, const std::string& name, const std::map<std::string, double>& q) {
+  const auto link = model.getLink(name);
+  if (!link->parent_joint) return Pose::Identity();
+  const urdf::Joint& joint = *link->parent_joint;
+  Pose X = pose_of(joint.parent_to_joint_origin_transform);
+  const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
+  const auto position = q.find(joint.name);
+  if (position != q.end() && joint.type == urdf::Joint::PRISMATIC) X.translate(axis * position->second);
+  if (position != q.end() && joint.type != urdf::Joint::PRISMATIC) X.rotate(Eigen::AngleAxisd(position->second, axis));
+  return link_pose(model, joint.parent_link_name, q) * X;
+}
+
+class OneFile final : public ComponentSource {
+ public:
+  explicit OneFile(Component component) : component_(std::make_shared<const Component>(std::move(component))) {}
+  Result<std::shared_ptr<const Component>> component(std::string_view) override { return component_; }
+
+ private:
+  std::shared_ptr<const Component> component_;
+};
+
+TEST(Urdf, agreesWithUrdfdomOnRealRobots) {
+  const fs::path robots = shared_data() / "robots";
+  if (!fs::is_directory(robots)) GTEST_SKIP() << "skipped: no shared data at " << robots;
+  int compared = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(robots)) {
+    if (entry.path().extension() != ".urdf") continue;
+    SCOPED_TRACE(entry.path().string());
+    std::ifstream in(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const auto model = urdf::parseURDF(text);
+    ASSERT_TRUE(model);
+    Diagnostics diagnostics;
+    check_file(entry.path(), diagnostics);
+    EXPECT_EQ(diagnostics.text(), "");
+    auto component = parse_urdf(text, "r.urdf", entry.path(), AnyFile(), diagnostics);
+    ASSERT_TRUE(component && diagnostics.ok());
+    for (const ComponentNode& node : component->nodes) {
+      if (!node.joint) continue;
+      const auto theirs = model->getJoint(node.name);
+      ASSERT_TRUE(theirs) << node.name;
+      if (node.joint->kind != JointKind::continuous) {
+        EXPECT_EQ(node.joint->min_position, theirs->limits->lower);
+        EXPECT_EQ(node.joint->max_position, theirs->limits->upper);
+      }
+      EXPECT_EQ(node.joint->max_velocity, theirs->limits->velocity);
+    }
+    auto root = std::make_shared<Component>();
+    root->file = "cell.toml";
+    ComponentNode holder;
+    holder.name = "R";
+    holder.abstract = AbstractReference{"r.urdf", true, {}, {}, {}};
+    root->nodes.push_back(holder);
+    const auto cell = Cell::build(root, std::make_shared<OneFile>(std::move(*component)), diagnostics);
+    ASSERT_TRUE(cell) << diagnostics.text();
+    const RobotModel& robot = *cell->robot(std::size_t{0});
+    std::mt19937 random(17);
+    for (int round = 0; round < 20; ++round) {
+      std::vector<JointValues> q = cell->start_positions();
+      std::map<std::string, double> theirs;
+      for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+        const auto& p = robot.parameters();
+        q[0][i] = std::uniform_real_distribution<double>(p.min_range[i], p.max_range[i])(random);
+        theirs[robot.joints()[i].name] = q[0][i];
+      }
+      for (const auto& [name, link] : model->links_) {
+        const auto node = cell->find("R." + name);
+        ASSERT_TRUE(node) << node.error().text();
+        EXPECT_TRUE(cell->world_pose(*node, q).isApprox(link_pose(*model, name, theirs), 1e-9)) << name;
+      }
+    }
+    ++compared;
+  }
+  EXPECT_GT(compared, 0);
+}
+
+}  // namespace
+}  // namespace cellmirror
