@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scripts/lang/command_table.hpp"
 #include "scripts/lang/reader.hpp"
 #include "tests/golden/scripts/fake_names.hpp"
 
