@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "rt_core/base/text.hpp"
@@ -85,8 +87,12 @@ void Matcher::check_joint_name(std::string_view robot, const Token& word) {
   if (names_ == nullptr || !names_->knows(NameKind::robot, robot)) return;
   const std::vector<std::string> joints = names_->joint_names(robot);
   if (std::find(joints.begin(), joints.end(), word.text) != joints.end()) return;
+  std::string remedy = did_you_mean(word.text, joints);
+  if (remedy.empty()) {
+    for (const std::string& joint : joints) remedy += (remedy.empty() ? "its joints: " : ", ") + joint;
+  }
   findings_.error(word.begin, fmt::format("{} has no joint {}", printable(robot), printable(word.text)),
-                  did_you_mean(word.text, joints));
+                  std::move(remedy));
 }
 
 }  // namespace cellmirror::script
