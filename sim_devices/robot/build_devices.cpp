@@ -10,6 +10,7 @@
 #include "sim_devices/robot/cia402_robots.hpp"
 #include "sim_devices/robot/dbc_robot.hpp"
 #include "sim_devices/robot/dds_robots.hpp"
+#include "sim_devices/robot/error_frame_channel.hpp"
 
 namespace cellmirror::sim {
 namespace {
@@ -66,7 +67,10 @@ Result<std::unique_ptr<CanChannel>> open_bus(const std::string& endpoint, const 
   CanChannelConfig config;
   config.endpoint = endpoint;
   config.interface = interface;
-  return can::open_can_channel(config);
+  auto channel = can::open_can_channel(config);
+  constexpr std::string_view kSocketCan = "socketcan:";
+  if (!channel || !endpoint.starts_with(kSocketCan)) return channel;
+  return with_error_frames(std::move(*channel), endpoint.substr(kSocketCan.size()));
 }
 
 Result<void> add_signals(const std::vector<std::string>& names, JointQuantity quantity, double units_per_rad,

