@@ -108,8 +108,9 @@ void CanStream::watch_bus(std::optional<CanBusState> told) {
   bus_ = bus;
   const bool is_bad = bus_ != CanBusState::active && bus_ != CanBusState::unknown;
   if (!was_bad && !is_bad) return;
-  note("bus", fmt::format("bus: {}{}{}", words(bus_), is_bad && !status.last_error.empty() ? ": " : "",
-                          is_bad ? status.last_error : ""));
+  note(is_bad ? Severity::warning : Severity::note, "bus",
+       fmt::format("bus: {}{}{}", words(bus_), is_bad && !status.last_error.empty() ? ": " : "",
+                   is_bad ? status.last_error : ""));
 }
 
 bool CanStream::send(const CanFrame& frame) { return channel_->send(frame); }
@@ -119,7 +120,11 @@ void CanStream::push(const JointSample& sample) {
   sink_->push(sample);
 }
 
-void CanStream::note(std::string_view kind, const std::string& text) {
+void CanStream::note(Severity severity, std::string_view kind, const std::string& text) {
+  if (severity == Severity::note) {
+    log_info(fmt::format("can.{} {}", kind, channel_config_.endpoint), "{}", text);
+    return;
+  }
   log_warning(fmt::format("can.{} {}", kind, channel_config_.endpoint), "{}", text);
   if (!last_errors_.empty() && last_errors_.back() == text) return;
   last_errors_.push_back(text);

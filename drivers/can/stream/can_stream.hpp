@@ -12,6 +12,7 @@
 
 #include "drivers/can/stream/rate_meter.hpp"
 #include "drivers/can/stream/streams.hpp"
+#include "rt_core/base/diagnostics.hpp"
 
 namespace cellmirror::can {
 
@@ -21,8 +22,8 @@ class CanProtocolHost {
   virtual ~CanProtocolHost() = default;
   virtual bool send(const CanFrame& frame) = 0;
   virtual void push(const JointSample& sample) = 0;
-  // Kept for status() and written to the log. `kind` for the log's rate limiting: "heartbeat", "emcy", ...
-  virtual void note(std::string_view kind, const std::string& text) = 0;
+  // Written to the log; what is wrong is kept for status() too. `kind` for the log's rate limiting: "heartbeat", ...
+  virtual void note(Severity severity, std::string_view kind, const std::string& text) = 0;
 };
 
 // All calls under the stream's lock.
@@ -52,7 +53,7 @@ class CanStream final : public JointStream, private CanProtocolHost {
  private:
   bool send(const CanFrame& frame) override;
   void push(const JointSample& sample) override;
-  void note(std::string_view kind, const std::string& text) override;
+  void note(Severity severity, std::string_view kind, const std::string& text) override;
 
   void run();
   void prepare_thread() const;

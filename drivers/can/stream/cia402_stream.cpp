@@ -28,6 +28,12 @@ std::string_view log_kind(Cia402EventKind kind) {
   return "event";
 }
 
+Severity severity_of(Cia402EventKind kind) {
+  const bool is_good =
+      kind == Cia402EventKind::boot_up || kind == Cia402EventKind::node_resolved || kind == Cia402EventKind::configured;
+  return is_good ? Severity::note : Severity::warning;
+}
+
 class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
  public:
   Cia402Protocol(const Cia402Plan& plan, CanProtocolHost& host) : host_(&host), session_(plan, *this) {}
@@ -58,7 +64,9 @@ class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
  private:
   bool send(const CanFrame& frame) override { return host_->send(frame); }
   void sample(const JointSample& sample) override { host_->push(sample); }
-  void event(const Cia402Event& event) override { host_->note(log_kind(event.kind), event.text); }
+  void event(const Cia402Event& event) override {
+    host_->note(severity_of(event.kind), log_kind(event.kind), event.text);
+  }
 
   CanProtocolHost* host_;
   Cia402Session session_;

@@ -35,7 +35,7 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
     last_sample_ = sample.receive_time;
     host_->push(sample);
   }
-  void rejected(const std::string& why) override { host_->note("rejected", why); }
+  void rejected(const std::string& why) override { host_->note(Severity::warning, "rejected", why); }
 
   CanProtocolHost* host_;
   StreamAges ages_;
