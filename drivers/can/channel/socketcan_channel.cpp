@@ -197,8 +197,8 @@ bool SocketCanChannel::send(const CanFrame& frame) {
   std::copy_n(frame.data.begin(), frame.length, raw.data);
   const std::size_t bytes = frame.fd ? CANFD_MTU : CAN_MTU;
   ssize_t written = -1;
-  int error = ENOTCONN;
-  if (socket_.is_open()) {
+  int error = frame.error ? EINVAL : ENOTCONN;  // error frames are a controller's to send
+  if (socket_.is_open() && !frame.error) {
     written = ::send(socket_.get(), &raw, bytes, MSG_DONTWAIT);
     error = errno;
   }
