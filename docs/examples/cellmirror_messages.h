@@ -120,7 +120,7 @@ struct cellmirror_robot {
 };
 
 /* Copies a robot record out of a received message. 1: done; 0: the bytes are no robot record of this version. */
-static inline int cellmirror_read_robot(const void *message, size_t bytes, struct cellmirror_robot *robot) {
+static inline int cellmirror_read_robot(const void* message, size_t bytes, struct cellmirror_robot* robot) {
   if (bytes < CELLMIRROR_ROBOT_OFFSET_JOINTS || bytes > sizeof *robot) return 0;
   memset(robot, 0, sizeof *robot);
   memcpy(robot, message, bytes);
@@ -133,8 +133,8 @@ static inline int cellmirror_read_robot(const void *message, size_t bytes, struc
   return bytes == CELLMIRROR_ROBOT_OFFSET_JOINTS + (size_t)robot->joint_count * CELLMIRROR_JOINT_BYTES;
 }
 
-static inline const char *cellmirror_state_name(unsigned state) {
-  static const char *const names[] = {"none", "fresh", "stale", "lost", "invalid"};
+static inline const char* cellmirror_state_name(unsigned state) {
+  static const char* const names[] = {"none", "fresh", "stale", "lost", "invalid"};
   return state < 5 ? names[state] : "unknown";
 }
 

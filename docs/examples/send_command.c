@@ -20,7 +20,7 @@
 
 #include "cellmirror_messages.h"
 
-static const char *const usage =
+static const char* const usage =
     "usage: send_command [--timeout SECONDS] [--script-key KEY] [--reply-key KEY] COMMAND\n"
     "Sends one SCRIPT command to the gateway and prints its answer: done, or refused and why.\n";
 
@@ -45,7 +45,7 @@ static void interrupt_after(double seconds) {
   setitimer(ITIMER_REAL, &timer, NULL);
 }
 
-static int failed(const char *what) {
+static int failed(const char* what) {
   if (errno == EINTR) {
     fprintf(stderr, "send_command: no answer in time; the command may still be executed\n");
   } else if (errno == ENOENT) {
@@ -58,10 +58,10 @@ static int failed(const char *what) {
   return 1;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   key_t script_key = CELLMIRROR_SCRIPT_KEY, reply_key = CELLMIRROR_REPLY_KEY;
   double timeout = 5.0;
-  const char *command = NULL;
+  const char* command = NULL;
   for (int i = 1; i < argc; ++i) {
     if (strcmp(argv[i], "--help") == 0) {
       fputs(usage, stdout);

@@ -20,9 +20,10 @@
 
 #include "cellmirror_messages.h"
 
-static const char *const usage =
+static const char* const usage =
     "usage: sensor_reader [--count N] [--timeout SECONDS] [--key KEY]\n"
-    "Prints robot-parameter records as they come: N of them (default: without end), waiting at most SECONDS (default: for\n"
+    "Prints robot-parameter records as they come: N of them (default: without end), waiting at most SECONDS (default: "
+    "for\n"
     "ever) for each.\n";
 
 struct message {
@@ -32,7 +33,7 @@ struct message {
 
 static void on_alarm(int signal_number) { (void)signal_number; }
 
-static void print_robot(const struct cellmirror_robot *robot) {
+static void print_robot(const struct cellmirror_robot* robot) {
   printf("%llu %s %s %s", (unsigned long long)robot->header.sequence, robot->id, robot->online ? "online" : "offline",
          cellmirror_state_name(robot->state));
   for (unsigned i = 0; i < robot->joint_count; ++i) {
@@ -43,7 +44,7 @@ static void print_robot(const struct cellmirror_robot *robot) {
   fflush(stdout);
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   key_t key = CELLMIRROR_SENSOR_KEY;
   long count = 0;
   unsigned timeout = 0;

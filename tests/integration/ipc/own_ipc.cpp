@@ -34,7 +34,7 @@ class OwnIpc : public ::testing::Environment {
   PrivateRuntimeFolder runtime_folder_;
 };
 
-[[maybe_unused]] const auto* const environment = ::testing::AddGlobalTestEnvironment(new OwnIpc);
+[[maybe_unused]] const auto* const kEnvironment = ::testing::AddGlobalTestEnvironment(new OwnIpc);
 
 }  // namespace
 
