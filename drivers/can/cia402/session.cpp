@@ -41,7 +41,7 @@ Cia402Session::Cia402Session(Cia402Plan plan, Cia402SessionOutput& output) : pla
       tpdo.number = config.number;
       tpdo.length = static_cast<std::uint8_t>(pdo_length(config.entries));
       tpdo.synchronous = is_synchronous(config.transmission_type);
-      tpdo.every = config.transmission_type == 0 ? 1 : config.transmission_type;
+      tpdo.every = config.transmission_type;
       tpdo.statusword = field(kStatusword);
       tpdo.position = field(kPositionActual);
       tpdo.velocity = field(kVelocityActual);
@@ -184,7 +184,7 @@ void Cia402Session::on_sync(Timestamp now) {
   for (Tpdo& tpdo : tpdos_) {
     const Node& node = nodes_[tpdo.node];
     const bool sleeping = node.status.nmt && *node.status.nmt != NmtState::operational;
-    const bool due = tpdo.synchronous && ++tpdo.syncs >= tpdo.every;
+    const bool due = tpdo.synchronous && tpdo.every > 0 && ++tpdo.syncs >= tpdo.every;
     tpdo.expected = due && node.answering && !node.status.heartbeat_lost && !sleeping;
   }
 }

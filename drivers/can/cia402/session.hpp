@@ -107,7 +107,7 @@ class Cia402Session {
     std::uint8_t number = 0;
     std::uint8_t length = 0;
     bool synchronous = false;
-    unsigned every = 1;  // SYNCs
+    unsigned every = 1;  // SYNCs; 0: only where something changed (transmission type 0), so never waited for
     Quantity statusword, position, velocity, torque;
     unsigned syncs = 0;     // since it last came
     bool expected = false;  // in the cycle under way

@@ -191,6 +191,18 @@ TEST_F(SessionTest, SyncOfAnotherProducerMakesCyclesToo) {
   EXPECT_EQ(sut->counters().lost, 2U);
 }
 
+TEST_F(SessionTest, AnAcyclicTpdoThatStaysOutIsNoLoss) {
+  config.nodes = {node(3, 0)};
+  config.nodes[0].tpdos = {{.number = 1, .transmission_type = 0, .entries = {{0x6041, 0, 16}, {0x6064, 0, 32}}}};
+  config.sync_period = 10ms;
+  start();
+  at(10ms);
+  tpdo(3, 1);
+  EXPECT_EQ(out.samples.size(), 1U);
+  for (int i = 0; i < 5; ++i) at(10ms);
+  EXPECT_EQ(sut->counters().lost, 0U);
+}
+
 TEST_F(SessionTest, SynchronousTpdosWithoutAnySyncAreTakenAsTheyCome) {
   config.nodes[0].tpdos = {{.number = 1, .transmission_type = 1, .entries = {{0x6041, 0, 16}, {0x6064, 0, 32}}}};
   start();
