@@ -76,7 +76,11 @@ Cia402NodeConfig read_node(TableReader& reader, const RobotFacts* robot, const F
   Cia402NodeConfig node;
   reader.require("id");
   node.node_id = static_cast<std::uint8_t>(reader.integer("id", 1, 127).value_or(0));
-  if (node.node_id > 0) reader.set_where(fmt::format("{}, node {}", reader.where(), node.node_id));
+  if (node.node_id > 0) {
+    // By its id instead of its number in the file.
+    const std::string stream = reader.where().substr(0, reader.where().rfind(", node "));
+    reader.set_where(fmt::format("{}, node id {}", stream, node.node_id));
+  }
   const auto joint = read_joint_reference(reader, robot);
   // Without a known joint its kind is guessed from the keys, so that only what is wrong is told.
   JointKind kind =

@@ -38,8 +38,7 @@ bool CellReader::read(std::string_view text) {
   table_ = parse_toml(text, file_, findings);
   if (!table_) return false;
   TableReader top(*table_, file_, "", findings);
-  top.require("format");
-  top.integer("format", 1, 1);
+  top.format();
   top.require("name");
   name = top.name("name").value_or("");
   description = top.text("description").value_or("");

@@ -58,8 +58,7 @@ std::optional<Component> parse_component(std::string_view text, const std::strin
   TableReader reader(*table, file, "", findings);
   Component component;
   component.file = file;
-  reader.require("format");
-  reader.integer("format", 1, 1);
+  reader.format();
   component.description = reader.text("description").value_or("");
   component.geometry = read_geometry(reader, files);
   component.inertia = read_body(reader);

@@ -51,6 +51,9 @@ void read_shape(TableReader& reader, const FileFinder& files, Geometry& geometry
 
 Geometry read_one(TableReader& reader, const FileFinder& files) {
   Geometry geometry;
+  const Place place = reader.place();
+  geometry.line = place.line;
+  geometry.column = place.column;
   geometry.name = reader.text("name").value_or("");
   read_shape(reader, files, geometry);
   geometry.X_NG = reader.pose();

@@ -140,22 +140,23 @@ void NodeReader::read(TableReader& reader) {
 }
 
 void NodeReader::finish(Diagnostics& diagnostics) const {
-  const auto check_stand_ins = [&](const std::vector<Geometry>& list, int parent, const Place& place) {
+  const auto check_stand_ins = [&](const std::vector<Geometry>& list, int parent) {
     for (const Geometry& geometry : list) {
       for (const std::string& name : geometry.stands_for) {
         const bool known = std::ranges::any_of(component_.nodes, [&](const ComponentNode& node) {
           return node.parent == parent && node.name == name && node.abstract.has_value();
         });
         if (!known)
-          diagnostics.error(place, fmt::format("stands_for names {}, which is no node with an ABSTRACT file below here",
-                                               printable(name)));
+          diagnostics.error(
+              {component_.file, geometry.line, geometry.column},
+              fmt::format("stands_for names {}, which is no node with an ABSTRACT file below here", printable(name)));
       }
     }
   };
-  check_stand_ins(component_.geometry, -1, {component_.file, 0, 0});
+  check_stand_ins(component_.geometry, -1);
   for (std::size_t i = 0; i < component_.nodes.size(); ++i) {
     const ComponentNode& node = component_.nodes[i];
-    check_stand_ins(node.geometry, static_cast<int>(i), component_.place(node));
+    check_stand_ins(node.geometry, static_cast<int>(i));
     if (node.shown == Shown::coarse && node.abstract) check_coarse(node, component_.place(node), diagnostics);
   }
 }

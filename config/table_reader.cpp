@@ -302,6 +302,13 @@ std::string TableReader::unit_remedy(std::string_view key, const toml::node& nod
   return {};
 }
 
+void TableReader::format() {
+  require("format");
+  const auto version = integer("format", 0, std::numeric_limits<int>::max());
+  if (version && *version != 1)
+    error("format", fmt::format("format {} is not known", *version), "this version reads format = 1");
+}
+
 void TableReader::finish() {
   std::vector<std::pair<Place, std::string_view>> unknown;
   for (const auto& [key, value] : *table_) {

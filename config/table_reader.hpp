@@ -67,6 +67,8 @@ class TableReader {
   // An array of tables: [[key]] or key = [{...}, ...].
   std::vector<TableReader> tables(std::string_view key, std::size_t most);
 
+  // The key format: 1 is the only one yet.
+  void format();
   // The keys that were not asked for are errors. Call it last.
   void finish();
 

@@ -91,7 +91,8 @@ class UrdfTree {
     const auto at = link_of_.find(name);
     if (at != link_of_.end()) return at->second;
     std::vector<std::string> names;
-    for (const auto& link : model_.links) names.push_back(link.name);
+    for (const auto& [known, index] : link_of_) names.push_back(known);
+    std::ranges::sort(names);
     error(joint.line, fmt::format("joint {}: its {} {} is no link", joint.name, end, printable(name)),
           did_you_mean(name, names));
     return std::nullopt;

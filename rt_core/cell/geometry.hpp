@@ -28,6 +28,8 @@ struct Geometry {
   // Names of child nodes whose details this coarse geometry stands for: it is there only while at least one of them is
   // shown coarsely (docs/cell-files.md, "Detail levels"). Empty: ordinary geometry, there whenever its node is.
   std::vector<std::string> stands_for;
+  int line = 0;  // where it stands in its file
+  int column = 0;
 };
 
 }  // namespace cellmirror
