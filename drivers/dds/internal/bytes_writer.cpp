@@ -13,7 +13,7 @@ constexpr int kMaxDepth = 400;  // the library's default of max_samples_per_inst
 
 BytesWriter::BytesWriter(std::shared_ptr<Participant> participant) : participant_(std::move(participant)) {}
 
-Result<std::unique_ptr<BytesWriter>> BytesWriter::make(std::shared_ptr<Participant> participant,
+Result<std::unique_ptr<BytesWriter>> BytesWriter::make(const std::shared_ptr<Participant>& participant,
                                                        const EndpointConfig& config) {
   if (config.depth < 1 || config.depth > kMaxDepth) {
     return fail(fmt::format("a history of {} samples for topic {}", config.depth, config.topic),

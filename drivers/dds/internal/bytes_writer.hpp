@@ -16,7 +16,7 @@ namespace cellmirror::dds {
 class BytesWriter final : private eprosima::fastdds::dds::DataWriterListener {
  public:
   // `config.depth`: 1..400.
-  [[nodiscard]] static Result<std::unique_ptr<BytesWriter>> make(std::shared_ptr<Participant> participant,
+  [[nodiscard]] static Result<std::unique_ptr<BytesWriter>> make(const std::shared_ptr<Participant>& participant,
                                                                  const EndpointConfig& config);
   ~BytesWriter() override;
   BytesWriter(const BytesWriter&) = delete;

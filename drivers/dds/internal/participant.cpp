@@ -6,6 +6,7 @@
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <algorithm>
 #include <exception>
 #include <map>
 #include <utility>
@@ -22,10 +23,14 @@ namespace {
 namespace fd = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-constexpr int kMaxDomain = 232;  // beyond it RTPS's port numbers pass 65535
+// RTPS 2.3, 9.6.1.1: a participant's own ports are kFirstPort + kPortsPerDomain * domain + 2 * participant, and one
+// more.
+constexpr int kFirstPort = 7410;
+constexpr int kPortsPerDomain = 250;
+constexpr int kMaxDomain = 232;  // beyond it the ports pass 65535
 constexpr std::size_t kMaxTopicLength = 255;
 constexpr std::uint32_t kSocketBufferBytes = 4U << 20U;  // the kernel cuts it to net.core.rmem_max
-constexpr int kPeersPerHost = 10;                        // participants of this host that are found without multicast
+constexpr int kPeersPerHost = 64;                        // participants of this host that are found without multicast
 constexpr char kDiscoveryGroup[] = "239.255.0.1";        // RTPS 2.3, 9.6.1.4
 
 std::vector<std::string> ipv4_addresses() {
@@ -68,17 +73,20 @@ void set_discovery(fd::DomainParticipantQos& qos, const std::string& address) {
   builtin.discovery_config.leaseDuration_announcementperiod = {1, 0};
 }
 
-fd::DomainParticipantQos participant_qos(const std::string& address) {
+// The library ends the process over a port beyond 65535.
+int peers_per_host(int domain) { return std::min(kPeersPerHost, (65534 - kFirstPort - kPortsPerDomain * domain) / 2); }
+
+fd::DomainParticipantQos participant_qos(int domain, const std::string& address) {
   fd::DomainParticipantQos qos;
   qos.name("cellmirror");
-  // UDP alone: shared memory is no faster at these sizes and leaves its segments behind after kill -9
+  // UDP alone: shared memory is hardly faster at these sizes and leaves its segments behind after kill -9
   // (docs/decisions/0003-dds-transports.md).
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.push_back(address);
   udp->receiveBufferSize = kSocketBufferBytes;
   udp->sendBufferSize = kSocketBufferBytes;
   udp->non_blocking_send = true;
-  udp->maxInitialPeersRange = kPeersPerHost;
+  udp->maxInitialPeersRange = static_cast<std::uint32_t>(peers_per_host(domain));
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   set_discovery(qos, address);
@@ -124,7 +132,7 @@ Result<std::shared_ptr<Participant>> Participant::shared(int domain, const std::
     redirect_library_log();
     std::shared_ptr<Participant> made(new Participant(fd::DomainParticipantFactory::get_shared_instance()));
     const auto as_domain = static_cast<fd::DomainId_t>(domain);
-    made->participant_ = made->factory_->create_participant(as_domain, participant_qos(interface_address));
+    made->participant_ = made->factory_->create_participant(as_domain, participant_qos(domain, interface_address));
     if (made->participant_ == nullptr) {
       return fail(fmt::format("no DDS participant in domain {} on {}", domain, interface_address),
                   "look whether the UDP ports of the domain are free (7400 + 250 * domain and above)");

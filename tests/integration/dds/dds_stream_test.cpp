@@ -217,6 +217,12 @@ TEST_F(DdsStreamTest, RefusesWhatCannotWork) {
   EXPECT_NE(opened.error().text().find("127.0.0.1"), std::string::npos);
 }
 
+TEST_F(DdsStreamTest, WorksInTheHighestDomain) {
+  CollectingSink sink;
+  const auto sut = stream(config(232, {"a"}), sink);
+  EXPECT_EQ(sut->status().condition, "no publisher on rt/joint_states in domain 232");
+}
+
 std::vector<std::string> moving_joints(const std::filesystem::path& urdf) {
   std::vector<std::string> names;
   tinyxml2::XMLDocument document;
