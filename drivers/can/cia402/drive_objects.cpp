@@ -149,7 +149,8 @@ std::optional<SdoAbort> Cia402Drive::check_mapping_write(ObjectAddress address, 
   if (address.subindex == 0) {
     if (value > kMappingSubindices) return SdoAbort::value_too_high;
     std::size_t bits = 0;
-    for (std::uint8_t i = 1; i <= value; ++i) {
+    const auto count = static_cast<std::uint8_t>(value);
+    for (std::uint8_t i = 1; i <= count; ++i) {
       const auto word = static_cast<std::uint32_t>(objects_.integer({address.index, i}).value_or(0));
       if ((word & 0xFF) == 0) return SdoAbort::invalid_value;
       bits += word & 0xFF;
