@@ -30,19 +30,13 @@ std::filesystem::path lock_path(const std::filesystem::path& runtime, std::int32
   return runtime / ".locks" / fmt::format("key-{:#x}-ipc-{}", static_cast<std::uint32_t>(key), namespace_number());
 }
 
-}  // namespace
-
-std::string key_text(std::int32_t key) { return fmt::format("{:#x} ({})", static_cast<std::uint32_t>(key), key); }
-
-Result<KeyLock> KeyLock::take(std::int32_t key, const std::string& instance) {
-  if (key == 0)
-    return fail("key 0 means a private queue, which nobody else could find", "set another key in the cell file");
+Result<LockFile> take_file(std::int32_t key, const std::string& instance) {
   const auto runtime = runtime_folder();
   if (!runtime) return std::unexpected(runtime.error());
   const auto path = lock_path(*runtime, key);
   if (const auto made = make_private_folder(path.parent_path()); !made) return std::unexpected(made.error());
   auto file = LockFile::take(path, instance);
-  if (file) return KeyLock(std::move(*file), key, instance);
+  if (file) return std::move(*file);
   const LockFile::Refused& refused = file.error();
   if (refused.why == LockFile::Refusal::failed) return std::unexpected(refused.error);
   return fail(fmt::format("the message key {} is in use by process {}, the gateway of the instance {}", key_text(key),
@@ -50,15 +44,37 @@ Result<KeyLock> KeyLock::take(std::int32_t key, const std::string& instance) {
               "end that gateway, or start this one with --instance NAME and keys of its own");
 }
 
+}  // namespace
+
+std::string key_text(std::int32_t key) { return fmt::format("{:#x} ({})", static_cast<std::uint32_t>(key), key); }
+
+Result<KeyLock> KeyLock::take(std::int32_t key, const std::string& instance) {
+  if (key == 0) {
+    return fail("key 0 means a private queue, which nobody else could find", "set another key in the cell file");
+  }
+  auto file = take_file(key, instance);
+  if (!file) return std::unexpected(file.error());
+  auto semaphore = KeySemaphore::take(key);
+  if (!semaphore) return std::unexpected(semaphore.error());
+  return KeyLock(std::move(*file), std::move(*semaphore), key, instance);
+}
+
 Result<void> KeyLock::confirm() {
-  if (file_.in_place()) return {};
-  auto again = take(key_, instance_);
-  if (!again) return std::unexpected(again.error());
-  file_ = std::move(again->file_);
+  if (!file_.in_place()) {
+    auto file = take_file(key_, instance_);
+    if (!file) return std::unexpected(file.error());
+    file_ = std::move(*file);
+  }
+  if (!semaphore_.in_place()) {
+    auto semaphore = KeySemaphore::take(key_);
+    if (!semaphore) return std::unexpected(semaphore.error());
+    semaphore_ = std::move(*semaphore);
+  }
   return {};
 }
 
 bool KeyLock::held_by_anybody(std::int32_t key) {
+  if (KeySemaphore::held_by_anybody(key)) return true;
   const auto runtime = runtime_folder_for_client();
   return runtime && lock_holder(lock_path(*runtime, key)).has_value();
 }

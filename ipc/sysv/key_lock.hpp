@@ -6,29 +6,35 @@
 #include <string>
 
 #include "ipc/runtime/lock_file.hpp"
+#include "ipc/sysv/key_semaphore.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror {
 
 // The right to a System V key in this IPC namespace, among the gateways of this user; other users are kept off by the
-// owner of the queue. Held for life, ends with the process. Moved, not copied.
+// owner of the queue. Two things together: a lock file, which can name the holder, and a semaphore, which reaches as
+// far as the queue does. Held for life, ends with the process. Moved, not copied.
 class KeyLock {
  public:
   // Refused where another process holds it; the message names that process and its instance.
   static Result<KeyLock> take(std::int32_t key, const std::string& instance);
 
-  // Takes the lock anew where its file was removed under it (log-out); fails where another gateway was faster.
+  // Takes anew what was removed under it (log-out); fails where another gateway was faster.
   [[nodiscard]] Result<void> confirm();
-  void release() { file_.release(); }
+  void release() {
+    semaphore_.release();
+    file_.release();
+  }
   [[nodiscard]] std::int32_t key() const { return key_; }
 
-  // Whether any process of this user holds the key.
+  // Whether any process holds the key, as far as this user may know.
   [[nodiscard]] static bool held_by_anybody(std::int32_t key);
 
  private:
-  KeyLock(LockFile file, std::int32_t key, std::string instance)
-      : file_(std::move(file)), key_(key), instance_(std::move(instance)) {}
+  KeyLock(LockFile file, KeySemaphore semaphore, std::int32_t key, std::string instance)
+      : file_(std::move(file)), semaphore_(std::move(semaphore)), key_(key), instance_(std::move(instance)) {}
   LockFile file_;
+  KeySemaphore semaphore_;
   std::int32_t key_ = 0;
   std::string instance_;
 };

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/ipc.h>
 #include <sys/msg.h>
+#include <sys/sem.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -135,6 +136,8 @@ int main(int argc, char** argv) {
   for (const std::int32_t key : {queues.script_key, queues.reply_key}) {
     const int id = ::msgget(key, 0);
     if (id >= 0) ::msgctl(id, IPC_RMID, nullptr);
+    const int semaphore = ::semget(key, 1, 0);
+    if (semaphore >= 0) ::semctl(semaphore, 0, IPC_RMID);
   }
   if (!measured) {
     std::fprintf(stderr, "ipc_bench_acknowledged_round_trip: no measurement\n");

@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <sys/ipc.h>
 #include <sys/msg.h>
+#include <sys/sem.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -26,7 +27,7 @@ class OwnIpc : public ::testing::Environment {
   }
   void TearDown() override {
     if (in_own_namespace) {
-      EXPECT_EQ(queues_in_namespace(), 0) << "queues were left behind";
+      EXPECT_EQ(objects_in_namespace(), 0) << "queues or semaphores were left behind";
     }
   }
 
@@ -59,11 +60,19 @@ void remove_queue(std::int32_t key) {
 
 int make_queue(std::int32_t key, int mode) { return ::msgget(key, IPC_CREAT | IPC_EXCL | mode); }
 
-int queues_in_namespace() {
-  std::ifstream in("/proc/sysvipc/msg");
-  int lines = -1;  // the heading
-  for (std::string line; std::getline(in, line);) ++lines;
-  return lines;
+void remove_semaphore(std::int32_t key) {
+  const int id = ::semget(key, 1, 0);
+  if (id >= 0) ::semctl(id, 0, IPC_RMID);
+}
+
+int objects_in_namespace() {
+  int objects = 0;
+  for (const char* table : {"/proc/sysvipc/msg", "/proc/sysvipc/sem"}) {
+    std::ifstream in(table);
+    --objects;  // the heading
+    for (std::string line; std::getline(in, line);) ++objects;
+  }
+  return objects;
 }
 
 }  // namespace cellmirror::test

@@ -1,5 +1,6 @@
 // An IPC namespace of the test program's own where that is allowed, keys of its own in any case, and a runtime folder
-// of its own; queues that are left at the end are a failure.
+// of its own; queues and semaphores that are left at the end are a
+// failure.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,9 @@ bool queue_exists(std::int32_t key);
 void remove_queue(std::int32_t key);
 // Makes one, as a program that knows nothing of cellmirror would. Returns its id.
 int make_queue(std::int32_t key, int mode);
-// All queues of the namespace; meaningful only in one's own.
-int queues_in_namespace();
+// Removes the semaphore of a key, if it exists.
+void remove_semaphore(std::int32_t key);
+// All queues and semaphores of the namespace; meaningful only in one's own.
+int objects_in_namespace();
 
 }  // namespace cellmirror::test

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/integration/ipc/own_ipc.hpp"
+#include "tests/unit/ipc/temporary_folder.hpp"
 
 namespace cellmirror {
 namespace {
@@ -18,6 +19,7 @@ using test::make_queue;
 using test::own_queues;
 using test::queue_exists;
 using test::remove_queue;
+using test::remove_semaphore;
 
 OwnedQueue::Options options_of(std::int32_t key) { return {"test", key, 0600, "test"}; }
 
@@ -128,6 +130,42 @@ TEST(OwnedQueue, QueueOfRootIsRefusedToAnOrdinaryUser) {
   remove_queue(key);
 }
 
+TEST(OwnedQueue, SecondOwnerWithAnotherRuntimeFolderIsRefused) {
+  const std::int32_t key = own_queues().script_key;
+  const auto first = OwnedQueue::make(options_of(key));
+  ASSERT_TRUE(first);
+  const test::TemporaryFolder elsewhere;
+  const std::string before = std::getenv("CELLMIRROR_RUNTIME_DIR");
+  ::setenv("CELLMIRROR_RUNTIME_DIR", elsewhere.path().c_str(), 1);
+  const auto sut = OwnedQueue::make(options_of(key));
+  ::setenv("CELLMIRROR_RUNTIME_DIR", before.c_str(), 1);
+  ASSERT_FALSE(sut);
+  EXPECT_NE(sut.error().what.find("process " + std::to_string(::getpid())), std::string::npos) << sut.error().text();
+  EXPECT_TRUE(queue_exists(key));
+}
+
+// As another user's running gateway looks: its semaphore is seen first.
+TEST(OwnedQueue, KeyOfAnotherUsersGatewayIsRefused) {
+  if (::geteuid() != 0) GTEST_SKIP() << "skipped: only root can become another user";
+  const std::int32_t key = own_queues().script_key;
+  const auto first = OwnedQueue::make(options_of(key));
+  ASSERT_TRUE(first);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::setresuid(65534, 65534, 65534) != 0) _exit(2);
+    const std::string folder = "/tmp/cellmirror-test-nobody-" + std::to_string(::getpid());
+    ::setenv("CELLMIRROR_RUNTIME_DIR", folder.c_str(), 1);
+    const auto sut = OwnedQueue::make(options_of(key));
+    const bool refused = !sut && sut.error().what.find("in use by another user") != std::string::npos;
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+    _exit(refused ? 0 : 1);
+  }
+  int status = 1;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
 TEST(OwnedQueue, KeyZeroIsRefused) { EXPECT_FALSE(OwnedQueue::make(options_of(0))); }
 
 TEST(OwnedQueue, ReportsFullAndEmpty) {
@@ -161,8 +199,9 @@ TEST(OwnedQueue, IsNotMadeAnewWhereAnotherGatewayGotTheKey) {
   const std::int32_t key = own_queues().script_key;
   const auto sut = OwnedQueue::make(options_of(key));
   ASSERT_TRUE(sut);
-  // Log-out: the queue goes, and the folder with the locks.
+  // Log-out: queue and semaphore go, and the folder with the locks.
   remove_queue(key);
+  remove_semaphore(key);
   const std::filesystem::path locks = std::filesystem::path(std::getenv("CELLMIRROR_RUNTIME_DIR")) / ".locks";
   std::filesystem::remove_all(locks);
   {
