@@ -202,10 +202,10 @@ class DbcReader {
       signal.is_multiplexer = true;
       word.remove_suffix(1);
     }
-    const auto value = word.starts_with('m') ? parse_integer(word.substr(1)) : std::nullopt;
-    if (!expect(value && *value >= 0, "M, m<number> or ':'")) return false;
+    const long long value = word.starts_with('m') ? parse_integer(word.substr(1)).value_or(-1) : -1;
+    if (!expect(value >= 0, "M, m<number> or ':'")) return false;
     signal.is_multiplexed = true;
-    signal.multiplexer_values = {{static_cast<std::uint64_t>(*value), static_cast<std::uint64_t>(*value)}};
+    signal.multiplexer_values = {{static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(value)}};
     return true;
   }
 
@@ -297,12 +297,10 @@ class DbcReader {
     do {
       const std::string_view text = in_.number_text();
       const std::size_t dash = text.find('-');
-      const auto low = parse_integer(text.substr(0, dash));
-      const auto high = dash == std::string_view::npos ? std::nullopt : parse_integer(text.substr(dash + 1));
-      if (!expect(low && high && *low >= 0 && *high >= *low && ranges.size() < kMaxRanges, "a range such as 0-3")) {
-        return false;
-      }
-      ranges.emplace_back(static_cast<std::uint64_t>(*low), static_cast<std::uint64_t>(*high));
+      const long long low = parse_integer(text.substr(0, dash)).value_or(-1);
+      const long long high = dash == std::string_view::npos ? -1 : parse_integer(text.substr(dash + 1)).value_or(-1);
+      if (!expect(low >= 0 && high >= low && ranges.size() < kMaxRanges, "a range such as 0-3")) return false;
+      ranges.emplace_back(static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high));
     } while (in_.take(','));
     signal->is_multiplexed = true;
     signal->multiplexer = std::move(multiplexer);
