@@ -93,7 +93,7 @@ build() {
   : >"$log"
   (
     while sleep 30 >/dev/null 2>&1; do
-      say "  $(grep -o '^\[[0-9]*/[0-9]*\]' "$log" | tail -n 1) $folder"
+      say "  $(grep -ao '^\[[0-9]*/[0-9]*\]' "$log" | tail -n 1) $folder"
     done
   ) &
   watcher=$!
@@ -101,7 +101,7 @@ build() {
   kill "$watcher" 2>/dev/null
   wait "$watcher" 2>/dev/null
   if [ $status != 0 ]; then
-    grep -A 40 -m 1 -E '^FAILED|^ninja: error' "$log" >&2 || tail -n 40 "$log" >&2
+    grep -a -A 40 -m 1 -E '^FAILED|^ninja: error' "$log" >&2 || tail -n 40 "$log" >&2
     die "The build of $folder failed (all of its output: $log)"
   fi
 }
