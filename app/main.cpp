@@ -1,19 +1,9 @@
 // cellmirror: the one program. See app/subcommands for what it does.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <exception>
 #include <string>
 
 #include "app/subcommands/subcommand.hpp"
-
-namespace cellmirror::app {
-
-int refuse(const std::string& what) {
-  std::fprintf(stderr, "cellmirror: %s\n", what.c_str());
-  return kExitRefused;
-}
-
-}  // namespace cellmirror::app
 
 int main(int argc, char** argv) {
   using namespace cellmirror::app;

@@ -25,7 +25,7 @@ CellOwner::CellOwner(Parts parts)
       clock_(parts.clock),
       reply_(std::move(parts.reply)),
       names_(cell_),
-      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_)),
+      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
       world_(cell_, *fleet_, [this] { hang_up_picture(); }),
       robots_(cell_, *fleet_, names_),
       views_(cell_, clock_),

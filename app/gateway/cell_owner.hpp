@@ -38,6 +38,7 @@ class CellOwner {
     engine::Engine& engine;
     PictureBoard& board;
     const Clock& clock;
+    int stream_priority = 0;  // SCHED_FIFO priority of the streams' threads; 0: none
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
     std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
   };

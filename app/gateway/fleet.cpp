@@ -35,8 +35,13 @@ StreamAges ages_of(const StreamConfig& config) {
 }  // namespace
 
 Fleet::Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
-             const Clock& clock)
-    : cell_(cell), engine_(engine), streams_(std::move(streams)), clock_(clock), positions_(cell.start_positions()) {
+             const Clock& clock, int stream_priority)
+    : cell_(cell),
+      engine_(engine),
+      streams_(std::move(streams)),
+      clock_(clock),
+      stream_priority_(stream_priority),
+      positions_(cell.start_positions()) {
   cell_.set_online_query([this](std::string_view id) {
     const FleetRobot* robot = find(id);
     return robot != nullptr && robot->online;
@@ -138,7 +143,7 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
                 fmt::format("add a [[stream]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
   }
   if (!robot.stream) {
-    auto made = make_robot_stream(config->second, clock_);
+    auto made = make_robot_stream(config->second, clock_, stream_priority_);
     if (!made) return std::unexpected(made.error());
     robot.stream = std::move(*made);
   }

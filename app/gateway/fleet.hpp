@@ -31,8 +31,9 @@ struct FleetRobot {
 // Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.
 class Fleet {
  public:
+  // `stream_priority`: SCHED_FIFO priority of the streams' threads; 0: none.
   Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
-        const Clock& clock);
+        const Clock& clock, int stream_priority);
   // Closes all streams.
   ~Fleet();
 
@@ -68,6 +69,7 @@ class Fleet {
   engine::Engine& engine_;
   std::map<std::string, StreamConfig, std::less<>> streams_;
   const Clock& clock_;
+  int stream_priority_;
   std::map<std::string, FleetRobot, std::less<>> robots_;
   std::vector<JointValues> positions_;
   std::uint64_t last_command_ = 0;

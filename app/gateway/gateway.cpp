@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
@@ -118,8 +119,11 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     return {};
   };
   const auto reply = [this](std::int64_t tag, const ScriptReply& text) { messages->reply(tag, text); };
-  owner = std::make_unique<CellOwner>(
-      CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams), *engine, board, clock, save, reply});
+  // Below the loop, so that a flood of frames cannot hold it up.
+  const int below_loop = std::max(1, loop_settings.priority - 10);
+  const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
+  owner = std::make_unique<CellOwner>(CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams), *engine,
+                                                       board, clock, stream_priority, save, reply});
   const bool is_path = options.startup_script.has_value();
   return owner->prepare(is_path ? *options.startup_script : loaded.startup_script, is_path);
 }

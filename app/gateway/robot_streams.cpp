@@ -11,15 +11,18 @@ namespace {
 
 struct StreamMaker {
   const Clock& clock;
+  int fifo_priority;
 
   Result<std::unique_ptr<JointStream>> operator()(const std::monostate&) const {
     return fail("the cell file names no stream");
   }
   Result<std::unique_ptr<JointStream>> operator()(const Cia402StreamConfig& config) const {
-    return can::make_cia402_stream(config, clock);
+    return can::make_cia402_stream(config, clock,
+                                   {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = {}});
   }
   Result<std::unique_ptr<JointStream>> operator()(const DbcStreamConfig& config) const {
-    return can::make_dbc_stream(config, clock);
+    return can::make_dbc_stream(config, clock,
+                                {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = {}});
   }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
     return dds::make_dds_stream(config, clock);
@@ -28,8 +31,9 @@ struct StreamMaker {
 
 }  // namespace
 
-Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock) {
-  return std::visit(StreamMaker{clock}, config);
+Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
+                                                       int fifo_priority) {
+  return std::visit(StreamMaker{clock, fifo_priority}, config);
 }
 
 }  // namespace cellmirror::app

@@ -10,7 +10,10 @@
 
 namespace cellmirror::app {
 
-// Closed; `clock` outlives it. Fails for what can never work, e.g. a DBC file without the signal that the cell names.
-Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock);
+// Closed; `clock` outlives it. `fifo_priority`: of the threads of CAN streams, 0 for none; frames then reach the tick
+// also while the machine is busy with other things. Fails for what can never work, e.g. a DBC file without the signal
+// that the cell names.
+Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
+                                                       int fifo_priority);
 
 }  // namespace cellmirror::app
