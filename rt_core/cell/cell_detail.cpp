@@ -82,9 +82,14 @@ struct DetailLevels {
     return found;
   }
 
+  [[nodiscard]] std::vector<bool> marked(const std::vector<NodeId>& ids) const {
+    std::vector<bool> marks(state.nodes.size(), false);
+    for (const NodeId id : ids) marks[static_cast<std::size_t>(id)] = true;
+    return marks;
+  }
+
   Result<void> check_may_go(const std::vector<NodeId>& going, NodeId top) const {
-    std::vector<bool> goes(state.nodes.size(), false);
-    for (const NodeId id : going) goes[static_cast<std::size_t>(id)] = true;
+    const std::vector<bool> goes = marked(going);
     for (std::size_t i = 1; i < state.nodes.size(); ++i) {
       if (!state.nodes[i] || goes[i] || !goes[static_cast<std::size_t>(state.nodes[i]->predecessor)]) continue;
       const auto id = static_cast<NodeId>(i);
@@ -101,11 +106,13 @@ struct DetailLevels {
   }
 
   void erase(const std::vector<NodeId>& going) {
+    const std::vector<bool> goes = marked(going);
     for (auto& robot : state.robots) {
-      if (robot && std::ranges::find(going, robot->component()) != going.end()) robot.reset();
+      if (robot && goes[static_cast<std::size_t>(robot->component())]) robot.reset();
     }
     for (auto& node : state.nodes) {
-      if (node && std::ranges::find(going, node->first_predecessor) != going.end()) node->first_predecessor = kNoNode;
+      if (node && node->first_predecessor != kNoNode && goes[static_cast<std::size_t>(node->first_predecessor)])
+        node->first_predecessor = kNoNode;
     }
     for (const NodeId id : going) {
       state.names.remove(id);
