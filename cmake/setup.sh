@@ -84,7 +84,7 @@ build() {
   steps=$(sed -n 's/^\[[0-9]*\/\([0-9]*\)\].*/\1/p' <<<"$steps")
   jobs=$(nproc)
   if [ "${steps:-0}" -gt 10 ]; then
-    say "Building $folder: $steps steps on $jobs cores, about $((steps * 4 / jobs / 60 + 1)) min when nothing is cached ..."
+    say "Building $folder: $steps steps on $jobs cores, about $((steps * 2 / jobs / 60 + 1)) min when nothing is cached ..."
   fi
   if [ -t 2 ]; then
     ninja -C "$folder" "$@" >&2 </dev/null || die "The build of $folder failed, see above."
