@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <sstream>
 
 #include "config/cell_file.hpp"
@@ -238,6 +239,72 @@ TEST_F(TransferCell, hasItsStreams) {
   const auto& dds = std::get<DdsStreamConfig>(loaded.streams[1].config);
   EXPECT_EQ(dds.joints[2].ros_name, "puma_762_joint_3");
   EXPECT_EQ(loaded.startup_script, "startup.spt");
+}
+
+// Whatever is commanded, in whatever order: refused commands change nothing, and the picture agrees with the tree.
+TEST_F(TransferCell, randomOperationsKeepTheModelSound) {
+  std::mt19937 random(2026);
+  const auto pick = [&](const std::vector<std::string>& from) { return from[random() % from.size()]; };
+  std::vector<JointValues> q = cell.start_positions();
+  int done = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const std::vector<std::string> paths = cell.paths(PathKind::any);
+    const std::string path = pick(paths);
+    const auto before = cell.revision();
+    const auto nodes = cell.node_count();
+    Pose X = Pose::Identity();
+    X.translation() = Eigen::Vector3d::Random();
+    Result<void> result;
+    switch (random() % 10) {
+      case 0:
+        result = cell.activate(path);
+        break;
+      case 1:
+        result = cell.deactivate(path);
+        break;
+      case 2:
+        // Seldom, or soon nothing is left.
+        result = cell.node(*cell.find(path)).has_abstract() ? cell.delete_node(path) : Result<void>();
+        break;
+      case 3:
+        result = cell.swap_node(path);
+        break;
+      case 4:
+        result = cell.level_down(path);
+        break;
+      case 5:
+        result = cell.level_up(path);
+        break;
+      case 6:
+        result = cell.set_placement(path, X);
+        break;
+      case 7:
+        result = cell.attach_at_workframe(path, pick(paths), "Tool1_WFRM");
+        break;
+      default:
+        result = cell.connect(path, pick(paths), q);
+        break;
+    }
+    done += result ? 1 : 0;
+    if (!result) {
+      ASSERT_FALSE(result.error().what.empty());
+      ASSERT_EQ(cell.revision(), before) << result.error().text();
+      ASSERT_EQ(cell.node_count(), nodes);
+    }
+    for (JointValues& joints : q) joints[random() % 3] = 0.1 * static_cast<double>(random() % 10);
+    if (round % 20 != 0) continue;
+    const auto picture = cell.compile();
+    CellPoses poses;
+    compute_poses(*picture, q, poses);
+    ASSERT_EQ(picture->size(), cell.node_count());
+    for (std::size_t i = 1; i < picture->size(); ++i) {
+      const auto node = cell.find((*picture->paths)[i]);
+      ASSERT_TRUE(node) << node.error().text();
+      ASSERT_TRUE((poses.X_WN[i].matrix() - cell.world_pose(*node, q).matrix()).norm() < 1e-9) << (*picture->paths)[i];
+      ASSERT_EQ(picture->visible[i] != 0, cell.visible(*node));
+    }
+  }
+  EXPECT_GT(done, 300);
 }
 
 TEST(OtherCells, load) {
