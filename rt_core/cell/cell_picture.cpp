@@ -9,23 +9,36 @@ namespace cellmirror {
 
 namespace {
 
-// The order of the compiled arrays: what no joint moves first, and in both parts predecessors before their successors.
-class Order {
+// Finds the order of the compiled arrays.
+class Ordering {
  public:
-  explicit Order(const Cell::State& state) : state_(state), rank_(state.nodes.size(), kUnknown) {
+  explicit Ordering(const Cell::State& state) : state_(state), rank_(state.nodes.size(), kUnknown) {
     for (const NodeId id : state.branch(kRootNode)) {
       if (id != kRootNode) find_rank(id);
     }
-    sort();
+    rank_[0] = 0;
   }
 
-  std::vector<NodeId> nodes;           // by index
-  std::vector<std::int32_t> index_of;  // by NodeId
-  std::size_t fixed_count = 0;
+  PictureOrder sort() const {
+    PictureOrder order;
+    order.nodes = state_.branch(kRootNode);
+    std::ranges::stable_sort(order.nodes, {}, [&](NodeId id) { return rank_[static_cast<std::size_t>(id)]; });
+    order.index_of.assign(state_.nodes.size(), -1);
+    for (std::size_t i = 0; i < order.nodes.size(); ++i) {
+      const auto node = static_cast<std::size_t>(order.nodes[i]);
+      order.index_of[node] = static_cast<std::int32_t>(i);
+      if (rank_[node] < kMoving) order.fixed_count = i + 1;
+    }
+    auto paths = std::make_shared<std::vector<std::string>>();
+    paths->reserve(order.nodes.size());
+    for (const NodeId id : order.nodes) paths->push_back(state_.names.path(id));
+    order.paths = std::move(paths);
+    return order;
+  }
 
  private:
   static constexpr std::uint32_t kUnknown = 0xFFFF'FFFF;
-  static constexpr std::uint32_t kMoving = 0x8000'0000;  // added to the depth
+  static constexpr std::uint32_t kMoving = 0x8000'0000;  // added to the depth below the world
 
   void find_rank(NodeId id) {
     std::vector<NodeId> chain;
@@ -40,25 +53,16 @@ class Order {
     }
   }
 
-  void sort() {
-    rank_[0] = 0;
-    nodes = state_.branch(kRootNode);
-    std::ranges::stable_sort(nodes, {}, [&](NodeId id) { return rank_[static_cast<std::size_t>(id)]; });
-    index_of.assign(state_.nodes.size(), -1);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      index_of[static_cast<std::size_t>(nodes[i])] = static_cast<std::int32_t>(i);
-      if (rank_[static_cast<std::size_t>(nodes[i])] < kMoving) fixed_count = i + 1;
-    }
-  }
-
   const Cell::State& state_;
   std::vector<std::uint32_t> rank_;  // by NodeId
 };
 
 class Picture {
  public:
-  explicit Picture(const Cell::State& state) : state_(state), order_(state) {
+  Picture(const Cell::State& state, const PictureOrder& order) : state_(state), order_(order) {
     cell_->revision = state.revision;
+    cell_->paths = order.paths;
+    reserve(order.nodes.size());
     cell_->fixed_count = order_.fixed_count;
     for (const NodeId id : order_.nodes) add_node(id);
     for (std::size_t i = 0; i < order_.fixed_count; ++i) {
@@ -71,14 +75,16 @@ class Picture {
 
   std::shared_ptr<CompiledCell> finish() { return std::move(cell_); }
 
-  [[nodiscard]] std::shared_ptr<const std::vector<std::string>> paths() const {
-    auto all = std::make_shared<std::vector<std::string>>();
-    all->reserve(order_.nodes.size());
-    for (const NodeId id : order_.nodes) all->push_back(state_.names.path(id));
-    return all;
+ private:
+  void reserve(std::size_t nodes) {
+    cell_->parent.reserve(nodes);
+    cell_->naming_parent.reserve(nodes);
+    cell_->X_PF.reserve(nodes);
+    cell_->joint_of.reserve(nodes);
+    cell_->visible.reserve(nodes);
+    cell_->X_WN_fixed.reserve(order_.fixed_count);
   }
 
- private:
   [[nodiscard]] std::int32_t index(NodeId id) const {
     return id == kNoNode ? -1 : order_.index_of[static_cast<std::size_t>(id)];
   }
@@ -144,18 +150,18 @@ class Picture {
   }
 
   const Cell::State& state_;
-  Order order_;
+  const PictureOrder& order_;
   std::shared_ptr<CompiledCell> cell_ = std::make_shared<CompiledCell>();
 };
 
 }  // namespace
 
 std::shared_ptr<const CompiledCell> Cell::State::make_picture() const {
-  Picture picture(*this);
-  std::shared_ptr<CompiledCell> cell = picture.finish();
-  cell->paths = compiled && compiled_structure == structure_revision ? compiled->paths : picture.paths();
-  compiled_structure = structure_revision;
-  return cell;
+  if (order_structure != structure_revision) {
+    order = Ordering(*this).sort();
+    order_structure = structure_revision;
+  }
+  return Picture(*this, order).finish();
 }
 
 }  // namespace cellmirror

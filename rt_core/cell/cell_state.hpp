@@ -18,6 +18,15 @@
 
 namespace cellmirror {
 
+// The order of the compiled arrays: what no joint moves first, and in both parts predecessors before their successors.
+// It stays as long as nodes and predecessors stay.
+struct PictureOrder {
+  std::vector<NodeId> nodes;           // by index
+  std::vector<std::int32_t> index_of;  // by NodeId
+  std::size_t fixed_count = 0;
+  std::shared_ptr<const std::vector<std::string>> paths;  // by index
+};
+
 struct Cell::State {
   std::shared_ptr<const Component> root;
   std::shared_ptr<ComponentSource> source;
@@ -32,7 +41,8 @@ struct Cell::State {
   std::uint64_t structure_revision = 1;  // changes of nodes and predecessors: the order of the compiled arrays
 
   mutable std::shared_ptr<const CompiledCell> compiled;
-  mutable std::uint64_t compiled_structure = 0;
+  mutable PictureOrder order;
+  mutable std::uint64_t order_structure = 0;  // the structure_revision of `order`
 
   [[nodiscard]] Node& at(NodeId id) {
     std::optional<Node>& node = nodes[static_cast<std::size_t>(id)];
