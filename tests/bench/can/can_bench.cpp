@@ -1,14 +1,12 @@
 // Throughput of the CAN codecs and sessions, and frames over the udp channel of the loopback interface into samples.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -128,9 +126,9 @@ struct LatencySink : JointSampleSink {
   std::atomic<std::uint64_t> count{0};
 };
 
-double cpu_seconds() {
+double cpu_seconds(int who = RUSAGE_SELF) {
   rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
+  getrusage(who, &usage);
   return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
          1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
@@ -183,6 +181,61 @@ void BM_UdpFramesToSamples(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_UdpFramesToSamples)->Arg(1000)->Arg(16'000)->Arg(50'000)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+struct CountingSink : JointSampleSink {
+  bool push(const JointSample&) noexcept override {
+    ++count;
+    return true;
+  }
+  std::atomic<std::uint64_t> count{0};
+};
+
+// 32 robots of seven joints at 500 Hz, each on a group of its own: 112,000 frames a second, one TPDO a joint.
+void BM_ThirtyTwoRobots(benchmark::State& state) {
+  constexpr std::size_t kRobots = 32;
+  constexpr auto kPeriod = 2ms;
+  const char* given = std::getenv("CAN_BENCH_SECONDS");
+  const int run_s = given != nullptr ? std::clamp(std::atoi(given), 1, 60) : 2;
+  SystemClock clock;
+  for (auto _ : state) {
+    std::vector<CountingSink> sinks(kRobots);
+    std::vector<std::unique_ptr<JointStream>> streams;
+    std::vector<std::unique_ptr<CanChannel>> senders;
+    for (std::size_t robot = 0; robot < kRobots; ++robot) {
+      Cia402StreamConfig config = seven_joints();
+      config.channel.endpoint = "udp:239.77." + std::to_string(getpid() & 0xFF) + "." + std::to_string(robot + 1) +
+                                ":" + std::to_string(20000 + getpid() % 20000);
+      auto stream = make_cia402_stream(config, clock);
+      auto sender = open_can_channel(config.channel);
+      if (!stream || !sender || !(*stream)->open(sinks[robot])) {
+        state.SkipWithError("no multicast on the loopback interface");
+        return;
+      }
+      streams.push_back(std::move(*stream));
+      senders.push_back(std::move(*sender));
+    }
+    const double cpu_before = cpu_seconds() - cpu_seconds(RUSAGE_THREAD);
+    const Timestamp start = clock.now();
+    const int cycles = run_s * 500;
+    for (int cycle = 0; cycle < cycles; ++cycle) {
+      for (auto& sender : senders) {
+        for (std::uint8_t node = 1; node <= 7; ++node) sender->send(tpdo(node, cycle));
+      }
+      const Nanoseconds early = start + (cycle + 1) * Nanoseconds(kPeriod) - clock.now();
+      if (early.count() > 0) std::this_thread::sleep_for(early);
+    }
+    std::this_thread::sleep_for(200ms);
+    const double elapsed = seconds(clock.now() - start);
+    const double cpu = cpu_seconds() - cpu_seconds(RUSAGE_THREAD) - cpu_before;
+    std::uint64_t received = 0;
+    for (const CountingSink& sink : sinks) received += sink.count;
+    for (auto& stream : streams) stream->close();
+    state.counters["lost"] = static_cast<double>(kRobots * 7 * static_cast<std::size_t>(cycles) - received);
+    state.counters["frames_per_s"] = static_cast<double>(received) / elapsed;
+    state.counters["cpu_cores_receiving"] = cpu / elapsed;
+  }
+}
+BENCHMARK(BM_ThirtyTwoRobots)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace cellmirror::can
