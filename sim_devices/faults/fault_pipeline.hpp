@@ -242,7 +242,7 @@ class FaultPipeline {
     }
   }
 
-  std::size_t ended(std::vector<ScheduledFault> removed, Timestamp now) {
+  std::size_t ended(const std::vector<ScheduledFault>& removed, Timestamp now) {
     for (const ScheduledFault& fault : removed) {
       for (Held& held : held_) {
         if (held.fault == fault.id) held.latest = now;

@@ -37,7 +37,7 @@ std::string output_of(const std::string& arguments) {
 }
 
 class DdsRobotsTest : public ::testing::Test {
- protected:
+ public:
   // All that the reader gets while sim_robot runs, and what sim_robot says it sent.
   void run(const std::string& arguments, const std::string& topic = "rt/joint_states") {
     const dds_entity_t reader = peer.joint_state_reader(topic, true);

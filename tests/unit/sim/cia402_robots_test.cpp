@@ -21,7 +21,7 @@ constexpr Timestamp kStart{1'000'000'000};
 constexpr Nanoseconds kMs{1'000'000};
 
 class Cia402RobotsTest : public ::testing::Test {
- protected:
+ public:
   Cia402RobotsConfig config() {
     Cia402RobotsConfig config;
     config.endpoint = "virtual";
@@ -163,9 +163,9 @@ TEST_F(Cia402RobotsTest, DeathSilencesOneDriveAtOnceAndItsReturnIsABootUp) {
 TEST_F(Cia402RobotsTest, HeldMotionGoesOnWhereItStood) {
   make(config());
   run_until_ms(100);
-  (void)sut->obey(SetHeld{true}, now);
+  ASSERT_TRUE(sut->obey(SetHeld{true}, now));
   run_until_ms(500);
-  (void)sut->obey(SetHeld{false}, now);
+  ASSERT_TRUE(sut->obey(SetHeld{false}, now));
   (void)heard();
   run_until_ms(600);
   const std::vector<std::int32_t> positions = positions_of(1);

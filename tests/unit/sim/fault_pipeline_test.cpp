@@ -41,7 +41,7 @@ struct Sent {
 };
 
 class FaultPipelineTest : public ::testing::Test {
- protected:
+ public:
   void add(const char* spec) {
     const auto parsed = parse_fault(spec);
     ASSERT_TRUE(parsed) << parsed.error().text();
