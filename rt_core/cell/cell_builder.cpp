@@ -74,10 +74,10 @@ std::unique_ptr<Graft> CellBuilder::plan_file(const AbstractReference& reference
     diagnostics_.error(place, fmt::format("components lie within components more than {} deep", kDeepest));
     return nullptr;
   }
-  return plan_component(std::move(*component), &reference, place);
+  return plan_component(*component, &reference, place);
 }
 
-std::unique_ptr<Graft> CellBuilder::plan_component(std::shared_ptr<const Component> component,
+std::unique_ptr<Graft> CellBuilder::plan_component(const std::shared_ptr<const Component>& component,
                                                    const AbstractReference* reference, const Place& place) {
   nodes_planned_ += component->nodes.size();
   if (nodes_planned_ > kMaxNodes) {

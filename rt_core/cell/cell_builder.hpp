@@ -35,8 +35,8 @@ class CellBuilder {
 
  private:
   std::unique_ptr<Graft> plan_file(const AbstractReference& reference, const Place& place);
-  std::unique_ptr<Graft> plan_component(std::shared_ptr<const Component> component, const AbstractReference* reference,
-                                        const Place& place);
+  std::unique_ptr<Graft> plan_component(const std::shared_ptr<const Component>& component,
+                                        const AbstractReference* reference, const Place& place);
   void check_names_below(const Component& component, std::size_t node, const Component& below);
   void plan_robot(const Component& component, const AbstractReference* reference, const Place& place);
   NodeId add_node(NodeId parent, const std::shared_ptr<const Component>& component, const ComponentNode& definition);

@@ -135,6 +135,8 @@ TEST_F(ComponentText, whatIsNoTomlIsRefusedWithThePlace) {
   EXPECT_FALSE(parse("[[node]\n"));
   EXPECT_FALSE(sut);
   EXPECT_THAT(findings(), HasSubstr("a.mpc:2:"));
+  EXPECT_FALSE(parse("[[node]]\n[!node]\n"));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:3: error"));
   EXPECT_FALSE(parse(std::string("\0", 1)));
   EXPECT_FALSE(parse("a = " + std::string(100'000, '[')));
 }
