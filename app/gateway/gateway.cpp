@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
@@ -131,7 +132,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
 Result<void> Gateway::Parts::start_loop() {
   CyclicThreadOptions options;
   options.name = "tick";
-  options.period = Nanoseconds(static_cast<std::int64_t>(1e9 / loop_settings.rate_hz + 0.5));
+  options.period = Nanoseconds(std::llround(1e9 / loop_settings.rate_hz));
   options.policy = loop_settings.real_time;
   options.priority = loop_settings.priority;
   loop = std::make_unique<CyclicThread>(*engine, options);
