@@ -36,8 +36,8 @@ struct QueueStatus {
 };
 
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
-// owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions; each
-// inlet() to the one driver thread of its stream; the rest to any thread.
+// owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
+// each inlet() to the one driver thread of its stream; the rest to any thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
