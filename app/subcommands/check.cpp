@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/gateway/hosts.hpp"
+#include "app/gateway/robot_streams.hpp"
 #include "app/subcommands/check_bus_files.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
@@ -38,8 +39,21 @@ void check_script_file(const std::filesystem::path& path, const NameDirectory* n
   script::check_script(*text, path.string(), names, diagnostics);
 }
 
+// A cell file with everything it names: components, and the bus descriptions of its streams.
+void check_cell_file(const std::filesystem::path& path, Diagnostics& diagnostics) {
+  const std::optional<LoadedCell> cell = load_cell(path, diagnostics);
+  if (!cell) return;
+  const SystemClock clock;
+  for (const RobotStream& stream : cell->streams) {
+    const auto made = make_robot_stream(stream.config, clock, 0);
+    if (!made)
+      diagnostics.error({path.string()}, "stream of " + stream.robot + ": " + made.error().what, made.error().remedy);
+  }
+}
+
 void check_one(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
   if (path.extension() == ".spt") return check_script_file(path, names, diagnostics);
+  if (path.extension() == ".toml") return check_cell_file(path, diagnostics);
   if (is_bus_file(path)) return check_bus_file(path, diagnostics);
   if (is_checkable(path)) return check_file(path, diagnostics);
   diagnostics.error({path.string()}, "files of this kind cannot be checked",

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -69,9 +70,18 @@ Finding interface_finding() {
           "ip link add dev vcan0 type vcan && ip link set vcan0 up (a virtual one, for tests)"};
 }
 
+// DDS and udp streams of many robots need a receive buffer that outlasts the moments in which their thread waits.
+Finding receive_buffer_finding() {
+  constexpr std::uint64_t kWanted = std::uint64_t{4} << 20;
+  std::uint64_t bytes = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> bytes;
+  return {"net.core.rmem_max", std::to_string(bytes) + " bytes", bytes >= kWanted,
+          "sysctl -w net.core.rmem_max=" + std::to_string(kWanted) + " (matters for thousands of samples a second)"};
+}
+
 std::vector<Finding> examine() {
-  std::vector<Finding> findings = {scheduling_finding(), memory_finding(), idle_finding(), can_finding(),
-                                   interface_finding()};
+  std::vector<Finding> findings = {scheduling_finding(), memory_finding(),    idle_finding(),
+                                   can_finding(),        interface_finding(), receive_buffer_finding()};
   for (const IpcFinding& finding : ipc_findings(read_sysv_limits(), read_remove_ipc())) {
     findings.push_back({finding.name, finding.value, finding.ok, finding.remedy});
   }
