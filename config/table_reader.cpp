@@ -57,42 +57,7 @@ constexpr std::array<Unit, 8> kUnits{{{"_deg_s2", "_rad_s2", kRadPerDeg},
                                       {"_ms", "_s", 1e-3},
                                       {"_khz", "_hz", 1e3}}};
 
-// The line of the first table header that begins with no name; 0: there is none.
-int line_of_faulty_header(std::string_view text) {
-  int number = 0;
-  while (!text.empty()) {
-    ++number;
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!line.starts_with('[')) continue;
-    line = trimmed(line.substr(line.starts_with("[[") ? 2 : 1));
-    constexpr std::string_view kFirst = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-\"'";
-    if (line.empty() || kFirst.find(line.front()) == std::string_view::npos) return number;
-  }
-  return 0;
-}
-
 }  // namespace
-
-std::optional<toml::table> parse_toml(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
-  if (text.find('\0') != std::string_view::npos) {
-    diagnostics.error({file, 0, 0}, "the file holds NUL bytes and is no TOML text");
-    return std::nullopt;
-  }
-  const auto refuse = [&](Place place, std::string_view what) {
-    diagnostics.error(std::move(place), printable(what, 300), "the rest of the file was not read");
-    return std::nullopt;
-  };
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    return refuse(place_of(file, error.source()), error.description());
-  } catch (const std::exception&) {
-    // One of the parser's own checks: where a table header begins with no name, it does not look before it takes one.
-    return refuse({file, line_of_faulty_header(text), 0}, "the text is no TOML: a name was expected");
-  }
-}
 
 const toml::node* TableReader::get(std::string_view key) {
   known_.emplace_back(key);

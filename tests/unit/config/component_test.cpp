@@ -141,6 +141,15 @@ TEST_F(ComponentText, whatIsNoTomlIsRefusedWithThePlace) {
   EXPECT_FALSE(parse("a = " + std::string(100'000, '[')));
 }
 
+TEST_F(ComponentText, charactersOutsideOfAsciiStandInTextsAndCommentsOnly) {
+  EXPECT_TRUE(parse("# T\xC3\xBCrk \xCC\xA2\ndescription = \"Tr\xC3\xA4ger \\\" \xCC\xA2 'x\" # \xC3\xA4\n"))
+      << findings();
+  EXPECT_TRUE(parse("description = '''\n\xC3\xA4\n\xCC\xA2'''\n")) << findings();
+  EXPECT_FALSE(parse("description = \xCC\xA2\n"));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:2:15: error: a character outside of ASCII"));
+  EXPECT_FALSE(parse("description = \"\"\"\\\n\xCC\xA2\"\"\"\n"));
+}
+
 TEST_F(ComponentText, countsAreBounded) {
   std::string many;
   for (int i = 0; i < 17; ++i) {

@@ -1,0 +1,96 @@
+// From text to a TOML table, whatever the text is.
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "config/table_reader.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+// The line of the first table header that begins with no name; 0: there is none.
+int line_of_faulty_header(std::string_view text) {
+  int number = 0;
+  while (!text.empty()) {
+    ++number;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!line.starts_with('[')) continue;
+    line = trimmed(line.substr(line.starts_with("[[") ? 2 : 1));
+    constexpr std::string_view kFirst = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-\"'";
+    if (line.empty() || kFirst.find(line.front()) == std::string_view::npos) return number;
+  }
+  return 0;
+}
+
+// Steps over a string or comment that begins at `at`; elsewhere over one byte.
+std::size_t step_over(std::string_view text, std::size_t at) {
+  const char c = text[at];
+  if (c == '#') return std::min(text.find('\n', at), text.size());
+  if (c != '"' && c != '\'') return at + 1;
+  const std::string three(3, c);
+  if (text.substr(at, 3) == three) {
+    for (std::size_t i = at + 3; i < text.size(); ++i) {
+      if (text.substr(i, 3) == three) return i + 3;
+      // In double quotes the parser looks for blanks after a line that ends in a backslash.
+      if (c == '"' && static_cast<unsigned char>(text[i]) >= 0x80) return i;
+      if (c == '"' && text[i] == '\\') ++i;
+    }
+    return text.size();
+  }
+  for (std::size_t i = at + 1; i < text.size(); ++i) {
+    if (text[i] == '\n') return i;
+    if (text[i] == c) return i + 1;
+    if (c == '"' && text[i] == '\\') ++i;
+  }
+  return text.size();
+}
+
+// Outside of texts and comments TOML is ASCII. toml++ 3.3 holds some other characters for impossible, with undefined
+// behaviour, so that they must not reach it there.
+std::optional<Place> place_of_stray_character(std::string_view text, const std::string& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  while (at < text.size()) {
+    if (static_cast<unsigned char>(text[at]) >= 0x80) {
+      const std::string_view before = text.substr(0, at);
+      const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+      return Place{file, static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(at - line_start) + 1};
+    }
+    at = step_over(text, at);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<toml::table> parse_toml(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
+  if (text.find('\0') != std::string_view::npos) {
+    diagnostics.error({file, 0, 0}, "the file holds NUL bytes and is no TOML text");
+    return std::nullopt;
+  }
+  if (const auto stray = place_of_stray_character(text, file)) {
+    diagnostics.error(*stray, "a character outside of ASCII stands outside of a text or comment",
+                      "write it in a text between quotes on one line; the rest of the file was not read");
+    return std::nullopt;
+  }
+  const auto refuse = [&](Place place, std::string_view what) {
+    diagnostics.error(std::move(place), printable(what, 300), "the rest of the file was not read");
+    return std::nullopt;
+  };
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    return refuse({file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)},
+                  error.description());
+  } catch (const std::exception&) {
+    // One of the parser's own checks: where a table header begins with no name, it does not look before it takes one.
+    return refuse({file, line_of_faulty_header(text), 0}, "the text is no TOML: a name was expected");
+  }
+}
+
+}  // namespace cellmirror
