@@ -125,8 +125,11 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
   owner = std::make_unique<CellOwner>(CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams), *engine,
                                                        board, clock, stream_priority, save, reply});
-  const bool is_path = options.startup_script.has_value();
-  return owner->prepare(is_path ? *options.startup_script : loaded.startup_script, is_path);
+  const std::string script = options.startup_script.value_or(loaded.startup_script);
+  // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
+  std::error_code error;
+  const bool is_path = options.startup_script.has_value() && std::filesystem::exists(script, error);
+  return owner->prepare(script, is_path);
 }
 
 Result<void> Gateway::Parts::start_loop() {

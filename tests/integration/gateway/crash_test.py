@@ -70,18 +70,28 @@ class Crash(unittest.TestCase):
         second.close()
 
     def test_simulators_killed_at_any_moment_do_not_disturb_the_gateway(self):
+        simulators = (
+            ("dds", "--joint-names", PUMA_JOINTS, "--rate", "100"),
+            ("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100"),
+        )
         gateway = g.Gateway(self.scratch)
         try:
-            self.assertEqual(self.scratch.send("ROBOT PUMA_762 online").returncode, 0)
+            for robot in ("PUMA_762", "MANTEC_R3"):
+                self.assertEqual(self.scratch.send(f"ROBOT {robot} online").returncode, 0)
             chance = random.Random(11)
-            for _ in range(10):
-                simulator = g.sim_robot("dds", "--joint-names", PUMA_JOINTS, "--rate", "100")
-                time.sleep(chance.uniform(0.05, 0.5))
-                simulator.kill()
+            for round_number in range(ROUNDS):
+                simulator = g.sim_robot(*simulators[round_number % 2])
+                time.sleep(chance.uniform(0.0, 0.3))
                 simulator.close()
                 self.assertTrue(gateway.running())
-            self.assertEqual(self.scratch.send("ROBOT PUMA_762 offline").returncode, 0)
+            for arguments in simulators:  # the next start works
+                self.simulators = getattr(self, "simulators", []) + [g.sim_robot(*arguments)]
+            for robot in ("PUMA_762", "MANTEC_R3"):
+                fresh = g.eventually(lambda: self.scratch.robot(robot)["stream"]["state"] == "fresh", 20)
+                self.assertTrue(fresh, self.scratch.robot(robot)["stream"])
         finally:
+            for simulator in getattr(self, "simulators", []):
+                simulator.close()
             self.assertEqual(gateway.stop(), 0)
             gateway.close()
 
