@@ -109,7 +109,7 @@ void RobotSlot::update(Timestamp now) CELL_RT {
       }
     }
     // By gravity, not by the order of the enumeration: nothing at all < invalid < lost < stale < fresh.
-    constexpr auto gravity = [](DataState s) {
+    const auto gravity = [](DataState s) {
       constexpr std::array<int, 5> kGravity = {4, 0, 1, 2, 3};  // none, fresh, stale, lost, invalid
       return kGravity[static_cast<std::size_t>(s)];
     };

@@ -32,11 +32,11 @@ def empty_entries() -> list[str]:
 
 
 def sources(build: Path) -> dict[Path, str]:
-    """The translation units that are ours and no tests, each with its compile command."""
+    """The translation units of the product, each with its compile command: no tests, no examples in the pages."""
     commands = json.loads((build / "compile_commands.json").read_text())
     units = {Path(entry["file"]): entry["command"] for entry in commands}
     tops = {unit: unit.relative_to(ROOT).parts[0] for unit in units if unit.is_relative_to(ROOT)}
-    return {unit: units[unit] for unit, top in sorted(tops.items()) if top != "tests" and not top.startswith("build")}
+    return {unit: units[unit] for unit, top in sorted(tops.items()) if top not in ("tests", "docs") and not top.startswith("build")}
 
 
 def fingerprint(unit: Path, command: str) -> str:

@@ -101,7 +101,8 @@ def add_test(test: ElementTree.Element, reports: Path, total: Report) -> None:
         except ElementTree.ParseError:
             pass  # the program died while writing; ctest knows that it failed
     counted = xml.exists() or count_unittest(output or "", cases)
-    if test.find("failure") is not None or test.get("status") == "fail":
+    not_built = test.get("status") == "notrun" and "Unable to find executable" in (output or "")
+    if test.find("failure") is not None or test.get("status") == "fail" or not_built:
         if not cases.failed:
             failure = test.find("failure")
             cases.fail("ended badly" if counted else "failed",

@@ -349,8 +349,9 @@ std::vector<TpdoConfig> tpdos_of(const ObjectDictionary& objects, std::uint8_t n
     tpdo.transmission_type = static_cast<std::uint8_t>(objects.integer({parameters, 2}).value_or(255));
     tpdo.inhibit_time_100us = static_cast<std::uint16_t>(number(3));
     tpdo.event_timer_ms = static_cast<std::uint16_t>(number(5));
-    for (std::uint8_t k = 1; k <= *count; ++k) {
-      const auto word = static_cast<std::uint32_t>(objects.integer({mapping, k}).value_or(0));
+    for (int k = 1; k <= *count; ++k) {
+      const auto word =
+          static_cast<std::uint32_t>(objects.integer({mapping, static_cast<std::uint8_t>(k)}).value_or(0));
       if (word != 0) tpdo.entries.push_back(entry_of_mapping_word(word));
     }
     if (is_valid_mapping(tpdo.entries)) tpdos.push_back(std::move(tpdo));
