@@ -20,11 +20,11 @@
 
 #include "cellmirror_messages.h"
 
-static const char* const usage =
+static const char* const kUsage =
     "usage: send_command [--timeout SECONDS] [--script-key KEY] [--reply-key KEY] COMMAND\n"
     "Sends one SCRIPT command to the gateway and prints its answer: done, or refused and why.\n";
 
-struct message {
+struct Message {
   long type; /* System V wants a long first; it is not counted in the length */
   char text[CELLMIRROR_MAX_MESSAGE_BYTES + 1];
 };
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   const char* command = NULL;
   for (int i = 1; i < argc; ++i) {
     if (strcmp(argv[i], "--help") == 0) {
-      fputs(usage, stdout);
+      fputs(kUsage, stdout);
       return 0;
     } else if (strcmp(argv[i], "--timeout") == 0 && i + 1 < argc) {
       timeout = atof(argv[++i]);
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
     }
   }
   if (command == NULL || timeout <= 0) {
-    fputs(usage, stderr);
+    fputs(kUsage, stderr);
     return 2;
   }
 
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
 
   /* Any number from 1 to 2147483647 that nobody else uses now. A process is alone with its own. */
   const long tag = (long)getpid();
-  struct message message;
+  struct Message message;
   message.type = CELLMIRROR_MESSAGE_TYPE;
   const int length = snprintf(message.text, sizeof message.text, "@%ld %s", tag, command);
   if (length < 0 || (unsigned)length > CELLMIRROR_MAX_MESSAGE_BYTES) {
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
   }
 
   /* A reply to an earlier process of this number could still be there. */
-  struct message reply;
+  struct Message reply;
   while (msgrcv(replies, &reply, CELLMIRROR_MAX_MESSAGE_BYTES, tag, IPC_NOWAIT | MSG_NOERROR) >= 0) {
   }
 

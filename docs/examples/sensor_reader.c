@@ -20,13 +20,13 @@
 
 #include "cellmirror_messages.h"
 
-static const char* const usage =
+static const char* const kUsage =
     "usage: sensor_reader [--count N] [--timeout SECONDS] [--key KEY]\n"
     "Prints robot-parameter records as they come: N of them (default: without end), waiting at most SECONDS (default: "
     "for\n"
     "ever) for each.\n";
 
-struct message {
+struct Message {
   long type;
   unsigned char text[CELLMIRROR_MAX_MESSAGE_BYTES];
 };
@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   unsigned timeout = 0;
   for (int i = 1; i < argc; ++i) {
     if (strcmp(argv[i], "--help") == 0) {
-      fputs(usage, stdout);
+      fputs(kUsage, stdout);
       return 0;
     } else if (strcmp(argv[i], "--count") == 0 && i + 1 < argc) {
       count = strtol(argv[++i], NULL, 0);
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     } else if (strcmp(argv[i], "--key") == 0 && i + 1 < argc) {
       key = (key_t)strtol(argv[++i], NULL, 0);
     } else {
-      fputs(usage, stderr);
+      fputs(kUsage, stderr);
       return 2;
     }
   }
@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   for (long printed = 0; count == 0 || printed < count;) {
-    struct message message;
+    struct Message message;
     struct cellmirror_robot robot;
     alarm(timeout);
     const ssize_t got = msgrcv(queue, &message, sizeof message.text, CELLMIRROR_MESSAGE_TYPE, MSG_NOERROR);

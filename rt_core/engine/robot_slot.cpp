@@ -1,12 +1,23 @@
 #include "rt_core/engine/robot_slot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
 #include "rt_core/engine/limiter.hpp"
 
 namespace cellmirror::engine {
+
+namespace {
+
+// By gravity, not by the order of the enumeration: nothing at all is the worst, then invalid, lost, stale, fresh.
+int gravity_of(DataState state) CELL_RT {
+  constexpr std::array<int, 5> kGravity = {4, 0, 1, 2, 3};  // none, fresh, stale, lost, invalid
+  return kGravity[static_cast<std::size_t>(state)];
+}
+
+}  // namespace
 
 bool RobotSlot::apply(const Command& command) CELL_RT {
   switch (command.kind) {
@@ -108,12 +119,7 @@ void RobotSlot::update(Timestamp now) CELL_RT {
         joint.state = joint.state == DataState::invalid ? DataState::invalid : DataState::stale;
       }
     }
-    // By gravity, not by the order of the enumeration: nothing at all < invalid < lost < stale < fresh.
-    const auto gravity = [](DataState s) {
-      constexpr std::array<int, 5> kGravity = {4, 0, 1, 2, 3};  // none, fresh, stale, lost, invalid
-      return kGravity[static_cast<std::size_t>(s)];
-    };
-    if (gravity(joint.state) > gravity(worst)) worst = joint.state;
+    if (gravity_of(joint.state) > gravity_of(worst)) worst = joint.state;
   }
   state_.state = worst;
 }
