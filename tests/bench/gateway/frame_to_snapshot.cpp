@@ -94,7 +94,8 @@ int main(int argc, char** argv) {
   config.channel.endpoint = kEndpoint;
   config.dbc_file = setting.dbc_file;
   config.signals.push_back({"M", "N", 0, "J_1", JointQuantity::position, 1.0, 0.0});
-  auto stream = can::make_dbc_stream(config, clock);
+  // The priority that the gateway gives it.
+  auto stream = can::make_dbc_stream(config, clock, {.thread_name = "can", .fifo_priority = 70, .open_channel = {}});
   auto sender = can::open_can_channel(config.channel);
   auto listener = can::open_can_channel(config.channel);
   if (!stream || !sender || !listener || !loop.start() || !(*stream)->open(engine->inlet(0))) {

@@ -31,7 +31,7 @@ def stream(kind, robot):
     head = f'[[stream]]\nrobot = "R{robot}"\n'
     if kind == "dds":
         joints = ", ".join(f'{{ joint = "J_{j}", ros_name = "robot{robot + 1}_joint_{j}" }}' for j in range(1, JOINTS + 1))
-        return head + f'kind = "dds"\ntopic = "rt/joint_states"\njoint = [{joints}]\n'
+        return head + f'kind = "dds"\ntopic = "rt/joint_states"\nreliable = true\njoint = [{joints}]\n'
     signals = ", ".join(f'{{ message = "M{robot}", signal = "J{j}", joint = "J_{j}", scale = 0.0001 }}' for j in range(1, JOINTS + 1))
     return head + (f'kind = "can-dbc"\nchannel = "udp:239.74.163.2:{FIRST_PORT + robot % BUSES}"\nfd = true\ndbc = "load.dbc"\n'
                    f'signal = [{signals}]\n')
