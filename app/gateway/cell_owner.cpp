@@ -46,12 +46,12 @@ Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
 }
 
 void CellOwner::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+  thread_ = std::thread([this] { loop(stopping_.get_token()); });
 }
 
 void CellOwner::stop() {
   if (!thread_.joinable()) return;
-  thread_.request_stop();
+  stopping_.request_stop();
   wake_.wake();
   thread_.join();
   fleet_.reset();
@@ -62,7 +62,7 @@ void CellOwner::submit(const ScriptMessage& message) {
   queued.text.assign(message.text);
   queued.tag = message.tag;
   queued.sender_pid = message.sender_pid;
-  while (queue_.full() && !thread_.get_stop_token().stop_requested()) {
+  while (queue_.full() && !stopping_.stop_requested()) {
     room_.wait(std::chrono::milliseconds(10));
   }
   queue_.push(queued);

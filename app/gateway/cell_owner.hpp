@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -82,7 +83,8 @@ class CellOwner {
   WakeSignal wake_;
   WakeSignal room_;  // wakes the receiver's thread when the queue has room again
   Timestamp last_picture_;
-  std::jthread thread_;
+  std::stop_source stopping_;  // apart from the thread, so that submit() may ask before the thread is there
+  std::thread thread_;
 };
 
 }  // namespace cellmirror::app

@@ -38,9 +38,10 @@ Result<LoadedCell> load(const GatewayOptions& options) {
   Diagnostics diagnostics;
   std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics);
   if (!loaded) {
-    return fail(fmt::format("the cell {} has {} errors:\n{}", options.cell_file.string(), diagnostics.errors(),
+    const std::string count = diagnostics.errors() == 1 ? "an error" : fmt::format("{} errors", diagnostics.errors());
+    return fail(fmt::format("the cell {} has {}:\n{}nothing was started", options.cell_file.string(), count,
                             diagnostics.text()),
-                fmt::format("mend them and look again with: cellmirror check {}", options.cell_file.string()));
+                fmt::format("mend the cell and look again with: cellmirror check {}", options.cell_file.string()));
   }
   for (const Diagnostic& diagnostic : diagnostics.all()) log_warning("cell", "{}", diagnostic.text());
   if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
