@@ -1,0 +1,35 @@
+#include "rt_core/base/diagnostics.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cellmirror {
+namespace {
+
+TEST(Diagnostics, TextNamesThePlaceAsFarAsItIsKnown) {
+  EXPECT_EQ((Diagnostic{Severity::error, {"f.spt", 3, 7}, "wrong", "mend it"}).text(),
+            "f.spt:3:7: error: wrong; mend it");
+  EXPECT_EQ((Diagnostic{Severity::warning, {"f.spt", 3, 0}, "odd", ""}).text(), "f.spt:3: warning: odd");
+  EXPECT_EQ((Diagnostic{Severity::note, {"", 0, 0}, "so", ""}).text(), "input: note: so");
+}
+
+TEST(Diagnostics, KeepsABoundedNumberAndCountsTheRest) {
+  Diagnostics sut;
+  for (std::size_t i = 0; i < Diagnostics::kKept + 7; ++i) sut.error({"f", 1, 1}, "wrong");
+  EXPECT_EQ(sut.all().size(), Diagnostics::kKept);
+  EXPECT_EQ(sut.errors(), Diagnostics::kKept + 7);
+  EXPECT_NE(sut.text().find("... and 7 more"), std::string::npos);
+}
+
+TEST(Diagnostics, TakesOverWhatAnotherPassFoundWithItsCounts) {
+  Diagnostics other;
+  for (std::size_t i = 0; i < Diagnostics::kKept + 3; ++i) other.error({"f", 1, 1}, "wrong");
+  Diagnostics sut;
+  sut.warning({"g", 1, 1}, "odd");
+  sut.take(other);
+  EXPECT_EQ(sut.errors(), Diagnostics::kKept + 3);
+  EXPECT_EQ(sut.warnings(), 1U);
+  EXPECT_FALSE(sut.ok());
+}
+
+}  // namespace
+}  // namespace cellmirror

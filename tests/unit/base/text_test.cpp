@@ -1,0 +1,50 @@
+#include "rt_core/base/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace cellmirror {
+namespace {
+
+TEST(ParseNumber, TakesDecimalAndExponentFormOnly) {
+  EXPECT_DOUBLE_EQ(*parse_number("1.507E-03"), 1.507e-3);
+  EXPECT_DOUBLE_EQ(*parse_number("+.5"), 0.5);
+  EXPECT_DOUBLE_EQ(*parse_number("-7."), -7.0);
+  for (const char* wrong :
+       {"", "+", "-", "+-1", "++1", "1 ", " 1", "1,5", "nan", "inf", "-inf", "1e999", "0x10", "1a"}) {
+    EXPECT_FALSE(parse_number(wrong)) << wrong;
+  }
+}
+
+TEST(ParseInteger, TakesDecimalAndHexadecimal) {
+  EXPECT_EQ(*parse_integer("-12"), -12);
+  EXPECT_EQ(*parse_integer("0x92f"), 2351);
+  for (const char* wrong : {"", "+", "+-1", "0x", "0x-1", "1.0", "99999999999999999999", "12a"}) {
+    EXPECT_FALSE(parse_integer(wrong)) << wrong;
+  }
+}
+
+TEST(Nearest, NamesWhatAPersonMayHaveMeantAndNothingElse) {
+  const std::vector<std::string> names = {"PUMA_762", "PUMA_560", "MANTEC_R3", "ZELLENKRAN"};
+  EXPECT_EQ(nearest("PUMA_726", names), (std::vector<std::string>{"PUMA_762"}));
+  EXPECT_EQ(did_you_mean("puma_762", names), "did you mean PUMA_762 or PUMA_560?");  // the nearest first
+  EXPECT_EQ(did_you_mean("Q", names), "");
+  EXPECT_TRUE(nearest(std::string(100'000, 'P'), names).empty());
+}
+
+TEST(Printable, ShowsBytesFromOutsideHarmlesslyAndBounded) {
+  EXPECT_EQ(printable("a\x1b[31m\xff"), "a\\x1b[31m\\xff");
+  EXPECT_EQ(printable(std::string(1000, 'x'), 4), "xxxx... (1000 bytes)");
+}
+
+TEST(Text, ComparesKeywordsWithoutRegardToCase) {
+  EXPECT_TRUE(equal_ignoring_case("Robact", "ROBACT"));
+  EXPECT_FALSE(equal_ignoring_case("ROBACT", "ROBACTS"));
+  EXPECT_EQ(trimmed(" \t a b \r\n"), "a b");
+  EXPECT_EQ(lower_case("AbC"), "abc");
+}
+
+}  // namespace
+}  // namespace cellmirror
