@@ -60,22 +60,10 @@ void check_one(const std::filesystem::path& path, const NameDirectory* names, Di
                     "known: .spt .toml .mpc .urdf .dbc .eds .dcf");
 }
 
-const char* word(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "error";
-}
-
 void print_json(const Diagnostics& diagnostics) {
   nlohmann::json list = nlohmann::json::array();
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    list.push_back({{"severity", word(diagnostic.severity)},
+    list.push_back({{"severity", severity_word(diagnostic.severity)},
                     {"file", diagnostic.place.file},
                     {"line", diagnostic.place.line},
                     {"column", diagnostic.place.column},

@@ -6,9 +6,7 @@
 
 namespace cellmirror {
 
-namespace {
-
-const char* word(Severity severity) {
+const char* severity_word(Severity severity) {
   switch (severity) {
     case Severity::note:
       return "note";
@@ -20,13 +18,11 @@ const char* word(Severity severity) {
   return "error";
 }
 
-}  // namespace
-
 std::string Diagnostic::text() const {
   std::string out = place.file.empty() ? std::string("input") : place.file;
   if (place.line > 0) out += fmt::format(":{}", place.line);
   if (place.line > 0 && place.column > 0) out += fmt::format(":{}", place.column);
-  out += fmt::format(": {}: {}", word(severity), message);
+  out += fmt::format(": {}: {}", severity_word(severity), message);
   if (!remedy.empty()) out += "; " + remedy;
   return out;
 }

@@ -9,6 +9,9 @@ namespace cellmirror {
 
 enum class Severity { note, warning, error };
 
+// "note", "warning", "error"
+[[nodiscard]] const char* severity_word(Severity severity);
+
 struct Place {
   std::string file;
   int line = 0;    // from 1; 0: the file as a whole
