@@ -1,7 +1,9 @@
 """What leaves the gateway: SENSOR records, the flight record, status."""
 
 import json
+import signal
 import subprocess
+import time
 import unittest
 
 import gateway as g
@@ -61,6 +63,24 @@ class Outputs(unittest.TestCase):
         self.assertGreater(len(ticks), 100)
         numbers = [tick["tick"] for tick in ticks]
         self.assertEqual(numbers, sorted(numbers))
+
+    def test_loop_that_missed_many_periods_is_one_latched_fault_with_a_flight_record(self):
+        before = self.scratch.status()["loop"]["faults"]
+        for _ in range(2):  # the second time finds the fault latched
+            self.gateway.child.send_signal(signal.SIGSTOP)
+            time.sleep(0.3)
+            self.gateway.child.send_signal(signal.SIGCONT)
+            time.sleep(0.2)
+        loop = g.eventually(lambda: (lambda now: now if now["faults"] > before else None)(self.scratch.status()["loop"]))
+        self.assertTrue(loop, "no fault was told")
+        self.assertEqual(loop["faults"], before + 1)
+        self.assertTrue(loop["fault_latched"])
+        self.assertGreater(loop["missed"], 200)
+        records = list((self.scratch.home / "records").glob("fault-*.jsonl"))
+        self.assertEqual(len(records), 1, loop["last_fault"])
+        header = json.loads(records[0].read_text().splitlines()[0])
+        self.assertEqual(header["kind"], "header")
+        self.assertNotEqual(header["reason"], "request")
 
     def test_flight_record_stays_in_the_home(self):
         self.assertEqual(self.scratch.send("SAVE_FLIGHT ../out.jsonl").returncode, 1)
