@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/gateway/robot_streams.hpp"
+#include "rt_core/engine/limiter.hpp"
 
 namespace cellmirror::app {
 
@@ -195,7 +196,25 @@ Result<FleetRobot*> Fleet::simulated(std::string_view id) {
   return &found->second;
 }
 
+// The tick refuses a posture as a whole, so a joint that was not commanded but stands beyond its limit (the limit was
+// narrowed, or the real robot was there) has to be told here, where somebody is answered.
+Result<void> Fleet::check_all_joints(const FleetRobot& robot, const JointValues& positions) const {
+  const RobotModel& model = *cell_.robot(robot.id);
+  const RobotParameters& limits = model.parameters();
+  for (std::size_t i = 0; i < model.joint_count(); ++i) {
+    const engine::LimiterVerdict verdict = engine::check_setpoints(
+        std::span(&positions[i], 1), std::span(&limits.min_range[i], 1), std::span(&limits.max_range[i], 1));
+    if (verdict == engine::LimiterVerdict::passed) continue;
+    const RobotJoint& joint = model.joints()[i];
+    return fail(fmt::format("joint {} ({}) of {} would stand at {}, beyond its limits; nothing was moved", i + 1,
+                            joint.name, robot.id, position_text(joint.kind, positions[i])),
+                "command it into its range with POS_ROB JOINT_ABS, or widen the range");
+  }
+  return {};
+}
+
 Result<void> Fleet::set_positions(FleetRobot& robot, const JointValues& positions) {
+  if (auto checked = check_all_joints(robot, positions); !checked) return checked;
   engine::Command command;
   command.kind = engine::CommandKind::set_positions;
   command.slot = static_cast<std::uint8_t>(robot.slot);

@@ -63,6 +63,7 @@ class Fleet {
   Result<void> bring_online(FleetRobot& robot);
   Result<void> take_offline(FleetRobot& robot);
   Result<FleetRobot*> simulated(std::string_view id);
+  [[nodiscard]] Result<void> check_all_joints(const FleetRobot& robot, const JointValues& positions) const;
   Result<void> set_positions(FleetRobot& robot, const JointValues& positions);
 
   Cell& cell_;

@@ -42,6 +42,16 @@ class BadInput(unittest.TestCase):
         after = self.scratch.robot("PUMA_762")["joints"]
         self.assertEqual([j["position"] for j in before], [j["position"] for j in after])
 
+    def test_joint_that_a_narrowed_limit_left_outside_is_told_and_nothing_moves(self):
+        for command in ("POS_ROB mantec_R3a JOINT_ABS 0 40", "ROBACT mantec_R3a", "rob_jnt_max_range 162.5 30 145 170 115 170"):
+            done = self.scratch.send(command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.refused("POS_ROB mantec_R3a JOINT_ABS 5", "J_2", "40 deg")
+        self.assertEqual(self.scratch.robot("mantec_R3a")["joints"][0]["position"], 0.0)
+        self.assertEqual(self.scratch.send("POS_ROB mantec_R3a JOINT_ABS 5 20").returncode, 0)
+        moved = lambda: self.scratch.robot("mantec_R3a")["joints"][0]["position"] > 0.08
+        self.assertTrue(g.eventually(moved))
+
     def test_noise_of_the_longest_message_is_refused_and_counted(self):
         before = self.scratch.status()["script"]["refused"]
         self.send_raw(os.urandom(8192))
