@@ -6,9 +6,12 @@ set(CELLMIRROR_LAYERS
   "rt_core/rt: rt_core/base"
   "rt_core/ports: rt_core/base"
   "ipc/wire: rt_core/base rt_core/ports"
-  "rt_core/cell: rt_core/base rt_core/ports"
-  "rt_core/engine: rt_core/base rt_core/rt rt_core/ports"
-  "config: rt_core/base rt_core/ports rt_core/cell"
+  "rt_core/kinematics: rt_core/base rt_core/ports"
+  "rt_core/inverse_kinematics: rt_core/base rt_core/ports rt_core/kinematics"
+  "rt_core/motion: rt_core/base rt_core/ports rt_core/kinematics"
+  "rt_core/cell: rt_core/base rt_core/ports rt_core/kinematics"
+  "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion"
+  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/cell"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "ipc/runtime: rt_core/base"
@@ -22,7 +25,8 @@ set(CELLMIRROR_LAYERS
   "tests: *")
 
 # In the order in which CMake has to see them.
-set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/engine config drivers/can
+set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
+  rt_core/motion rt_core/cell rt_core/engine config drivers/can
   drivers/dds ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
   sim_devices app tests)
 

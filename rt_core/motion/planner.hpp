@@ -1,0 +1,34 @@
+// Makes moves of what was commanded and of the robot's parameters, and looks ahead: what is refused here never reaches
+// the tick. Real-time class: worker threads.
+#pragma once
+
+#include <span>
+
+#include "rt_core/base/pose.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/kinematics/chain.hpp"
+#include "rt_core/motion/move.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
+
+namespace cellmirror::motion {
+
+// PTP to `target` (rad or m), which is refused beyond the limits (names the joint). Uses rob_jnt_act_vel, act_acc,
+// max_vel, PTPmode, vel_profile.
+[[nodiscard]] Result<Move> plan_joint_move(const kinematics::Chain& chain, const RobotParameters& parameters,
+                                           const JointValues& target);
+
+struct LinearPlan {
+  Move move;
+  JointValues end{};      // the posture in which it ends; rad or m
+  double duration_s = 0;  // where nothing slows it down
+};
+// Straight from the posture `from` to X_BG. The way is tried out in small steps: refused where a step cannot be met or
+// leads beyond a limit (says how far it got, which joint, and that a PTP move may do). Uses rob_cart_*,
+// rob_jnt_max_vel, min_vel, inverse_class.
+[[nodiscard]] Result<LinearPlan> plan_linear_move(const kinematics::Chain& chain, const RobotParameters& parameters,
+                                                  const JointValues& from, const Pose& X_BG);
+
+// Seconds that a PTP move from rest in `from` takes: the slowest axis.
+[[nodiscard]] double duration_of(const Move& joint_move, const JointValues& from, std::size_t joints);
+
+}  // namespace cellmirror::motion
