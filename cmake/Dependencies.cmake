@@ -11,3 +11,4 @@ find_package(Boost 1.74 REQUIRED)        # headers only: the yardstick of tests/
 find_package(tinyxml2 REQUIRED)
 find_package(fastcdr REQUIRED)
 find_package(fastrtps REQUIRED)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo-png)  # plots: app/plot

@@ -21,6 +21,7 @@ set(CELLMIRROR_LAYERS
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
   "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds"
+  "app/plot: rt_core/base"
   "app: *"
   "tests: *")
 
@@ -28,7 +29,7 @@ set(CELLMIRROR_LAYERS
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/cell rt_core/engine config drivers/can
   drivers/dds ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
-  sim_devices app tests)
+  sim_devices app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)
