@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kRotationSlack = 1e-6;
 
+}  // namespace
+
 bool is_pose(const Pose& X) {
   return X.matrix().allFinite() && X.linear().isUnitary(kRotationSlack) && X.linear().determinant() > 0;
 }
@@ -29,8 +31,6 @@ Result<void> check_limits(const Variable& variable) {
   }
   return {};
 }
-
-}  // namespace
 
 Result<Chain> Chain::make(std::vector<Variable> variables, std::span<const ChainJoint> joints, const Pose& X_LT) {
   if (variables.empty() || joints.empty()) return fail("the chain has no joint that moves");

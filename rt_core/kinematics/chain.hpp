@@ -38,6 +38,11 @@ struct Variable {
   double upper = 0;
 };
 
+// Finite, and a right-handed rotation. For checks.
+[[nodiscard]] bool is_pose(const Pose& X);
+// Refused: limits that are not finite (but of continuous joints), and a lower one above the upper one.
+[[nodiscard]] Result<void> check_limits(const Variable& variable);
+
 class Chain {
  public:
   // Refused: nothing that moves, more than the capacities, a variable that no joint or that an unknown joint uses,

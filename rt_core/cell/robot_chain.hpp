@@ -1,0 +1,48 @@
+// Chains of kinematics out of components and cells.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "rt_core/cell/component.hpp"
+#include "rt_core/kinematics/chain.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
+
+namespace cellmirror {
+
+// The joints between two nodes of a component, from the base to the tip. The names are those of links of a URDF, or
+// paths of nodes of an .mpc file (levels may be skipped where one node only matches). Where a link and a joint share a
+// name, the link is meant. The base need not stand above the tip. Variables in the order in which they come from base
+// to tip; a mimic is driven by the variable of the joint that it mimics, also where that itself lies elsewhere. Only
+// what lies between the two counts: the rest of the file may hold any number of joints. Refused: unknown and ambiguous
+// names (tells the nearest), no joint between the two, more joints than the capacities, an axis of length zero, limits
+// the wrong way round, numbers that are not finite; each with file and line.
+[[nodiscard]] Result<kinematics::Chain> chain_between(const Component& component, std::string_view base,
+                                                      std::string_view tip);
+
+// The joints of a robot that move its tool.
+struct RobotChain {
+  kinematics::Chain chain;
+  // By variable of the chain, ascending: the number of the joint in the robot. Joints that do not move the tip (those
+  // of a gripper) are no variables, and for most robots this is 0, 1, 2, ...
+  std::vector<std::uint8_t> joint;
+
+  // The chain's variables out of all joints of the robot.
+  [[nodiscard]] JointValues variables_of(const JointValues& joints) const;
+  // All joints of the robot: the chain's variables, and `others` where the chain has none.
+  [[nodiscard]] JointValues joints_of(const JointValues& variables, const JointValues& others) const;
+};
+
+enum class ChainTip : std::uint8_t { tool_center_point, flange };
+
+// From the robot's ZP frame to its TCP (point of reference and tool centre point) or flange, with the present values of
+// rob_jnt_rng_min and rob_jnt_rng_max as limits. It holds until the robot's parameters, its mechanism or the nodes of
+// the cell change: Cell::revision() tells. `id` unknown: refused with the nearest names. Refused too: nothing that
+// moves, or another robot's joint between the two.
+[[nodiscard]] Result<RobotChain> robot_chain(const Cell& cell, std::string_view id,
+                                             ChainTip tip = ChainTip::tool_center_point);
+
+}  // namespace cellmirror
