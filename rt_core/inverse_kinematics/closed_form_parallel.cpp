@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "rt_core/inverse_kinematics/closed_form_geometry.hpp"
+#include "rt_core/inverse_kinematics/closed_form_pair.hpp"
 
 namespace cellmirror::inverse_kinematics::closed_form {
 

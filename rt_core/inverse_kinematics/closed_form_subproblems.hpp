@@ -103,13 +103,4 @@ Turns second_turn(const Vector& k1, const Vector& k2, const Vector& p, const Vec
 Turns turn_to_distance(const Vector& h, const Circle& circle, const Vector& point, double distance_squared,
                        double slack);
 
-// Two linear equations in two turns: A (c1, s1) + B (c2, s2) = k, B regular. At most four pairs.
-struct TurnPairs {
-  std::array<Turn, 4> first;
-  std::array<Turn, 4> second;
-  std::size_t count = 0;
-};
-TurnPairs solve_pair(const Eigen::Matrix2d& A, const Eigen::Matrix2d& B_inverse, const Eigen::Vector2d& k,
-                     double slack);
-
 }  // namespace cellmirror::inverse_kinematics::closed_form
