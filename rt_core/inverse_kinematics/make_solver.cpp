@@ -1,8 +1,10 @@
+#include "rt_core/inverse_kinematics/automatic_solver.hpp"
 #include "rt_core/inverse_kinematics/fast_solver.hpp"
 
 namespace cellmirror::inverse_kinematics {
 
-std::unique_ptr<Solver> make_solver(Method /*method*/, const kinematics::Chain& chain) {
+std::unique_ptr<Solver> make_solver(Method method, const kinematics::Chain& chain) {
+  if (method == Method::automatic) return make_automatic_solver(chain);
   return make_fast_solver(chain);
 }
 
