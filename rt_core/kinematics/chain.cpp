@@ -64,9 +64,15 @@ Result<Chain> Chain::make(std::vector<Variable> variables, std::span<const Chain
     chain.rotates_[i] = variable.kind != JointKind::prismatic;
   }
   if (!is_pose(X_LT)) return fail("the tip's pose is not finite or no rotation");
-  chain.X_LT_ = X_LT;
   chain.variables_ = std::move(variables);
+  chain.set_tip(X_LT);
   return chain;
+}
+
+void Chain::set_tip(const Pose& X_LT) {
+  X_LT_ = X_LT;
+  forward_constants_ =
+      kinematics::forward_constants(joints_.data(), joint_count_, variable_count_, plain_, X_LT.matrix().data());
 }
 
 JointValues Chain::middle() const CELL_RT {
@@ -86,7 +92,7 @@ bool Chain::within_limits(std::span<const double> q, double slack) const CELL_RT
 
 Chain Chain::with_tip(const Pose& X_LT) const {
   Chain chain = *this;
-  chain.X_LT_ = X_LT;
+  chain.set_tip(X_LT);
   return chain;
 }
 

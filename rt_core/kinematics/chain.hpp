@@ -13,13 +13,13 @@
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/kinematics/forward_constants.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
 
 namespace cellmirror::kinematics {
 
 inline constexpr std::size_t kMaxVariables = kMaxJointsPerRobot;
-inline constexpr std::size_t kMaxChainJoints = 32;  // mimics included
 
 // A joint on the way from base to tip. Its value is multiplier * q[variable] + offset: rad about or m along z.
 struct ChainJoint {
@@ -69,8 +69,12 @@ class Chain {
   [[nodiscard]] Chain with_tip(const Pose& X_LT) const;
   [[nodiscard]] Result<Chain> with_limits(std::span<const double> lower, std::span<const double> upper) const;
 
+  // For forward().
+  [[nodiscard]] const ForwardConstants& forward_constants() const CELL_RT { return forward_constants_; }
+
  private:
   Chain() = default;
+  void set_tip(const Pose& X_LT);
 
   std::array<ChainJoint, kMaxChainJoints> joints_{};
   std::size_t joint_count_ = 0;
@@ -81,6 +85,7 @@ class Chain {
   bool plain_ = true;
   Pose X_LT_ = Pose::Identity();
   std::vector<Variable> variables_;
+  ForwardConstants forward_constants_;
 };
 
 }  // namespace cellmirror::kinematics

@@ -1,0 +1,138 @@
+// Forward kinematics and Jacobian on plain numbers. Included by one source for each instruction set, which defines
+// CELLMIRROR_KERNELS as the namespace of its own. Everything here has internal linkage, and no inline function of a
+// library is used: the linker would otherwise merge code of different instruction sets.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+
+#include "rt_core/kinematics/forward_constants.hpp"
+#include "rt_core/kinematics/sincos.hpp"
+
+namespace cellmirror::kinematics::CELLMIRROR_KERNELS {
+
+namespace {
+
+using Two [[gnu::vector_size(16)]] = double;
+
+[[gnu::always_inline]] inline void load(const double* from, Four& to) noexcept { std::memcpy(&to, from, sizeof to); }
+[[gnu::always_inline]] inline void store(const Four& from, double* to) noexcept { std::memcpy(to, &from, sizeof from); }
+
+// Of the first three lanes; the last one is zero where the last ones of a and b are equal up to a common factor.
+[[gnu::always_inline]] inline void cross(const Four& a, const Four& b, Four& out) noexcept {
+  const Four difference = a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
+  out = __builtin_shufflevector(difference, difference, 1, 2, 0, 3);
+}
+
+// Out of line: rarely needed, and it would cost the callers registers.
+[[gnu::noinline]] void sincos_one_by_one(const double* angle, std::size_t count, double* sine,
+                                         double* cosine) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    sine[i] = __builtin_sin(angle[i]);
+    cosine[i] = __builtin_cos(angle[i]);
+  }
+}
+
+// N: number of joints, 0: any.
+template <std::size_t N>
+struct Sizes {
+  static constexpr std::size_t kCapacity = N > 0 ? (N + 3) / 4 * 4 : kMaxChainJoints;
+};
+
+template <std::size_t N>
+[[gnu::always_inline]] inline void sincos_of_joints(const ForwardConstants& chain, const double* value, double* sine,
+                                                    double* cosine) noexcept {
+  const std::size_t joints = N > 0 ? N : chain.joints;
+  alignas(32) double angle[Sizes<N>::kCapacity];
+  bool all_reducible = true;
+  for (std::size_t i = 0; i < joints; i += 4) {
+    Four turn, zero, q, s, c;
+    load(&chain.turn[i], turn);
+    load(&chain.turn_zero[i], zero);
+    load(value + i, q);
+    const Four at = turn * q + zero;
+    store(at, angle + i);
+    sincos_of_four(at, s, c);
+    store(s, sine + i);
+    store(c, cosine + i);
+    all_reducible = all_reducible && reducible(at);
+  }
+  if (!all_reducible) [[unlikely]]
+    sincos_one_by_one(angle, joints, sine, cosine);
+}
+
+[[gnu::always_inline]] inline void write_column(const ForwardConstants::Joint& joint, const Four& axis, const Four& arm,
+                                                double* column) noexcept {
+  Four linear = axis;
+  Four angular = axis - axis;
+  if (!joint.prismatic) {
+    cross(axis, arm, linear);
+    angular = axis;
+  }
+  store(__builtin_shufflevector(linear, angular, 0, 1, 2, 4), column);
+  const Two rest = __builtin_shufflevector(angular, angular, 1, 2);
+  std::memcpy(column + 4, &rest, sizeof rest);
+}
+
+template <std::size_t N>
+[[gnu::always_inline]] inline void write_jacobian(const ForwardConstants& chain, const Four* axis, const Four* origin,
+                                                  const Four& tip, double* jacobian) noexcept {
+  const std::size_t joints = N > 0 ? N : chain.joints;
+  if (chain.plain) {
+    for (std::size_t i = 0; i < joints; ++i) write_column(chain.joint[i], axis[i], tip - origin[i], jacobian + 6 * i);
+    return;
+  }
+  for (std::size_t k = 0; k < 6 * chain.variables; ++k) jacobian[k] = 0;
+  for (std::size_t i = 0; i < joints; ++i) {
+    double column[6];
+    write_column(chain.joint[i], axis[i], tip - origin[i], column);
+    for (std::size_t k = 0; k < 6; ++k) jacobian[6 * chain.joint[i].variable + k] += chain.joint[i].factor * column[k];
+  }
+}
+
+template <std::size_t N, bool kJacobian>
+void walk(const ForwardConstants& chain, const double* q, double* X_BT, double* jacobian) noexcept {
+  constexpr std::size_t kCapacity = Sizes<N>::kCapacity;
+  const std::size_t joints = N > 0 ? N : chain.joints;
+  alignas(32) double value[kCapacity] = {};
+  alignas(32) double sine[kCapacity];
+  alignas(32) double cosine[kCapacity];
+  Four axis[kJacobian ? kCapacity : 1];
+  Four origin[kJacobian ? kCapacity : 1];
+  for (std::size_t i = 0; i < joints; ++i) value[i] = q[chain.plain ? i : chain.joint[i].variable];
+  sincos_of_joints<N>(chain, value, sine, cosine);
+  Four x, y, z, p;
+  load(&chain.X_B0[0], x);
+  load(&chain.X_B0[4], y);
+  load(&chain.X_B0[8], z);
+  load(&chain.X_B0[12], p);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const ForwardConstants::Joint& joint = chain.joint[i];
+    if constexpr (kJacobian) {
+      axis[i] = z;
+      origin[i] = p;
+    }
+    const Four x_turned = cosine[i] * x + sine[i] * y;
+    const Four y_turned = cosine[i] * y - sine[i] * x;
+    p += joint.shift[0] * x_turned + joint.shift[1] * y_turned + (joint.shift[2] + joint.slide * value[i]) * z;
+    x = x_turned;
+    y = joint.cos_x * y_turned + joint.sin_x * z;
+    z = joint.cos_x * z - joint.sin_x * y_turned;
+  }
+  store(chain.tip_cos * x + chain.tip_sin * y, X_BT);
+  store(chain.tip_cos * y - chain.tip_sin * x, X_BT + 4);
+  store(z, X_BT + 8);
+  store(p, X_BT + 12);
+  if constexpr (kJacobian) write_jacobian<N>(chain, axis, origin, p, jacobian);
+}
+
+}  // namespace
+
+ForwardKernels forward_kernels() {
+  return {{walk<0, false>, walk<1, false>, walk<2, false>, walk<3, false>, walk<4, false>, walk<5, false>,
+           walk<6, false>, walk<7, false>, walk<8, false>},
+          {walk<0, true>, walk<1, true>, walk<2, true>, walk<3, true>, walk<4, true>, walk<5, true>, walk<6, true>,
+           walk<7, true>, walk<8, true>}};
+}
+
+}  // namespace cellmirror::kinematics::CELLMIRROR_KERNELS
