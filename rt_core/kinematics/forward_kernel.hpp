@@ -24,42 +24,11 @@ using Two [[gnu::vector_size(16)]] = double;
   out = __builtin_shufflevector(difference, difference, 1, 2, 0, 3);
 }
 
-// Out of line: rarely needed, and it would cost the callers registers.
-[[gnu::noinline]] void sincos_one_by_one(const double* angle, std::size_t count, double* sine,
-                                         double* cosine) noexcept {
-  for (std::size_t i = 0; i < count; ++i) {
-    sine[i] = __builtin_sin(angle[i]);
-    cosine[i] = __builtin_cos(angle[i]);
-  }
-}
-
 // N: number of joints, 0: any.
 template <std::size_t N>
 struct Sizes {
-  static constexpr std::size_t kCapacity = N > 0 ? (N + 3) / 4 * 4 : kMaxChainJoints;
+  static constexpr std::size_t kCapacity = sincos_capacity(N > 0 ? N : kMaxChainJoints);
 };
-
-template <std::size_t N>
-[[gnu::always_inline]] inline void sincos_of_joints(const ForwardConstants& chain, const double* value, double* sine,
-                                                    double* cosine) noexcept {
-  const std::size_t joints = N > 0 ? N : chain.joints;
-  alignas(32) double angle[Sizes<N>::kCapacity];
-  bool all_reducible = true;
-  for (std::size_t i = 0; i < joints; i += 4) {
-    Four turn, zero, q, s, c;
-    load(&chain.turn[i], turn);
-    load(&chain.turn_zero[i], zero);
-    load(value + i, q);
-    const Four at = turn * q + zero;
-    store(at, angle + i);
-    sincos_of_four(at, s, c);
-    store(s, sine + i);
-    store(c, cosine + i);
-    all_reducible = all_reducible && reducible(at);
-  }
-  if (!all_reducible) [[unlikely]]
-    sincos_one_by_one(angle, joints, sine, cosine);
-}
 
 [[gnu::always_inline]] inline void write_column(const ForwardConstants::Joint& joint, const Four& axis, const Four& arm,
                                                 double* column) noexcept {
@@ -94,13 +63,15 @@ template <std::size_t N, bool kJacobian>
 void walk(const ForwardConstants& chain, const double* q, double* X_BT, double* jacobian) noexcept {
   constexpr std::size_t kCapacity = Sizes<N>::kCapacity;
   const std::size_t joints = N > 0 ? N : chain.joints;
-  alignas(32) double value[kCapacity] = {};
+  double value[kCapacity] = {};
+  alignas(32) double angle[kCapacity];
   alignas(32) double sine[kCapacity];
   alignas(32) double cosine[kCapacity];
   Four axis[kJacobian ? kCapacity : 1];
   Four origin[kJacobian ? kCapacity : 1];
   for (std::size_t i = 0; i < joints; ++i) value[i] = q[chain.plain ? i : chain.joint[i].variable];
-  sincos_of_joints<N>(chain, value, sine, cosine);
+  for (std::size_t i = 0; i < sincos_capacity(joints); ++i) angle[i] = chain.turn[i] * value[i] + chain.turn_zero[i];
+  sincos_of(angle, joints, sine, cosine);
   Four x, y, z, p;
   load(&chain.X_B0[0], x);
   load(&chain.X_B0[4], y);

@@ -1,9 +1,11 @@
-// Sine and cosine of four angles at once. The loops of kinematics spend most of their time on them, and the library's
-// take one angle at a time. No Eigen and nothing with external linkage, so that sources compiled for different
-// instruction sets may include it.
+// Sines and cosines of the joints of a chain, four at once. The loops of kinematics spend most of their time on them,
+// and the library's take one angle at a time. No Eigen and nothing with external linkage, so that sources compiled for
+// different instruction sets may include it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace cellmirror::kinematics {
 
@@ -47,6 +49,37 @@ inline constexpr double kLargestAngle = 1e5;
   const FourBits exchange = -(count & 1);
   sine = __builtin_bit_cast(Four, ((sine_r & ~exchange) | (cosine_r & exchange)) ^ ((count & 2) << 62));
   cosine = __builtin_bit_cast(Four, ((cosine_r & ~exchange) | (sine_r & exchange)) ^ (((count + 1) & 2) << 62));
+}
+
+// Out of line: rarely needed, and it would cost the callers registers.
+[[gnu::noinline]] [[maybe_unused]] static void sincos_one_by_one(const double* angle, std::size_t count, double* sine,
+                                                                 double* cosine) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    sine[i] = __builtin_sin(angle[i]);
+    cosine[i] = __builtin_cos(angle[i]);
+  }
+}
+
+// How long arrays for sincos_of() have to be.
+[[maybe_unused]] static constexpr std::size_t sincos_capacity(std::size_t count) { return (count + 3) / 4 * 4; }
+
+// Of any angles (NaN of what is not finite). The arrays are as long as sincos_capacity() says; what stands in `angle`
+// beyond `count` has to be finite.
+[[gnu::always_inline]] static inline void sincos_of(const double* angle, std::size_t count, double* sine,
+                                                    double* cosine) noexcept {
+  bool all_reducible = true;
+  for (std::size_t i = 0; i < count; i += 4) {
+    Four at;
+    Four s;
+    Four c;
+    std::memcpy(&at, angle + i, sizeof at);
+    sincos_of_four(at, s, c);
+    std::memcpy(sine + i, &s, sizeof s);
+    std::memcpy(cosine + i, &c, sizeof c);
+    all_reducible = all_reducible && reducible(at);
+  }
+  if (!all_reducible) [[unlikely]]
+    sincos_one_by_one(angle, count, sine, cosine);
 }
 
 }  // namespace cellmirror::kinematics
