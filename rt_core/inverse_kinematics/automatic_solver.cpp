@@ -16,12 +16,12 @@ namespace {
 
 class AutomaticSolver final : public Solver {
  public:
-  explicit AutomaticSolver(const kinematics::Chain& chain) : chain_(chain), fast_(chain_), table_(chain_) {}
+  explicit AutomaticSolver(const kinematics::Chain& chain) : chain_(chain), table_(chain_) {}
 
   [[nodiscard]] Result<Answer> solve(const Request& asked) override {
     const Result<Request> good = checked(asked, chain_);
     if (!good) return std::unexpected(good.error());
-    Search search(chain_, fast_, *good);
+    Search search(chain_, *good);
     from_table(search, *good);
     at_random(search, *good);
     return search.finish();
@@ -54,7 +54,6 @@ class AutomaticSolver final : public Solver {
   }
 
   kinematics::Chain chain_;
-  kinematics::FastSearch fast_;
   SeedTable table_;
   std::size_t tries_ = 1;
   std::size_t seeds_ = 16;

@@ -7,7 +7,7 @@
 
 #include "rt_core/inverse_kinematics/posture.hpp"
 #include "rt_core/inverse_kinematics/request.hpp"
-#include "rt_core/kinematics/fast_search.hpp"
+#include "rt_core/kinematics/fast_step.hpp"
 
 namespace cellmirror::inverse_kinematics {
 
@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 class FastSolver final : public Solver {
  public:
-  explicit FastSolver(const kinematics::Chain& chain) : chain_(chain), search_(chain_) {}
+  explicit FastSolver(const kinematics::Chain& chain) : chain_(chain) {}
 
   [[nodiscard]] Result<Answer> solve(const Request& asked) override {
     const Result<Request> good = checked(asked, chain_);
@@ -30,8 +30,9 @@ class FastSolver final : public Solver {
     std::mt19937_64 random(1);
     JointValues q = request.present;
     for (int start = 0; start < 1000; ++start) {
-      const auto result = search_.solve(request.task, request.X_BG, {q.data(), chain_.variable_count()},
-                                        {.tolerance = request.tolerance, .max_iterations = 40});
+      const auto result =
+          kinematics::fast_solve(chain_, request.task, request.X_BG, {q.data(), chain_.variable_count()},
+                                 {.tolerance = request.tolerance, .max_iterations = 40});
       answer.iterations += result.iterations;
       if (result.solved) {
         Solution found;
@@ -65,7 +66,6 @@ class FastSolver final : public Solver {
 
  private:
   kinematics::Chain chain_;
-  kinematics::FastSearch search_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "rt_core/inverse_kinematics/posture.hpp"
+#include "rt_core/kinematics/reach.hpp"
 
 namespace cellmirror::inverse_kinematics {
 
@@ -12,9 +13,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
-Search::Search(const kinematics::Chain& chain, const kinematics::FastSearch& fast, const Request& request)
+Search::Search(const kinematics::Chain& chain, const Request& request)
     : chain_(chain),
-      fast_(fast),
       request_(request),
       deadline_(std::chrono::steady_clock::now() + request.time_limit),
       nearest_distance_(kInfinity),
@@ -28,12 +28,12 @@ bool Search::out_of_time() {
 bool Search::descend(const JointValues& start, int max_iterations, FoundBy by) {
   JointValues q = start;
   const kinematics::FastResult result =
-      fast_.solve(request_.task, request_.X_BG, {q.data(), chain_.variable_count()},
-                  {.tolerance = request_.tolerance, .max_iterations = max_iterations});
+      kinematics::fast_solve(chain_, request_.task, request_.X_BG, {q.data(), chain_.variable_count()},
+                             {.tolerance = request_.tolerance, .max_iterations = max_iterations});
   iterations_ += result.iterations;
   if (result.solved) return keep(q, by);
   // Metres weigh as in the search, so that a long arm's centimetres do not hide a wrong direction.
-  const double length = fast_.packed().length;
+  const double length = kinematics::unit_of_length(chain_);
   const double miss = result.error.head<3>().squaredNorm() / (length * length) + result.error.tail<3>().squaredNorm();
   if (miss < least_miss_) {
     least_miss_ = miss;

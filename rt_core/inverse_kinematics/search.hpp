@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rt_core/inverse_kinematics/inverse_kinematics.hpp"
-#include "rt_core/kinematics/fast_search.hpp"
+#include "rt_core/kinematics/fast_step.hpp"
 
 namespace cellmirror::inverse_kinematics {
 
@@ -15,8 +15,8 @@ inline constexpr double kDistinctPostures = 0.1;
 
 class Search {
  public:
-  // All three have to outlive the search. `request` is a checked one.
-  Search(const kinematics::Chain& chain, const kinematics::FastSearch& fast, const Request& request);
+  // Both have to outlive the search. `request` is a checked one.
+  Search(const kinematics::Chain& chain, const Request& request);
 
   // Steps from `start`. Whether that led to a solution; it is kept if no nearer one is at the same place.
   bool descend(const JointValues& start, int max_iterations, FoundBy by);
@@ -38,7 +38,6 @@ class Search {
   };
 
   const kinematics::Chain& chain_;
-  const kinematics::FastSearch& fast_;
   const Request& request_;
   std::chrono::steady_clock::time_point deadline_;
   bool timed_out_ = false;

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "rt_core/kinematics/forward.hpp"
-#include "rt_core/kinematics/packed_chain.hpp"
+#include "rt_core/kinematics/reach.hpp"
 
 namespace cellmirror::inverse_kinematics {
 
@@ -78,7 +78,7 @@ SeedTable::SeedTable(const kinematics::Chain& chain, std::size_t entries) : chai
   first_turns_ = reducible && first.kind != JointKind::prismatic;
   first_slides_ = reducible && first.kind == JointKind::prismatic;
   last_turns_ = reducible && last.kind != JointKind::prismatic;
-  length_ = kinematics::PackedChain(chain_).length;
+  length_ = kinematics::unit_of_length(chain_);
   X_1B_ = first.X_PJ.inverse();
   X_TL_ = chain_.X_LT().inverse();
   sample(entries);
