@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kScriptBudget = 256;  // commands of files before messages have their turn
 constexpr int kMessageBudget = 64;
-constexpr Nanoseconds kPicturePeriod{20'000'000};           // at most so old while commands keep coming
-constexpr std::chrono::milliseconds kIdleWait{50};          // messages expire from the picture
-constexpr std::chrono::milliseconds kWaitingScriptWait{2};  // how soon WAIT notices its end
+constexpr Nanoseconds kPicturePeriod{20'000'000};    // at most so old while commands keep coming
+constexpr std::chrono::milliseconds kIdleWait{50};   // messages expire from the picture
+constexpr std::chrono::milliseconds kMovingWait{1};  // how soon an arrival is noticed, and WAIT goes on
 
 }  // namespace
 
@@ -26,12 +26,15 @@ CellOwner::CellOwner(Parts parts)
       reply_(std::move(parts.reply)),
       names_(cell_),
       fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
-      world_(cell_, *fleet_, [this] { hang_up_picture(); }),
-      robots_(cell_, *fleet_, names_),
-      views_(cell_, clock_),
+      view_parameters_(extent_of(*cell_.compile(), cell_.start_positions())),
+      motion_(cell_, names_, view_parameters_, *fleet_),
+      world_(cell_, *fleet_, motion_, [this] { hang_up_picture(); }),
+      robots_(cell_, *fleet_, motion_, names_),
+      programs_(motion_),
+      views_(cell_, view_parameters_, clock_),
       diagnosis_(std::move(parts.save_flight_record)) {
-  runner_ = std::make_unique<script::ScriptRunner>(CommandHost{names_, world_, robots_, programs_, views_, diagnosis_},
-                                                   home_, clock_);
+  runner_ = std::make_unique<script::ScriptRunner>(
+      CommandHost{names_, world_, robots_, motion_, programs_, views_, diagnosis_}, home_, clock_);
 }
 
 CellOwner::~CellOwner() { stop(); }
@@ -76,9 +79,14 @@ engine::QueueStatus CellOwner::command_queue() const {
 void CellOwner::execute(const QueuedCommand& queued) {
   const std::string source =
       queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid) : std::string("message");
-  const Result<std::string> result = runner_->execute_message(queued.text.view(), source);
-  if (queued.tag == 0) return;
-  reply_(queued.tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
+  if (queued.tag == 0) {
+    // Nobody is answered, and nobody waits for a robot to arrive.
+    static_cast<void>(runner_->execute_message(queued.text.view(), source));
+    return;
+  }
+  runner_->execute_message(queued.text.view(), source, [this, tag = queued.tag](const Result<std::string>& result) {
+    reply_(tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
+  });
 }
 
 bool CellOwner::execute_messages() {
@@ -96,6 +104,7 @@ void CellOwner::loop(const std::stop_token& stop) {
   set_thread_name("cell");
   bool changed = true;
   while (!stop.stop_requested()) {
+    motion_.follow();
     bool busy = execute_messages();
     busy = runner_->step(kScriptBudget) > 0 || busy;
     changed = changed || busy;
@@ -105,8 +114,8 @@ void CellOwner::loop(const std::stop_token& stop) {
       changed = false;
     }
     if (!busy) {
-      wake_.wait(runner_->idle() ? kIdleWait : kWaitingScriptWait);
-      changed = true;
+      wake_.wait(runner_->idle() && !motion_.moving() ? kIdleWait : kMovingWait);
+      changed = changed || clock_.now() - last_picture_ > kPicturePeriod;
     }
   }
   runner_->stop_all();

@@ -10,12 +10,14 @@
 
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
+#include "app/gateway/motion_desk.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/wake_signal.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/fixed_text.hpp"
 #include "rt_core/base/home.hpp"
+#include "rt_core/cell/view.hpp"
 #include "rt_core/rt/fifo.hpp"
 #include "scripts/runner/script_runner.hpp"
 
@@ -73,6 +75,8 @@ class CellOwner {
   std::function<void(std::int64_t tag, const ScriptReply& reply)> reply_;
   CellNames names_;
   std::unique_ptr<Fleet> fleet_;
+  Views view_parameters_;
+  MotionDesk motion_;
   CellWorld world_;
   CellRobots robots_;
   CellPrograms programs_;

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "app/gateway/robot_streams.hpp"
-#include "rt_core/engine/limiter.hpp"
 
 namespace cellmirror::app {
 
@@ -110,11 +109,13 @@ Result<void> Fleet::add(const RobotModel& robot) {
   command.values = robot.parameters().start_position;
   command.lower = robot.parameters().min_range;
   command.upper = robot.parameters().max_range;
-  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
   FleetRobot added;
   added.id = robot.id();
   added.slot = robot.slot();
-  added.commanded = robot.parameters().start_position;
+  added.put_at = robot.parameters().start_position;
+  added.put_command = *sent;
   robots_.emplace(robot.id(), std::move(added));
   return {};
 }
@@ -172,11 +173,8 @@ Result<void> Fleet::take_offline(FleetRobot& robot) {
   command.slot = static_cast<std::uint8_t>(robot.slot);
   command.mode = engine::RobotMode::simulated;
   if (auto sent = send(command); !sent) return std::unexpected(sent.error());
-  if (auto settled = settle(); !settled) return settled;
-  // The model stays where the real robot was seen last.
-  const engine::RobotTickState& state = engine_.owner_view().robots[robot.slot];
-  for (std::size_t i = 0; i < state.joint_count; ++i) robot.commanded[i] = state.joints[i].position;
-  return {};
+  // The model stays where the real robot was seen last: once this is carried out, no sample moves it any more.
+  return settle();
 }
 
 Result<void> Fleet::set_sending(std::string_view id, bool sending) {
@@ -186,72 +184,57 @@ Result<void> Fleet::set_sending(std::string_view id, bool sending) {
   return {};
 }
 
-Result<FleetRobot*> Fleet::simulated(std::string_view id) {
-  const auto found = robots_.find(id);
-  if (found == robots_.end()) return std::unexpected(cell_.explain_robot(id));
-  if (found->second.online) {
-    return fail(fmt::format("the robot {} is online and follows its controller", id),
-                fmt::format("command it after ROBOT {} offline", id));
-  }
-  return &found->second;
+Result<void> Fleet::check_simulated(std::string_view id) const {
+  const FleetRobot* robot = find(id);
+  if (robot == nullptr) return std::unexpected(cell_.explain_robot(id));
+  if (!robot->online) return {};
+  return fail(fmt::format("the robot {} is online and follows its controller", id),
+              fmt::format("command it after ROBOT {} offline", id));
 }
 
-// The tick refuses a posture as a whole, so a joint that was not commanded but stands beyond its limit (the limit was
-// narrowed, or the real robot was there) has to be told here, where somebody is answered.
-Result<void> Fleet::check_all_joints(const FleetRobot& robot, const JointValues& positions) const {
-  const RobotModel& model = *cell_.robot(robot.id);
-  const RobotParameters& limits = model.parameters();
-  for (std::size_t i = 0; i < model.joint_count(); ++i) {
-    const engine::LimiterVerdict verdict = engine::check_setpoints(
-        std::span(&positions[i], 1), std::span(&limits.min_range[i], 1), std::span(&limits.max_range[i], 1));
-    if (verdict == engine::LimiterVerdict::passed) continue;
-    const RobotJoint& joint = model.joints()[i];
-    return fail(fmt::format("joint {} ({}) of {} would stand at {}, beyond its limits; nothing was moved", i + 1,
-                            joint.name, robot.id, position_text(joint.kind, positions[i])),
-                "command it into its range with POS_ROB JOINT_ABS, or widen the range");
-  }
+motion::MotionState Fleet::motion(std::string_view id) {
+  static_cast<void>(id);
   return {};
-}
-
-Result<void> Fleet::set_positions(FleetRobot& robot, const JointValues& positions) {
-  if (auto checked = check_all_joints(robot, positions); !checked) return checked;
-  engine::Command command;
-  command.kind = engine::CommandKind::set_positions;
-  command.slot = static_cast<std::uint8_t>(robot.slot);
-  command.values = positions;
-  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
-  robot.commanded = positions;
-  return {};
-}
-
-Result<void> Fleet::move_to(std::string_view id, std::span<const double> positions) {
-  auto robot = simulated(id);
-  if (!robot) return std::unexpected(robot.error());
-  auto wanted = cell_.robot(id)->positions_to(positions, (*robot)->commanded);
-  if (!wanted) return std::unexpected(wanted.error());
-  return set_positions(**robot, *wanted);
-}
-
-Result<void> Fleet::move_by(std::string_view id, std::span<const double> increments) {
-  auto robot = simulated(id);
-  if (!robot) return std::unexpected(robot.error());
-  auto wanted = cell_.robot(id)->positions_by(increments, (*robot)->commanded);
-  if (!wanted) return std::unexpected(wanted.error());
-  return set_positions(**robot, *wanted);
 }
 
 std::span<const JointValues> Fleet::positions() {
   const engine::TickState& view = engine_.owner_view();
   for (const auto& [id, robot] : robots_) {
     JointValues& out = positions_[robot.slot];
-    if (!robot.online) {
-      out = robot.commanded;
+    if (view.commands_done < robot.put_command) {
+      out = robot.put_at;
       continue;
     }
     const engine::RobotTickState& state = view.robots[robot.slot];
     for (std::size_t i = 0; i < state.joint_count; ++i) out[i] = state.joints[i].position;
   }
   return positions_;
+}
+
+Result<void> Fleet::set_chain(std::string_view /*id*/, std::shared_ptr<const kinematics::Chain> /*chain*/) {
+  return fail("moves are not available yet: motion");
+}
+Result<void> Fleet::add_move(std::string_view /*id*/, const motion::Move& /*move*/) {
+  return fail("moves are not available yet: motion");
+}
+Result<void> Fleet::stop_motion(std::string_view /*id*/) { return {}; }
+
+engine::Command Fleet::command_for(std::string_view id, engine::CommandKind kind) const {
+  engine::Command command;
+  command.kind = kind;
+  command.slot = static_cast<std::uint8_t>(find(id)->slot);
+  return command;
+}
+
+Result<void> Fleet::jump(std::string_view id, const JointValues& positions) {
+  engine::Command command = command_for(id, engine::CommandKind::set_positions);
+  command.values = positions;
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  FleetRobot& robot = robots_.find(id)->second;
+  robot.put_at = positions;
+  robot.put_command = *sent;
+  return {};
 }
 
 }  // namespace cellmirror::app

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/gateway/motion_port.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/cell/cell.hpp"
@@ -24,18 +25,22 @@ struct FleetRobot {
   std::size_t slot = 0;
   bool online = false;
   bool sending = false;
-  JointValues commanded{};              // rad or m; what the tick was told last while simulated
+  // rad or m: where the tick was told to put it, and the command that told it.
+  JointValues put_at{};
+  std::uint64_t put_command = 0;
   std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
 };
 
 // Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.
-class Fleet {
+class Fleet final : public MotionPort {
  public:
   // `stream_priority`: SCHED_FIFO priority of the streams' threads; 0: none.
   Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
         const Clock& clock, int stream_priority);
   // Closes all streams.
-  ~Fleet();
+  ~Fleet() override;
+  Fleet(const Fleet&) = delete;
+  Fleet& operator=(const Fleet&) = delete;
 
   // Adds robots that came with a component to the tick, and removes those that were deleted. After every change of the
   // tree.
@@ -48,12 +53,16 @@ class Fleet {
 
   Result<void> set_online(std::string_view id, bool online);
   Result<void> set_sending(std::string_view id, bool sending);
-  // Values of the first joints; all or nothing. Refused for a robot that is online.
-  Result<void> move_to(std::string_view id, std::span<const double> positions);
-  Result<void> move_by(std::string_view id, std::span<const double> increments);
 
-  // Joint positions by slot as far as they are known now: commanded ones, and the newest mirrored ones.
-  [[nodiscard]] std::span<const JointValues> positions();
+  Result<void> check_simulated(std::string_view id) const override;
+  [[nodiscard]] motion::MotionState motion(std::string_view id) override;
+  // As the tick published them last; a jump that it has not carried out yet counts as done.
+  [[nodiscard]] std::span<const JointValues> positions() override;
+  Result<void> jump(std::string_view id, const JointValues& positions) override;
+  Result<void> set_chain(std::string_view id, std::shared_ptr<const kinematics::Chain> chain) override;
+  Result<void> add_move(std::string_view id, const motion::Move& move) override;
+  Result<void> stop_motion(std::string_view id) override;
+
   // Waits until the tick has carried out everything that was sent so far.
   Result<void> settle();
 
@@ -62,9 +71,8 @@ class Fleet {
   Result<void> add(const RobotModel& robot);
   Result<void> bring_online(FleetRobot& robot);
   Result<void> take_offline(FleetRobot& robot);
-  Result<FleetRobot*> simulated(std::string_view id);
-  [[nodiscard]] Result<void> check_all_joints(const FleetRobot& robot, const JointValues& positions) const;
-  Result<void> set_positions(FleetRobot& robot, const JointValues& positions);
+  // A command for a robot of the fleet.
+  [[nodiscard]] engine::Command command_for(std::string_view id, engine::CommandKind kind) const;
 
   Cell& cell_;
   engine::Engine& engine_;

@@ -54,7 +54,11 @@ std::vector<std::string> CellNames::all(NameKind kind) const {
   return kind == NameKind::robot ? cell_.robot_ids() : cell_.paths(path_kind(kind));
 }
 
-Result<void> CellWorld::followed(Result<void> changed) { return changed ? fleet_.follow_cell() : changed; }
+Result<void> CellWorld::followed(Result<void> changed) {
+  if (!changed) return changed;
+  motion_.follow_cell();
+  return fleet_.follow_cell();
+}
 
 Result<void> CellWorld::activate(std::string_view node) { return followed(cell_.activate(node)); }
 Result<void> CellWorld::deactivate(std::string_view node) { return cell_.deactivate(node); }
@@ -86,6 +90,17 @@ Result<void> CellRobots::set_active_robot(std::string_view robot) {
   if (cell_.robot(robot) == nullptr) return std::unexpected(cell_.explain_robot(robot));
   names_.set_active(robot);
   return {};
+}
+
+// Whatever a robot does ends where it goes online, and what it was commanded to before counts no more when it comes
+// back.
+Result<void> CellRobots::set_online(std::string_view robot, bool online) {
+  const FleetRobot* known = fleet_.find(robot);
+  const bool changes = known != nullptr && known->online != online;
+  auto set = fleet_.set_online(robot, online);
+  if (set && changes)
+    motion_.give_up(robot, {fmt::format("the robot {} went {}", robot, online ? "online" : "offline"), {}});
+  return set;
 }
 
 Result<RobotModel*> CellRobots::active() {
@@ -146,6 +161,19 @@ Result<void> CellRobots::set_tool_center_point(const Pose& X_PT) {
 Result<void> CellPrograms::set_language(RobotLanguage language) {
   language_ = language;
   return {};
+}
+
+Result<void> CellViews::set_display(int display, bool full_screen) { return views_.set_display(display, full_screen); }
+
+Result<void> CellViews::set_view(int view, const ViewChange& change) {
+  View changed = views_.view(view);
+  changed.viewpoint = change.viewpoint.value_or(changed.viewpoint);
+  changed.lookpoint = change.lookpoint.value_or(changed.lookpoint);
+  changed.twist = change.twist.value_or(changed.twist);
+  changed.opening_angle = change.opening_angle.value_or(changed.opening_angle);
+  changed.near_distance = change.near_distance.value_or(changed.near_distance);
+  changed.far_distance = change.far_distance.value_or(changed.far_distance);
+  return views_.set(view, changed);
 }
 
 Result<void> CellViews::set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) {

@@ -8,7 +8,9 @@
 #include <string_view>
 
 #include "app/gateway/fleet.hpp"
+#include "app/gateway/motion_desk.hpp"
 #include "rt_core/cell/cell.hpp"
+#include "rt_core/cell/view.hpp"
 #include "scripts/commands/host.hpp"
 
 namespace cellmirror::app {
@@ -33,8 +35,8 @@ class CellNames final : public NameDirectory {
 class CellWorld final : public WorldHost {
  public:
   // `draw` publishes the picture of the cell.
-  CellWorld(Cell& cell, Fleet& fleet, std::function<void()> draw)
-      : cell_(cell), fleet_(fleet), draw_(std::move(draw)) {}
+  CellWorld(Cell& cell, Fleet& fleet, MotionDesk& motion, std::function<void()> draw)
+      : cell_(cell), fleet_(fleet), motion_(motion), draw_(std::move(draw)) {}
   Result<void> activate(std::string_view node) override;
   Result<void> deactivate(std::string_view node) override;
   Result<void> delete_node(std::string_view node) override;
@@ -53,21 +55,17 @@ class CellWorld final : public WorldHost {
 
   Cell& cell_;
   Fleet& fleet_;
+  MotionDesk& motion_;
   std::function<void()> draw_;
 };
 
 class CellRobots final : public RobotHost {
  public:
-  CellRobots(Cell& cell, Fleet& fleet, CellNames& names) : cell_(cell), fleet_(fleet), names_(names) {}
+  CellRobots(Cell& cell, Fleet& fleet, MotionDesk& motion, CellNames& names)
+      : cell_(cell), fleet_(fleet), motion_(motion), names_(names) {}
   Result<void> set_active_robot(std::string_view robot) override;
-  Result<void> set_online(std::string_view robot, bool online) override { return fleet_.set_online(robot, online); }
+  Result<void> set_online(std::string_view robot, bool online) override;
   Result<void> set_sending(std::string_view robot, bool sending) override { return fleet_.set_sending(robot, sending); }
-  Result<void> move_joints_to(std::string_view robot, std::span<const double> positions) override {
-    return fleet_.move_to(robot, positions);
-  }
-  Result<void> move_joints_by(std::string_view robot, std::span<const double> increments) override {
-    return fleet_.move_by(robot, increments);
-  }
   Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) override;
   Result<void> set_scalar_parameter(ScalarParameter which, double value) override;
   Result<void> set_fly(FlyType type, double parameter) override;
@@ -82,16 +80,20 @@ class CellRobots final : public RobotHost {
 
   Cell& cell_;
   Fleet& fleet_;
+  MotionDesk& motion_;
   CellNames& names_;
 };
 
 class CellPrograms final : public ProgramHost {
  public:
+  explicit CellPrograms(const MotionDesk& motion) : motion_(motion) {}
   Result<void> set_language(RobotLanguage language) override;
-  [[nodiscard]] bool busy() const override { return false; }  // there are no robot programs and view sequences yet
+  // There are no robot programs and view sequences yet.
+  [[nodiscard]] bool busy() const override { return motion_.moving(); }
   [[nodiscard]] RobotLanguage language() const { return language_; }
 
  private:
+  const MotionDesk& motion_;
   RobotLanguage language_ = RobotLanguage::irdata;  // manual 1.2.1
 };
 
@@ -105,13 +107,16 @@ class CellViews final : public ViewHost {
   static constexpr std::size_t kKeptMessages = 8;
   static constexpr Nanoseconds kMessageTime{5'000'000'000};  // "for about 5 seconds", manual 1.2.6
 
-  CellViews(Cell& cell, const Clock& clock) : cell_(cell), clock_(clock) {}
+  CellViews(Cell& cell, Views& views, const Clock& clock) : cell_(cell), views_(views), clock_(clock) {}
+  Result<void> set_display(int display, bool full_screen) override;
+  Result<void> set_view(int view, const ViewChange& change) override;
   Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) override;
   Result<void> show_message(std::string_view text) override;
   [[nodiscard]] const std::deque<ShownMessage>& messages() const { return messages_; }
 
  private:
   Cell& cell_;
+  Views& views_;
   const Clock& clock_;
   std::deque<ShownMessage> messages_;  // newest last
 };

@@ -19,14 +19,17 @@ struct Outcome {
     refused,      // `error` says why and what to do; nothing was changed
     call_script,  // EXEC_SCRIPT: the runner calls `script`
     wait,         // WAIT: the runner suspends the script
+    pending,      // begun; done or refused when `activity` ends
   };
 
   Kind kind = Kind::done;
   Error error;
   std::string_view script;  // points into the command's text
+  ActivityHandle activity;
 
   static Outcome done() { return {}; }
-  static Outcome refused(Error why) { return {Kind::refused, std::move(why), {}}; }
+  static Outcome refused(Error why) { return {Kind::refused, std::move(why), {}, {}}; }
+  static Outcome pending(ActivityHandle activity) { return {Kind::pending, {}, {}, std::move(activity)}; }
   static Outcome of(Result<void> result) { return result ? done() : refused(std::move(result.error())); }
 };
 

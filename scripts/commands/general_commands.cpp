@@ -1,7 +1,4 @@
 // Manual 1.2.1.
-#include <array>
-
-#include "rt_core/base/capacity.hpp"
 #include "rt_core/base/pose.hpp"
 #include "scripts/commands/registry.hpp"
 
@@ -53,20 +50,6 @@ Outcome frame_to_workframe(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.world.attach_at_workframe(command.text(0), command.text(1), command.text(2)));
 }
 
-// The joint values stand behind the robot's name.
-std::span<const double> joint_values(const ParsedCommand& command, std::array<double, kMaxJointsPerRobot>& storage) {
-  return std::span(storage).first(command.numbers(1, storage));
-}
-
-Outcome move_joints_to(const ParsedCommand& command, CommandHost& host) {
-  std::array<double, kMaxJointsPerRobot> storage;
-  return Outcome::of(host.robots.move_joints_to(command.text(0), joint_values(command, storage)));
-}
-Outcome move_joints_by(const ParsedCommand& command, CommandHost& host) {
-  std::array<double, kMaxJointsPerRobot> storage;
-  return Outcome::of(host.robots.move_joints_by(command.text(0), joint_values(command, storage)));
-}
-
 Outcome set_placement(const ParsedCommand& command, CommandHost& host) {
   const Eigen::Vector3d rpy(command.number(1), command.number(2), command.number(3));
   const Eigen::Vector3d xyz(command.number(4), command.number(5), command.number(6));
@@ -102,12 +85,6 @@ constexpr Registration kHandlers[] = {
     {FormId::draw_scene, draw_scene},
     {FormId::connect, connect},
     {FormId::frame_to_wfrm, frame_to_workframe},
-    {FormId::pos_rob_joint_abs, move_joints_to},
-    {FormId::pos_rob_joint_inc, move_joints_by},
-    {FormId::pos_rob_frame_abs, not_available},
-    {FormId::pos_rob_frame_inc, not_available},
-    {FormId::pos_rob_tool_inc, not_available},
-    {FormId::pos_rob_screen_inc, not_available},
     {FormId::set_frame_render, not_available},
     {FormId::set_frame_placement, set_placement},
     {FormId::set_abstract_render, not_available},

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -11,6 +12,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
+#include "scripts/commands/motion_host.hpp"
 #include "scripts/lang/names.hpp"
 
 namespace cellmirror {
@@ -43,9 +45,6 @@ class RobotHost {
   virtual Result<void> set_active_robot(std::string_view robot) = 0;
   virtual Result<void> set_online(std::string_view robot, bool online) = 0;    // ROBOT online / offline
   virtual Result<void> set_sending(std::string_view robot, bool sending) = 0;  // ROBOT send_on / send_off
-  // POS_ROB JOINT_ABS, JOINT_INC: fewer values than joints leave the others where they are. All or nothing.
-  virtual Result<void> move_joints_to(std::string_view robot, std::span<const double> positions) = 0;
-  virtual Result<void> move_joints_by(std::string_view robot, std::span<const double> increments) = 0;
   virtual Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) = 0;
   virtual Result<void> set_scalar_parameter(ScalarParameter which, double value) = 0;
   virtual Result<void> set_fly(FlyType type, double parameter) = 0;
@@ -62,13 +61,25 @@ class ProgramHost {
  public:
   virtual ~ProgramHost() = default;
   virtual Result<void> set_language(RobotLanguage language) = 0;
-  // True while a robot program or a view sequence runs: what WAIT waits for.
+  // True while a robot moves, or a robot program or a view sequence runs: what WAIT waits for.
   [[nodiscard]] virtual bool busy() const = 0;
+};
+
+// What STVW changes of a view; what is not given stays.
+struct ViewChange {
+  std::optional<Eigen::Vector3d> viewpoint;  // m, world
+  std::optional<Eigen::Vector3d> lookpoint;
+  std::optional<double> twist;          // rad
+  std::optional<double> opening_angle;  // rad, vertical
+  std::optional<double> near_distance;  // m
+  std::optional<double> far_distance;
 };
 
 class ViewHost {
  public:
   virtual ~ViewHost() = default;
+  virtual Result<void> set_display(int display, bool full_screen) = 0;    // STDP, 1 to 6
+  virtual Result<void> set_view(int view, const ViewChange& change) = 0;  // STVW at once; views 0 to 6
   virtual Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) = 0;
   virtual Result<void> show_message(std::string_view text) = 0;  // hot_message
 };
@@ -84,6 +95,7 @@ struct CommandHost {
   NameDirectory& names;
   WorldHost& world;
   RobotHost& robots;
+  MotionHost& motion;
   ProgramHost& programs;
   ViewHost& views;
   DiagnosisHost& diagnosis;

@@ -104,6 +104,7 @@ enum class Selector : std::uint8_t {
   only_form,
   by_first_word,   // the first parameter
   by_second_word,  // the second parameter
+  by_third_word,   // the third parameter
   by_shape,        // eladyn_geo_def
 };
 

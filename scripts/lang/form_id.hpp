@@ -114,9 +114,19 @@ enum class FormId : std::uint8_t {
   vv_reload_luts,
   // Ours
   save_flight,
+  rob_positioning,
+  move_rob_joint_abs,
+  move_rob_joint_inc,
+  move_rob_frame_abs,
+  move_rob_frame_inc,
+  move_rob_tool_inc,
+  move_rob_screen_inc,
+  move_rob_start,
+  move_rob_reference,
+  stop_rob,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::save_flight) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::stop_rob) + 1;
 
 }  // namespace cellmirror::script

@@ -66,12 +66,17 @@ FormId geo_def_form(std::span<const Token> words) {
   return object ? FormId::eladyn_geo_def_flags : FormId::eladyn_geo_def_cylinders;
 }
 
+std::size_t selecting_position(Selector selector) {
+  if (selector == Selector::by_third_word) return 2;
+  return selector == Selector::by_second_word ? 1 : 0;
+}
+
 const Form* select_form(std::span<const Form* const> forms, std::span<const Token> words, const Position& end,
                         Findings& findings) {
   const Selector selector = forms.front()->selector;
   if (selector == Selector::only_form) return forms.front();
   if (selector == Selector::by_shape) return &form(geo_def_form(words));
-  const std::size_t position = selector == Selector::by_first_word ? 0 : 1;
+  const std::size_t position = selecting_position(selector);
   if (words.size() > position) {
     for (const Form* candidate : forms) {
       if (selects(candidate->parameters[position], words[position].text)) return candidate;

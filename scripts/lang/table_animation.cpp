@@ -56,8 +56,9 @@ constexpr Form kForms[] = {
      .parameters = kDisplay,
      .help = "sets the display: 1 perspective, 2 top and side, 3 top, 4 side, 5 side in perspective, 6 bird's eye",
      .example = "STDP 1 FULL",
-     .missing = kPicture,
-     .definition = "without FULL or FULL_OFF: FULL_OFF"},
+     .definition =
+         "without FULL or FULL_OFF: FULL_OFF. Its first view is the current one, whose axes SCREEN_INC takes; "
+         "there is no picture yet"},
     {.id = FormId::stvw,
      .name = "STVW",
      .syntax = "STVW <view_id> [VP x y z] [LP x y z] [TW twist] [VA angle] [FCP d] [BCP d] [STEPS n | TIME s]",
@@ -65,8 +66,8 @@ constexpr Form kForms[] = {
      .parameters = kStvw,
      .help = "sets parameters of a view, at once or as a sequence of n updates or s seconds",
      .example = "STVW 0 VP 519.7 -539 -850 LP 2183 9570 3391 TIME 15.0",
-     .missing = kViews,
-     .definition = "the groups come in any order, each at most once; with neither STEPS nor TIME: at once"},
+     .definition = "the groups come in any order, each at most once; with neither STEPS nor TIME: at once; with one of "
+                   "them it is not available yet"},
     {.id = FormId::covw,
      .name = "COVW",
      .syntax = "COVW <view_id> <cam_id>",
@@ -107,7 +108,7 @@ constexpr Form kForms[] = {
      .name = "WAIT",
      .syntax = "WAIT",
      .section = kSection,
-     .help = "suspends the SCRIPT file that contains it until all robot programs and view sequences have ended",
+     .help = "suspends the SCRIPT file that contains it until all moves, robot programs and view sequences have ended",
      .example = "WAIT",
      .definition = "messages and other SCRIPT files go on; refused as a message of its own",
      .effect = LoopEffect::blocking},

@@ -8,7 +8,6 @@ namespace {
 using namespace parts;
 
 constexpr std::string_view kSection = "1.2.1";
-constexpr std::string_view kInverseKinematics = "inverse kinematics";
 constexpr std::string_view kPicture = "the synthetic view";
 constexpr std::string_view kViews = "views";
 constexpr std::string_view kSensors = "ultrasonic sensors";
@@ -61,8 +60,23 @@ constexpr Parameter kDrawLength[] = {number("len_value", "length", Unit::mm, kPo
 constexpr Parameter kTracking[] = {camera(), on_off("tracking"), optional(frame("frame_id", "target frame"))};
 constexpr Parameter kCameraSwitch[] = {camera(), on_off()};
 
-constexpr std::string_view kIncSyntaxNote =
-    "the groups come in any order, each at most once, with or without commas between them";
+// docs/script.md, "Motion", says the rest.
+constexpr std::string_view kJointNote =
+    "a PTP move that takes the place of what the robot does; in a file the next command waits for its end. Fewer "
+    "values "
+    "than joints: the others stay; more, or one beyond a limit: refused, nothing moves";
+constexpr std::string_view kFrameAbsNote =
+    "a PTP move to the nearest posture that inverse kinematics finds for rob_inverse_class; out of reach: refused with "
+    "the nearest pose";
+constexpr std::string_view kFrameIncNote =
+    "a linear move from where the robot was last commanded to; the rotation is about the TCP, in axes of the ZP frame. "
+    "The groups come in any order, each at most once, with or without commas between them";
+constexpr std::string_view kToolIncNote =
+    "a linear move from where the robot was last commanded to, in the axes of its TCP. The groups come in any order, "
+    "each at most once, with or without commas between them";
+constexpr std::string_view kScreenIncNote =
+    "a linear move from where the robot was last commanded to; the rotation is about the TCP, in the axes of the view "
+    "that STDP chose. The groups come in any order, each at most once, with or without commas between them";
 
 constexpr Form kForms[] = {
     {.id = FormId::pos_rob_joint_abs,
@@ -70,9 +84,9 @@ constexpr Form kForms[] = {
      .syntax = "POS_ROB <Robot_id> JOINT_ABS <j1> ... <jn>",
      .section = kSection,
      .parameters = kJointAbs,
-     .help = "puts a robot's joints at positions",
+     .help = "moves a robot's joints to positions",
      .example = "POS_ROB MANTEC_RM3 JOINT_ABS 27.5 -17.38 -11.02 37.338 0.9 -12.271",
-     .definition = "fewer values than joints: the others stay; more, or one beyond a limit: refused, nothing moves",
+     .definition = kJointNote,
      .effect = LoopEffect::queued,
      .selector = Selector::by_second_word},
     {.id = FormId::pos_rob_joint_inc,
@@ -82,7 +96,7 @@ constexpr Form kForms[] = {
      .parameters = kJointInc,
      .help = "moves a robot's joints by increments",
      .example = "POS_ROB MANTEC_RM3 JOINT_INC -0.1 0 0 0.85 0 -0.3",
-     .definition = "fewer values than joints: the others stay; more, or one beyond a limit: refused, nothing moves",
+     .definition = kJointNote,
      .effect = LoopEffect::queued,
      .selector = Selector::by_second_word},
     {.id = FormId::pos_rob_frame_abs,
@@ -90,9 +104,9 @@ constexpr Form kForms[] = {
      .syntax = "POS_ROB <Robot_id> FRAME_ABS <x> <y> <z> <r> <p> <y>",
      .section = kSection,
      .parameters = kFrameAbs,
-     .help = "puts a robot's TCP at a pose in its ZP frame",
+     .help = "moves a robot's TCP to a pose in its ZP frame",
      .example = "POS_ROB MANTEC_RM3 FRAME_ABS 1000.0 0 0 -90.0 0 -90.0",
-     .missing = kInverseKinematics,
+     .definition = kFrameAbsNote,
      .effect = LoopEffect::queued,
      .selector = Selector::by_second_word},
     {.id = FormId::pos_rob_frame_inc,
@@ -102,8 +116,7 @@ constexpr Form kForms[] = {
      .parameters = kFrameInc,
      .help = "moves a robot's TCP by an increment in its ZP frame",
      .example = "POS_ROB MANTEC_RM3 FRAME_INC X -0.1 Y 0.5 A -0.01",
-     .missing = kInverseKinematics,
-     .definition = kIncSyntaxNote,
+     .definition = kFrameIncNote,
      .effect = LoopEffect::queued,
      .selector = Selector::by_second_word,
      .commas = true,
@@ -115,8 +128,7 @@ constexpr Form kForms[] = {
      .parameters = kToolInc,
      .help = "moves a robot's TCP by an increment in its TCP frame",
      .example = "POS_ROB MANTEC_RM3 TOOL_INC Z 0.182 B 0.001",
-     .missing = kInverseKinematics,
-     .definition = kIncSyntaxNote,
+     .definition = kToolIncNote,
      .effect = LoopEffect::queued,
      .selector = Selector::by_second_word,
      .commas = true,
@@ -127,8 +139,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kScreenInc,
      .help = "moves a robot's TCP by an increment in the space of the display: x right, y up, z out of it",
-     .missing = kInverseKinematics,
-     .definition = kIncSyntaxNote,
+     .definition = kScreenIncNote,
      .effect = LoopEffect::queued,
      .selector = Selector::by_second_word,
      .commas = true,

@@ -7,17 +7,123 @@ namespace {
 
 using namespace parts;
 
+constexpr std::string_view kSection = "ours";
+
+constexpr Choice kPositionings[] = {{"move", "POS_ROB moves the robot, the default"},
+                                    {"jump", "POS_ROB puts the robot there at once"}};
+constexpr Choice kPaths[] = {{"PTP", "point to point"}, {"LIN", "the TCP on a straight line"}};
+constexpr Choice kPtpOnly[] = {{"PTP", "point to point"}};
+
 constexpr Parameter kFlight[] = {file("file", "flight record")};
+constexpr Parameter kPositioning[] = {choice("move | jump", "positioning", kPositionings)};
+
+constexpr Parameter kPath = choice("PTP | LIN", "path", kPaths);
+constexpr Parameter kX = optional_labelled("X", number("x", "increment along x", Unit::mm));
+constexpr Parameter kY = optional_labelled("Y", number("y", "increment along y", Unit::mm));
+constexpr Parameter kZ = optional_labelled("Z", number("z", "increment along z", Unit::mm));
+constexpr Parameter kA = optional_labelled("A", number("r", "roll increment", Unit::degree));
+constexpr Parameter kB = optional_labelled("B", number("p", "pitch increment", Unit::degree));
+constexpr Parameter kC = optional_labelled("C", number("y", "yaw increment", Unit::degree));
+
+constexpr Parameter kJointAbs[] = {robot(), kPath, word("JOINT_ABS"), some_joints("joint position")};
+constexpr Parameter kJointInc[] = {robot(), kPath, word("JOINT_INC"), some_joints("joint increment")};
+constexpr Parameter kFrameAbs[] = {robot(),
+                                   kPath,
+                                   word("FRAME_ABS"),
+                                   number("x", "x", Unit::mm),
+                                   number("y", "y", Unit::mm),
+                                   number("z", "z", Unit::mm),
+                                   number("r", "roll", Unit::degree),
+                                   number("p", "pitch", Unit::degree),
+                                   number("y", "yaw", Unit::degree)};
+constexpr Parameter kFrameInc[] = {robot(), kPath, word("FRAME_INC"), kX, kY, kZ, kA, kB, kC};
+constexpr Parameter kToolInc[] = {robot(), kPath, word("TOOL_INC"), kX, kY, kZ, kA, kB, kC};
+constexpr Parameter kScreenInc[] = {robot(), kPath, word("SCREEN_INC"), kX, kY, kZ, kA, kB, kC};
+constexpr Parameter kStart[] = {robot(), choice("PTP", "path", kPtpOnly), word("START")};
+constexpr Parameter kReference[] = {robot(), choice("PTP", "path", kPtpOnly), word("REFERENCE")};
+constexpr Parameter kStop[] = {robot()};
+
+constexpr std::string_view kQueued =
+    "begins when the robot has done what was commanded before; the command is done when the move waits its turn (at "
+    "most "
+    "32 a robot)";
+constexpr std::string_view kQueuedIncrement =
+    "as in POS_ROB, from the end of the move before; begins when the robot has done what was commanded before";
+
+constexpr Form move_form(FormId id, std::string_view syntax, std::span<const Parameter> parameters,
+                         std::string_view help, std::string_view example) {
+  return {.id = id,
+          .name = "MOVE_ROB",
+          .syntax = syntax,
+          .section = kSection,
+          .parameters = parameters,
+          .help = help,
+          .example = example,
+          .definition = kQueued,
+          .effect = LoopEffect::queued,
+          .selector = Selector::by_third_word,
+          .origin = Origin::ours};
+}
+
+constexpr Form increment_form(FormId id, std::string_view syntax, std::span<const Parameter> parameters,
+                              std::string_view help, std::string_view example) {
+  Form form = move_form(id, syntax, parameters, help, example);
+  form.definition = kQueuedIncrement;
+  form.commas = true;
+  form.at_least_one = true;
+  return form;
+}
 
 constexpr Form kForms[] = {
     {.id = FormId::save_flight,
      .name = "SAVE_FLIGHT",
      .syntax = "SAVE_FLIGHT <file>",
-     .section = "ours",
+     .section = kSection,
      .parameters = kFlight,
      .help = "writes the flight recorder into the home's records folder",
      .example = "SAVE_FLIGHT before_stop.csv",
      .definition = "a plain file name without folders",
+     .origin = Origin::ours},
+    {.id = FormId::rob_positioning,
+     .name = "rob_positioning",
+     .syntax = "rob_positioning [move | jump]",
+     .section = kSection,
+     .parameters = kPositioning,
+     .help = "sets whether POS_ROB moves the active robot or puts it there at once",
+     .example = "rob_positioning move",
+     .definition = "with jump, nothing is limited but the ranges of the joints; MOVE_ROB moves all the same",
+     .origin = Origin::ours,
+     .needs_active_robot = true},
+    move_form(FormId::move_rob_joint_abs, "MOVE_ROB <Robot_id> [PTP | LIN] JOINT_ABS <j1> ... <jn>", kJointAbs,
+              "moves a robot's joints to positions", "MOVE_ROB MANTEC_RM3 PTP JOINT_ABS 10 20 30"),
+    move_form(FormId::move_rob_joint_inc, "MOVE_ROB <Robot_id> [PTP | LIN] JOINT_INC <j1> ... <jn>", kJointInc,
+              "moves a robot's joints by increments", "MOVE_ROB MANTEC_RM3 PTP JOINT_INC 0 5"),
+    move_form(FormId::move_rob_frame_abs, "MOVE_ROB <Robot_id> [PTP | LIN] FRAME_ABS <x> <y> <z> <r> <p> <y>",
+              kFrameAbs, "moves a robot's TCP to a pose in its ZP frame",
+              "MOVE_ROB MANTEC_R3 PTP FRAME_ABS 600 300 900 180 0 0"),
+    increment_form(FormId::move_rob_frame_inc,
+                   "MOVE_ROB <Robot_id> [PTP | LIN] FRAME_INC [X x] [Y y] [Z z] [A r] [B p] [C y]", kFrameInc,
+                   "moves a robot's TCP by an increment in its ZP frame", "MOVE_ROB MANTEC_RM3 LIN FRAME_INC X 20"),
+    increment_form(FormId::move_rob_tool_inc,
+                   "MOVE_ROB <Robot_id> [PTP | LIN] TOOL_INC [X x] [Y y] [Z z] [A r] [B p] [C y]", kToolInc,
+                   "moves a robot's TCP by an increment in its TCP frame", "MOVE_ROB MANTEC_RM3 LIN TOOL_INC Z -20"),
+    increment_form(FormId::move_rob_screen_inc,
+                   "MOVE_ROB <Robot_id> [PTP | LIN] SCREEN_INC [X x] [Y y] [Z z] [A r] [B p] [C y]", kScreenInc,
+                   "moves a robot's TCP by an increment in the space of the display",
+                   "MOVE_ROB MANTEC_RM3 LIN SCREEN_INC Y 10"),
+    move_form(FormId::move_rob_start, "MOVE_ROB <Robot_id> PTP START", kStart,
+              "moves a robot to its start position, rob_jnt_start_pos", "MOVE_ROB MANTEC_RM3 PTP START"),
+    move_form(FormId::move_rob_reference, "MOVE_ROB <Robot_id> PTP REFERENCE", kReference,
+              "moves a robot to its reference position, rob_jnt_ref_pos", "MOVE_ROB MANTEC_RM3 PTP REFERENCE"),
+    {.id = FormId::stop_rob,
+     .name = "STOP_ROB",
+     .syntax = "STOP_ROB <Robot_id>",
+     .section = kSection,
+     .parameters = kStop,
+     .help = "brakes a robot's move on its path and forgets the moves that wait",
+     .example = "STOP_ROB MANTEC_RM3",
+     .definition = "done when the loop was told; a POS_ROB that is stopped so is refused to whoever waits for it",
+     .effect = LoopEffect::queued,
      .origin = Origin::ours},
 };
 

@@ -45,7 +45,9 @@ class ScriptRun {
   [[nodiscard]] bool ended() const { return stack.empty(); }
 
   std::vector<std::unique_ptr<ScriptFile>> stack;  // the innermost last
-  bool waiting = false;
+  bool waiting = false;                            // in WAIT
+  ActivityHandle activity;                         // not null: of the last command, which is done when this has ended
+  Place activity_place;
   RunReport report;
 };
 

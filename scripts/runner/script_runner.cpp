@@ -41,21 +41,6 @@ std::string shown_name(const fs::path& path, const fs::path& home) {
   return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
 }
 
-// All findings in one line, for the answer to a message: "1:9: what; remedy | 1:20: ...".
-Error as_error(const Diagnostics& findings) {
-  constexpr std::size_t kShown = 8;
-  Error error;
-  std::size_t shown = 0;
-  for (const Diagnostic& finding : findings.all()) {
-    if (finding.severity != Severity::error) continue;
-    if (++shown > kShown) break;
-    if (shown > 1) error.what += " | ";
-    error.what += fmt::format("{}:{}: {}", finding.place.line, finding.place.column, finding.message);
-    if (shown == 1) error.remedy = finding.remedy;
-  }
-  return error;
-}
-
 }  // namespace
 
 ScriptRunner::ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock)
@@ -133,6 +118,7 @@ Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Dia
 std::size_t ScriptRunner::step(std::size_t budget) {
   const std::uint64_t received_before = counters_.file.received;
   std::size_t without_progress = 0;
+  ended_activities_ = answer_messages();
   work_ = 0;
   while (work_ < budget && without_progress < runs_.size()) {
     if (next_run_ >= runs_.size()) next_run_ = 0;
@@ -147,16 +133,34 @@ std::size_t ScriptRunner::step(std::size_t budget) {
     without_progress = work_ == work_before ? without_progress + 1 : 0;
     ++next_run_;
   }
-  return static_cast<std::size_t>(counters_.file.received - received_before);
+  return static_cast<std::size_t>(counters_.file.received - received_before) + ended_activities_;
+}
+
+bool ScriptRunner::may_go_on(ScriptRun& run) {
+  if (run.waiting) {
+    if (host_.programs.busy()) return false;
+    run.waiting = false;
+  }
+  if (!run.activity) return true;
+  if (run.activity->state() == Activity::State::running) return false;
+  const ActivityHandle ended = std::move(run.activity);
+  run.activity = nullptr;
+  ++ended_activities_;
+  if (ended->state() == Activity::State::refused) {
+    Diagnostics findings;
+    findings.error(run.activity_place, ended->error().what, ended->error().remedy);
+    refuse(run, findings);
+    return true;
+  }
+  ++run.report.counters.done;
+  ++counters_.file.done;
+  return true;
 }
 
 void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
-  if (run.waiting) {
-    if (host_.programs.busy()) return;
-    run.waiting = false;
-  }
+  if (!may_go_on(run)) return;
   Diagnostics findings;
-  while (work_ < until && !run.stack.empty() && !run.waiting) {
+  while (work_ < until && !run.stack.empty() && !run.waiting && !run.activity) {
     const CommandReader::Step step = run.stack.back()->reader().next(&host_.names, command_, findings);
     if (step == CommandReader::Step::end) {
       run.stack.pop_back();
@@ -193,6 +197,11 @@ void ScriptRunner::execute_command(ScriptRun& run) {
   }
   if (!findings.ok()) {
     refuse(run, findings);
+    return;
+  }
+  if (outcome.kind == Outcome::Kind::pending) {
+    run.activity = std::move(outcome.activity);
+    run.activity_place = {file.name(), place.line, place.column};
     return;
   }
   ++run.report.counters.done;
@@ -232,46 +241,6 @@ void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
   for (const Diagnostic& diagnostic : findings.all()) remember(diagnostic);
 }
 
-Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
-  ++counters_.message.received;
-  CommandReader reader(text, source, TextKind::message);
-  Diagnostics findings;
-  const CommandReader::Step step = reader.next(&host_.names, command_, findings);
-  Result<std::string> answer;
-  if (step == CommandReader::Step::error) {
-    for (const Diagnostic& finding : findings.all()) remember(finding);
-    answer = std::unexpected(as_error(findings));
-  } else if (step == CommandReader::Step::command) {
-    answer = accept_message(execute(command_, host_));
-    if (!answer) {
-      remember({Severity::error,
-                {std::string(source), command_.begin().line, command_.begin().column},
-                answer.error().what,
-                answer.error().remedy});
-    }
-  }
-  ++(answer ? counters_.message.done : counters_.message.refused);
-  return answer;
-}
-
-Result<std::string> ScriptRunner::accept_message(const Outcome& outcome) {
-  switch (outcome.kind) {
-    case Outcome::Kind::done:
-      return std::string{};
-    case Outcome::Kind::refused:
-      return std::unexpected(outcome.error);
-    case Outcome::Kind::wait:
-      return fail("WAIT suspends the SCRIPT file that contains it; a message has none",
-                  "put WAIT into a SCRIPT file and call it with EXEC_SCRIPT");
-    case Outcome::Kind::call_script: {
-      const auto id = start_file(outcome.script);
-      if (!id) return std::unexpected(id.error());
-      return fmt::format("{} started as run {}", runs_.back()->report.file, *id);
-    }
-  }
-  return std::string{};
-}
-
 void ScriptRunner::end_run(std::size_t index, bool stopped) {
   const std::unique_ptr<ScriptRun> run = std::move(runs_[index]);
   runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(index));
@@ -289,12 +258,13 @@ bool ScriptRunner::stop(std::uint64_t id) {
 
 void ScriptRunner::stop_all() {
   for (std::size_t count = runs_.size(); count > 0; --count) end_run(count - 1, true);
+  refuse_waiting_messages();
 }
 
 std::vector<RunStatus> ScriptRunner::runs() const {
   std::vector<RunStatus> all;
   for (const auto& run : runs_) {
-    RunStatus status{run->report.id, {}, run->waiting};
+    RunStatus status{run->report.id, {}, run->waiting || run->activity != nullptr};
     for (const auto& file : run->stack)
       status.stack.push_back(fmt::format("{}:{}", file->name(), file->reader().position().line));
     all.push_back(std::move(status));

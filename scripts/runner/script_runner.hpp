@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,7 +60,7 @@ struct RunReport {
 struct RunStatus {
   std::uint64_t id = 0;
   std::vector<std::string> stack;  // "scripts/a.spt:12", the outermost first
-  bool waiting = false;            // in WAIT
+  bool waiting = false;            // in WAIT, or for a robot to arrive
 };
 
 class ScriptRunner {
@@ -84,16 +85,21 @@ class ScriptRunner {
   Result<std::uint64_t> start_path(const std::filesystem::path& path, Diagnostics* findings = nullptr);
 
   // Executes one command now, whatever the files do; returns a text for the acknowledgement. EXEC_SCRIPT starts the
-  // file and returns when it was accepted; WAIT is refused. `source` names the sender in errors.
+  // file and returns when it was accepted, a motion when it has begun; WAIT is refused. `source` names the sender in
+  // errors.
   Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
+  // The same for a sender who is answered, once: now, or within a step() when what the command began has ended.
+  using Answer = std::function<void(const Result<std::string>& result)>;
+  void execute_message(std::string_view text, std::string_view source, Answer answer);
 
-  // Executes up to `budget` commands of the files, in turn; fewer where they are refused (each counts 16) or load files
-  // (each 256 bytes count 1). Returns how many were executed or refused. 0: every run waits, or there is none.
+  // Answers the messages whose activity has ended. Then executes up to `budget` commands of the files, in turn; fewer
+  // where they are refused (each counts 16) or load files (each 256 bytes count 1). Returns how many commands began or
+  // ended. 0: every run waits, or there is none.
   std::size_t step(std::size_t budget);
 
   [[nodiscard]] bool idle() const { return runs_.empty(); }
   [[nodiscard]] std::vector<RunStatus> runs() const;
-  // Ends a run, or all of them, before their next command.
+  // Ends a run, or all of them, before their next command; with all of them, messages that wait are refused.
   bool stop(std::uint64_t id);
   void stop_all();
 
@@ -107,19 +113,36 @@ class ScriptRunner {
   Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
   Result<std::unique_ptr<ScriptFile>> load(const std::filesystem::path& path, Diagnostics& findings);
   void step_run(ScriptRun& run, std::size_t until);
+  // False while the run waits; ends the command it waited for.
+  bool may_go_on(ScriptRun& run);
   void execute_command(ScriptRun& run);
   Result<void> call(ScriptRun& run, std::string_view name, Diagnostics& findings);
   void refuse(ScriptRun& run, const Diagnostics& findings);
+  // The answer; none where `activity` was set: it comes when that ends.
+  std::optional<Result<std::string>> begin_message(std::string_view text, std::string_view source,
+                                                   ActivityHandle& activity);
   Result<std::string> accept_message(const Outcome& outcome);
+  void count_message(const Result<std::string>& result, const Place& place);
+  std::size_t answer_messages();
+  void refuse_waiting_messages();
   void end_run(std::size_t index, bool stopped);
   void remember(const Diagnostic& diagnostic);
 
   CommandHost host_;
   const KismetHome& home_;
   const Clock& clock_;
+  // A message that is answered when its activity has ended. At most one a robot runs, so they stay few.
+  struct WaitingMessage {
+    ActivityHandle activity;
+    Place place;
+    Answer answer;
+  };
+
   std::vector<std::unique_ptr<ScriptRun>> runs_;
+  std::vector<WaitingMessage> waiting_messages_;
   std::size_t next_run_ = 0;
-  std::size_t work_ = 0;  // done in this step
+  std::size_t work_ = 0;              // done in this step
+  std::size_t ended_activities_ = 0;  // in this step
   std::uint64_t last_id_ = 0;
   ScriptCounters counters_;
   std::deque<std::string> last_errors_;

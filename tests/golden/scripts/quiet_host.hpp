@@ -9,12 +9,17 @@
 
 namespace cellmirror::testing {
 
-class QuietHost final : public WorldHost, public RobotHost, public ProgramHost, public ViewHost, public DiagnosisHost {
+class QuietHost final : public WorldHost,
+                        public RobotHost,
+                        public MotionHost,
+                        public ProgramHost,
+                        public ViewHost,
+                        public DiagnosisHost {
  public:
   FakeNames names;
   std::size_t calls = 0;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this}; }
 
   Result<void> activate(std::string_view /*node*/) override { return called(); }
   Result<void> deactivate(std::string_view /*node*/) override { return called(); }
@@ -35,12 +40,16 @@ class QuietHost final : public WorldHost, public RobotHost, public ProgramHost, 
   }
   Result<void> set_online(std::string_view /*robot*/, bool /*online*/) override { return called(); }
   Result<void> set_sending(std::string_view /*robot*/, bool /*sending*/) override { return called(); }
-  Result<void> move_joints_to(std::string_view /*robot*/, std::span<const double> /*positions*/) override {
+  Result<ActivityHandle> position(std::string_view /*robot*/, const MotionTarget& /*target*/) override {
+    ++calls;
+    return ActivityHandle();
+  }
+  Result<void> queue_move(std::string_view /*robot*/, MovePath /*path*/, const MotionTarget& /*target*/) override {
     return called();
   }
-  Result<void> move_joints_by(std::string_view /*robot*/, std::span<const double> /*increments*/) override {
-    return called();
-  }
+  Result<void> stop(std::string_view /*robot*/) override { return called(); }
+  Result<void> set_positioning(Positioning /*positioning*/) override { return called(); }
+  [[nodiscard]] bool moving() const override { return false; }
   Result<void> set_joint_parameter(JointParameter /*which*/, std::span<const double> /*values*/) override {
     return called();
   }
@@ -53,6 +62,8 @@ class QuietHost final : public WorldHost, public RobotHost, public ProgramHost, 
   Result<void> set_tool_center_point(const Pose& /*X_PT*/) override { return called(); }
   Result<void> set_language(RobotLanguage /*language*/) override { return called(); }
   [[nodiscard]] bool busy() const override { return false; }
+  Result<void> set_display(int /*display*/, bool /*full_screen*/) override { return called(); }
+  Result<void> set_view(int /*view*/, const ViewChange& /*change*/) override { return called(); }
   Result<void> set_camera(std::string_view /*camera*/, double /*focal_distance_m*/, double /*fovy_rad*/) override {
     return called();
   }

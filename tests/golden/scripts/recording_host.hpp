@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +19,7 @@ namespace cellmirror::testing {
 
 class RecordingHost final : public WorldHost,
                             public RobotHost,
+                            public MotionHost,
                             public ProgramHost,
                             public ViewHost,
                             public DiagnosisHost {
@@ -26,8 +28,10 @@ class RecordingHost final : public WorldHost,
   FakeNames names;
   std::string refused_call;     // the first word of calls that are refused
   mutable int busy_checks = 0;  // how many more times busy() answers true
+  // What POS_ROB begins; null: the robot stands there at once.
+  std::shared_ptr<Activity> activity;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this}; }
   [[nodiscard]] std::string trace() const {
     std::string text;
     for (const std::string& call : calls) text += call + "\n";
@@ -65,12 +69,19 @@ class RecordingHost final : public WorldHost,
   Result<void> set_sending(std::string_view robot, bool sending) override {
     return record("set_sending {} {}", robot, sending);
   }
-  Result<void> move_joints_to(std::string_view robot, std::span<const double> positions) override {
-    return record("move_joints_to {} {}", robot, list_text(positions));
+  Result<ActivityHandle> position(std::string_view robot, const MotionTarget& target) override {
+    if (auto recorded = record("position {} {}", robot, target_text(target)); !recorded)
+      return std::unexpected(recorded.error());
+    return activity;
   }
-  Result<void> move_joints_by(std::string_view robot, std::span<const double> increments) override {
-    return record("move_joints_by {} {}", robot, list_text(increments));
+  Result<void> queue_move(std::string_view robot, MovePath path, const MotionTarget& target) override {
+    return record("queue_move {} {} {}", robot, path == MovePath::linear ? "LIN" : "PTP", target_text(target));
   }
+  Result<void> stop(std::string_view robot) override { return record("stop {}", robot); }
+  Result<void> set_positioning(Positioning positioning) override {
+    return record("set_positioning {}", positioning == Positioning::jumping ? "jump" : "move");
+  }
+  [[nodiscard]] bool moving() const override { return false; }
   Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) override {
     constexpr std::array<std::string_view, 9> kNames = {
         "max_range",    "min_range",       "start_position",   "reference_position", "max_velocity",
@@ -109,6 +120,25 @@ class RecordingHost final : public WorldHost,
   }
   [[nodiscard]] bool busy() const override { return busy_checks > 0 && busy_checks-- > 0; }
 
+  Result<void> set_display(int display, bool full_screen) override {
+    return record("set_display {} {}", display, full_screen ? "FULL" : "FULL_OFF");
+  }
+  Result<void> set_view(int view, const ViewChange& change) override {
+    std::string text;
+    const auto vector = [&](const char* name, const std::optional<Eigen::Vector3d>& v) {
+      if (v) text += fmt::format(" {} {:.9g} {:.9g} {:.9g}", name, v->x(), v->y(), v->z());
+    };
+    const auto number = [&](const char* name, const std::optional<double>& value) {
+      if (value) text += fmt::format(" {} {:.9g}", name, *value);
+    };
+    vector("viewpoint", change.viewpoint);
+    vector("lookpoint", change.lookpoint);
+    number("twist", change.twist);
+    number("opening_angle", change.opening_angle);
+    number("near", change.near_distance);
+    number("far", change.far_distance);
+    return record("set_view {}{}", view, text);
+  }
   Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) override {
     return record("set_camera {} {:.9g} {:.9g}", camera, focal_distance_m, fovy_rad);
   }
@@ -126,6 +156,19 @@ class RecordingHost final : public WorldHost,
     return {};
   }
   static double tidy(double value) { return std::abs(value) < 5e-13 ? 0.0 : value; }  // no -0 and no rounding dust
+  static std::string target_text(const MotionTarget& target) {
+    const std::string mode(name_of(target.mode));
+    switch (target.mode) {
+      case TargetMode::joint_abs:
+      case TargetMode::joint_inc:
+        return mode + " " + list_text(target.joints);
+      case TargetMode::start_position:
+      case TargetMode::reference_position:
+        return mode;
+      default:
+        return mode + " " + pose_text(target.pose);
+    }
+  }
   static std::string list_text(std::span<const double> values) {
     std::string text;
     for (const double value : values) text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", tidy(value));

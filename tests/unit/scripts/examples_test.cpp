@@ -206,6 +206,22 @@ const Example kExamples[] = {
     {"VV_SET_LUT_PAR EXP_LUT 3 20 2 1.57", FormId::vv_set_lut_par, {}, {1, 3, 20, 2, 1.57}},
     {"VV_RELOAD_LUTS", FormId::vv_reload_luts, {}, {}},
     {"SAVE_FLIGHT stop.csv", FormId::save_flight, {"stop.csv"}, {}},
+    {"rob_positioning jump", FormId::rob_positioning, {}, {1}},
+    {"STOP_ROB MANTEC_RM3", FormId::stop_rob, {"MANTEC_RM3"}, {}},
+    {"MOVE_ROB ZELLENKRAN PTP JOINT_ABS 100 180", FormId::move_rob_joint_abs, {"ZELLENKRAN"}, {0, 0.1, 180 * kDegree}},
+    {"MOVE_ROB ZELLENKRAN lin joint_inc 100", FormId::move_rob_joint_inc, {"ZELLENKRAN"}, {1, 0.1}},
+    {"MOVE_ROB MANTEC_RM3 PTP FRAME_ABS 1000.0 0 0 -90.0 0 -90.0",
+     FormId::move_rob_frame_abs,
+     {"MANTEC_RM3"},
+     {0, 1.0, 0, 0, -1.5707963267948966, 0, -1.5707963267948966}},
+    {"MOVE_ROB MANTEC_RM3 LIN FRAME_INC Z 10, A 90",
+     FormId::move_rob_frame_inc,
+     {"MANTEC_RM3"},
+     {1, 0, 0, 0.01, 1.5707963267948966, 0, 0}},
+    {"MOVE_ROB MANTEC_RM3 LIN TOOL_INC X 1", FormId::move_rob_tool_inc, {"MANTEC_RM3"}, {1, 0.001, 0, 0, 0, 0, 0}},
+    {"MOVE_ROB MANTEC_RM3 LIN SCREEN_INC Y 1", FormId::move_rob_screen_inc, {"MANTEC_RM3"}, {1, 0, 0.001, 0, 0, 0, 0}},
+    {"MOVE_ROB MANTEC_RM3 PTP START", FormId::move_rob_start, {"MANTEC_RM3"}, {0}},
+    {"MOVE_ROB MANTEC_RM3 PTP REFERENCE", FormId::move_rob_reference, {"MANTEC_RM3"}, {0}},
 };
 
 class ManualExample : public ::testing::TestWithParam<Example> {};

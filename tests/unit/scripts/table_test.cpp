@@ -78,15 +78,15 @@ TEST(CommandTable, EveryRowHasOneLineOfHelp) {
   }
 }
 
-TEST(CommandTable, AvailableNowIsWhatTheFirstIssueAsksFor) {
+TEST(CommandTable, AvailableNowIsWhatTheIssuesSoFarAskFor) {
   const std::set<std::string_view> names = {
-      "#",          "ACTIVATE",       "DEACTIVATE",  "DELETE_NODE", "SWAP_NODE", "LEVEL_DOWN",    "LEVEL_UP",
-      "ROBACT",     "ROBOT_LANGUAGE", "DRAW_SCENE",  "EXEC_SCRIPT", "CONNECT",   "FRAME_TO_WFRM", "ROBOT",
-      "SET_CAMPAR", "WAIT",           "hot_message", "SAVE_FLIGHT"};
+      "#",          "ACTIVATE",       "DEACTIVATE",     "DELETE_NODE", "SWAP_NODE", "LEVEL_DOWN",    "LEVEL_UP",
+      "ROBACT",     "ROBOT_LANGUAGE", "DRAW_SCENE",     "EXEC_SCRIPT", "CONNECT",   "FRAME_TO_WFRM", "ROBOT",
+      "SET_CAMPAR", "WAIT",           "hot_message",    "SAVE_FLIGHT", "POS_ROB",   "MOVE_ROB",      "STOP_ROB",
+      "STVW",       "STDP",           "rob_positioning"};
   for (const Form* form : forms()) {
     bool expected = names.contains(form->name) || (form->section == "1.2.2" && form->id != FormId::arc);
-    expected = expected || form->id == FormId::pos_rob_joint_abs || form->id == FormId::pos_rob_joint_inc ||
-               form->id == FormId::set_frame_placement;
+    expected = expected || form->id == FormId::set_frame_placement;
     EXPECT_EQ(form->available(), expected) << form->syntax;
   }
 }
@@ -100,6 +100,7 @@ TEST(CommandTable, FindsCommandsWithoutRegardToCaseAndNothingElse) {
     EXPECT_TRUE(forms_of(name.substr(0, name.size() - 1)).empty() || name == "VV_SET_LUT_PAR") << name;
   }
   EXPECT_EQ(forms_of("POS_ROB").size(), 6U);
+  EXPECT_EQ(forms_of("MOVE_ROB").size(), 8U);
   EXPECT_EQ(forms_of("eladyn_geo_def").size(), 3U);
   EXPECT_TRUE(forms_of("#").empty());
   EXPECT_TRUE(forms_of("").empty());
@@ -108,7 +109,6 @@ TEST(CommandTable, FindsCommandsWithoutRegardToCaseAndNothingElse) {
 // A row of the manual without an example gets one here, so that each row is parsed and executed once.
 TEST(CommandTable, UnavailableCommandsAreRefusedBySubsystemAndChangeNothing) {
   const std::pair<FormId, const char*> samples[] = {
-      {FormId::pos_rob_screen_inc, "POS_ROB MANTEC_RM3 SCREEN_INC X 1"},
       {FormId::set_abstract_render, "SET_ABSTRACT Testlab_1 RENDER 2"},
       {FormId::set_mode, "SET_MODE SMEAR on"},
       {FormId::bfrm, "BFRM on"},
@@ -208,7 +208,10 @@ TEST(Completion, OffersWhatMayStandNext) {
   const cellmirror::testing::FakeNames names;
   using Words = std::vector<std::string>;
   EXPECT_EQ(complete("rob_cart_v", &names), Words{"rob_cart_vel_scal"});
-  EXPECT_EQ(complete("ROB", &names).size(), 27U);
+  EXPECT_EQ(complete("ROB", &names).size(), 28U);
+  EXPECT_EQ(complete("MOVE_ROB PUMA_762 ", &names), (Words{"PTP", "LIN"}));
+  EXPECT_EQ(complete("MOVE_ROB PUMA_762 LIN ", &names),
+            (Words{"JOINT_ABS", "JOINT_INC", "FRAME_ABS", "FRAME_INC", "TOOL_INC", "SCREEN_INC"}));
   EXPECT_EQ(complete("ROBACT PU", &names), Words{"PUMA_762"});
   EXPECT_EQ(complete("POS_ROB PUMA_762 ", &names),
             (Words{"JOINT_ABS", "JOINT_INC", "FRAME_ABS", "FRAME_INC", "TOOL_INC", "SCREEN_INC"}));

@@ -1,0 +1,236 @@
+#include "app/gateway/motion_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "app/gateway/target_pose.hpp"
+#include "app/gateway/unreachable.hpp"
+#include "rt_core/engine/limiter.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+bool is_joint_target(TargetMode mode) {
+  return mode != TargetMode::frame_abs && mode != TargetMode::frame_inc && mode != TargetMode::tool_inc &&
+         mode != TargetMode::screen_inc;
+}
+
+// POS_ROB: the increments of the TCP go straight.
+MovePath path_of(TargetMode mode) {
+  return is_joint_target(mode) || mode == TargetMode::frame_abs ? MovePath::joints : MovePath::linear;
+}
+
+bool is_whole_pose(const kinematics::Task& task) {
+  return task.position_axes == 0b111 && task.orientation == kinematics::OrientationTask::full &&
+         task.orientation_required;
+}
+
+// The commanded pose: the next increment starts from it, so that a stream of them does not gather the tolerance of the
+// inverse kinematics. Where the task leaves something open, from where the TCP really is.
+std::optional<Pose> commanded_pose(const kinematics::Task& task, const Pose& X_ZG) {
+  return is_whole_pose(task) ? std::optional(X_ZG) : std::nullopt;
+}
+
+}  // namespace
+
+Result<MotionDesk::Record*> MotionDesk::open(const RobotModel* robot, std::string_view id) {
+  if (auto checked = port_.check_simulated(id); !checked) return std::unexpected(checked.error());
+  Record& record = records_.try_emplace(robot->id(), robot->id()).first->second;
+  follow(*robot, record);
+  return &record;
+}
+
+void MotionDesk::follow(const RobotModel& robot, Record& record) {
+  if (!record.pending.in_flight()) return;
+  if (record.pending.follow(port_.motion(robot.id()))) record.goal.reset();
+}
+
+void MotionDesk::follow() {
+  for (auto& [id, record] : records_) {
+    const RobotModel* robot = record.pending.in_flight() ? cell_.robot(id) : nullptr;
+    if (robot != nullptr) follow(*robot, record);
+  }
+}
+
+void MotionDesk::give_up(std::string_view robot, const Error& why) {
+  const auto found = records_.find(robot);
+  if (found == records_.end()) return;
+  found->second.pending.give_up(why);
+  found->second.goal.reset();
+  found->second.chain_of_tick.reset();
+}
+
+void MotionDesk::follow_cell() {
+  for (auto& [id, record] : records_) {
+    if (cell_.robot(id) == nullptr) give_up(id, {fmt::format("the robot {} was deleted", id), {}});
+  }
+}
+
+bool MotionDesk::moving() const {
+  return std::ranges::any_of(records_, [](const auto& entry) { return entry.second.pending.in_flight(); });
+}
+
+std::optional<MotionDesk::Target> MotionDesk::target(std::string_view robot) const {
+  const auto found = records_.find(robot);
+  if (found == records_.end() || !found->second.goal) return std::nullopt;
+  return Target{found->second.goal->joints, found->second.positioning};
+}
+
+Result<ActivityHandle> MotionDesk::position(std::string_view id, const MotionTarget& target) {
+  const RobotModel* robot = cell_.robot(id);
+  auto record = open(robot, id);
+  if (!record) return std::unexpected(record.error());
+  if ((*record)->positioning == Positioning::jumping) {
+    auto jumped = jump(*robot, **record, target);
+    if (!jumped) return std::unexpected(jumped.error());
+    return ActivityHandle();
+  }
+  auto planned = plan(*robot, **record, path_of(target.mode), target, motion::Start::supersede);
+  if (!planned) return std::unexpected(planned.error());
+  if (auto sent = send(*robot, **record, std::move(*planned), motion::Start::supersede); !sent)
+    return std::unexpected(sent.error());
+  return (*record)->pending.watch();
+}
+
+Result<void> MotionDesk::queue_move(std::string_view id, MovePath path, const MotionTarget& target) {
+  const RobotModel* robot = cell_.robot(id);
+  auto record = open(robot, id);
+  if (!record) return std::unexpected(record.error());
+  if ((*record)->pending.count() > motion::kMoveQueue) {  // one runs, the others wait
+    return fail(fmt::format("{} moves of {} wait already", motion::kMoveQueue, id),
+                "wait until some of them are done, or STOP_ROB forgets them");
+  }
+  auto planned = plan(*robot, **record, path, target, motion::Start::queue);
+  if (!planned) return std::unexpected(planned.error());
+  return send(*robot, **record, std::move(*planned), motion::Start::queue);
+}
+
+Result<void> MotionDesk::stop(std::string_view id) {
+  const RobotModel* robot = cell_.robot(id);
+  auto record = open(robot, id);
+  if (!record) return std::unexpected(record.error());
+  if (!(*record)->pending.in_flight()) return {};
+  (*record)->goal.reset();
+  return port_.stop_motion(id);
+}
+
+Result<void> MotionDesk::set_positioning(Positioning positioning) {
+  const RobotModel* robot = cell_.robot(names_.active_robot());
+  if (robot == nullptr) return fail("no robot is active", "make one active with ROBACT <robot>");
+  records_.try_emplace(robot->id(), robot->id()).first->second.positioning = positioning;
+  return {};
+}
+
+MotionDesk::Goal MotionDesk::goal_of(const RobotModel& robot, const Record& record) {
+  Goal goal = record.goal.value_or(Goal{port_.positions()[robot.slot()], {}, {}});
+  // Another tool: the TCP is elsewhere than it was commanded to.
+  if (goal.chain != record.kinematics.chain()) goal.X_ZT.reset();
+  return goal;
+}
+
+Result<JointValues> MotionDesk::joint_target(const RobotModel& robot, const MotionTarget& target,
+                                             const Goal& from) const {
+  switch (target.mode) {
+    case TargetMode::joint_abs:
+      return robot.positions_to(target.joints, from.joints);
+    case TargetMode::joint_inc:
+      return robot.positions_by(target.joints, from.joints);
+    case TargetMode::start_position:
+      return robot.parameters().start_position;
+    default:
+      return robot.parameters().reference_position;
+  }
+}
+
+Result<Pose> MotionDesk::pose_target(const RobotModel& robot, Record& record, const MotionTarget& target,
+                                     const Goal& from) {
+  if (is_joint_target(target.mode)) {
+    const auto joints = joint_target(robot, target, from);
+    if (!joints) return std::unexpected(joints.error());
+    return record.kinematics.X_ZT(*joints);
+  }
+  const Pose X_ZT = from.X_ZT ? *from.X_ZT : record.kinematics.X_ZT(from.joints);
+  Eigen::Matrix3d R_ZS = Eigen::Matrix3d::Identity();
+  if (target.mode == TargetMode::screen_inc)
+    R_ZS = cell_.world_pose(robot.zero_point(), port_.positions()).linear().transpose() * screen_axes(views_.current());
+  return target_pose(target.mode, target.pose, X_ZT, R_ZS);
+}
+
+// Where the joints end when no path is asked for.
+Result<MotionDesk::Goal> MotionDesk::point(const RobotModel& robot, Record& record, const MotionTarget& target,
+                                           const Goal& from) {
+  if (is_joint_target(target.mode)) {
+    auto joints = joint_target(robot, target, from);
+    if (!joints) return std::unexpected(joints.error());
+    if (auto checked = check_limits(robot, *joints); !checked) return std::unexpected(checked.error());
+    return Goal{*joints, {}, record.kinematics.chain()};
+  }
+  const auto X_ZG = pose_target(robot, record, target, from);
+  if (!X_ZG) return std::unexpected(X_ZG.error());
+  const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
+  auto answer = record.kinematics.solve(*X_ZG, task, from.joints);
+  if (!answer) return std::unexpected(answer.error());
+  if (!answer->solved) {
+    const Pose X_ZN = answer->solutions.empty() ? *X_ZG : record.kinematics.X_ZT(answer->solutions.front().q);
+    return std::unexpected(unreachable(robot, *answer, X_ZN));
+  }
+  return Goal{answer->solutions.front().q, commanded_pose(task, *X_ZG), record.kinematics.chain()};
+}
+
+Result<MotionDesk::Planned> MotionDesk::plan(const RobotModel& robot, Record& record, MovePath path,
+                                             const MotionTarget& target, motion::Start start) {
+  if (auto updated = record.kinematics.update(cell_, robot); !updated) return std::unexpected(updated.error());
+  static_cast<void>(path), static_cast<void>(target), static_cast<void>(start);
+  return fail("moves are not available yet: motion", "rob_positioning jump");
+}
+
+Result<void> MotionDesk::send(const RobotModel& robot, Record& record, Planned planned, motion::Start start) {
+  if (record.chain_of_tick != record.kinematics.chain()) {
+    if (auto set = port_.set_chain(robot.id(), record.kinematics.chain()); !set) return set;
+    record.chain_of_tick = record.kinematics.chain();
+  }
+  planned.move.start = start;
+  planned.move.id = record.pending.next_id();
+  if (auto added = port_.add_move(robot.id(), planned.move); !added) return added;
+  if (start == motion::Start::supersede) {
+    record.pending.superseded_all_by_next();
+  } else {
+    record.pending.queued_next();
+  }
+  record.goal = std::move(planned.goal);
+  return {};
+}
+
+Result<void> MotionDesk::jump(const RobotModel& robot, Record& record, const MotionTarget& target) {
+  if (!is_joint_target(target.mode)) {
+    if (auto updated = record.kinematics.update(cell_, robot); !updated) return updated;
+  }
+  auto goal = point(robot, record, target, goal_of(robot, record));
+  if (!goal) return std::unexpected(goal.error());
+  if (auto jumped = port_.jump(robot.id(), goal->joints); !jumped) return jumped;
+  record.pending.give_up({fmt::format("{} was put elsewhere before it arrived", robot.id()), {}});
+  record.goal = std::move(*goal);
+  return {};
+}
+
+// The tick refuses a posture as a whole, so a joint that was not commanded but stands beyond its limit (the limit was
+// narrowed, or the real robot was there) has to be told here, where somebody is answered.
+Result<void> MotionDesk::check_limits(const RobotModel& robot, const JointValues& joints) const {
+  const RobotParameters& limits = robot.parameters();
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const engine::LimiterVerdict verdict = engine::check_setpoints(
+        std::span(&joints[i], 1), std::span(&limits.min_range[i], 1), std::span(&limits.max_range[i], 1));
+    if (verdict == engine::LimiterVerdict::passed) continue;
+    const RobotJoint& joint = robot.joints()[i];
+    return fail(fmt::format("joint {} ({}) of {} would stand at {}, beyond its limits; nothing was moved", i + 1,
+                            joint.name, robot.id(), position_text(joint.kind, joints[i])),
+                "command it into its range with POS_ROB JOINT_ABS, or widen the range");
+  }
+  return {};
+}
+
+}  // namespace cellmirror::app

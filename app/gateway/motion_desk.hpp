@@ -1,0 +1,88 @@
+// Takes the motion commands of SCRIPT, makes moves of them and gives them to the tick; knows where every robot was last
+// commanded to. Belongs to the thread that owns the cell. docs/script.md, "Motion", says what the commands mean.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "app/gateway/motion_port.hpp"
+#include "app/gateway/pending_moves.hpp"
+#include "app/gateway/robot_kinematics.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "rt_core/cell/view.hpp"
+#include "scripts/commands/motion_host.hpp"
+#include "scripts/lang/names.hpp"
+
+namespace cellmirror::app {
+
+class MotionDesk final : public MotionHost {
+ public:
+  MotionDesk(const Cell& cell, const NameDirectory& names, const Views& views, MotionPort& port)
+      : cell_(cell), names_(names), views_(views), port_(port) {}
+
+  Result<ActivityHandle> position(std::string_view robot, const MotionTarget& target) override;
+  Result<void> queue_move(std::string_view robot, MovePath path, const MotionTarget& target) override;
+  Result<void> stop(std::string_view robot) override;
+  Result<void> set_positioning(Positioning positioning) override;
+  // As far as follow() has seen.
+  [[nodiscard]] bool moving() const override;
+
+  // Looks at what the tick has done, and ends the activities whose moves have ended. Often.
+  void follow();
+  // The robot has stopped to take motion commands, or stands elsewhere than it was commanded to: waiting activities are
+  // refused with `why`. Unknown robots and those that were never commanded are passed over.
+  void give_up(std::string_view robot, const Error& why);
+  // give_up() for robots that the cell does not have any more. After every change of the tree.
+  void follow_cell();
+
+  struct Target {
+    JointValues joints{};  // rad or m: where the last commanded move ends
+    Positioning positioning = Positioning::jumping;
+  };
+  // Nothing for a robot that was not commanded since it was loaded or stopped.
+  [[nodiscard]] std::optional<Target> target(std::string_view robot) const;
+
+ private:
+  // Where a robot was last commanded to.
+  struct Goal {
+    JointValues joints{};
+    std::optional<Pose> X_ZT;  // as it was commanded, where the task is the whole pose
+    std::shared_ptr<const kinematics::Chain> chain;
+  };
+  struct Record {
+    explicit Record(const std::string& id) : pending(id) {}
+    PendingMoves pending;
+    RobotKinematics kinematics;
+    std::optional<Goal> goal;  // none: where the robot stands
+    Positioning positioning = Positioning::jumping;
+    std::shared_ptr<const kinematics::Chain> chain_of_tick;
+  };
+  struct Planned {
+    motion::Move move;
+    Goal goal;
+  };
+
+  // Refused: unknown, online.
+  Result<Record*> open(const RobotModel* robot, std::string_view id);
+  void follow(const RobotModel& robot, Record& record);
+  [[nodiscard]] Goal goal_of(const RobotModel& robot, const Record& record);
+  // The chain of `record` must be up to date.
+  Result<JointValues> joint_target(const RobotModel& robot, const MotionTarget& target, const Goal& from) const;
+  Result<Pose> pose_target(const RobotModel& robot, Record& record, const MotionTarget& target, const Goal& from);
+  Result<Goal> point(const RobotModel& robot, Record& record, const MotionTarget& target, const Goal& from);
+  Result<Planned> plan(const RobotModel& robot, Record& record, MovePath path, const MotionTarget& target,
+                       motion::Start start);
+  Result<void> send(const RobotModel& robot, Record& record, Planned planned, motion::Start start);
+  Result<void> jump(const RobotModel& robot, Record& record, const MotionTarget& target);
+  [[nodiscard]] Result<void> check_limits(const RobotModel& robot, const JointValues& joints) const;
+
+  const Cell& cell_;
+  const NameDirectory& names_;
+  const Views& views_;
+  MotionPort& port_;
+  std::map<std::string, Record, std::less<>> records_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,59 @@
+#include "app/gateway/unreachable.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "rt_core/base/units.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+double tidy(double value) { return std::abs(value) < 0.05 ? 0.0 : value; }  // no -0.0
+
+// What of the target is not met, as far as people care.
+std::string unmet_components(const kinematics::Twist& error) {
+  constexpr double kShownLength = 1e-4;  // m
+  constexpr double kShownAngle = 1e-3;   // rad
+  constexpr std::array<std::string_view, 6> kNames = {
+      "x", "y", "z", "the rotation about x", "the rotation about y", "the rotation about z"};
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    const double value = std::abs(error(i));
+    if (value <= (i < 3 ? kShownLength : kShownAngle)) continue;
+    text += fmt::format(
+        "{}{} by {}", text.empty() ? "" : ", ", kNames[static_cast<std::size_t>(i)],
+        i < 3 ? fmt::format("{:.1f} mm", mm_from_m(value)) : fmt::format("{:.1f} degrees", deg_from_rad(value)));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string pose_for_people(const Pose& X) {
+  const Eigen::Vector3d p = X.translation() / kMPerMm;
+  const Eigen::Vector3d rpy = rpy_from_rotation(X.linear()) / kRadPerDeg;
+  return fmt::format("x {:.1f} y {:.1f} z {:.1f} mm, roll {:.1f} pitch {:.1f} yaw {:.1f} degrees", tidy(p.x()),
+                     tidy(p.y()), tidy(p.z()), tidy(rpy.x()), tidy(rpy.y()), tidy(rpy.z()));
+}
+
+Error unreachable(const RobotModel& robot, const inverse_kinematics::Answer& answer, const Pose& X_ZN) {
+  constexpr std::size_t kJointsForAnyPose = 6;
+  std::string what = fmt::format("{} cannot reach this pose", robot.id());
+  if (!answer.solutions.empty()) {
+    const kinematics::Twist& error = answer.solutions.front().error;
+    what += fmt::format("; the nearest that was found is {:.1f} mm and {:.1f} degrees away: {}",
+                        mm_from_m(error.head<3>().norm()), deg_from_rad(error.tail<3>().norm()), pose_for_people(X_ZN));
+    if (robot.joint_count() < kJointsForAnyPose) {
+      return {fmt::format("{}; with {} joints it does not meet {}", what, robot.joint_count(), unmet_components(error)),
+              "rob_inverse_class says what has to be met, e.g. rob_inverse_class align_POS for the position alone"};
+    }
+  }
+  return {std::move(what), "nothing was moved; command that pose, or ask for less with rob_inverse_class"};
+}
+
+}  // namespace cellmirror::app

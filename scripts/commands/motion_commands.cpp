@@ -1,0 +1,98 @@
+// POS_ROB (manual 1.2.1) and our own commands for motion.
+#include <array>
+
+#include "rt_core/base/capacity.hpp"
+#include "scripts/commands/registry.hpp"
+
+namespace cellmirror {
+
+std::string_view name_of(TargetMode mode) {
+  constexpr std::array<std::string_view, 8> kNames = {"JOINT_ABS", "JOINT_INC",  "FRAME_ABS", "FRAME_INC",
+                                                      "TOOL_INC",  "SCREEN_INC", "START",     "REFERENCE"};
+  return kNames[static_cast<std::size_t>(mode)];
+}
+
+namespace script {
+
+namespace {
+
+// The target behind the robot's name and, in MOVE_ROB, the path.
+class TargetReader {
+ public:
+  TargetReader(const ParsedCommand& command, TargetMode mode, std::size_t first_slot) {
+    target_.mode = mode;
+    switch (mode) {
+      case TargetMode::joint_abs:
+      case TargetMode::joint_inc:
+        target_.joints = std::span(joints_).first(command.numbers(first_slot, joints_));
+        break;
+      case TargetMode::start_position:
+      case TargetMode::reference_position:
+        break;
+      default:
+        target_.pose = pose_at(command, first_slot);
+        break;
+    }
+  }
+  TargetReader(const TargetReader&) = delete;
+  TargetReader& operator=(const TargetReader&) = delete;
+
+  [[nodiscard]] const MotionTarget& target() const { return target_; }
+
+ private:
+  // Translation first, then roll, pitch, yaw.
+  static Pose pose_at(const ParsedCommand& command, std::size_t slot) {
+    return pose_from_xyz_rpy({command.number(slot), command.number(slot + 1), command.number(slot + 2)},
+                             {command.number(slot + 3), command.number(slot + 4), command.number(slot + 5)});
+  }
+
+  std::array<double, kMaxJointsPerRobot> joints_;
+  MotionTarget target_;
+};
+
+template <TargetMode mode>
+Outcome position(const ParsedCommand& command, CommandHost& host) {
+  const TargetReader reader(command, mode, 1);
+  auto begun = host.motion.position(command.text(0), reader.target());
+  if (!begun) return Outcome::refused(std::move(begun.error()));
+  return *begun ? Outcome::pending(std::move(*begun)) : Outcome::done();
+}
+
+template <TargetMode mode>
+Outcome queue_move(const ParsedCommand& command, CommandHost& host) {
+  const TargetReader reader(command, mode, 2);
+  const auto path = static_cast<MovePath>(command.choice(1));
+  return Outcome::of(host.motion.queue_move(command.text(0), path, reader.target()));
+}
+
+Outcome stop(const ParsedCommand& command, CommandHost& host) { return Outcome::of(host.motion.stop(command.text(0))); }
+
+Outcome set_positioning(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.motion.set_positioning(static_cast<Positioning>(command.choice(0))));
+}
+
+constexpr Registration kHandlers[] = {
+    {FormId::pos_rob_joint_abs, position<TargetMode::joint_abs>},
+    {FormId::pos_rob_joint_inc, position<TargetMode::joint_inc>},
+    {FormId::pos_rob_frame_abs, position<TargetMode::frame_abs>},
+    {FormId::pos_rob_frame_inc, position<TargetMode::frame_inc>},
+    {FormId::pos_rob_tool_inc, position<TargetMode::tool_inc>},
+    {FormId::pos_rob_screen_inc, position<TargetMode::screen_inc>},
+    {FormId::rob_positioning, set_positioning},
+    {FormId::move_rob_joint_abs, queue_move<TargetMode::joint_abs>},
+    {FormId::move_rob_joint_inc, queue_move<TargetMode::joint_inc>},
+    {FormId::move_rob_frame_abs, queue_move<TargetMode::frame_abs>},
+    {FormId::move_rob_frame_inc, queue_move<TargetMode::frame_inc>},
+    {FormId::move_rob_tool_inc, queue_move<TargetMode::tool_inc>},
+    {FormId::move_rob_screen_inc, queue_move<TargetMode::screen_inc>},
+    {FormId::move_rob_start, queue_move<TargetMode::start_position>},
+    {FormId::move_rob_reference, queue_move<TargetMode::reference_position>},
+    {FormId::stop_rob, stop},
+};
+
+}  // namespace
+
+std::span<const Registration> motion_handlers() { return kHandlers; }
+
+}  // namespace script
+}  // namespace cellmirror

@@ -1,0 +1,126 @@
+// Commands that come as messages.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "scripts/lang/reader.hpp"
+#include "scripts/runner/script_run.hpp"
+#include "scripts/runner/script_runner.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+// All findings in one line, for the answer to a message: "1:9: what; remedy | 1:20: ...".
+Error as_error(const Diagnostics& findings) {
+  constexpr std::size_t kShown = 8;
+  Error error;
+  std::size_t shown = 0;
+  for (const Diagnostic& finding : findings.all()) {
+    if (finding.severity != Severity::error) continue;
+    if (++shown > kShown) break;
+    if (shown > 1) error.what += " | ";
+    error.what += fmt::format("{}:{}: {}", finding.place.line, finding.place.column, finding.message);
+    if (shown == 1) error.remedy = finding.remedy;
+  }
+  return error;
+}
+
+}  // namespace
+
+Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
+  ActivityHandle activity;
+  auto result = begin_message(text, source, activity);
+  if (result) return *std::move(result);
+  const Result<std::string> begun;
+  count_message(begun, {});
+  return begun;
+}
+
+void ScriptRunner::execute_message(std::string_view text, std::string_view source, Answer answer) {
+  ActivityHandle activity;
+  if (const auto result = begin_message(text, source, activity)) {
+    answer(*result);
+    return;
+  }
+  const Place place{std::string(source), command_.begin().line, command_.begin().column};
+  waiting_messages_.push_back({std::move(activity), place, std::move(answer)});
+}
+
+std::optional<Result<std::string>> ScriptRunner::begin_message(std::string_view text, std::string_view source,
+                                                               ActivityHandle& activity) {
+  ++counters_.message.received;
+  CommandReader reader(text, source, TextKind::message);
+  Diagnostics findings;
+  const CommandReader::Step step = reader.next(&host_.names, command_, findings);
+  if (step == CommandReader::Step::error) {
+    for (const Diagnostic& finding : findings.all()) remember(finding);
+    ++counters_.message.refused;
+    return std::unexpected(as_error(findings));
+  }
+  Result<std::string> result;
+  if (step == CommandReader::Step::command) {
+    Outcome outcome = execute(command_, host_);
+    if (outcome.kind == Outcome::Kind::pending) {
+      activity = std::move(outcome.activity);
+      return std::nullopt;
+    }
+    result = accept_message(outcome);
+  }
+  count_message(result, {std::string(source), command_.begin().line, command_.begin().column});
+  return result;
+}
+
+void ScriptRunner::count_message(const Result<std::string>& result, const Place& place) {
+  ++(result ? counters_.message.done : counters_.message.refused);
+  if (!result) remember({Severity::error, place, result.error().what, result.error().remedy});
+}
+
+Result<std::string> ScriptRunner::accept_message(const Outcome& outcome) {
+  switch (outcome.kind) {
+    case Outcome::Kind::done:
+    case Outcome::Kind::pending:
+      return std::string{};
+    case Outcome::Kind::refused:
+      return std::unexpected(outcome.error);
+    case Outcome::Kind::wait:
+      return fail("WAIT suspends the SCRIPT file that contains it; a message has none",
+                  "put WAIT into a SCRIPT file and call it with EXEC_SCRIPT");
+    case Outcome::Kind::call_script: {
+      const auto id = start_file(outcome.script);
+      if (!id) return std::unexpected(id.error());
+      return fmt::format("{} started as run {}", runs_.back()->report.file, *id);
+    }
+  }
+  return std::string{};
+}
+
+std::size_t ScriptRunner::answer_messages() {
+  std::size_t answered = 0;
+  for (std::size_t i = 0; i < waiting_messages_.size();) {
+    const Activity& activity = *waiting_messages_[i].activity;
+    if (activity.state() == Activity::State::running) {
+      ++i;
+      continue;
+    }
+    Result<std::string> result;
+    if (activity.state() == Activity::State::refused) result = std::unexpected(activity.error());
+    count_message(result, waiting_messages_[i].place);
+    waiting_messages_[i].answer(result);
+    waiting_messages_.erase(waiting_messages_.begin() + static_cast<std::ptrdiff_t>(i));
+    ++answered;
+  }
+  return answered;
+}
+
+void ScriptRunner::refuse_waiting_messages() {
+  const Result<std::string> result = fail("the gateway ends");
+  for (const WaitingMessage& waiting : waiting_messages_) {
+    count_message(result, waiting.place);
+    waiting.answer(result);
+  }
+  waiting_messages_.clear();
+}
+
+}  // namespace cellmirror::script
