@@ -3,16 +3,13 @@
 #include <algorithm>
 
 #include "rt_core/base/contract.hpp"
+#include "rt_core/kinematics/joint_motion.hpp"
 
 namespace cellmirror {
 
 Pose joint_motion(JointKind kind, const Eigen::Vector3d& axis, double position) CELL_RT {
   Pose X = Pose::Identity();
-  if (kind == JointKind::prismatic) {
-    X.translation() = position * axis;
-  } else {
-    X.linear() = Eigen::AngleAxisd(position, axis).toRotationMatrix();
-  }
+  kinematics::apply_joint(kind, axis, position, X);
   return X;
 }
 
@@ -37,12 +34,7 @@ void compute_poses(const CompiledCell& cell, std::span<const JointValues> q, Cel
     const CompiledJoint& joint = cell.joints[static_cast<std::size_t>(cell.joint_of[i])];
     CELLMIRROR_EXPECTS(joint.slot < q.size());
     const double position = joint.multiplier * q[joint.slot][joint.joint] + joint.offset;
-    if (joint.kind == JointKind::prismatic) {
-      X_WN.translation() += X_WN.linear() * (position * joint.axis);
-    } else {
-      const Eigen::Matrix3d R = X_WN.linear();
-      X_WN.linear().noalias() = R * Eigen::AngleAxisd(position, joint.axis).toRotationMatrix();
-    }
+    kinematics::apply_joint(joint.kind, joint.axis, position, X_WN);
   }
 }
 

@@ -82,13 +82,39 @@ class ComponentTree {
     for (int at = node; at != top; at = node_at(component_, at).parent) branch.push_back(at);
     std::int32_t parent = Tree::kRoot;
     for (auto at = branch.rbegin(); at != branch.rend(); ++at) {
-      auto link = make_link(*at);
-      if (!link) return std::unexpected(std::move(link.error()));
-      link->parent = parent;
-      parent = static_cast<std::int32_t>(links_.size());
-      links_.push_back(std::move(*link));
+      if (const auto added = add_link(*at, parent); !added) return std::unexpected(added.error());
+      parent = static_cast<std::int32_t>(links_.size()) - 1;
     }
     return parent;
+  }
+
+  Result<void> add_link(int node, std::int32_t parent) {
+    auto link = make_link(node);
+    if (!link) return std::unexpected(std::move(link.error()));
+    link->parent = parent;
+    links_.push_back(std::move(*link));
+    return {};
+  }
+
+  // Of the joint or of the one that it mimics.
+  Result<std::uint8_t> variable_of(int joint) {
+    const auto master = master_of(component_, joint);
+    if (!master) return std::unexpected(master.error());
+    const auto known = std::ranges::find(masters_, *master);
+    const auto index = static_cast<std::uint8_t>(known - masters_.begin());
+    if (known != masters_.end()) return index;
+    if (masters_.size() == kinematics::kMaxTreeVariables) {
+      return fail(
+          fmt::format("{}: more than {} joints without mimics", component_.file, kinematics::kMaxTreeVariables));
+    }
+    const ComponentNode& node = node_at(component_, *master);
+    Variable variable{node.name, node.joint->kind, node.joint->min_position, node.joint->max_position};
+    if (const auto checked = kinematics::check_limits(variable); !checked) {
+      return fail(fmt::format("{}: {}", place_text(component_, node), checked.error().what), checked.error().remedy);
+    }
+    masters_.push_back(*master);
+    variables_.push_back(std::move(variable));
+    return index;
   }
 
   Result<Tree> finish() { return Tree::make(std::move(variables_), std::move(links_)); }
@@ -118,27 +144,6 @@ class ComponentTree {
     return link;
   }
 
-  // Of the joint or of the one that it mimics.
-  Result<std::uint8_t> variable_of(int joint) {
-    const auto master = master_of(component_, joint);
-    if (!master) return std::unexpected(master.error());
-    const auto known = std::ranges::find(masters_, *master);
-    const auto index = static_cast<std::uint8_t>(known - masters_.begin());
-    if (known != masters_.end()) return index;
-    if (masters_.size() == kinematics::kMaxTreeVariables) {
-      return fail(fmt::format("{}: more than {} joints lie between base and tip", component_.file,
-                              kinematics::kMaxTreeVariables));
-    }
-    const ComponentNode& node = node_at(component_, *master);
-    Variable variable{node.name, node.joint->kind, node.joint->min_position, node.joint->max_position};
-    if (const auto checked = kinematics::check_limits(variable); !checked) {
-      return fail(fmt::format("{}: {}", place_text(component_, node), checked.error().what), checked.error().remedy);
-    }
-    masters_.push_back(*master);
-    variables_.push_back(std::move(variable));
-    return index;
-  }
-
   const Component& component_;
   std::vector<TreeLink> links_;
   std::vector<Variable> variables_;
@@ -148,20 +153,9 @@ class ComponentTree {
 // --- Of a cell.
 
 NodeId common_ancestor(const Cell& cell, NodeId a, NodeId b) {
-  std::vector<bool> above_a(1);
-  const auto mark = [&](NodeId id) {
-    const auto i = static_cast<std::size_t>(id);
-    if (i >= above_a.size()) above_a.resize(i + 1);
-    above_a[i] = true;
-  };
-  for (; a != kNoNode; a = cell.node(a).predecessor) {
-    mark(a);
-    if (a == kRootNode) break;
-  }
-  const auto marked = [&](NodeId id) {
-    return static_cast<std::size_t>(id) < above_a.size() && above_a[static_cast<std::size_t>(id)];
-  };
-  while (b != kRootNode && !marked(b)) b = cell.node(b).predecessor;
+  std::vector<NodeId> above_a{a};
+  while (above_a.back() != kRootNode) above_a.push_back(cell.node(above_a.back()).predecessor);
+  while (std::ranges::find(above_a, b) == above_a.end()) b = cell.node(b).predecessor;
   return b;
 }
 
@@ -221,6 +215,23 @@ Result<Chain> chain_between(const Component& component, std::string_view base, s
   if (chain) return std::move(chain->chain);
   return fail(fmt::format("{}: from {} to {}: {}", component.file, printable(base), printable(tip), chain.error().what),
               chain.error().remedy);
+}
+
+Result<Tree> component_tree(const Component& component) {
+  ComponentTree nodes(component);
+  // Masters first, so that the order of the variables does not depend on where mimics stand.
+  for (std::size_t i = 0; i < component.nodes.size(); ++i) {
+    const auto& joint = component.nodes[i].joint;
+    if (!joint || joint->mimic) continue;
+    if (const auto variable = nodes.variable_of(static_cast<int>(i)); !variable) {
+      return std::unexpected(variable.error());
+    }
+  }
+  for (std::size_t i = 0; i < component.nodes.size(); ++i) {
+    const auto added = nodes.add_link(static_cast<int>(i), component.nodes[i].parent);
+    if (!added) return std::unexpected(added.error());
+  }
+  return nodes.finish();
 }
 
 JointValues RobotChain::variables_of(const JointValues& joints) const {

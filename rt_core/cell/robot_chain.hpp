@@ -1,4 +1,4 @@
-// Chains of kinematics out of components and cells.
+// Trees and chains of kinematics out of components and cells.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/cell/component.hpp"
 #include "rt_core/kinematics/chain.hpp"
+#include "rt_core/kinematics/tree.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
 namespace cellmirror {
@@ -22,6 +23,10 @@ namespace cellmirror {
 // the wrong way round, numbers that are not finite; each with file and line.
 [[nodiscard]] Result<kinematics::Chain> chain_between(const Component& component, std::string_view base,
                                                       std::string_view tip);
+
+// All nodes of a component: link i is node i, the root of the tree the component's. The variables are the joints
+// without mimics, in the order of the nodes. Refused as above, with kMaxTreeLinks and kMaxTreeVariables as capacities.
+[[nodiscard]] Result<kinematics::Tree> component_tree(const Component& component);
 
 // The joints of a robot that move its tool.
 struct RobotChain {
