@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
     add_check(cli, action);
     add_commands(cli, action);
     add_doctor(cli, action);
+    add_fk(cli, action);
+    add_ik(cli, action);
     try {
       cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -23,6 +23,12 @@ inline constexpr std::size_t kLargestText = 16UL << 20U;  // bytes of a cell, co
                                                   const std::filesystem::path& path, const FileFinder& files,
                                                   Diagnostics& diagnostics);
 
+// The same of what lies on the way from the root to two links, without bodies: a robot of which only this is to be used
+// may have more joints than the capacities, and mistakes elsewhere. Speeds and efforts may be missing.
+[[nodiscard]] std::optional<Component> parse_urdf_between(std::string_view text, const std::string& file,
+                                                          std::string_view base, std::string_view tip,
+                                                          Diagnostics& diagnostics);
+
 // Appends findings in the order of their places in the file.
 void take_sorted(Diagnostics& to, const Diagnostics& from);
 

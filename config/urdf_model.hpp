@@ -45,4 +45,9 @@ using UrdfMaterials = std::map<std::string, std::array<float, 4>, std::less<>>;
 [[nodiscard]] std::optional<std::array<float, 4>> read_urdf_color(const tinyxml2::XMLElement& material,
                                                                   const UrdfXml& xml);
 
+// Takes out of the document what the kinematics between two links does not need: bodies, and links and joints off the
+// way from the root to both (and to the joints that are mimicked there). Where a link is unknown or the joints are no
+// tree, all links and joints stay, so that reading finds out what is wrong.
+void keep_kinematics_between(tinyxml2::XMLElement& robot, std::string_view base, std::string_view tip);
+
 }  // namespace cellmirror

@@ -254,35 +254,57 @@ bool refuse_document_type(const tinyxml2::XMLDocument& document, const std::stri
   return false;
 }
 
+// The root element, or nothing and what is wrong with the document.
+XMLElement* read_document(std::string_view text, const std::string& file, tinyxml2::XMLDocument& document,
+                          Diagnostics& diagnostics) {
+  if (text.find('\0') != std::string_view::npos) {
+    diagnostics.error({file, 0, 0}, "the file holds NUL bytes and is no XML text");
+    return nullptr;
+  }
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    diagnostics.error({file, document.ErrorLineNum(), 0},
+                      fmt::format("the XML is faulty: {}", printable(document.ErrorName())), "the file was not read");
+    return nullptr;
+  }
+  if (refuse_document_type(document, file, diagnostics)) return nullptr;
+  XMLElement* robot = document.RootElement();
+  if (robot == nullptr || std::string_view(robot->Name()) != "robot") {
+    diagnostics.error({file, robot == nullptr ? 0 : robot->GetLineNum(), 0}, "the root element is not <robot>",
+                      "a xacro file has to be expanded first: xacro FILE > FILE.urdf");
+    return nullptr;
+  }
+  return robot;
+}
+
+Component component_of(const XMLElement& robot, const std::string& file, const std::filesystem::path& path,
+                       const FileFinder& files, Diagnostics& diagnostics) {
+  Diagnostics findings;
+  const UrdfXml xml(file, findings);
+  if (robot.NextSiblingElement() != nullptr) xml.error(*robot.NextSiblingElement(), "there is a second root element");
+  const UrdfModel model = read_urdf_elements(robot, xml, path, files);
+  Component component = UrdfTree(model, file, findings).build();
+  component.description = fmt::format("robot {} of a URDF", model.name);
+  take_sorted(diagnostics, findings);
+  return component;
+}
+
 }  // namespace
 
 std::optional<Component> parse_urdf(std::string_view text, const std::string& file, const std::filesystem::path& path,
                                     const FileFinder& files, Diagnostics& diagnostics) {
   tinyxml2::XMLDocument document;
-  if (text.find('\0') != std::string_view::npos) {
-    diagnostics.error({file, 0, 0}, "the file holds NUL bytes and is no XML text");
-    return std::nullopt;
-  }
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    diagnostics.error({file, document.ErrorLineNum(), 0},
-                      fmt::format("the XML is faulty: {}", printable(document.ErrorName())), "the file was not read");
-    return std::nullopt;
-  }
-  if (refuse_document_type(document, file, diagnostics)) return std::nullopt;
-  const XMLElement* robot = document.RootElement();
-  if (robot == nullptr || std::string_view(robot->Name()) != "robot") {
-    diagnostics.error({file, robot == nullptr ? 0 : robot->GetLineNum(), 0}, "the root element is not <robot>",
-                      "a xacro file has to be expanded first: xacro FILE > FILE.urdf");
-    return std::nullopt;
-  }
-  Diagnostics findings;
-  const UrdfXml xml(file, findings);
-  if (robot->NextSiblingElement() != nullptr) xml.error(*robot->NextSiblingElement(), "there is a second root element");
-  const UrdfModel model = read_urdf_elements(*robot, xml, path, files);
-  Component component = UrdfTree(model, file, findings).build();
-  component.description = fmt::format("robot {} of a URDF", model.name);
-  take_sorted(diagnostics, findings);
-  return component;
+  const XMLElement* robot = read_document(text, file, document, diagnostics);
+  if (robot == nullptr) return std::nullopt;
+  return component_of(*robot, file, path, files, diagnostics);
+}
+
+std::optional<Component> parse_urdf_between(std::string_view text, const std::string& file, std::string_view base,
+                                            std::string_view tip, Diagnostics& diagnostics) {
+  tinyxml2::XMLDocument document;
+  XMLElement* robot = read_document(text, file, document, diagnostics);
+  if (robot == nullptr) return std::nullopt;
+  keep_kinematics_between(*robot, base, tip);
+  return component_of(*robot, file, file, AnyFile(), diagnostics);
 }
 
 }  // namespace cellmirror

@@ -23,6 +23,8 @@ void add_status(CLI::App& cli, Action& action);
 void add_check(CLI::App& cli, Action& action);
 void add_commands(CLI::App& cli, Action& action);
 void add_doctor(CLI::App& cli, Action& action);
+void add_fk(CLI::App& cli, Action& action);
+void add_ik(CLI::App& cli, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.
 int refuse(const std::string& what);
