@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "rt_core/engine/tick_state.hpp"
+#include "rt_core/kinematics/chain.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
 namespace cellmirror::engine {
@@ -12,9 +13,12 @@ namespace cellmirror::engine {
 enum class CommandKind : std::uint8_t {
   add_robot,      // slot, joint_count, values = positions, lower, upper
   remove_robot,   // slot
-  set_mode,       // slot, mode, ages
-  set_positions,  // slot, values; only while the robot is simulated
+  set_mode,       // slot, mode, ages; a motion ends at once
+  set_positions,  // slot, values; only while the robot is simulated; at once, a motion ends
   set_limits,     // slot, lower, upper
+  set_chain,      // slot, chain; only while the robot is simulated
+  add_move,       // slot; only while the robot is simulated. Its move travels beside it: Engine::send_move()
+  stop_motion,    // slot; only while the robot is simulated
 };
 
 struct Command {
@@ -22,11 +26,16 @@ struct Command {
   CommandKind kind = CommandKind::set_positions;
   std::uint8_t slot = 0;
   std::uint8_t joint_count = 0;
+  std::uint16_t move = 0;  // of add_move: the engine's own
   RobotMode mode = RobotMode::simulated;
   StreamAges ages;
   JointValues values{};  // rad or m
   JointValues lower{};
   JointValues upper{};
+  // Of set_chain: for the linear moves that are added from then on. The sender owns it and keeps it until commands_done
+  // has passed a later set_chain, set_mode to mirrored or remove_robot of this slot and, after a set_chain, the robot
+  // neither moves nor has moves waiting that were added before. Its variables are the robot's joints.
+  const kinematics::Chain* chain = nullptr;
 };
 
 }  // namespace cellmirror::engine

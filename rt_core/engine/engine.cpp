@@ -15,7 +15,8 @@ std::uint32_t saturated_ns(Nanoseconds d) CELL_RT {
 
 }  // namespace
 
-Engine::Engine(Watchdog& watchdog) : watchdog_(watchdog) {
+Engine::Engine(Watchdog& watchdog) : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog) {
+  for (std::size_t i = 0; i < kMoveCommands; ++i) free_moves_.push(static_cast<std::uint16_t>(i));
   inlets_.reserve(kMaxRobots);
   for (std::size_t i = 0; i < kMaxRobots; ++i) inlets_.push_back(std::make_unique<Inlet>());
 }
@@ -26,6 +27,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   head_.missed_periods += context.missed;
   const int commands = take_commands(context.now);
   const int samples = take_samples();
+  move_robots(context);
   for (RobotSlot& slot : slots_) {
     if (slot.used()) slot.update(context.now);
   }
@@ -41,7 +43,7 @@ int Engine::take_commands(Timestamp now) CELL_RT {
   Command command;
   while (taken < kCommandsPerTick && commands_.pop(command)) {
     ++taken;
-    const bool done = command.slot < kMaxRobots && slots_[command.slot].apply(command);
+    const bool done = carry_out(command);
     head_.commands_done = command.id;
     if (!done) ++head_.commands_refused;
     if (!done || command.kind == CommandKind::set_positions) {
@@ -49,6 +51,24 @@ int Engine::take_commands(Timestamp now) CELL_RT {
     }
   }
   return taken;
+}
+
+bool Engine::carry_out(const Command& command) CELL_RT {
+  if (command.kind != CommandKind::add_move) return command.slot < kMaxRobots && slots_[command.slot].apply(command);
+  const bool done = slots_[command.slot].add_move(moves_[command.move]);
+  free_moves_.push(command.move);
+  return done;
+}
+
+void Engine::move_robots(const CycleContext& context) CELL_RT {
+  const auto longest = std::max(context.period, kLongestStep);
+  // In doubles: a machine that slept for hours has missed more periods than fit into the nanoseconds.
+  const double passed_ns = static_cast<double>(context.period.count()) * (1.0 + static_cast<double>(context.missed));
+  const double dt = std::min(passed_ns, static_cast<double>(longest.count())) * 1e-9;
+  for (std::size_t i = 0; i < kMaxRobots; ++i) {
+    if (!slots_[i].used() || !slots_[i].move(dt)) continue;
+    record_robot(FlightEvent::setpoint, i, context.now, slots_[i].state().motion.running);
+  }
 }
 
 int Engine::take_samples() CELL_RT {
@@ -116,9 +136,24 @@ void Engine::record_robot(FlightEvent event, std::size_t slot, Timestamp time, s
 }
 
 std::uint64_t Engine::send(Command command) {
+  CELLMIRROR_EXPECTS(command.kind != CommandKind::add_move);
+  return enqueue(command);
+}
+
+std::uint64_t Engine::enqueue(Command command) {
   command.id = next_command_;
   if (!commands_.push(command)) return 0;
   return next_command_++;
+}
+
+std::uint64_t Engine::send_move(std::size_t slot, const motion::Move& move) {
+  CELLMIRROR_EXPECTS(slot < kMaxRobots);
+  Command command;
+  if (commands_.full() || !free_moves_.pop(command.move)) return 0;
+  moves_[command.move] = move;
+  command.kind = CommandKind::add_move;
+  command.slot = static_cast<std::uint8_t>(slot);
+  return enqueue(command);
 }
 
 JointSampleSink& Engine::inlet(std::size_t slot) {

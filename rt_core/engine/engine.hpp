@@ -23,9 +23,13 @@
 namespace cellmirror::engine {
 
 inline constexpr std::size_t kCommandQueue = 4096;
-inline constexpr std::size_t kSampleQueue = 128;  // of each robot: a quarter of a second at 500 Hz
-inline constexpr int kCommandsPerTick = 256;      // keeps the tick bounded while a script floods it
-inline constexpr int kSamplesPerTick = 64;        // of each robot
+inline constexpr std::size_t kSampleQueue = 128;   // of each robot: a quarter of a second at 500 Hz
+inline constexpr std::size_t kMoveCommands = 256;  // moves on their way to the tick, of all robots together
+inline constexpr int kCommandsPerTick = 256;       // keeps the tick bounded while a script floods it
+inline constexpr int kSamplesPerTick = 64;         // of each robot
+// After missed periods a move goes on by the time that has really passed, but by no more than this or one period, so
+// that the robots make no leap after a pause of the machine: their paths last longer then.
+inline constexpr Nanoseconds kLongestStep{10'000'000};
 
 struct QueueStatus {
   std::string name;
@@ -45,8 +49,11 @@ class Engine final : public Cycle {
 
   void run(const CycleContext& context) CELL_RT override;
 
-  // Hands a command to the tick and gives it its id. 0 where the queue is full: wait a tick and try again.
+  // Hands a command (any but add_move) to the tick and gives it its id. 0 where the queue is full: wait a tick and try
+  // again.
   std::uint64_t send(Command command);
+  // The same for a move (kind add_move). 0 too where kMoveCommands are on their way.
+  std::uint64_t send_move(std::size_t slot, const motion::Move& move);
   // Where the stream of the robot in this slot puts its samples.
   [[nodiscard]] JointSampleSink& inlet(std::size_t slot);
 
@@ -67,16 +74,23 @@ class Engine final : public Cycle {
     Fifo<JointSample, kSampleQueue> queue;
   };
 
+  std::uint64_t enqueue(Command command);
   int take_commands(Timestamp now) CELL_RT;
+  bool carry_out(const Command& command) CELL_RT;
   int take_samples() CELL_RT;
+  void move_robots(const CycleContext& context) CELL_RT;
   void publish(Latest<TickState>& edge) CELL_RT;
   void record_tick(const CycleContext& context, int commands, int samples) CELL_RT;
   void record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT;
 
-  std::array<RobotSlot, kMaxRobots> slots_;
+  std::vector<RobotSlot> slots_;    // with the moves that wait, some 2 MB
   TickState head_;                  // everything of the published state but the robots
   std::uint64_t next_command_ = 1;  // owner's
   Fifo<Command, kCommandQueue> commands_;
+  // A move is too large for the command queue: the owner takes a free place, writes the move there and sends its
+  // number; the tick gives the place back when it has taken the move.
+  std::vector<motion::Move> moves_;
+  Fifo<std::uint16_t, kMoveCommands> free_moves_;
   std::vector<std::unique_ptr<Inlet>> inlets_;
   Latest<TickState> for_owner_;
   Latest<TickState> for_publisher_;

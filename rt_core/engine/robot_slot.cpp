@@ -26,6 +26,7 @@ bool RobotSlot::apply(const Command& command) CELL_RT {
       return true;
     case CommandKind::remove_robot:
       state_ = RobotTickState{};
+      executor_.reset(0);
       return true;
     case CommandKind::set_mode:
       set_mode(command);
@@ -36,6 +37,14 @@ bool RobotSlot::apply(const Command& command) CELL_RT {
       lower_ = command.lower;
       upper_ = command.upper;
       return true;
+    case CommandKind::set_chain:
+      return set_chain(command.chain);
+    case CommandKind::stop_motion:
+      if (!simulated()) return false;
+      executor_.stop();
+      return true;
+    case CommandKind::add_move:
+      return false;  // the engine has its move and calls add_move()
   }
   return false;
 }
@@ -44,6 +53,7 @@ void RobotSlot::add(const Command& command) CELL_RT {
   state_ = RobotTickState{};
   state_.mode = RobotMode::simulated;
   state_.joint_count = std::min(command.joint_count, static_cast<std::uint8_t>(kMaxJointsPerRobot));
+  executor_.reset(state_.joint_count);
   lower_ = command.lower;
   upper_ = command.upper;
   for (std::size_t i = 0; i < state_.joint_count; ++i) state_.joints[i].position = command.values[i];
@@ -52,6 +62,9 @@ void RobotSlot::add(const Command& command) CELL_RT {
 void RobotSlot::set_mode(const Command& command) CELL_RT {
   if (!used()) return;
   state_.mode = command.mode;
+  executor_.abort(motion::Outcome::stopped);
+  if (!simulated()) executor_.set_chain(nullptr);
+  state_.motion = executor_.state();
   ages_ = command.ages;
   state_.sequence = 0;
   state_.receive_time = Timestamp{};
@@ -69,7 +82,7 @@ void RobotSlot::set_mode(const Command& command) CELL_RT {
 }
 
 bool RobotSlot::set_positions(const Command& command) CELL_RT {
-  if (state_.mode != RobotMode::simulated) return false;
+  if (!simulated()) return false;
   const std::size_t n = state_.joint_count;
   const LimiterVerdict verdict =
       check_setpoints(std::span(command.values).first(n), std::span(lower_).first(n), std::span(upper_).first(n));
@@ -77,8 +90,58 @@ bool RobotSlot::set_positions(const Command& command) CELL_RT {
     ++state_.refused_setpoints;
     return false;
   }
-  for (std::size_t i = 0; i < n; ++i) state_.joints[i].position = command.values[i];
+  executor_.abort(motion::Outcome::stopped);
+  for (std::size_t i = 0; i < n; ++i) {
+    state_.joints[i].position = command.values[i];
+    state_.joints[i].velocity = 0;
+  }
   return true;
+}
+
+bool RobotSlot::set_chain(const kinematics::Chain* chain) CELL_RT {
+  if (!simulated() || (chain != nullptr && chain->variable_count() != state_.joint_count)) return false;
+  executor_.set_chain(chain);
+  return true;
+}
+
+bool RobotSlot::add_move(const motion::Move& move) CELL_RT { return simulated() && executor_.add(move); }
+
+bool RobotSlot::move(double dt) CELL_RT {
+  if (!simulated()) return false;
+  const std::size_t n = state_.joint_count;
+  JointValues present{};
+  JointValues lower{};
+  JointValues upper{};
+  for (std::size_t i = 0; i < n; ++i) {
+    present[i] = state_.joints[i].position;
+    // A joint that stands beyond its range, since that was narrowed, may come back into it, and not go further.
+    lower[i] = std::min(lower_[i], present[i]);
+    upper[i] = std::max(upper_[i], present[i]);
+  }
+  JointValues next = present;
+  JointValues velocity{};
+  const bool moved = executor_.step(dt, {std::span(lower).first(n), std::span(upper).first(n)},
+                                    std::span(next).first(n), std::span(velocity).first(n));
+  if (moved) {
+    LimiterVerdict verdict =
+        check_setpoints(std::span(next).first(n), std::span(lower).first(n), std::span(upper).first(n));
+    if (verdict == LimiterVerdict::passed) {
+      verdict = check_rates(std::span(present).first(n), std::span(next).first(n),
+                            std::span(executor_.fastest()).first(n), dt);
+    }
+    if (verdict != LimiterVerdict::passed) {
+      ++state_.refused_setpoints;
+      executor_.abort(motion::Outcome::blocked);
+      next = present;
+      velocity.fill(0);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      state_.joints[i].position = next[i];
+      state_.joints[i].velocity = velocity[i];
+    }
+  }
+  state_.motion = executor_.state();
+  return moved;
 }
 
 void RobotSlot::take(const JointSample& sample) CELL_RT {

@@ -4,6 +4,7 @@
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/engine/command.hpp"
 #include "rt_core/engine/tick_state.hpp"
+#include "rt_core/motion/executor.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 
 namespace cellmirror::engine {
@@ -16,6 +17,9 @@ class RobotSlot {
   // Takes over a sample of the stream. Values that are not finite are refused joint by joint; the joint keeps its last
   // good value and becomes invalid.
   void take(const JointSample& sample) CELL_RT;
+  bool add_move(const motion::Move& move) CELL_RT;
+  // Moves a simulated robot on by `dt` seconds. True where it moved.
+  bool move(double dt) CELL_RT;
   // Ages every joint by `now`.
   void update(Timestamp now) CELL_RT;
 
@@ -26,11 +30,14 @@ class RobotSlot {
   bool set_positions(const Command& command) CELL_RT;
   void add(const Command& command) CELL_RT;
   void set_mode(const Command& command) CELL_RT;
+  bool set_chain(const kinematics::Chain* chain) CELL_RT;
+  [[nodiscard]] bool simulated() const CELL_RT { return state_.mode == RobotMode::simulated; }
 
   RobotTickState state_;
   StreamAges ages_;
   JointValues lower_{};
   JointValues upper_{};
+  motion::MoveExecutor executor_;
 };
 
 }  // namespace cellmirror::engine

@@ -6,6 +6,7 @@
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/motion/executor.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
@@ -19,7 +20,7 @@ enum class RobotMode : std::uint8_t {
 
 struct JointTickState {
   double position = 0;  // rad or m; the last good value, whatever its age
-  double velocity = 0;  // rad/s or m/s
+  double velocity = 0;  // rad/s or m/s; of a simulated robot that of its move
   double effort = 0;    // Nm or N
   Timestamp receive_time;
   Timestamp source_time;
@@ -35,6 +36,7 @@ struct RobotTickState {
   std::uint64_t samples = 0;            // taken from the stream's queue since the robot went online
   std::uint64_t refused_values = 0;     // not finite, or named as refused by the driver
   std::uint64_t refused_setpoints = 0;  // by the limiter
+  motion::MotionState motion;           // of a simulated robot
   std::array<JointTickState, kMaxJointsPerRobot> joints{};
 };
 

@@ -2,9 +2,11 @@
 // size. Whatever the language or command a motion comes from, it ends as one of these.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "rt_core/base/pose.hpp"
+#include "rt_core/base/real_time.hpp"
 #include "rt_core/kinematics/task.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
@@ -53,5 +55,9 @@ struct Move {
 
   double delay_s = 0;  // delay
 };
+
+// Whether the tick takes this move of a robot with that many joints: everything finite, the velocities and
+// accelerations that it uses positive, the pose a pose.
+[[nodiscard]] bool is_sound(const Move& move, std::size_t joints) CELL_RT;
 
 }  // namespace cellmirror::motion

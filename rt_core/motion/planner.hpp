@@ -12,8 +12,12 @@
 
 namespace cellmirror::motion {
 
+// The speeds of the joints: the smaller of the active and the maximum value. Where only one of them is set (positive),
+// that one; where none is, 1 rad/s or 0.1 m/s, and an acceleration that reaches the velocity within 250 ms.
+void set_joint_speeds(const kinematics::Chain& chain, const RobotParameters& parameters, Move& move);
+
 // PTP to `target` (rad or m), which is refused beyond the limits (names the joint). Uses rob_jnt_act_vel, act_acc,
-// max_vel, PTPmode, vel_profile.
+// max_vel, max_acc, PTPmode, vel_profile.
 [[nodiscard]] Result<Move> plan_joint_move(const kinematics::Chain& chain, const RobotParameters& parameters,
                                            const JointValues& target);
 
