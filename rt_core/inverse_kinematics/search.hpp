@@ -10,7 +10,7 @@
 
 namespace cellmirror::inverse_kinematics {
 
-// Postures closer together than this (root of the sum of squared joint differences, rad and m) count as one.
+// Postures closer together than this (distance()) count as one.
 inline constexpr double kDistinctPostures = 0.1;
 
 class Search {
@@ -18,31 +18,48 @@ class Search {
   // Both have to outlive the search. `request` is a checked one.
   Search(const kinematics::Chain& chain, const Request& request);
 
-  // Steps from `start`. Whether that led to a solution; it is kept if no nearer one is at the same place.
+  // Steps from `start`. Whether that led to a solution.
   bool descend(const JointValues& start, int max_iterations, FoundBy by);
 
-  // Keeps a posture that somebody found, after checking it by the plain forward kinematics and the limits.
+  // Keeps a posture that somebody found, after checking it by the plain forward kinematics and the limits. Of those
+  // that count as one, the better one stays.
   bool keep(const JointValues& q, FoundBy by);
 
+  // Remembers the posture for the case that none is found.
+  void miss(const JointValues& q, const kinematics::Twist& error);
+
+  // Slides the best solution along its null space downhill in the secondary objective.
+  void settle_best();
+
   [[nodiscard]] std::size_t found() const { return found_.size(); }
-  [[nodiscard]] double nearest_distance() const { return nearest_distance_; }
+  // distance() of the nearest solution to wished().
+  [[nodiscard]] double nearest_distance() const;
+  // How far the best orientation is off that is only attempted (rad); 0 for what is required.
+  [[nodiscard]] double best_attempt() const;
   // Looks at the clock; once it is true it stays true.
   [[nodiscard]] bool out_of_time();
+  [[nodiscard]] std::chrono::microseconds time_left() const;
+
+  // Where the secondary objective would like the joints to be: the present posture, or the straight boom.
+  [[nodiscard]] const JointValues& wished() const { return wished_; }
 
   [[nodiscard]] Answer finish();
 
  private:
   struct Found {
     Solution solution;
-    double distance = 0;
+    double attempt = 0;   // rad, of an orientation that is only attempted
+    double distance = 0;  // to wished()
   };
+  [[nodiscard]] static bool better(const Found& a, const Found& b);
+  void spread_out(std::size_t wanted);
 
   const kinematics::Chain& chain_;
   const Request& request_;
+  JointValues wished_;
   std::chrono::steady_clock::time_point deadline_;
   bool timed_out_ = false;
   int iterations_ = 0;
-  double nearest_distance_;
   std::vector<Found> found_;
   Solution closest_;  // of those that do not meet the target
   double least_miss_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "rt_core/inverse_kinematics/posture.hpp"
 #include "rt_core/kinematics/forward.hpp"
 #include "rt_core/kinematics/reach.hpp"
 
@@ -14,29 +15,7 @@ namespace cellmirror::inverse_kinematics {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kMostLeaves = 24;  // visited in one look-up; more find hardly better seeds
-
-// Range of a variable that is worth sampling: one turn is all there is.
-struct Range {
-  double lower = 0;
-  double width = 0;
-};
-
-Range range_of(const kinematics::Chain& chain, std::size_t i) {
-  const double lower = chain.lower()[i];
-  const double upper = chain.upper()[i];
-  if (!std::isfinite(lower)) return {-std::numbers::pi, kTurn};
-  const bool whole = chain.rotates(i) && chain.plain() && upper - lower > kTurn;
-  return whole ? Range{0.5 * (lower + upper) - std::numbers::pi, kTurn} : Range{lower, upper - lower};
-}
-
-// The ratio of the additive low-discrepancy sequence in `dimensions` dimensions: the root of x^(d+1) = x + 1
-// (M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018).
-double sequence_ratio(std::size_t dimensions) {
-  double x = 2.0;
-  for (int i = 0; i < 60; ++i) x = std::pow(1.0 + x, 1.0 / static_cast<double>(dimensions + 1));
-  return x;
-}
+constexpr int kMostLeaves = 16;  // visited in one look-up; more find hardly better seeds
 
 // `value` moved by whole turns into the limits, nearest to `present`; the nearest limit where none lies within.
 double turned_into(double lower, double upper, double value, double present) {
@@ -119,17 +98,11 @@ void SeedTable::sample(std::size_t wanted) {
   nodes_.resize(leaves - 1);
   std::vector<Feature> features(count);
   std::vector<std::uint32_t> indices(count);
-  const double ratio = sequence_ratio(n_);
+  const PostureSpread spread(chain_);
   for (std::size_t k = 0; k < count; ++k) {
-    JointValues q{};
-    double step = 1.0;
-    for (std::size_t i = 0; i < n_; ++i) {
-      step /= ratio;
-      const double whole = 0.5 + step * static_cast<double>(k + 1);
-      const Range range = range_of(chain_, i);
-      const bool left_out = (i == 0 && (first_turns_ || first_slides_)) || (i + 1 == n_ && last_turns_);
-      q[i] = left_out ? 0.0 : range.lower + range.width * (whole - std::floor(whole));
-    }
+    JointValues q = spread.at(k);
+    if (first_turns_ || first_slides_) q[0] = 0;
+    if (last_turns_) q[n_ - 1] = 0;
     const Placed placed = place(kinematics::forward(chain_, {q.data(), n_}));
     Entry& entry = entries_[k];
     for (std::size_t i = 0; i < n_; ++i) entry.q[i] = static_cast<float>(q[i]);

@@ -27,7 +27,7 @@ struct Seed {
 class SeedTable {
  public:
   static constexpr std::size_t kEntries = 24'000;
-  static constexpr std::size_t kMostSeeds = 24;
+  static constexpr std::size_t kMostSeeds = 16;
 
   // Some 15 ms and 1.5 MB.
   explicit SeedTable(const kinematics::Chain& chain, std::size_t entries = kEntries);

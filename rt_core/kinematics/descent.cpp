@@ -114,6 +114,34 @@ bool Descent::within(const Six& e, double orientation_weight, double tolerance) 
   return true;
 }
 
+DescentResult Descent::meet(std::span<double> q, const DescentOptions& options) CELL_RT {
+  const bool attempted = !task_.orientation_required && task_.orientation != OrientationTask::free;
+  return attempted ? meet_in_stages(q, options) : run(q, 1.0, options);
+}
+
+// The orientation's weight goes down in stages, so that each begins near its end, and the last stage meets what is
+// required by the smallest correction.
+DescentResult Descent::meet_in_stages(std::span<double> q, const DescentOptions& options) CELL_RT {
+  constexpr std::array kWeights = {1.0, 0.1, 0.01, 0.0};
+  constexpr double kStageEnds = 1e-4;  // rad, units of length
+  constexpr int kCorrections = 8;
+  DescentResult all;
+  for (const double weight : kWeights) {
+    DescentOptions stage_options = options;
+    if (weight > 0) {
+      stage_options.max_iterations -= all.iterations;
+      stage_options.smallest_step = kStageEnds;
+    } else {
+      stage_options.max_iterations = std::max(options.max_iterations - all.iterations, kCorrections);
+    }
+    const DescentResult stage = run(q, weight, stage_options);
+    all.iterations += stage.iterations;
+    all.met = stage.met;
+    if (stage.met) break;
+  }
+  return all;
+}
+
 DescentResult Descent::run(std::span<double> q, double orientation_weight, const DescentOptions& options) CELL_RT {
   // Damping proportional to the squared error keeps steps short far away and lets singular targets converge (Sugihara,
   // Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method, IEEE T-RO 27(5), 2011); the factor

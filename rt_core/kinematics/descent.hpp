@@ -31,6 +31,10 @@ class Descent {
   // orientation counts with `orientation_weight`.
   DescentResult run(std::span<double> q, double orientation_weight, const DescentOptions& options) CELL_RT;
 
+  // The same for the task as it is: an orientation that is only attempted comes as near as possible once the position
+  // is met.
+  DescentResult meet(std::span<double> q, const DescentOptions& options) CELL_RT;
+
   // The error and its derivative at q.
   void linearise(std::span<const double> q, double orientation_weight, Linearised& at) CELL_RT;
   [[nodiscard]] Room room_at(std::span<const double> q) const CELL_RT;
@@ -38,9 +42,14 @@ class Descent {
   [[nodiscard]] double unscaled(std::size_t variable, double step) const CELL_RT {
     return chain_.rotates(variable) ? step : step * length_;
   }
-  [[nodiscard]] double length() const CELL_RT { return length_; }
+  [[nodiscard]] double scaled(std::size_t variable, double value) const CELL_RT {
+    return chain_.rotates(variable) ? value : value / length_;
+  }
+  [[nodiscard]] const Chain& chain() const CELL_RT { return chain_; }
+  [[nodiscard]] const Task& task() const CELL_RT { return task_; }
 
  private:
+  DescentResult meet_in_stages(std::span<double> q, const DescentOptions& options) CELL_RT;
   void orient(const Pose& X_BT, double weight, Linearised& at) const CELL_RT;
   [[nodiscard]] bool within(const Six& e, double orientation_weight, double tolerance) const CELL_RT;
 
