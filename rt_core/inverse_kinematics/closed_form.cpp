@@ -182,7 +182,12 @@ std::size_t ClosedForm::solve(const Pose& X_BG, std::span<JointValues, kMaxClose
   std::visit([&](const auto& arm) { arm.solve(X, arm_near, postures); }, arm_);
   for (std::size_t k = 0; k < postures.count; ++k) {
     out[k] = JointValues{};
-    for (std::size_t i = 0; i < kArmJoints; ++i) out[k][joint_of(i)] = postures.posture[k][i].angle();
+    for (std::size_t i = 0; i < kArmJoints; ++i) {
+      // Neighbours share the joints nearer to the base; the arc tangents are half of the whole time.
+      const Turn& turn = postures.posture[k][i];
+      const bool shared = k > 0 && turn == postures.posture[k - 1][i];
+      out[k][joint_of(i)] = shared ? out[k - 1][joint_of(i)] : turn.angle();
+    }
     if (free_joint_) out[k][*free_joint_] = near[*free_joint_];
   }
   return postures.count;

@@ -66,9 +66,11 @@ Turns second_turn(const Vector& k1, const Vector& k2, const Vector& p, const Vec
   const Turn phase{a / amplitude, b / amplitude};
   const Vector pole = radius * k1;
   const Vector arm = phase.c * circle.cosine + phase.s * circle.sine;
-  const double sine_part = (t - pole).squaredNorm() - (circle.center + arm - pole).squaredNorm();
-  const double cosine_part = (t + pole).squaredNorm() - (circle.center - arm + pole).squaredNorm();
-  return from_half_angles(cosine_part, sine_part, 2 * radius * slack, 2 * radius * slack, phase);
+  const double to_highest = (circle.center + arm - pole).squaredNorm();
+  const double to_lowest = (circle.center - arm + pole).squaredNorm();
+  const auto squared_slack = [slack](double squared) { return (2 * std::sqrt(squared) + slack) * slack; };
+  return from_half_angles((t + pole).squaredNorm() - to_lowest, (t - pole).squaredNorm() - to_highest,
+                          squared_slack(to_lowest), squared_slack(to_highest), phase);
 }
 
 Turns turn_to_distance(const Vector& h, const Circle& circle, const Vector& point, double distance_squared,

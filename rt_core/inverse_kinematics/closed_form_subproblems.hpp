@@ -18,7 +18,7 @@ using Vector = Eigen::Vector3d;
 inline constexpr std::size_t kMaxPostures = 8;
 inline constexpr std::size_t kArmJoints = 6;
 // Below this, relative to the lengths at hand, a direction is noise and the angle that it would give is free.
-inline constexpr double kSingular = 1e-9;
+inline constexpr double kSingular = 1e-10;
 
 // An angle as the point of the unit circle.
 struct Turn {
@@ -27,6 +27,7 @@ struct Turn {
   static Turn of(double angle) { return {std::cos(angle), std::sin(angle)}; }
   [[nodiscard]] Turn inverse() const { return {c, -s}; }
   [[nodiscard]] Turn operator*(const Turn& b) const { return {c * b.c - s * b.s, s * b.c + c * b.s}; }
+  bool operator==(const Turn&) const = default;
   // (-pi, pi]
   [[nodiscard]] double angle() const {
     const double a = std::atan2(s, c);
