@@ -230,7 +230,7 @@ TEST(FastSolve, EveryClassMeetsWhatItRequiresOnItsKindOfRobot) {
       const JointValues there = drawn(one.chain, random, 0.8);
       const Pose X_BG = forward(one.chain, values(one.chain, there));
       bool solved = false;
-      for (int start = 0; start < 20 && !solved; ++start) {
+      for (int start = 0; start < 80 && !solved; ++start) {
         JointValues q = drawn(one.chain, random);
         solved = fast_solve(one.chain, task, X_BG, values(one.chain, q), {.max_iterations = 60}).solved;
       }
