@@ -2,12 +2,13 @@
 
 #include <urdf_parser/urdf_parser.h>
 
-#include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 #include <kdl/tree.hpp>
 #include <stdexcept>
 #include <vector>
+
+#include "tests/unit/kinematics/kdl_chain.hpp"
 
 namespace cellmirror {
 
@@ -40,14 +41,6 @@ KDL::Tree tree_of(const urdf::ModelInterface& model) {
   return tree;
 }
 
-KDL::Chain chain_of(const std::string& urdf, const std::string& base, const std::string& tip) {
-  const auto model = urdf::parseURDF(urdf);
-  if (!model) throw std::runtime_error("urdfdom refuses the text");
-  KDL::Chain chain;
-  if (!tree_of(*model).getChain(base, tip, chain)) throw std::runtime_error("no chain from " + base + " to " + tip);
-  return chain;
-}
-
 KDL::JntArray array_of(std::span<const double> q, std::size_t count) {
   KDL::JntArray array(static_cast<unsigned>(count));
   for (std::size_t i = 0; i < count; ++i) array(static_cast<unsigned>(i)) = q[i];
@@ -55,6 +48,14 @@ KDL::JntArray array_of(std::span<const double> q, std::size_t count) {
 }
 
 }  // namespace
+
+KDL::Chain kdl_chain(const std::string& urdf, const std::string& base, const std::string& tip) {
+  const auto model = urdf::parseURDF(urdf);
+  if (!model) throw std::runtime_error("urdfdom refuses the text");
+  KDL::Chain chain;
+  if (!tree_of(*model).getChain(base, tip, chain)) throw std::runtime_error("no chain from " + base + " to " + tip);
+  return chain;
+}
 
 struct KdlChain::Solvers {
   explicit Solvers(const KDL::Chain& from) : chain(from) {}
@@ -64,7 +65,7 @@ struct KdlChain::Solvers {
 };
 
 KdlChain::KdlChain(const std::string& urdf, const std::string& base, const std::string& tip)
-    : solvers_(std::make_unique<Solvers>(chain_of(urdf, base, tip))) {}
+    : solvers_(std::make_unique<Solvers>(kdl_chain(urdf, base, tip))) {}
 KdlChain::~KdlChain() = default;
 
 std::size_t KdlChain::joint_count() const { return solvers_->chain.getNrOfJoints(); }
