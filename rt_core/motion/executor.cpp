@@ -54,7 +54,8 @@ void MoveExecutor::pop() CELL_RT {
 }
 
 bool MoveExecutor::blends(const Move& move) const CELL_RT {
-  return activity_ == Activity::joints && move.kind == MoveKind::joints;
+  if (activity_ == Activity::joints) return move.kind == MoveKind::joints;
+  return activity_ == Activity::linear && linear_.fits(move, chain_);
 }
 
 void MoveExecutor::supersede(const Move& move) CELL_RT {
@@ -98,6 +99,18 @@ void MoveExecutor::abort(Outcome outcome) CELL_RT {
   state_.moving = false;
 }
 
+bool MoveExecutor::start_linear(std::span<const double> q) CELL_RT {
+  const Queued& next = front();
+  if (activity_ == Activity::linear) {
+    linear_.blend(next.move);
+    return true;
+  }
+  if (next.chain == nullptr || next.chain->variable_count() != joints_) return false;
+  linear_.start(next.move, *next.chain, q);
+  activity_ = Activity::linear;
+  return true;
+}
+
 void MoveExecutor::start_front(const JointRange& range, std::span<const double> q) CELL_RT {
   const Move& move = front().move;
   const std::span<const double> qd = std::span(qd_).first(joints_);
@@ -105,24 +118,38 @@ void MoveExecutor::start_front(const JointRange& range, std::span<const double> 
   state_.running = move.id;
   // What ended before it and was not told yet: moves that the queue refused.
   end_through(move.id - 1, Outcome::blocked);
-  for (std::size_t i = 0; i < joints_; ++i) fastest_[i] = std::max(move.max_velocity[i], std::abs(qd[i]));
+  bool started = true;
   switch (move.kind) {
     case MoveKind::joints:
-      if (!within(move, range, joints_)) {  // the range was narrowed meanwhile
-        halt(Outcome::blocked);
-        return;
-      }
+      started = within(move, range, joints_);  // not where the range was narrowed meanwhile
+      if (!started) break;
+      for (std::size_t i = 0; i < joints_; ++i) fastest_[i] = std::max(move.max_velocity[i], std::abs(qd[i]));
       ptp_.start(move, q, qd, range);
       activity_ = Activity::joints;
       break;
     case MoveKind::linear:
-      halt(Outcome::blocked);
-      return;
+      started = start_linear(q);
+      break;
     case MoveKind::delay:
       delay_left_ = move.delay_s;
       activity_ = Activity::delay;
       break;
   }
+  if (started) {
+    pop();
+  } else {
+    halt(Outcome::blocked);
+  }
+}
+
+bool MoveExecutor::flies() const CELL_RT {
+  return activity_ == Activity::linear && !braking_ && !brake_ && state_.waiting > 0 &&
+         front().move.start == Start::queue && linear_.fits(front().move, front().chain) && linear_.at_fly_point();
+}
+
+void MoveExecutor::fly() CELL_RT {
+  linear_.append(front().move);
+  state_.running = front().move.id;
   pop();
 }
 
@@ -130,15 +157,33 @@ void MoveExecutor::brake(const JointRange& range, std::span<const double> q) CEL
   brake_ = false;
   braking_ = true;
   if (activity_ == Activity::joints) ptp_.brake(q, std::span(qd_).first(joints_), range);
+  if (activity_ == Activity::linear) linear_.brake();
   if (activity_ == Activity::delay) delay_left_ = 0;
 }
 
-// True when the activity has ended.
-bool MoveExecutor::advance(double dt, std::span<double> q) CELL_RT {
+bool MoveExecutor::advance_linear(double dt, const JointRange& range, std::span<double> q) CELL_RT {
   const std::span<double> qd = std::span(qd_).first(joints_);
+  const LinearMotion::Progress progress = linear_.advance(dt, q, qd);
+  fastest_ = linear_.max_velocity();
+  if (linear_.older_ended() && !braking_) end_through(state_.running - 1, Outcome::arrived);
+  if (progress != LinearMotion::Progress::blocked) return progress == LinearMotion::Progress::arrived;
+  // There is no path to brake on: the joints come to rest in the direction in which they move.
+  if (!braking_) halt(Outcome::blocked);
+  for (std::size_t i = 0; i < joints_; ++i) fastest_[i] = std::max(fastest_[i], std::abs(qd[i]));
+  ptp_.brake_together(linear_.acceleration(), q, qd, range);
+  activity_ = Activity::joints;
+  brake_ = false;
+  braking_ = true;
+  return ptp_.advance(dt, q, qd);
+}
+
+// True when the activity has ended.
+bool MoveExecutor::advance(double dt, const JointRange& range, std::span<double> q) CELL_RT {
   switch (activity_) {
     case Activity::joints:
-      return ptp_.advance(dt, q, qd);
+      return ptp_.advance(dt, q, std::span(qd_).first(joints_));
+    case Activity::linear:
+      return advance_linear(dt, range, q);
     case Activity::delay:
       delay_left_ -= dt;
       return delay_left_ <= 0;
@@ -148,24 +193,27 @@ bool MoveExecutor::advance(double dt, std::span<double> q) CELL_RT {
   return true;
 }
 
+void MoveExecutor::arrive() CELL_RT {
+  const std::uint32_t running = state_.running;
+  const std::uint32_t halted = halt_through_;
+  const bool braked = braking_;
+  come_to_rest();
+  if (halted != 0) end_through(halted, halt_outcome_);
+  if (!braked) end_through(running, Outcome::arrived);
+  if (state_.waiting > 0) state_.running = front().move.id;
+}
+
 bool MoveExecutor::step(double dt, const JointRange& range, std::span<double> q, std::span<double> qd) CELL_RT {
-  const bool was_standing = activity_ == Activity::standing;
-  if ((was_standing || blend_) && state_.waiting > 0) start_front(range, q);
+  if ((activity_ == Activity::standing || blend_) && state_.waiting > 0) start_front(range, q);
   if (activity_ == Activity::standing) {
     end_through(newest_, Outcome::blocked);  // refused, and nothing behind it
     state_.moving = false;
+    state_.running = 0;
     return false;
   }
   if (brake_) brake(range, q);
-  if (advance(dt, q)) {
-    const std::uint32_t running = state_.running;
-    const std::uint32_t halted = halt_through_;
-    const bool braked = braking_;
-    come_to_rest();
-    if (halted != 0) end_through(halted, halt_outcome_);
-    if (!braked) end_through(running, Outcome::arrived);
-    if (state_.waiting > 0) state_.running = front().move.id;
-  }
+  if (flies()) fly();
+  if (advance(dt, range, q)) arrive();
   std::ranges::copy(std::span(qd_).first(joints_), qd.begin());
   state_.moving = activity_ != Activity::standing || state_.waiting > 0;
   return true;

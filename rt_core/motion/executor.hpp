@@ -8,6 +8,7 @@
 
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/kinematics/chain.hpp"
+#include "rt_core/motion/linear.hpp"
 #include "rt_core/motion/move.hpp"
 #include "rt_core/motion/ptp.hpp"
 
@@ -63,7 +64,7 @@ class MoveExecutor {
     Move move;
     const kinematics::Chain* chain = nullptr;
   };
-  enum class Activity : std::uint8_t { standing, joints, delay };
+  enum class Activity : std::uint8_t { standing, joints, linear, delay };
 
   [[nodiscard]] const Queued& front() const CELL_RT { return queue_[first_]; }
   bool push(const Move& move) CELL_RT;
@@ -71,9 +72,14 @@ class MoveExecutor {
   void supersede(const Move& move) CELL_RT;
   void halt(Outcome outcome) CELL_RT;
   [[nodiscard]] bool blends(const Move& move) const CELL_RT;
+  [[nodiscard]] bool flies() const CELL_RT;
+  void fly() CELL_RT;
+  bool start_linear(std::span<const double> q) CELL_RT;
   void start_front(const JointRange& range, std::span<const double> q) CELL_RT;
   void brake(const JointRange& range, std::span<const double> q) CELL_RT;
-  bool advance(double dt, std::span<double> q) CELL_RT;
+  bool advance(double dt, const JointRange& range, std::span<double> q) CELL_RT;
+  bool advance_linear(double dt, const JointRange& range, std::span<double> q) CELL_RT;
+  void arrive() CELL_RT;
   void end_through(std::uint32_t id, Outcome outcome) CELL_RT;
   void come_to_rest() CELL_RT;
 
@@ -88,6 +94,7 @@ class MoveExecutor {
   Outcome halt_outcome_ = Outcome::stopped;
   std::uint32_t newest_ = 0;  // the newest id that was ever given
   PtpMotion ptp_;
+  LinearMotion linear_;
   double delay_left_ = 0;
   JointValues qd_{};
   JointValues fastest_{};

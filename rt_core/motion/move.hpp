@@ -37,8 +37,9 @@ struct Move {
   // Linear: a joint that moves at all moves at least this fast (stepping motors): manual, rob_jnt_min_vel.
   JointValues min_velocity{};
 
-  // joints. The acceleration is that which, with the velocity, gives the duration of the acceleration period (manual,
-  // rob_cart_lin_acc: 1200 mm/s and 4800 mm/s2 take 250 ms); a sine profile has pi/2 times as much at its steepest.
+  // joints; the acceleration also where a linear move has to brake off its way (0: within a tenth of a second). It is
+  // the one that, with the velocity, gives the duration of the acceleration period (manual, rob_cart_lin_acc: 1200 mm/s
+  // and 4800 mm/s2 take 250 ms); a sine profile has pi/2 times as much at its steepest.
   JointValues target{};        // rad or m
   JointValues velocity{};      // of the cruise; rad/s or m/s
   JointValues acceleration{};  // rad/s2 or m/s2

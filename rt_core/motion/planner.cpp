@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "rt_core/base/units.hpp"
 #include "rt_core/motion/ptp.hpp"
 
 namespace cellmirror::motion {
@@ -28,8 +29,8 @@ double smaller(double active, double most, double otherwise) {
 }
 
 std::string value_text(const kinematics::Variable& variable, double value) {
-  if (variable.kind == JointKind::prismatic) return fmt::format("{:.6g} m", value);
-  return fmt::format("{:.6g} rad", value);
+  if (variable.kind == JointKind::prismatic) return fmt::format("{:.6g} mm", mm_from_m(value));
+  return fmt::format("{:.6g} deg", deg_from_rad(value));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "rt_core/motion/ptp.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cellmirror::motion {
 
@@ -39,6 +40,21 @@ void PtpMotion::brake(std::span<const double> q, std::span<const double> qd, con
     axes_[i] = Profile::to_rest(q[i], qd[i], {0, acceleration_[i], range.lower[i], range.upper[i]});
   }
   set_duration(q.size());
+}
+
+void PtpMotion::brake_together(const JointValues& acceleration, std::span<const double> q, std::span<const double> qd,
+                               const JointRange& range) CELL_RT {
+  constexpr double kOtherwise = 0.1;  // s
+  constexpr double kLeast = 1e-6;     // rad/s2, m/s2; of an axis that stands
+  double duration = 0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const double own = acceleration[i] > 0 ? std::abs(qd[i]) / acceleration[i] : kOtherwise;
+    duration = std::max(duration, own);
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    acceleration_[i] = duration > 0 ? std::max(std::abs(qd[i]) / duration, kLeast) : kLeast;
+  }
+  brake(q, qd, range);
 }
 
 bool PtpMotion::advance(double dt, std::span<double> q, std::span<double> qd) CELL_RT {

@@ -23,6 +23,10 @@ class PtpMotion {
   void start(const Move& move, std::span<const double> q, std::span<const double> qd, const JointRange& range) CELL_RT;
   // To rest; each axis at its own acceleration.
   void brake(std::span<const double> q, std::span<const double> qd, const JointRange& range) CELL_RT;
+  // To rest, all axes within the time of the slowest, so that the direction stays. An acceleration of 0: within a tenth
+  // of a second.
+  void brake_together(const JointValues& acceleration, std::span<const double> q, std::span<const double> qd,
+                      const JointRange& range) CELL_RT;
   // `dt` seconds on. True when it stands at its end.
   bool advance(double dt, std::span<double> q, std::span<double> qd) CELL_RT;
 

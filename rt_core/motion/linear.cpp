@@ -1,0 +1,178 @@
+#include "rt_core/motion/linear.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rt_core/kinematics/fast_step.hpp"
+
+namespace cellmirror::motion {
+
+namespace {
+
+constexpr double kEndTolerance = 1e-11;  // of the last step: asked for
+constexpr int kIterations = 6;           // of one search; a path that goes on smoothly takes 2
+constexpr int kTries = 5;                // searches in a tick at most
+constexpr int kTriesWithoutPosture = 2;
+constexpr double kShorterTry = 0.25;
+constexpr double kSlowestPace = 1e-4;     // below: blocked
+constexpr double kRecovery = 0.25;        // s from standing time to full pace
+constexpr double kBelowLimit = 1 - 1e-7;  // so that rounding does not lift a joint above its limit
+constexpr double kShrink = 0.98;          // a shorter step is not quite in proportion
+
+// By what a step has to be shortened so that no joint is too fast; 1 and more: it need not be.
+double share_allowed(std::span<const double> from, std::span<const double> to, std::span<const double> velocity,
+                     double dt) CELL_RT {
+  double share = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double step = std::abs(to[i] - from[i]);
+    if (step > 0) share = std::min(share, velocity[i] * dt * kBelowLimit / step);
+  }
+  return share;
+}
+
+bool same_task(const kinematics::Task& a, const kinematics::Task& b) CELL_RT {
+  return a.position_axes == b.position_axes && a.orientation == b.orientation &&
+         a.orientation_required == b.orientation_required && a.secondary == b.secondary;
+}
+
+}  // namespace
+
+void LinearMotion::take_limits(const Move& move, bool superposed) CELL_RT {
+  for (std::size_t i = 0; i < chain_->variable_count(); ++i) {
+    max_velocity_[i] = superposed ? std::max(max_velocity_[i], move.max_velocity[i]) : move.max_velocity[i];
+  }
+  linear_velocity_ = superposed ? std::max(linear_velocity_, move.linear_velocity) : move.linear_velocity;
+  rotational_velocity_ =
+      superposed ? std::max(rotational_velocity_, move.rotational_velocity) : move.rotational_velocity;
+}
+
+void LinearMotion::start(const Move& move, const kinematics::Chain& chain, std::span<const double> q) CELL_RT {
+  chain_ = &chain;
+  move_ = move;
+  std::ranges::copy(q, posture_.begin());
+  const Pose X_BS = kinematics::forward(chain, q);
+  path_.clear(X_BS);
+  path_.add(Straight::between(move, X_BS, move.X_BG));
+  take_limits(move, false);
+  pace_ = 1;
+  older_ended_ = false;
+}
+
+void LinearMotion::append(const Move& move) CELL_RT {
+  take_limits(move, true);
+  move_ = move;
+  path_.add(Straight::between(move, path_.end(), move.X_BG));
+}
+
+void LinearMotion::brake() CELL_RT {
+  // As fast as it really is; from here on time goes on at full pace.
+  const double pace = std::exchange(pace_, 1.0);
+  const kinematics::Twist twist = pace * path_.twist(0);
+  double duration = std::max(twist.head<3>().norm() / move_.linear_acceleration,
+                             twist.tail<3>().norm() / move_.rotational_acceleration);
+  if (path_.count() == 1) {
+    // A sine brakes late: in the middle of its braking it takes more than its acceleration to stop before the end.
+    const Straight& way = path_.newest();
+    const Profile::State share = way.share.at(way.t);
+    const double speed = pace * share.velocity;
+    if (speed > 0) duration = std::min(duration, 2 * std::max(1 - share.position, 0.0) / speed);
+  }
+  constexpr double kShortest = 1e-9;  // s
+  if (duration > kShortest) {
+    path_.replace(Straight::to_rest(twist, duration));
+  } else {
+    path_.clear(path_.pose(0));
+  }
+}
+
+void LinearMotion::blend(const Move& move) CELL_RT {
+  brake();
+  append(move);
+}
+
+bool LinearMotion::fits(const Move& move, const kinematics::Chain* chain) const CELL_RT {
+  return move.kind == MoveKind::linear && chain == chain_ && same_task(move.task, move_.task);
+}
+
+bool LinearMotion::at_fly_point() const CELL_RT {
+  if (path_.count() != 1 || move_.fly_parameter <= 0) return false;
+  const Straight& way = path_.newest();
+  const Profile::State share = way.share.at(way.t);
+  const double left = 1 - share.position;
+  switch (move_.fly_type) {
+    case FlyType::speed_fraction:
+      return share.braking_to_target && share.velocity < move_.fly_parameter * way.cruise;
+    case FlyType::distance:  // a way without translation (rotation) has no such point
+      return way.length > 0 && left * way.length < move_.fly_parameter;
+    case FlyType::angle:
+      return way.angle > 0 && left * way.angle < move_.fly_parameter;
+  }
+  return false;
+}
+
+// Two moves in one direction would add up to more than either may have.
+double LinearMotion::pace_of_tool(double dt) const CELL_RT {
+  if (path_.count() < 2) return 1;
+  const kinematics::Twist twist = path_.twist(dt);
+  const double linear = twist.head<3>().norm();
+  const double rotational = twist.tail<3>().norm();
+  double pace = 1;
+  if (linear > linear_velocity_) pace = linear_velocity_ / linear;
+  if (rotational > rotational_velocity_) pace = std::min(pace, rotational_velocity_ / rotational);
+  return pace;
+}
+
+bool LinearMotion::find_posture(double later, JointValues& posture) const CELL_RT {
+  posture = posture_;
+  const std::span<double> q = std::span(posture).first(chain_->variable_count());
+  const bool last = path_.ended(later);
+  const kinematics::FastResult found = kinematics::fast_solve(
+      *chain_, move_.task, path_.pose(later), q,
+      {.tolerance = last ? kEndTolerance : kPathTolerance, .max_iterations = last ? 2 * kIterations : kIterations});
+  return found.solved || kinematics::meets(move_.task, found.error, kPathTaken);
+}
+
+// A joint that would move slower than its minimum waits until it can make a whole step at that velocity, as a stepping
+// motor does; the last step is what is left.
+void LinearMotion::put(const JointValues& posture, bool last, double dt, std::span<double> q,
+                       std::span<double> qd) const CELL_RT {
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const double step = posture[i] - q[i];
+    const double least = std::min(move_.min_velocity[i], max_velocity_[i] * kBelowLimit) * dt;
+    const bool waits = !last && std::abs(step) < least;
+    qd[i] = waits || !(dt > 0) ? 0 : step / dt;
+    if (!waits) q[i] = posture[i];
+  }
+}
+
+LinearMotion::Progress LinearMotion::advance(double dt, std::span<double> q, std::span<double> qd) CELL_RT {
+  older_ended_ = false;
+  if (!(dt > 0)) return Progress::under_way;
+  double pace = std::min({pace_ + dt / kRecovery, 1.0, pace_of_tool(dt)});
+  JointValues posture;
+  int without_posture = 0;
+  for (int i = 0; i < kTries && pace >= kSlowestPace; ++i) {
+    if (!find_posture(pace * dt, posture)) {
+      if (++without_posture == kTriesWithoutPosture) return Progress::blocked;
+      pace *= kShorterTry;
+      continue;
+    }
+    const double share = share_allowed(q, std::span(posture).first(q.size()), max_velocity_, dt);
+    if (share < 1) {
+      pace *= kShrink * share;
+      continue;
+    }
+    const bool last = path_.ended(pace * dt);
+    put(posture, last, dt, q, qd);
+    posture_ = posture;
+    pace_ = pace;
+    older_ended_ = path_.advance(pace * dt);
+    if (older_ended_) take_limits(move_, false);
+    return last ? Progress::arrived : Progress::under_way;
+  }
+  return Progress::blocked;
+}
+
+}  // namespace cellmirror::motion

@@ -1,0 +1,70 @@
+// Moves the TCP along straight ways and finds the joints for them, tick by tick. Belongs to the tick thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/real_time.hpp"
+#include "rt_core/kinematics/chain.hpp"
+#include "rt_core/motion/move.hpp"
+#include "rt_core/motion/path.hpp"
+
+namespace cellmirror::motion {
+
+// How well the joints meet the path, of each component [m, rad]: asked for, and still taken where rounding or a
+// singularity is in the way.
+inline constexpr double kPathTolerance = 1e-8;
+inline constexpr double kPathTaken = 1e-6;
+
+class LinearMotion {
+ public:
+  enum class Progress : std::uint8_t {
+    under_way,
+    arrived,
+    blocked,  // no posture for the next piece; q and qd are untouched
+  };
+
+  // From rest in `q`. `chain` lives as long as the motion.
+  void start(const Move& move, const kinematics::Chain& chain, std::span<const double> q) CELL_RT;
+  // Instead of what is left: that brakes on its way, and the move goes, superposed, from where that will stop.
+  void blend(const Move& move) CELL_RT;
+  // Behind what is left, and superposed on it. Only where at_fly_point().
+  void append(const Move& move) CELL_RT;
+  // To rest on the present way, at the acceleration of the newest move.
+  void brake() CELL_RT;
+
+  // Where the next move may begin (manual, rob_cart_fly_radius). Never while two are superposed already.
+  [[nodiscard]] bool at_fly_point() const CELL_RT;
+  // Whether a move of this chain and task can be superposed.
+  [[nodiscard]] bool fits(const Move& move, const kinematics::Chain* chain) const CELL_RT;
+
+  // `dt` seconds on from the posture `q`. The path takes longer where a joint, or the TCP under two superposed moves,
+  // would be too fast.
+  Progress advance(double dt, std::span<double> q, std::span<double> qd) CELL_RT;
+  // Whether the older one of two superposed moves ended in the last advance().
+  [[nodiscard]] bool older_ended() const CELL_RT { return older_ended_; }
+
+  [[nodiscard]] const JointValues& max_velocity() const CELL_RT { return max_velocity_; }
+  [[nodiscard]] const JointValues& acceleration() const CELL_RT { return move_.acceleration; }  // of the joints
+  // How fast time goes on the path: 1, or less where it is slowed down.
+  [[nodiscard]] double pace() const CELL_RT { return pace_; }
+
+ private:
+  [[nodiscard]] double pace_of_tool(double dt) const CELL_RT;
+  [[nodiscard]] bool find_posture(double later, JointValues& posture) const CELL_RT;
+  void put(const JointValues& posture, bool last, double dt, std::span<double> q, std::span<double> qd) const CELL_RT;
+  void take_limits(const Move& move, bool superposed) CELL_RT;
+
+  const kinematics::Chain* chain_ = nullptr;
+  Move move_;  // the newest
+  SuperposedPath path_;
+  JointValues posture_{};       // that meets the path; what the joints show lags behind it by steps below min_velocity
+  JointValues max_velocity_{};  // of the moves under way, the higher one of each joint
+  double linear_velocity_ = 0;
+  double rotational_velocity_ = 0;
+  double pace_ = 1;
+  bool older_ended_ = false;
+};
+
+}  // namespace cellmirror::motion

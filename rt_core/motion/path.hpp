@@ -1,0 +1,68 @@
+// A straight way of the TCP, and the pose that several of them together ask for. Belongs to the tick thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "rt_core/base/pose.hpp"
+#include "rt_core/base/real_time.hpp"
+#include "rt_core/kinematics/forward.hpp"
+#include "rt_core/kinematics/task.hpp"
+#include "rt_core/motion/move.hpp"
+#include "rt_core/motion/profile.hpp"
+
+namespace cellmirror::motion {
+
+// A displacement whose share s grows from 0 to 1 by a profile: translation by s * p, rotation about one axis by
+// s * angle, both expressed in the base.
+struct Straight {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  double length = 0;  // of p
+  double angle = 0;   // rad, not negative
+  double cruise = 0;  // 1/s; what the move's velocities make of the share
+  Profile share;
+  double t = 0;  // s
+
+  // From X_BS to X_BG as far as the task counts; the slower of translation and rotation decides, for the velocity and
+  // for the acceleration. Manual, rob_cart_lin_vel and the following.
+  [[nodiscard]] static Straight between(const Move& move, const Pose& X_BS, const Pose& X_BG) CELL_RT;
+  // The way on which something that moves with `twist` comes to rest with constant deceleration within `duration` s.
+  [[nodiscard]] static Straight to_rest(const kinematics::Twist& twist, double duration) CELL_RT;
+
+  [[nodiscard]] bool ended(double later = 0) const CELL_RT { return t + later >= share.duration(); }
+  [[nodiscard]] Eigen::Matrix3d rotation(double s) const CELL_RT;
+  // X_BS moved by the share s of the displacement.
+  [[nodiscard]] Pose moved(const Pose& X_BS, double s) const CELL_RT;
+};
+
+// Two displacements at most, one superposed on the other: translations add, rotations compose.
+class SuperposedPath {
+ public:
+  static constexpr std::size_t kMost = 2;
+
+  void clear(const Pose& X_BS) CELL_RT;
+  // Refused (by contract): a third one.
+  void add(const Straight& straight) CELL_RT;
+  // All that is left becomes one way to rest, from the present pose and the velocity `twist`.
+  void replace(const Straight& brake) CELL_RT;
+
+  [[nodiscard]] std::size_t count() const CELL_RT { return count_; }
+  [[nodiscard]] const Straight& newest() const CELL_RT { return ways_[count_ - 1]; }
+  // Where it all ends.
+  [[nodiscard]] Pose end() const CELL_RT;
+  // What is asked for `later` seconds from now, and how fast.
+  [[nodiscard]] Pose pose(double later) const CELL_RT;
+  [[nodiscard]] kinematics::Twist twist(double later) const CELL_RT;
+  [[nodiscard]] bool ended(double later) const CELL_RT;
+  // Time goes on. True where the older one of two has ended and was dropped.
+  bool advance(double dt) CELL_RT;
+
+ private:
+  Pose X_BS_ = Pose::Identity();  // where the oldest begins
+  std::array<Straight, kMost> ways_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace cellmirror::motion
