@@ -59,18 +59,40 @@ template <std::size_t N>
   }
 }
 
+// Of the joints i to i + 3; zero beyond the last one. Made in a register: a load of four values right after they were
+// stored one by one would wait for the stores.
+template <std::size_t N>
+[[gnu::always_inline]] inline void values_of(const ForwardConstants& chain, const double* q, std::size_t i,
+                                             Four& values) noexcept {
+  const std::size_t joints = N > 0 ? N : chain.joints;
+  const auto value = [&](std::size_t k) [[gnu::always_inline]] {
+    return k < joints ? q[chain.plain ? k : chain.joint[k].variable] : 0.0;
+  };
+  if (chain.plain && i + 4 <= joints) {
+    load(q + i, values);
+  } else {
+    values = Four{value(i), value(i + 1), value(i + 2), value(i + 3)};
+  }
+}
+
 template <std::size_t N, bool kJacobian>
 void walk(const ForwardConstants& chain, const double* q, double* X_BT, double* jacobian) noexcept {
   constexpr std::size_t kCapacity = Sizes<N>::kCapacity;
   const std::size_t joints = N > 0 ? N : chain.joints;
-  double value[kCapacity] = {};
+  alignas(32) double value[kCapacity];
   alignas(32) double angle[kCapacity];
   alignas(32) double sine[kCapacity];
   alignas(32) double cosine[kCapacity];
   Four axis[kJacobian ? kCapacity : 1];
   Four origin[kJacobian ? kCapacity : 1];
-  for (std::size_t i = 0; i < joints; ++i) value[i] = q[chain.plain ? i : chain.joint[i].variable];
-  for (std::size_t i = 0; i < sincos_capacity(joints); ++i) angle[i] = chain.turn[i] * value[i] + chain.turn_zero[i];
+  for (std::size_t i = 0; i < joints; i += 4) {
+    Four values, turn, zero;
+    values_of<N>(chain, q, i, values);
+    load(&chain.turn[i], turn);
+    load(&chain.turn_zero[i], zero);
+    store(values, value + i);
+    store(turn * values + zero, angle + i);
+  }
   sincos_of(angle, joints, sine, cosine);
   Four x, y, z, p;
   load(&chain.X_B0[0], x);
