@@ -19,7 +19,10 @@ constexpr double kShorterTry = 0.25;
 constexpr double kSlowestPace = 1e-4;     // below: blocked
 constexpr double kRecovery = 0.25;        // s from standing time to full pace
 constexpr double kBelowLimit = 1 - 1e-7;  // so that rounding does not lift a joint above its limit
-constexpr double kShrink = 0.98;          // a shorter step is not quite in proportion
+constexpr double kShortest = 1e-9;        // s; of braking
+constexpr double kNoWay = 1e-20;          // s2
+constexpr int kBlendRounds = 10;
+constexpr double kShrink = 0.98;  // a shorter step is not quite in proportion
 
 // By what a step has to be shortened so that no joint is too fast; 1 and more: it need not be.
 double share_allowed(std::span<const double> from, std::span<const double> to, std::span<const double> velocity,
@@ -30,6 +33,18 @@ double share_allowed(std::span<const double> from, std::span<const double> to, s
     if (step > 0) share = std::min(share, velocity[i] * dt * kBelowLimit / step);
   }
   return share;
+}
+
+// How much of the velocity `twist` leads along `way`, in 1/s: the projection, where velocities count in shares of what
+// the move allows.
+double speed_along(const Straight& way, const kinematics::Twist& twist, const Move& move) CELL_RT {
+  const kinematics::Twist along = way.twist();
+  const double linear = 1 / (move.linear_velocity * move.linear_velocity);
+  const double rotational = 1 / (move.rotational_velocity * move.rotational_velocity);
+  const double square = linear * along.head<3>().squaredNorm() + rotational * along.tail<3>().squaredNorm();
+  const double product =
+      linear * along.head<3>().dot(twist.head<3>()) + rotational * along.tail<3>().dot(twist.tail<3>());
+  return square > kNoWay ? std::max(product / square, 0.0) : 0.0;
 }
 
 bool same_task(const kinematics::Task& a, const kinematics::Task& b) CELL_RT {
@@ -66,12 +81,16 @@ void LinearMotion::append(const Move& move) CELL_RT {
   path_.add(Straight::between(move, path_.end(), move.X_BG));
 }
 
+double LinearMotion::stopping_time(const kinematics::Twist& twist) const CELL_RT {
+  return std::max(twist.head<3>().norm() / move_.linear_acceleration,
+                  twist.tail<3>().norm() / move_.rotational_acceleration);
+}
+
 void LinearMotion::brake() CELL_RT {
   // As fast as it really is; from here on time goes on at full pace.
   const double pace = std::exchange(pace_, 1.0);
   const kinematics::Twist twist = pace * path_.twist(0);
-  double duration = std::max(twist.head<3>().norm() / move_.linear_acceleration,
-                             twist.tail<3>().norm() / move_.rotational_acceleration);
+  double duration = stopping_time(twist);
   if (path_.count() == 1) {
     // A sine brakes late: in the middle of its braking it takes more than its acceleration to stop before the end.
     const Straight& way = path_.newest();
@@ -79,7 +98,6 @@ void LinearMotion::brake() CELL_RT {
     const double speed = pace * share.velocity;
     if (speed > 0) duration = std::min(duration, 2 * std::max(1 - share.position, 0.0) / speed);
   }
-  constexpr double kShortest = 1e-9;  // s
   if (duration > kShortest) {
     path_.replace(Straight::to_rest(twist, duration));
   } else {
@@ -88,8 +106,28 @@ void LinearMotion::brake() CELL_RT {
 }
 
 void LinearMotion::blend(const Move& move) CELL_RT {
-  brake();
-  append(move);
+  const kinematics::Twist twist = std::exchange(pace_, 1.0) * path_.twist(0);
+  const Pose X_BN = path_.pose(0);
+  Straight way = Straight::between(move, X_BN, move.X_BG);
+  double speed = speed_along(way, twist, move);
+  way = Straight::between(move, X_BN, move.X_BG, speed);
+  Straight rest;
+  double duration = 0;
+  // The way begins where the rest of the velocity stops, and what that rest is depends on the direction of the way: a
+  // contraction by a half at least, since `speed` is bounded.
+  for (int i = 0; i < kBlendRounds; ++i) {
+    const kinematics::Twist left = twist - speed * way.twist();
+    duration = stopping_time(left);
+    if (duration <= kShortest) break;
+    speed = std::min(speed, 1 / duration);
+    rest = Straight::to_rest(left, duration);
+    way = Straight::between(move, rest.moved(X_BN, 1), move.X_BG, speed);
+  }
+  take_limits(move, true);
+  move_ = move;
+  path_.clear(X_BN);
+  if (duration > kShortest) path_.add(rest);
+  path_.add(way);
 }
 
 bool LinearMotion::fits(const Move& move, const kinematics::Chain* chain) const CELL_RT {

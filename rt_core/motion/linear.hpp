@@ -27,7 +27,8 @@ class LinearMotion {
 
   // From rest in `q`. `chain` lives as long as the motion.
   void start(const Move& move, const kinematics::Chain& chain, std::span<const double> q) CELL_RT;
-  // Instead of what is left: that brakes on its way, and the move goes, superposed, from where that will stop.
+  // Instead of what is left. As much of the present velocity as leads along the new way is kept; the rest brakes, and
+  // the move goes, superposed, from where that will stop.
   void blend(const Move& move) CELL_RT;
   // Behind what is left, and superposed on it. Only where at_fly_point().
   void append(const Move& move) CELL_RT;
@@ -54,6 +55,7 @@ class LinearMotion {
   [[nodiscard]] double pace_of_tool(double dt) const CELL_RT;
   [[nodiscard]] bool find_posture(double later, JointValues& posture) const CELL_RT;
   void put(const JointValues& posture, bool last, double dt, std::span<double> q, std::span<double> qd) const CELL_RT;
+  [[nodiscard]] double stopping_time(const kinematics::Twist& twist) const CELL_RT;
   void take_limits(const Move& move, bool superposed) CELL_RT;
 
   const kinematics::Chain* chain_ = nullptr;

@@ -16,7 +16,7 @@ double shares(double limit, double extent) CELL_RT {
 
 }  // namespace
 
-Straight Straight::between(const Move& move, const Pose& X_BS, const Pose& X_BG) CELL_RT {
+Straight Straight::between(const Move& move, const Pose& X_BS, const Pose& X_BG, double speed) CELL_RT {
   const kinematics::Twist way = kinematics::task_error(move.task, X_BS, X_BG);
   Straight out;
   out.p = way.head<3>();
@@ -34,7 +34,7 @@ Straight Straight::between(const Move& move, const Pose& X_BS, const Pose& X_BG)
   out.cruise = std::min(shares(move.linear_velocity, out.length), shares(move.rotational_velocity, out.angle));
   const double acceleration =
       std::min(shares(move.linear_acceleration, out.length), shares(move.rotational_acceleration, out.angle));
-  out.share = Profile::to_target(0, 0, 1, {out.cruise, acceleration}, move.profile);
+  out.share = Profile::to_target(0, speed, 1, {out.cruise, acceleration}, move.profile);
   return out;
 }
 
@@ -47,6 +47,12 @@ Straight Straight::to_rest(const kinematics::Twist& twist, double duration) CELL
   out.angle = 0.5 * duration * speed;
   out.cruise = 2 / duration;
   out.share = Profile::to_target(0, out.cruise, 1, {out.cruise, out.cruise / duration}, VelocityProfile::ramp);
+  return out;
+}
+
+kinematics::Twist Straight::twist() const CELL_RT {
+  kinematics::Twist out;
+  out << p, angle * axis;
   return out;
 }
 

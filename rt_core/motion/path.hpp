@@ -26,11 +26,13 @@ struct Straight {
   double t = 0;  // s
 
   // From X_BS to X_BG as far as the task counts; the slower of translation and rotation decides, for the velocity and
-  // for the acceleration. Manual, rob_cart_lin_vel and the following.
-  [[nodiscard]] static Straight between(const Move& move, const Pose& X_BS, const Pose& X_BG) CELL_RT;
+  // for the acceleration. Manual, rob_cart_lin_vel and the following. `speed`: of the share at the beginning, 1/s.
+  [[nodiscard]] static Straight between(const Move& move, const Pose& X_BS, const Pose& X_BG, double speed = 0) CELL_RT;
   // The way on which something that moves with `twist` comes to rest with constant deceleration within `duration` s.
   [[nodiscard]] static Straight to_rest(const kinematics::Twist& twist, double duration) CELL_RT;
 
+  // Of the tool, for a share that grows by 1 a second.
+  [[nodiscard]] kinematics::Twist twist() const CELL_RT;
   [[nodiscard]] bool ended(double later = 0) const CELL_RT { return t + later >= share.duration(); }
   [[nodiscard]] Eigen::Matrix3d rotation(double s) const CELL_RT;
   // X_BS moved by the share s of the displacement.
