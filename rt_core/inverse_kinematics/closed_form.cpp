@@ -147,14 +147,17 @@ std::optional<ClosedForm> ClosedForm::analyse_arm(const kinematics::Chain& chain
 }
 
 // Guards against arrangements that are degenerate in a way that recognise() does not know: a posture has to be among
-// those found for its own pose. One sample may fall to a singularity.
+// those found for its own pose, without help from a near posture, which arms that leave a joint free everywhere (fewer
+// than six independent axes) would need. One sample may fall to a singularity.
 bool ClosedForm::finds_samples(const kinematics::Chain& chain) const {
   const double tolerance = exact_ ? 1e-5 : 0.3;
   std::size_t found = 0;
   std::array<JointValues, kMaxClosedForms> postures;
   for (std::size_t k = 0; k < kSamples; ++k) {
     const JointValues q = sample_posture(k);
-    const std::size_t count = solve(kinematics::forward(chain, q), postures, q);
+    JointValues near = sample_posture(k + kSamples);
+    if (free_joint_) near[*free_joint_] = q[*free_joint_];
+    const std::size_t count = solve(kinematics::forward(chain, q), postures, near);
     found += std::any_of(postures.begin(), postures.begin() + static_cast<std::ptrdiff_t>(count), [&](const auto& p) {
       for (std::size_t i = 0; i < chain.variable_count(); ++i) {
         if (!(std::abs(std::remainder(p[i] - q[i], 2 * std::numbers::pi)) <= tolerance)) return false;

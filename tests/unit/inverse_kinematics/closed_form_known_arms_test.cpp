@@ -139,7 +139,7 @@ TEST(ClosedFormKnownArms, DeclinesMimics) {
   EXPECT_FALSE(ClosedForm::analyse(kinematics::Chain::make(plain.variables(), joints, plain.X_LT()).value()));
 }
 
-// Six joints that cannot move the tip freely: all axes in one plane's normal, or all through one point.
+// Six joints that cannot move the tip freely: all axes parallel, or all through one point.
 TEST(ClosedFormKnownArms, DeclinesArmsThatCannotReachPosesOfSixComponents) {
   Random random(2);
   std::vector<Axis> planar;
@@ -150,6 +150,10 @@ TEST(ClosedFormKnownArms, DeclinesArmsThatCannotReachPosesOfSixComponents) {
   }
   EXPECT_FALSE(ClosedForm::analyse(chain_of_axes(planar, random)));
   EXPECT_FALSE(ClosedForm::analyse(chain_of_axes(spherical, random)));
+  // The first axis goes on as the second: a spherical wrist on an arm that has one joint too few.
+  std::vector<Axis> doubled = wrist_arm(Shoulder::parallel_23, random);
+  doubled[0] = doubled[1];
+  EXPECT_FALSE(ClosedForm::analyse(chain_of_axes(doubled, random)));
 }
 
 }  // namespace
