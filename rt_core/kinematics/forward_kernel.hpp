@@ -4,24 +4,22 @@
 #pragma once
 
 #include <cstddef>
-#include <cstring>
 
 #include "rt_core/kinematics/forward_constants.hpp"
+#include "rt_core/kinematics/lanes.hpp"
 #include "rt_core/kinematics/sincos.hpp"
 
 namespace cellmirror::kinematics::CELLMIRROR_KERNELS {
 
 namespace {
 
-using Two [[gnu::vector_size(16)]] = double;
-
-[[gnu::always_inline]] inline void load(const double* from, Four& to) noexcept { std::memcpy(&to, from, sizeof to); }
-[[gnu::always_inline]] inline void store(const Four& from, double* to) noexcept { std::memcpy(to, &from, sizeof from); }
-
-// Of the first three lanes; the last one is zero where the last ones of a and b are equal up to a common factor.
-[[gnu::always_inline]] inline void cross(const Four& a, const Four& b, Four& out) noexcept {
-  const Four difference = a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
-  out = __builtin_shufflevector(difference, difference, 1, 2, 0, 3);
+// Of the first three lanes; the last one is zero where that of `a` or `b` is.
+CELLMIRROR_LANES void cross(const Four& a, const Four& b, Four& out) noexcept {
+  Four a_turned;
+  Four b_turned;
+  turn_lanes(a, a_turned);
+  turn_lanes(b, b_turned);
+  turn_lanes(a * b_turned - a_turned * b, out);
 }
 
 // N: number of joints, 0: any.
@@ -30,22 +28,20 @@ struct Sizes {
   static constexpr std::size_t kCapacity = sincos_capacity(N > 0 ? N : kMaxChainJoints);
 };
 
-[[gnu::always_inline]] inline void write_column(const ForwardConstants::Joint& joint, const Four& axis, const Four& arm,
-                                                double* column) noexcept {
+CELLMIRROR_LANES void write_column(const ForwardConstants::Joint& joint, const Four& axis, const Four& arm,
+                                   double* column) noexcept {
   Four linear = axis;
   Four angular = axis - axis;
   if (!joint.prismatic) {
     cross(axis, arm, linear);
     angular = axis;
   }
-  store(__builtin_shufflevector(linear, angular, 0, 1, 2, 4), column);
-  const Two rest = __builtin_shufflevector(angular, angular, 1, 2);
-  std::memcpy(column + 4, &rest, sizeof rest);
+  store_threes(linear, angular, column);
 }
 
 template <std::size_t N>
-[[gnu::always_inline]] inline void write_jacobian(const ForwardConstants& chain, const Four* axis, const Four* origin,
-                                                  const Four& tip, double* jacobian) noexcept {
+CELLMIRROR_LANES void write_jacobian(const ForwardConstants& chain, const Four* axis, const Four* origin,
+                                     const Four& tip, double* jacobian) noexcept {
   const std::size_t joints = N > 0 ? N : chain.joints;
   if (chain.plain) {
     for (std::size_t i = 0; i < joints; ++i) write_column(chain.joint[i], axis[i], tip - origin[i], jacobian + 6 * i);
@@ -59,20 +55,20 @@ template <std::size_t N>
   }
 }
 
-// Of the joints i to i + 3; zero beyond the last one. Made in a register: a load of four values right after they were
+// Of the joints i to i + 3; zero beyond the last one. Made in registers: a load of four values right after they were
 // stored one by one would wait for the stores.
 template <std::size_t N>
-[[gnu::always_inline]] inline void values_of(const ForwardConstants& chain, const double* q, std::size_t i,
-                                             Four& values) noexcept {
+CELLMIRROR_LANES void values_of(const ForwardConstants& chain, const double* q, std::size_t i, Four& values) noexcept {
   const std::size_t joints = N > 0 ? N : chain.joints;
-  const auto value = [&](std::size_t k) [[gnu::always_inline]] {
-    return k < joints ? q[chain.plain ? k : chain.joint[k].variable] : 0.0;
-  };
   if (chain.plain && i + 4 <= joints) {
     load(q + i, values);
-  } else {
-    values = Four{value(i), value(i + 1), value(i + 2), value(i + 3)};
+    return;
   }
+  double value[4];
+  for (std::size_t k = 0; k < 4; ++k) {
+    value[k] = i + k < joints ? q[chain.plain ? i + k : chain.joint[i + k].variable] : 0.0;
+  }
+  set(values, value[0], value[1], value[2], value[3]);
 }
 
 template <std::size_t N, bool kJacobian>
