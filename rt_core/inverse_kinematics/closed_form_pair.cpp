@@ -95,18 +95,18 @@ Turn turn_of_half_tangent(double t) {
 
 // Half a turn away from where the wave is largest of eight places, so that no zero has an infinite half tangent.
 Turn origin_for(const Wave& wave) {
-  constexpr double r = std::numbers::sqrt2 / 2;
-  constexpr std::array<Turn, 8> places{{{1, 0}, {r, r}, {0, 1}, {-r, r}, {-1, 0}, {-r, -r}, {0, -1}, {r, -r}}};
+  constexpr double kR = std::numbers::sqrt2 / 2;
+  constexpr std::array<Turn, 8> kPlaces{{{1, 0}, {kR, kR}, {0, 1}, {-kR, kR}, {-1, 0}, {-kR, -kR}, {0, -1}, {kR, -kR}}};
   std::size_t best = 0;
   double most = -1;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double size = std::abs(wave.at(places[i]));
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    const double size = std::abs(wave.at(kPlaces[i]));
     if (size > most) {
       most = size;
       best = i;
     }
   }
-  return {-places[best].c, -places[best].s};
+  return {-kPlaces[best].c, -kPlaces[best].s};
 }
 
 struct Angles {
@@ -145,11 +145,10 @@ Angles zeros_of(const Wave& wave, double slack) {
 
 }  // namespace
 
-TurnPairs solve_pair(const Eigen::Matrix2d& A, const Eigen::Matrix2d& B_inverse, const Eigen::Vector2d& k,
-                     double slack) {
+TurnPairs solve_pair(const Eigen::Matrix2d& A, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& k, double slack) {
   // The second turn is g - G x with x the first as (c, s); that it lies on the unit circle is a wave of x.
-  const Eigen::Matrix2d G = B_inverse * A;
-  const Eigen::Vector2d g = B_inverse * k;
+  const Eigen::Matrix2d G = inverse * A;
+  const Eigen::Vector2d g = inverse * k;
   const Eigen::Matrix2d M = G.transpose() * G;
   const Eigen::Vector2d linear = -2 * (G.transpose() * g);
   const Wave wave{g.squaredNorm() - 1 + 0.5 * (M(0, 0) + M(1, 1)), linear.x(), linear.y(), 0.5 * (M(0, 0) - M(1, 1)),

@@ -16,9 +16,8 @@ struct TurnPairs {
   std::size_t count = 0;
 };
 
-// A (c1, s1) + B (c2, s2) = k with B regular. A pair that misses the second unit circle by at most `slack` counts as
-// one. No pairs where every first angle is one.
-TurnPairs solve_pair(const Eigen::Matrix2d& A, const Eigen::Matrix2d& B_inverse, const Eigen::Vector2d& k,
-                     double slack);
+// A (c1, s1) + B (c2, s2) = k with B regular, of which `inverse` is the inverse. A pair that misses the second unit
+// circle by at most `slack` counts as one. No pairs where every first angle is one.
+TurnPairs solve_pair(const Eigen::Matrix2d& A, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& k, double slack);
 
 }  // namespace cellmirror::inverse_kinematics::closed_form
