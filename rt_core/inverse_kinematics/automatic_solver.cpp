@@ -30,7 +30,7 @@ constexpr double kNearness = 0.02;              // of a squared joint distance b
 constexpr std::size_t kAttempts = 6;            // starts for an orientation that is only attempted
 constexpr std::size_t kMostStarts = 400;        // until a target counts as out of reach
 constexpr std::size_t kStartsOutOfReach = 12;   // when it certainly is: for the nearest reachable pose
-constexpr std::size_t kStartsWithoutNews = 40;  // when several solutions are asked for
+constexpr std::size_t kStartsWithoutNews = 80;  // when several solutions are asked for
 
 bool whole_pose(const Task& task) { return task.position_axes == 0b111 && task.orientation == OrientationTask::full; }
 

@@ -16,7 +16,7 @@ class FastSolver final : public Solver {
 
   [[nodiscard]] Result<Answer> solve(const Request& asked) override {
     constexpr std::size_t kMostStarts = 1000;
-    constexpr std::size_t kStartsWithoutNews = 40;
+    constexpr std::size_t kStartsWithoutNews = 80;
     constexpr int kIterations = 40;
     const Result<Request> good = checked(asked, chain_);
     if (!good) return std::unexpected(good.error());

@@ -96,11 +96,13 @@ bool Search::keep(const JointValues& q, FoundBy by) {
   }
   found.distance = distance(chain_, found.solution.q, wished_);
   if (!request_.task.orientation_required) found.attempt = found.solution.error.tail<3>().norm();
-  for (Found& other : found_) {
-    if (distance(chain_, other.solution.q, found.solution.q) >= kDistinctPostures) continue;
-    if (better(found, other)) other = found;
-    return true;
-  }
+  const auto counts_as_it = [&](const Found& other) {
+    return distance(chain_, other.solution.q, found.solution.q) < kDistinctPostures;
+  };
+  const bool known = std::any_of(found_.begin(), found_.end(),
+                                 [&](const Found& other) { return counts_as_it(other) && !better(found, other); });
+  if (known) return true;
+  std::erase_if(found_, counts_as_it);
   found_.push_back(found);
   return true;
 }

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "arms.hpp"
-#include "kdl_solvers.hpp"
 #include "rt_core/inverse_kinematics/inverse_kinematics.hpp"
 #include "rt_core/kinematics/fast_step.hpp"
+#include "tests/bench/inverse_kinematics/arms.hpp"
+#include "tests/bench/inverse_kinematics/kdl_solvers.hpp"
 
 namespace cellmirror {
 namespace {

@@ -1,17 +1,12 @@
-#include "arms.hpp"
-
-#include <tinyxml2.h>
+#include "tests/bench/inverse_kinematics/arms.hpp"
 
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <map>
 #include <numbers>
 #include <random>
 #include <span>
-#include <sstream>
+
+#include "tests/unit/kinematics/shared_arms.hpp"
 
 namespace cellmirror::test_arms {
 
@@ -22,58 +17,6 @@ using kinematics::ChainJoint;
 using kinematics::Variable;
 
 constexpr double kPi = std::numbers::pi;
-
-Eigen::Vector3d numbers_of(const tinyxml2::XMLElement* element, const char* attribute, Eigen::Vector3d otherwise) {
-  const char* text = element != nullptr ? element->Attribute(attribute) : nullptr;
-  if (text == nullptr) return otherwise;
-  std::istringstream stream(text);
-  Eigen::Vector3d v = otherwise;
-  stream >> v.x() >> v.y() >> v.z();
-  return v;
-}
-
-// A joint of an URDF turns about any axis; ours about z: R carries z to the axis.
-Arm arm_from_urdf(const std::string& name, const std::string& file, const std::string& base, const std::string& tip) {
-  tinyxml2::XMLDocument document;
-  if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) std::abort();
-  std::map<std::string, const tinyxml2::XMLElement*> by_child;
-  for (const auto* joint = document.RootElement()->FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
-    by_child[joint->FirstChildElement("child")->Attribute("link")] = joint;
-  }
-  std::vector<const tinyxml2::XMLElement*> path;
-  for (std::string link = tip; link != base;) {
-    path.insert(path.begin(), by_child.at(link));
-    link = by_child.at(link)->FirstChildElement("parent")->Attribute("link");
-  }
-  std::vector<Variable> variables;
-  std::vector<ChainJoint> joints;
-  Pose X = Pose::Identity();  // since the last joint that moves
-  for (const auto* joint : path) {
-    const auto* origin = joint->FirstChildElement("origin");
-    X = X * pose_from_xyz_rpy(numbers_of(origin, "xyz", {0, 0, 0}), numbers_of(origin, "rpy", {0, 0, 0}));
-    const std::string type = joint->Attribute("type");
-    if (type == "fixed") continue;
-    const Eigen::Vector3d axis = numbers_of(joint->FirstChildElement("axis"), "xyz", {1, 0, 0}).normalized();
-    Pose X_turn = Pose::Identity();
-    X_turn.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
-    ChainJoint to;
-    to.X_PJ = X * X_turn;
-    to.kind = type == "prismatic"    ? JointKind::prismatic
-              : type == "continuous" ? JointKind::continuous
-                                     : JointKind::revolute;
-    to.variable = static_cast<std::uint8_t>(variables.size());
-    joints.push_back(to);
-    Variable variable{.name = joint->Attribute("name"), .kind = to.kind};
-    if (const auto* limit = joint->FirstChildElement("limit"); limit != nullptr) {
-      variable.lower = limit->DoubleAttribute("lower");
-      variable.upper = limit->DoubleAttribute("upper");
-    }
-    variables.push_back(variable);
-    X = X_turn.inverse();
-  }
-  return {name, Chain::make(std::move(variables), joints, X).value()};
-}
 
 // One row of Denavit-Hartenberg parameters (standard form): theta or d is the joint.
 struct DhRow {
@@ -197,28 +140,10 @@ Arm rail_seven() {
 
 }  // namespace
 
-std::string shared_robots_folder() {
-  namespace fs = std::filesystem;
-  std::vector<fs::path> candidates;
-  if (const char* data = std::getenv("CELLMIRROR_SHARED_DATA"); data != nullptr) candidates.emplace_back(data);
-  if (const char* source = std::getenv("CELLMIRROR_SOURCE_DIR"); source != nullptr) {
-    candidates.push_back(fs::path(source) / "../shared/data");
-  }
-  candidates.emplace_back("../shared/data");
-  for (const fs::path& candidate : candidates) {
-    if (fs::exists(candidate / "robots" / "ur5e" / "ur5e.urdf")) return (candidate / "robots").string();
-  }
-  return {};
-}
-
 std::vector<Arm> shared_arms() {
-  const std::string folder = shared_robots_folder();
   std::vector<Arm> arms;
-  if (folder.empty()) return arms;
-  for (const std::string name : {"ur5e", "kr6r900sixx", "tx90", "irb120", "lrmate200id", "panda", "sia20d"}) {
-    const bool panda = name == "panda";
-    arms.push_back(arm_from_urdf(name, folder + "/" + name + "/" + name + ".urdf", panda ? "panda_link0" : "base_link",
-                                 panda ? "panda_link8" : "tool0"));
+  for (const SharedArm& arm : cellmirror::shared_arms()) {
+    arms.push_back({arm.id, chain_of_urdf(arm.urdf, arm.base, arm.tip)});
   }
   return arms;
 }
@@ -275,14 +200,7 @@ std::vector<Arm> unseen_arms() {
 std::vector<JointValues> random_postures(const Chain& chain, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<JointValues> postures(count);
-  for (JointValues& q : postures) {
-    q = {};
-    for (std::size_t i = 0; i < chain.variable_count(); ++i) {
-      const bool bounded = std::isfinite(chain.lower()[i]);
-      q[i] = std::uniform_real_distribution<double>(bounded ? chain.lower()[i] : -kPi,
-                                                    bounded ? chain.upper()[i] : kPi)(random);
-    }
-  }
+  for (JointValues& q : postures) q = random_posture(chain, random);
   return postures;
 }
 

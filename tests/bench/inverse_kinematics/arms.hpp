@@ -14,10 +14,7 @@ struct Arm {
   kinematics::Chain chain;
 };
 
-// $CELLMIRROR_SHARED_DATA/robots or <source>/../shared/data/robots; empty where there is none.
-[[nodiscard]] std::string shared_robots_folder();
-
-// The seven arms of the shared data, from their URDF; empty where the folder is missing.
+// The arms of the shared data; empty where it is missing.
 [[nodiscard]] std::vector<Arm> shared_arms();
 
 // Known geometries that are not in the shared data, and arms with random offsets, prismatic joints, narrow limits and

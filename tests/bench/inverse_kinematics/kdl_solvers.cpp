@@ -1,4 +1,4 @@
-#include "kdl_solvers.hpp"
+#include "tests/bench/inverse_kinematics/kdl_solvers.hpp"
 
 #include <chrono>
 #include <cmath>
