@@ -12,3 +12,5 @@ find_package(tinyxml2 REQUIRED)
 find_package(fastcdr REQUIRED)
 find_package(fastrtps REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo-png)  # plots: app/plot
+pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)  # rt_core/inverse_kinematics, as is LAPACK
+find_package(LAPACK REQUIRED)
