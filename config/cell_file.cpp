@@ -54,6 +54,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     reader.dds,
                     reader.queues,
                     reader.web,
+                    std::move(reader.views),
                     std::move(reader.startup_script),
                     source->files(),
                     std::move(*cell)};

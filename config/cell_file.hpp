@@ -13,6 +13,7 @@
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/ports/stream_config.hpp"
+#include "rt_core/ports/view_change.hpp"
 
 namespace cellmirror {
 
@@ -55,6 +56,7 @@ struct LoadedCell {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  std::vector<ViewSetting> views;
   std::string startup_script;                // name of a file in the home's scripts/, which exists; empty: none
   std::vector<std::filesystem::path> files;  // every component file that was read
   Cell cell;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <numbers>
 
 #include "config/node_reader.hpp"
 #include "config/stream_reader.hpp"
@@ -58,6 +59,7 @@ bool CellReader::read(std::string_view text) {
   read_queues(top);
   read_web(top);
   read_startup(top);
+  read_views(top);
   constexpr std::size_t kMostStreams = kMaxRobots;
   stream_tables_ = top.tables("stream", kMostStreams);
   top.finish();
@@ -135,6 +137,30 @@ void CellReader::read_web(TableReader& top) {
   web.enabled = table->boolean("enabled").value_or(true);
   web.port = static_cast<int>(table->integer("port", 1, 65535).value_or(web.port));
   table->finish();
+}
+
+// Whether the values fit each other and the cell's own defaults is found when the cell is started.
+void CellReader::read_views(TableReader& top) {
+  constexpr Range kAngle{0.0, std::numbers::pi, true};
+  constexpr Range kPlace{-1e4, 1e4};
+  for (TableReader& table : top.tables("view", 7)) {
+    table.require("id");
+    ViewSetting setting;
+    setting.id = static_cast<int>(table.integer("id", 0, 6).value_or(0));
+    setting.change.viewpoint = table.vector3("viewpoint_m", kPlace);
+    setting.change.lookpoint = table.vector3("lookpoint_m", kPlace);
+    setting.change.twist = table.number("twist_rad");
+    setting.change.opening_angle = table.number("opening_angle_rad", kAngle);
+    setting.change.near_distance = table.number("near_m", kNotNegative);
+    setting.change.far_distance = table.number("far_m", kPositive);
+    const auto& change = setting.change;
+    if (change.viewpoint && change.lookpoint && (*change.viewpoint - *change.lookpoint).norm() < 1e-6)
+      table.error("viewpoint_m", "the viewpoint is the lookpoint", "set them apart from each other");
+    if (change.near_distance && change.far_distance && *change.near_distance >= *change.far_distance)
+      table.error("near_m", "the near plane is not nearer than the far plane");
+    table.finish();
+    views.push_back(setting);
+  }
 }
 
 void CellReader::read_startup(TableReader& top) {

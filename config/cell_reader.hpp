@@ -32,6 +32,7 @@ class CellReader {
   QueueOverrides queues;
   WebSettings web;
   std::string startup_script;
+  std::vector<ViewSetting> views;
   Diagnostics findings;
 
  private:
@@ -40,6 +41,7 @@ class CellReader {
   void read_queues(TableReader& top);
   void read_web(TableReader& top);
   void read_startup(TableReader& top);
+  void read_views(TableReader& top);
 
   std::string file_;
   const FileFinder& files_;

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "rt_core/base/log.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
 namespace cellmirror::app {
@@ -33,6 +34,10 @@ CellOwner::CellOwner(Parts parts)
       programs_(motion_),
       views_(cell_, view_parameters_, clock_),
       diagnosis_(std::move(parts.save_flight_record)) {
+  for (const ViewSetting& view : parts.views) {
+    if (const auto set = view_parameters_.change(view.id, view.change); !set)
+      log_warning("cell", "[[view]] {}: {}", view.id, set.error().text());
+  }
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, motion_, programs_, views_, diagnosis_}, home_, clock_);
 }
@@ -127,8 +132,9 @@ void CellOwner::hang_up_picture() {
   for (const CompiledRobot& compiled : picture->cell->robots) {
     const FleetRobot* robot = fleet_->find(compiled.id);
     if (robot == nullptr) continue;
-    picture->robots.push_back(
-        {robot->id, robot->slot, robot->online, robot->sending, robot->stream, cell_.robot(robot->id)->parameters()});
+    picture->robots.push_back({robot->id, robot->slot, robot->online, robot->sending, robot->stream,
+                               cell_.robot(robot->id)->parameters(), motion_.target(robot->id),
+                               motion_.positioning(robot->id)});
   }
   picture->active_robot = names_.active_robot();
   picture->language = programs_.language();

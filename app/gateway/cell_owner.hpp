@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
@@ -38,6 +39,7 @@ class CellOwner {
     Cell cell;
     KismetHome home;
     std::map<std::string, StreamConfig, std::less<>> streams;
+    std::vector<ViewSetting> views;
     engine::Engine& engine;
     PictureBoard& board;
     const Clock& clock;

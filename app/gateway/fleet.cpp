@@ -61,9 +61,13 @@ const FleetRobot* Fleet::find(std::string_view id) const {
 }
 
 Result<std::uint64_t> Fleet::send(const engine::Command& command) {
+  return patiently([&] { return engine_.send(command); });
+}
+
+Result<std::uint64_t> Fleet::patiently(const std::function<std::uint64_t()>& give) {
   const Timestamp give_up = clock_.now() + kTickPatience;
   for (;;) {
-    const std::uint64_t id = engine_.send(command);
+    const std::uint64_t id = give();
     if (id != 0) {
       last_command_ = id;
       return id;
@@ -91,7 +95,9 @@ Result<void> Fleet::follow_cell() {
     engine::Command command;
     command.kind = engine::CommandKind::remove_robot;
     command.slot = static_cast<std::uint8_t>(robot->second.slot);
-    if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+    const auto sent = send(command);
+    if (!sent) return std::unexpected(sent.error());
+    chains_.removed(robot->second.slot, *sent);
     robot = robots_.erase(robot);
   }
   for (const std::string& id : cell_.robot_ids()) {
@@ -193,8 +199,8 @@ Result<void> Fleet::check_simulated(std::string_view id) const {
 }
 
 motion::MotionState Fleet::motion(std::string_view id) {
-  static_cast<void>(id);
-  return {};
+  const FleetRobot* robot = find(id);
+  return robot == nullptr ? motion::MotionState() : engine_.owner_view().robots[robot->slot].motion;
 }
 
 std::span<const JointValues> Fleet::positions() {
@@ -211,13 +217,29 @@ std::span<const JointValues> Fleet::positions() {
   return positions_;
 }
 
-Result<void> Fleet::set_chain(std::string_view /*id*/, std::shared_ptr<const kinematics::Chain> /*chain*/) {
-  return fail("moves are not available yet: motion");
+Result<void> Fleet::set_chain(std::string_view id, std::shared_ptr<const kinematics::Chain> chain) {
+  engine::Command command = command_for(id, engine::CommandKind::set_chain);
+  command.chain = chain.get();
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  chains_.replaced(command.slot, std::move(chain), *sent, find(id)->newest_move);
+  chains_.release(engine_.owner_view());
+  return {};
 }
-Result<void> Fleet::add_move(std::string_view /*id*/, const motion::Move& /*move*/) {
-  return fail("moves are not available yet: motion");
+
+Result<void> Fleet::add_move(std::string_view id, const motion::Move& move) {
+  FleetRobot& robot = robots_.find(id)->second;
+  const auto sent = patiently([&] { return engine_.send_move(robot.slot, move); });
+  if (!sent) return std::unexpected(sent.error());
+  robot.newest_move = move.id;
+  return {};
 }
-Result<void> Fleet::stop_motion(std::string_view /*id*/) { return {}; }
+
+Result<void> Fleet::stop_motion(std::string_view id) {
+  const auto sent = send(command_for(id, engine::CommandKind::stop_motion));
+  if (!sent) return std::unexpected(sent.error());
+  return {};
+}
 
 engine::Command Fleet::command_for(std::string_view id, engine::CommandKind kind) const {
   engine::Command command;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/gateway/chain_keeper.hpp"
 #include "app/gateway/motion_port.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -28,6 +30,7 @@ struct FleetRobot {
   // rad or m: where the tick was told to put it, and the command that told it.
   JointValues put_at{};
   std::uint64_t put_command = 0;
+  std::uint32_t newest_move = 0;        // id of the move that was given last
   std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
 };
 
@@ -68,6 +71,8 @@ class Fleet final : public MotionPort {
 
  private:
   Result<std::uint64_t> send(const engine::Command& command);
+  // Asks `give` for the id of a command again while the tick's queue is full.
+  Result<std::uint64_t> patiently(const std::function<std::uint64_t()>& give);
   Result<void> add(const RobotModel& robot);
   Result<void> bring_online(FleetRobot& robot);
   Result<void> take_offline(FleetRobot& robot);
@@ -82,6 +87,7 @@ class Fleet final : public MotionPort {
   std::map<std::string, FleetRobot, std::less<>> robots_;
   std::vector<JointValues> positions_;
   std::uint64_t last_command_ = 0;
+  ChainKeeper chains_;
 };
 
 }  // namespace cellmirror::app

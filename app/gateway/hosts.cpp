@@ -165,16 +165,7 @@ Result<void> CellPrograms::set_language(RobotLanguage language) {
 
 Result<void> CellViews::set_display(int display, bool full_screen) { return views_.set_display(display, full_screen); }
 
-Result<void> CellViews::set_view(int view, const ViewChange& change) {
-  View changed = views_.view(view);
-  changed.viewpoint = change.viewpoint.value_or(changed.viewpoint);
-  changed.lookpoint = change.lookpoint.value_or(changed.lookpoint);
-  changed.twist = change.twist.value_or(changed.twist);
-  changed.opening_angle = change.opening_angle.value_or(changed.opening_angle);
-  changed.near_distance = change.near_distance.value_or(changed.near_distance);
-  changed.far_distance = change.far_distance.value_or(changed.far_distance);
-  return views_.set(view, changed);
-}
+Result<void> CellViews::set_view(int view, const ViewChange& change) { return views_.change(view, change); }
 
 Result<void> CellViews::set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) {
   return cell_.set_camera(camera, focal_distance_m, fovy_rad);

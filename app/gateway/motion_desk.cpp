@@ -9,6 +9,7 @@
 #include "app/gateway/target_pose.hpp"
 #include "app/gateway/unreachable.hpp"
 #include "rt_core/engine/limiter.hpp"
+#include "rt_core/motion/planner.hpp"
 
 namespace cellmirror::app {
 
@@ -74,10 +75,15 @@ bool MotionDesk::moving() const {
   return std::ranges::any_of(records_, [](const auto& entry) { return entry.second.pending.in_flight(); });
 }
 
-std::optional<MotionDesk::Target> MotionDesk::target(std::string_view robot) const {
+std::optional<JointValues> MotionDesk::target(std::string_view robot) const {
   const auto found = records_.find(robot);
   if (found == records_.end() || !found->second.goal) return std::nullopt;
-  return Target{found->second.goal->joints, found->second.positioning};
+  return found->second.goal->joints;
+}
+
+Positioning MotionDesk::positioning(std::string_view robot) const {
+  const auto found = records_.find(robot);
+  return found == records_.end() ? Positioning::moving : found->second.positioning;
 }
 
 Result<ActivityHandle> MotionDesk::position(std::string_view id, const MotionTarget& target) {
@@ -184,8 +190,24 @@ Result<MotionDesk::Goal> MotionDesk::point(const RobotModel& robot, Record& reco
 Result<MotionDesk::Planned> MotionDesk::plan(const RobotModel& robot, Record& record, MovePath path,
                                              const MotionTarget& target, motion::Start start) {
   if (auto updated = record.kinematics.update(cell_, robot); !updated) return std::unexpected(updated.error());
-  static_cast<void>(path), static_cast<void>(target), static_cast<void>(start);
-  return fail("moves are not available yet: motion", "rob_positioning jump");
+  const kinematics::Chain& chain = *record.kinematics.chain();
+  const Goal from = goal_of(robot, record);
+  if (path == MovePath::joints) {
+    auto goal = point(robot, record, target, from);
+    if (!goal) return std::unexpected(goal.error());
+    auto move = motion::plan_joint_move(chain, robot.parameters(), goal->joints);
+    if (!move) return std::unexpected(move.error());
+    return Planned{*move, std::move(*goal)};
+  }
+  const auto X_ZG = pose_target(robot, record, target, from);
+  if (!X_ZG) return std::unexpected(X_ZG.error());
+  // A move that takes the place of another one begins on the way.
+  const bool on_the_way = start == motion::Start::supersede && record.pending.in_flight();
+  const JointValues& first = on_the_way ? port_.positions()[robot.slot()] : from.joints;
+  auto plan = motion::plan_linear_move(chain, robot.parameters(), first, *X_ZG);
+  if (!plan) return std::unexpected(plan.error());
+  const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
+  return Planned{plan->move, {plan->end, commanded_pose(task, *X_ZG), record.kinematics.chain()}};
 }
 
 Result<void> MotionDesk::send(const RobotModel& robot, Record& record, Planned planned, motion::Start start) {

@@ -37,12 +37,10 @@ class MotionDesk final : public MotionHost {
   // give_up() for robots that the cell does not have any more. After every change of the tree.
   void follow_cell();
 
-  struct Target {
-    JointValues joints{};  // rad or m: where the last commanded move ends
-    Positioning positioning = Positioning::jumping;
-  };
-  // Nothing for a robot that was not commanded since it was loaded or stopped.
-  [[nodiscard]] std::optional<Target> target(std::string_view robot) const;
+  // Rad or m: where the newest commanded move ends. Nothing for a robot that was not commanded since it was loaded or
+  // stopped.
+  [[nodiscard]] std::optional<JointValues> target(std::string_view robot) const;
+  [[nodiscard]] Positioning positioning(std::string_view robot) const;
 
  private:
   // Where a robot was last commanded to.
@@ -56,7 +54,7 @@ class MotionDesk final : public MotionHost {
     PendingMoves pending;
     RobotKinematics kinematics;
     std::optional<Goal> goal;  // none: where the robot stands
-    Positioning positioning = Positioning::jumping;
+    Positioning positioning = Positioning::moving;
     std::shared_ptr<const kinematics::Chain> chain_of_tick;
   };
   struct Planned {

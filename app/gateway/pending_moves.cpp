@@ -24,9 +24,9 @@ bool PendingMoves::follow(const motion::MotionState& state) {
   ended_ = std::min(state.finished, sent_);
   const auto first_open = std::ranges::find_if(watched_, [&](const Watched& w) { return w.id > ended_; });
   for (auto watched = watched_.begin(); watched != first_open; ++watched) {
-    // Of those before the newest the tick does not tell the outcome; a later move began, so they were gone to their
+    // Of what ended longer ago the tick does not tell the outcome; a later move began, so they were gone to their
     // end.
-    end(*watched, watched->id == state.finished ? state.outcome : motion::Outcome::arrived);
+    end(*watched, watched->id >= state.finished_from ? state.outcome : motion::Outcome::arrived);
   }
   watched_.erase(watched_.begin(), first_open);
   return !in_flight() && state.outcome != motion::Outcome::arrived;

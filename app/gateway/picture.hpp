@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@ struct RobotPicture {
   bool sending = false;
   std::shared_ptr<const JointStream> stream;  // null where it was never opened
   RobotParameters parameters;
+  std::optional<JointValues> target;  // rad or m: where the newest commanded move ends
+  Positioning positioning = Positioning::moving;
 };
 
 struct OwnerPicture {

@@ -170,6 +170,37 @@ json parameters_json(const RobotParameters& p, std::size_t joints) {
           {"tool_center_point", pose_json(p.X_PT)}};
 }
 
+const char* word(motion::Outcome outcome) {
+  switch (outcome) {
+    case motion::Outcome::none:
+      return "none";
+    case motion::Outcome::arrived:
+      return "arrived";
+    case motion::Outcome::stopped:
+      return "stopped";
+    case motion::Outcome::superseded:
+      return "superseded";
+    case motion::Outcome::blocked:
+      return "blocked";
+  }
+  return "none";
+}
+
+json motion_json(const RobotPicture& picture, const motion::MotionState& motion, std::size_t joints) {
+  json target = nullptr;
+  if (picture.target) {
+    const auto end = picture.target->begin() + static_cast<std::ptrdiff_t>(joints);
+    target = std::vector<double>(picture.target->begin(), end);
+  }
+  return {{"moving", motion.moving},
+          {"running", motion.running},
+          {"waiting", motion.waiting},
+          {"finished", motion.finished},
+          {"outcome", word(motion.outcome)},
+          {"target", std::move(target)},
+          {"positioning", picture.positioning == Positioning::jumping ? "jump" : "move"}};
+}
+
 json robots_json(const StatusSources& sources) {
   json out = json::array();
   for (std::size_t i = 0; i < sources.robots.size() && i < sources.picture.robots.size(); ++i) {
@@ -183,6 +214,7 @@ json robots_json(const StatusSources& sources) {
                    {"stream", stream_json(picture, tick, sources.now)},
                    {"joints", joints_json(state, sources.now)},
                    {"tcp", pose_json(state.X_WT)},
+                   {"motion", motion_json(picture, tick.motion, state.joints.size())},
                    {"parameters", parameters_json(picture.parameters, state.joints.size())},
                    {"refused_values", tick.refused_values}});
   }

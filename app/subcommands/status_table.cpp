@@ -71,11 +71,18 @@ class TableWriter {
     if (loop.at("faults").get<std::uint64_t>() > 0) line("  fault: {}", loop.at("last_fault").get<std::string>());
   }
 
+  static std::string motion_text(const json& robot) {
+    if (!robot.contains("motion") || !robot.at("motion").at("moving").get<bool>()) return {};
+    const auto waiting = robot.at("motion").at("waiting").get<std::uint64_t>();
+    return waiting == 0 ? " moving" : fmt::format(" moving, {} more", waiting);
+  }
+
   void write_robot(const json& robot) {
     const json& stream = robot.at("stream");
     std::string marks;
     if (robot.at("active").get<bool>()) marks += " active";
     if (robot.at("sending").get<bool>()) marks += " sending";
+    marks += motion_text(robot);
     line("");
     line("{}  {}{}", robot.at("id").get<std::string>(), robot.at("mode").get<std::string>(), marks);
     if (robot.at("mode").get<std::string>() == "mirrored") {

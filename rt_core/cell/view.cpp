@@ -107,6 +107,18 @@ Result<void> Views::set(int id, const View& view) {
   return {};
 }
 
+Result<void> Views::change(int id, const ViewChange& change) {
+  if (id < 0 || id >= kViews) return fail(fmt::format("there is no view {}", id), "views are 0 to 6");
+  View changed = view(id);
+  changed.viewpoint = change.viewpoint.value_or(changed.viewpoint);
+  changed.lookpoint = change.lookpoint.value_or(changed.lookpoint);
+  changed.twist = change.twist.value_or(changed.twist);
+  changed.opening_angle = change.opening_angle.value_or(changed.opening_angle);
+  changed.near_distance = change.near_distance.value_or(changed.near_distance);
+  changed.far_distance = change.far_distance.value_or(changed.far_distance);
+  return set(id, changed);
+}
+
 Result<void> Views::set_display(int display, bool full_screen) {
   if (display < 1 || display > kDisplays)
     return fail(fmt::format("there is no display {}", display), "STDP takes 1 to 6");

@@ -9,6 +9,7 @@
 
 #include "rt_core/base/result.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/ports/view_change.hpp"
 
 namespace cellmirror {
 
@@ -47,6 +48,7 @@ class Views {
   // Refused: another id than 0 to 6, values that are not finite or beyond 10 km, a viewpoint on the lookpoint, an
   // opening angle outside of 0..pi, clipping planes that leave nothing between them.
   Result<void> set(int id, const View& view);
+  Result<void> change(int id, const ViewChange& change);
 
   // 1 to 6 (STDP). The first view of the display is the current one.
   Result<void> set_display(int display, bool full_screen);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -12,6 +11,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
+#include "rt_core/ports/view_change.hpp"
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/lang/names.hpp"
 
@@ -63,16 +63,6 @@ class ProgramHost {
   virtual Result<void> set_language(RobotLanguage language) = 0;
   // True while a robot moves, or a robot program or a view sequence runs: what WAIT waits for.
   [[nodiscard]] virtual bool busy() const = 0;
-};
-
-// What STVW changes of a view; what is not given stays.
-struct ViewChange {
-  std::optional<Eigen::Vector3d> viewpoint;  // m, world
-  std::optional<Eigen::Vector3d> lookpoint;
-  std::optional<double> twist;          // rad
-  std::optional<double> opening_angle;  // rad, vertical
-  std::optional<double> near_distance;  // m
-  std::optional<double> far_distance;
 };
 
 class ViewHost {

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Commands a second that the running gateway executes from a file: POS_ROB on a simulated robot, a goal of 100,000.
+"""Commands a second that the running gateway executes from a file: POS_ROB on a simulated robot that is put
+to its places at once (rob_positioning jump), a goal of 100,000.
 
   script_rate_bench.py [COMMANDS=400000]
 """
@@ -18,7 +19,7 @@ def main():
     pairs = int(sys.argv[1]) // 2 if len(sys.argv) > 1 else 200_000
     scratch = g.Scratch()
     (scratch.home / "scripts" / "rate.spt").write_text(
-        "POS_ROB PUMA_762 JOINT_INC 0.001;\nPOS_ROB PUMA_762 JOINT_INC -0.001;\n" * pairs)
+        "ROBACT PUMA_762;\nrob_positioning jump;\n" + "POS_ROB PUMA_762 JOINT_INC 0.001;\nPOS_ROB PUMA_762 JOINT_INC -0.001;\n" * pairs)
     gateway = g.Gateway(scratch)
     try:
         before = scratch.status()["script"]["done"]

@@ -102,7 +102,8 @@ class BadInput(unittest.TestCase):
     def test_large_script_runs_while_messages_are_answered(self):
         line = "POS_ROB PUMA_762 JOINT_INC 0.001; POS_ROB PUMA_762 JOINT_INC -0.001;\n"
         count = 10 * 1024 * 1024 // len(line)
-        (self.scripts / "large.spt").write_text(line * count)
+        # At once, so that the commands do not wait for the robot.
+        (self.scripts / "large.spt").write_text("ROBACT PUMA_762;\nrob_positioning jump;\n" + line * count)
         before = self.scratch.status()["script"]["done"]
         self.assertEqual(self.scratch.send("EXEC_SCRIPT large.spt").returncode, 0)
         self.assertEqual(self.scratch.send("hot_message still here").returncode, 0)

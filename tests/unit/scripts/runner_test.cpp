@@ -175,6 +175,99 @@ TEST_F(ScriptRunnerTest, WaitSuspendsOnlyItsOwnScript) {
   EXPECT_TRUE(sut_->idle());
 }
 
+TEST_F(ScriptRunnerTest, FileWaitsForWhatItsCommandBeganAndMessagesGoOn) {
+  write("a.spt", "POS_ROB PUMA_762 JOINT_ABS 1; hot_message there;");
+  gateway_.activity = std::make_shared<Activity>();
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  EXPECT_EQ(sut_->counters().file.received, 1U);
+  EXPECT_EQ(sut_->counters().file.done, 0U);
+  ASSERT_EQ(sut_->runs().size(), 1U);
+  EXPECT_TRUE(sut_->runs()[0].waiting);
+  EXPECT_TRUE(sut_->execute_message("hot_message meanwhile"));
+  gateway_.activity->finish();
+  run_all();
+  EXPECT_TRUE(sut_->idle());
+  EXPECT_EQ(sut_->counters().file.done, 2U);
+  EXPECT_EQ(gateway_.calls.back(), "show_message [there]");
+}
+
+TEST_F(ScriptRunnerTest, WhatEndsBadlyIsRefusedAtThePlaceOfItsCommandAndTheFileGoesOn) {
+  write("a.spt", "DRAW_SCENE;\n  POS_ROB PUMA_762 JOINT_ABS 1;\nhot_message on;");
+  gateway_.activity = std::make_shared<Activity>();
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  gateway_.activity->refuse({"the robot was stopped", "start it again"});
+  run_all();
+  ASSERT_EQ(reports_.size(), 1U);
+  EXPECT_EQ(reports_[0].counters.done, 2U);
+  EXPECT_EQ(reports_[0].counters.refused, 1U);
+  EXPECT_EQ(reports_[0].diagnostics.all()[0].text(), "scripts/a.spt:2:3: error: the robot was stopped; start it again");
+  EXPECT_EQ(gateway_.calls.back(), "show_message [on]");
+}
+
+TEST_F(ScriptRunnerTest, LastCommandOfAFileIsWaitedForToo) {
+  write("a.spt", "POS_ROB PUMA_762 JOINT_ABS 1");
+  gateway_.activity = std::make_shared<Activity>();
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  EXPECT_TRUE(reports_.empty());
+  gateway_.activity->finish();
+  EXPECT_EQ(sut_->step(10), 1U);
+  EXPECT_EQ(reports_.size(), 1U);
+}
+
+TEST_F(ScriptRunnerTest, SenderIsAnsweredWhenWhatWasBegunHasEnded) {
+  gateway_.activity = std::make_shared<Activity>();
+  std::vector<Result<std::string>> answers;
+  const auto keep = [&](const Result<std::string>& answer) { answers.push_back(answer); };
+  sut_->execute_message("POS_ROB PUMA_762 JOINT_ABS 1", "message", keep);
+  EXPECT_EQ(sut_->step(10), 0U);
+  EXPECT_TRUE(answers.empty());
+  EXPECT_EQ(sut_->counters().message.done, 0U);
+  gateway_.activity->finish();
+  EXPECT_EQ(sut_->step(10), 1U);
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_TRUE(answers[0]);
+  EXPECT_EQ(sut_->counters().message.done, 1U);
+  EXPECT_EQ(sut_->step(10), 0U);
+  EXPECT_EQ(answers.size(), 1U);
+}
+
+TEST_F(ScriptRunnerTest, SenderIsAnsweredAtOnceWhereThereIsNothingToWaitFor) {
+  std::vector<Result<std::string>> answers;
+  const auto keep = [&](const Result<std::string>& answer) { answers.push_back(answer); };
+  sut_->execute_message("POS_ROB PUMA_762 JOINT_ABS 1", "message", keep);
+  sut_->execute_message("ROBACT nobody", "message", keep);
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_TRUE(answers[0]);
+  EXPECT_FALSE(answers[1]);
+}
+
+TEST_F(ScriptRunnerTest, SenderLearnsWhyItDidNotComeToItsEnd) {
+  gateway_.activity = std::make_shared<Activity>();
+  std::vector<Result<std::string>> answers;
+  const auto keep = [&](const Result<std::string>& answer) { answers.push_back(answer); };
+  sut_->execute_message("POS_ROB PUMA_762 JOINT_ABS 1", "message from process 7", keep);
+  gateway_.activity->refuse({"superseded", {}});
+  sut_->step(10);
+  ASSERT_EQ(answers.size(), 1U);
+  ASSERT_FALSE(answers[0]);
+  EXPECT_EQ(answers[0].error().what, "superseded");
+  EXPECT_EQ(sut_->counters().message.refused, 1U);
+  EXPECT_NE(sut_->last_errors().back().find("message from process 7:1:1: error: superseded"), std::string::npos);
+}
+
+TEST_F(ScriptRunnerTest, SendersThatWaitAreAnsweredWhenEverythingEnds) {
+  gateway_.activity = std::make_shared<Activity>();
+  std::vector<Result<std::string>> answers;
+  sut_->execute_message("POS_ROB PUMA_762 JOINT_ABS 1", "message",
+                        [&](const Result<std::string>& answer) { answers.push_back(answer); });
+  sut_->stop_all();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_FALSE(answers[0]);
+}
+
 TEST_F(ScriptRunnerTest, RunsTakeTurns) {
   std::string a;
   std::string b;
