@@ -62,8 +62,8 @@ ForwardConstants forward_constants(const ChainJoint* joints, std::size_t count, 
   Eigen::Map<Eigen::Matrix4d>(out.X_B0) = X_B0.matrix();
   for (std::size_t i = 0; i < count; ++i) {
     const ChainJoint& from = joints[i];
-    const Pose& X_next = i + 1 == count ? tip : joints[i + 1].X_PJ;
-    const EulerZxz after = euler_zxz(X_next.linear());
+    const Pose& X_JN = i + 1 == count ? tip : joints[i + 1].X_PJ;
+    const EulerZxz after = euler_zxz(X_JN.linear());
     ForwardConstants::Joint& to = out.joint[i];
     to.variable = from.variable;
     to.factor = from.multiplier;
@@ -72,7 +72,7 @@ ForwardConstants forward_constants(const ChainJoint* joints, std::size_t count, 
     to.cos_x = after.cos_middle;
     to.sin_x = after.sin_middle;
     Eigen::Map<Eigen::Vector3d> shift(to.shift);
-    shift = turn_about_z(-after.first) * X_next.translation();
+    shift = turn_about_z(-after.first) * X_JN.translation();
     if (to.prismatic) shift.z() += from.offset;
     out.turn[i] = to.prismatic ? 0.0 : from.multiplier;
     out.turn_zero[i] = before.last + after.first + (to.prismatic ? 0.0 : from.offset);

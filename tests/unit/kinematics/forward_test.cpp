@@ -173,14 +173,14 @@ TEST_P(AllSizes, allInstructionSetsAgree) {
     const Chain sut = random_chain(GetParam(), plain, random);
     const auto q = random_values(sut.variable_count(), 3.0, random);
     Jacobian chosen;
-    const Pose X_chosen = forward(sut, q, chosen);
+    const Pose X_BT = forward(sut, q, chosen);
     Jacobian jacobian = chosen * 0;
     Pose X;
     kernels.pose_and_jacobian[size](sut.forward_constants(), q.data(), X.data(), jacobian.data());
-    EXPECT_LT(difference(X, X_chosen), 1e-13);
+    EXPECT_LT(difference(X, X_BT), 1e-13);
     EXPECT_LT((jacobian - chosen).cwiseAbs().maxCoeff(), 1e-13);
     kernels.pose[size](sut.forward_constants(), q.data(), X.data(), nullptr);
-    EXPECT_LT(difference(X, X_chosen), 1e-13);
+    EXPECT_LT(difference(X, X_BT), 1e-13);
   }
 }
 
