@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -72,19 +73,23 @@ void print_json(const FkOptions& options, const ChosenRobot& robot, const std::v
   std::printf("%s\n", document.dump(-1, ' ', false, json::error_handler_t::replace).c_str());
 }
 
+// As it is printed with six decimals: without the sign of a zero.
+double shown(double value) { return std::abs(value) < 5e-7 ? 0.0 : value; }
+
 void print_text(const FkOptions& options, const ChosenRobot& robot, const Tip& tip) {
   const Eigen::Vector3d p = tip.X_BT.translation();
   fmt::print("{} in {}\n", robot.tip, robot.base);
-  fmt::print("position    {:12.6f} {:12.6f} {:12.6f}  m\n", p.x(), p.y(), p.z());
-  fmt::print("quaternion  {:12.6f} {:12.6f} {:12.6f} {:12.6f}  x y z w\n", tip.q_BT.x(), tip.q_BT.y(), tip.q_BT.z(),
-             tip.q_BT.w());
-  const Eigen::Vector3d degrees = tip.rpy * (180.0 / std::numbers::pi);
-  fmt::print("rpy         {:12.6f} {:12.6f} {:12.6f}  deg\n", degrees.x(), degrees.y(), degrees.z());
+  fmt::print("position    {:12.6f} {:12.6f} {:12.6f}  m\n", shown(p.x()), shown(p.y()), shown(p.z()));
+  fmt::print("quaternion  {:12.6f} {:12.6f} {:12.6f} {:12.6f}  x y z w\n", shown(tip.q_BT.x()), shown(tip.q_BT.y()),
+             shown(tip.q_BT.z()), shown(tip.q_BT.w()));
+  const Eigen::Vector3d degrees = tip.rpy / kRadPerDeg;
+  fmt::print("rpy         {:12.6f} {:12.6f} {:12.6f}  deg\n", shown(degrees.x()), shown(degrees.y()),
+             shown(degrees.z()));
   if (!options.jacobian) return;
   fmt::print("\njacobian    (rows: velocity x y z, angular velocity x y z, in {}; a column a joint)\n", robot.base);
   for (Eigen::Index i = 0; i < tip.jacobian.rows(); ++i) {
     fmt::print("           ");
-    for (Eigen::Index j = 0; j < tip.jacobian.cols(); ++j) fmt::print(" {:12.6f}", tip.jacobian(i, j));
+    for (Eigen::Index j = 0; j < tip.jacobian.cols(); ++j) fmt::print(" {:12.6f}", shown(tip.jacobian(i, j)));
     fmt::print("\n");
   }
 }

@@ -91,6 +91,16 @@ TEST(Figure, CopesWithNoDataGapsAndLinesOfUnequalLength) {
   EXPECT_TRUE(png_of(sut));
 }
 
+TEST(Figure, DrawsWordsOfAnyBytes) {
+  Figure sut = one_panel();
+  for (const char* words :
+       {"\xff", "a\x80z", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82", "\x01\n\x7f", "größe µs 10⁻⁶"}) {
+    sut.title = words;
+    sut.panels[0].x.label = words;
+    EXPECT_TRUE(png_of(sut)) << words;
+  }
+}
+
 TEST(Figure, DrawsAMillionPointsWithoutAMillionStrokes) {
   Figure sut = one_panel();
   Line& line = sut.panels[0].lines[0];
