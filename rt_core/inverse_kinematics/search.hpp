@@ -36,9 +36,8 @@ class Search {
   [[nodiscard]] double nearest_distance() const;
   // How far the best orientation is off that is only attempted (rad); 0 for what is required.
   [[nodiscard]] double best_attempt() const;
-  // Looks at the clock; once it is true it stays true.
+  // Looks at the clock, after the first starts; once it is true it stays true.
   [[nodiscard]] bool out_of_time();
-  [[nodiscard]] std::chrono::microseconds time_left() const;
 
   // Where the secondary objective would like the joints to be: the present posture, or the straight boom.
   [[nodiscard]] const JointValues& wished() const { return wished_; }
@@ -59,6 +58,7 @@ class Search {
   JointValues wished_;
   std::chrono::steady_clock::time_point deadline_;
   bool timed_out_ = false;
+  std::size_t starts_ = 0;
   int iterations_ = 0;
   std::vector<Found> found_;
   Solution closest_;  // of those that do not meet the target

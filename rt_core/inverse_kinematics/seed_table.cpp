@@ -15,7 +15,7 @@ namespace cellmirror::inverse_kinematics {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kMostLeaves = 16;  // visited in one look-up; more find hardly better seeds
+constexpr std::size_t kLeavesPerSeed = 1;  // visited in one look-up; more find hardly better seeds
 
 // `value` moved by whole turns into the limits, nearest to `present`; the nearest limit where none lies within.
 double turned_into(double lower, double upper, double value, double present) {
@@ -33,7 +33,7 @@ struct SeedTable::Nearest {
   std::array<Near, kMostSeeds> found{};
   std::size_t count = 0;
   std::size_t wanted = 0;
-  int leaves = kMostLeaves;
+  std::size_t leaves = 0;
 
   [[nodiscard]] float worst() const {
     return count < wanted ? std::numeric_limits<float>::infinity() : found[count - 1].distance_sq;
@@ -148,7 +148,7 @@ void SeedTable::build(std::size_t node, std::span<std::uint32_t> indices, const 
 
 // `offsets`: how far `wanted` lies outside of the node's box in each dimension; `bound`: the sum of their squares.
 void SeedTable::visit(std::size_t node, const Feature& wanted, Feature& offsets, float bound, Nearest& nearest) const {
-  if (nearest.leaves <= 0 || !(bound < nearest.worst())) return;
+  if (nearest.leaves == 0 || !(bound < nearest.worst())) return;
   if (node >= nodes_.size()) {
     --nearest.leaves;
     const Leaf& leaf = leaves_[node - nodes_.size()];
@@ -173,6 +173,14 @@ void SeedTable::visit(std::size_t node, const Feature& wanted, Feature& offsets,
   offsets[split.dimension] = before;
 }
 
+// Where the limits keep the first or last joint from going where the target wants, the pose is about that far off.
+double SeedTable::miss_of(std::size_t variable, double wanted, double got) const {
+  const double off = wanted - got;
+  if (off == 0) return 0;
+  const double miss = chain_.rotates(variable) ? 0.5 * (off - kTurn * std::round(off / kTurn)) : off / length_;
+  return miss * miss;
+}
+
 Seed SeedTable::seed_of(const Near& near, const Placed& target, const JointValues& present) const {
   const Entry& entry = entries_[near.entry];
   Seed seed;
@@ -195,12 +203,7 @@ Seed SeedTable::seed_of(const Near& near, const Placed& target, const JointValue
     const double wanted = seed.q[i];
     seed.q[i] = chain_.rotates(i) && chain_.plain() ? turned_into(lower, upper, wanted, present[i])
                                                     : std::clamp(wanted, lower, upper);
-    // Where the limits keep the first or last joint from going where the target wants, the pose is that far off.
-    if (i == 0 || i + 1 == n_) {
-      const double miss =
-          chain_.rotates(i) ? 0.5 * std::remainder(wanted - seed.q[i], kTurn) : (wanted - seed.q[i]) / length_;
-      seed.pose_distance_sq += miss * miss;
-    }
+    if (i == 0 || i + 1 == n_) seed.pose_distance_sq += miss_of(i, wanted, seed.q[i]);
     seed.joint_distance_sq += (seed.q[i] - present[i]) * (seed.q[i] - present[i]);
   }
   return seed;
@@ -209,12 +212,11 @@ Seed SeedTable::seed_of(const Near& near, const Placed& target, const JointValue
 std::size_t SeedTable::find(const Pose& X_BG, const JointValues& present, std::span<Seed> seeds) const {
   Nearest nearest;
   nearest.wanted = std::min(seeds.size(), kMostSeeds);
+  nearest.leaves = kLeavesPerSeed * nearest.wanted;
   const Placed target = place(X_BG);
   Feature offsets{};
   visit(0, target.feature, offsets, 0.0F, nearest);
   for (std::size_t i = 0; i < nearest.count; ++i) seeds[i] = seed_of(nearest.found[i], target, present);
-  std::sort(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(nearest.count),
-            [](const Seed& a, const Seed& b) { return a.pose_distance_sq < b.pose_distance_sq; });
   return nearest.count;
 }
 

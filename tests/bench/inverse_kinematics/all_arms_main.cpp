@@ -1,6 +1,6 @@
 // Inverse kinematics of every arm beside KDL, on the same targets in the same run:
-//   inverse_kinematics_bench_all_arms [targets] [--arms shared|unseen|NAME] [--methods auto,fast,kdl] [--seed N]
-//   [--clock cpu]
+//   inverse_kinematics_bench_all_arms [targets] [--arms shared|unseen|random|NAME] [--methods auto,fast,kdl] [--seed N]
+//   [--limit-us N] [--clock cpu]
 // Targets are the poses at uniformly random postures; searches start in the middle of the range; 5 ms, 1e-5; failures
 // count in the times. An answer counts when the plain forward kinematics and the limits say so; `false` are answers
 // that claimed more.
@@ -28,6 +28,7 @@ using inverse_kinematics::Method;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTolerance = 1e-5;
+std::chrono::microseconds time_limit{5000};
 
 // --clock cpu: the thread's processor time, for a machine on which others work; it costs a system call.
 clockid_t clock_id = CLOCK_MONOTONIC;
@@ -98,6 +99,7 @@ Search ours(Method method, const kinematics::Chain& chain) {
     request.X_BG = X_BG;
     request.present = start;
     request.tolerance = kTolerance;
+    request.time_limit = time_limit;
     const Answer answer = solver->solve(request).value();
     q = answer.solutions.front().q;
     ++tally.by[static_cast<std::size_t>(answer.solutions.front().by)];
@@ -139,6 +141,7 @@ int run(int argc, char** argv) {
     const std::string value = i + 1 < argc ? argv[i + 1] : "";
     if (word == "--arms") which = value;
     if (word == "--methods") methods = value;
+    if (word == "--limit-us") time_limit = std::chrono::microseconds(std::strtol(value.c_str(), nullptr, 10));
     if (word == "--clock" && value == "cpu") clock_id = CLOCK_THREAD_CPUTIME_ID;
     if (word == "--seed") seed = std::strtoull(value.c_str(), nullptr, 10);
     if (word.starts_with("--")) {
@@ -156,6 +159,11 @@ int run(int argc, char** argv) {
   };
   bench_all(test_arms::shared_arms(), "shared");
   bench_all(test_arms::unseen_arms(), "unseen");
+  if (which == "random") {
+    for (std::uint64_t arm = 100; arm < 140; ++arm) {
+      bench_arm(test_arms::random_arm(4 + arm % 5, arm), count, methods, seed);
+    }
+  }
   return 0;
 }
 
