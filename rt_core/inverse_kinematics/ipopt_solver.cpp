@@ -35,6 +35,7 @@ struct Work {
   Problem problem;
   Clock::time_point deadline;
   Run nearest;  // of the descents that met nothing
+  bool timed_out = false;
   int iterations = 0;
 };
 
@@ -97,6 +98,7 @@ Result<Answer> IpoptSolver::solve(const Request& asked) {
   }
   Answer answer = work.search.finish();
   answer.iterations += work.iterations;
+  answer.timed_out = work.timed_out;
   return answer;
 }
 
@@ -120,7 +122,7 @@ void IpoptSolver::search(Work& work, std::size_t max_solutions) {
     if (work.search.found() >= max_solutions) return;
     barren = work.search.found() > 0 && work.search.found() == known ? barren + 1 : 0;
     if (Clock::now() < work.problem.deadline) continue;
-    if (work.search.found() > 0) (void)work.search.out_of_time();
+    work.timed_out = true;
     return;
   }
 }
@@ -181,7 +183,6 @@ void IpoptSolver::give_nearest(Work& work) {
   problem.to_the_end = true;
   const Run end = run(work, reach_, problem);
   if (end.met && work.search.keep(end.q, FoundBy::ipopt)) return;
-  (void)work.search.out_of_time();
   miss(work, work.nearest.q);
   miss(work, end.q);
 }
