@@ -215,7 +215,8 @@ bool MoveExecutor::step(double dt, const JointRange& range, std::span<double> q,
   if (flies()) fly();
   if (advance(dt, range, q)) arrive();
   std::ranges::copy(std::span(qd_).first(joints_), qd.begin());
-  state_.moving = activity_ != Activity::standing || state_.waiting > 0;
+  // Until every id has ended: the next step tells of those that the queue refused.
+  state_.moving = activity_ != Activity::standing || state_.waiting > 0 || state_.finished < newest_;
   return true;
 }
 

@@ -153,9 +153,10 @@ bool LinearMotion::at_fly_point() const CELL_RT {
 // Two moves in one direction would add up to more than either may have.
 double LinearMotion::pace_of_tool(double dt) const CELL_RT {
   if (path_.count() < 2) return 1;
-  const kinematics::Twist twist = path_.twist(dt);
-  const double linear = twist.head<3>().norm();
-  const double rotational = twist.tail<3>().norm();
+  const kinematics::Twist now = path_.twist(0);
+  const kinematics::Twist then = path_.twist(dt);
+  const double linear = std::max(now.head<3>().norm(), then.head<3>().norm());
+  const double rotational = std::max(now.tail<3>().norm(), then.tail<3>().norm());
   double pace = 1;
   if (linear > linear_velocity_) pace = linear_velocity_ / linear;
   if (rotational > rotational_velocity_) pace = std::min(pace, rotational_velocity_ / rotational);
