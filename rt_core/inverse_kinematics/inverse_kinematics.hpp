@@ -33,7 +33,7 @@ struct Request {
   kinematics::Task task;
   JointValues present{};                       // rad or m: where the search starts, and what "nearest" means
   double tolerance = 1e-5;                     // of each component of the error twist: m, rad
-  std::chrono::microseconds time_limit{5000};  // kept to within a few microseconds, a factorisation for `ipopt`
+  std::chrono::microseconds time_limit{5000};  // kept to within one start (some 10 us), for `ipopt` one factorisation
   std::size_t max_solutions = 1;               // more than 1: several different postures on request
 };
 
