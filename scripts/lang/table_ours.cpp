@@ -100,7 +100,7 @@ constexpr Form kForms[] = {
               "moves a robot's joints by increments", "MOVE_ROB MANTEC_RM3 PTP JOINT_INC 0 5"),
     move_form(FormId::move_rob_frame_abs, "MOVE_ROB <Robot_id> [PTP | LIN] FRAME_ABS <x> <y> <z> <r> <p> <y>",
               kFrameAbs, "moves a robot's TCP to a pose in its ZP frame",
-              "MOVE_ROB MANTEC_R3 PTP FRAME_ABS 600 300 900 180 0 0"),
+              "MOVE_ROB mantec_R3a PTP FRAME_ABS 600 300 900 180 0 0"),
     increment_form(FormId::move_rob_frame_inc,
                    "MOVE_ROB <Robot_id> [PTP | LIN] FRAME_INC [X x] [Y y] [Z z] [A r] [B p] [C y]", kFrameInc,
                    "moves a robot's TCP by an increment in its ZP frame", "MOVE_ROB MANTEC_RM3 LIN FRAME_INC X 20"),

@@ -1,0 +1,143 @@
+// Every SCRIPT file of scripts/ against the committed trace of the moves that the tick would get, on the transfer cell:
+// real parser, handlers, inverse kinematics and planner, no tick. CELLMIRROR_UPDATE_GOLDEN=1 writes the traces anew:
+// read the difference before committing it. In files whose name begins with "held_" no move comes to its end.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/gateway/fleet.hpp"
+#include "app/gateway/hosts.hpp"
+#include "app/gateway/motion_desk.hpp"
+#include "config/cell_file.hpp"
+#include "rt_core/base/home.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/rt/watchdog.hpp"
+#include "scripts/runner/script_runner.hpp"
+#include "tests/golden/motion/recording_port.hpp"
+
+namespace cellmirror {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path source_folder() {
+  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
+  return source == nullptr ? "." : source;
+}
+fs::path golden_folder() { return source_folder() / "tests" / "golden" / "motion"; }
+
+std::string content(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> cases() {
+  std::vector<std::string> all;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(golden_folder() / "scripts", error)) {
+    if (entry.path().extension() == ".spt") all.push_back(entry.path().stem().string());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// The gateway's own hosts on the transfer cell; the tick is there but does not run.
+class Stage {
+ public:
+  explicit Stage(LoadedCell loaded)
+      : cell_(std::move(loaded.cell)),
+        views_(extent_of(*cell_.compile(), cell_.start_positions())),
+        fleet_(cell_, engine_, {}, clock_, 0),
+        port(fleet_, cell_),
+        names_(cell_),
+        desk_(cell_, names_, views_, port),
+        world_(cell_, fleet_, desk_, [] {}),
+        robots_(cell_, fleet_, desk_, names_),
+        programs_(desk_),
+        view_host_(cell_, views_, clock_),
+        diagnosis_([](std::string_view) { return Result<void>(); }) {
+    EXPECT_TRUE(fleet_.follow_cell());
+  }
+
+  std::string run(const KismetHome& home, const std::string& name) {
+    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, view_host_, diagnosis_}, home, clock_);
+    std::string end = "still waiting\n";
+    runner.on_run_ended([&](const script::RunReport& report) {
+      end = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
+                        report.diagnostics.text());
+    });
+    Diagnostics findings;
+    if (!runner.start_file(name, &findings)) return "nothing of it ran\n" + findings.text();
+    do {
+      desk_.follow();
+    } while (runner.step(1000) != 0);
+    if (!runner.idle()) {
+      for (const std::string& error : runner.last_errors()) end += error.substr(error.find(' ') + 1) + "\n";
+    }
+    return port.trace + end;
+  }
+
+ private:
+  ManualClock clock_;
+  Cell cell_;
+  Views views_;
+  Watchdog watchdog_{std::chrono::seconds(1), {}};
+  engine::Engine engine_{watchdog_};
+  app::Fleet fleet_;
+
+ public:
+  cellmirror::testing::RecordingPort port;
+
+ private:
+  app::CellNames names_;
+  app::MotionDesk desk_;
+  app::CellWorld world_;
+  app::CellRobots robots_;
+  app::CellPrograms programs_;
+  app::CellViews view_host_;
+  app::CellDiagnosis diagnosis_;
+};
+
+// How near the search comes to a pose out of reach depends on the time that it gets.
+std::string without_nearest(std::string text) {
+  constexpr std::string_view kBegin = "the nearest that was found is ";
+  for (std::size_t at = text.find(kBegin); at != std::string::npos; at = text.find(kBegin, at + kBegin.size())) {
+    const std::size_t begin = at + kBegin.size();
+    text.replace(begin, text.find('\n', begin) - begin, "...");
+  }
+  return text;
+}
+
+class GoldenMotion : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GoldenMotion, GivesTheExpectedMoves) {
+  set_log_level(LogLevel::error);
+  Diagnostics diagnostics;
+  auto loaded = load_cell(source_folder() / "config" / "cells" / "transfer_cell" / "cell.toml", diagnostics);
+  ASSERT_TRUE(loaded) << diagnostics.text();
+  const auto home = KismetHome::open(golden_folder());
+  ASSERT_TRUE(home) << home.error().text();
+  const auto stage = std::make_unique<Stage>(std::move(*loaded));  // the queues of the tick are large
+  stage->port.held = GetParam().starts_with("held_");
+  const std::string trace = without_nearest(stage->run(*home, GetParam()));
+  const fs::path expected = golden_folder() / "expected" / (GetParam() + ".txt");
+  if (std::getenv("CELLMIRROR_UPDATE_GOLDEN") != nullptr) std::ofstream(expected, std::ios::binary) << trace;
+  EXPECT_EQ(trace, content(expected)) << expected;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scripts, GoldenMotion, ::testing::ValuesIn(cases()),
+                         [](const auto& param_info) { return param_info.param; });
+
+}  // namespace
+}  // namespace cellmirror
