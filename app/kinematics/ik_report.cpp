@@ -16,6 +16,9 @@ using nlohmann::json;
 
 constexpr std::size_t kListed = 12;  // targets that the table shows one by one
 
+// Six digits, and rounding errors about zero as zero.
+std::string joint_text(double value) { return fmt::format("{:.6g}", std::abs(value) < 1e-12 ? 0.0 : value); }
+
 double nearest_rank(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return 0.0;
   const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
@@ -25,7 +28,7 @@ double nearest_rank(const std::vector<double>& sorted, double fraction) {
 std::string joints_text(const IkReport& report, const IkOutcome& outcome) {
   std::string out;
   for (std::size_t i = 0; i < report.robot.chain.variable_count(); ++i)
-    out += fmt::format("{}{:.6g}", i == 0 ? "" : " ", outcome.q[i]);
+    out += (i == 0 ? "" : " ") + joint_text(outcome.q[i]);
   return out;
 }
 
@@ -144,7 +147,7 @@ std::string table(const IkReport& report) {
       for (std::size_t at = 0; at < outcome.alternatives.size(); at += report.robot.chain.variable_count()) {
         out += fmt::format("{:>6} {:<60}", "", "or");
         for (std::size_t j = 0; j < report.robot.chain.variable_count(); ++j)
-          out += fmt::format(" {:.6g}", outcome.alternatives[at + j]);
+          out += " " + joint_text(outcome.alternatives[at + j]);
         out += '\n';
       }
     }
