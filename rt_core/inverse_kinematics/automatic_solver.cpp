@@ -29,10 +29,10 @@ constexpr std::size_t kFirstSeeds = 16;
 constexpr std::size_t kMoreSeeds = SeedTable::kMostSeeds;  // when none of the first led to a solution
 constexpr std::size_t kLooks = 2;                          // starts from seeds of which the nearest solution is taken
 constexpr double kNearness = 0.02;                         // of a squared joint distance beside a squared pose distance
-constexpr std::size_t kAttempts = 6;                       // starts for an orientation that is only attempted
-constexpr std::size_t kMostStarts = 300;                   // all over the ranges, until a target counts as out of reach
-constexpr std::size_t kStartsOutOfReach = 12;              // when it certainly is: for the nearest reachable pose
-constexpr std::size_t kStartsWithoutNews = 80;             // when several solutions are asked for
+constexpr std::size_t kAttempts = 6;            // starts for an orientation that is only attempted, or an even bend
+constexpr std::size_t kMostStarts = 300;        // all over the ranges, until a target counts as out of reach
+constexpr std::size_t kStartsOutOfReach = 12;   // when it certainly is: for the nearest reachable pose
+constexpr std::size_t kStartsWithoutNews = 80;  // when several solutions are asked for
 
 bool whole_pose(const Task& task) { return task.position_axes == 0b111 && task.orientation == OrientationTask::full; }
 
@@ -107,7 +107,9 @@ class AutomaticSolver final : public Solver {
     const bool whole = whole_pose(request.task);
     if (whole && away > kNearPose) return false;
     if (!search.descend(request.present, whole ? kIterationsNear : kIterationsFromSpread, FoundBy::fast)) return false;
-    if (request.max_solutions > 1 || !request.task.orientation_required) return false;
+    const bool one_is_enough =
+        request.task.orientation_required && request.task.secondary == kinematics::Secondary::nearest_present;
+    if (request.max_solutions > 1 || !one_is_enough) return false;
     if (search.nearest_distance() > kNearPosture) return false;
     search.settle_best();
     return true;
@@ -139,13 +141,14 @@ class AutomaticSolver final : public Solver {
     const std::size_t most = out_of_reach ? kStartsOutOfReach : kMostStarts;
     const bool several = request.max_solutions > 1;
     const bool attempted = !request.task.orientation_required;
+    const bool bends = request.task.secondary == kinematics::Secondary::even_bend;
     std::size_t without_news = 0;
     for (std::size_t start = 0; start < most && !search.out_of_time(); ++start) {
       const std::size_t found = search.found();
       if (found > 0) {
         if (several && (without_news >= kStartsWithoutNews || found >= 4 * request.max_solutions)) return;
-        const bool aligned = search.best_attempt() <= request.tolerance;
-        if (!several && (!attempted || aligned || start >= kAttempts)) return;
+        const bool good_enough = !bends && (!attempted || search.best_attempt() <= request.tolerance);
+        if (!several && (good_enough || start >= kAttempts)) return;
       }
       (void)search.descend(spread_.at(start), kIterationsFromSpread, FoundBy::fast);
       without_news = search.found() > found ? 0 : without_news + 1;
