@@ -33,8 +33,8 @@ struct Command {
   JointValues lower{};
   JointValues upper{};
   // Of set_chain: for the linear moves that are added from then on. The sender owns it and keeps it until commands_done
-  // has passed a later set_chain, set_mode to mirrored or remove_robot of this slot and, after a set_chain, the robot
-  // neither moves nor has moves waiting that were added before. Its variables are the robot's joints.
+  // has passed a later set_chain, set_mode to mirrored or remove_robot of this slot and, after a set_chain, every move
+  // that was sent before it has ended (MotionState::finished in the same state). Its variables are the robot's joints.
   const kinematics::Chain* chain = nullptr;
 };
 

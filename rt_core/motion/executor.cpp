@@ -157,8 +157,20 @@ void MoveExecutor::brake(const JointRange& range, std::span<const double> q) CEL
   brake_ = false;
   braking_ = true;
   if (activity_ == Activity::joints) ptp_.brake(q, std::span(qd_).first(joints_), range);
-  if (activity_ == Activity::linear) linear_.brake();
+  if (activity_ == Activity::linear) {
+    // What took its place was added for another chain, and its owner may take this one away now that its moves have
+    // ended: no braking on the line.
+    const bool chain_may_go = halt_through_ == 0 && linear_.chain() != chain_;
+    chain_may_go ? brake_off_line(range, q) : linear_.brake();
+  }
   if (activity_ == Activity::delay) delay_left_ = 0;
+}
+
+void MoveExecutor::brake_off_line(const JointRange& range, std::span<const double> q) CELL_RT {
+  const std::span<const double> qd = std::span(qd_).first(joints_);
+  for (std::size_t i = 0; i < joints_; ++i) fastest_[i] = std::max(linear_.max_velocity()[i], std::abs(qd[i]));
+  ptp_.brake_together(linear_.acceleration(), q, qd, range);
+  activity_ = Activity::joints;
 }
 
 bool MoveExecutor::advance_linear(double dt, const JointRange& range, std::span<double> q) CELL_RT {
@@ -169,11 +181,9 @@ bool MoveExecutor::advance_linear(double dt, const JointRange& range, std::span<
   if (progress != LinearMotion::Progress::blocked) return progress == LinearMotion::Progress::arrived;
   // There is no path to brake on: the joints come to rest in the direction in which they move.
   if (!braking_) halt(Outcome::blocked);
-  for (std::size_t i = 0; i < joints_; ++i) fastest_[i] = std::max(fastest_[i], std::abs(qd[i]));
-  ptp_.brake_together(linear_.acceleration(), q, qd, range);
-  activity_ = Activity::joints;
   brake_ = false;
   braking_ = true;
+  brake_off_line(range, q);
   return ptp_.advance(dt, q, qd);
 }
 

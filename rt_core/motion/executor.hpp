@@ -39,7 +39,8 @@ class MoveExecutor {
   // Another robot: everything is forgotten, the ids too.
   void reset(std::size_t joints) CELL_RT;
   // For the linear moves that are added from now on; null: linear moves are refused. Not owned: it has to live until
-  // another one was set and no move that was added before runs or waits.
+  // another one was set and every move that was added before has ended by its id (MotionState::finished), seen after a
+  // step.
   void set_chain(const kinematics::Chain* chain) CELL_RT { chain_ = chain; }
 
   // False where the queue is full or the move is not sound; its id ends as blocked, when everything before it has
@@ -77,6 +78,7 @@ class MoveExecutor {
   bool start_linear(std::span<const double> q) CELL_RT;
   void start_front(const JointRange& range, std::span<const double> q) CELL_RT;
   void brake(const JointRange& range, std::span<const double> q) CELL_RT;
+  void brake_off_line(const JointRange& range, std::span<const double> q) CELL_RT;
   bool advance(double dt, const JointRange& range, std::span<double> q) CELL_RT;
   bool advance_linear(double dt, const JointRange& range, std::span<double> q) CELL_RT;
   void arrive() CELL_RT;

@@ -46,6 +46,7 @@ class LinearMotion {
   // Whether the older one of two superposed moves ended in the last advance().
   [[nodiscard]] bool older_ended() const CELL_RT { return older_ended_; }
 
+  [[nodiscard]] const kinematics::Chain* chain() const CELL_RT { return chain_; }
   [[nodiscard]] const JointValues& max_velocity() const CELL_RT { return max_velocity_; }
   [[nodiscard]] const JointValues& acceleration() const CELL_RT { return move_.acceleration; }  // of the joints
   // How fast time goes on the path: 1, or less where it is slowed down.

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <numbers>
-#include <random>
 
 #include "arms.hpp"
 #include "ride.hpp"
@@ -193,6 +193,34 @@ TEST(LinearMove, OtherKindsOfMovesWaitUntilItHasBrakedOnItsLine) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(ride.q()[i], target[i], 1e-12);
   EXPECT_EQ(ride.state().finished, 2U);
   EXPECT_EQ(ride.state().outcome, Outcome::arrived);
+}
+
+TEST(LinearMove, NewMoveForAnotherToolLeavesTheOldChainAtOnce) {
+  Ride ride(puma(), puma_posture());
+  auto old_chain = std::make_unique<kinematics::Chain>(puma());
+  ride.sut().set_chain(old_chain.get());
+  ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.q(), moved_by(ride.X_BT(), {0.0, -0.25, 0.0}))));
+  while (ride.now() < 0.4) ride.tick();
+  ride.sut().set_chain(&ride.chain());
+  const Pose to = moved_by(ride.X_BT(), {0.0, 0.1, 0.0});
+  ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.q(), to)));
+  ride.tick();
+  EXPECT_EQ(ride.state().finished, 1U);
+  old_chain.reset();  // what its owner may do now: a sanitizer sees whether it is still read
+  ride.run();
+  EXPECT_LT((ride.X_BT().translation() - to.translation()).norm(), 1e-9);
+  EXPECT_EQ(ride.state().outcome, Outcome::arrived);
+}
+
+TEST(LinearMove, MovesThatWaitKeepTheChainForWhichTheyWereAdded) {
+  Ride ride(puma(), puma_posture());
+  const Pose tool_before = ride.X_BT();
+  ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.q(), moved_by(tool_before, {0.0, -0.1, 0.0}), Start::queue)));
+  ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.end_of_plan, moved_by(tool_before, {0.0, -0.2, 0.0}), Start::queue)));
+  const kinematics::Chain longer = ride.chain().with_tip(moved_by(ride.chain().X_LT(), {0, 0, 0.1}));
+  ride.sut().set_chain(&longer);
+  ride.run();
+  EXPECT_NEAR(ride.X_BT().translation().y(), tool_before.translation().y() - 0.2, 1e-9);
 }
 
 TEST(LinearMove, LineOutOfReachIsRefusedByThePlannerAndBlockedByTheTick) {
