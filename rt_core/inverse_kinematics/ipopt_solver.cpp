@@ -34,7 +34,8 @@ struct Work {
   Search search;
   Problem problem;
   Clock::time_point deadline;
-  Run nearest;  // of the descents that met nothing
+  Run nearest;           // of the descents that met nothing
+  bool settled = false;  // the last descent has minimised the secondary objective as well
   bool timed_out = false;
   int iterations = 0;
 };
@@ -131,10 +132,12 @@ void IpoptSolver::search(Work& work, std::size_t max_solutions) {
 // meeting it and the secondary objective.
 Run IpoptSolver::descend(Work& work, bool from_present) {
   const Problem& problem = work.problem;
+  work.settled = false;
   if (from_present && !only_attempts_orientation(problem.task) && near_target(problem) && has_freedom(problem)) {
     Problem both = problem;
     both.max_iterations = kNearIterations;
     const Run result = run(work, refine_, both);
+    work.settled = result.met;
     if (result.met) return result;
   }
   return run(work, reach_, problem);
@@ -143,6 +146,7 @@ Run IpoptSolver::descend(Work& work, bool from_present) {
 // Uses the freedom that is left at a posture that meets the task: first for an orientation that is only attempted, then
 // for the secondary objective.
 Run IpoptSolver::improve(Work& work, const Run& found) {
+  if (work.settled) return found;
   Run best = found;
   Problem problem = work.problem;
   problem.deadline = work.deadline;

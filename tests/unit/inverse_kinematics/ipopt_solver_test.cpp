@@ -2,6 +2,7 @@
 #include "rt_core/inverse_kinematics/ipopt_solver.hpp"
 
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -201,22 +202,30 @@ TEST(IpoptSolver, GivesTheNearestPoseOfATargetOutOfReach) {
   EXPECT_NEAR(answer.solutions.at(0).error.head<3>().norm(), 2.0, 1e-3);
 }
 
+// Processor time: what others do meanwhile is not the search's fault, and can only end it sooner.
+double processor_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
 TEST(IpoptSolver, KeepsItsTimeLimit) {
   const Chain chain = odd_arm();
   const auto sut = make_ipopt_solver(chain);
   Request request = request_for(chain, pose_from_xyz_rpy({30, 0, 0}, {0, 0, 0}));
-  (void)sut->solve(request);  // allocates what stays
   std::vector<double> ms;
   for (int round = 0; round < 21; ++round) {
     request.time_limit = std::chrono::milliseconds(5);
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_ms();
     const Answer answer = sut->solve(request).value();
-    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    ms.push_back(processor_ms() - start);
     EXPECT_TRUE(answer.timed_out);
     EXPECT_FALSE(answer.solved);
   }
   std::sort(ms.begin(), ms.end());
-  EXPECT_LT(ms[2], 10.0);  // another load may take the processor at any time, but not always
+#ifndef CELLMIRROR_SANITIZED
+  EXPECT_LT(ms[10], 6.0);
+#endif
 }
 
 TEST(IpoptSolver, SolvesAChainThatCannotMove) {
