@@ -5,8 +5,11 @@
 #include <limits>
 #include <memory>
 
+#include "arms.hpp"
+
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/limiter.hpp"
+#include "rt_core/motion/planner.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
 
 namespace cellmirror::engine {
@@ -225,6 +228,77 @@ TEST_F(EngineMotionTest, RemovedRobotForgetsItsMoves) {
   EXPECT_FALSE(robot().motion.moving);
   EXPECT_EQ(robot().motion.finished, 0U);
   EXPECT_EQ(robot().joints[0].position, 0.0);
+}
+
+// A robot of three sliding axes in another slot.
+class EngineLinearTest : public EngineMotionTest {
+ protected:
+  static constexpr std::uint8_t kGantry = 5;
+  EngineLinearTest() {
+    Command command = command_of(CommandKind::add_robot);
+    command.slot = kGantry;
+    command.joint_count = 3;
+    command.lower.fill(-2.0);
+    command.upper.fill(2.0);
+    sut_->send(command);
+  }
+  std::uint64_t set_chain(const kinematics::Chain* chain) {
+    Command command = command_of(CommandKind::set_chain);
+    command.slot = kGantry;
+    command.chain = chain;
+    return sut_->send(command);
+  }
+  motion::Move line_to(double x, double y, std::uint32_t id) {
+    RobotParameters parameters;
+    parameters.max_velocity.fill(1.0);
+    parameters.linear_velocity = 0.5;
+    parameters.inverse_class = InverseClass::align_pos;
+    parameters.fly_parameter = 0.02;
+    Pose X_BG = Pose::Identity();
+    X_BG.translation() = Eigen::Vector3d(x, y, 0);
+    motion::Move move = motion::plan_linear_move(chain_, parameters, {}, X_BG).value().move;
+    move.id = id;
+    move.start = motion::Start::queue;
+    return move;
+  }
+  const RobotTickState& gantry() { return sut_->owner_view().robots[kGantry]; }
+  const kinematics::Chain chain_ = motion::test_arms::gantry();
+};
+
+TEST_F(EngineLinearTest, LineIsRefusedWithoutAChainAndCarriedOutWithOne) {
+  sut_->send_move(kGantry, line_to(0.3, 0.1, 1));
+  tick();
+  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+  set_chain(&chain_);
+  sut_->send_move(kGantry, line_to(0.3, 0.1, 2));
+  int ticks = 0;
+  do {
+    tick();
+    EXPECT_NEAR(gantry().joints[1].position, gantry().joints[0].position / 3, 1e-6);
+  } while (gantry().motion.moving && ++ticks < 5000);
+  EXPECT_EQ(gantry().motion.finished, 2U);
+  EXPECT_EQ(gantry().motion.outcome, motion::Outcome::arrived);
+  EXPECT_NEAR(gantry().joints[0].position, 0.3, 1e-9);
+  EXPECT_EQ(gantry().refused_setpoints, 0U);
+}
+
+TEST_F(EngineLinearTest, ChainOfAnotherNumberOfJointsIsRefused) {
+  const kinematics::Chain six = motion::test_arms::puma();
+  set_chain(&six);
+  tick();
+  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+}
+
+TEST_F(EngineLinearTest, TickWithLinesInCornersLeavesTheHeapAlone) {
+  if (!AllocationGuard::armed()) GTEST_SKIP() << "skipped: the allocation guard is not armed in this build";
+  set_chain(&chain_);
+  for (std::uint32_t id = 1; id <= 12; ++id) sut_->send_move(kGantry, line_to(0.1 * id, id % 2 == 0 ? 0.1 : -0.1, id));
+  const AllocationGuard guard;
+  for (int i = 0; i < 3000; ++i) tick();
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_EQ(guard.frees(), 0U);
+  EXPECT_GT(gantry().motion.finished, 2U);
+  EXPECT_EQ(gantry().refused_setpoints, 0U);
 }
 
 TEST_F(EngineMotionTest, TickWithMovingRobotsLeavesTheHeapAlone) {

@@ -29,5 +29,19 @@ TEST(Limiter, RefusesWhatIsNotFinite) {
   EXPECT_EQ(check(0, std::numeric_limits<double>::infinity()), LimiterVerdict::not_finite);
 }
 
+TEST(Limiter, RefusesStepsThatAreFasterThanTheJointMayBe) {
+  constexpr std::array kPresent = {0.5, -0.5};
+  constexpr std::array kVelocity = {1.0, 0.1};
+  constexpr double kTick = 1e-3;
+  const auto step = [&](double a, double b) {
+    return check_rates(kPresent, std::array{0.5 + a, -0.5 + b}, kVelocity, kTick);
+  };
+  EXPECT_EQ(step(1e-3, -1e-4), LimiterVerdict::passed);
+  EXPECT_EQ(step(0, 0), LimiterVerdict::passed);
+  EXPECT_EQ(step(1.01e-3, 0), LimiterVerdict::too_fast);
+  EXPECT_EQ(step(0, -1.1e-4), LimiterVerdict::too_fast);
+  EXPECT_EQ(step(std::numeric_limits<double>::quiet_NaN(), 0), LimiterVerdict::too_fast);
+}
+
 }  // namespace
 }  // namespace cellmirror::engine
