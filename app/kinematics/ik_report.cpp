@@ -163,11 +163,19 @@ std::string table(const IkReport& report) {
 
 std::string not_reached(const IkReport& report, std::size_t target) {
   const IkOutcome& outcome = report.run.outcomes.at(target);
-  return fmt::format(
+  const std::size_t joints = report.robot.chain.variable_count();
+  std::string out = fmt::format(
       "target {} is not reached within {:g}{}: the nearest pose found is {:.6g} m and {:.6g} rad away, at "
       "the joints {}",
       target + 1, report.settings.tolerance, outcome.timed_out ? " in the time given" : "", outcome.position_error_m,
       outcome.rotation_error_rad, joints_text(report, outcome));
+  constexpr std::size_t kJointsForEveryPose = 6;
+  const kinematics::Task& task = report.settings.task;
+  const bool whole = task.position_axes == 0b111 && task.orientation == kinematics::OrientationTask::full;
+  if (joints < kJointsForEveryPose && whole && task.orientation_required)
+    out += fmt::format(
+        "; with {} joints not every position and orientation can be met together: --class names what is to be", joints);
+  return out;
 }
 
 }  // namespace cellmirror::app

@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -161,6 +163,8 @@ int tell(const IkOptions& options, const IkReport& report) {
   } else {
     std::fputs(table(report).c_str(), stdout);
   }
+  if (std::fflush(stdout) != 0)
+    return refuse("standard output cannot be written: " + std::string(std::strerror(errno)));
   if (!options.plot.empty()) {
     if (const auto drawn = plot::write_png(figure(report), options.plot); !drawn) return refuse(drawn.error().text());
   }

@@ -154,6 +154,23 @@ class BadInput(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("1.000000", done.stdout)
 
+    def test_robot_of_few_joints_is_told_what_it_cannot_meet(self):
+        path = self.scratch / "planar.urdf"
+        path.write_text(urdf(joint("j", "a", "b"), joint("k", "b", "c")))
+        targets = self.scratch / "targets.csv"
+        targets.write_text(HEADER + "0.6,0.1,0.3,0.6,0,0,0.8\n")
+        command = [str(g.BIN / "cellmirror"), "ik", "--urdf", str(path), "--base", "a", "--tip", "c", "--targets", str(targets)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=30)
+        self.assertEqual(done.returncode, REFUSED)
+        self.assertIn("with 2 joints not every position and orientation can be met together", done.stderr)
+
+    def test_output_that_cannot_be_written(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([str(g.BIN / "cellmirror"), "ik", *ARM, "--samples", "2"], stdout=full, stderr=subprocess.PIPE,
+                                  text=True, timeout=30)
+        self.assertEqual(done.returncode, REFUSED)
+        self.assertIn("No space left", done.stderr)
+
     def test_plot_that_cannot_be_written(self):
         done = subprocess.run([str(g.BIN / "cellmirror"), "ik", *ARM, "--samples", "2", "--plot", "/nowhere/plot.png"],
                               capture_output=True, text=True, timeout=30)
