@@ -58,17 +58,17 @@ SeedTable::SeedTable(const kinematics::Chain& chain, std::size_t entries) : chai
   first_slides_ = reducible && first.kind == JointKind::prismatic;
   last_turns_ = reducible && last.kind != JointKind::prismatic;
   length_ = kinematics::unit_of_length(chain_);
-  X_1B_ = first.X_PJ.inverse();
+  X_FB_ = first.X_PJ.inverse();
   X_TL_ = chain_.X_LT().inverse();
   sample(entries);
 }
 
 SeedTable::Placed SeedTable::place(const Pose& X_BT) const {
-  const Pose X_1L = X_1B_ * X_BT * X_TL_;
+  const Pose X_FL = X_FB_ * X_BT * X_TL_;
   Placed placed;
-  placed.R = X_1L.linear();
-  Eigen::Vector3d p = X_1L.translation() / length_;
-  Eigen::Vector3d a = X_1L.linear().col(2);
+  placed.R = X_FL.linear();
+  Eigen::Vector3d p = X_FL.translation() / length_;
+  Eigen::Vector3d a = X_FL.linear().col(2);
   if (first_turns_) {
     const double r = std::hypot(p.x(), p.y());
     // On the axis itself the direction has to say where the arm is turned to.
@@ -79,7 +79,7 @@ SeedTable::Placed SeedTable::place(const Pose& X_BT) const {
     a = Eigen::Vector3d(c * a.x() + s * a.y(), c * a.y() - s * a.x(), a.z());
     p = Eigen::Vector3d(r, 0.0, p.z());
   } else if (first_slides_) {
-    placed.slide = X_1L.translation().z();
+    placed.slide = X_FL.translation().z();
     p.z() = 0.0;
   }
   constexpr double kDirection = 0.5;  // weight of a direction (about rad) against a length; measured

@@ -79,7 +79,7 @@ class SeedTable {
   bool first_slides_ = false;
   bool last_turns_ = false;
   double length_ = 1;
-  Pose X_1B_ = Pose::Identity();  // base in the first joint's frame at value 0
+  Pose X_FB_ = Pose::Identity();  // base in the first joint's frame at value 0
   Pose X_TL_ = Pose::Identity();  // the last joint's frame in the tip
   std::vector<Entry> entries_;
   std::vector<Node> nodes_;  // a complete binary tree: children of i are 2i+1 and 2i+2; leaves follow
