@@ -11,7 +11,10 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr std::size_t kScriptBudget = 256;  // commands of files before messages have their turn
+// Commands of files before messages have their turn, and how long they may take: inverse kinematics takes a while.
+constexpr std::size_t kScriptBudget = 256;
+constexpr std::size_t kScriptSlice = 32;
+constexpr Nanoseconds kScriptTime{5'000'000};
 constexpr int kMessageBudget = 64;
 constexpr Nanoseconds kPicturePeriod{20'000'000};    // at most so old while commands keep coming
 constexpr std::chrono::milliseconds kIdleWait{50};   // messages expire from the picture
@@ -62,7 +65,6 @@ void CellOwner::stop() {
   stopping_.request_stop();
   wake_.wake();
   thread_.join();
-  fleet_.reset();
 }
 
 void CellOwner::submit(const ScriptMessage& message) {
@@ -105,13 +107,24 @@ bool CellOwner::execute_messages() {
   return executed > 0;
 }
 
+bool CellOwner::execute_files() {
+  const Timestamp end = clock_.now() + kScriptTime;
+  bool any = false;
+  for (std::size_t budget = 0; budget < kScriptBudget; budget += kScriptSlice) {
+    if (runner_->step(kScriptSlice) == 0) break;
+    any = true;
+    if (clock_.now() > end) break;
+  }
+  return any;
+}
+
 void CellOwner::loop(const std::stop_token& stop) {
   set_thread_name("cell");
   bool changed = true;
   while (!stop.stop_requested()) {
     motion_.follow();
     bool busy = execute_messages();
-    busy = runner_->step(kScriptBudget) > 0 || busy;
+    busy = execute_files() || busy;
     changed = changed || busy;
     const bool due = clock_.now() - last_picture_ > kPicturePeriod;
     if (changed && (due || !busy)) {

@@ -49,6 +49,7 @@ class CellOwner {
   };
 
   explicit CellOwner(Parts parts);
+  // Closes the streams. The loop has to stand still by then: it looks into chains that end with this.
   ~CellOwner();
   CellOwner(const CellOwner&) = delete;
   CellOwner& operator=(const CellOwner&) = delete;
@@ -57,7 +58,7 @@ class CellOwner {
   // (`script`: a file of the home's scripts/, or any path where `is_path`).
   Result<void> prepare(const std::string& script, bool is_path);
   void start();
-  // Ends the thread, then closes the streams.
+  // Ends the thread.
   void stop();
 
   // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up.
@@ -67,6 +68,7 @@ class CellOwner {
  private:
   void loop(const std::stop_token& stop);
   bool execute_messages();
+  bool execute_files();
   void execute(const QueuedCommand& queued);
   void hang_up_picture();
 

@@ -78,8 +78,9 @@ struct Gateway::Parts {
     publisher.reset();
     // The receiver's handler may wait for the owner to take a command, so it has to end first.
     if (messages) messages->stop();
-    owner.reset();
+    if (owner) owner->stop();
     if (loop) loop->stop();
+    owner.reset();
   }
 
   Result<void> prepare_machine();

@@ -170,6 +170,30 @@ class Motion(unittest.TestCase):
         # It hung on the hook from where the crane stood at 500 mm, so it went 400 mm along.
         self.at((before[0] + 0.4, before[1], before[2]), self.tcp("mantec_R3")[0], 1e-6)
 
+    def test_connect_behind_a_jump_grips_at_the_right_place_too(self):
+        (self.scripts / "jump.spt").write_text(
+            "ROBACT ZELLENKRAN;\nrob_positioning jump;\nPOS_ROB ZELLENKRAN JOINT_ABS 1500 0 0;\n"
+            "CONNECT Puma TO Zellenkran.HAKEN;\nPOS_ROB ZELLENKRAN JOINT_INC 400;\nrob_positioning move;\n"
+            "DRAW_SCENE;\nhot_message jumped;\n")
+        before = self.tcp("PUMA_762")[0]
+        self.done("EXEC_SCRIPT jump.spt")
+        self.assertTrue(g.eventually(lambda: "jumped" in str(self.scratch.status()["messages"]), 15))
+        self.at((before[0] + 0.4, before[1], before[2]), self.tcp("PUMA_762")[0], 1e-6)
+        self.done("CONNECT Puma TO HTL_UMGEBUNG")
+
+    def test_gateway_ends_in_order_while_a_robot_moves_straight(self):
+        scratch = g.Scratch()
+        gateway = g.Gateway(scratch)
+        try:
+            for command in (f"ROBACT {ARM}", "rob_cart_lin_vel 20", f"POS_ROB {ARM} FRAME_ABS 600 300 900 180 0 0"):
+                self.assertEqual(scratch.send(command).returncode, 0)
+            Sender(scratch).send(f"POS_ROB {ARM} FRAME_INC X 100")
+            self.assertTrue(g.eventually(lambda: scratch.robot(ARM)["motion"]["moving"], every=0.01))
+            self.assertEqual(gateway.stop(), 0, gateway.output())
+        finally:
+            gateway.close()
+            scratch.remove()
+
     def test_wait_waits_for_queued_moves(self):
         (self.scripts / "wait.spt").write_text(
             f"MOVE_ROB {ARM} PTP JOINT_INC 20;\nMOVE_ROB {ARM} LIN FRAME_INC Z 30;\nMOVE_ROB {ARM} PTP JOINT_INC -20;\n"

@@ -7,6 +7,7 @@ namespace cellmirror::app {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kDocument = R"({
   "version":"0.1.0","instance":"default","cell":"demo","uptime_s":12.0,
@@ -21,6 +22,16 @@ constexpr const char* kDocument = R"({
   "script":{"received":3,"done":2,"refused":1,"running":0,"language":"irdata","last_errors":["bad command"]},
   "messages":[{"text":"hello","age_s":1.5}],
   "queues":[{"name":"commands","dropped":0},{"name":"sensor","dropped":4}]})";
+
+TEST(StatusTable, ShowsWhichRobotMovesAndHowManyMovesWait) {
+  std::string text(kDocument);
+  const std::string_view sending = R"("sending":false,)";
+  text.insert(text.find(sending) + sending.size(), R"("motion":{"moving":true,"waiting":2},)");
+  const auto table = status_table(text, false);
+  ASSERT_TRUE(table);
+  EXPECT_THAT(*table, HasSubstr("moving, 2 more"));
+  EXPECT_THAT(*status_table(kDocument, false), Not(HasSubstr("moving")));
+}
 
 TEST(StatusTable, ShowsWhatIsStaleLateRefusedAndDropped) {
   const auto table = status_table(kDocument, false);

@@ -50,6 +50,24 @@ TEST_F(CellFile, hasDefaultsForEverythingButFormatAndName) {
   EXPECT_TRUE(sut->streams.empty());
 }
 
+TEST_F(CellFile, readsViewsAndTellsWhatIsWrongWithThem) {
+  const auto sut =
+      load("[[view]]\nid = 3\nviewpoint_m = [1, 2, 3]\nopening_angle_rad = 0.5\n[[view]]\nid = 0\nnear_m = 0.1\n");
+  ASSERT_TRUE(sut) << findings();
+  ASSERT_EQ(sut->views.size(), 2U);
+  EXPECT_EQ(sut->views[0].id, 3);
+  EXPECT_EQ(*sut->views[0].change.viewpoint, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(*sut->views[0].change.opening_angle, 0.5);
+  EXPECT_FALSE(sut->views[0].change.lookpoint);
+  EXPECT_EQ(*sut->views[1].change.near_distance, 0.1);
+  EXPECT_FALSE(load("[[view]]\nid = 7\n"));
+  EXPECT_FALSE(load("[[view]]\nviewpoint_m = [1, 2, 3]\n"));
+  EXPECT_FALSE(load("[[view]]\nid = 1\nviewpoint_m = [1, 2, 3]\nlookpoint_m = [1, 2, 3]\n"));
+  EXPECT_FALSE(load("[[view]]\nid = 1\nnear_m = 2\nfar_m = 1\n"));
+  EXPECT_FALSE(load("[[view]]\nid = 1\nopening_angle_rad = 4\n"));
+  EXPECT_FALSE(load("[[view]]\nid = 1\nviewpoint_mm = [1, 2, 3]\n"));
+}
+
 TEST_F(CellFile, readsItsSettings) {
   home.write("scripts/start.spt", "# nothing\n");
   const auto sut = load(R"(
