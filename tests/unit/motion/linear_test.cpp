@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <random>
 
 #include "arms.hpp"
 #include "ride.hpp"
@@ -245,6 +246,33 @@ TEST(LinearMove, LineOutOfReachIsRefusedByThePlannerAndBlockedByTheTick) {
   EXPECT_EQ(ride.state().finished, 2U);
   EXPECT_EQ(ride.state().finished_from, 1U);
   EXPECT_EQ(ride.qd()[1], 0.0);
+}
+
+// From random postures, many of them near singular ones, where joints have to turn fast.
+TEST(LinearMove, WhatThePlannerAcceptsArrivesOnItsLine) {
+  std::mt19937_64 random(11);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  int accepted = 0;
+  for (int round = 0; round < 400; ++round) {
+    const kinematics::Chain arm = round % 2 == 0 ? puma() : panda();
+    JointValues q{};
+    for (std::size_t i = 0; i < arm.variable_count(); ++i) q[i] = uniform(arm.lower()[i], arm.upper()[i]);
+    Ride ride(arm, q);
+    const Pose from = ride.X_BT();
+    const Pose to = moved_by(from, {uniform(-0.3, 0.3), uniform(-0.3, 0.3), uniform(-0.3, 0.3)}, uniform(-1, 1),
+                             {uniform(-1, 1), uniform(-1, 1), 1.0});
+    const auto move = ride.line_to(q, to);
+    if (!move) continue;
+    ++accepted;
+    ASSERT_TRUE(ride.sut().add(*move));
+    double off = 0;
+    ride.run([&] { off = std::max(off, distance_from_line(ride.X_BT(), from, to)); });
+    EXPECT_EQ(ride.state().outcome, Outcome::arrived) << "round " << round;
+    EXPECT_LT(off, 1e-5) << "round " << round;
+    EXPECT_LT((ride.X_BT().translation() - to.translation()).norm(), 1e-9) << "round " << round;
+  }
+  EXPECT_GT(accepted, 100);
+  RecordProperty("accepted", accepted);
 }
 
 TEST(LinearMove, PartialTasksMeetWhatTheyNameAndLeaveTheRestFree) {
