@@ -205,7 +205,7 @@ Result<MotionDesk::Planned> MotionDesk::plan(const RobotModel& robot, Record& re
   const bool on_the_way = start == motion::Start::supersede && record.pending.in_flight();
   const JointValues& first = on_the_way ? port_.positions()[robot.slot()] : from.joints;
   auto plan = motion::plan_linear_move(chain, robot.parameters(), first, *X_ZG);
-  if (!plan) return std::unexpected(plan.error());
+  if (!plan) return std::unexpected(line_refused(robot, std::move(plan.error())));
   const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
   return Planned{plan->move, {plan->end, commanded_pose(task, *X_ZG), record.kinematics.chain()}};
 }

@@ -13,7 +13,16 @@ namespace cellmirror::app {
 
 namespace {
 
+constexpr std::size_t kJointsForAnyPose = 6;
+
 double tidy(double value) { return std::abs(value) < 0.05 ? 0.0 : value; }  // no -0.0
+
+// An error that is too small for one digit behind the point is not told as none.
+std::string short_number(double value) {
+  constexpr double kNone = 1e-4;
+  if (value < kNone) return "0";
+  return value < 0.1 ? fmt::format("{:.2g}", value) : fmt::format("{:.1f}", value);
+}
 
 // What of the target is not met, as far as people care.
 std::string unmet_components(const kinematics::Twist& error) {
@@ -34,6 +43,14 @@ std::string unmet_components(const kinematics::Twist& error) {
 
 }  // namespace
 
+Error line_refused(const RobotModel& robot, Error why) {
+  if (robot.joint_count() >= kJointsForAnyPose) return why;
+  why.what += fmt::format("; {} has {} joints", robot.id(), robot.joint_count());
+  why.remedy += why.remedy.empty() ? "" : "; ";
+  why.remedy += "rob_inverse_class says what of the pose has to be met, e.g. rob_inverse_class align_POS";
+  return why;
+}
+
 std::string pose_for_people(const Pose& X) {
   const Eigen::Vector3d p = X.translation() / kMPerMm;
   const Eigen::Vector3d rpy = rpy_from_rotation(X.linear()) / kRadPerDeg;
@@ -42,14 +59,16 @@ std::string pose_for_people(const Pose& X) {
 }
 
 Error unreachable(const RobotModel& robot, const inverse_kinematics::Answer& answer, const Pose& X_ZN) {
-  constexpr std::size_t kJointsForAnyPose = 6;
   std::string what = fmt::format("{} cannot reach this pose", robot.id());
   if (!answer.solutions.empty()) {
     const kinematics::Twist& error = answer.solutions.front().error;
-    what += fmt::format("; the nearest that was found is {:.1f} mm and {:.1f} degrees away: {}",
-                        mm_from_m(error.head<3>().norm()), deg_from_rad(error.tail<3>().norm()), pose_for_people(X_ZN));
+    what += fmt::format("; the nearest that was found is {} mm and {} degrees away: {}",
+                        short_number(mm_from_m(error.head<3>().norm())),
+                        short_number(deg_from_rad(error.tail<3>().norm())), pose_for_people(X_ZN));
     if (robot.joint_count() < kJointsForAnyPose) {
-      return {fmt::format("{}; with {} joints it does not meet {}", what, robot.joint_count(), unmet_components(error)),
+      const std::string unmet = unmet_components(error);
+      if (!unmet.empty()) what += fmt::format("; with {} joints it does not meet {}", robot.joint_count(), unmet);
+      return {std::move(what),
               "rob_inverse_class says what has to be met, e.g. rob_inverse_class align_POS for the position alone"};
     }
   }

@@ -12,6 +12,9 @@ namespace cellmirror::app {
 // degrees, as in SCRIPT.
 [[nodiscard]] Error unreachable(const RobotModel& robot, const inverse_kinematics::Answer& answer, const Pose& X_ZN);
 
+// What the planner says of a straight line that cannot be gone, with the hint for robots that cannot meet every pose.
+[[nodiscard]] Error line_refused(const RobotModel& robot, Error why);
+
 // "x 1000.0 y 0.0 z 0.0 mm, roll -90.0 pitch 0.0 yaw -90.0 degrees".
 [[nodiscard]] std::string pose_for_people(const Pose& X);
 

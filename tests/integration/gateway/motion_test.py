@@ -263,6 +263,7 @@ class Motion(unittest.TestCase):
 
     def test_robot_with_three_joints_says_what_it_cannot_meet(self):
         self.refused("POS_ROB ZELLENKRAN FRAME_ABS 1000 200 1000 0 0 0", "with 3 joints", "z by", "rob_inverse_class")
+        self.refused("POS_ROB ZELLENKRAN FRAME_INC Z 5", "3 joints", "rob_inverse_class")
         self.done("ROBACT ZELLENKRAN")
         self.done("rob_inverse_class align_XY_AXIS")
         self.done("POS_ROB ZELLENKRAN FRAME_ABS 1000 200 1000 0 0 0")
