@@ -117,6 +117,9 @@ void IpoptSolver::search(Work& work, std::size_t max_solutions) {
     const Run found = descend(work, start == 0);
     if (!found.met) {
       if (found.cost < work.nearest.cost) work.nearest = found;
+    } else if (known > 0 && !only_attempts_orientation(work.problem.task)) {
+      // Of a redundant arm's postures the first is the best that can be; improved, the others would be the same.
+      (void)work.search.keep(found.q, FoundBy::ipopt);
     } else if (!work.search.keep(improve(work, found).q, FoundBy::ipopt)) {
       (void)work.search.keep(found.q, FoundBy::ipopt);
     }

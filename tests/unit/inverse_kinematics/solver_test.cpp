@@ -256,7 +256,8 @@ TEST_P(EveryMethod, TurnsAreTakenNearestToThePresentPosture) {
 
 std::string name_of_case(const testing::TestParamInfo<Method>& info) { return std::string(name_of(info.param)); }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::Values(Method::fast, Method::automatic), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::Values(Method::fast, Method::ipopt, Method::automatic),
+                         name_of_case);
 
 // Planar boom of equal links along x.
 Chain boom(std::size_t links) {
