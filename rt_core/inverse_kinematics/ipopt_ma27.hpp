@@ -1,6 +1,6 @@
 // The interface of the sparse factorisation MA27, as Ipopt calls it, over a dense one: LAPACK's Bunch-Kaufman
 // factorisation (dsytrf) of the equilibrated matrix. Everything is kept in the caller's work arrays, so any number of
-// threads may factorise at once; Ipopt's default, MUMPS, allows one (docs/decisions/0008-ipopt-without-mumps.md).
+// threads may factorise at once; Ipopt's default, MUMPS, allows one (docs/decisions/0008-ipopt-in-parallel.md).
 //
 // Arguments are those of the MA27 subroutines that Ipopt uses; Fortran indices count from 1. Of INFO are set: 1 (flag:
 // 0, or -3, -4 workspace too short, with the length that is needed in 2, or -5 singular), 5 and 6 (lengths of A and IW
