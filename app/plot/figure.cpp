@@ -25,8 +25,9 @@ Result<std::string> png_of(const Figure& figure) {
   canvas.text(kMargin, 38, figure.title, 23, kInk, Anchor::left, true);
   canvas.text(kMargin, 64, figure.subtitle, 15, kFaintInk);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const std::size_t row = i / columns;
     const double x = static_cast<double>(i % columns) * figure.panel_width;
-    const double y = header + static_cast<double>(i / columns) * figure.panel_height;
+    const double y = header + static_cast<double>(row) * figure.panel_height;
     draw_panel(canvas, {x, y, static_cast<double>(figure.panel_width), static_cast<double>(figure.panel_height)},
                figure.panels[i]);
   }

@@ -25,7 +25,11 @@ constexpr std::array<Colour, 6> kPalette = {{{0.000, 0.447, 0.698},
                                              {0.902, 0.624, 0.000}}};
 
 Colour colour_of(std::size_t series) { return kPalette[series % kPalette.size()]; }
-double dash_of(std::size_t series) { return static_cast<double>(series / kPalette.size()) * 4.0; }
+// Whoever comes after the last colour gets the first again, dashed.
+double dash_of(std::size_t series) {
+  const std::size_t round = series / kPalette.size();
+  return 4.0 * static_cast<double>(round);
+}
 
 class PanelDrawing {
  public:
