@@ -2,7 +2,8 @@
 # ThreadSanitizer as well, as every stress test does. Integration and stress tests run alone, since they watch
 # the clock or share ports.
 #
-# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...])      a GoogleTest program, one ctest entry
+# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY])  a GoogleTest program, one ctest entry.
+#   RELEASE_ONLY: not built with sanitizers. For long comparisons of numbers whose code a fuzz target runs under them.
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
 #   CELLMIRROR_FUZZERS a libFuzzer program, always also <name>_replay, which runs the corpus as an ordinary test.
 # cellmirror_benchmark(name SOURCES ... USES ... [LINK ...] [SMOKE])       with SMOKE, a short round of it is a test
@@ -50,7 +51,10 @@ function(cellmirror_test name)
   if(NOT CELLMIRROR_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;USES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RELEASE_ONLY" "TIMEOUT" "SOURCES;USES;LINK;LABELS" ${ARGN})
+  if(ARG_RELEASE_ONLY AND CELLMIRROR_SANITIZE)
+    return()
+  endif()
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK})
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
   cellmirror_describe_test(${name} TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABELS})

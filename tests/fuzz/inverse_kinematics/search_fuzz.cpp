@@ -9,6 +9,7 @@
 #include <numbers>
 #include <span>
 
+#include "rt_core/inverse_kinematics/closed_form.hpp"
 #include "rt_core/inverse_kinematics/inverse_kinematics.hpp"
 #include "rt_core/inverse_kinematics/seed_table.hpp"
 #include "rt_core/kinematics/fast_step.hpp"
@@ -83,6 +84,18 @@ void check(const kinematics::Chain& chain, const kinematics::Task& task, const P
   if (claimed) expect(kinematics::meets(task, error, 1e-5));
 }
 
+// Whatever the arm and the target: finite angles, and as many as there is room for.
+void try_closed_form(const kinematics::Chain& chain, const Pose& X_BG) {
+  const auto form = inverse_kinematics::ClosedForm::analyse(chain);
+  if (!form) return;
+  std::array<JointValues, inverse_kinematics::kMaxClosedForms> postures;
+  const std::size_t count = form->solve(X_BG, postures);
+  expect(count <= postures.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < chain.variable_count(); ++k) expect(std::isfinite(postures[i][k]));
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -102,6 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   request.X_BG = bytes.below(2) == 0 ? kinematics::forward(chain, {there.data(), n}) : pose_from(bytes);
 
+  try_closed_form(chain, request.X_BG);
   const auto solver = inverse_kinematics::make_solver(inverse_kinematics::Method::fast, chain);
   const Result<Answer> answer = solver->solve(request);
   if (!answer) {
