@@ -87,8 +87,8 @@ void CellOwner::execute(const QueuedCommand& queued) {
   const std::string source =
       queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid) : std::string("message");
   if (queued.tag == 0) {
-    // Nobody is answered, and nobody waits for a robot to arrive.
-    static_cast<void>(runner_->execute_message(queued.text.view(), source));
+    // Nobody is answered, and nobody waits for a robot to arrive. What was refused stands in the status.
+    [[maybe_unused]] const auto unanswered = runner_->execute_message(queued.text.view(), source);
     return;
   }
   runner_->execute_message(queued.text.view(), source, [this, tag = queued.tag](const Result<std::string>& result) {
