@@ -6,12 +6,14 @@
 #include <limits>
 
 // LAPACK 3, double precision. The trailing argument is the length of the Fortran string.
+// NOLINTBEGIN(readability-identifier-naming): LAPACK names them.
 extern "C" {
 void dsytrf_(const char* uplo, const int* n, double* a, const int* lda, int* ipiv, double* work, const int* lwork,
              int* info, std::size_t);
 void dsytrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, const int* ipiv,
              double* b, const int* ldb, int* info, std::size_t);
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace {
 
