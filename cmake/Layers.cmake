@@ -9,9 +9,12 @@ set(CELLMIRROR_LAYERS
   "rt_core/kinematics: rt_core/base rt_core/ports"
   "rt_core/inverse_kinematics: rt_core/base rt_core/ports rt_core/kinematics"
   "rt_core/motion: rt_core/base rt_core/ports rt_core/kinematics"
-  "rt_core/cell: rt_core/base rt_core/ports rt_core/kinematics"
+  "rt_core/geometry: rt_core/base"
+  "rt_core/cell: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry"
+  "rt_core/collision: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell"
+  "rt_core/ranging: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell"
   "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion"
-  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/cell"
+  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "ipc/runtime: rt_core/base"
@@ -27,7 +30,7 @@ set(CELLMIRROR_LAYERS
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
-  rt_core/motion rt_core/cell rt_core/engine config drivers/can
+  rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/engine config drivers/can
   drivers/dds ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
   sim_devices app/plot app tests)
 

@@ -76,10 +76,16 @@ struct CameraDefinition {
   double fovy_rad = 0.5;          // opening angle of the viewing pyramid
 };
 
+// An ultrasonic sensor; its cone opens along the z axis of its workframe.
 struct SensorDefinition {
   double range_m = 3.0;
   double half_angle_rad = 0.13;
   double blind_zone_m = 0.1;
+  bool active = false;  // at the start; SET_USSPAR active
+  // The beam model of a real sensor; off by default.
+  double max_incidence_rad = 1.5707963267948966;  // no echo beyond this angle to the surface's normal
+  double noise_m = 0;                             // standard deviation of the reading
+  std::uint64_t seed = 1;                         // of the noise
 };
 
 // The ABSTRACT file of a node.

@@ -4,15 +4,23 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "rt_core/base/pose.hpp"
+#include "rt_core/geometry/shape.hpp"
+#include "rt_core/geometry/triangle_mesh.hpp"
 
 namespace cellmirror {
 
-// Primitives are centred at the origin of their own frame G; cylinder and capsule lie along its z axis.
-enum class Shape : std::uint8_t { box, cylinder, sphere, capsule, mesh };
+// What stands for a mesh in collision tests and ranging. Anything but `exact` is only taken where the cell or component
+// file says that it is good enough.
+enum class CollideAs : std::uint8_t {
+  exact,  // every triangle
+  hull,   // the convex hull
+  parts,  // a convex decomposition
+};
 
 struct Geometry {
   std::string name;  // may be empty
@@ -20,9 +28,14 @@ struct Geometry {
   // box: edge lengths x, y, z. cylinder: radius, length, 0. sphere: radius, 0, 0. capsule: radius, length of the
   // cylindrical part, 0. mesh: scale factors. Metres (mesh: none); all positive where used.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  std::string mesh_file;                                 // absolute path, checked for existence, kind and size
-  Pose X_NG = Pose::Identity();                          // pose in the node
-  std::array<float, 4> rgba{0.72F, 0.72F, 0.74F, 1.0F};  // 0..1
+  std::string mesh_file;  // absolute path
+  // Shape mesh: the file's triangles, scaled, in frame G; shared by all that use the file with the same scale. Null
+  // only where the geometry was made without reading files (tests).
+  std::shared_ptr<const geometry::TriangleMesh> mesh;
+  CollideAs collide_as = CollideAs::exact;
+  std::vector<std::shared_ptr<const geometry::TriangleMesh>> pieces;  // convex; for `hull` (one) and `parts`
+  Pose X_NG = Pose::Identity();                                       // pose in the node
+  std::array<float, 4> rgba{0.72F, 0.72F, 0.74F, 1.0F};               // 0..1
   bool drawn = true;
   bool collides = true;
   // Names of child nodes whose details this coarse geometry stands for: it is there only while at least one of them is

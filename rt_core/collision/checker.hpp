@@ -1,0 +1,52 @@
+// Finds what touches and what is near in a moving cell, again and again: remembers from posture to posture how far
+// apart pairs were and computes only those that may have become the nearest, or come within the warning distance. The
+// answers are those of computing every pair anew. Every touch is seen by two independent implementations (ours and
+// FCL); where they disagree the pair counts as touching and is marked as a doubt (docs/decisions/).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "rt_core/base/time.hpp"
+#include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/collision/pairs.hpp"
+#include "rt_core/collision/settings.hpp"
+#include "rt_core/ports/proximity_state.hpp"
+
+namespace cellmirror::collision {
+
+struct CheckCounters {
+  std::uint64_t checks = 0;
+  std::uint64_t pairs_computed = 0;  // narrow phase queries
+  std::uint64_t second_opinions = 0;
+  std::uint64_t disagreements = 0;
+  std::uint64_t doubts = 0;
+};
+
+class Checker {
+ public:
+  Checker();
+  ~Checker();
+  Checker(const Checker&) = delete;
+  Checker& operator=(const Checker&) = delete;
+
+  // The cell has changed, or the rules. What is known about pairs that stay is kept, so that no event repeats.
+  void adopt(std::shared_ptr<const CompiledCell> cell, std::shared_ptr<const PairTable> pairs,
+             const Settings& settings);
+
+  // The findings at these poses of the adopted cell. `later`: the poses that mirrored robots will have `ahead` later at
+  // present velocities, for closing speeds; null: none are told. Valid until the next call. Off the tick.
+  const ProximityState& check(const CellPoses& poses, Timestamp posture_time, const CellPoses* later = nullptr,
+                              Nanoseconds ahead = Nanoseconds(0));
+  // Only whether any tested pair touches; stops at the first. For planning: no events, no distances.
+  [[nodiscard]] bool collides(const CellPoses& poses);
+
+  [[nodiscard]] const CheckCounters& counters() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cellmirror::collision

@@ -1,0 +1,35 @@
+// Reads the ultrasonic sensors of a cell. A sensor sees the active geometry except its own housing: geometry of bodies
+// that are rigidly joined with it and contain or touch (within 1 mm) its apex.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "rt_core/base/time.hpp"
+#include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/geometry/solid.hpp"
+#include "rt_core/ports/proximity_state.hpp"
+
+namespace cellmirror::ranging {
+
+enum class Selection : std::uint8_t { active_sensors, all_sensors };
+
+class RangeFinder {
+ public:
+  explicit RangeFinder(std::shared_ptr<geometry::SolidLibrary> solids);
+  ~RangeFinder();
+  RangeFinder(const RangeFinder&) = delete;
+  RangeFinder& operator=(const RangeFinder&) = delete;
+
+  // The cell has changed. Off the tick; keeps the noise generators of sensors that stay.
+  void adopt(std::shared_ptr<const CompiledCell> cell);
+  // The readings at these poses of the adopted cell, in the order of CompiledCell::sensors. Valid until the next call.
+  std::span<const RangeReading> read(const CellPoses& poses, Timestamp posture_time, Selection selection);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cellmirror::ranging
