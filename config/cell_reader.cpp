@@ -103,6 +103,9 @@ void CellReader::read_dds_output(TableReader& top) {
   }
   dds.joint_states_topic = table->text("joint_states_topic").value_or(dds.joint_states_topic);
   dds.tf_topic = table->text("tf_topic").value_or(dds.tf_topic);
+  dds.range_topic_prefix = table->text("range_topic_prefix").value_or(dds.range_topic_prefix);
+  dds.diagnostics_topic = table->text("diagnostics_topic").value_or(dds.diagnostics_topic);
+  dds.markers_topic = table->text("markers_topic").value_or(dds.markers_topic);
   dds.rate_hz = table->number("rate_hz", kOutputRate).value_or(dds.rate_hz);
   table->finish();
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "rt_core/base/pose.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror {
@@ -85,6 +86,7 @@ struct RangeReading {
   double range_m = 0;
   double blind_zone_m = 0;
   double half_angle_rad = 0;
+  Pose X_WS = Pose::Identity();  // the workframe at posture_time: apex at its origin, the cone opens along its z axis
 };
 
 // SET_USSPAR sendmode (manual 1.2.1).

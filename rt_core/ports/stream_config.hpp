@@ -118,6 +118,10 @@ struct DdsOutputConfig {
   std::string interface_address = "127.0.0.1";
   std::string joint_states_topic = "rt/cellmirror/joint_states";
   std::string tf_topic = "rt/tf";
+  // Of what collision tests and sensors found; empty: not published.
+  std::string range_topic_prefix = "rt/cellmirror/range";  // a sensor's topic is <prefix>/<id>
+  std::string diagnostics_topic = "rt/diagnostics";
+  std::string markers_topic = "rt/cellmirror/markers";
   double rate_hz = 50.0;
 };
 
