@@ -23,6 +23,9 @@ struct Segment {
 [[nodiscard]] ClosestPoints segment_segment(const Segment& a, const Segment& b) CELL_RT;
 [[nodiscard]] ClosestPoints segment_triangle(const Segment& a, const Triangle& b) CELL_RT;    // 0 where it pierces
 [[nodiscard]] ClosestPoints triangle_triangle(const Triangle& a, const Triangle& b) CELL_RT;  // 0 where they intersect
+// The same in less time where only a distance below `up_to` is of interest: from there on `distance` may be any lower
+// bound that is not below `up_to`, and the points are not set.
+[[nodiscard]] ClosestPoints triangle_triangle(const Triangle& a, const Triangle& b, double up_to) CELL_RT;
 // The line in which two triangles intersect, as a segment (of no length where they touch in a point); false where they
 // do not. Coplanar triangles that overlap give a segment within the overlap.
 [[nodiscard]] bool triangles_intersect(const Triangle& a, const Triangle& b, Segment& common) CELL_RT;
