@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -16,6 +18,14 @@ namespace cellmirror::geometry {
 class MeshTree {
  public:
   static constexpr std::uint32_t kTrianglesInLeaf = 4;  // at most
+  static constexpr int kMaxDepth = 64;                  // levels, whatever the mesh
+  static constexpr std::size_t kMaxTriangles = std::size_t{1} << 26U;
+
+  // A part of the mesh that hangs together by common vertices. It lies inside of another body as a whole or not at all
+  // where the surfaces do not touch.
+  struct Shell {
+    std::array<Eigen::Vector3d, 6> extremes;  // m, vertices: least x, greatest x, least y, ...
+  };
 
   // Depth first: the left child of an inner node stands right behind it.
   struct Node {
@@ -26,7 +36,8 @@ class MeshTree {
     [[nodiscard]] bool leaf() const { return count > 0; }
   };
 
-  // Of a mesh with at least one triangle. O(n log n), surface area heuristic. Not for the tick.
+  // Of a mesh with at least one triangle, and at most kMaxTriangles. O(n log n), surface area heuristic. Not for the
+  // tick.
   explicit MeshTree(std::shared_ptr<const TriangleMesh> mesh);
 
   [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
@@ -34,7 +45,8 @@ class MeshTree {
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }  // in the tree's order
   // Index in mesh().triangles of a triangle of the tree.
   [[nodiscard]] std::uint32_t original(std::uint32_t triangle) const { return original_[triangle]; }
-  [[nodiscard]] int depth() const { return depth_; }  // levels, at most 64
+  [[nodiscard]] int depth() const { return depth_; }                       // levels, at most kMaxDepth
+  [[nodiscard]] std::span<const Shell> shells() const { return shells_; }  // at least one
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
@@ -42,6 +54,7 @@ class MeshTree {
   std::vector<Node> nodes_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> original_;
+  std::vector<Shell> shells_;
   int depth_ = 0;
 };
 
