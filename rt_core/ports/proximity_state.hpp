@@ -83,6 +83,8 @@ struct RangeReading {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  // on the surface; where there is a distance
   std::string object;                                 // dotted path of the body; empty where nothing is seen
   bool in_blind_zone = false;                         // nearer than a real sensor of this kind can tell
+  // A pose was not a finite number, or the shape of something in the cell is not known: something nearer may be there.
+  bool doubtful = false;
   double range_m = 0;
   double blind_zone_m = 0;
   double half_angle_rad = 0;
