@@ -140,6 +140,10 @@ class Picture {
       compiled.joint_names = robot->joint_names();
       compiled.joint_kinds.assign(robot->joint_kinds().begin(), robot->joint_kinds().end());
       for (const RobotJoint& joint : robot->joints()) compiled.joint_nodes.push_back(index(joint.node));
+      compiled.min_range = robot->parameters().min_range;
+      compiled.max_range = robot->parameters().max_range;
+      compiled.start_position = robot->parameters().start_position;
+      compiled.component = index(robot->component());
       compiled.base = index(robot->base());
       compiled.zero_point = index(robot->zero_point());
       compiled.flange = index(robot->flange());

@@ -35,7 +35,11 @@ struct CompiledRobot {
   std::size_t slot = 0;
   std::vector<std::string> joint_names;  // bare names, in the order of the file
   std::vector<JointKind> joint_kinds;
+  JointValues min_range{};  // rad or m; what SCRIPT's parameters say at this revision
+  JointValues max_range{};
+  JointValues start_position{};
   std::vector<std::int32_t> joint_nodes;  // indices into the arrays of the cell, as all below
+  std::int32_t component = 0;             // the node whose ABSTRACT file holds the robot
   std::int32_t base = 0;
   std::int32_t zero_point = 0;
   std::int32_t flange = 0;
