@@ -1,10 +1,16 @@
 #include "ipc/sysv/sensor_queue_output.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "ipc/sysv/owned_queue.hpp"
+#include "ipc/sysv/proximity_pacing.hpp"
+#include "ipc/wire/proximity_record.hpp"
+#include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/time.hpp"
@@ -15,20 +21,52 @@ namespace {
 // A record has the room of at most this many of the smallest records.
 constexpr int kMostPushedOut = 64;
 constexpr Nanoseconds kBetweenRepairs{1'000'000'000};
+// More sensors than a cell has; a part's numbers are 16 bits wide.
+constexpr std::size_t kMostReadings = 4096;
+
+// Of one kind of record. Relaxed: counters for people, each on its own.
+struct Count {
+  std::atomic<std::uint64_t> value{0};
+  void add(std::uint64_t n = 1) { value.fetch_add(n, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t get() const { return value.load(std::memory_order_relaxed); }
+};
+struct SentAndRefused {
+  Count sent;
+  Count refused;
+};
+
+// Nothing in the cone is a reading, too.
+bool is_finite(const RangeReading& reading) {
+  return !reading.distance_m || (std::isfinite(*reading.distance_m) && reading.point_m.allFinite());
+}
 
 }  // namespace
 
 struct SensorQueueOutput::Impl {
   std::unique_ptr<OwnedQueue> queue;
+  std::array<std::byte, kMaxRecordBytes> bytes;  // of the record in work
   std::uint64_t sequence = 0;
   Timestamp repair_again;
-  std::atomic<std::uint64_t> sent{0};
-  std::atomic<std::uint64_t> dropped{0};
-  std::atomic<std::uint64_t> refused{0};
+  Timestamp instant;  // of the record before, and what the wall clock showed then
+  std::int64_t instant_wall_ns = 0;
+  ProximityPacing pacing;
+  std::uint64_t last_check = 0;  // number of the state whose events were sent last
+  std::uint64_t last_event = 0;
+  std::vector<RangeReading> finite;  // reused
+  Count dropped;
+  Count events_missing;
+  SentAndRefused robots;
+  SentAndRefused ranges;
+  SentAndRefused proximity;
+  SentAndRefused events;
 
-  void send(std::span<const char> record, Timestamp time);
+  template <class Record, class Encode>
+  void send(Record record, Timestamp time, Encode encode, SentAndRefused& counters);
+  void send_events(const ProximityState& state);
+  bool deliver(std::span<const std::byte> record, Timestamp time);
   bool make_room();
   bool repair(Timestamp time);
+  [[nodiscard]] std::array<const SentAndRefused*, 4> kinds() const { return {&robots, &ranges, &proximity, &events}; }
 };
 
 // Of the records only: what others put there with another type goes first where no record is left.
@@ -37,7 +75,7 @@ bool SensorQueueOutput::Impl::make_room() {
       queue->discard_oldest(0) != QueueOutcome::done) {
     return false;
   }
-  dropped.fetch_add(1, std::memory_order_relaxed);
+  dropped.add();
   return true;
 }
 
@@ -58,23 +96,35 @@ bool SensorQueueOutput::Impl::repair(Timestamp time) {
   return true;
 }
 
-void SensorQueueOutput::Impl::send(std::span<const char> record, Timestamp time) {
+// `time`: of the record. False where it found no room.
+bool SensorQueueOutput::Impl::deliver(std::span<const std::byte> record, Timestamp time) {
+  const std::span text(reinterpret_cast<const char*>(record.data()), record.size());
   bool repaired = false;
   for (int pushed_out = 0; pushed_out <= kMostPushedOut;) {
-    const QueueOutcome outcome = queue->send_now(kSensorMessageType, record);
-    if (outcome == QueueOutcome::done) {
-      sent.fetch_add(1, std::memory_order_relaxed);
-      return;
-    }
+    const QueueOutcome outcome = queue->send_now(kSensorMessageType, text);
+    if (outcome == QueueOutcome::done) return true;
     if (outcome == QueueOutcome::full && make_room()) {
       ++pushed_out;
     } else if (outcome == QueueOutcome::gone && !repaired && repair(time)) {
       repaired = true;
     } else {
-      break;
+      return false;
     }
   }
-  refused.fetch_add(1, std::memory_order_relaxed);
+  return false;
+}
+
+template <class Record, class Encode>
+void SensorQueueOutput::Impl::send(Record record, Timestamp time, Encode encode, SentAndRefused& counters) {
+  record.header.sequence = ++sequence;
+  // Once for all records of an instant, so that they agree to the nanosecond.
+  if (time != instant) instant_wall_ns = to_wall_clock_ns(time);
+  instant = time;
+  record.header.wall_time_ns = instant_wall_ns;
+  const auto length = encode(record, bytes);
+  if (!length) log_error("ipc.record", "{}", length.error().text());
+  const bool sent = length && deliver(std::span(bytes).first(*length), time);
+  (sent ? counters.sent : counters.refused).add();
 }
 
 Result<std::unique_ptr<SensorQueueOutput>> SensorQueueOutput::open(const QueueConfig& config,
@@ -91,26 +141,63 @@ SensorQueueOutput::~SensorQueueOutput() = default;
 
 void SensorQueueOutput::publish(Timestamp time, std::span<const RobotState> robots,
                                 std::span<const FramePose> /*frames*/) {
-  std::array<std::byte, kMaxRobotRecordBytes> bytes;
-  const std::int64_t wall_time_ns = robots.empty() ? 0 : to_wall_clock_ns(time);
   for (const RobotState& robot : robots) {
-    RobotRecord record = robot_record_of(robot, time);
-    record.header.sequence = ++impl_->sequence;
-    record.header.wall_time_ns = wall_time_ns;
-    const auto length = encode_robot_record(record, bytes);
-    if (!length) {
-      impl_->refused.fetch_add(1, std::memory_order_relaxed);
-      log_error("ipc.record", "{}", length.error().text());
-      continue;
-    }
-    impl_->send({reinterpret_cast<const char*>(bytes.data()), *length}, time);
+    impl_->send(robot_record_of(robot, time), time, encode_robot_record, impl_->robots);
   }
 }
 
+void SensorQueueOutput::publish_ranges(std::span<const RangeReading> readings, RangeSendMode mode) {
+  std::vector<RangeReading>& finite = impl_->finite;
+  finite.clear();
+  std::copy_if(readings.begin(), readings.end(), std::back_inserter(finite), is_finite);
+  if (finite.size() > kMostReadings) finite.resize(kMostReadings);
+  impl_->ranges.refused.add(readings.size() - finite.size());
+  if (mode == RangeSendMode::one_message_a_sensor) {
+    for (const RangeReading& reading : finite) {
+      impl_->send(range_record_of(reading), reading.posture_time, encode_range_record, impl_->ranges);
+    }
+    return;
+  }
+  for (const RangeArrayRecord& part : range_arrays_of(finite)) {
+    impl_->send(part, finite.front().posture_time, encode_range_array, impl_->ranges);
+  }
+}
+
+// Numbers that begin anew are those of a new checker; nothing is skipped then.
+void SensorQueueOutput::Impl::send_events(const ProximityState& state) {
+  if (state.sequence == last_check) return;
+  last_check = state.sequence;
+  for (const ProximityEvent& event : state.events) {
+    if (event.sequence > last_event) events_missing.add(event.sequence - last_event - 1);
+    last_event = event.sequence;
+    send(event_record_of(event), event.posture_time, encode_event_record, events);
+  }
+}
+
+void SensorQueueOutput::publish_proximity(const ProximityState& state) {
+  impl_->send_events(state);
+  ProximityRecord record = proximity_record_of(state);
+  if (!impl_->pacing.is_due(record)) return;
+  impl_->send(std::move(record), state.posture_time, encode_proximity_record, impl_->proximity);
+}
+
 std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters() const {
-  return {{"sent", impl_->sent.load(std::memory_order_relaxed)},
-          {"dropped", impl_->dropped.load(std::memory_order_relaxed)},
-          {"refused", impl_->refused.load(std::memory_order_relaxed)},
+  std::uint64_t sent = 0;
+  std::uint64_t refused = 0;
+  for (const SentAndRefused* kind : impl_->kinds()) {
+    sent += kind->sent.get();
+    refused += kind->refused.get();
+  }
+  return {{"sent", sent},
+          {"dropped", impl_->dropped.get()},
+          {"refused", refused},
+          {"ranges_sent", impl_->ranges.sent.get()},
+          {"ranges_refused", impl_->ranges.refused.get()},
+          {"proximity_sent", impl_->proximity.sent.get()},
+          {"proximity_refused", impl_->proximity.refused.get()},
+          {"events_sent", impl_->events.sent.get()},
+          {"events_refused", impl_->events.refused.get()},
+          {"events_missing", impl_->events_missing.get()},
           {"recreated", impl_->queue->recreated()},
           {"discarded", impl_->queue->discarded()},
           {"waiting", impl_->queue->waiting()}};

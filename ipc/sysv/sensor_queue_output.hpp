@@ -1,4 +1,5 @@
-// Robot-parameter messages on the SENSOR channel (manual 1.2.1, ROBOT send_on: key 1990, type 5).
+// What leaves over the SENSOR channel (manual 1.2.1: key 1990, type 5): robot parameters (ROBOT send_on), ultrasonic
+// ranges (SET_USSPAR), what touches and what is near.
 #pragma once
 
 #include <cstdint>
@@ -6,22 +7,29 @@
 #include <string>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
 namespace cellmirror {
 
 // Never waits for a reader: a full queue loses its oldest records, which is counted. A queue that is removed from
-// outside is made anew. Nothing of FramePose is sent here.
-// Counters: sent, dropped (old records taken out unread), refused (new ones that found no room at all), recreated,
-// discarded (left behind by an earlier process), waiting.
-class SensorQueueOutput final : public RobotStateOutput {
+// outside is made anew. Nothing of FramePose is sent here. All publishing by one thread.
+// Counters: sent, dropped (old records taken out unread), refused (new ones that found no room at all, or values that
+// are not finite), of these sent and refused by kind (ranges_sent, ...), events_missing (gaps in the events that were
+// given to this output), recreated, discarded (left behind by an earlier process), waiting.
+class SensorQueueOutput final : public RobotStateOutput, public FindingsOutput {
  public:
   // Fails where the queue cannot be had; see OwnedQueue::make.
   static Result<std::unique_ptr<SensorQueueOutput>> open(const QueueConfig& config, const std::string& instance);
   ~SensorQueueOutput() override;  // removes the queue
 
   void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) override;
+  // A record a sensor, or one for all (more where they do not fit). Readings that are not finite are refused.
+  void publish_ranges(std::span<const RangeReading> readings, RangeSendMode mode) override;
+  // A record for each event, then one for the state where that is due (ProximityPacing). The state of the same
+  // computation again sends no event twice.
+  void publish_proximity(const ProximityState& state) override;
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override;
   [[nodiscard]] std::string name() const override;  // "sensor queue 0x7c6 (1990)"
 

@@ -14,14 +14,17 @@ inline constexpr long kSensorMessageType = 5;
 inline constexpr std::size_t kMaxRecordBytes = 8192;        // a System V message by default; the header is part of it
 inline constexpr std::uint32_t kRecordMagic = 0x5249'4D43;  // the bytes "CMIR"
 inline constexpr std::uint16_t kRecordVersion = 1;
-inline constexpr std::size_t kRecordNameBytes = 64;  // a name with at least one NUL behind it
+inline constexpr std::size_t kRecordNameBytes = 64;   // a name with at least one NUL behind it
+inline constexpr std::size_t kRecordPathBytes = 128;  // a dotted path, likewise
 
-// A number that was given out keeps its meaning for ever. 2 to 4 are reserved for records that are not sent yet.
+// A number that was given out keeps its meaning for ever. 4 is reserved for records that are not sent yet.
 enum class RecordKind : std::uint16_t {
   robot_parameters = 1,
   ultrasonic_range = 2,
   ultrasonic_range_array = 3,
   camera_parameters = 4,
+  proximity = 5,
+  proximity_event = 6,
 };
 
 // Byte offsets of the header's fields.
@@ -41,7 +44,7 @@ struct RecordHeader {
   RecordKind kind = RecordKind::robot_parameters;
   std::uint32_t length = 0;       // bytes of the whole record
   std::uint64_t sequence = 0;     // counts the records of one channel from 1; a gap tells how many were dropped
-  std::int64_t time_ns = 0;       // CLOCK_MONOTONIC, the tick that the record shows
+  std::int64_t time_ns = 0;       // CLOCK_MONOTONIC, the instant that the record shows
   std::int64_t wall_time_ns = 0;  // the same instant since 1970, for logs; may jump when the clock is set
 };
 

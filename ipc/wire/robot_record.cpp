@@ -5,10 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <string_view>
 
 #include "ipc/wire/little_endian.hpp"
-#include "ipc/wire/utf8.hpp"
+#include "ipc/wire/record_fields.hpp"
 
 namespace cellmirror {
 namespace {
@@ -30,40 +29,20 @@ double age_at(Timestamp time, Timestamp then) {
   return std::max(0.0, seconds(time - then));  // what came during the tick is 0 old
 }
 
-void put_name(std::span<std::byte> bytes, std::size_t offset, std::string_view name) {
-  const auto field = bytes.subspan(offset, kRecordNameBytes);
-  std::fill(field.begin(), field.end(), std::byte{0});
-  // A NUL within a name would hide the rest from the reader's own check.
-  const std::string_view text = cut_utf8(name.substr(0, name.find('\0')), kRecordNameBytes - 1);
-  std::transform(text.begin(), text.end(), field.begin(), [](char c) { return static_cast<std::byte>(c); });
-}
-
-Result<std::string> get_name(std::span<const std::byte> bytes, std::size_t offset) {
-  const auto field = bytes.subspan(offset, kRecordNameBytes);
-  const auto end = std::find(field.begin(), field.end(), std::byte{0});
-  if (end == field.end()) return fail(fmt::format("the name at byte {} has no NUL behind it", offset));
-  if (std::any_of(end, field.end(), [](std::byte b) { return b != std::byte{0}; })) {
-    return fail(fmt::format("the name at byte {} has text behind its NUL", offset));
-  }
-  std::string name(static_cast<std::size_t>(end - field.begin()), '\0');
-  std::transform(field.begin(), end, name.begin(), [](std::byte b) { return static_cast<char>(b); });
-  return name;
-}
-
 void put_pose(std::span<std::byte> bytes, std::size_t offset, const PoseRecord& pose) {
-  for (std::size_t i = 0; i < 3; ++i) put(bytes, offset + kPosePosition + 8 * i, pose.position[i]);
+  put_point(bytes, offset + kPosePosition, pose.position);
   for (std::size_t i = 0; i < 4; ++i) put(bytes, offset + kPoseQuaternion + 8 * i, pose.quaternion[i]);
 }
 
 PoseRecord get_pose(std::span<const std::byte> bytes, std::size_t offset) {
   PoseRecord pose;
-  for (std::size_t i = 0; i < 3; ++i) pose.position[i] = get<double>(bytes, offset + kPosePosition + 8 * i);
+  pose.position = get_point(bytes, offset + kPosePosition);
   for (std::size_t i = 0; i < 4; ++i) pose.quaternion[i] = get<double>(bytes, offset + kPoseQuaternion + 8 * i);
   return pose;
 }
 
 void put_joint(std::span<std::byte> joint, const JointRecord& record) {
-  put_name(joint, kJointName, record.name);
+  put_name(joint, kJointName, kRecordNameBytes, record.name);
   put(joint, kJointKind, static_cast<std::uint8_t>(record.kind));
   put(joint, kJointState, static_cast<std::uint8_t>(record.state));
   put(joint, kJointPosition, record.position);
@@ -81,7 +60,7 @@ Result<DataState> get_state(std::span<const std::byte> bytes, std::size_t offset
 
 Result<JointRecord> get_joint(std::span<const std::byte> joint) {
   JointRecord record;
-  auto name = get_name(joint, kJointName);
+  auto name = get_text(joint, kJointName, kRecordNameBytes);
   if (!name) return std::unexpected(name.error());
   record.name = std::move(*name);
   const auto kind = get<std::uint8_t>(joint, kJointKind);
@@ -91,8 +70,7 @@ Result<JointRecord> get_joint(std::span<const std::byte> joint) {
   const auto state = get_state(joint, kJointState);
   if (!state) return std::unexpected(state.error());
   record.state = *state;
-  const auto reserved = joint.subspan(kJointReserved, kJointPosition - kJointReserved);
-  if (std::any_of(reserved.begin(), reserved.end(), [](std::byte b) { return b != std::byte{0}; })) {
+  if (!all_zero(joint.subspan(kJointReserved, kJointPosition - kJointReserved))) {
     return fail("reserved bytes of a joint are not 0");
   }
   record.position = get<double>(joint, kJointPosition);
@@ -106,7 +84,7 @@ Result<JointRecord> get_joint(std::span<const std::byte> joint) {
 // All of the payload before the joints; their number goes to `joint_count`.
 Result<RobotRecord> get_robot(std::span<const std::byte> bytes, std::size_t& joint_count) {
   RobotRecord record;
-  auto id = get_name(bytes, kId);
+  auto id = get_text(bytes, kId, kRecordNameBytes);
   if (!id) return std::unexpected(id.error());
   record.id = std::move(*id);
   const auto online = get<std::uint8_t>(bytes, kOnline);
@@ -157,7 +135,7 @@ Result<std::size_t> encode_robot_record(const RobotRecord& record, std::span<std
   RecordHeader header = record.header;
   header.kind = RecordKind::robot_parameters;
   encode_record_header(header, out);
-  put_name(out, kId, record.id);
+  put_name(out, kId, kRecordNameBytes, record.id);
   put(out, kOnline, static_cast<std::uint8_t>(record.online ? 1 : 0));
   put(out, kState, static_cast<std::uint8_t>(record.state));
   put(out, kJointCount, static_cast<std::uint16_t>(record.joints.size()));
