@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "rt_core/geometry/convex.hpp"
 #include "rt_core/geometry/mesh_tree.hpp"
@@ -35,7 +37,10 @@ class SolidLibrary {
   [[nodiscard]] std::shared_ptr<const Solid> mesh(const std::shared_ptr<const TriangleMesh>& mesh);
 
  private:
+  using PrimitiveKey = std::pair<Shape, std::array<double, 3>>;
+
   std::mutex mutex_;
+  std::map<PrimitiveKey, std::weak_ptr<const Solid>> primitives_;
   std::map<const TriangleMesh*, std::weak_ptr<const Solid>> meshes_;
 };
 
