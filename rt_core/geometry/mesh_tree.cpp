@@ -60,11 +60,12 @@ MeshTree::MeshTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(m
     triangles_.push_back({mesh_->vertices[t[0]], mesh_->vertices[t[1]], mesh_->vertices[t[2]]});
   }
   shells_ = shells_of(*mesh_);
+  wide_ = WideTree(*this);
 }
 
 std::size_t MeshTree::memory_bytes() const {
   return sizeof *this + nodes_.capacity() * sizeof(Node) + triangles_.capacity() * sizeof(Triangle) +
-         original_.capacity() * sizeof(std::uint32_t) + shells_.capacity() * sizeof(Shell);
+         original_.capacity() * sizeof(std::uint32_t) + shells_.capacity() * sizeof(Shell) + wide_.memory_bytes();
 }
 
 }  // namespace cellmirror::geometry

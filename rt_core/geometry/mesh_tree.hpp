@@ -12,6 +12,7 @@
 
 #include "rt_core/geometry/triangle.hpp"
 #include "rt_core/geometry/triangle_mesh.hpp"
+#include "rt_core/geometry/wide_tree.hpp"
 
 namespace cellmirror::geometry {
 
@@ -47,6 +48,7 @@ class MeshTree {
   [[nodiscard]] std::uint32_t original(std::uint32_t triangle) const { return original_[triangle]; }
   [[nodiscard]] int depth() const { return depth_; }                       // levels, at most kMaxDepth
   [[nodiscard]] std::span<const Shell> shells() const { return shells_; }  // at least one
+  [[nodiscard]] const WideTree& wide() const { return wide_; }
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
@@ -55,6 +57,7 @@ class MeshTree {
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> original_;
   std::vector<Shell> shells_;
+  WideTree wide_;
   int depth_ = 0;
 };
 

@@ -1,0 +1,134 @@
+#include "rt_core/geometry/proximity.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rt_core/geometry/inside.hpp"
+#include "rt_core/geometry/proximity_mesh.hpp"
+
+namespace cellmirror::geometry {
+
+namespace {
+
+using Eigen::Vector3d;
+
+struct Placed {
+  const Solid& solid;
+  const Pose& X_W;
+};
+
+// -1, 0, 1
+int compare(const Vector3d& a, const Vector3d& b) {
+  for (int i = 0; i < 3; ++i) {
+    if (a[i] != b[i]) return a[i] < b[i] ? -1 : 1;
+  }
+  return 0;
+}
+
+// The order in which a pair is computed. It must not depend on which of them was named first, or rounding and ties
+// would make the answer depend on it: meshes first, then by size, shape and place.
+bool comes_first(const Placed& a, const Placed& b) {
+  const bool mesh_a = a.solid.shape == Shape::mesh;
+  const bool mesh_b = b.solid.shape == Shape::mesh;
+  if (mesh_a != mesh_b) return mesh_a;
+  if (mesh_a && a.solid.tree != b.solid.tree) {
+    const std::size_t triangles_a = a.solid.tree->triangles().size();
+    const std::size_t triangles_b = b.solid.tree->triangles().size();
+    if (triangles_a != triangles_b) return triangles_a > triangles_b;
+  }
+  if (a.solid.shape != b.solid.shape) return a.solid.shape < b.solid.shape;
+  for (const int order :
+       {compare(a.solid.size, b.solid.size), compare(a.solid.half, b.solid.half),
+        compare(a.solid.centre, b.solid.centre), compare(a.X_W.translation(), b.X_W.translation()),
+        compare(a.X_W.linear().col(0), b.X_W.linear().col(0)), compare(a.X_W.linear().col(1), b.X_W.linear().col(1))}) {
+    if (order != 0) return order < 0;
+  }
+  return true;
+}
+
+Separation inside_at(const Vector3d& p) {
+  Separation out;
+  out.points = {0.0, p, p};
+  return out;
+}
+
+Separation meshes(const Placed& a, const Placed& b, const Pose& X_AB, double up_to, double enough,
+                  ProximityHint& hint) {
+  Separation out = mesh_mesh_separation(*a.solid.tree, *b.solid.tree, X_AB, up_to, enough, hint);
+  if (!out.beyond && out.points.distance < kTouchDistance) return out;
+  Vector3d p;
+  if (contains_a_shell(*a.solid.tree, *b.solid.tree, X_AB, p)) return inside_at(p);
+  if (contains_a_shell(*b.solid.tree, *a.solid.tree, X_AB.inverse(), p)) return inside_at(X_AB * p);
+  return out;
+}
+
+Separation mesh_and_primitive(const Placed& a, const Placed& b, const Pose& X_AB, double up_to, double enough,
+                              ProximityHint& hint) {
+  Separation out = mesh_primitive_separation(*a.solid.tree, b.solid.core, X_AB, up_to, enough, hint);
+  if (!out.beyond && out.points.distance < kTouchDistance) return out;
+  // A primitive holds a sphere as large as its least half extent; where that sticks out of the box, all does not fit.
+  const Vector3d p = X_AB.translation();
+  const double within = b.solid.half.minCoeff();
+  if (((p - a.solid.centre).cwiseAbs().array() + within > a.solid.half.array() + kTouchDistance).any()) return out;
+  if (contains(*a.solid.tree, p)) return inside_at(p);
+  return out;
+}
+
+Separation ordered(const Placed& a, const Placed& b, double up_to, double enough, ProximityHint& hint) {
+  const Vector3d between = b.X_W * b.solid.centre - a.X_W * a.solid.centre;
+  const double bound = between.norm() - a.solid.radius - b.solid.radius;
+  if (!std::isfinite(bound)) {
+    Separation doubt;  // a pose that is none; everything may touch
+    doubt.certain = false;
+    return doubt;
+  }
+  Separation out;
+  if (bound > up_to) {
+    out.points.distance = bound;
+    out.beyond = true;
+    return out;
+  }
+  if (a.solid.shape != Shape::mesh) {
+    const ConvexDistance found = convex_distance(a.solid.core, a.X_W, b.solid.core, b.X_W);
+    out.points = found.points;
+    out.certain = found.certain;
+    out.beyond = !(found.points.distance < up_to);
+    return out;
+  }
+  const Pose X_AB = a.X_W.inverse(Eigen::Isometry) * b.X_W;
+  out = b.solid.shape == Shape::mesh ? meshes(a, b, X_AB, up_to, enough, hint)
+                                     : mesh_and_primitive(a, b, X_AB, up_to, enough, hint);
+  out.points.p_a = a.X_W * out.points.p_a;
+  out.points.p_b = a.X_W * out.points.p_b;
+  return out;
+}
+
+Separation query(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, double up_to, double enough,
+                 ProximityHint& hint) {
+  const Placed first{a, X_WA};
+  const Placed second{b, X_WB};
+  if (comes_first(first, second)) return ordered(first, second, up_to, enough, hint);
+  std::swap(hint.feature_a, hint.feature_b);
+  Separation out = ordered(second, first, up_to, enough, hint);
+  std::swap(hint.feature_a, hint.feature_b);
+  std::swap(out.points.p_a, out.points.p_b);
+  return out;
+}
+
+}  // namespace
+
+Separation separation(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, double up_to,
+                      ProximityHint& hint) noexcept {
+  // Above zero, so that contact is found whatever the caller asks for.
+  const double limit = std::max(up_to, std::numeric_limits<double>::min());
+  return query(a, X_WA, b, X_WB, limit, 0.0, hint);
+}
+
+bool touch(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, ProximityHint& hint) noexcept {
+  return !query(a, X_WA, b, X_WB, kTouchDistance, kTouchDistance, hint).beyond;
+}
+
+}  // namespace cellmirror::geometry
