@@ -36,13 +36,14 @@ CellOwner::CellOwner(Parts parts)
       robots_(cell_, *fleet_, motion_, names_),
       programs_(motion_),
       views_(cell_, view_parameters_, clock_),
+      sensing_(cell_, std::move(parts.collision)),
       diagnosis_(std::move(parts.save_flight_record)) {
   for (const ViewSetting& view : parts.views) {
     if (const auto set = view_parameters_.change(view.id, view.change); !set)
       log_warning("cell", "[[view]] {}: {}", view.id, set.error().text());
   }
   runner_ = std::make_unique<script::ScriptRunner>(
-      CommandHost{names_, world_, robots_, motion_, programs_, views_, diagnosis_}, home_, clock_);
+      CommandHost{names_, world_, robots_, motion_, programs_, views_, sensing_, diagnosis_}, home_, clock_);
 }
 
 CellOwner::~CellOwner() { stop(); }
@@ -142,6 +143,8 @@ void CellOwner::loop(const std::stop_token& stop) {
 void CellOwner::hang_up_picture() {
   auto picture = std::make_shared<OwnerPicture>();
   picture->cell = cell_.compile();
+  picture->collision = sensing_.collision();
+  picture->range_send_mode = sensing_.send_mode();
   for (const CompiledRobot& compiled : picture->cell->robots) {
     const FleetRobot* robot = fleet_->find(compiled.id);
     if (robot == nullptr) continue;

@@ -13,6 +13,7 @@
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/motion_desk.hpp"
 #include "app/gateway/picture.hpp"
+#include "app/gateway/sensing.hpp"
 #include "app/gateway/wake_signal.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/base/capacity.hpp"
@@ -40,6 +41,7 @@ class CellOwner {
     KismetHome home;
     std::map<std::string, StreamConfig, std::less<>> streams;
     std::vector<ViewSetting> views;
+    collision::Settings collision;
     engine::Engine& engine;
     PictureBoard& board;
     const Clock& clock;
@@ -85,6 +87,7 @@ class CellOwner {
   CellRobots robots_;
   CellPrograms programs_;
   CellViews views_;
+  CellSensing sensing_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;
   Fifo<QueuedCommand, kCommandQueue> queue_;

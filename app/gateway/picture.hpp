@@ -11,7 +11,9 @@
 
 #include "app/gateway/hosts.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/collision/settings.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "scripts/runner/script_runner.hpp"
 
@@ -30,6 +32,8 @@ struct RobotPicture {
 
 struct OwnerPicture {
   std::shared_ptr<const CompiledCell> cell;
+  std::shared_ptr<const collision::Settings> collision;  // the same object as long as nothing changes
+  RangeSendMode range_send_mode = RangeSendMode::one_message_a_sensor;
   std::vector<RobotPicture> robots;  // in the order of the slots
   std::string active_robot;
   RobotLanguage language = RobotLanguage::irdata;

@@ -68,6 +68,8 @@ class Cell {
   // `part` hangs on `predecessor` with the pose that the workframe has in its own parent.
   Result<void> attach_at_workframe(std::string_view part, std::string_view predecessor, std::string_view workframe);
   Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad);
+  Result<void> set_sensor_active(std::string_view sensor, bool active);
+  Result<void> set_sensor_range(std::string_view sensor, double range_m);
 
   // --- Robots. Pointers are valid until a component is loaded or deleted.
   [[nodiscard]] const RobotModel* robot(std::string_view id) const;  // nullptr: unknown; one hash look-up

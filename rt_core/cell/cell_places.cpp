@@ -93,6 +93,26 @@ Result<void> Cell::set_camera(std::string_view camera, double focal_distance_m, 
   return {};
 }
 
+Result<void> Cell::set_sensor_active(std::string_view sensor, bool active) {
+  const auto id = state_->find(sensor, PathKind::sensor);
+  if (!id) return std::unexpected(id.error());
+  bool& present = state_->at(*id).sensor.active;
+  if (present != active) state_->changed();
+  present = active;
+  return {};
+}
+
+Result<void> Cell::set_sensor_range(std::string_view sensor, double range_m) {
+  const auto id = state_->find(sensor, PathKind::sensor);
+  if (!id) return std::unexpected(id.error());
+  if (!std::isfinite(range_m) || range_m <= 0.0 || range_m > kFarthest)
+    return fail(fmt::format("the range of {} is {:g} m, but must be positive", sensor, range_m));
+  double& present = state_->at(*id).sensor.range_m;
+  if (present != range_m) state_->changed();
+  present = range_m;
+  return {};
+}
+
 Pose Cell::world_pose(NodeId id, std::span<const JointValues> q) const {
   Pose X_WN = Pose::Identity();
   for (NodeId up = id; up != kRootNode; up = state_->at(up).predecessor) {

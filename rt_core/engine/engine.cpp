@@ -34,6 +34,8 @@ void Engine::run(const CycleContext& context) CELL_RT {
   publish(for_owner_);
   publish(for_publisher_);
   publish(for_status_);
+  publish(for_collision_);
+  publish(for_ranging_);
   record_tick(context, commands, samples);
   watchdog_.beat();
 }

@@ -41,7 +41,8 @@ struct QueueStatus {
 
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
 // owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
-// each inlet() to the one driver thread of its stream; the rest to any thread.
+// collision_view() and ranging_view() to the workers of that name; each inlet() to the one driver thread of its stream;
+// the rest to any thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
@@ -61,6 +62,8 @@ class Engine final : public Cycle {
   [[nodiscard]] const TickState& owner_view() { return for_owner_.read().value; }
   [[nodiscard]] const TickState& publisher_view() { return for_publisher_.read().value; }
   [[nodiscard]] const TickState& status_view() { return for_status_.read().value; }
+  [[nodiscard]] const TickState& collision_view() { return for_collision_.read().value; }
+  [[nodiscard]] const TickState& ranging_view() { return for_ranging_.read().value; }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -95,6 +98,8 @@ class Engine final : public Cycle {
   Latest<TickState> for_owner_;
   Latest<TickState> for_publisher_;
   Latest<TickState> for_status_;
+  Latest<TickState> for_collision_;
+  Latest<TickState> for_ranging_;
   Watchdog& watchdog_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;

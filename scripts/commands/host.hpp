@@ -9,6 +9,7 @@
 
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/ports/view_change.hpp"
@@ -74,6 +75,22 @@ class ViewHost {
   virtual Result<void> show_message(std::string_view text) = 0;  // hot_message
 };
 
+// What SET_COLLPAR says of pairs of bodies.
+enum class PairTreatment : std::uint8_t { ignore, test, derive };
+
+// Ultrasonic sensors (manual 1.2.1) and, of ours, collision tests.
+class SensingHost {
+ public:
+  virtual ~SensingHost() = default;
+  virtual Result<void> set_sensor_active(std::string_view sensor, bool active) = 0;
+  virtual Result<void> set_sensor_range(std::string_view sensor, double range_m) = 0;
+  virtual Result<void> set_range_send_mode(RangeSendMode mode) = 0;
+  virtual Result<void> set_collision_active(bool active) = 0;
+  virtual Result<void> set_collision_warning(double distance_m) = 0;
+  // For bodies of the branch of `a` against those of the branch of `b`.
+  virtual Result<void> set_collision_pair(std::string_view a, std::string_view b, PairTreatment treatment) = 0;
+};
+
 // Of ours: what the manual does not have.
 class DiagnosisHost {
  public:
@@ -88,6 +105,7 @@ struct CommandHost {
   MotionHost& motion;
   ProgramHost& programs;
   ViewHost& views;
+  SensingHost& sensing;
   DiagnosisHost& diagnosis;
 };
 

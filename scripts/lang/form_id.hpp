@@ -124,9 +124,12 @@ enum class FormId : std::uint8_t {
   move_rob_start,
   move_rob_reference,
   stop_rob,
+  set_collpar_active,
+  set_collpar_warning,
+  set_collpar_pair,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::stop_rob) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::set_collpar_pair) + 1;
 
 }  // namespace cellmirror::script

@@ -61,7 +61,8 @@ void Matcher::check_active_robot() {
 
 void Matcher::check_name(const Parameter& parameter, const Token& word) {
   const bool path = parameter.name_kind == NameKind::frame_node;
-  const std::size_t longest = path ? kMaxFramePath : kMaxNameLength;
+  // Cameras, sensors and workframes may be given by dotted path too.
+  const std::size_t longest = parameter.name_kind == NameKind::robot ? kMaxNameLength : kMaxFramePath;
   if (!word.plain || word.text.size() > longest) {
     if (!check_text(word, parameter.meaning, longest)) return;
   }

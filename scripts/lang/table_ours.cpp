@@ -9,6 +9,8 @@ using namespace parts;
 
 constexpr std::string_view kSection = "ours";
 
+constexpr Range kWarningDistance{0.0, 100000.0, false, false};
+
 constexpr Choice kPositionings[] = {{"move", "POS_ROB moves the robot, the default"},
                                     {"jump", "POS_ROB puts the robot there at once"}};
 constexpr Choice kPaths[] = {{"PTP", "point to point"}, {"LIN", "the TCP on a straight line"}};
@@ -42,6 +44,16 @@ constexpr Parameter kScreenInc[] = {robot(), kPath, word("SCREEN_INC"), kX, kY, 
 constexpr Parameter kStart[] = {robot(), choice("PTP", "path", kPtpOnly), word("START")};
 constexpr Parameter kReference[] = {robot(), choice("PTP", "path", kPtpOnly), word("REFERENCE")};
 constexpr Parameter kStop[] = {robot()};
+
+constexpr Choice kPairTreatments[] = {{"ignore", "they are not tested"},
+                                      {"test", "they are tested, whatever was derived"},
+                                      {"derive", "the rule is taken back"}};
+constexpr Parameter kCollisionActive[] = {word("active"), choice("0 | 1", "switch", kZeroOne)};
+constexpr Parameter kCollisionWarning[] = {word("warning"),
+                                           number("distance", "warning distance", Unit::mm, kWarningDistance)};
+constexpr Parameter kCollisionPair[] = {word("pair"), frame("node_a", "first frame or joint"),
+                                        frame("node_b", "second frame or joint"),
+                                        choice("ignore | test | derive", "treatment", kPairTreatments)};
 
 constexpr std::string_view kQueued =
     "begins when the robot has done what was commanded before; the command is done when the move waits its turn (at "
@@ -124,6 +136,38 @@ constexpr Form kForms[] = {
      .example = "STOP_ROB MANTEC_RM3",
      .definition = "done when the loop was told; a POS_ROB that is stopped so is refused to whoever waits for it",
      .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::set_collpar_active,
+     .name = "SET_COLLPAR",
+     .syntax = "SET_COLLPAR active [0 | 1]",
+     .section = kSection,
+     .parameters = kCollisionActive,
+     .help = "switches collision tests off or on",
+     .example = "SET_COLLPAR active 0",
+     .definition = "what was found before stays in status with its age",
+     .selector = Selector::by_first_word,
+     .origin = Origin::ours},
+    {.id = FormId::set_collpar_warning,
+     .name = "SET_COLLPAR",
+     .syntax = "SET_COLLPAR warning <distance>",
+     .section = kSection,
+     .parameters = kCollisionWarning,
+     .help = "sets the distance below which a pair of bodies is reported as near",
+     .example = "SET_COLLPAR warning 50.0",
+     .selector = Selector::by_first_word,
+     .origin = Origin::ours},
+    {.id = FormId::set_collpar_pair,
+     .name = "SET_COLLPAR",
+     .syntax = "SET_COLLPAR pair <node_a> <node_b> [ignore | test | derive]",
+     .section = kSection,
+     .parameters = kCollisionPair,
+     .help = "says whether bodies of two branches are tested against each other",
+     .example = "SET_COLLPAR pair Toolbox.Tool1 Mantec_1.HAND ignore",
+     .definition =
+         "a frame stands for itself and everything below it by name; the newest rule that fits a pair counts, "
+         "those of the cell file are older; derive takes back the rules for just these two, also of the cell "
+         "file",
+     .selector = Selector::by_first_word,
      .origin = Origin::ours},
 };
 

@@ -14,12 +14,13 @@ class QuietHost final : public WorldHost,
                         public MotionHost,
                         public ProgramHost,
                         public ViewHost,
+                        public SensingHost,
                         public DiagnosisHost {
  public:
   FakeNames names;
   std::size_t calls = 0;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this}; }
 
   Result<void> activate(std::string_view /*node*/) override { return called(); }
   Result<void> deactivate(std::string_view /*node*/) override { return called(); }
@@ -68,6 +69,15 @@ class QuietHost final : public WorldHost,
     return called();
   }
   Result<void> show_message(std::string_view /*text*/) override { return called(); }
+  Result<void> set_sensor_active(std::string_view /*sensor*/, bool /*active*/) override { return called(); }
+  Result<void> set_sensor_range(std::string_view /*sensor*/, double /*range_m*/) override { return called(); }
+  Result<void> set_range_send_mode(RangeSendMode /*mode*/) override { return called(); }
+  Result<void> set_collision_active(bool /*active*/) override { return called(); }
+  Result<void> set_collision_warning(double /*distance_m*/) override { return called(); }
+  Result<void> set_collision_pair(std::string_view /*a*/, std::string_view /*b*/,
+                                  PairTreatment /*treatment*/) override {
+    return called();
+  }
   Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
 
  private:

@@ -22,6 +22,7 @@ class RecordingHost final : public WorldHost,
                             public MotionHost,
                             public ProgramHost,
                             public ViewHost,
+                            public SensingHost,
                             public DiagnosisHost {
  public:
   std::vector<std::string> calls;
@@ -31,7 +32,7 @@ class RecordingHost final : public WorldHost,
   // What POS_ROB begins; null: the robot stands there at once.
   std::shared_ptr<Activity> activity;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this}; }
   [[nodiscard]] std::string trace() const {
     std::string text;
     for (const std::string& call : calls) text += call + "\n";
@@ -143,6 +144,24 @@ class RecordingHost final : public WorldHost,
     return record("set_camera {} {:.9g} {:.9g}", camera, focal_distance_m, fovy_rad);
   }
   Result<void> show_message(std::string_view text) override { return record("show_message [{}]", text); }
+  Result<void> set_sensor_active(std::string_view sensor, bool active) override {
+    return record("set_sensor_active {} {}", sensor, active);
+  }
+  Result<void> set_sensor_range(std::string_view sensor, double range_m) override {
+    return record("set_sensor_range {} {:.9g}", sensor, range_m);
+  }
+  Result<void> set_range_send_mode(RangeSendMode mode) override {
+    return record("set_range_send_mode {}",
+                  mode == RangeSendMode::one_message_for_all ? "one_message_for_all" : "one_message_a_sensor");
+  }
+  Result<void> set_collision_active(bool active) override { return record("set_collision_active {}", active); }
+  Result<void> set_collision_warning(double distance_m) override {
+    return record("set_collision_warning {:.9g}", distance_m);
+  }
+  Result<void> set_collision_pair(std::string_view a, std::string_view b, PairTreatment treatment) override {
+    constexpr std::array<std::string_view, 3> kNames = {"ignore", "test", "derive"};
+    return record("set_collision_pair {} {} {}", a, b, kNames[static_cast<std::size_t>(treatment)]);
+  }
   Result<void> save_flight_record(std::string_view file_name) override {
     return record("save_flight_record {}", file_name);
   }

@@ -87,7 +87,7 @@ class Examples(unittest.TestCase):
         try:
             self.assertEqual(scratch.send("ROBACT PUMA_762").returncode, 0)
             for command in ("COVW 0 UMG_Kamera_1", "BFRM on", "EFFECTS PULSE ON", "VV_RELOAD_LUTS",
-                            "eladyn_calc on", "SET_USSPAR sendmode 1", "TF_LOAD r3demo mantec_R3", "ARC on"):
+                            "eladyn_calc on", "TF_LOAD r3demo mantec_R3", "ARC on"):
                 done = scratch.send(command)
                 self.assertEqual(done.returncode, 1, command)
                 self.assertIn("not available yet", done.stderr)

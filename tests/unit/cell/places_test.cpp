@@ -1,4 +1,4 @@
-// SET_FRAME PLACEMENT, CONNECT, FRAME_TO_WFRM, SET_CAMPAR, and the pictures that follow from them.
+// SET_FRAME PLACEMENT, CONNECT, FRAME_TO_WFRM, SET_CAMPAR, SET_USSPAR, and the pictures that follow from them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,6 +35,10 @@ parent = "Box"
 type = "workframe"
 xyz_m = [0, 0, 0.1]
 rpy_rad = [0, 0, 1.5707963267948966]
+[[node]]
+name = "Ear"
+parent = "Box"
+type = "sensor"
 [[node]]
 name = "Cam"
 type = "camera"
@@ -128,6 +132,23 @@ TEST_F(Places, cameraParametersAreChecked) {
   EXPECT_FALSE(sut->set_camera("Box", 1.0, 0.5));
   ASSERT_TRUE(sut->set_camera("Cam", 4.85, 0.27));
   EXPECT_EQ(sut->compile()->cameras.front().focal_distance_m, 4.85);
+}
+
+TEST_F(Places, sensorParametersAreCheckedAndShowInThePicture) {
+  EXPECT_FALSE(sut->set_sensor_active("Cam", true));
+  EXPECT_THAT(sut->set_sensor_range("Earr", 1.0).error().text(), HasSubstr("Ear"));
+  for (const double range : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_FALSE(sut->set_sensor_range("Ear", range)) << range;
+  const auto before = sut->compile();
+  EXPECT_FALSE(before->sensors.front().sensor.active);
+  ASSERT_TRUE(sut->set_sensor_active("Ear", true));
+  ASSERT_TRUE(sut->set_sensor_range("Box.Ear", 3.5));
+  const auto after = sut->compile();
+  EXPECT_TRUE(after->sensors.front().sensor.active);
+  EXPECT_EQ(after->sensors.front().sensor.range_m, 3.5);
+  EXPECT_FALSE(before->sensors.front().sensor.active) << "a picture stays as it is";
+  ASSERT_TRUE(sut->set_sensor_active("Ear", true));
+  EXPECT_EQ(sut->revision(), after->revision) << "nothing changed";
 }
 
 TEST_F(Places, aPictureStaysAsItIsAndTheRevisionTellsOfChanges) {

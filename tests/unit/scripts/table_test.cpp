@@ -80,10 +80,10 @@ TEST(CommandTable, EveryRowHasOneLineOfHelp) {
 
 TEST(CommandTable, AvailableNowIsWhatTheIssuesSoFarAskFor) {
   const std::set<std::string_view> names = {
-      "#",          "ACTIVATE",       "DEACTIVATE",     "DELETE_NODE", "SWAP_NODE", "LEVEL_DOWN",    "LEVEL_UP",
-      "ROBACT",     "ROBOT_LANGUAGE", "DRAW_SCENE",     "EXEC_SCRIPT", "CONNECT",   "FRAME_TO_WFRM", "ROBOT",
-      "SET_CAMPAR", "WAIT",           "hot_message",    "SAVE_FLIGHT", "POS_ROB",   "MOVE_ROB",      "STOP_ROB",
-      "STVW",       "STDP",           "rob_positioning"};
+      "#",          "ACTIVATE",       "DEACTIVATE",      "DELETE_NODE", "SWAP_NODE",  "LEVEL_DOWN",    "LEVEL_UP",
+      "ROBACT",     "ROBOT_LANGUAGE", "DRAW_SCENE",      "EXEC_SCRIPT", "CONNECT",    "FRAME_TO_WFRM", "ROBOT",
+      "SET_CAMPAR", "WAIT",           "hot_message",     "SAVE_FLIGHT", "POS_ROB",    "MOVE_ROB",      "STOP_ROB",
+      "STVW",       "STDP",           "rob_positioning", "SET_USSPAR",  "SET_COLLPAR"};
   for (const Form* form : forms()) {
     bool expected = names.contains(form->name) || (form->section == "1.2.2" && form->id != FormId::arc);
     expected = expected || form->id == FormId::set_frame_placement;
@@ -101,6 +101,8 @@ TEST(CommandTable, FindsCommandsWithoutRegardToCaseAndNothingElse) {
   }
   EXPECT_EQ(forms_of("POS_ROB").size(), 6U);
   EXPECT_EQ(forms_of("MOVE_ROB").size(), 8U);
+  EXPECT_EQ(forms_of("SET_USSPAR").size(), 3U);
+  EXPECT_EQ(forms_of("SET_COLLPAR").size(), 3U);
   EXPECT_EQ(forms_of("eladyn_geo_def").size(), 3U);
   EXPECT_TRUE(forms_of("#").empty());
   EXPECT_TRUE(forms_of("").empty());
