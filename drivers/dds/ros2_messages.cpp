@@ -23,12 +23,6 @@ void read_header(CdrReader& in, Header& header) {
   header.frame_id.assign(in.read_text());
 }
 
-void write_header(CdrWriter& out, const Header& header) {
-  out.write(header.stamp.sec);
-  out.write(header.stamp.nanosec);
-  out.write_text(header.frame_id);
-}
-
 void copy(const DoubleSequenceView& from, std::vector<double>& to) {
   to.resize(from.size());
   for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i];
@@ -87,9 +81,15 @@ CdrFault decode(std::span<const std::byte> payload, TfMessage& message) {
   return in.fault();
 }
 
+void write(const Header& header, CdrWriter& out) {
+  out.write(header.stamp.sec);
+  out.write(header.stamp.nanosec);
+  out.write_text(header.frame_id);
+}
+
 void encode(const JointState& message, std::vector<std::byte>& out) {
   CdrWriter writer(out);
-  write_header(writer, message.header);
+  write(message.header, writer);
   writer.write_count(message.name.size());
   for (const std::string& name : message.name) writer.write_text(name);
   writer.write_doubles(message.position);
@@ -101,7 +101,7 @@ void encode(const TfMessage& message, std::vector<std::byte>& out) {
   CdrWriter writer(out);
   writer.write_count(message.transforms.size());
   for (const TransformStamped& transform : message.transforms) {
-    write_header(writer, transform.header);
+    write(transform.header, writer);
     writer.write_text(transform.child_frame_id);
     for (const double value : transform.translation) writer.write(value);
     for (const double value : transform.rotation) writer.write(value);

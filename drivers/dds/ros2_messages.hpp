@@ -80,5 +80,7 @@ struct TfMessage {
 // Little endian, with encapsulation header. `out` is overwritten and keeps its capacity.
 void encode(const JointState& message, std::vector<std::byte>& out);
 void encode(const TfMessage& message, std::vector<std::byte>& out);
+// For messages that begin with a header.
+void write(const Header& header, CdrWriter& out);
 
 }  // namespace cellmirror::dds

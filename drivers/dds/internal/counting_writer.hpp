@@ -1,0 +1,78 @@
+// A writer with its counters.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "drivers/dds/internal/bytes_writer.hpp"
+
+namespace cellmirror::dds {
+
+// Relaxed: counters for people, each on its own.
+class Counter {
+ public:
+  void add(std::uint64_t n = 1) { value_.fetch_add(n, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t get() const { return value_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> value_{0};
+};
+
+// Reliable; knows when it overwrites what a reliable reader has not confirmed yet. One calling thread, but for the
+// counters.
+class CountingWriter {
+ public:
+  struct Options {
+    int depth = 1;
+    // At high rates there is always a sample on its way, so that one cannot tell a reader that stands still from one
+    // that follows.
+    bool counts_overwritten = true;
+  };
+
+  [[nodiscard]] static Result<std::unique_ptr<CountingWriter>> make(const std::shared_ptr<Participant>& participant,
+                                                                    const std::string& topic, std::string_view type,
+                                                                    Options options) {
+    auto writer = BytesWriter::make(participant, {topic, type, true, options.depth});
+    if (!writer) return std::unexpected(writer.error());
+    return std::unique_ptr<CountingWriter>(new CountingWriter(std::move(*writer), options));
+  }
+
+  [[nodiscard]] std::vector<std::byte>& payload() { return writer_->payload(); }
+  void write() {
+    if (!options_.counts_overwritten || writer_->all_confirmed()) {
+      unconfirmed_ = 0;
+    } else if (unconfirmed_ >= options_.depth) {
+      dropped_.add();
+    }
+    if (writer_->write()) {
+      sent_.add();
+      unconfirmed_ = std::min(unconfirmed_ + 1, options_.depth);
+    } else {
+      dropped_.add();
+    }
+  }
+  [[nodiscard]] std::uint64_t sent() const { return sent_.get(); }
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_.get(); }
+  [[nodiscard]] std::uint64_t readers() const {
+    return static_cast<std::uint64_t>(std::max(writer_->matched_readers(), 0));
+  }
+
+ private:
+  CountingWriter(std::unique_ptr<BytesWriter> writer, Options options)
+      : writer_(std::move(writer)), options_(options) {}
+
+  std::unique_ptr<BytesWriter> writer_;
+  Options options_;
+  int unconfirmed_ = 0;
+  Counter sent_;
+  Counter dropped_;
+};
+
+}  // namespace cellmirror::dds
