@@ -28,13 +28,17 @@ struct ConvexCore {
 
 struct ConvexDistance {
   ClosestPoints points;  // of the surfaces with their skins, in frame W
-  bool certain = true;   // false: `points.distance` is a lower bound, at most 1e-6 m too small
+  bool certain = true;  // false: `points.distance` is a lower bound, at most 1e-6 m too small; 0 if input is not finite
 };
 
 // Accurate to 1e-9 m for bodies up to 10 m (1e-12 where a closed form exists), whatever the poses: touching, identical,
 // nested, flat, parallel, a million times different in size.
 [[nodiscard]] ConvexDistance convex_distance(const ConvexCore& a, const Pose& X_WA, const ConvexCore& b,
                                              const Pose& X_WB) CELL_RT;
+// The same in less time where only a distance below `up_to` (m, not negative) is of interest: from there on
+// points.distance may be any lower bound that is not below `up_to`, and the points are not set.
+[[nodiscard]] ConvexDistance convex_distance(const ConvexCore& a, const Pose& X_WA, const ConvexCore& b,
+                                             const Pose& X_WB, double up_to) CELL_RT;
 // Of shapes whose convex_distance is 0 (else depth 0).
 [[nodiscard]] Penetration convex_penetration(const ConvexCore& a, const Pose& X_WA, const ConvexCore& b,
                                              const Pose& X_WB) CELL_RT;
