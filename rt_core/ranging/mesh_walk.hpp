@@ -1,0 +1,16 @@
+// The nearest triangle within a cone, by the mesh's tree. Private to this folder.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/base/pose.hpp"
+#include "rt_core/geometry/mesh_tree.hpp"
+#include "rt_core/ranging/cone_section.hpp"
+
+namespace cellmirror::ranging {
+
+// `triangle` (in the tree's order): in: which to look at first, out: which was the nearest.
+void nearest_on_mesh(const ConeShape& cone, const geometry::MeshTree& tree, const Pose& X_SG, Nearest& best,
+                     std::uint32_t& triangle) noexcept;
+
+}  // namespace cellmirror::ranging
