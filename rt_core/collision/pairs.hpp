@@ -55,7 +55,8 @@ struct PairTable {
   std::vector<Pair> pairs;  // every pair of bodies that could move against each other or is left out for a reason
                             // other than `rigid`; rigid pairs are only counted
   std::size_t rigid_pairs = 0;
-  std::size_t triangles = 0;  // of all bodies together
+  std::size_t triangles = 0;        // of all bodies together
+  std::vector<std::string> doubts;  // geometry that should be tested and cannot be, in words
 };
 
 // Makes pair tables. Remembers by component what it found out by sampling, so that neither the second robot of a kind
@@ -69,6 +70,7 @@ class PairDerivation {
   [[nodiscard]] std::shared_ptr<const PairTable> derive(const CompiledCell& cell, const Settings& settings);
 
  private:
+  friend class PairJudge;
   struct Memory;
   std::shared_ptr<geometry::SolidLibrary> solids_;
   std::unique_ptr<Memory> memory_;

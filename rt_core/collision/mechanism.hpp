@@ -1,0 +1,74 @@
+// How the nodes of a compiled cell can move against each other.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rt_core/base/pose.hpp"
+#include "rt_core/cell/compiled_cell.hpp"
+
+namespace cellmirror::collision {
+
+// A joint's range as it is sampled: finite, at most one turn each way where nothing limits it.
+struct SampledRange {
+  double lower = 0;  // rad or m
+  double upper = 0;
+};
+[[nodiscard]] SampledRange sampled_range(const CompiledRobot& robot, std::size_t joint);
+
+// Joints and fixed poses from a node above to a node below, runs of fixed poses taken together.
+struct JointChain {
+  struct Link {
+    Pose X_PJ = Pose::Identity();  // to the joint at position zero
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    double multiplier = 1.0;
+    double offset = 0.0;
+    JointKind kind = JointKind::revolute;
+    std::uint32_t variable = 0;  // of the RelativeMotion; position = multiplier * value + offset
+  };
+  std::vector<Link> links;
+  Pose X_tail = Pose::Identity();
+
+  [[nodiscard]] Pose end(std::span<const double> values) const;
+};
+
+// All that decides how two nodes lie to each other. Joints that they have in common cancel and are left out; mimics
+// share the variable of their master.
+struct RelativeMotion {
+  JointChain to_a;  // both from the lowest node above both
+  JointChain to_b;
+  std::vector<SampledRange> variables;
+
+  [[nodiscard]] Pose X_AB(std::span<const double> values) const;
+  // Equal for equal motions, bit by bit, in whichever robot and revision.
+  void append_signature(std::string& bytes) const;
+};
+
+class Mechanism {
+ public:
+  explicit Mechanism(const CompiledCell& cell);
+
+  // No joint between them.
+  [[nodiscard]] bool rigid(std::int32_t a, std::int32_t b) const { return group(a) == group(b); }
+  // The one joint between them; -1: none or several.
+  [[nodiscard]] std::int32_t single_joint(std::int32_t a, std::int32_t b) const;
+  // Index of the robot of which the node is a part: named within its component, and carried by nothing but nodes of
+  // it up to there. -1: of none.
+  [[nodiscard]] std::int32_t link_of(std::int32_t node) const { return link_of_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] RelativeMotion between(std::int32_t a, std::int32_t b) const;
+
+ private:
+  [[nodiscard]] std::int32_t group(std::int32_t node) const { return group_[static_cast<std::size_t>(node)]; }
+  [[nodiscard]] std::int32_t group_above(std::int32_t group) const;
+  [[nodiscard]] JointChain chain(std::int32_t above, std::int32_t below, RelativeMotion& motion,
+                                 std::vector<std::uint32_t>& keys) const;
+
+  const CompiledCell& cell_;
+  std::vector<std::int32_t> group_;  // the joint that carries the node (itself where it is one), 0: the world
+  std::vector<std::int32_t> link_of_;
+};
+
+}  // namespace cellmirror::collision

@@ -1,0 +1,96 @@
+#include "rt_core/collision/sampling.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "rt_core/collision/body_proximity.hpp"
+
+namespace cellmirror::collision {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Not std::uniform_real_distribution, whose numbers differ from one standard library to another.
+class Dice {
+ public:
+  double fraction() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
+
+ private:
+  std::mt19937_64 engine_{20'260'101};
+};
+
+class Sampler {
+ public:
+  Sampler(const RelativeMotion& motion, const Body& a, const Body& b)
+      : motion_(motion), proximity_(a, b), values_(motion.variables.size()), nearest_(values_) {}
+
+  SampledFinding run(bool may_be_never) {
+    SampledFinding finding;
+    for (int i = 0; i < kSampledPostures; ++i) {
+      anywhere();
+      try_posture();
+      if (apart_once_ && (!may_be_never || least_ <= kNeverMargin)) return finding;
+    }
+    finding.postures = kSampledPostures;
+    if (!apart_once_) {
+      finding.state = PairState::always;
+      return finding;
+    }
+    double width = 0.1;
+    for (int i = 0; i < kRefinedPostures; ++i, width *= 0.985) {
+      around_nearest(width);
+      try_posture();
+      if (least_ <= kNeverMargin) return finding;
+    }
+    finding.postures += kRefinedPostures;
+    finding.state = PairState::never;
+    finding.least = least_;
+    return finding;
+  }
+
+ private:
+  // Ends of ranges are where arms fold most, and no random number meets them.
+  void anywhere() {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const SampledRange& range = motion_.variables[i];
+      const double fraction = std::clamp(1.2 * dice_.fraction() - 0.1, 0.0, 1.0);
+      values_[i] = range.lower + fraction * (range.upper - range.lower);
+    }
+  }
+
+  void around_nearest(double width) {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const SampledRange& range = motion_.variables[i];
+      const double step = width * (2.0 * dice_.fraction() - 1.0) * (range.upper - range.lower);
+      values_[i] = std::clamp(nearest_[i] + step, range.lower, range.upper);
+    }
+  }
+
+  void try_posture() {
+    const double up_to = std::isfinite(least_) ? std::max(least_, kNeverMargin) : kInfinity;
+    const double distance = proximity_.distance(motion_.X_AB(values_), up_to);
+    if (distance > geometry::kTouchDistance) apart_once_ = true;
+    if (distance >= least_) return;
+    least_ = distance;
+    nearest_ = values_;
+  }
+
+  const RelativeMotion& motion_;
+  BodyProximity proximity_;
+  Dice dice_;
+  std::vector<double> values_;
+  std::vector<double> nearest_;
+  double least_ = kInfinity;
+  bool apart_once_ = false;
+};
+
+}  // namespace
+
+SampledFinding sample(const RelativeMotion& motion, const Body& a, const Body& b, bool may_be_never) {
+  return Sampler(motion, a, b).run(may_be_never);
+}
+
+}  // namespace cellmirror::collision
