@@ -114,7 +114,7 @@ TEST(ManutecR3, movesAsTheProductOfItsTurns) {
   std::vector<ChainJoint> joints;
   Pose back = Pose::Identity();  // from the frame along z to the one of the axes
   for (std::size_t i = 0; i < 6; ++i) {
-    const Pose X_AZ(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axes[i]));
+    const Pose X_AZ(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitZ().cross(axes[i])));
     joints.push_back({back * Pose(Eigen::Translation3d(ways[i])) * X_AZ, JointKind::revolute,
                       static_cast<std::uint8_t>(i), 1.0, 0.0});
     back = X_AZ.inverse();
