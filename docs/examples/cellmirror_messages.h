@@ -26,12 +26,17 @@
 #define CELLMIRROR_RECORD_MAGIC 0x52494D43u /* the bytes "CMIR" */
 #define CELLMIRROR_RECORD_VERSION 1u
 #define CELLMIRROR_KIND_ROBOT 1u
-#define CELLMIRROR_KIND_RANGE 2u       /* reserved */
-#define CELLMIRROR_KIND_RANGE_ARRAY 3u /* reserved */
-#define CELLMIRROR_KIND_CAMERA 4u      /* reserved */
+#define CELLMIRROR_KIND_RANGE 2u
+#define CELLMIRROR_KIND_RANGE_ARRAY 3u
+#define CELLMIRROR_KIND_CAMERA 4u /* reserved */
+#define CELLMIRROR_KIND_PROXIMITY 5u
+#define CELLMIRROR_KIND_EVENT 6u
 
 #define CELLMIRROR_NAME_BYTES 64 /* with at least one NUL */
+#define CELLMIRROR_PATH_BYTES 128
 #define CELLMIRROR_MAX_JOINTS 16
+#define CELLMIRROR_MAX_RANGES 72 /* of one record */
+#define CELLMIRROR_MAX_PAIRS 10
 
 /* Byte offsets in a record. */
 #define CELLMIRROR_HEADER_OFFSET_MAGIC 0
@@ -62,6 +67,79 @@
 #define CELLMIRROR_JOINT_OFFSET_AGE_S 96
 #define CELLMIRROR_JOINT_OFFSET_SOURCE_AGE_S 104
 #define CELLMIRROR_JOINT_BYTES 112
+
+#define CELLMIRROR_RANGE_OFFSET_ID 40
+#define CELLMIRROR_RANGE_OFFSET_OBJECT 104
+#define CELLMIRROR_RANGE_OFFSET_DISTANCE 232
+#define CELLMIRROR_RANGE_OFFSET_RANGE 240
+#define CELLMIRROR_RANGE_OFFSET_BLIND_ZONE 248
+#define CELLMIRROR_RANGE_OFFSET_HALF_ANGLE 256
+#define CELLMIRROR_RANGE_OFFSET_POINT 264
+#define CELLMIRROR_RANGE_OFFSET_FLAGS 288
+#define CELLMIRROR_RANGE_BYTES 296
+
+#define CELLMIRROR_RANGE_ARRAY_OFFSET_PART 40
+#define CELLMIRROR_RANGE_ARRAY_OFFSET_PARTS 42
+#define CELLMIRROR_RANGE_ARRAY_OFFSET_COUNT 44
+#define CELLMIRROR_RANGE_ARRAY_OFFSET_TOTAL 46
+#define CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES 48
+
+/* Byte offsets in an entry of the array of ranges. */
+#define CELLMIRROR_RANGE_ENTRY_OFFSET_ID 0
+#define CELLMIRROR_RANGE_ENTRY_OFFSET_DISTANCE 64
+#define CELLMIRROR_RANGE_ENTRY_OFFSET_RANGE 72
+#define CELLMIRROR_RANGE_ENTRY_OFFSET_POINT 80
+#define CELLMIRROR_RANGE_ENTRY_OFFSET_FLAGS 104
+#define CELLMIRROR_RANGE_ENTRY_BYTES 112
+
+#define CELLMIRROR_PROXIMITY_OFFSET_CHECK 40
+#define CELLMIRROR_PROXIMITY_OFFSET_WARNING_DISTANCE 48
+#define CELLMIRROR_PROXIMITY_OFFSET_COMPUTED_AFTER_S 56
+#define CELLMIRROR_PROXIMITY_OFFSET_TESTED 64
+#define CELLMIRROR_PROXIMITY_OFFSET_TOUCHING 68
+#define CELLMIRROR_PROXIMITY_OFFSET_WITHIN_WARNING 72
+#define CELLMIRROR_PROXIMITY_OFFSET_DOUBTS 76
+#define CELLMIRROR_PROXIMITY_OFFSET_FOUND 80
+#define CELLMIRROR_PROXIMITY_OFFSET_PAIR_COUNT 84
+#define CELLMIRROR_PROXIMITY_OFFSET_PAIRS 88
+
+/* Byte offsets in a pair. */
+#define CELLMIRROR_PAIR_OFFSET_A 0
+#define CELLMIRROR_PAIR_OFFSET_B 128
+#define CELLMIRROR_PAIR_OFFSET_DISTANCE 256
+#define CELLMIRROR_PAIR_OFFSET_DEPTH 264
+#define CELLMIRROR_PAIR_OFFSET_POINT_A 272
+#define CELLMIRROR_PAIR_OFFSET_POINT_B 296
+#define CELLMIRROR_PAIR_OFFSET_NORMAL 320
+#define CELLMIRROR_PAIR_OFFSET_CLOSING_SPEED 344
+#define CELLMIRROR_PAIR_OFFSET_TIME_TO_CONTACT_S 352
+#define CELLMIRROR_PAIR_OFFSET_FLAGS 360
+#define CELLMIRROR_PAIR_OFFSET_CONTACTS 364
+#define CELLMIRROR_PAIR_BYTES 368
+
+#define CELLMIRROR_EVENT_OFFSET_EVENT 40
+#define CELLMIRROR_EVENT_OFFSET_CHANGE 48
+#define CELLMIRROR_EVENT_OFFSET_DISTANCE 56
+#define CELLMIRROR_EVENT_OFFSET_A 64
+#define CELLMIRROR_EVENT_OFFSET_B 192
+#define CELLMIRROR_EVENT_BYTES 320
+
+/* Flags of a range. */
+#define CELLMIRROR_RANGE_SEEN 1u          /* something is in the cone */
+#define CELLMIRROR_RANGE_IN_BLIND_ZONE 2u /* so near that a real sensor could not tell */
+
+/* Flags of a pair. */
+#define CELLMIRROR_PAIR_TOUCHING 1u
+#define CELLMIRROR_PAIR_WITHIN_WARNING 2u
+#define CELLMIRROR_PAIR_DOUBTFUL 4u /* not certain: take it as touching */
+
+/* Change of an event. */
+enum cellmirror_change {
+  CELLMIRROR_CHANGE_ENTERED_WARNING = 0,
+  CELLMIRROR_CHANGE_TOUCHED = 1,
+  CELLMIRROR_CHANGE_PARTED = 2,
+  CELLMIRROR_CHANGE_LEFT_WARNING = 3
+};
 
 /* State of a robot's or joint's data. */
 enum cellmirror_state {
@@ -119,18 +197,162 @@ struct cellmirror_robot {
   struct cellmirror_joint joints[CELLMIRROR_MAX_JOINTS]; /* joint_count of them are sent */
 };
 
-/* Copies a robot record out of a received message. 1: done; 0: the bytes are no robot record of this version. */
+struct cellmirror_range {
+  struct cellmirror_header header;
+  char id[CELLMIRROR_NAME_BYTES];
+  char object[CELLMIRROR_PATH_BYTES]; /* dotted path of what is seen */
+  double distance;                    /* m; NaN: nothing is seen */
+  double range;                       /* m */
+  double blind_zone;                  /* m */
+  double half_angle;                  /* rad */
+  double point[3];                    /* m, in the world; NaN: nothing is seen */
+  uint32_t flags;
+  uint32_t reserved;
+};
+
+struct cellmirror_range_entry {
+  char id[CELLMIRROR_NAME_BYTES];
+  double distance; /* m; NaN: nothing is seen */
+  double range;    /* m */
+  double point[3]; /* m, in the world; NaN: nothing is seen */
+  uint32_t flags;
+  uint32_t reserved;
+};
+
+struct cellmirror_range_array {
+  struct cellmirror_header header;
+  uint16_t part;                                               /* from 1 */
+  uint16_t parts;                                              /* records that hold all sensors */
+  uint16_t count;                                              /* sensors of this record */
+  uint16_t total;                                              /* sensors of all parts */
+  struct cellmirror_range_entry ranges[CELLMIRROR_MAX_RANGES]; /* count of them are sent */
+};
+
+struct cellmirror_pair {
+  char a[CELLMIRROR_PATH_BYTES];
+  char b[CELLMIRROR_PATH_BYTES];
+  double distance;          /* m; 0 where they touch */
+  double depth;             /* m; 0 where they do not touch */
+  double point_a[3];        /* m, in the world */
+  double point_b[3];        /* m, in the world */
+  double normal[3];         /* of a contact, from a to b */
+  double closing_speed;     /* m/s; NaN: not known */
+  double time_to_contact_s; /* NaN: they do not approach, or not known */
+  uint32_t flags;
+  uint32_t contacts; /* contact points that were found */
+};
+
+struct cellmirror_proximity {
+  struct cellmirror_header header;
+  uint64_t check;          /* number of the computation */
+  double warning_distance; /* m */
+  double computed_after_s; /* from the instant that it is for */
+  uint32_t tested;         /* pairs */
+  uint32_t touching;       /* pairs */
+  uint32_t within_warning; /* pairs, those that touch included */
+  uint32_t doubts;         /* what could not be computed for sure */
+  uint32_t found;          /* pairs that would be listed if all had room */
+  uint16_t pair_count;     /* pairs of this record */
+  uint16_t reserved;
+  struct cellmirror_pair pairs[CELLMIRROR_MAX_PAIRS]; /* pair_count of them are sent */
+};
+
+struct cellmirror_event {
+  struct cellmirror_header header;
+  uint64_t event; /* from 1; a gap: events were lost */
+  uint8_t change; /* enum cellmirror_change */
+  uint8_t reserved[7];
+  double distance; /* m */
+  char a[CELLMIRROR_PATH_BYTES];
+  char b[CELLMIRROR_PATH_BYTES];
+};
+
+#if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define CELLMIRROR_CHECK(condition) _Static_assert(condition, #condition)
+#elif defined(__cplusplus) && __cplusplus >= 201103L
+#define CELLMIRROR_CHECK(condition) static_assert(condition, #condition)
+#else /* C99: an array of negative size is refused */
+#define CELLMIRROR_CHECK(condition) extern int cellmirror_check[(condition) ? 1 : -1]
+#endif
+CELLMIRROR_CHECK(sizeof(struct cellmirror_header) == CELLMIRROR_HEADER_BYTES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_joint) == CELLMIRROR_JOINT_BYTES);
+CELLMIRROR_CHECK(offsetof(struct cellmirror_robot, joints) == CELLMIRROR_ROBOT_OFFSET_JOINTS);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_range) == CELLMIRROR_RANGE_BYTES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_range_entry) == CELLMIRROR_RANGE_ENTRY_BYTES);
+CELLMIRROR_CHECK(offsetof(struct cellmirror_range_array, ranges) == CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_range_array) <= CELLMIRROR_MAX_MESSAGE_BYTES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_pair) == CELLMIRROR_PAIR_BYTES);
+CELLMIRROR_CHECK(offsetof(struct cellmirror_proximity, pairs) == CELLMIRROR_PROXIMITY_OFFSET_PAIRS);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_event) == CELLMIRROR_EVENT_BYTES);
+
+/* Whether a received message is a record of this version and kind with at least `least` bytes. */
+static inline int cellmirror_is_record(const void* message, size_t bytes, unsigned kind, size_t least) {
+  struct cellmirror_header header;
+  if (bytes < least || bytes < sizeof header) return 0;
+  memcpy(&header, message, sizeof header);
+  return header.magic == CELLMIRROR_RECORD_MAGIC && header.version == CELLMIRROR_RECORD_VERSION &&
+         header.kind == kind && header.length == bytes;
+}
+
+/* These copy a record out of a received message. 1: done; 0: the bytes are no such record of this version. Texts end
+ * with a NUL. */
 static inline int cellmirror_read_robot(const void* message, size_t bytes, struct cellmirror_robot* robot) {
-  if (bytes < CELLMIRROR_ROBOT_OFFSET_JOINTS || bytes > sizeof *robot) return 0;
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_ROBOT, CELLMIRROR_ROBOT_OFFSET_JOINTS)) return 0;
+  if (bytes > sizeof *robot) return 0;
   memset(robot, 0, sizeof *robot);
   memcpy(robot, message, bytes);
-  if (robot->header.magic != CELLMIRROR_RECORD_MAGIC || robot->header.version != CELLMIRROR_RECORD_VERSION ||
-      robot->header.kind != CELLMIRROR_KIND_ROBOT || robot->header.length != bytes ||
-      robot->joint_count > CELLMIRROR_MAX_JOINTS) {
-    return 0;
-  }
   robot->id[CELLMIRROR_NAME_BYTES - 1] = '\0';
-  return bytes == CELLMIRROR_ROBOT_OFFSET_JOINTS + (size_t)robot->joint_count * CELLMIRROR_JOINT_BYTES;
+  return robot->joint_count <= CELLMIRROR_MAX_JOINTS &&
+         bytes == CELLMIRROR_ROBOT_OFFSET_JOINTS + (size_t)robot->joint_count * CELLMIRROR_JOINT_BYTES;
+}
+
+static inline int cellmirror_read_range(const void* message, size_t bytes, struct cellmirror_range* range) {
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_RANGE, CELLMIRROR_RANGE_BYTES)) return 0;
+  if (bytes != sizeof *range) return 0;
+  memcpy(range, message, bytes);
+  range->id[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  range->object[CELLMIRROR_PATH_BYTES - 1] = '\0';
+  return 1;
+}
+
+static inline int cellmirror_read_range_array(const void* message, size_t bytes, struct cellmirror_range_array* array) {
+  unsigned i;
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_RANGE_ARRAY, CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES))
+    return 0;
+  if (bytes > sizeof *array) return 0;
+  memset(array, 0, sizeof *array);
+  memcpy(array, message, bytes);
+  for (i = 0; i < CELLMIRROR_MAX_RANGES; ++i) array->ranges[i].id[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  return array->count <= CELLMIRROR_MAX_RANGES &&
+         bytes == CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES + (size_t)array->count * CELLMIRROR_RANGE_ENTRY_BYTES;
+}
+
+static inline int cellmirror_read_proximity(const void* message, size_t bytes, struct cellmirror_proximity* proximity) {
+  unsigned i;
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_PROXIMITY, CELLMIRROR_PROXIMITY_OFFSET_PAIRS)) return 0;
+  if (bytes > sizeof *proximity) return 0;
+  memset(proximity, 0, sizeof *proximity);
+  memcpy(proximity, message, bytes);
+  for (i = 0; i < CELLMIRROR_MAX_PAIRS; ++i) {
+    proximity->pairs[i].a[CELLMIRROR_PATH_BYTES - 1] = '\0';
+    proximity->pairs[i].b[CELLMIRROR_PATH_BYTES - 1] = '\0';
+  }
+  return proximity->pair_count <= CELLMIRROR_MAX_PAIRS &&
+         bytes == CELLMIRROR_PROXIMITY_OFFSET_PAIRS + (size_t)proximity->pair_count * CELLMIRROR_PAIR_BYTES;
+}
+
+static inline int cellmirror_read_event(const void* message, size_t bytes, struct cellmirror_event* event) {
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_EVENT, CELLMIRROR_EVENT_BYTES)) return 0;
+  if (bytes != sizeof *event) return 0;
+  memcpy(event, message, bytes);
+  event->a[CELLMIRROR_PATH_BYTES - 1] = '\0';
+  event->b[CELLMIRROR_PATH_BYTES - 1] = '\0';
+  return 1;
+}
+
+static inline const char* cellmirror_change_name(unsigned change) {
+  static const char* const names[] = {"entered_warning", "touched", "parted", "left_warning"};
+  return change < 4 ? names[change] : "unknown";
 }
 
 static inline const char* cellmirror_state_name(unsigned state) {

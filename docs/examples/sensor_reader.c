@@ -1,6 +1,10 @@
 /*
- * Prints the robot-parameter records of a running cellmirror (ROBOT <id> send_on), one a line:
- *   sequence robot online|offline state joint=position ... tcp x y z
+ * Prints the records of a running cellmirror, one a line:
+ *   sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
+ *   sequence range sensor DISTANCE|nothing|blind [object]                SET_USSPAR active
+ *   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind ...         SET_USSPAR sendmode 1
+ *   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
+ *   sequence event NUMBER CHANGE a b DISTANCE
  *
  *   cc -o sensor_reader sensor_reader.c
  *   ./sensor_reader --count 10
@@ -22,9 +26,8 @@
 
 static const char* const kUsage =
     "usage: sensor_reader [--count N] [--timeout SECONDS] [--key KEY]\n"
-    "Prints robot-parameter records as they come: N of them (default: without end), waiting at most SECONDS (default: "
-    "for\n"
-    "ever) for each.\n";
+    "Prints records as they come: N of them (default: without end), waiting at most SECONDS (default: for ever) for\n"
+    "each.\n";
 
 struct Message {
   long type;
@@ -41,7 +44,78 @@ static void print_robot(const struct cellmirror_robot* robot) {
   }
   printf(" tcp %.6f %.6f %.6f\n", robot->world_tcp.position[0], robot->world_tcp.position[1],
          robot->world_tcp.position[2]);
+}
+
+static void print_reading(double distance, unsigned flags) {
+  if (!(flags & CELLMIRROR_RANGE_SEEN)) {
+    printf("nothing");
+  } else if (flags & CELLMIRROR_RANGE_IN_BLIND_ZONE) {
+    printf("blind");
+  } else {
+    printf("%.6f", distance);
+  }
+}
+
+static void print_range(const struct cellmirror_range* range) {
+  printf("%llu range %s ", (unsigned long long)range->header.sequence, range->id);
+  print_reading(range->distance, range->flags);
+  printf("%s%s\n", range->object[0] == '\0' ? "" : " ", range->object);
+}
+
+static void print_range_array(const struct cellmirror_range_array* array) {
+  printf("%llu ranges %u/%u", (unsigned long long)array->header.sequence, (unsigned)array->part,
+         (unsigned)array->parts);
+  for (unsigned i = 0; i < array->count; ++i) {
+    printf(" %s=", array->ranges[i].id);
+    print_reading(array->ranges[i].distance, array->ranges[i].flags);
+  }
+  printf("\n");
+}
+
+static void print_proximity(const struct cellmirror_proximity* proximity) {
+  printf("%llu proximity touching %u warning %u of %u pairs:", (unsigned long long)proximity->header.sequence,
+         (unsigned)proximity->touching, (unsigned)proximity->within_warning, (unsigned)proximity->tested);
+  for (unsigned i = 0; i < proximity->pair_count; ++i) {
+    const struct cellmirror_pair* pair = &proximity->pairs[i];
+    printf(" %s|%s=", pair->a, pair->b);
+    if (pair->flags & CELLMIRROR_PAIR_TOUCHING) {
+      printf("touching");
+    } else {
+      printf("%.6f", pair->distance);
+    }
+  }
+  printf("\n");
+}
+
+static void print_event(const struct cellmirror_event* event) {
+  printf("%llu event %llu %s %s %s %.6f\n", (unsigned long long)event->header.sequence,
+         (unsigned long long)event->event, cellmirror_change_name(event->change), event->a, event->b, event->distance);
+}
+
+/* 1: it was a record of a kind that this program knows. */
+static int print_record(const void* message, size_t bytes) {
+  static union {
+    struct cellmirror_robot robot;
+    struct cellmirror_range range;
+    struct cellmirror_range_array array;
+    struct cellmirror_proximity proximity;
+    struct cellmirror_event event;
+  } record;
+  if (cellmirror_read_robot(message, bytes, &record.robot)) {
+    print_robot(&record.robot);
+  } else if (cellmirror_read_range(message, bytes, &record.range)) {
+    print_range(&record.range);
+  } else if (cellmirror_read_range_array(message, bytes, &record.array)) {
+    print_range_array(&record.array);
+  } else if (cellmirror_read_proximity(message, bytes, &record.proximity)) {
+    print_proximity(&record.proximity);
+  } else if (cellmirror_read_event(message, bytes, &record.event)) {
+    print_event(&record.event);
+  } else {
+    return 0;
+  }
   fflush(stdout);
+  return 1;
 }
 
 int main(int argc, char** argv) {
@@ -75,7 +149,6 @@ int main(int argc, char** argv) {
   }
   for (long printed = 0; count == 0 || printed < count;) {
     struct Message message;
-    struct cellmirror_robot robot;
     alarm(timeout);
     const ssize_t got = msgrcv(queue, &message, sizeof message.text, CELLMIRROR_MESSAGE_TYPE, MSG_NOERROR);
     if (got < 0) {
@@ -83,9 +156,7 @@ int main(int argc, char** argv) {
       fprintf(stderr, "sensor_reader: %s\n", errno == EINTR ? "no record in time" : strerror(errno));
       return 1;
     }
-    if (!cellmirror_read_robot(message.text, (size_t)got, &robot)) continue; /* another kind of record */
-    print_robot(&robot);
-    ++printed;
+    if (print_record(message.text, (size_t)got)) ++printed;
   }
   return 0;
 }

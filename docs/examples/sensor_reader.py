@@ -1,9 +1,14 @@
 #!/usr/bin/env python3
-"""Prints the robot-parameter records of a running cellmirror (ROBOT <id> send_on), one a line.
+"""Prints the records of a running cellmirror, one a line.
 
     python3 sensor_reader.py --count 10
 
-A line: sequence robot online|offline state joint=position ... tcp x y z
+    sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
+    sequence range sensor DISTANCE|nothing|blind [object]                SET_USSPAR active
+    sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind ...         SET_USSPAR sendmode 1
+    sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
+    sequence event NUMBER CHANGE a b DISTANCE
+
 A record that was read is gone from the queue: there is one reader. SPDX-License-Identifier: Apache-2.0
 """
 
@@ -16,35 +21,81 @@ import sys
 from cellmirror_queue import Queue
 
 MESSAGE_TYPE = 5
-KIND_ROBOT = 1
 # docs/messages.md; "<" is little-endian without padding
 HEADER = struct.Struct("<4sHHIIQqq")
 ROBOT = struct.Struct("<64sBBHIQ14d")  # two poses: position, quaternion x y z w
 JOINT = struct.Struct("<64sBB6x5d")
+RANGE = struct.Struct("<64s128s7dI4x")  # distance, range, blind zone, half angle, point; flags
+RANGES = struct.Struct("<4H")  # part, parts, count, total
+RANGE_ENTRY = struct.Struct("<64s5dI4x")  # distance, range, point; flags
+PROXIMITY = struct.Struct("<Q2d5IH2x")  # tested, touching, within warning, doubts, found; pairs
+PAIR = struct.Struct("<128s128s13d2I")  # distance, depth, points, normal, closing speed, time to contact
+EVENT = struct.Struct("<QB7xd128s128s")
 STATES = ("none", "fresh", "stale", "lost", "invalid")
+CHANGES = ("entered_warning", "touched", "parted", "left_warning")
+RANGE_SEEN, RANGE_IN_BLIND_ZONE, PAIR_TOUCHING = 1, 2, 1
 
 
 def name(field):
     return field.split(b"\0", 1)[0].decode(errors="replace")
 
 
-def robot_line(record):
-    """The line of a robot record; None for anything else."""
-    if len(record) < HEADER.size + ROBOT.size:
+def word(words, number):
+    return words[number] if number < len(words) else "unknown"
+
+
+def robot(payload):
+    robot_id, online, state, joints, _, _, *poses = ROBOT.unpack_from(payload)
+    words = [name(robot_id), "online" if online else "offline", word(STATES, state)]
+    for joint in JOINT.iter_unpack(payload[ROBOT.size : ROBOT.size + joints * JOINT.size]):
+        words.append(f"{name(joint[0])}={joint[3]:.6f}")
+    return words + ["tcp"] + [f"{value:.6f}" for value in poses[7:10]]
+
+
+def reading(distance, flags):
+    if not flags & RANGE_SEEN:
+        return "nothing"
+    return "blind" if flags & RANGE_IN_BLIND_ZONE else f"{distance:.6f}"
+
+
+def single_range(payload):
+    sensor, seen, distance, *_, flags = RANGE.unpack(payload)
+    return ["range", name(sensor), reading(distance, flags)] + ([name(seen)] if name(seen) else [])
+
+
+def ranges(payload):
+    part, parts, _, _ = RANGES.unpack_from(payload)
+    entries = RANGE_ENTRY.iter_unpack(payload[RANGES.size :])
+    return ["ranges", f"{part}/{parts}"] + [f"{name(entry[0])}={reading(entry[1], entry[6])}" for entry in entries]
+
+
+def proximity(payload):
+    _, _, _, tested, touching, warning, _, _, _ = PROXIMITY.unpack_from(payload)
+    words = f"proximity touching {touching} warning {warning} of {tested} pairs:".split()
+    for a, b, distance, *_, flags, _ in PAIR.iter_unpack(payload[PROXIMITY.size :]):
+        words.append(f"{name(a)}|{name(b)}=" + ("touching" if flags & PAIR_TOUCHING else f"{distance:.6f}"))
+    return words
+
+
+def event(payload):
+    number, change, distance, a, b = EVENT.unpack(payload)
+    return ["event", str(number), word(CHANGES, change), name(a), name(b), f"{distance:.6f}"]
+
+
+KINDS = {1: robot, 2: single_range, 3: ranges, 5: proximity, 6: event}
+
+
+def record_line(record):
+    """The line of a record; None for anything else."""
+    if len(record) < HEADER.size:
         return None
     magic, version, kind, length, _, sequence, _, _ = HEADER.unpack_from(record)
-    if magic != b"CMIR" or version != 1 or kind != KIND_ROBOT or length != len(record):
+    if magic != b"CMIR" or version != 1 or kind not in KINDS or length != len(record):
         return None
-    robot, online, state, joints, _, _, *poses = ROBOT.unpack_from(record, HEADER.size)
-    if length != HEADER.size + ROBOT.size + joints * JOINT.size:
+    try:
+        return " ".join([str(sequence)] + KINDS[kind](record[HEADER.size :]))
+    except struct.error:  # not as long as its kind is
         return None
-    words = [str(sequence), name(robot), "online" if online else "offline", STATES[state] if state < 5 else "unknown"]
-    for i in range(joints):
-        joint = JOINT.unpack_from(record, HEADER.size + ROBOT.size + i * JOINT.size)
-        words.append(f"{name(joint[0])}={joint[3]:.6f}")
-    words.append("tcp")
-    words.extend(f"{value:.6f}" for value in poses[7:10])
-    return " ".join(words)
 
 
 def main():
@@ -60,7 +111,7 @@ def main():
         queue = Queue(options.key)
         while options.count == 0 or printed < options.count:
             signal.setitimer(signal.ITIMER_REAL, options.timeout, 0.1 if options.timeout else 0.0)
-            line = robot_line(queue.receive(MESSAGE_TYPE))
+            line = record_line(queue.receive(MESSAGE_TYPE))
             if line is not None:
                 print(line, flush=True)
                 printed += 1

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "docs/examples/cellmirror_messages.h"
+#include "ipc/wire/proximity_record.hpp"
+#include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
 #include "ipc/wire/script_message.hpp"
 #include "rt_core/ports/stream_config.hpp"
@@ -17,6 +19,10 @@ namespace {
 
 namespace header = record_offset;
 namespace robot = robot_record_offset;
+namespace range = range_record_offset;
+namespace ranges = range_array_offset;
+namespace proximity = proximity_record_offset;
+namespace event = event_record_offset;
 
 struct Row {
   std::size_t offset;
@@ -120,6 +126,101 @@ TEST(DocumentedLayout, OfAJoint) {
   EXPECT_EQ(std::size_t{CELLMIRROR_JOINT_BYTES}, robot::kJointBytes);
 }
 
+TEST(DocumentedLayout, OfARange) {
+  using Struct = cellmirror_range;
+  expect_agreement(
+      "Ultrasonic range (kind 2)",
+      {{"id", "char[64]", range::kId, offsetof(Struct, id), CELLMIRROR_RANGE_OFFSET_ID},
+       {"object", "char[128]", range::kObject, offsetof(Struct, object), CELLMIRROR_RANGE_OFFSET_OBJECT},
+       {"distance", "f64", range::kDistance, offsetof(Struct, distance), CELLMIRROR_RANGE_OFFSET_DISTANCE},
+       {"range", "f64", range::kRange, offsetof(Struct, range), CELLMIRROR_RANGE_OFFSET_RANGE},
+       {"blind_zone", "f64", range::kBlindZone, offsetof(Struct, blind_zone), CELLMIRROR_RANGE_OFFSET_BLIND_ZONE},
+       {"half_angle", "f64", range::kHalfAngle, offsetof(Struct, half_angle), CELLMIRROR_RANGE_OFFSET_HALF_ANGLE},
+       {"point", "f64[3]", range::kPoint, offsetof(Struct, point), CELLMIRROR_RANGE_OFFSET_POINT},
+       {"flags", "u32", range::kFlags, offsetof(Struct, flags), CELLMIRROR_RANGE_OFFSET_FLAGS},
+       {"reserved", "u32", range::kReserved, offsetof(Struct, reserved), range::kReserved}});
+  EXPECT_EQ(sizeof(Struct), range::kBytes);
+}
+
+TEST(DocumentedLayout, OfAnArrayOfRanges) {
+  using Struct = cellmirror_range_array;
+  expect_agreement(
+      "Ultrasonic ranges (kind 3)",
+      {{"part", "u16", ranges::kPart, offsetof(Struct, part), CELLMIRROR_RANGE_ARRAY_OFFSET_PART},
+       {"parts", "u16", ranges::kParts, offsetof(Struct, parts), CELLMIRROR_RANGE_ARRAY_OFFSET_PARTS},
+       {"count", "u16", ranges::kCount, offsetof(Struct, count), CELLMIRROR_RANGE_ARRAY_OFFSET_COUNT},
+       {"total", "u16", ranges::kTotal, offsetof(Struct, total), CELLMIRROR_RANGE_ARRAY_OFFSET_TOTAL},
+       {"ranges", "entry[count]", ranges::kRanges, offsetof(Struct, ranges), CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES}});
+  EXPECT_EQ(sizeof(Struct), ranges::kRanges + kMaxRangesInRecord * ranges::kEntryBytes);
+}
+
+TEST(DocumentedLayout, OfARangeEntry) {
+  using Struct = cellmirror_range_entry;
+  expect_agreement(
+      "Range entry",
+      {{"id", "char[64]", ranges::kEntryId, offsetof(Struct, id), CELLMIRROR_RANGE_ENTRY_OFFSET_ID},
+       {"distance", "f64", ranges::kEntryDistance, offsetof(Struct, distance), CELLMIRROR_RANGE_ENTRY_OFFSET_DISTANCE},
+       {"range", "f64", ranges::kEntryRange, offsetof(Struct, range), CELLMIRROR_RANGE_ENTRY_OFFSET_RANGE},
+       {"point", "f64[3]", ranges::kEntryPoint, offsetof(Struct, point), CELLMIRROR_RANGE_ENTRY_OFFSET_POINT},
+       {"flags", "u32", ranges::kEntryFlags, offsetof(Struct, flags), CELLMIRROR_RANGE_ENTRY_OFFSET_FLAGS},
+       {"reserved", "u32", ranges::kEntryReserved, offsetof(Struct, reserved), ranges::kEntryReserved}});
+  EXPECT_EQ(sizeof(Struct), ranges::kEntryBytes);
+}
+
+TEST(DocumentedLayout, OfProximity) {
+  using Struct = cellmirror_proximity;
+  expect_agreement(
+      "Proximity (kind 5)",
+      {{"check", "u64", proximity::kCheck, offsetof(Struct, check), CELLMIRROR_PROXIMITY_OFFSET_CHECK},
+       {"warning_distance", "f64", proximity::kWarningDistance, offsetof(Struct, warning_distance),
+        CELLMIRROR_PROXIMITY_OFFSET_WARNING_DISTANCE},
+       {"computed_after_s", "f64", proximity::kComputedAfter, offsetof(Struct, computed_after_s),
+        CELLMIRROR_PROXIMITY_OFFSET_COMPUTED_AFTER_S},
+       {"tested", "u32", proximity::kTested, offsetof(Struct, tested), CELLMIRROR_PROXIMITY_OFFSET_TESTED},
+       {"touching", "u32", proximity::kTouching, offsetof(Struct, touching), CELLMIRROR_PROXIMITY_OFFSET_TOUCHING},
+       {"within_warning", "u32", proximity::kWithinWarning, offsetof(Struct, within_warning),
+        CELLMIRROR_PROXIMITY_OFFSET_WITHIN_WARNING},
+       {"doubts", "u32", proximity::kDoubts, offsetof(Struct, doubts), CELLMIRROR_PROXIMITY_OFFSET_DOUBTS},
+       {"found", "u32", proximity::kFound, offsetof(Struct, found), CELLMIRROR_PROXIMITY_OFFSET_FOUND},
+       {"pair_count", "u16", proximity::kPairCount, offsetof(Struct, pair_count),
+        CELLMIRROR_PROXIMITY_OFFSET_PAIR_COUNT},
+       {"reserved", "u16", proximity::kReserved, offsetof(Struct, reserved), proximity::kReserved},
+       {"pairs", "pair[pair_count]", proximity::kPairs, offsetof(Struct, pairs), CELLMIRROR_PROXIMITY_OFFSET_PAIRS}});
+  EXPECT_EQ(sizeof(Struct), kMaxProximityRecordBytes);
+}
+
+TEST(DocumentedLayout, OfAPair) {
+  using Struct = cellmirror_pair;
+  expect_agreement(
+      "Pair",
+      {{"a", "char[128]", proximity::kPairA, offsetof(Struct, a), CELLMIRROR_PAIR_OFFSET_A},
+       {"b", "char[128]", proximity::kPairB, offsetof(Struct, b), CELLMIRROR_PAIR_OFFSET_B},
+       {"distance", "f64", proximity::kPairDistance, offsetof(Struct, distance), CELLMIRROR_PAIR_OFFSET_DISTANCE},
+       {"depth", "f64", proximity::kPairDepth, offsetof(Struct, depth), CELLMIRROR_PAIR_OFFSET_DEPTH},
+       {"point_a", "f64[3]", proximity::kPairPointA, offsetof(Struct, point_a), CELLMIRROR_PAIR_OFFSET_POINT_A},
+       {"point_b", "f64[3]", proximity::kPairPointB, offsetof(Struct, point_b), CELLMIRROR_PAIR_OFFSET_POINT_B},
+       {"normal", "f64[3]", proximity::kPairNormal, offsetof(Struct, normal), CELLMIRROR_PAIR_OFFSET_NORMAL},
+       {"closing_speed", "f64", proximity::kPairClosingSpeed, offsetof(Struct, closing_speed),
+        CELLMIRROR_PAIR_OFFSET_CLOSING_SPEED},
+       {"time_to_contact_s", "f64", proximity::kPairTimeToContact, offsetof(Struct, time_to_contact_s),
+        CELLMIRROR_PAIR_OFFSET_TIME_TO_CONTACT_S},
+       {"flags", "u32", proximity::kPairFlags, offsetof(Struct, flags), CELLMIRROR_PAIR_OFFSET_FLAGS},
+       {"contacts", "u32", proximity::kPairContacts, offsetof(Struct, contacts), CELLMIRROR_PAIR_OFFSET_CONTACTS}});
+  EXPECT_EQ(sizeof(Struct), proximity::kPairBytes);
+}
+
+TEST(DocumentedLayout, OfAnEvent) {
+  using Struct = cellmirror_event;
+  expect_agreement("Proximity event (kind 6)",
+                   {{"event", "u64", event::kEvent, offsetof(Struct, event), CELLMIRROR_EVENT_OFFSET_EVENT},
+                    {"change", "u8", event::kChange, offsetof(Struct, change), CELLMIRROR_EVENT_OFFSET_CHANGE},
+                    {"reserved", "u8[7]", event::kReserved, offsetof(Struct, reserved), event::kReserved},
+                    {"distance", "f64", event::kDistance, offsetof(Struct, distance), CELLMIRROR_EVENT_OFFSET_DISTANCE},
+                    {"a", "char[128]", event::kA, offsetof(Struct, a), CELLMIRROR_EVENT_OFFSET_A},
+                    {"b", "char[128]", event::kB, offsetof(Struct, b), CELLMIRROR_EVENT_OFFSET_B}});
+  EXPECT_EQ(sizeof(Struct), event::kBytes);
+}
+
 TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   const QueueConfig queues;
   EXPECT_EQ(CELLMIRROR_SCRIPT_KEY, queues.script_key);
@@ -137,6 +238,20 @@ TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   EXPECT_EQ(CELLMIRROR_KIND_RANGE, static_cast<unsigned>(RecordKind::ultrasonic_range));
   EXPECT_EQ(CELLMIRROR_KIND_RANGE_ARRAY, static_cast<unsigned>(RecordKind::ultrasonic_range_array));
   EXPECT_EQ(CELLMIRROR_KIND_CAMERA, static_cast<unsigned>(RecordKind::camera_parameters));
+  EXPECT_EQ(CELLMIRROR_KIND_PROXIMITY, static_cast<unsigned>(RecordKind::proximity));
+  EXPECT_EQ(CELLMIRROR_KIND_EVENT, static_cast<unsigned>(RecordKind::proximity_event));
+  EXPECT_EQ(CELLMIRROR_RANGE_SEEN, kRangeSeen);
+  EXPECT_EQ(CELLMIRROR_RANGE_IN_BLIND_ZONE, kRangeInBlindZone);
+  EXPECT_EQ(CELLMIRROR_PAIR_TOUCHING, kPairTouching);
+  EXPECT_EQ(CELLMIRROR_PAIR_WITHIN_WARNING, kPairWithinWarning);
+  EXPECT_EQ(CELLMIRROR_PAIR_DOUBTFUL, kPairDoubtful);
+  EXPECT_EQ(CELLMIRROR_CHANGE_ENTERED_WARNING, static_cast<int>(ProximityChange::entered_warning));
+  EXPECT_EQ(CELLMIRROR_CHANGE_TOUCHED, static_cast<int>(ProximityChange::touched));
+  EXPECT_EQ(CELLMIRROR_CHANGE_PARTED, static_cast<int>(ProximityChange::parted));
+  EXPECT_EQ(CELLMIRROR_CHANGE_LEFT_WARNING, static_cast<int>(ProximityChange::left_warning));
+  EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_PATH_BYTES), kRecordPathBytes);
+  EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_MAX_RANGES), kMaxRangesInRecord);
+  EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_MAX_PAIRS), kMaxPairsInRecord);
   EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_NAME_BYTES), kRecordNameBytes);
   EXPECT_EQ(static_cast<std::size_t>(CELLMIRROR_MAX_JOINTS), kMaxJointsPerRobot);
   EXPECT_EQ(CELLMIRROR_STATE_NONE, static_cast<int>(DataState::none));

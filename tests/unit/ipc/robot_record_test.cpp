@@ -5,23 +5,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
 #include <numbers>
-#include <string_view>
 #include <vector>
+
+#include "tests/unit/ipc/golden_bytes.hpp"
 
 namespace cellmirror {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-void place(Bytes& bytes, std::size_t offset, std::initializer_list<int> values) {
-  for (const int value : values) bytes.at(offset++) = static_cast<std::byte>(value);
-}
-
-void place(Bytes& bytes, std::size_t offset, std::string_view text) {
-  for (const char c : text) bytes.at(offset++) = static_cast<std::byte>(c);
-}
+using test::Bytes;
+using test::place;
 
 // Written by hand from docs/messages.md: robot R1 with one prismatic joint, 344 bytes = 0x158.
 Bytes golden_record() {
