@@ -43,7 +43,7 @@ void closest_on_edges(const Vector3d& a0, const Vector3d& u, const Vector3d& b0,
   const Vector3d n = cross(u, v);
   const double nn = dot(n, n);
   double s = nn > 1e-30 * uu * vv ? clamp01(dot(cross(r, v), n) / nn) : 0.0;
-  double t = vv > 0.0 ? (uv * s - vr) / vv : 0.0;
+  double t = vv > 0.0 ? (uv * s - vr) / vv : -1.0;
   if (!(t >= 0.0)) {
     t = 0.0;
     s = uu > 0.0 ? clamp01(ur / uu) : 0.0;
