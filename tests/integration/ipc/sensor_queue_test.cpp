@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 #include <sys/msg.h>
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "ipc/sysv/sensor_queue_output.hpp"
+#include "ipc/wire/proximity_record.hpp"
+#include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
 #include "tests/integration/ipc/own_ipc.hpp"
 
@@ -25,17 +28,26 @@ RobotState robot_with(std::size_t joints, std::string id = "R1") {
   return robot;
 }
 
-std::optional<RobotRecord> next_record(std::int32_t key) {
+std::optional<std::vector<std::byte>> next_message(std::int32_t key) {
   struct {
     long type;
     std::byte text[8192];
   } message;
   const ssize_t got = ::msgrcv(::msgget(key, 0), &message, sizeof message.text, 5, IPC_NOWAIT);
   if (got < 0) return std::nullopt;
-  auto record = decode_robot_record(std::span(message.text).first(static_cast<std::size_t>(got)));
+  return std::vector(message.text, message.text + got);
+}
+
+template <class Decode>
+auto next_of(std::int32_t key, Decode decode) -> std::optional<typename decltype(decode({}))::value_type> {
+  const auto message = next_message(key);
+  if (!message) return std::nullopt;
+  auto record = decode(*message);
   EXPECT_TRUE(record) << record.error().text();
   return record ? std::optional(*record) : std::nullopt;
 }
+
+std::optional<RobotRecord> next_record(std::int32_t key) { return next_of(key, decode_robot_record); }
 
 std::map<std::string, std::uint64_t> counters_of(const SensorQueueOutput& output) {
   const auto counters = output.counters();
@@ -120,6 +132,103 @@ TEST_F(SensorQueue, TooManyJointsAreRefusedAndCounted) {
   const auto record = next_record(queues_.sensor_key);
   ASSERT_TRUE(record);
   EXPECT_EQ(record->id, "R2") << "the others are sent";
+}
+
+std::vector<RangeReading> readings(int count, Timestamp time) {
+  std::vector<RangeReading> made(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    made[i].id = "USS_" + std::to_string(i);
+    made[i].posture_time = time;
+    made[i].range_m = 3;
+    if (i % 2 == 0) made[i].distance_m = 0.5;
+  }
+  return made;
+}
+
+TEST_F(SensorQueue, SendsOneRecordASensorOrOneForAll) {
+  const Timestamp now = SystemClock().now();
+  const auto sensors = readings(3, now);
+  sut_->publish_ranges(sensors, RangeSendMode::one_message_a_sensor);
+  for (const RangeReading& sensor : sensors) {
+    const auto record = next_of(queues_.sensor_key, decode_range_record);
+    ASSERT_TRUE(record);
+    EXPECT_EQ(record->id, sensor.id);
+    EXPECT_EQ(record->header.time_ns, now.ns);
+  }
+  sut_->publish_ranges(sensors, RangeSendMode::one_message_for_all);
+  const auto all = next_of(queues_.sensor_key, decode_range_array);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->header.sequence, 4U);
+  EXPECT_EQ(all->ranges.size(), 3U);
+  EXPECT_FALSE(next_message(queues_.sensor_key));
+  EXPECT_EQ(counters_of(*sut_)["ranges_sent"], 4U);
+  sut_->publish_ranges({}, RangeSendMode::one_message_for_all);
+  EXPECT_FALSE(next_message(queues_.sensor_key)) << "no sensor is active";
+}
+
+TEST_F(SensorQueue, SensorsThatDoNotFitInOneRecordGoInParts) {
+  sut_->publish_ranges(readings(100, SystemClock().now()), RangeSendMode::one_message_for_all);
+  const auto first = next_of(queues_.sensor_key, decode_range_array);
+  const auto second = next_of(queues_.sensor_key, decode_range_array);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->ranges.size() + second->ranges.size(), 100U);
+  EXPECT_EQ(first->header.wall_time_ns, second->header.wall_time_ns) << "one instant";
+}
+
+TEST_F(SensorQueue, AReadingThatIsNotFiniteIsRefusedAndTheOthersAreSent) {
+  auto sensors = readings(3, SystemClock().now());
+  sensors[0].distance_m = std::numeric_limits<double>::infinity();
+  sensors[2].point_m.x() = std::numeric_limits<double>::quiet_NaN();
+  sut_->publish_ranges(sensors, RangeSendMode::one_message_a_sensor);
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_range_record)->id, "USS_1");
+  EXPECT_FALSE(next_message(queues_.sensor_key));
+  EXPECT_EQ(counters_of(*sut_)["ranges_refused"], 2U);
+}
+
+ProximityState touching_state(std::uint64_t check, std::vector<ProximityEvent> events) {
+  ProximityState state;
+  state.posture_time = state.finished = SystemClock().now();
+  state.sequence = check;
+  state.names = std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"w.A", "w.B"});
+  state.touching.resize(1);
+  state.touching[0].b = 1;
+  state.events = std::move(events);
+  return state;
+}
+
+TEST_F(SensorQueue, EventsGoOnceAndTheStateWhenItIsDue) {
+  const Timestamp seen = SystemClock().now();
+  const auto state = touching_state(5, {{1, ProximityChange::entered_warning, "w.A", "w.B", 0.04, seen},
+                                        {2, ProximityChange::touched, "w.A", "w.B", 0, seen}});
+  sut_->publish_proximity(state);
+  sut_->publish_proximity(state);
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_event_record)->change, ProximityChange::entered_warning);
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_event_record)->event, 2U);
+  const auto record = next_of(queues_.sensor_key, decode_proximity_record);
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->check, 5U);
+  EXPECT_EQ(record->pairs.at(0).b, "w.B");
+  EXPECT_FALSE(next_message(queues_.sensor_key)) << "nothing is sent twice";
+
+  sut_->publish_proximity(touching_state(6, {{6, ProximityChange::parted, "w.A", "w.B", 0, seen}}));
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_event_record)->event, 6U);
+  EXPECT_EQ(counters_of(*sut_)["events_missing"], 3U) << "3, 4 and 5 were never given to this output";
+  sut_->publish_proximity(touching_state(1, {{1, ProximityChange::touched, "w.A", "w.B", 0, seen}}));
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_event_record)->event, 1U) << "a new checker counts anew";
+  EXPECT_EQ(counters_of(*sut_)["events_sent"], 4U);
+}
+
+TEST_F(SensorQueue, EventsThatFindNoRoomLeaveAGapInTheirNumbers) {
+  std::vector<ProximityEvent> events;
+  for (std::uint64_t i = 1; i <= 500; ++i) {
+    events.push_back({i, ProximityChange::touched, "w.A", "w.B", 0, SystemClock().now()});
+  }
+  sut_->publish_proximity(touching_state(1, events));
+  const auto first = next_of(queues_.sensor_key, decode_event_record);
+  ASSERT_TRUE(first);
+  EXPECT_GT(first->event, 1U);
+  EXPECT_EQ(first->header.sequence, first->event);
+  EXPECT_EQ(counters_of(*sut_)["dropped"], first->event - 1);
 }
 
 TEST_F(SensorQueue, IsRemovedAtTheEnd) {

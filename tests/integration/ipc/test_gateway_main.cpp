@@ -1,5 +1,6 @@
-// A gateway without a cell: it answers commands and sends records of one robot that moves in steps.
-//   ipc_test_gateway SCRIPT_KEY SENSOR_KEY REPLY_KEY [RATE_HZ]
+// A gateway without a cell: it answers commands and sends records of one robot that moves in steps, or, where it is
+// told to, one round of what sensors and collision tests find before it is ready.
+//   ipc_test_gateway SCRIPT_KEY SENSOR_KEY REPLY_KEY [RATE_HZ|findings]
 // Commands: "echo TEXT" is done with TEXT, "silent" is never answered, anything else is refused. Prints "ready" and
 // ends at SIGTERM.
 #include <signal.h>
@@ -7,8 +8,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "ipc/sysv/sensor_queue_output.hpp"
@@ -30,6 +34,37 @@ RobotState moving_robot(std::uint64_t step, Timestamp time) {
   return robot;
 }
 
+RangeReading reading(const char* id, std::optional<double> distance, Timestamp time) {
+  RangeReading made;
+  made.id = id;
+  made.posture_time = time;
+  made.distance_m = distance;
+  if (distance) made.object = "cell.box";
+  made.range_m = 3;
+  made.blind_zone_m = 0.1;
+  made.in_blind_zone = distance && *distance < 0.1;
+  return made;
+}
+
+void send_findings(SensorQueueOutput& output) {
+  const Timestamp now = SystemClock().now();
+  const RangeReading readings[] = {reading("USS_1", 0.25, now), reading("USS_2", {}, now), reading("USS_3", 0.05, now)};
+  output.publish_ranges(readings, RangeSendMode::one_message_a_sensor);
+  output.publish_ranges(readings, RangeSendMode::one_message_for_all);
+  ProximityState state;
+  state.posture_time = state.finished = now;
+  state.sequence = 1;
+  state.pairs = 45;
+  state.names =
+      std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"cell.A", "cell.B", "cell.C"});
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  state.touching.push_back({0, 1, 0.002, zero, zero, {}, false});
+  state.near.push_back({0, 1, 0, zero, zero, true, false, {}, {}});
+  state.near.push_back({1, 2, 0.0125, zero, zero, true, false, {}, {}});
+  state.events.push_back({1, ProximityChange::touched, "cell.A", "cell.B", 0, now});
+  output.publish_proximity(state);
+}
+
 int refuse(const Error& error) {
   std::fprintf(stderr, "ipc_test_gateway: %s\n", error.text().c_str());
   return 1;
@@ -43,6 +78,7 @@ int main(int argc, char** argv) {
   queues.script_key = static_cast<std::int32_t>(std::strtol(argv[1], nullptr, 0));
   queues.sensor_key = static_cast<std::int32_t>(std::strtol(argv[2], nullptr, 0));
   queues.reply_key = static_cast<std::int32_t>(std::strtol(argv[3], nullptr, 0));
+  const bool findings = argc > 4 && std::string(argv[4]) == "findings";
   const double rate_hz = argc > 4 ? std::atof(argv[4]) : 0;
 
   // Before any thread is made, so that all inherit it and only sigtimedwait takes the signal.
@@ -60,6 +96,7 @@ int main(int argc, char** argv) {
     receiver.reply(message.tag, {echo, echo ? message.text.substr(5) : "unknown command; try echo"});
   });
   if (!started) return refuse(started.error());
+  if (findings) send_findings(**sensor);
   std::puts("ready");
   std::fflush(stdout);
 
