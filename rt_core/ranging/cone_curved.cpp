@@ -8,7 +8,7 @@
 // s, and the search has one valley: golden section finds its ground. The same holds for sets that are beyond the cone
 // by no more than a bound, which is what leads the search to generators that meet the cone at all.
 // From inside there may be several valleys, and where the beam's incidence is limited too: then the search samples all
-// around first.
+// around first. A wall that sends nothing back hides nothing, so a limited beam also sees walls from within.
 #include "rt_core/ranging/cone_curved.hpp"
 
 #include <algorithm>
@@ -103,8 +103,8 @@ void nearest_on_side(const ConeShape& cone, const Round& body, bool inside, Near
     const bool nearest_of_all = front.violation == 0.0 && front.distance <= least * (1.0 + kRounding);
     const double half = std::acos(body.radius / from_axis);
     if (!nearest_of_all) golden_section(middle - half, middle + half, side);
-    if (!found.found) return;
-    if (!limited || comes_back(cone, body, found.p)) return best.offer(found.distance, found.p);
+    if (!limited && !found.found) return;
+    if (!limited || (found.found && comes_back(cone, body, found.p))) return best.offer(found.distance, found.p);
   } else if (!inside && !limited) {
     return;  // an end stands before it
   }
@@ -169,11 +169,8 @@ void nearest_on_capsule(const ConeShape& cone, const Pose& X_SG, double radius, 
     const Vector3d outward = end * body.axis;
     const Vector3d centre = body.centre + half_length * outward;
     const Seam seam{true, outward};
-    if (inside) {
-      nearest_on_sphere_from_inside(cone, centre, radius, seam, best);
-    } else {
-      nearest_on_sphere_from_outside(cone, centre, radius, seam, best);
-    }
+    if (!inside) nearest_on_sphere_from_outside(cone, centre, radius, seam, best);
+    if (inside || cone.cos_incidence > 0.0) nearest_on_sphere_from_inside(cone, centre, radius, seam, best);
   }
   nearest_on_side(cone, body, inside, best);
 }

@@ -1,5 +1,6 @@
 #include "rt_core/ranging/cone_section.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -45,6 +46,25 @@ void nearest_on_edges(const ConeShape& cone, std::span<const Vector3d> corners, 
     Vector3d p;
     if (nearest_on_segment(cone, from, to, cone.reach(d, best.distance), p)) best.offer(p.norm(), p);
   }
+}
+
+// `area`: the normal times the area of the parallelogram of the edges at the first corner. False: there is no telling.
+bool normal_of(std::span<const Vector3d> corners, Vector3d& area, Vector3d& normal) {
+  const Vector3d first = corners[1] - corners[0];
+  const Vector3d last = corners[corners.size() - 1] - corners[0];
+  area = first.cross(last);
+  const double size = area.norm();
+  const double sine = size / std::sqrt(first.squaredNorm() * last.squaredNorm());
+  constexpr double kFlat = 1e-12;
+  if (!(sine > kFlat)) return false;
+  normal = area / size;
+  // What rounding left of the product of nearly parallel edges must not tilt a long needle along itself.
+  constexpr double kNeedle = 1e-3;
+  if (sine < kNeedle) {
+    const Vector3d& longer = first.squaredNorm() > last.squaredNorm() ? first : last;
+    normal = (normal - normal.dot(longer) / longer.squaredNorm() * longer).normalized();
+  }
+  return true;
 }
 
 }  // namespace
@@ -102,16 +122,10 @@ bool nearest_on_segment(const ConeShape& cone, const Vector3d& a, const Vector3d
 
 void nearest_on_polygon(const ConeShape& cone, std::span<const Vector3d> corners, Nearest& best) {
   const std::size_t count = corners.size();
-  const Vector3d first = corners[1] - corners[0];
-  const Vector3d last = corners[count - 1] - corners[0];
-  Vector3d normal = first.cross(last);
-  const double area = normal.norm();  // of the parallelogram of the two edges
-  constexpr double kFlat = 1e-12;     // the sine of the angle below which there is no telling the normal
-  if (!(area > kFlat * std::sqrt(first.squaredNorm() * last.squaredNorm()))) {
-    nearest_on_edges(cone, corners, best);
-    return;
-  }
-  normal /= area;
+  Vector3d area_vector;
+  Vector3d normal;
+  if (!normal_of(corners, area_vector, normal)) return nearest_on_edges(cone, corners, best);
+  const double area = area_vector.norm();
   double d = normal.dot(corners[0]);
   if (d < 0.0) {
     d = -d;
@@ -129,7 +143,7 @@ void nearest_on_polygon(const ConeShape& cone, std::span<const Vector3d> corners
     q.setZero();  // the apex lies in the plane, and which side it is on is a matter of rounding
   }
   // The edges beyond which q lies.
-  const double sign = first.cross(last).dot(normal) > 0.0 ? 1.0 : -1.0;
+  const double sign = area_vector.dot(normal) > 0.0 ? 1.0 : -1.0;
   bool inside = true;
   Nearest on_edges{limit};
   for (std::size_t i = 0; i < count; ++i) {
