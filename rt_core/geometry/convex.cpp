@@ -34,8 +34,10 @@ void put_skins_on(double skin_a, double skin_b, CoreDistance& core) {
     core.p_b -= skin_b * towards_b;
     return;
   }
-  // Skins that overlap: the middle of the overlap, which may lie beyond one of the cores where skins differ much.
-  const Vector3d middle = 0.5 * (core.p_a + skin_a * towards_b + core.p_b - skin_b * towards_b);
+  // A point between the cores that lies in both skins.
+  const double from = std::max(0.0, core.distance - skin_b);
+  const double to = std::min(core.distance, skin_a);
+  const Vector3d middle = core.p_a + 0.5 * (from + to) * towards_b;
   core.distance = 0.0;
   core.p_a = middle;
   core.p_b = middle;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "rt_core/geometry/convex_cylinder.hpp"
 #include "rt_core/geometry/convex_gjk.hpp"
 #include "rt_core/geometry/convex_pairs.hpp"
 #include "rt_core/geometry/triangle.hpp"
@@ -18,6 +19,8 @@ using Eigen::Vector3d;
 // rounding takes from bodies of more than 10 m.
 constexpr double kCertain = 5e-10;
 constexpr double kCertainPart = 5e-11;
+// m: bounds as near as this need no refinement.
+constexpr double kSettled = 1e-12;
 
 CoreDistance answer(const ClosestPoints& points) { return {points.distance, true, false, points.p_a, points.p_b}; }
 CoreDistance answer(const Vector3d& p_a, const Vector3d& p_b) { return {(p_b - p_a).norm(), true, false, p_a, p_b}; }
@@ -26,12 +29,6 @@ double up_to_less(double value, double limit) { return std::min(std::max(value, 
 
 CoreDistance box_to_point(const Vector3d& half, const Vector3d& p) {
   return answer({up_to_less(p[0], half[0]), up_to_less(p[1], half[1]), up_to_less(p[2], half[2])}, p);
-}
-
-CoreDistance cylinder_to_point(const Vector3d& half, const Vector3d& p) {
-  const double across = std::hypot(p[0], p[1]);
-  const double scale = across > half[0] ? half[0] / across : 1.0;
-  return answer({scale * p[0], scale * p[1], up_to_less(p[2], half[2])}, p);
 }
 
 CoreDistance few_to_few(const FewPoints& a, const FewPoints& b, double up_to) {
@@ -134,6 +131,34 @@ CoreDistance box_to_box(const CentredBox& a, const Placed<CentredBox>& b, const 
   return out.certain ? out : boxes_by_triangles(a.half, b.shape.half, X_AB);
 }
 
+CoreDistance cylinder_to_box(const CentredCylinder& a, const Placed<CentredBox>& b, const GjkLimits& limits) {
+  const GjkAnswer found = gjk(a, b, -b.t, limits);
+  CoreDistance out{found.upper, true, found.beyond, found.p_a, found.p_b};
+  if (found.beyond) {
+    out.distance = found.lower;
+  } else if (found.upper - found.lower > kSettled) {
+    refine_cylinder_to_box(a, b, out);
+  }
+  return out;
+}
+
+CoreDistance cylinder_to_cylinder(const CentredCylinder& a, const Placed<CentredCylinder>& b, const GjkLimits& limits) {
+  const GjkAnswer found = gjk(a, b, -b.t, limits);
+  if (found.beyond || found.overlap || found.upper - found.lower <= kSettled) return with_bounds(found, limits.size);
+  CoreDistance out{found.upper, true, false, found.p_a, found.p_b};
+  refine_cylinder_to_cylinder(a, b, out);
+  if (out.distance <= 0.0) return out;
+  // The plane between the refined points is a bound, too.
+  const Vector3d n = (out.p_b - out.p_a) / out.distance;
+  const double plane = dot(n, b.support(-n)) - dot(n, a.support(n));
+  const double lower = std::max(found.lower, plane);
+  if (out.distance - lower > kCertain + kCertainPart * limits.size) {
+    out.distance = lower;
+    out.certain = false;
+  }
+  return out;
+}
+
 }  // namespace
 
 double size_of(const ConvexCore& a, const ConvexCore& b, const RelativePose& X_AB) noexcept {
@@ -155,19 +180,15 @@ CoreDistance core_distance(const ConvexCore& a, const ConvexCore& b, const Relat
     if (has_few_points(b)) return box_to_few(box, few_points(b, X_AB), limits);
     return box_to_box(box, {{b.half}, X_AB.R, X_AB.t}, X_AB, limits);
   }
-  limits.iterations = 256;
   const CentredCylinder cylinder{a.half[0], a.half[2]};
-  if (b.kind == CoreKind::point) return cylinder_to_point(a.half, X_AB.t);
-  GjkAnswer found;
   if (has_few_points(b)) {
     const FewPoints few = few_points(b, X_AB);
-    found = gjk(cylinder, few, -few.points[0], limits);
-  } else if (b.kind == CoreKind::box) {
-    found = gjk(cylinder, Placed<CentredBox>{{b.half}, X_AB.R, X_AB.t}, -X_AB.t, limits);
-  } else {
-    found = gjk(cylinder, Placed<CentredCylinder>{{b.half[0], b.half[2]}, X_AB.R, X_AB.t}, -X_AB.t, limits);
+    if (few.count == 1) return cylinder_to_point(cylinder, few.points[0]);
+    if (few.count == 2) return cylinder_to_segment(cylinder, {few.points[0], few.points[1]});
+    return cylinder_to_triangle(cylinder, few.points, up_to);
   }
-  return with_bounds(found, limits.size);
+  if (b.kind == CoreKind::box) return cylinder_to_box(cylinder, {{b.half}, X_AB.R, X_AB.t}, limits);
+  return cylinder_to_cylinder(cylinder, {{b.half[0], b.half[2]}, X_AB.R, X_AB.t}, limits);
 }
 
 }  // namespace cellmirror::geometry

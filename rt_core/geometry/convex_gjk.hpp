@@ -73,8 +73,10 @@ template <typename A, typename B>
     out.p_b = out.p_a;
     return out;
   }
+  // Together they are as far apart, in just the direction, as the simplex is from the origin: weights of slender
+  // simplices have fewer digits than that.
   out.p_a = simplex.point_of_a();
-  out.p_b = simplex.point_of_b();
+  out.p_b = out.p_a - simplex.nearest();
   out.upper = std::sqrt(simplex.squared());
   return out;
 }
