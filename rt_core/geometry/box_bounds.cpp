@@ -2,13 +2,13 @@
 
 namespace cellmirror::geometry {
 
-ChildBounds child_bounds() noexcept {
+const BoxKernels& box_kernels() noexcept {
 #ifdef CELLMIRROR_AVX2_KERNELS
-  static const ChildBounds chosen = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0
-                                        ? avx2::child_bounds()
-                                        : baseline::child_bounds();
+  static const BoxKernels chosen = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0
+                                       ? avx2::box_kernels()
+                                       : baseline::box_kernels();
 #else
-  static const ChildBounds chosen = baseline::child_bounds();
+  static const BoxKernels chosen = baseline::box_kernels();
 #endif
   return chosen;
 }

@@ -5,37 +5,43 @@
 #include <array>
 #include <cstddef>
 
-#include "rt_core/geometry/wide_tree.hpp"
+#include "rt_core/geometry/wide_node.hpp"
 
 namespace cellmirror::geometry {
 
-// How the frame N of a node stands to the frame O of the box' own axes. The same for all boxes of a tree.
-struct BoxFrame {
-  std::array<std::array<float, 3>, 3> R_ON{};
-  std::array<std::array<float, 3>, 3> absolute_R_ON{};
-};
-
-// A box with a slab, seen from N. Single precision, m.
+// A box of body O, in the frame N of the node that it is compared with. Single precision, m.
 struct BoxQuery {
-  std::array<float, 3> centre_N{};  // of the box
-  std::array<float, 3> reach_N{};   // half its extent along the axes of N
-  std::array<float, 3> half_O{};
-  std::array<float, 3> shift_O{};   // a point p_N is at R_ON * p_N + shift_O from the box' centre
-  std::array<float, 3> normal_N{};  // of the slab; zero: none
-  std::array<float, 3> absolute_normal_N{};
-  float middle_N = 0;  // of the slab along normal_N
-  float thick = 0;
+  std::array<float, 3> centre{};
+  std::array<std::array<float, 3>, 3> axes{};  // unit vectors
+  std::array<float, 3> half{};                 // m, along the axes
+  // A direction in which the bodies may be well apart, at best that of their nearest points; zero: none is known.
+  std::array<float, 3> direction{};
 };
 
-// Squares of the bounds, m^2, too large by no more than rounding: see RelativeFrame::margin.
-using ChildBounds = void (*)(const WideNode& node, const BoxFrame& frame, const BoxQuery& box, float* squares) noexcept;
-[[nodiscard]] ChildBounds child_bounds() noexcept;
+// How the frames of two trees' boxes stand to each other: p_N = R_NO * p_O + p_NO.
+struct BoxFrame {
+  std::array<std::array<float, 3>, 3> R_NO{};
+  std::array<float, 3> p_NO{};
+};
+
+struct BoxKernels {
+  // Squares of the bounds, m^2; too large by no more than rounding, see kBoundMargin.
+  void (*bounds)(const WideNode& node, const BoxQuery& box, float* squares) noexcept;
+  // Box in a place of a node of O; `direction` is left as it is.
+  void (*place_box)(const WideNode& node, std::size_t place, const BoxFrame& frame, BoxQuery& box) noexcept;
+};
+
+// What the bounds lose by single precision, at most, in parts of the lengths involved: a dozen roundings, each of
+// 2^-24, in sums of up to four terms.
+inline constexpr double kBoundMargin = 64.0 / (1U << 24U);
+
+[[nodiscard]] const BoxKernels& box_kernels() noexcept;
 
 namespace baseline {
-[[nodiscard]] ChildBounds child_bounds() noexcept;
+[[nodiscard]] BoxKernels box_kernels() noexcept;
 }
 namespace avx2 {
-[[nodiscard]] ChildBounds child_bounds() noexcept;
+[[nodiscard]] BoxKernels box_kernels() noexcept;
 }
 
 }  // namespace cellmirror::geometry

@@ -10,21 +10,28 @@
 namespace cellmirror::geometry {
 
 BoxWalk::BoxWalk(const WideTree& tree, const Pose& X_MB, const Eigen::Vector3d& half, double skin) noexcept
-    : tree_(tree), bounds_(child_bounds()), least_left_out_(std::numeric_limits<float>::infinity()) {
+    : tree_(tree), kernels_(box_kernels()), least_left_out_(std::numeric_limits<float>::infinity()) {
   const Eigen::Vector3d p_MB = X_MB.translation() - tree.origin();
-  const WalkFrame frame(X_MB.linear().transpose(), -(X_MB.linear().transpose() * p_MB));
-  frame_ = frame.rotation;
-  WideNode box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.half[axis][0] = static_cast<float>((1 + 1e-6) * half[static_cast<Eigen::Index>(axis)]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    box_.centre[i] = static_cast<float>(p_MB[row]);
+    box_.half[i] = static_cast<float>((1 + 1e-6) * half[row]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      box_.axes[k][i] = static_cast<float>(X_MB.linear()(row, static_cast<Eigen::Index>(k)));
+    }
   }
-  box_ = frame.box_of(box, 0);
   margin_ = skin + kBoundMargin * (half.norm() + tree.reach() + p_MB.norm());
   set_limit(std::numeric_limits<double>::infinity());
   stack_[size_++] = {0, 0};
 }
 
 void BoxWalk::set_limit(double limit) noexcept { limit_square_ = limit_square(limit + margin_); }
+
+void BoxWalk::set_direction(const Eigen::Vector3d& n_M) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    box_.direction[i] = static_cast<float>((1 - 1e-6) * n_M[static_cast<Eigen::Index>(i)]);
+  }
+}
 
 double BoxWalk::least_left_out() const noexcept {
   return std::max(0.0, std::sqrt(static_cast<double>(least_left_out_)) - margin_);
@@ -50,7 +57,7 @@ void BoxWalk::open(std::uint32_t index, float square) noexcept {
   CELLMIRROR_EXPECTS(size_ + WideNode::kWidth <= kCapacity);
   const WideNode& node = tree_.nodes()[index];
   alignas(32) std::array<float, WideNode::kWidth> squares;
-  bounds_(node, frame_, box_, squares.data());
+  kernels_.bounds(node, box_, squares.data());
   const std::size_t bottom = size_;
   for (std::size_t i = 0; i < WideNode::kWidth; ++i) {
     if (node.child[i] == WideTree::kNone) continue;

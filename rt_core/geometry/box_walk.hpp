@@ -20,6 +20,8 @@ class BoxWalk {
 
   // Only what is at most this far from the skin is looked at, m; may shrink from call to call.
   void set_limit(double limit) noexcept;
+  // A unit vector in M in which the bodies may be well apart.
+  void set_direction(const Eigen::Vector3d& n_M) noexcept;
   // A lower bound of the distance of all that was left out, m; infinite where nothing was.
   [[nodiscard]] double least_left_out() const noexcept;
 
@@ -36,9 +38,8 @@ class BoxWalk {
   void open(std::uint32_t node, float square) noexcept;
 
   const WideTree& tree_;
-  BoxFrame frame_;
   BoxQuery box_;
-  ChildBounds bounds_;
+  const BoxKernels& kernels_;
   double margin_ = 0;  // m, skin less rounding
   float limit_square_ = 0;
   float least_left_out_ = 0;

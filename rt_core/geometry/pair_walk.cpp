@@ -23,49 +23,32 @@ float size_of(const WideNode& node, std::size_t place) {
 
 float limit_square(double limit) noexcept { return static_cast<float>(std::min(1.000001 * limit * limit, 1e38)); }
 
-WalkFrame::WalkFrame(const Eigen::Matrix3d& R_ON, const Eigen::Vector3d& p_ON_in_O)
-    : p_NO(single(-(R_ON.transpose() * p_ON_in_O))), p_ON(single(p_ON_in_O)) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto value = static_cast<float>(R_ON(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
-      rotation.R_ON[i][k] = value;
-      rotation.absolute_R_ON[i][k] = std::abs(value);
-      R_NO[k][i] = value;
-      absolute_R_NO[k][i] = std::abs(value);
-    }
-  }
-}
-
-BoxQuery WalkFrame::box_of(const WideNode& node, std::size_t place) const noexcept {
-  BoxQuery box;
-  const std::array<float, 3> c{node.centre[0][place], node.centre[1][place], node.centre[2][place]};
-  const std::array<float, 3> h{node.half[0][place], node.half[1][place], node.half[2][place]};
-  const std::array<float, 3> n{node.normal[0][place], node.normal[1][place], node.normal[2][place]};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::array<float, 3>& R = R_NO[i];
-    const std::array<float, 3>& absolute = absolute_R_NO[i];
-    box.centre_N[i] = R[0] * c[0] + R[1] * c[1] + R[2] * c[2] + p_NO[i];
-    box.reach_N[i] = absolute[0] * h[0] + absolute[1] * h[1] + absolute[2] * h[2];
-    box.half_O[i] = h[i];
-    box.shift_O[i] = p_ON[i] - c[i];
-    box.normal_N[i] = R[0] * n[0] + R[1] * n[1] + R[2] * n[2];
-    box.absolute_normal_N[i] = std::abs(box.normal_N[i]);
-  }
-  box.middle_N = node.middle[place] - (n[0] * p_ON[0] + n[1] * p_ON[1] + n[2] * p_ON[2]);
-  box.thick = node.thick[place];
-  return box;
+BoxFrame box_frame(const Eigen::Matrix3d& R_NO, const Eigen::Vector3d& p_NO) noexcept {
+  BoxFrame frame;
+  frame.p_NO = single(p_NO);
+  for (std::size_t i = 0; i < 3; ++i) frame.R_NO[i] = single(R_NO.row(static_cast<Eigen::Index>(i)));
+  return frame;
 }
 
 PairWalk::PairWalk(const WideTree& a, const WideTree& b, const Pose& X_AB) noexcept
     : a_(a),
       b_(b),
-      boxes_of_a_(X_AB.linear(), X_AB * b.origin() - a.origin()),
-      boxes_of_b_(X_AB.linear().transpose(), X_AB.linear().transpose() * (a.origin() - X_AB * b.origin())),
-      bounds_(child_bounds()),
-      margin_(kBoundMargin * (a.reach() + b.reach() + (X_AB * b.origin() - a.origin()).norm())),
+      R_BA_(X_AB.linear().transpose()),
+      kernels_(box_kernels()),
       least_left_out_(std::numeric_limits<float>::infinity()) {
+  const Eigen::Vector3d p_AB = X_AB * b.origin() - a.origin();
+  a_in_b_ = box_frame(R_BA_, -(R_BA_ * p_AB));
+  b_in_a_ = box_frame(X_AB.linear(), p_AB);
+  margin_ = kBoundMargin * (a.reach() + b.reach() + p_AB.norm());
   set_limit(std::numeric_limits<double>::infinity());
   stack_[size_++] = {0, 0, 0};
+}
+
+void PairWalk::set_direction(const Eigen::Vector3d& n_A) noexcept {
+  // A little shorter than 1 also after rounding, so that gaps along it are never overstated.
+  const Eigen::Vector3d n = (1 - 1e-6) * n_A;
+  box_of_b_.direction = single(n);
+  box_of_a_.direction = single(R_BA_ * n);
 }
 
 void PairWalk::set_limit(double limit) noexcept { limit_square_ = limit_square(limit + margin_); }
@@ -94,6 +77,7 @@ bool PairWalk::next(std::uint32_t& triangle_a, std::uint32_t& triangle_b) noexce
 }
 
 void PairWalk::open(const Entry& entry) noexcept {
+  ++opens;
   const WideNode& node_a = a_.nodes()[entry.place_a / 8];
   const WideNode& node_b = b_.nodes()[entry.place_b / 8];
   const std::size_t in_a = entry.place_a % 8;
@@ -105,11 +89,13 @@ void PairWalk::open(const Entry& entry) noexcept {
   alignas(32) std::array<float, 8> squares;
   if (open_b) {
     const WideNode& opened = b_.nodes()[child_b];
-    bounds_(opened, boxes_of_a_.rotation, boxes_of_a_.box_of(node_a, in_a), squares.data());
+    kernels_.place_box(node_a, in_a, a_in_b_, box_of_a_);
+    kernels_.bounds(opened, box_of_a_, squares.data());
     push(squares, opened, 8 * child_b, true, entry);
   } else {
     const WideNode& opened = a_.nodes()[child_a];
-    bounds_(opened, boxes_of_b_.rotation, boxes_of_b_.box_of(node_b, in_b), squares.data());
+    kernels_.place_box(node_b, in_b, b_in_a_, box_of_b_);
+    kernels_.bounds(opened, box_of_b_, squares.data());
     push(squares, opened, 8 * child_a, false, entry);
   }
 }

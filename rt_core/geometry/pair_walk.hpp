@@ -12,24 +12,9 @@
 
 namespace cellmirror::geometry {
 
-// What the bounds lose by single precision, at most, in parts of the lengths involved: a dozen roundings, each of
-// 2^-24, in sums of up to four terms.
-inline constexpr double kBoundMargin = 64.0 / (1U << 24U);
 // The square of a limit, rounded up.
 [[nodiscard]] float limit_square(double limit) noexcept;
-
-// How a tree (or box) O and a tree N stand to each other, both in coordinates from their own origins.
-struct WalkFrame {
-  BoxFrame rotation;
-  std::array<std::array<float, 3>, 3> R_NO{};
-  std::array<std::array<float, 3>, 3> absolute_R_NO{};
-  std::array<float, 3> p_NO{};  // O's origin in N
-  std::array<float, 3> p_ON{};
-
-  WalkFrame(const Eigen::Matrix3d& R_ON, const Eigen::Vector3d& p_ON_in_O);
-  // The box in a place of a node of O.
-  [[nodiscard]] BoxQuery box_of(const WideNode& node, std::size_t place) const noexcept;
-};
+[[nodiscard]] BoxFrame box_frame(const Eigen::Matrix3d& R_NO, const Eigen::Vector3d& p_NO) noexcept;
 
 class PairWalk {
  public:
@@ -38,6 +23,8 @@ class PairWalk {
 
   // Only what is at most this far apart is looked at, m; may shrink from call to call.
   void set_limit(double limit) noexcept;
+  // A unit vector in A's frame in which the bodies may be well apart.
+  void set_direction(const Eigen::Vector3d& n_A) noexcept;
   // A lower bound of the distance of all that was left out, m; infinite where nothing was.
   [[nodiscard]] double least_left_out() const noexcept;
 
@@ -59,13 +46,21 @@ class PairWalk {
 
   const WideTree& a_;
   const WideTree& b_;
-  WalkFrame boxes_of_a_;  // O is A, N is B
-  WalkFrame boxes_of_b_;
-  ChildBounds bounds_;
+  Eigen::Matrix3d R_BA_;
+  BoxFrame a_in_b_;
+  BoxFrame b_in_a_;
+  BoxQuery box_of_a_;  // in B
+  BoxQuery box_of_b_;  // in A
+  const BoxKernels& kernels_;
   double margin_ = 0;  // m, of the rounding of bounds in single precision
   float limit_square_ = 0;
   float least_left_out_ = 0;
   std::size_t size_ = 0;
+
+ public:
+  std::size_t opens = 0;
+
+ private:
   std::array<Entry, kCapacity> stack_;  // not filled before use: it is large
 };
 

@@ -1,5 +1,6 @@
 #include "rt_core/geometry/wide_tree.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,88 @@ float round_up(double value) {
   return static_cast<double>(rounded) >= value ? rounded
                                                : std::nextafter(rounded, std::numeric_limits<float>::infinity());
 }
+
+// At right angles: `normal` as nearly as possible the last, `along` the first. The identity where they do not tell.
+Eigen::Matrix3d axes_along(const Vector3d& along, const Vector3d& normal) {
+  Eigen::Matrix3d axes;
+  axes.col(2) = normal.normalized();
+  axes.col(1) = axes.col(2).cross(along).normalized();
+  axes.col(0) = axes.col(1).cross(axes.col(2)).normalized();
+  const bool sound = axes.allFinite() && (axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm() < 1e-9;
+  return sound ? axes : Eigen::Matrix3d::Identity();
+}
+
+struct OrientedBox {
+  Eigen::Matrix3d axes;  // columns
+  Vector3d centre;
+  Vector3d half;
+  [[nodiscard]] double half_area() const { return half.x() * half.y() + half.y() * half.z() + half.z() * half.x(); }
+};
+
+OrientedBox box_along(const Eigen::Matrix3d& axes, std::span<const Triangle> triangles) {
+  const Eigen::Matrix3d turn = axes.transpose();
+  Vector3d lower = turn * triangles[0][0];
+  Vector3d upper = lower;
+  for (const Triangle& t : triangles) {
+    for (const Vector3d& p : t) {
+      const Vector3d turned = turn * p;
+      lower = lower.cwiseMin(turned);
+      upper = upper.cwiseMax(turned);
+    }
+  }
+  return {axes, axes * (0.5 * lower + 0.5 * upper), 0.5 * (upper - lower)};
+}
+
+// Along a triangle's longest edge and its normal: no other box of it is smaller.
+Eigen::Matrix3d axes_of_triangle(const Triangle& t) {
+  Vector3d longest = t[1] - t[0];
+  for (const Vector3d& edge : {Vector3d(t[2] - t[1]), Vector3d(t[0] - t[2])}) {
+    if (edge.squaredNorm() > longest.squaredNorm()) longest = edge;
+  }
+  return axes_along(longest, (t[1] - t[0]).cross(t[2] - t[0]));
+}
+
+// How a surface extends and which way it faces, weighted by area.
+class Spread {
+ public:
+  explicit Spread(std::span<const Triangle> triangles) {
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    Vector3d mean = Vector3d::Zero();
+    double area = 0;
+    const Vector3d about = triangles[0][0];
+    for (const Triangle& t : triangles) {
+      const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
+      const double weight = n.norm();
+      const Vector3d middle = (t[0] + t[1] + t[2]) / 3 - about;
+      area += weight;
+      normal_ += n;
+      mean += weight * middle;
+      squares += 9 * weight / 12 * middle * middle.transpose();
+      for (const Vector3d& p : t) squares += weight / 12 * (p - about) * (p - about).transpose();
+    }
+    if (!(area > 0)) return;
+    mean /= area;
+    covariance_ = squares / area - mean * mean.transpose();
+  }
+
+  [[nodiscard]] Eigen::Matrix3d principal_axes() const {
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(covariance_);
+    return axes_along(solver.eigenvectors().col(2), solver.eigenvectors().col(0));
+  }
+  // The mean normal, and the longest extent at right angles to it.
+  [[nodiscard]] Eigen::Matrix3d axes_along_normal() const {
+    const Vector3d n = normal_.normalized();
+    const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - n * n.transpose();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(flat * covariance_ * flat);
+    return axes_along(solver.eigenvectors().col(2), n);
+  }
+
+ private:
+  Vector3d normal_ = Vector3d::Zero();
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+};
 
 class Builder {
  public:
@@ -123,48 +206,31 @@ class Builder {
     }
   }
 
+  // The smallest box of a few orientations that are likely to fit.
   void set_place(WideNode& node, std::size_t place, const Part& part) const {
-    Vector3d lower = triangles_[part.first][0];
-    Vector3d upper = lower;
-    Vector3d normal = Vector3d::Zero();
-    double area = 0;
-    for (std::uint32_t i = part.first; i < part.first + part.count; ++i) {
-      const Triangle& t = triangles_[i];
-      for (const Vector3d& p : t) {
-        lower = lower.cwiseMin(p);
-        upper = upper.cwiseMax(p);
-      }
-      const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-      normal += n;
-      area += n.norm();
+    const std::span<const Triangle> triangles = triangles_.subspan(part.first, part.count);
+    OrientedBox best = box_along(Eigen::Matrix3d::Identity(), triangles);
+    const auto consider = [&](const Eigen::Matrix3d& axes) {
+      const OrientedBox box = box_along(axes, triangles);
+      if (box.half_area() < best.half_area()) best = box;
+    };
+    if (part.count == 1) {
+      consider(axes_of_triangle(triangles[0]));
+    } else {
+      const Spread spread(triangles);
+      consider(spread.principal_axes());
+      consider(spread.axes_along_normal());
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto k = static_cast<std::size_t>(axis);
-      const double low = lower[axis] - origin_[axis];
-      const double high = upper[axis] - origin_[axis];
-      const auto centre = static_cast<float>(0.5 * low + 0.5 * high);
-      node.centre[k][place] = centre;
-      node.half[k][place] = round_up(std::max(high - centre, centre - low));
+    const Vector3d centre = best.centre - origin_;
+    const Eigen::Vector3f rounded = centre.cast<float>();
+    const Eigen::Matrix3f axes = best.axes.cast<float>();
+    const Vector3d lost = (rounded.cast<double>() - centre).cwiseAbs();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      node.centre[i][place] = rounded[row];
+      node.half[i][place] = round_up(best.half[row] + lost.sum());
+      for (std::size_t k = 0; k < 3; ++k) node.axes[k][i][place] = axes(row, static_cast<Eigen::Index>(k));
     }
-    if (normal.norm() > 0.5 * area) set_slab(node, place, part, normal.normalized());
-  }
-
-  void set_slab(WideNode& node, std::size_t place, const Part& part, const Vector3d& unit) const {
-    // A little shorter than 1 also after rounding, so that widths along it are never overstated.
-    const Eigen::Vector3f n = ((1 - 1e-6) * unit).cast<float>();
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (std::uint32_t i = part.first; i < part.first + part.count; ++i) {
-      for (const Vector3d& p : triangles_[i]) {
-        const double height = n.cast<double>().dot(p - origin_);
-        low = std::min(low, height);
-        high = std::max(high, height);
-      }
-    }
-    const auto middle = static_cast<float>(0.5 * low + 0.5 * high);
-    for (int axis = 0; axis < 3; ++axis) node.normal[static_cast<std::size_t>(axis)][place] = n[axis];
-    node.middle[place] = middle;
-    node.thick[place] = round_up(std::max(high - middle, middle - low));
   }
 
   std::span<const MeshTree::Node> nodes_;
