@@ -16,3 +16,4 @@ pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)  # rt_core/inverse_kinem
 find_package(LAPACK REQUIRED)
 find_package(fcl REQUIRED)     # rt_core/collision
 find_package(assimp REQUIRED)  # config: mesh files
+find_package(Qhull REQUIRED)   # rt_core/geometry: convex hulls

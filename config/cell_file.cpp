@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <utility>
@@ -15,7 +16,41 @@ namespace cellmirror {
 
 namespace fs = std::filesystem;
 
-std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnostics) {
+namespace {
+
+// Tells `progress` of every file that is read from now on, until it is destroyed. Looks through all component files to
+// count them and their meshes, which takes little time beside the meshes.
+class ProgressOfFiles {
+ public:
+  ProgressOfFiles(const std::string& file, std::string_view text, const HomeFiles& files, const LoadProgress& progress)
+      : meshes_(files.meshes()) {
+    if (!progress) return;
+    meshes_.count_only(true);
+    CellReader reader(file, files);
+    Diagnostics ignored;
+    std::size_t total = 0;
+    if (reader.read(text)) {
+      ComponentFiles components(files);
+      components.load(reader.root, ignored);
+      total = components.files().size() + meshes_.counted();
+    }
+    meshes_.count_only(false);
+    meshes_.tell([&progress, total, done = std::size_t{0}](const fs::path& path) mutable {
+      progress(done, std::max(total, done + 1), path.filename().string());
+      ++done;
+    });
+  }
+  ~ProgressOfFiles() { meshes_.tell({}); }
+  ProgressOfFiles(const ProgressOfFiles&) = delete;
+  ProgressOfFiles& operator=(const ProgressOfFiles&) = delete;
+
+ private:
+  MeshLibrary& meshes_;
+};
+
+}  // namespace
+
+std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnostics, const LoadProgress& progress) {
   const Place whole_file{path.string(), 0, 0};
   const auto refuse = [&](const Error& error) {
     diagnostics.error(whole_file, error.what, error.remedy);
@@ -26,6 +61,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
   auto home = KismetHome::of_cell(path);
   if (!home) return refuse(home.error());
   const HomeFiles files(*home);
+  const ProgressOfFiles telling(path.string(), *text, files, progress);
   CellReader reader(path.string(), files);
   const bool readable = reader.read(*text);
   auto source = std::make_shared<ComponentFiles>(files);
@@ -41,6 +77,9 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
     cell = Cell::build(std::make_shared<const Component>(reader.root), source, building);
     for (std::size_t i = before; i < building.all().size(); ++i) reader.findings.add(building.all()[i]);
   }
+  collision::Settings collision;
+  if (cell) collision = reader.collision.settings(*cell, reader.findings);
+  if (!reader.findings.ok()) cell.reset();
   take_sorted(diagnostics, reader.findings);
   diagnostics.take(of_components);
   source->release();
@@ -54,6 +93,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     reader.dds,
                     reader.queues,
                     reader.web,
+                    std::move(collision),
                     std::move(reader.views),
                     std::move(reader.startup_script),
                     source->files(),
@@ -85,14 +125,14 @@ bool is_checkable(const fs::path& path) {
   return extension == ".toml" || extension == ".mpc" || extension == ".urdf";
 }
 
-void check_file(const fs::path& path, Diagnostics& diagnostics) {
+void check_file(const fs::path& path, Diagnostics& diagnostics, const LoadProgress& progress) {
   if (!is_checkable(path)) {
     diagnostics.error({path.string(), 0, 0}, "this kind of file cannot be checked here",
                       "cells are .toml, components .mpc or .urdf");
     return;
   }
   if (lower_case(path.extension().string()) == ".toml") {
-    static_cast<void>(load_cell(path, diagnostics));
+    static_cast<void>(load_cell(path, diagnostics, progress));
     return;
   }
   const auto home = home_of_component(path);
@@ -101,6 +141,12 @@ void check_file(const fs::path& path, Diagnostics& diagnostics) {
     return;
   }
   const HomeFiles files(*home);
+  if (progress) {
+    files.meshes().tell([&progress, done = std::size_t{0}](const fs::path& file) mutable {
+      progress(done, done + 1, file.filename().string());
+      ++done;
+    });
+  }
   const auto component = read_component_file(path, files, diagnostics);
   if (!component) return;
   ComponentFiles others(files);

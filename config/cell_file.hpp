@@ -2,16 +2,20 @@
 // docs/cell-files.md. Not for the tick; any thread, one at a time a call.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/cell/cell.hpp"
+#include "rt_core/collision/settings.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
 
@@ -56,18 +60,24 @@ struct LoadedCell {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  collision::Settings collision;  // paths in rules are full paths
   std::vector<ViewSetting> views;
   std::string startup_script;                // name of a file in the home's scripts/, which exists; empty: none
   std::vector<std::filesystem::path> files;  // every component file that was read
   Cell cell;
 };
 
+// Called before each file (component or mesh) that is read, on the thread that loads: `done` of `total` files are read,
+// `what` is the next one's name. The files are counted first; `total` grows where files appear meanwhile.
+using LoadProgress = std::function<void(std::size_t done, std::size_t total, std::string_view what)>;
+
 // Nothing where there is any error; all findings of all files in `diagnostics`, each with file:line:column.
-[[nodiscard]] std::optional<LoadedCell> load_cell(const std::filesystem::path& path, Diagnostics& diagnostics);
+[[nodiscard]] std::optional<LoadedCell> load_cell(const std::filesystem::path& path, Diagnostics& diagnostics,
+                                                  const LoadProgress& progress = {});
 
 // `cellmirror check` of a .toml (with all it refers to), .mpc or .urdf file. The home of a component is $kis_home, else
 // the nearest folder above it that holds a cell.toml, else its own folder. Other extensions are an error.
-void check_file(const std::filesystem::path& path, Diagnostics& diagnostics);
+void check_file(const std::filesystem::path& path, Diagnostics& diagnostics, const LoadProgress& progress = {});
 // Whether check_file() knows the extension.
 [[nodiscard]] bool is_checkable(const std::filesystem::path& path);
 

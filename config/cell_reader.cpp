@@ -58,6 +58,7 @@ bool CellReader::read(std::string_view text) {
   read_dds_output(top);
   read_queues(top);
   read_web(top);
+  collision.read(top);
   read_startup(top);
   read_views(top);
   constexpr std::size_t kMostStreams = kMaxRobots;

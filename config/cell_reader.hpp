@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/cell_file.hpp"
+#include "config/collision_reader.hpp"
 #include "config/component_files.hpp"
 #include "config/table_reader.hpp"
 
@@ -31,6 +32,7 @@ class CellReader {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  CollisionReader collision;
   std::string startup_script;
   std::vector<ViewSetting> views;
   Diagnostics findings;

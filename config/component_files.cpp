@@ -38,14 +38,28 @@ std::shared_ptr<const Component> read_component_file(const fs::path& path, const
   return component ? std::make_shared<const Component>(std::move(*component)) : nullptr;
 }
 
+std::shared_ptr<const Component> ComponentFiles::read(const fs::path& path, std::optional<CollideAs> collide_as,
+                                                      Diagnostics& diagnostics) const {
+  files_.meshes().about_to_read(path);
+  if (!collide_as) return read_component_file(path, files_, diagnostics);
+  return read_component_file(path, FilesWithMeshesAs(files_, *collide_as), diagnostics);
+}
+
 Result<std::shared_ptr<const Component>> ComponentFiles::component(std::string_view file) {
+  AbstractReference reference;
+  reference.file = file;
+  return component_for(reference);
+}
+
+Result<std::shared_ptr<const Component>> ComponentFiles::component_for(const AbstractReference& reference) {
+  const std::string& file = reference.file;
   const auto path = files_.find(FileUse::component, file);
   if (!path) return std::unexpected(path.error());
-  Entry& entry = entries_[path->string()];
+  Entry& entry = entries_[{path->string(), reference.collide_as}];
   if (entry.held) return entry.held;
   if (auto used = entry.used.lock()) return used;
   Diagnostics diagnostics;
-  auto component = read_component_file(*path, files_, diagnostics);
+  auto component = read(*path, reference.collide_as, diagnostics);
   if (!diagnostics.ok() || !component) {
     const auto& all = diagnostics.all();
     const auto first = std::ranges::find(all, Severity::error, &Diagnostic::severity);
@@ -80,9 +94,9 @@ void ComponentFiles::visit_node(const Component& component, const ComponentNode&
       diagnostics.error(component.place(node), path.error().what, path.error().remedy);
     return;
   }
-  auto [at, is_new] = entries_.try_emplace(path->string());
+  auto [at, is_new] = entries_.try_emplace(Key(path->string(), node.abstract->collide_as));
   if (is_new) {
-    at->second.held = read_component_file(*path, files_, diagnostics);
+    at->second.held = read(*path, node.abstract->collide_as, diagnostics);
     at->second.used = at->second.held;
   }
   if (!at->second.held) return;
@@ -103,12 +117,14 @@ void ComponentFiles::note_robot(const Component& component, const AbstractRefere
 }
 
 void ComponentFiles::release() {
-  for (auto& [path, entry] : entries_) entry.held.reset();
+  for (auto& [key, entry] : entries_) entry.held.reset();
 }
 
 std::vector<fs::path> ComponentFiles::files() const {
   std::vector<fs::path> all;
-  for (const auto& [path, entry] : entries_) all.emplace_back(path);
+  for (const auto& [key, entry] : entries_) {
+    if (all.empty() || all.back() != key.first) all.emplace_back(key.first);
+  }
   return all;
 }
 

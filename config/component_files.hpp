@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,7 @@ class ComponentFiles final : public ComponentSource {
 
   // After load(): from memory as long as somebody uses it, else read again.
   Result<std::shared_ptr<const Component>> component(std::string_view file) override;
+  Result<std::shared_ptr<const Component>> component_for(const AbstractReference& reference) override;
 
   // Reads every file that `root` names, directly or through others, and reports all findings; also of those that are
   // not loaded at the start. Between load() and release() everything stays in memory, faulty files as far as
@@ -44,13 +46,19 @@ class ComponentFiles final : public ComponentSource {
     std::weak_ptr<const Component> used;
     std::shared_ptr<const Component> held;  // while loading
   };
+  // A file is another component for each way in which its meshes are to collide.
+  using Key = std::pair<std::string, std::optional<CollideAs>>;  // canonical path
+
+  [[nodiscard]] std::shared_ptr<const Component> read(const std::filesystem::path& path,
+                                                      std::optional<CollideAs> collide_as,
+                                                      Diagnostics& diagnostics) const;
   void visit(const Component& component, bool loaded, std::size_t depth, Diagnostics& diagnostics);
   void visit_node(const Component& component, const ComponentNode& node, bool loaded, std::size_t depth,
                   Diagnostics& diagnostics);
   void note_robot(const Component& component, const AbstractReference& reference);
 
   HomeFiles files_;
-  std::map<std::string, Entry> entries_;  // by canonical path
+  std::map<Key, Entry> entries_;
   std::map<std::string, bool> faulty_references_;
   RobotDirectory robots_;
   std::size_t visits_ = 0;

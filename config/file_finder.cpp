@@ -93,6 +93,17 @@ Result<fs::path> HomeFiles::find_mesh_of_urdf(const fs::path& urdf, std::string_
   return root->file("", inside);
 }
 
+Result<CollisionMesh> FileFinder::mesh(const fs::path&, const Eigen::Vector3d&, std::optional<CollideAs>, const Place&,
+                                       Diagnostics&) const {
+  return CollisionMesh{};
+}
+
+Result<CollisionMesh> HomeFiles::mesh(const fs::path& file, const Eigen::Vector3d& scale,
+                                      std::optional<CollideAs> collide_as, const Place& place,
+                                      Diagnostics& diagnostics) const {
+  return meshes_->mesh(file, scale, collide_as.value_or(CollideAs::exact), place, diagnostics);
+}
+
 Result<fs::path> AnyFile::find(FileUse, std::string_view name) const { return fs::path("/") / fs::path(name); }
 
 Result<fs::path> AnyFile::find_mesh_of_urdf(const fs::path&, std::string_view name) const {

@@ -1,9 +1,13 @@
-// Where the files are that a cell's files name. An interface, so that text can be checked without touching a disk.
+// Where the files are that a cell's files name, and what is in their meshes. An interface, so that text can be checked
+// without touching a disk.
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string_view>
 
+#include "config/mesh_library.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/result.hpp"
 
@@ -27,18 +31,51 @@ class FileFinder {
   // lie in the home, or in the URDF's own folder where that is outside.
   [[nodiscard]] virtual Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
                                                                         std::string_view name) const = 0;
+  // What is in a mesh file that was found: nothing here, where no files are read. `collide_as`: what the shape itself
+  // says. See MeshLibrary::mesh().
+  [[nodiscard]] virtual Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                                                   std::optional<CollideAs> collide_as, const Place& place,
+                                                   Diagnostics& diagnostics) const;
 };
 
 class HomeFiles final : public FileFinder {
  public:
-  explicit HomeFiles(KismetHome home) : home_(std::move(home)) {}
+  // Copies share their meshes.
+  explicit HomeFiles(KismetHome home) : home_(std::move(home)), meshes_(std::make_shared<MeshLibrary>()) {}
   [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override;
   [[nodiscard]] Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
                                                                 std::string_view name) const override;
+  [[nodiscard]] Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                                           std::optional<CollideAs> collide_as, const Place& place,
+                                           Diagnostics& diagnostics) const override;
   [[nodiscard]] const KismetHome& home() const { return home_; }
+  [[nodiscard]] MeshLibrary& meshes() const { return *meshes_; }
 
  private:
   KismetHome home_;
+  std::shared_ptr<MeshLibrary> meshes_;
+};
+
+// The same files; meshes that do not say themselves what stands for them in collision tests are taken as told here.
+class FilesWithMeshesAs final : public FileFinder {
+ public:
+  FilesWithMeshesAs(const FileFinder& files, CollideAs collide_as) : files_(files), collide_as_(collide_as) {}
+  [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override {
+    return files_.find(use, name);
+  }
+  [[nodiscard]] Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
+                                                                std::string_view name) const override {
+    return files_.find_mesh_of_urdf(urdf, name);
+  }
+  [[nodiscard]] Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                                           std::optional<CollideAs> collide_as, const Place& place,
+                                           Diagnostics& diagnostics) const override {
+    return files_.mesh(file, scale, collide_as.value_or(collide_as_), place, diagnostics);
+  }
+
+ private:
+  const FileFinder& files_;
+  CollideAs collide_as_;
 };
 
 // Believes every name. For text that is checked alone.
@@ -49,9 +86,9 @@ class AnyFile final : public FileFinder {
                                                                 std::string_view name) const override;
 };
 
-// A mesh file by its name: STL, OBJ, DAE, PLY, glTF or GLB, and neither empty nor larger than kLargestMesh. Its content
-// is read when collision and drawing need it, not here.
-inline constexpr std::size_t kLargestMesh = 256UL << 20U;
+// A mesh file by its name: STL, OBJ, DAE, PLY, glTF or GLB, and neither empty nor larger than kLargestMesh (2,000,000
+// triangles of binary STL). Its content is not looked at.
+inline constexpr std::size_t kLargestMesh = 128UL << 20U;
 [[nodiscard]] Result<void> check_mesh(const std::filesystem::path& file);
 
 }  // namespace cellmirror

@@ -38,7 +38,10 @@ void read_shape(TableReader& reader, const FileFinder& files, Geometry& geometry
   }
   const auto mesh = reader.text("mesh");
   const Eigen::Vector3d scale = reader.vector3("scale", {0.0, 1e6, true}).value_or(Eigen::Vector3d::Ones());
-  if (reader.has("scale") && !reader.has("mesh")) reader.error("scale", "scale belongs to a mesh only");
+  const auto collide_as = read_collide_as(reader);
+  for (const char* key : {"scale", "collide_as"}) {
+    if (reader.has(key) && !reader.has("mesh")) reader.error(key, fmt::format("{} belongs to a mesh only", key));
+  }
   if (!mesh) return;
   geometry.shape = Shape::mesh;
   geometry.size = scale;
@@ -47,6 +50,12 @@ void read_shape(TableReader& reader, const FileFinder& files, Geometry& geometry
   if (const auto checked = check_mesh(*found); !checked)
     return reader.error("mesh", checked.error().what, checked.error().remedy);
   geometry.mesh_file = found->string();
+  if (!geometry.collides) return;
+  auto content = files.mesh(*found, scale, collide_as, reader.place("mesh"), reader.diagnostics());
+  if (!content) return reader.error("mesh", content.error().what, content.error().remedy);
+  geometry.collide_as = content->collide_as;
+  geometry.mesh = std::move(content->mesh);
+  geometry.pieces = std::move(content->pieces);
 }
 
 Geometry read_one(TableReader& reader, const FileFinder& files) {
@@ -55,19 +64,24 @@ Geometry read_one(TableReader& reader, const FileFinder& files) {
   geometry.line = place.line;
   geometry.column = place.column;
   geometry.name = reader.text("name").value_or("");
+  geometry.collides = reader.boolean("collides").value_or(true);
   read_shape(reader, files, geometry);
   geometry.X_NG = reader.pose();
   if (const auto rgba = reader.numbers("rgba", 4, {0.0, 1.0})) {
     for (std::size_t i = 0; i < 4; ++i) geometry.rgba[i] = static_cast<float>((*rgba)[i]);
   }
   geometry.drawn = reader.boolean("drawn").value_or(true);
-  geometry.collides = reader.boolean("collides").value_or(true);
   geometry.stands_for = reader.texts("stands_for").value_or(std::vector<std::string>());
   reader.finish();
   return geometry;
 }
 
 }  // namespace
+
+std::optional<CollideAs> read_collide_as(TableReader& reader) {
+  return reader.choice<CollideAs>(
+      "collide_as", {{"exact", CollideAs::exact}, {"hull", CollideAs::hull}, {"parts", CollideAs::parts}});
+}
 
 std::vector<Geometry> read_geometry(TableReader& reader, const FileFinder& files) {
   std::vector<Geometry> list;

@@ -44,6 +44,30 @@ int NodeReader::find(const TableReader& reader, std::string_view key, std::strin
   return -1;
 }
 
+namespace {
+
+SensorDefinition read_sensor(TableReader& table) {
+  constexpr double kRightAngle = 0.5 * std::numbers::pi;
+  SensorDefinition sensor;
+  sensor.range_m = table.number("range_m", {0.0, 1e3, true}).value_or(sensor.range_m);
+  sensor.half_angle_rad =
+      table.number("half_angle_rad", {0.0, kRightAngle, true, true}).value_or(sensor.half_angle_rad);
+  sensor.blind_zone_m = table.number("blind_zone_m", {0.0, 1e3}).value_or(sensor.blind_zone_m);
+  if (sensor.blind_zone_m >= sensor.range_m)
+    table.error("blind_zone_m", "the blind zone reaches as far as the range of the sensor");
+  sensor.active = table.boolean("active").value_or(sensor.active);
+  sensor.max_incidence_rad =
+      table.number("max_incidence_rad", {0.0, kRightAngle, true}).value_or(sensor.max_incidence_rad);
+  sensor.noise_m = table.number("noise_m", {0.0, 1.0}).value_or(sensor.noise_m);
+  constexpr long long kLargestSeed = 0xFFFF'FFFF;
+  const auto seed = table.integer("seed", 0, kLargestSeed);
+  if (seed) sensor.seed = static_cast<std::uint64_t>(*seed);
+  table.finish();
+  return sensor;
+}
+
+}  // namespace
+
 void NodeReader::read_kind(TableReader& reader, ComponentNode& node) const {
   const auto kind = reader.choice<NodeKind>("type", {{"frame", NodeKind::frame},
                                                      {"joint", NodeKind::joint},
@@ -68,14 +92,7 @@ void NodeReader::read_kind(TableReader& reader, ComponentNode& node) const {
   }
   if (auto table = reader.table("sensor")) {
     if (node.kind != NodeKind::sensor) reader.error("sensor", "sensor = {...} belongs to a node of type \"sensor\"");
-    SensorDefinition& sensor = node.sensor;
-    sensor.range_m = table->number("range_m", {0.0, 1e3, true}).value_or(sensor.range_m);
-    sensor.half_angle_rad =
-        table->number("half_angle_rad", {0.0, 0.5 * std::numbers::pi, true}).value_or(sensor.half_angle_rad);
-    sensor.blind_zone_m = table->number("blind_zone_m", {0.0, 1e3}).value_or(sensor.blind_zone_m);
-    if (sensor.blind_zone_m >= sensor.range_m)
-      table->error("blind_zone_m", "the blind zone reaches as far as the range of the sensor");
-    table->finish();
+    node.sensor = read_sensor(*table);
   }
 }
 
@@ -87,9 +104,10 @@ void NodeReader::read_abstract(TableReader& reader, ComponentNode& node) const {
   const auto robot_id = reader.name("robot_id");
   const auto robot_base = reader.text("robot_base");
   const auto robot_flange = reader.text("robot_flange");
+  const auto collide_as = read_collide_as(reader);
   node.shown = shown.value_or(Shown::detail);
   if (!reader.has("abstract")) {
-    for (const char* key : {"loaded", "robot_id", "robot_base", "robot_flange"}) {
+    for (const char* key : {"loaded", "robot_id", "robot_base", "robot_flange", "collide_as"}) {
       if (reader.has(key)) reader.error(key, fmt::format("{} belongs to a node with an ABSTRACT file", key));
     }
     if (node.shown == Shown::coarse) reader.error("shown", "only a node with an ABSTRACT file can be shown coarsely");
@@ -105,6 +123,7 @@ void NodeReader::read_abstract(TableReader& reader, ComponentNode& node) const {
                  "give shown = \"coarse\" or \"hidden\"");
   }
   reference.robot_id = robot_id.value_or("");
+  reference.collide_as = collide_as;
   reference.robot_base = robot_base.value_or("");
   reference.robot_flange = robot_flange.value_or("");
   node.abstract = reference;

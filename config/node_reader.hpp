@@ -1,6 +1,7 @@
 // Reads the nodes and geometry that cell files and component files have in common. Private to this folder.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,6 +15,8 @@ namespace cellmirror {
 
 inline constexpr std::size_t kMostGeometry = 1000;  // of one node
 
+// collide_as = "exact", "hull" or "parts"
+[[nodiscard]] std::optional<CollideAs> read_collide_as(TableReader& reader);
 [[nodiscard]] std::vector<Geometry> read_geometry(TableReader& reader, const FileFinder& files);
 // body = { mass_kg, center_m, inertia_kg_m2 = [xx, yy, zz, xy, xz, yz] }
 [[nodiscard]] BodyInertia read_body(TableReader& reader);

@@ -1,5 +1,6 @@
-// Turns the text of a component file or a URDF into a Component. No file is opened but to see whether named ones exist
-// (by the FileFinder). All findings in one pass; any bytes are allowed as text.
+// Turns the text of a component file or a URDF into a Component. No file is opened but by the FileFinder: to see
+// whether named ones exist, and to read the meshes of what collides. All findings in one pass; any bytes are allowed as
+// text.
 #pragma once
 
 #include <filesystem>

@@ -95,8 +95,10 @@ bool TableReader::in_range(std::string_view key, double value, Range range) cons
     return false;
   }
   const bool below = range.min_excluded ? value <= range.min : value < range.min;
-  if (!below && value <= range.max) return true;
-  const std::string upper = range.max < 1e9 ? fmt::format(" and at most {:g}", range.max) : "";
+  const bool above = range.max_excluded ? value >= range.max : value > range.max;
+  if (!below && !above) return true;
+  const std::string upper =
+      range.max < 1e9 ? fmt::format(" and {} {:g}", range.max_excluded ? "below" : "at most", range.max) : "";
   error(key, fmt::format("{} is {:g}, but must be {} {:g}{}", key, value, range.min_excluded ? "above" : "at least",
                          range.min, upper));
   return false;

@@ -21,6 +21,7 @@ struct Range {
   double min = -1e9;
   double max = 1e9;
   bool min_excluded = false;
+  bool max_excluded = false;
 };
 inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{0.0, 1e9, true};

@@ -29,10 +29,11 @@ bool read_lengths(const XMLElement& shape, const UrdfXml& xml, std::initializer_
 }
 
 bool read_mesh(const XMLElement& shape, const UrdfXml& xml, const std::filesystem::path& path, const FileFinder& files,
-               Geometry& geometry) {
+               bool collides, Geometry& geometry) {
   geometry.shape = Shape::mesh;
   geometry.size = xml.vector3(shape, "scale", Eigen::Vector3d::Ones());
-  if ((geometry.size.array() == 0.0).any()) xml.error(shape, "a scale factor is 0");
+  const bool scale_is_good = (geometry.size.array() != 0.0).all();
+  if (!scale_is_good) xml.error(shape, "a scale factor is 0");
   const std::string name = xml.text(shape, "filename", true);
   if (shape.Attribute("filename") == nullptr) return false;
   const auto found = files.find_mesh_of_urdf(path, name);
@@ -45,11 +46,21 @@ bool read_mesh(const XMLElement& shape, const UrdfXml& xml, const std::filesyste
     return false;
   }
   geometry.mesh_file = found->string();
+  if (!collides || !scale_is_good) return true;
+  auto content =
+      files.mesh(*found, geometry.size, std::nullopt, {xml.file(), shape.GetLineNum(), 0}, xml.diagnostics());
+  if (!content) {
+    xml.error(shape, content.error().what, content.error().remedy);
+    return false;
+  }
+  geometry.collide_as = content->collide_as;
+  geometry.mesh = std::move(content->mesh);
+  geometry.pieces = std::move(content->pieces);
   return true;
 }
 
 std::optional<Geometry> read_shape(const XMLElement& element, const UrdfXml& xml, const std::filesystem::path& path,
-                                   const FileFinder& files) {
+                                   const FileFinder& files, bool collides) {
   const XMLElement* geometry_element = element.FirstChildElement("geometry");
   const XMLElement* shape = geometry_element == nullptr ? nullptr : geometry_element->FirstChildElement();
   if (shape == nullptr) {
@@ -75,7 +86,7 @@ std::optional<Geometry> read_shape(const XMLElement& element, const UrdfXml& xml
     geometry.shape = Shape::sphere;
     understood = read_lengths(*shape, xml, {"radius"}, geometry.size);
   } else if (kind == "mesh") {
-    understood = read_mesh(*shape, xml, path, files, geometry);
+    understood = read_mesh(*shape, xml, path, files, collides, geometry);
   } else {
     xml.error(*shape, "this is no shape", "shapes are box, cylinder, sphere, capsule and mesh");
     understood = false;
@@ -136,10 +147,11 @@ std::optional<UrdfLink> read_urdf_link(const XMLElement& element, const UrdfXml&
       xml.error(*child, fmt::format("the link has more than {} shapes", kMostGeometry));
       break;
     }
-    auto geometry = read_shape(*child, xml, path, files);
+    const bool collides = kind == "collision";
+    auto geometry = read_shape(*child, xml, path, files, collides);
     if (!geometry) continue;
-    geometry->drawn = kind == "visual";
-    geometry->collides = kind == "collision";
+    geometry->drawn = !collides;
+    geometry->collides = collides;
     if (const XMLElement* material = child->FirstChildElement("material")) {
       const auto known = materials.find(xml.text(*material, "name", false));
       if (known != materials.end()) geometry->rgba = known->second;

@@ -59,7 +59,7 @@ std::unique_ptr<Graft> CellBuilder::plan_root() {
 }
 
 std::unique_ptr<Graft> CellBuilder::plan_file(const AbstractReference& reference, const Place& place) {
-  auto component = state_.source->component(reference.file);
+  auto component = state_.source->component_for(reference);
   if (!component) {
     // The loader of the cell file has told it already where it reads every file first.
     if (diagnostics_.ok()) diagnostics_.error(place, component.error().what, component.error().remedy);

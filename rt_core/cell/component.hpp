@@ -95,6 +95,8 @@ struct AbstractReference {
   std::string robot_id;    // instead of the file's own; empty: the file's
   std::string robot_base;  // node names inside the component, instead of the file's; empty: the file's
   std::string robot_flange;
+  // Of the component's meshes, where its file does not say otherwise.
+  std::optional<CollideAs> collide_as = std::nullopt;
 };
 
 struct ComponentNode {
@@ -145,6 +147,10 @@ class ComponentSource {
   // The component in `file`, from memory where it is known already. An error says the first finding and how many there
   // are.
   virtual Result<std::shared_ptr<const Component>> component(std::string_view file) = 0;
+  // The same as the reference wants it: two references with another `collide_as` are two components.
+  virtual Result<std::shared_ptr<const Component>> component_for(const AbstractReference& reference) {
+    return component(reference.file);
+  }
 };
 
 }  // namespace cellmirror

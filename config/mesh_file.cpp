@@ -1,0 +1,246 @@
+// assimp stays in this file: nothing that it throws, logs or opens gets out.
+#include "config/mesh_file.hpp"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "config/file_finder.hpp"
+#include "config/mesh_check.hpp"
+#include "config/polygon.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace fs = std::filesystem;
+using geometry::kMostTriangles;
+using geometry::MeshFindings;
+using geometry::TriangleMesh;
+
+namespace {
+
+struct Format {
+  std::string_view extension;
+  std::string_view importer;  // by the name that assimp gives it
+};
+constexpr std::array<Format, 6> kFormats{{{".stl", "Stereolithography (STL) Importer"},
+                                          {".obj", "Wavefront Object Importer"},
+                                          {".dae", "Collada Importer"},
+                                          {".ply", "Stanford Polygon Library (PLY) Importer"},
+                                          {".gltf", "glTF2 Importer"},
+                                          {".glb", "glTF2 Importer"}}};
+
+class MemoryStream final : public Assimp::IOStream {
+ public:
+  explicit MemoryStream(std::string_view bytes) : bytes_(bytes) {}
+  explicit MemoryStream(std::string owned) : owned_(std::move(owned)), bytes_(owned_) {}
+
+  std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+    std::memcpy(to, bytes_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+    if (offset > bytes_.size() - base) return aiReturn_FAILURE;
+    at_ = base + offset;
+    return aiReturn_SUCCESS;
+  }
+  [[nodiscard]] std::size_t Tell() const override { return at_; }
+  [[nodiscard]] std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string owned_;
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+// The file from memory; of others only the buffers of glTF.
+class Files final : public Assimp::IOSystem {
+ public:
+  Files(std::string main, std::string_view bytes, const Neighbours& neighbours)
+      : main_(std::move(main)), bytes_(bytes), neighbours_(neighbours) {}
+
+  bool Exists(const char* name) const override { return name == main_ || is_buffer(name); }
+  [[nodiscard]] char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (std::strchr(mode, 'w') != nullptr) return nullptr;
+    if (name == main_) return new MemoryStream(bytes_);
+    if (!is_buffer(name) || !neighbours_ || opened_ >= kMostBuffers) return nullptr;
+    ++opened_;
+    auto content = neighbours_(std::string(name).substr(std::string_view(name).starts_with("./") ? 2 : 0));
+    if (content) return new MemoryStream(std::move(*content));
+    if (refusal_.empty()) refusal_ = content.error().what;
+    return nullptr;
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+  // Why a neighbour was not opened.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+
+ private:
+  static constexpr int kMostBuffers = 16;
+  [[nodiscard]] bool is_buffer(std::string_view name) const {
+    return main_.ends_with(".gltf") && name.ends_with(".bin");
+  }
+
+  std::string main_;
+  std::string_view bytes_;
+  const Neighbours& neighbours_;
+  std::string refusal_;
+  int opened_ = 0;
+};
+
+// An importer of that one format.
+void keep_only(Assimp::Importer& importer, std::string_view name) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const aiImporterDesc* description = importer.GetImporterInfo(i);
+    if (description != nullptr && name == description->mName) continue;
+    const std::unique_ptr<Assimp::BaseImporter> gone(importer.GetImporter(i));
+    importer.UnregisterLoader(gone.get());
+  }
+}
+
+struct Polygons {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<geometry::TriangleIndices> triangles;
+};
+
+Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
+  Eigen::Matrix4d out;
+  out << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return out;
+}
+
+Error too_many() { return {fmt::format("there are more than {} triangles", kMostTriangles), "reduce the mesh"}; }
+
+Result<void> add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& X, Polygons& out) {
+  if (mesh.mVertices == nullptr || mesh.mFaces == nullptr) return {};
+  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+  if (mesh.mNumVertices > 3 * kMostTriangles - first) return std::unexpected(too_many());
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& p = mesh.mVertices[i];
+    out.vertices.emplace_back((X * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>());
+  }
+  const bool mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
+  std::vector<std::uint32_t> corners;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices < 3) continue;
+    if (face.mNumIndices - 2 > kMostTriangles - out.triangles.size()) return std::unexpected(too_many());
+    corners.clear();
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices) return fail(fmt::format("a face names a vertex that is not there"));
+      corners.push_back(first + face.mIndices[k]);
+    }
+    if (mirrored) std::ranges::reverse(corners);
+    cut_polygon(corners, out.vertices, out.triangles);
+  }
+  return {};
+}
+
+// All meshes, each as often as nodes show it.
+Result<Polygons> collect(const aiScene& scene, const Eigen::Vector3d& scale) {
+  Polygons out;
+  struct Open {
+    const aiNode* node;
+    Eigen::Matrix4d X;
+  };
+  Eigen::Matrix4d outermost = Eigen::Matrix4d::Identity();
+  outermost.diagonal().head<3>() = scale;
+  std::vector<Open> open{{scene.mRootNode, outermost}};
+  constexpr int kMostNodes = 100'000;
+  for (int visited = 0; !open.empty(); ++visited) {
+    if (visited >= kMostNodes) return fail(fmt::format("there are more than {} nodes", kMostNodes));
+    const Open top = open.back();
+    open.pop_back();
+    const Eigen::Matrix4d X = top.X * matrix_of(top.node->mTransformation);
+    for (unsigned i = 0; i < top.node->mNumMeshes; ++i) {
+      if (top.node->mMeshes[i] >= scene.mNumMeshes) return fail("a node names a mesh that is not there");
+      if (auto added = add_mesh(*scene.mMeshes[top.node->mMeshes[i]], X, out); !added)
+        return std::unexpected(added.error());
+    }
+    for (unsigned i = 0; i < top.node->mNumChildren; ++i) open.push_back({top.node->mChildren[i], X});
+  }
+  return out;
+}
+
+Result<Polygons> import(std::string_view bytes, const Format& format, const Eigen::Vector3d& scale,
+                        const Neighbours& neighbours) {
+  Assimp::Importer importer;
+  keep_only(importer, format.importer);
+  if (importer.GetImporterCount() == 0) return fail(fmt::format("this build reads no {} files", format.extension));
+  const std::string name = fmt::format("mesh{}", format.extension);
+  auto* files = new Files(name, bytes, neighbours);  // the importer owns it
+  importer.SetIOHandler(files);
+  // As ROS does: coordinates as they stand in the file, whatever up_axis says; its unit counts.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  const aiScene* scene = importer.ReadFile(name, aiProcess_ValidateDataStructure);
+  if (!files->refusal().empty()) return fail(files->refusal(), "put it beside the mesh");
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    return fail(fmt::format("it cannot be read: {}", printable(std::string(importer.GetErrorString()))));
+  return collect(*scene, scale);
+}
+
+// A file named in a mesh file: in the same folder, or below.
+Result<std::string> read_neighbour(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  const fs::path wanted = fs::weakly_canonical(folder / name, error);
+  const fs::path relative = error ? fs::path("..") : wanted.lexically_relative(folder);
+  if (relative.empty() || *relative.begin() == ".." || !fs::is_regular_file(wanted, error))
+    return fail(fmt::format("its buffer {} is not there", printable(name)));
+  return read_text_file(wanted, kLargestMesh);
+}
+
+}  // namespace
+
+Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extension, std::string name,
+                                const Eigen::Vector3d& scale, const Neighbours& neighbours, MeshFindings& findings) {
+  findings = MeshFindings();
+  const auto* const format = std::ranges::find(kFormats, extension, &Format::extension);
+  const auto refuse = [&](const Error& error) {
+    return fail(fmt::format("the mesh {} is refused: {}", name, error.what), error.remedy);
+  };
+  if (format == kFormats.end()) return refuse({"its kind is not known", {}});
+  if (auto checked = check_mesh_bytes(bytes, extension); !checked) return refuse(checked.error());
+  try {
+    auto polygons = import(bytes, *format, scale, neighbours);
+    if (!polygons) return refuse(polygons.error());
+    auto mesh = geometry::make_mesh(name, std::move(polygons->vertices), std::move(polygons->triangles), findings);
+    if (!mesh) return refuse(mesh.error());
+    return mesh;
+  } catch (const std::exception& exception) {
+    return refuse({fmt::format("it cannot be read: {}", printable(std::string(exception.what()))), {}});
+  } catch (...) {
+    return refuse({"it cannot be read", {}});
+  }
+}
+
+Result<TriangleMesh> read_mesh_file(const fs::path& file, const Eigen::Vector3d& scale, MeshFindings& findings) {
+  const auto bytes = read_text_file(file, kLargestMesh);
+  if (!bytes) return std::unexpected(bytes.error());
+  const fs::path folder = file.parent_path();
+  return parse_mesh(
+      *bytes, lower_case(file.extension().string()), file.filename().string(), scale,
+      [&](const std::string& name) { return read_neighbour(folder, name); }, findings);
+}
+
+}  // namespace cellmirror
