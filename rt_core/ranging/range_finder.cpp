@@ -109,6 +109,7 @@ void RangeFinder::State::read(Sensor& sensor, const Pose& X_WS, RangeReading& ou
   out.range_m = settings.range_m;
   out.blind_zone_m = settings.blind_zone_m;
   out.half_angle_rad = settings.half_angle_rad;
+  out.X_WS = X_WS;
   out.distance_m.reset();
   out.point_m.setZero();
   out.object.clear();
