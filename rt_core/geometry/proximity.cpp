@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "rt_core/geometry/inside.hpp"
@@ -122,9 +121,8 @@ Separation query(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X
 
 Separation separation(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, double up_to,
                       ProximityHint& hint) noexcept {
-  // Above zero, so that contact is found whatever the caller asks for.
-  const double limit = std::max(up_to, std::numeric_limits<double>::min());
-  return query(a, X_WA, b, X_WB, limit, 0.0, hint);
+  // So that touch is told whatever the caller asks for.
+  return query(a, X_WA, b, X_WB, std::max(up_to, kTouchDistance), 0.0, hint);
 }
 
 bool touch(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, ProximityHint& hint) noexcept {

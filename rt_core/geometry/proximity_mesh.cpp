@@ -50,7 +50,7 @@ class Nearest {
   // Whether a look along the direction is enough to tell that two triangles are farther apart than matters.
   [[nodiscard]] bool apart(const Triangle& a, const Triangle& b) {
     const double gap = gap_along(direction_, a, b);
-    if (!(gap > limit() - rounding_)) return false;
+    if (!(gap > limit() - rounding_ && gap > rounding_)) return false;
     least_left_out_ = std::min(least_left_out_, gap);
     return true;
   }
