@@ -1,8 +1,8 @@
 /*
  * Prints the records of a running cellmirror, one a line:
  *   sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
- *   sequence range sensor DISTANCE|nothing|blind [object]                SET_USSPAR active
- *   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind ...         SET_USSPAR sendmode 1
+ *   sequence range sensor DISTANCE|nothing|blind|doubt [object]          SET_USSPAR active
+ *   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind|doubt ...   SET_USSPAR sendmode 1
  *   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
  *   sequence event NUMBER CHANGE a b DISTANCE
  *
@@ -47,7 +47,9 @@ static void print_robot(const struct cellmirror_robot* robot) {
 }
 
 static void print_reading(double distance, unsigned flags) {
-  if (!(flags & CELLMIRROR_RANGE_SEEN)) {
+  if (flags & CELLMIRROR_RANGE_DOUBTFUL) {
+    printf("doubt");
+  } else if (!(flags & CELLMIRROR_RANGE_SEEN)) {
     printf("nothing");
   } else if (flags & CELLMIRROR_RANGE_IN_BLIND_ZONE) {
     printf("blind");

@@ -1,8 +1,8 @@
 #!/usr/bin/perl
 # Prints the records of a running cellmirror, one a line:
 #   sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
-#   sequence range sensor DISTANCE|nothing|blind [object]                SET_USSPAR active
-#   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind ...         SET_USSPAR sendmode 1
+#   sequence range sensor DISTANCE|nothing|blind|doubt [object]          SET_USSPAR active
+#   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind|doubt ...   SET_USSPAR sendmode 1
 #   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
 #   sequence event NUMBER CHANGE a b DISTANCE
 #
@@ -53,9 +53,10 @@ sub robot {
     return (@words, 'tcp', map { sprintf '%.6f', $_ } unpack('d<3', substr($record, WORLD_TCP)));
 }
 
-# Flags: 1 something is seen, 2 in the blind zone.
+# Flags: 1 something is seen, 2 in the blind zone, 4 in doubt.
 sub reading {
     my ($distance, $flags) = @_;
+    return 'doubt' if $flags & 4;
     return !($flags & 1) ? 'nothing' : ($flags & 2) ? 'blind' : sprintf('%.6f', $distance);
 }
 

@@ -4,8 +4,8 @@
     python3 sensor_reader.py --count 10
 
     sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
-    sequence range sensor DISTANCE|nothing|blind [object]                SET_USSPAR active
-    sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind ...         SET_USSPAR sendmode 1
+    sequence range sensor DISTANCE|nothing|blind|doubt [object]          SET_USSPAR active
+    sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind|doubt ...   SET_USSPAR sendmode 1
     sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
     sequence event NUMBER CHANGE a b DISTANCE
 
@@ -33,7 +33,7 @@ PAIR = struct.Struct("<128s128s13d2I")  # distance, depth, points, normal, closi
 EVENT = struct.Struct("<QB7xd128s128s")
 STATES = ("none", "fresh", "stale", "lost", "invalid")
 CHANGES = ("entered_warning", "touched", "parted", "left_warning")
-RANGE_SEEN, RANGE_IN_BLIND_ZONE, PAIR_TOUCHING = 1, 2, 1
+RANGE_SEEN, RANGE_IN_BLIND_ZONE, RANGE_DOUBTFUL, PAIR_TOUCHING = 1, 2, 4, 1
 
 
 def name(field):
@@ -53,6 +53,8 @@ def robot(payload):
 
 
 def reading(distance, flags):
+    if flags & RANGE_DOUBTFUL:
+        return "doubt"
     if not flags & RANGE_SEEN:
         return "nothing"
     return "blind" if flags & RANGE_IN_BLIND_ZONE else f"{distance:.6f}"

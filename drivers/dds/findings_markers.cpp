@@ -99,7 +99,8 @@ void fill_range_markers(RosTime stamp, std::span<const RangeReading> readings, M
   std::size_t drawn = 0;
   for (const RangeReading& reading : readings) {
     if (!is_finite(reading) || drawn++ >= kMaxDrawnCones) continue;
-    const std::size_t colour = !reading.distance_m ? 1 : reading.in_blind_zone ? 2 : 0;
+    const bool unsure = reading.in_blind_zone || reading.doubtful;
+    const std::size_t colour = unsure ? 2 : !reading.distance_m ? 1 : 0;
     add_cone(reading, reading.distance_m.value_or(reading.range_m), cones[colour].points);
     if (reading.distance_m) echoes.points.push_back(point(reading.point_m));
   }

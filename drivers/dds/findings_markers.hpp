@@ -23,7 +23,8 @@ inline constexpr std::int64_t kMarkerLifetimeNs = 2'000'000'000;
 void fill_proximity_markers(RosTime stamp, const ProximityState& state, MarkerArray& message);
 
 // "cones": as long as the reading, or as the range where nothing is seen, one marker for each colour: blue where
-// something is seen, grey where nothing is, red in the blind zone; "echoes": spheres at the points that are seen.
+// something is seen, grey where nothing is, red in the blind zone and in doubt; "echoes": spheres at the points that
+// are seen.
 void fill_range_markers(RosTime stamp, std::span<const RangeReading> readings, MarkerArray& message);
 
 // Knows what a viewer shows, and has it removed when it is gone.

@@ -20,7 +20,8 @@ struct Range {
   float field_of_view = 0;  // the whole opening angle
   float min_range = 0;
   float max_range = 0;
-  // REP 117: +infinity where nothing is within max_range, -infinity where something is too near to be measured.
+  // REP 117: +infinity where nothing is within max_range, -infinity where something is too near to be measured, NaN
+  // where the reading is wrong or in doubt.
   float range = 0;
   // Since ROS 2 Iron, the last member; 0: not known. Always written: readers of Humble's type, which ends before it,
   // ignore what follows (XCDR version 1), readers of the newer type refuse a message without it.

@@ -63,7 +63,9 @@ bool fill_range(RosTime stamp, const RangeReading& reading, Range& message) {
   message.min_range = static_cast<float>(reading.blind_zone_m);
   message.max_range = static_cast<float>(reading.range_m);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  if (!reading.distance_m) {
+  if (reading.doubtful) {
+    message.range = std::numeric_limits<float>::quiet_NaN();
+  } else if (!reading.distance_m) {
     message.range = kInfinity;
   } else if (reading.in_blind_zone) {
     message.range = -kInfinity;

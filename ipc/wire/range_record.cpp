@@ -15,20 +15,24 @@ using namespace little_endian;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::uint32_t flags_of(double distance, bool in_blind_zone) {
-  return (std::isnan(distance) ? 0U : kRangeSeen) | (in_blind_zone ? kRangeInBlindZone : 0U);
+// Of a RangeRecord or a RangeEntry.
+std::uint32_t flags_of(const auto& range) {
+  return (std::isnan(range.distance) ? 0U : kRangeSeen) | (range.in_blind_zone ? kRangeInBlindZone : 0U) |
+         (range.doubtful ? kRangeDoubtful : 0U);
 }
 
-// The flags at `offset` and the reserved number behind them; true: in the blind zone.
-Result<bool> get_flags(std::span<const std::byte> bytes, std::size_t offset, double distance) {
+// The flags at `offset` and the reserved number behind them; the distance is known already.
+Result<void> get_flags(std::span<const std::byte> bytes, std::size_t offset, auto& range) {
   const auto flags = get<std::uint32_t>(bytes, offset);
   const bool seen = (flags & kRangeSeen) != 0;
-  const bool in_blind_zone = (flags & kRangeInBlindZone) != 0;
-  if (flags > (kRangeSeen | kRangeInBlindZone)) return fail(fmt::format("flags {:#x} of a range are unknown", flags));
-  if (seen == std::isnan(distance)) return fail("a range whose flags and distance contradict each other");
-  if (in_blind_zone && !seen) return fail("nothing is seen, in the blind zone");
+  range.in_blind_zone = (flags & kRangeInBlindZone) != 0;
+  range.doubtful = (flags & kRangeDoubtful) != 0;
+  if (flags > (kRangeSeen | kRangeInBlindZone | kRangeDoubtful))
+    return fail(fmt::format("flags {:#x} of a range are unknown", flags));
+  if (seen == std::isnan(range.distance)) return fail("a range whose flags and distance contradict each other");
+  if (range.in_blind_zone && !seen) return fail("nothing is seen, in the blind zone");
   if (get<std::uint32_t>(bytes, offset + sizeof flags) != 0) return fail("reserved bytes of a range are not 0");
-  return in_blind_zone;
+  return {};
 }
 
 PointRecord point_of(const RangeReading& reading) {
@@ -53,7 +57,7 @@ void put_entry(std::span<std::byte> bytes, const RangeEntry& entry) {
   put(bytes, kEntryDistance, entry.distance);
   put(bytes, kEntryRange, entry.range);
   put_point(bytes, kEntryPoint, entry.point);
-  put(bytes, kEntryFlags, flags_of(entry.distance, entry.in_blind_zone));
+  put(bytes, kEntryFlags, flags_of(entry));
 }
 
 Result<RangeEntry> get_entry(std::span<const std::byte> bytes) {
@@ -65,9 +69,7 @@ Result<RangeEntry> get_entry(std::span<const std::byte> bytes) {
   entry.distance = get<double>(bytes, kEntryDistance);
   entry.range = get<double>(bytes, kEntryRange);
   entry.point = get_point(bytes, kEntryPoint);
-  const auto in_blind_zone = get_flags(bytes, kEntryFlags, entry.distance);
-  if (!in_blind_zone) return std::unexpected(in_blind_zone.error());
-  entry.in_blind_zone = *in_blind_zone;
+  if (const auto ok = get_flags(bytes, kEntryFlags, entry); !ok) return std::unexpected(ok.error());
   return entry;
 }
 
@@ -96,6 +98,7 @@ RangeRecord range_record_of(const RangeReading& reading) {
   record.half_angle = reading.half_angle_rad;
   record.point = point_of(reading);
   record.in_blind_zone = reading.in_blind_zone && reading.distance_m.has_value();
+  record.doubtful = reading.doubtful;
   return record;
 }
 
@@ -105,9 +108,9 @@ std::vector<RangeArrayRecord> range_arrays_of(std::span<const RangeReading> read
   std::vector<RangeArrayRecord> records(parts);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const RangeReading& reading = readings[i];
-    records[i / kMaxRangesInRecord].ranges.push_back({reading.id, reading.distance_m.value_or(kNaN), reading.range_m,
-                                                      point_of(reading),
-                                                      reading.in_blind_zone && reading.distance_m.has_value()});
+    records[i / kMaxRangesInRecord].ranges.push_back(
+        {reading.id, reading.distance_m.value_or(kNaN), reading.range_m, point_of(reading),
+         reading.in_blind_zone && reading.distance_m.has_value(), reading.doubtful});
   }
   for (std::size_t i = 0; i < parts; ++i) {
     records[i].header.time_ns = readings.front().posture_time.ns;
@@ -134,7 +137,7 @@ Result<std::size_t> encode_range_record(const RangeRecord& record, std::span<std
   put(out, kBlindZone, record.blind_zone);
   put(out, kHalfAngle, record.half_angle);
   put_point(out, kPoint, record.point);
-  put(out, kFlags, flags_of(record.distance, record.in_blind_zone));
+  put(out, kFlags, flags_of(record));
   return kBytes;
 }
 
@@ -156,9 +159,7 @@ Result<RangeRecord> decode_range_record(std::span<const std::byte> bytes) {
   record.blind_zone = get<double>(bytes, kBlindZone);
   record.half_angle = get<double>(bytes, kHalfAngle);
   record.point = get_point(bytes, kPoint);
-  const auto in_blind_zone = get_flags(bytes, kFlags, record.distance);
-  if (!in_blind_zone) return std::unexpected(in_blind_zone.error());
-  record.in_blind_zone = *in_blind_zone;
+  if (const auto ok = get_flags(bytes, kFlags, record); !ok) return std::unexpected(ok.error());
   return record;
 }
 

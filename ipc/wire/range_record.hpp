@@ -18,6 +18,7 @@ namespace cellmirror {
 
 inline constexpr std::uint32_t kRangeSeen = 1;         // something is in the cone
 inline constexpr std::uint32_t kRangeInBlindZone = 2;  // so near that a real sensor could not tell
+inline constexpr std::uint32_t kRangeDoubtful = 4;     // something nearer may be there
 
 namespace range_record_offset {
 // From the start of the record.
@@ -65,6 +66,7 @@ struct RangeRecord {
   double half_angle = 0;                                       // rad
   PointRecord point{};
   bool in_blind_zone = false;
+  bool doubtful = false;
 };
 
 struct RangeEntry {
@@ -73,6 +75,7 @@ struct RangeEntry {
   double range = 0;                                            // m
   PointRecord point{};
   bool in_blind_zone = false;
+  bool doubtful = false;
 };
 
 struct RangeArrayRecord {

@@ -77,10 +77,38 @@ dds_entity_t CyclonePeer::joint_state_reader(const std::string& name, bool relia
       "Cyclone reader");
 }
 
-dds_entity_t CyclonePeer::tf_reader(const std::string& name) {
+dds_entity_t CyclonePeer::reader(const dds_topic_descriptor_t& type, const std::string& name) const {
   const Qos qos(true);
-  return checked(dds_create_reader(participant_, topic(tf2_msgs_msg_dds__TFMessage__desc, name), qos.get(), nullptr),
-                 "Cyclone reader");
+  return checked(dds_create_reader(participant_, topic(type, name), qos.get(), nullptr), "Cyclone reader");
+}
+
+dds_entity_t CyclonePeer::tf_reader(const std::string& name) { return reader(tf2_msgs_msg_dds__TFMessage__desc, name); }
+
+dds_entity_t CyclonePeer::range_reader(const std::string& name, bool humble) {
+  if (!humble) return reader(sensor_msgs_msg_dds__Range__desc, name);
+  // Without type information, which tells the type's own name.
+  const dds_topic_descriptor_t& own = humble_msg_dds__Range__desc;
+  const dds_topic_descriptor_t type{.m_size = own.m_size,
+                                    .m_align = own.m_align,
+                                    .m_flagset = 0,
+                                    .m_nkeys = 0,
+                                    .m_typename = "sensor_msgs::msg::dds_::Range_",
+                                    .m_keys = nullptr,
+                                    .m_nops = own.m_nops,
+                                    .m_ops = own.m_ops,
+                                    .m_meta = "",
+                                    .type_information = {},
+                                    .type_mapping = {},
+                                    .restrict_data_representation = 0};
+  return reader(type, name);
+}
+
+dds_entity_t CyclonePeer::diagnostics_reader(const std::string& name) {
+  return reader(diagnostic_msgs_msg_dds__DiagnosticArray__desc, name);
+}
+
+dds_entity_t CyclonePeer::marker_reader(const std::string& name) {
+  return reader(visualization_msgs_msg_dds__MarkerArray__desc, name);
 }
 
 bool CyclonePeer::write(dds_entity_t writer, const PlainJointState& message) {
@@ -126,6 +154,85 @@ std::vector<PlainTransform> CyclonePeer::take_transforms(dds_entity_t reader) {
                        {t.x, t.y, t.z},
                        {r.x, r.y, r.z, r.w}});
     }
+  });
+  return taken;
+}
+
+namespace {
+
+template <class Sample>
+PlainRange plain(const Sample& sample) {
+  PlainRange range;
+  range.sec = sample.header.stamp.sec;
+  range.nanosec = sample.header.stamp.nanosec;
+  range.frame_id = sample.header.frame_id;
+  range.radiation_type = sample.radiation_type;
+  range.field_of_view = sample.field_of_view;
+  range.min_range = sample.min_range;
+  range.max_range = sample.max_range;
+  range.range = sample.range;
+  return range;
+}
+
+PlainMarker plain(const visualization_msgs_msg_dds__Marker_& sample) {
+  PlainMarker marker;
+  marker.frame_id = sample.header.frame_id;
+  marker.ns = sample.ns;
+  marker.id = sample.id;
+  marker.type = sample.type;
+  marker.action = sample.action;
+  marker.scale_x = sample.scale.x;
+  marker.red = sample.color.r;
+  marker.lifetime_sec = sample.lifetime.sec;
+  for (std::uint32_t i = 0; i < sample.points._length; ++i) {
+    const auto& point = sample.points._buffer[i];
+    marker.points.push_back({point.x, point.y, point.z});
+  }
+  marker.colours = sample.colors._length;
+  const std::string texts = std::string(sample.texture_resource) + sample.texture.header.frame_id +
+                            sample.texture.format + sample.text + sample.mesh_resource + sample.mesh_file.filename;
+  marker.rest_is_empty = texts.empty() && sample.texture.data._length == 0 && sample.uv_coordinates._length == 0 &&
+                         sample.mesh_file.data._length == 0 && !sample.mesh_use_embedded_materials;
+  return marker;
+}
+
+}  // namespace
+
+std::vector<PlainRange> CyclonePeer::take_ranges(dds_entity_t reader, bool humble) {
+  std::vector<PlainRange> taken;
+  if (humble) {
+    take_all<humble_msg_dds__Range_>(reader, [&](const auto& sample) { taken.push_back(plain(sample)); });
+  } else {
+    take_all<sensor_msgs_msg_dds__Range_>(reader, [&](const auto& sample) {
+      taken.push_back(plain(sample));
+      taken.back().variance = sample.variance;
+    });
+  }
+  return taken;
+}
+
+std::vector<PlainStatus> CyclonePeer::take_diagnostics(dds_entity_t reader) {
+  std::vector<PlainStatus> taken;
+  take_all<diagnostic_msgs_msg_dds__DiagnosticArray_>(reader, [&](const auto& sample) {
+    for (std::uint32_t i = 0; i < sample.status._length; ++i) {
+      const auto& from = sample.status._buffer[i];
+      PlainStatus& status = taken.emplace_back();
+      status.level = from.level;
+      status.name = from.name;
+      status.message = from.message;
+      status.hardware_id = from.hardware_id;
+      for (std::uint32_t v = 0; v < from.values._length; ++v) {
+        status.values.emplace_back(from.values._buffer[v].key, from.values._buffer[v].value);
+      }
+    }
+  });
+  return taken;
+}
+
+std::vector<PlainMarker> CyclonePeer::take_markers(dds_entity_t reader) {
+  std::vector<PlainMarker> taken;
+  take_all<visualization_msgs_msg_dds__MarkerArray_>(reader, [&](const auto& sample) {
+    for (std::uint32_t i = 0; i < sample.markers._length; ++i) taken.push_back(plain(sample.markers._buffer[i]));
   });
   return taken;
 }

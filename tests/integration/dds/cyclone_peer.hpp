@@ -3,9 +3,12 @@
 
 #include <dds/dds.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cellmirror::dds::test {
@@ -26,6 +29,32 @@ struct PlainTransform {
   double rotation[4] = {};  // x, y, z, w
 };
 
+struct PlainRange {
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+  std::string frame_id;
+  int radiation_type = -1;
+  float field_of_view = 0, min_range = 0, max_range = 0, range = 0;
+  std::optional<float> variance;  // none in Humble's type
+};
+
+struct PlainStatus {
+  int level = -1;
+  std::string name, message, hardware_id;
+  std::vector<std::pair<std::string, std::string>> values;
+};
+
+struct PlainMarker {
+  std::string frame_id, ns;
+  int id = 0, type = 0, action = 0;
+  double scale_x = 0;
+  float red = 0;
+  int lifetime_sec = 0;
+  std::vector<std::array<double, 3>> points;
+  std::size_t colours = 0;
+  bool rest_is_empty = false;  // textures, texts and meshes
+};
+
 // One participant on the loopback interface. At most one per domain and process at a time.
 class CyclonePeer {
  public:
@@ -37,14 +66,22 @@ class CyclonePeer {
   [[nodiscard]] dds_entity_t joint_state_writer(const std::string& topic, bool reliable);
   [[nodiscard]] dds_entity_t joint_state_reader(const std::string& topic, bool reliable);
   [[nodiscard]] dds_entity_t tf_reader(const std::string& topic);
+  // `humble`: with the type that this release has.
+  [[nodiscard]] dds_entity_t range_reader(const std::string& topic, bool humble);
+  [[nodiscard]] dds_entity_t diagnostics_reader(const std::string& topic);
+  [[nodiscard]] dds_entity_t marker_reader(const std::string& topic);
 
   static bool write(dds_entity_t writer, const PlainJointState& message);
   static std::vector<PlainJointState> take_joint_states(dds_entity_t reader);
   static std::vector<PlainTransform> take_transforms(dds_entity_t reader);
+  static std::vector<PlainRange> take_ranges(dds_entity_t reader, bool humble);
+  static std::vector<PlainStatus> take_diagnostics(dds_entity_t reader);
+  static std::vector<PlainMarker> take_markers(dds_entity_t reader);
   static int matched_readers(dds_entity_t writer);
   static int matched_writers(dds_entity_t reader);
 
  private:
+  [[nodiscard]] dds_entity_t reader(const dds_topic_descriptor_t& type, const std::string& name) const;
   [[nodiscard]] dds_entity_t topic(const dds_topic_descriptor_t& type, const std::string& name) const;
 
   dds_entity_t domain_;

@@ -123,15 +123,16 @@ TEST_P(ExampleClients, ReadsRecords) {
 TEST_P(ExampleClients, ReadsWhatSensorsAndCollisionTestsFind) {
   ChildProcess gateway(gateway_command("findings"));
   ASSERT_EQ(gateway.line(), "ready");
-  ChildProcess sut(read("6", "10"));
+  ChildProcess sut(read("7", "10"));
   EXPECT_EQ(sut.wait(), 0) << sut.errors();
   EXPECT_EQ(sut.output(),
             "1 range USS_1 0.250000 cell.box\n"
             "2 range USS_2 nothing\n"
             "3 range USS_3 blind cell.box\n"
-            "4 ranges 1/1 USS_1=0.250000 USS_2=nothing USS_3=blind\n"
-            "5 event 1 touched cell.A cell.B 0.000000\n"
-            "6 proximity touching 1 warning 2 of 45 pairs: cell.A|cell.B=touching cell.B|cell.C=0.012500\n");
+            "4 range USS_4 doubt\n"
+            "5 ranges 1/1 USS_1=0.250000 USS_2=nothing USS_3=blind USS_4=doubt\n"
+            "6 event 1 touched cell.A cell.B 0.000000\n"
+            "7 proximity touching 1 warning 2 of 45 pairs: cell.A|cell.B=touching cell.B|cell.C=0.012500\n");
 }
 
 TEST_P(ExampleClients, ReaderEndsInTimeWithoutRecords) {

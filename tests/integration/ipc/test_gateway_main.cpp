@@ -48,7 +48,9 @@ RangeReading reading(const char* id, std::optional<double> distance, Timestamp t
 
 void send_findings(SensorQueueOutput& output) {
   const Timestamp now = SystemClock().now();
-  const RangeReading readings[] = {reading("USS_1", 0.25, now), reading("USS_2", {}, now), reading("USS_3", 0.05, now)};
+  RangeReading readings[] = {reading("USS_1", 0.25, now), reading("USS_2", {}, now), reading("USS_3", 0.05, now),
+                             reading("USS_4", {}, now)};
+  readings[3].doubtful = true;
   output.publish_ranges(readings, RangeSendMode::one_message_a_sensor);
   output.publish_ranges(readings, RangeSendMode::one_message_for_all);
   ProximityState state;

@@ -70,6 +70,10 @@ TEST(RangeMessage, NothingAndTooNearAreInfiniteAsRep117Says) {
   near.in_blind_zone = true;
   ASSERT_TRUE(fill_range({}, near, sut));
   EXPECT_EQ(sut.range, -std::numeric_limits<float>::infinity());
+  RangeReading doubtful = reading({});
+  doubtful.doubtful = true;
+  ASSERT_TRUE(fill_range({}, doubtful, sut));
+  EXPECT_TRUE(std::isnan(sut.range)) << "never free";
 }
 
 TEST(RangeMessage, RoundingDoesNotCarryAReadingBeyondTheRange) {
@@ -237,6 +241,12 @@ TEST(RangeMarkers, DrawConesAsLongAsTheReading) {
   }
   EXPECT_EQ(sut.markers[3].ns, "echoes");
   EXPECT_EQ(sut.markers[3].points.size(), 2U);
+
+  RangeReading doubtful = reading({});
+  doubtful.doubtful = true;
+  fill_range_markers({1, 2}, std::span(&doubtful, 1), sut);
+  ASSERT_EQ(sut.markers.size(), 1U);
+  EXPECT_EQ(sut.markers[0].id, 2) << "red";
 }
 
 TEST(ShownMarkersTest, RemoveWhatIsGoneOnce) {

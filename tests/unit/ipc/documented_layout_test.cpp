@@ -242,6 +242,7 @@ TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   EXPECT_EQ(CELLMIRROR_KIND_EVENT, static_cast<unsigned>(RecordKind::proximity_event));
   EXPECT_EQ(CELLMIRROR_RANGE_SEEN, kRangeSeen);
   EXPECT_EQ(CELLMIRROR_RANGE_IN_BLIND_ZONE, kRangeInBlindZone);
+  EXPECT_EQ(CELLMIRROR_RANGE_DOUBTFUL, kRangeDoubtful);
   EXPECT_EQ(CELLMIRROR_PAIR_TOUCHING, kPairTouching);
   EXPECT_EQ(CELLMIRROR_PAIR_WITHIN_WARNING, kPairWithinWarning);
   EXPECT_EQ(CELLMIRROR_PAIR_DOUBTFUL, kPairDoubtful);

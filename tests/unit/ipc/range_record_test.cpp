@@ -119,6 +119,16 @@ TEST(RangeRecord, NothingInTheConeIsNaN) {
   EXPECT_EQ(sut->range, 4);
 }
 
+TEST(RangeRecord, ADoubtIsTold) {
+  RangeReading doubtful = reading("U", {});
+  doubtful.doubtful = true;
+  const Bytes bytes = encoded(range_record_of(doubtful), encode_range_record);
+  EXPECT_EQ(bytes[288], std::byte{4});
+  EXPECT_TRUE(decode_range_record(bytes)->doubtful);
+  const auto array = range_arrays_of(std::span(&doubtful, 1));
+  EXPECT_TRUE(decode_range_array(encoded(array.front(), encode_range_array))->ranges.front().doubtful);
+}
+
 TEST(RangeRecord, RefusesWhatTheEncoderWouldNotWrite) {
   struct Damage {
     std::size_t offset;
@@ -127,7 +137,7 @@ TEST(RangeRecord, RefusesWhatTheEncoderWouldNotWrite) {
   };
   const Damage damages[] = {{6, 3, "another kind"},  {8, 0, "length"},        {60, 'x', "behind the id's NUL"},
                             {200, 'x', "object"},    {288, 0, "not seen"},    {288, 2, "blind but not seen"},
-                            {288, 4, "flag"},        {291, 1, "flag"},        {292, 1, "reserved"},
+                            {288, 9, "flag"},        {291, 1, "flag"},        {292, 1, "reserved"},
                             {238, 0xF8, "NaN seen"}, {300, 0, "one too long"}};
   for (const Damage& damage : damages) {
     Bytes bytes = golden_range();
@@ -213,7 +223,7 @@ TEST(RangeArray, RefusesWhatTheEncoderWouldNotWrite) {
   };
   const Damage damages[] = {{6, 2, "another kind"}, {40, 0, "part 0"},     {40, 3, "part 3 of 2"},
                             {44, 0, "no sensor"},   {44, 3, "too many"},   {46, 1, "more than in all"},
-                            {43, 1, "258 parts"},   {152, 0, "not seen"},  {152, 5, "flag"},
+                            {43, 1, "258 parts"},   {152, 0, "not seen"},  {152, 9, "flag"},
                             {156, 1, "reserved"},   {264, 1, "seen, NaN"}, {60, 'x', "behind the NUL"}};
   for (const Damage& damage : damages) {
     Bytes bytes = golden_array();
