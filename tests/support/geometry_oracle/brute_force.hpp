@@ -152,16 +152,28 @@ inline std::vector<Corners> placed(const geometry::TriangleMesh& mesh, const Pos
   return out;
 }
 
-// Lower bound: of the boxes around two triangles.
-inline Real box_gap(const Corners& a, const Corners& b) {
+struct Box {
+  Point low;
+  Point high;
+};
+
+inline Box box_of(const Corners& c) {
+  Box out{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.low[k] = std::min({c[0][k], c[1][k], c[2][k]});
+    out.high[k] = std::max({c[0][k], c[1][k], c[2][k]});
+  }
+  return out;
+}
+
+// Lower bound of the square of the distance of what is in the boxes.
+inline Real gap_squared(const Box& a, const Box& b) {
   Real squared = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto [a_low, a_high] = std::minmax({a[0][k], a[1][k], a[2][k]});
-    const auto [b_low, b_high] = std::minmax({b[0][k], b[1][k], b[2][k]});
-    const Real gap = std::max({b_low - a_high, a_low - b_high, Real{0}});
+    const Real gap = std::max({b.low[k] - a.high[k], a.low[k] - b.high[k], Real{0}});
     squared += gap * gap;
   }
-  return std::sqrt(squared);
+  return squared;
 }
 
 struct SurfaceDistance {
@@ -170,11 +182,23 @@ struct SurfaceDistance {
   std::size_t triangle_b = 0;
 };
 
+// Every pair, but for those whose boxes are farther apart than some corners are.
 inline SurfaceDistance surface_distance(const std::vector<Corners>& a, const std::vector<Corners>& b) {
+  std::vector<Box> boxes;
+  for (const Corners& c : b) boxes.push_back(box_of(c));
+  Real corners = std::numeric_limits<Real>::infinity();
+  for (const Corners& one : a) {
+    for (const Corners& other : b) {
+      const Point gap = minus(one[0], other[0]);
+      corners = std::min(corners, scalar(gap, gap));
+    }
+  }
   SurfaceDistance best;
   for (std::size_t i = 0; i < a.size(); ++i) {
+    const Box box = box_of(a[i]);
     for (std::size_t k = 0; k < b.size(); ++k) {
-      if (box_gap(a[i], b[k]) >= best.distance) continue;
+      const Real gap = gap_squared(box, boxes[k]);
+      if (gap > corners || gap >= best.distance * best.distance) continue;
       const Real found = distance(a[i], b[k]);
       if (found < best.distance) best = {found, i, k};
     }
@@ -199,9 +223,18 @@ inline Real winding_number(const std::vector<Corners>& surface, const Point& p) 
   return sum / (4 * std::numbers::pi_v<Real>);
 }
 
-inline bool any_corner_inside(const std::vector<Corners>& of, const std::vector<Corners>& surface) {
+// Of triangles that the surface does not cut: one corner tells for the whole triangle.
+inline bool any_inside(const std::vector<Corners>& of, const std::vector<Corners>& surface) {
+  Box all = box_of(surface[0]);
+  for (const Corners& c : surface) {
+    const Box box = box_of(c);
+    for (std::size_t k = 0; k < 3; ++k) {
+      all.low[k] = std::min(all.low[k], box.low[k]);
+      all.high[k] = std::max(all.high[k], box.high[k]);
+    }
+  }
   return std::any_of(of.begin(), of.end(), [&](const Corners& c) {
-    return std::any_of(c.begin(), c.end(), [&](const Point& p) { return winding_number(surface, p) > 0.5L; });
+    return gap_squared(all, {c[0], c[0]}) == 0 && winding_number(surface, c[0]) > 0.5L;
   });
 }
 
@@ -212,8 +245,9 @@ inline double distance(const geometry::TriangleMesh& a, const Pose& X_WA, const 
   const auto triangles_a = placed(a, X_WA, origin);
   const auto triangles_b = placed(b, X_WB, origin);
   const SurfaceDistance surfaces = surface_distance(triangles_a, triangles_b);
-  if (a.closed && any_corner_inside(triangles_b, triangles_a)) return 0.0;
-  if (b.closed && any_corner_inside(triangles_a, triangles_b)) return 0.0;
+  if (surfaces.distance == 0) return 0.0;
+  if (a.closed && any_inside(triangles_b, triangles_a)) return 0.0;
+  if (b.closed && any_inside(triangles_a, triangles_b)) return 0.0;
   return static_cast<double>(surfaces.distance);
 }
 
