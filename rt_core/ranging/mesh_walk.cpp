@@ -1,5 +1,7 @@
 #include "rt_core/ranging/mesh_walk.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -24,16 +26,19 @@ class Walk {
         apex_(-(X_SG.linear().transpose() * X_SG.translation())),
         axis_(X_SG.linear().row(2)),
         best_(best),
-        squared_limit_(best.distance * best.distance) {}
+        limit_(best.distance),
+        squared_limit_(limit_ * limit_) {}
 
   void look_at(std::uint32_t triangle) {
     const geometry::Triangle& t = triangles_[triangle];
+    if (out_of_sight(t)) return;
     const std::array<Vector3d, 3> corners{X_SG_ * t[0], X_SG_ * t[1], X_SG_ * t[2]};
     const double before = best_.distance;
     nearest_on_polygon(cone_, corners, best_);
     if (!(best_.distance < before)) return;
     nearest_ = triangle;
-    squared_limit_ = best_.distance * best_.distance;
+    limit_ = best_.distance;
+    squared_limit_ = limit_ * limit_;
   }
 
   std::uint32_t run(std::uint32_t first) {
@@ -87,12 +92,51 @@ class Walk {
     const Vector3d normal = cone_.cosine * outward - (cone_.sine * across) * axis_;
     const double centre = cone_.cosine * squared_across - cone_.sine * across * along;
     const double reach = normal.cwiseAbs().dot(half);
-    // Rounding errors of a box that just touches the plane, as large as the numbers that were subtracted.
-    constexpr double kRounding = 1e-13;
     if (centre > reach + kRounding * across * (apex_size_ + reach + across)) return kNever;
     return squared;
   }
 
+  // Most triangles of a leaf are: beside the cone, or of a plane whose nearest point in the cone is too far away. Asked
+  // here without turning the triangle into the sensor's frame and without telling where that point is.
+  [[nodiscard]] bool out_of_sight(const geometry::Triangle& t) const {
+    const Vector3d a = t[0] - apex_;
+    const Vector3d b = t[1] - apex_;
+    const Vector3d c = t[2] - apex_;
+    // Seen along the way to its middle, a small triangle is nowhere much nearer than its nearest corner.
+    const Vector3d middle = (a + b + c) * (1.0 / 3.0);
+    const double nearest_corner = std::min(middle.dot(a), std::min(middle.dot(b), middle.dot(c)));
+    constexpr double kMargin = 1.0 + 1e-9;
+    const double limit = limit_ * kMargin;
+    if (nearest_corner > 0.0 && nearest_corner * nearest_corner > limit * limit * middle.squaredNorm()) return true;
+    const Vector3d first = b - a;
+    const Vector3d last = c - a;
+    const Vector3d normal = first.cross(last);
+    const double squared_area = normal.squaredNorm();
+    constexpr double kSound = 1e-6;  // of needles the normal is not known well enough
+    if (squared_area > kSound * first.squaredNorm() * last.squaredNorm()) {
+      double d = normal.dot(a);
+      double ahead = normal.dot(axis_);
+      if (d < 0.0) {
+        d = -d;
+        ahead = -ahead;
+      }
+      if (d * d > limit * limit * squared_area) return true;
+      const double across = std::sqrt(std::max(0.0, squared_area - ahead * ahead));
+      const bool foot_within = ahead > 0.0 && ahead * ahead >= cone_.cosine * cone_.cosine * squared_area;
+      if (!foot_within && d > limit * std::max(0.0, cone_.sine * across + cone_.cosine * ahead) +
+                                  kRounding * apex_size_ * std::sqrt(squared_area)) {
+        return true;
+      }
+    }
+    const double along = middle.dot(axis_);
+    const Vector3d outward = middle - along * axis_;
+    const double across = outward.norm();
+    const Vector3d touching = cone_.cosine * outward - (cone_.sine * across) * axis_;
+    const double least = std::min(touching.dot(a), std::min(touching.dot(b), touching.dot(c)));
+    return least > kRounding * across * (apex_size_ + middle.cwiseAbs().sum() + first.cwiseAbs().sum());
+  }
+
+  static constexpr double kRounding = 1e-13;  // of numbers that were subtracted, in parts of them
   static constexpr double kNever = 1e300;
   const ConeShape& cone_;
   std::span<const MeshTree::Node> nodes_;
@@ -102,6 +146,7 @@ class Walk {
   Vector3d axis_;
   double apex_size_ = apex_.norm();
   Nearest& best_;
+  double limit_;  // of `best_`
   double squared_limit_;
   std::uint32_t nearest_ = 0;
   std::array<Waiting, kDeepest> stack_;
