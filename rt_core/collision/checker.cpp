@@ -14,7 +14,6 @@ namespace cellmirror::collision {
 
 namespace {
 
-constexpr std::size_t kMostContactPoints = 8;
 constexpr std::size_t kMostDoubts = 100;  // sentences a computation; beyond, they are only counted
 constexpr std::size_t kMostDisputes = 4;  // disputed pairs that are asked about again in one computation
 constexpr double kLeastSpeed = 1e-6;      // m/s; slower is standing still: no time to contact is told
@@ -42,17 +41,21 @@ struct Checker::State {
   std::uint64_t next_event = 1;
   std::uint64_t round_robin = 0;
   std::size_t disputes_left = 0;
-  std::vector<geometry::Contact> contacts;  // by found pair; reused
   ProximityState findings;
   CheckCounters counters;
 
-  void judge(const Found& found, const geometry::Contact& contact, bool its_turn, const CellPoses& poses);
-  void ask(const Found& found, const geometry::Contact& contact, PairHistory& pair, const CellPoses& poses);
+  void judge(const Found& found, const geometry::Contact* contact, bool its_turn, const CellPoses& poses);
+  void ask(const Found& found, const geometry::Contact* contact, PairHistory& pair, const CellPoses& poses);
   void change_zone(const Found& found, PairHistory& pair, Zone zone);
   void tell(ProximityChange change, const Found& found);
-  void tell_touching(const Found& found, const geometry::Contact& contact, bool doubtful);
+  void tell_touching(const Found& found, const geometry::Contact* contact, bool doubtful);
   void tell_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later, Nanoseconds ahead);
   void doubt(std::string text);
+  // Null: they do not touch, or there is no telling.
+  [[nodiscard]] const geometry::Contact* contact(const Found& found) {
+    const bool touching = found.usable && found.at.plausible && found.at.distance <= geometry::kTouchDistance;
+    return touching ? &search.tracker().contact(found.pair) : nullptr;
+  }
   [[nodiscard]] std::string pair_text(const Found& found) const;
   [[nodiscard]] const std::string& name(std::uint32_t body) const { return (*table->names)[body]; }
 };
@@ -92,12 +95,12 @@ std::string Checker::State::pair_text(const Found& found) const {
   return name(pair.a) + " and " + name(pair.b);
 }
 
-void Checker::State::ask(const Found& found, const geometry::Contact& contact, PairHistory& pair,
+void Checker::State::ask(const Found& found, const geometry::Contact* contact, PairHistory& pair,
                          const CellPoses& poses) {
   const auto& tracked = search.tracker().pairs()[found.pair];
   const Body& a = table->bodies[tracked.a];
   const Body& b = table->bodies[tracked.b];
-  const double depth = contact.points.empty() ? 0.0 : contact.deepest.depth;
+  const double depth = contact == nullptr || contact->points.empty() ? 0.0 : contact->deepest.depth;
   ++counters.second_opinions;
   const Opinion opinion =
       second_opinion.ask(a, pose_of(a, poses), b, pose_of(b, poses), {pair.own_touching, found.at.distance, depth});
@@ -121,7 +124,7 @@ void Checker::State::change_zone(const Found& found, PairHistory& pair, Zone zon
   watched[found.pair] = zone == Zone::far ? 0 : 1;
 }
 
-void Checker::State::judge(const Found& found, const geometry::Contact& contact, bool its_turn,
+void Checker::State::judge(const Found& found, const geometry::Contact* contact, bool its_turn,
                            const CellPoses& poses) {
   PairHistory& pair = history[found.pair];
   const bool settled = found.usable && found.at.plausible;
@@ -145,18 +148,18 @@ void Checker::State::judge(const Found& found, const geometry::Contact& contact,
   change_zone(found, pair, taken_as_touching ? Zone::touching : within ? Zone::warning : Zone::far);
 }
 
-void Checker::State::tell_touching(const Found& found, const geometry::Contact& contact, bool doubtful) {
+void Checker::State::tell_touching(const Found& found, const geometry::Contact* contact, bool doubtful) {
   const auto& pair = search.tracker().pairs()[found.pair];
   TouchingPair& touching = findings.touching.emplace_back();
   touching.a = pair.a;
   touching.b = pair.b;
   touching.doubtful = doubtful;
   touching.point_m = 0.5 * (found.at.p_a + found.at.p_b);
-  if (contact.points.empty()) return;
-  touching.depth_m = contact.deepest.depth;
-  touching.point_m = contact.deepest.p_W;
-  touching.normal = contact.deepest.normal;
-  for (const auto& point : contact.points) touching.points.push_back({point.p_W, point.normal, point.depth});
+  if (contact == nullptr || contact->points.empty()) return;
+  touching.depth_m = contact->deepest.depth;
+  touching.point_m = contact->deepest.p_W;
+  touching.normal = contact->deepest.normal;
+  for (const auto& point : contact->points) touching.points.push_back({point.p_W, point.normal, point.depth});
 }
 
 void Checker::State::tell_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later,
@@ -235,18 +238,11 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     }
     state.disputes_left = kMostDisputes;
     const std::size_t turn = found.empty() ? 0 : state.round_robin++ % found.size();
-    if (state.contacts.size() < found.size()) state.contacts.resize(found.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      geometry::Contact& contact = state.contacts[i];
-      contact.points.clear();
-      const bool touching = found[i].usable && found[i].at.distance <= geometry::kTouchDistance;
-      if (touching) state.search.tracker().contact(found[i].pair, kMostContactPoints, contact);
-      state.judge(found[i], contact, i == turn, poses);
-    }
+    for (std::size_t i = 0; i < found.size(); ++i) state.judge(found[i], state.contact(found[i]), i == turn, poses);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const PairHistory& pair = state.history[found[i].pair];
       const bool doubtful = pair.disputed || !found[i].usable || !found[i].at.plausible;
-      if (pair.zone == Zone::touching) state.tell_touching(found[i], state.contacts[i], doubtful);
+      if (pair.zone == Zone::touching) state.tell_touching(found[i], state.contact(found[i]), doubtful);
       state.tell_near(found[i], doubtful, poses, later, ahead);
     }
     std::ranges::stable_sort(findings.near, {}, &NearPair::distance_m);

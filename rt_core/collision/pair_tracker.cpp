@@ -29,13 +29,15 @@ void PairTracker::adopt(const PairTable& table, const BodyMotion& motion) {
   for (const Pair& pair : table.pairs) {
     if (is_tested(pair.state)) pairs_.push_back({pair.a, pair.b, -kInfinity});
   }
-  memory_.assign(pairs_.size(), {});
+  memory_.clear();
+  memory_.resize(pairs_.size());
 }
 
 void PairTracker::forget_bounds() {
   for (Tracked& pair : pairs_) pair.known = -kInfinity;
-  for (Memory& memory : memory_) {
-    for (Item& item : memory.items) item.known = -kInfinity;
+  for (const auto& memory : memory_) {
+    if (!memory) continue;
+    for (Item& item : memory->items) item.known = -kInfinity;
   }
 }
 
@@ -54,31 +56,38 @@ double PairTracker::refine(std::size_t index, double enough) {
   const MovingBody& b = motion_->bodies()[pair.b];
   const double travelled = motion_->travelled()[pair.a] + motion_->travelled()[pair.b];
   double bound = std::max(pair.known - travelled, lower_bound(a.placed, b.placed, enough));
-  const Memory& memory = memory_[index];
-  if (bound <= enough && memory.distance_then > enough) {
+  const Memory* memory = memory_[index].get();
+  if (bound <= enough && memory != nullptr && memory->distance_then > enough) {
     Eigen::Matrix3d R;
     Eigen::Vector3d p;
     relative(pair, R, p);
     const double radius = std::min(a.placed.radius, b.placed.radius);
-    const double moved = travel(memory.R_then, R, (p - memory.p_then).norm(), radius);
-    bound = std::max(bound, memory.distance_then - moved - kBoundSlack);
+    const double moved = travel(memory->R_then, R, (p - memory->p_then).norm(), radius);
+    bound = std::max(bound, memory->distance_then - moved - kBoundSlack);
   }
   pair.known = bound + travelled;
   return bound;
 }
 
-void PairTracker::make_items(const Tracked& pair, Memory& memory) const {
-  const std::uint32_t parts_a = motion_->bodies()[pair.a].part_count;
-  const std::uint32_t parts_b = motion_->bodies()[pair.b].part_count;
-  memory.items.reserve(static_cast<std::size_t>(parts_a) * parts_b);
+PairTracker::Memory& PairTracker::memory_of(std::size_t index) {
+  std::unique_ptr<Memory>& memory = memory_[index];
+  if (memory) return *memory;
+  memory = std::make_unique<Memory>();
+  const std::uint32_t parts_a = motion_->bodies()[pairs_[index].a].part_count;
+  const std::uint32_t parts_b = motion_->bodies()[pairs_[index].b].part_count;
+  memory->items.reserve(static_cast<std::size_t>(parts_a) * parts_b);
   for (std::uint32_t i = 0; i < parts_a; ++i) {
-    for (std::uint32_t k = 0; k < parts_b; ++k) memory.items.push_back({i, k, -kInfinity, {}});
+    for (std::uint32_t k = 0; k < parts_b; ++k) memory->items.push_back({i, k, -kInfinity, {}});
   }
+  return *memory;
+}
+
+std::uint64_t PairTracker::moved_frame(const Tracked& pair) const {
+  return std::max(motion_->bodies()[pair.a].moved_frame, motion_->bodies()[pair.b].moved_frame);
 }
 
 // Parts that may be nearer than `up_to`, the most promising first.
 void PairTracker::gather(const Tracked& pair, Memory& memory, double up_to) {
-  if (memory.items.empty()) make_items(pair, memory);
   const double travelled = motion_->travelled()[pair.a] + motion_->travelled()[pair.b];
   const MovingBody& a = motion_->bodies()[pair.a];
   const MovingBody& b = motion_->bodies()[pair.b];
@@ -135,9 +144,8 @@ void PairTracker::measure(const Tracked& pair, Memory& memory, double up_to) {
 
 const PairDistance& PairTracker::distance(std::size_t index, double up_to) {
   Tracked& pair = pairs_[index];
-  Memory& memory = memory_[index];
-  const std::uint64_t moved = std::max(motion_->bodies()[pair.a].moved_frame, motion_->bodies()[pair.b].moved_frame);
-  if (memory.frame != 0 && moved <= memory.frame && (!memory.last.beyond || memory.last.distance >= up_to))
+  Memory& memory = memory_of(index);
+  if (memory.frame != 0 && moved_frame(pair) <= memory.frame && (!memory.last.beyond || memory.last.distance >= up_to))
     return memory.last;
   gather(pair, memory, up_to);
   measure(pair, memory, up_to);
@@ -148,9 +156,12 @@ const PairDistance& PairTracker::distance(std::size_t index, double up_to) {
   return memory.last;
 }
 
-bool PairTracker::contact(std::size_t index, std::size_t most, geometry::Contact& out) {
+const geometry::Contact& PairTracker::contact(std::size_t index) {
   const Tracked& pair = pairs_[index];
-  Memory& memory = memory_[index];
+  Memory& memory = memory_of(index);
+  geometry::Contact& out = memory.contact;
+  if (memory.contact_frame != 0 && moved_frame(pair) <= memory.contact_frame) return out;
+  memory.contact_frame = motion_->frame();
   const MovingBody& a = motion_->bodies()[pair.a];
   const MovingBody& b = motion_->bodies()[pair.b];
   out.points.clear();
@@ -160,19 +171,20 @@ bool PairTracker::contact(std::size_t index, std::size_t most, geometry::Contact
     const MovingPart& part_a = motion_->part(a, item.part_a);
     const MovingPart& part_b = motion_->part(b, item.part_b);
     ++queries_;
-    if (!geometry::contact(*part_a.solid, part_a.X_WG, *part_b.solid, part_b.X_WG, most, part_contact_)) continue;
+    if (!geometry::contact(*part_a.solid, part_a.X_WG, *part_b.solid, part_b.X_WG, kMostContactPoints, part_contact_))
+      continue;
     out.points.insert(out.points.end(), part_contact_.points.begin(), part_contact_.points.end());
   }
-  if (out.points.empty()) return false;
+  if (out.points.empty()) return out;
   std::ranges::stable_sort(out.points, std::ranges::greater{}, &geometry::ContactPoint::depth);
-  if (out.points.size() > most) out.points.resize(most);
+  if (out.points.size() > kMostContactPoints) out.points.resize(kMostContactPoints);
   out.deepest = out.points.front();
-  return true;
+  return out;
 }
 
 bool PairTracker::touches(std::size_t index) {
   const Tracked& pair = pairs_[index];
-  Memory& memory = memory_[index];
+  Memory& memory = memory_of(index);
   const MovingBody& a = motion_->bodies()[pair.a];
   const MovingBody& b = motion_->bodies()[pair.b];
   gather(pair, memory, geometry::kTouchDistance);

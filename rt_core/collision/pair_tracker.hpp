@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "rt_core/collision/body_motion.hpp"
@@ -23,6 +24,8 @@ struct PairDistance {
 
 class PairTracker {
  public:
+  static constexpr std::size_t kMostContactPoints = 8;
+
   // Only tested pairs are kept, in the order of the table.
   void adopt(const PairTable& table, const BodyMotion& motion);
 
@@ -44,8 +47,9 @@ class PairTracker {
   double refine(std::size_t index, double enough);
   // The distance where it is below `up_to`, else a lower bound that is not below `up_to`. Bodies that are usable.
   const PairDistance& distance(std::size_t index, double up_to);
-  // Deepest first, at most `most`, of a pair that touches. False where no part touches another.
-  bool contact(std::size_t index, std::size_t most, geometry::Contact& out);
+  // Deepest first, at most kMostContactPoints, of a pair that touches; no points where no part touches another. Valid
+  // until the next call for that pair.
+  const geometry::Contact& contact(std::size_t index);
   // Stops at the first touch.
   [[nodiscard]] bool touches(std::size_t index);
 
@@ -60,27 +64,30 @@ class PairTracker {
     geometry::ProximityHint hint;
   };
   struct Memory {
-    std::vector<Item> items;  // made when the pair comes near for the first time
+    std::vector<Item> items;
     // One body in the other at the last query.
     Eigen::Matrix3d R_then = Eigen::Matrix3d::Identity();
     Eigen::Vector3d p_then = Eigen::Vector3d::Zero();
     double distance_then = -1;  // m, a lower bound; below 0: there was no query
     PairDistance last;
     std::uint64_t frame = 0;  // of `last`, 0: none
+    geometry::Contact contact;
+    std::uint64_t contact_frame = 0;  // of `contact`, 0: none
   };
   struct Candidate {
     double bound = 0;
     std::uint32_t item = 0;
   };
 
-  void make_items(const Tracked& pair, Memory& memory) const;
+  Memory& memory_of(std::size_t index);
+  [[nodiscard]] std::uint64_t moved_frame(const Tracked& pair) const;
   void gather(const Tracked& pair, Memory& memory, double up_to);
   void measure(const Tracked& pair, Memory& memory, double up_to);
   void relative(const Tracked& pair, Eigen::Matrix3d& R, Eigen::Vector3d& p) const;
 
   const BodyMotion* motion_ = nullptr;
   std::vector<Tracked> pairs_;
-  std::vector<Memory> memory_;
+  std::vector<std::unique_ptr<Memory>> memory_;  // made when the pair comes near for the first time
   std::vector<Candidate> candidates_;
   geometry::Contact part_contact_;
   std::uint64_t queries_ = 0;
