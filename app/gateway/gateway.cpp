@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "app/gateway/cell_owner.hpp"
+#include "app/gateway/collision_worker.hpp"
 #include "app/gateway/fault_monitor.hpp"
 #include "app/gateway/flight_file.hpp"
 #include "app/gateway/outputs.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/publisher.hpp"
+#include "app/gateway/ranging_worker.hpp"
 #include "app/gateway/status_document.hpp"
 #include "config/cell_file.hpp"
 #include "ipc/control/control_request.hpp"
@@ -67,6 +69,8 @@ struct Gateway::Parts {
   std::unique_ptr<ScriptMessageReceiver> messages;
   std::unique_ptr<CellOwner> owner;
   std::unique_ptr<CyclicThread> loop;
+  std::unique_ptr<CollisionWorker> collisions;
+  std::unique_ptr<RangingWorker> ranging;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<FaultMonitor> faults;
   RobotStateBuilder status_builder;  // the control server's thread
@@ -76,6 +80,8 @@ struct Gateway::Parts {
     control.reset();
     faults.reset();
     publisher.reset();
+    ranging.reset();
+    collisions.reset();
     // The receiver's handler may wait for the owner to take a command, so it has to end first.
     if (messages) messages->stop();
     if (owner) owner->stop();
@@ -87,6 +93,7 @@ struct Gateway::Parts {
   Result<void> take_instance(const GatewayOptions& options);
   Result<void> make_owner(LoadedCell loaded, const GatewayOptions& options);
   Result<void> start_loop();
+  void start_sensing();
   Result<void> start_messages();
   Result<void> start_outputs(const DdsOutputConfig& dds);
   void start_fault_monitor();
@@ -129,7 +136,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                                                        loaded.home,
                                                        std::move(streams),
                                                        std::move(loaded.views),
-                                                       {},
+                                                       std::move(loaded.collision),
                                                        *engine,
                                                        board,
                                                        clock,
@@ -156,6 +163,14 @@ Result<void> Gateway::Parts::start_loop() {
   return {};
 }
 
+void Gateway::Parts::start_sensing() {
+  // Both look at the same shapes.
+  const auto solids = std::make_shared<geometry::SolidLibrary>();
+  const Nanoseconds period = loop->options().period;
+  collisions = std::make_unique<CollisionWorker>(*engine, board, clock, period, solids);
+  ranging = std::make_unique<RangingWorker>(*engine, board, clock, period, solids);
+}
+
 Result<void> Gateway::Parts::start_messages() {
   messages = std::make_unique<ScriptMessageReceiver>(queues, instance->info().name);
   return messages->start([this](const ScriptMessage& message) { owner->submit(message); });
@@ -164,7 +179,8 @@ Result<void> Gateway::Parts::start_messages() {
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
   auto outputs = make_outputs(queues, dds, instance->info().name);
   if (!outputs) return std::unexpected(outputs.error());
-  publisher = std::make_unique<Publisher>(*engine, board, clock, loop->options().period, std::move(*outputs));
+  publisher = std::make_unique<Publisher>(*engine, board, collisions->board(), ranging->board(), clock,
+                                          loop->options().period, std::move(*outputs));
   return {};
 }
 
@@ -217,11 +233,13 @@ std::string Gateway::Parts::status() {
     outputs.emplace_back(output.output->name(), output.output->counters());
   const FaultStatus fault_status = faults->status();
   const ScriptMessageStatus message_status = messages->status();
+  const CollisionReport collision_report = collisions->report();
+  const RangeReport range_report = ranging->report();
   const Timestamp now = clock.now();
   return status_document({instance->info().name, cell_name, home->root().string(), seconds(now - started),
                           loop_settings.rate_hz, now, *loop, memory, fault_status, *picture, tick,
-                          status_builder.build(*picture, tick), message_status, std::move(thread_queues),
-                          std::move(outputs)});
+                          status_builder.build(*picture, tick), message_status, collision_report, range_report,
+                          std::move(thread_queues), std::move(outputs)});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -245,6 +263,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
   if (step) step = parts->start_loop();
+  if (step) parts->start_sensing();
   if (step) step = parts->start_outputs(dds);
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();

@@ -11,6 +11,11 @@ namespace {
 
 Nanoseconds period_of(double rate_hz) { return Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)); }
 
+void add(std::vector<PublishedOutput>& outputs, std::unique_ptr<RobotStateOutput> output, double rate_hz) {
+  auto* findings = dynamic_cast<FindingsOutput*>(output.get());
+  outputs.push_back({std::move(output), period_of(rate_hz), findings});
+}
+
 }  // namespace
 
 Result<std::vector<PublishedOutput>> make_outputs(const QueueConfig& queues, const DdsOutputConfig& config,
@@ -18,11 +23,11 @@ Result<std::vector<PublishedOutput>> make_outputs(const QueueConfig& queues, con
   std::vector<PublishedOutput> outputs;
   auto sensor = SensorQueueOutput::open(queues, instance);
   if (!sensor) return std::unexpected(sensor.error());
-  outputs.push_back({std::move(*sensor), period_of(queues.sensor_rate_hz)});
+  add(outputs, std::move(*sensor), queues.sensor_rate_hz);
   if (!config.enabled) return outputs;
   auto published = dds::make_dds_output(config);
   if (!published) return std::unexpected(published.error());
-  outputs.push_back({std::move(*published), period_of(config.rate_hz)});
+  add(outputs, std::move(*published), config.rate_hz);
   return outputs;
 }
 

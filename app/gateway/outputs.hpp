@@ -1,4 +1,4 @@
-// Makes the outputs for robot states: the SENSOR channel, and DDS where the cell file wants it.
+// Makes the outputs for robot states, collisions and ranges: the SENSOR channel, and DDS where the cell file wants it.
 #pragma once
 
 #include <string>

@@ -21,13 +21,34 @@ void sleep_until(Timestamp t) {
 
 }  // namespace
 
-Publisher::Publisher(engine::Engine& engine, const PictureBoard& board, const Clock& clock, Nanoseconds tick_period,
+void FindingsPublisher::publish_news(FindingsOutput& output, RangeSendMode mode) {
+  const std::shared_ptr<const ProximityState> state = proximity_.look();
+  if (state && state->sequence != newest_proximity_) {
+    outgoing_ = *state;
+    outgoing_.events = proximity_.events_after(newest_event_);
+    // The worker may have hung up newer results meanwhile: their events go with the next ones.
+    std::erase_if(outgoing_.events,
+                  [&](const ProximityEvent& event) { return event.posture_time > state->posture_time; });
+    if (!outgoing_.events.empty()) newest_event_ = outgoing_.events.back().sequence;
+    newest_proximity_ = state->sequence;
+    output.publish_proximity(outgoing_);
+  }
+  const std::shared_ptr<const RangeReadings> ranges = ranges_.look();
+  if (ranges && ranges->sequence != newest_ranges_) {
+    newest_ranges_ = ranges->sequence;
+    output.publish_ranges(ranges->readings, mode);
+  }
+}
+
+Publisher::Publisher(engine::Engine& engine, const PictureBoard& board, const ProximityBoard& proximity,
+                     const RangeBoard& ranges, const Clock& clock, Nanoseconds tick_period,
                      std::vector<PublishedOutput> outputs)
     : engine_(engine),
       board_(board),
       clock_(clock),
       tick_period_(tick_period),
       outputs_(std::move(outputs)),
+      findings_(outputs_.size(), FindingsPublisher(proximity, ranges)),
       due_(outputs_.size(), clock.now()),
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
 
@@ -73,6 +94,7 @@ Timestamp Publisher::publish_due(Timestamp now) {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       if (due_[i] > now + tick_period_ / 2) continue;
       if (!sending_.empty()) outputs_[i].output->publish(state.time, sending_, frames);
+      if (outputs_[i].findings != nullptr) findings_[i].publish_news(*outputs_[i].findings, picture->range_send_mode);
       due_[i] = due_[i] + outputs_[i].period;
       if (due_[i] < now) due_[i] = now + outputs_[i].period;  // it was late by more than a period
     }

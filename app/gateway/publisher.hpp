@@ -1,14 +1,16 @@
-// The thread that gives robot states to the outputs, each at its rate, in step with the tick.
+// The thread that gives robot states, collisions and ranges to the outputs, each at its rate, in step with the tick.
 #pragma once
 
 #include <memory>
 #include <thread>
 #include <vector>
 
+#include "app/gateway/findings_board.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/robot_states.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
 
 namespace cellmirror::app {
@@ -16,11 +18,32 @@ namespace cellmirror::app {
 struct PublishedOutput {
   std::unique_ptr<RobotStateOutput> output;
   Nanoseconds period{0};
+  FindingsOutput* findings = nullptr;  // the same object; null: it has no use for collisions and ranges
+};
+
+// Gives what is new on the boards to one output. Results that were replaced in the meantime are left out, but none of
+// their events. One thread.
+class FindingsPublisher {
+ public:
+  FindingsPublisher(const ProximityBoard& proximity, const RangeBoard& ranges)
+      : proximity_(proximity), ranges_(ranges) {}
+
+  void publish_news(FindingsOutput& output, RangeSendMode mode);
+
+ private:
+  const ProximityBoard& proximity_;
+  const RangeBoard& ranges_;
+  std::uint64_t newest_proximity_ = 0;  // sequence of what was given last
+  std::uint64_t newest_event_ = 0;
+  std::uint64_t newest_ranges_ = 0;
+  ProximityState outgoing_;
 };
 
 class Publisher {
  public:
-  Publisher(engine::Engine& engine, const PictureBoard& board, const Clock& clock, Nanoseconds tick_period,
+  // All but the outputs are not owned and outlive the publisher.
+  Publisher(engine::Engine& engine, const PictureBoard& board, const ProximityBoard& proximity,
+            const RangeBoard& ranges, const Clock& clock, Nanoseconds tick_period,
             std::vector<PublishedOutput> outputs);
   ~Publisher();
   Publisher(const Publisher&) = delete;
@@ -39,6 +62,7 @@ class Publisher {
   const Clock& clock_;
   Nanoseconds tick_period_;
   std::vector<PublishedOutput> outputs_;
+  std::vector<FindingsPublisher> findings_;  // one an output
   std::vector<Timestamp> due_;
   RobotStateBuilder builder_;
   std::vector<RobotState> sending_;

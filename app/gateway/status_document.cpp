@@ -9,6 +9,8 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "app/gateway/status_collisions.hpp"
+#include "app/gateway/status_ranges.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
 
 namespace cellmirror::app {
@@ -298,6 +300,8 @@ std::string status_document(const StatusSources& sources) {
                          {"queues", queues_json(sources)},
                          {"messages", messages_json(sources)},
                          {"cameras", cameras_json(cell)},
+                         {"collisions", collisions_json(sources.collisions, sources.now)},
+                         {"ranges", ranges_json(sources.ranges, sources.picture, sources.now)},
                          {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.
   return document.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "app/gateway/collision_worker.hpp"
 #include "app/gateway/fault_monitor.hpp"
 #include "app/gateway/picture.hpp"
+#include "app/gateway/ranging_worker.hpp"
 #include "ipc/control/control_server.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/engine/engine.hpp"
@@ -31,6 +33,8 @@ struct StatusSources {
   const engine::TickState& tick;
   std::span<const RobotState> robots;  // of the same tick
   const ScriptMessageStatus& messages;
+  const CollisionReport& collisions;
+  const RangeReport& ranges;
   std::vector<engine::QueueStatus> queues;  // of the threads
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
 };

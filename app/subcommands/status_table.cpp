@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "app/subcommands/status_table_sensing.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -24,6 +25,7 @@ class TableWriter {
     write_head(status);
     write_loop(status.at("loop"));
     for (const json& robot : status.at("robots")) write_robot(robot);
+    out_ += sensing_table(status);
     write_script(status);
     write_queues(status.at("queues"));
     return std::move(out_);

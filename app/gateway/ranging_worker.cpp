@@ -1,0 +1,44 @@
+#include "app/gateway/ranging_worker.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace cellmirror::app {
+
+RangingWorker::RangingWorker(engine::Engine& engine, const PictureBoard& pictures, const Clock& clock,
+                             Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
+    : clock_(clock),
+      finder_(std::move(solids)),
+      worker_(
+          "ranging", *this, [&engine]() -> const engine::TickState& { return engine.ranging_view(); }, pictures, clock,
+          tick_period) {}
+
+bool RangingWorker::wanted(const OwnerPicture& picture) {
+  const bool wanted =
+      std::ranges::any_of(picture.cell->sensors, [](const CompiledSensor& sensor) { return sensor.sensor.active; });
+  if (!wanted) ages_.paused();
+  return wanted;
+}
+
+void RangingWorker::run(const OwnerPicture& picture, const engine::TickState& tick) {
+  if (follower_.take_cell(picture.cell)) finder_.adopt(follower_.cell());
+  if (!follower_.take_posture(tick)) return;
+  const Timestamp start = clock_.now();
+  const std::span<const RangeReading> found =
+      finder_.read(follower_.poses(), tick.time, ranging::Selection::active_sensors);
+  std::shared_ptr<RangeReadings> readings = recycled_.take();
+  readings->sequence = ++sequence_;
+  readings->posture_time = tick.time;
+  readings->finished = clock_.now();
+  readings->readings.assign(found.begin(), found.end());
+  compute_.record(readings->finished - start);
+  board_.hang_up(std::move(readings));
+  ages_.shown(tick.time, clock_.now());
+}
+
+RangeReport RangingWorker::report() const {
+  return {board_.look(), worker_.skipped(), worker_.rate_hz(), ages_.age().snapshot(), compute_.snapshot()};
+}
+
+}  // namespace cellmirror::app
