@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
     add_doctor(cli, action);
     add_fk(cli, action);
     add_ik(cli, action);
+    add_collide(cli, action);
+    add_range(cli, action);
     try {
       cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

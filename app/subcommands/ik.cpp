@@ -1,7 +1,5 @@
 // cellmirror ik: joint values for poses of the tip, and how well and how fast they are found.
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -17,6 +15,7 @@
 #include "app/kinematics/ik_run.hpp"
 #include "app/kinematics/robot_choice.hpp"
 #include "app/kinematics/targets.hpp"
+#include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/target_file.hpp"
 #include "rt_core/base/home.hpp"
@@ -123,36 +122,10 @@ Result<IkSettings> settings_of(const IkOptions& options, const kinematics::Chain
   return out;
 }
 
-// A line on the terminal that is written anew a few times a second; nothing where standard error is no terminal.
-class ProgressLine {
- public:
-  explicit ProgressLine(std::size_t targets) : targets_(targets), shown_(isatty(STDERR_FILENO) == 1) {}
-  ~ProgressLine() {
-    if (drawn_) std::fputs("\r\x1b[K", stderr);
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void operator()(std::size_t done) {
-    constexpr std::chrono::milliseconds kEvery{250};
-    const auto now = std::chrono::steady_clock::now();
-    if (!shown_ || now - last_ < kEvery) return;
-    last_ = now;
-    drawn_ = true;
-    std::fprintf(stderr, "\r\x1b[K%zu of %zu targets", done, targets_);
-  }
-
- private:
-  std::size_t targets_;
-  bool shown_;
-  bool drawn_ = false;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 Result<IkRun> run_with_progress(const kinematics::Chain& chain, const IkSettings& settings,
                                 std::span<const Pose> targets) {
-  ProgressLine line(targets.size());
-  return run_ik(chain, settings, targets, [&line](std::size_t done) { line(done); });
+  ProgressLine line("targets");
+  return run_ik(chain, settings, targets, [&](std::size_t done) { line.tell(done, targets.size()); });
 }
 
 // Prints what was found, and gives the exit status: one target that is not reached is a failure, of many it is a

@@ -25,6 +25,8 @@ void add_commands(CLI::App& cli, Action& action);
 void add_doctor(CLI::App& cli, Action& action);
 void add_fk(CLI::App& cli, Action& action);
 void add_ik(CLI::App& cli, Action& action);
+void add_collide(CLI::App& cli, Action& action);
+void add_range(CLI::App& cli, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.
 int refuse(const std::string& what);

@@ -1,0 +1,198 @@
+#include "app/proximity/collide_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/proximity/json_writer.hpp"
+#include "app/subcommands/put.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::uint64_t kListed = 12;       // frames that are shown one by one
+constexpr std::uint64_t kMostChanges = 40;  // lines about frames in which something changes
+constexpr std::size_t kMostNames = 200;     // characters of a name
+
+std::string name(const collision::PairTable& pairs, std::uint32_t body) {
+  return printable((*pairs.names)[body], kMostNames);
+}
+
+std::string pair_text(const collision::PairTable& pairs, std::uint32_t a, std::uint32_t b) {
+  return name(pairs, a) + " - " + name(pairs, b);
+}
+
+std::string point_text(const Eigen::Vector3d& p) { return fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z()); }
+
+std::size_t tested_pairs(const collision::PairTable& pairs) {
+  return static_cast<std::size_t>(
+      std::count_if(pairs.pairs.begin(), pairs.pairs.end(),
+                    [](const collision::Pair& pair) { return collision::is_tested(pair.state); }));
+}
+
+std::string near_json(const collision::PairTable& pairs, const NearPair& pair) {
+  return fmt::format(R"({{"a":{},"b":{},"distance_m":{},"point_a_m":{},"point_b_m":{}{}}})",
+                     json_text((*pairs.names)[pair.a]), json_text((*pairs.names)[pair.b]), json_number(pair.distance_m),
+                     json_point(pair.point_a_m), json_point(pair.point_b_m), pair.doubtful ? ",\"doubtful\":true" : "");
+}
+
+std::string touching_json(const collision::PairTable& pairs, const TouchingPair& pair) {
+  std::string contacts;
+  for (const TouchingPoint& point : pair.points)
+    contacts += fmt::format(R"({}{{"point_m":{},"normal":{},"depth_m":{}}})", contacts.empty() ? "" : ",",
+                            json_point(point.point_m), json_point(point.normal), json_number(point.depth_m));
+  return fmt::format(R"({{"a":{},"b":{},"depth_m":{},"point_m":{},"normal":{},"contacts":[{}]{}}})",
+                     json_text((*pairs.names)[pair.a]), json_text((*pairs.names)[pair.b]), json_number(pair.depth_m),
+                     json_point(pair.point_m), json_point(pair.normal), contacts,
+                     pair.doubtful ? ",\"doubtful\":true" : "");
+}
+
+double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
+
+}  // namespace
+
+CollideJson::CollideJson(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)
+    : pairs_(pairs), out_(out) {
+  put(out_,
+      R"({{"cell":{},"bodies":{},"triangles":{},"pairs_tested":{},"pairs_left_out":{},"pairs_rigid":{},)"
+      R"("warning_distance_m":{},"frames":[)",
+      json_text(heading.cell), pairs.bodies.size(), pairs.triangles, tested_pairs(pairs),
+      pairs.pairs.size() - tested_pairs(pairs), pairs.rigid_pairs, json_number(heading.warning_distance_m));
+}
+
+void CollideJson::frame(const ProximityState& state) {
+  std::string collisions;
+  for (const TouchingPair& pair : state.touching)
+    collisions += (collisions.empty() ? "" : ",") + touching_json(pairs_, pair);
+  std::string warnings;
+  for (const NearPair& pair : state.near) {
+    if (pair.within_warning) warnings += (warnings.empty() ? "" : ",") + near_json(pairs_, pair);
+  }
+  std::string doubts;
+  for (const std::string& doubt : state.doubts) doubts += (doubts.empty() ? "" : ",") + json_text(doubt);
+  put(out_, R"({}{{"collisions":[{}],"min_distance":{},"within_warning":[{}],"doubts":[{}]}})", first_ ? "\n" : ",\n",
+      collisions, state.nearest() == nullptr ? "null" : near_json(pairs_, *state.nearest()), warnings, doubts);
+  first_ = false;
+}
+
+void CollideJson::end(const CollideTotals& totals) {
+  std::string touching;
+  for (const auto& [pair, touch] : totals.touching)
+    touching += fmt::format(R"({}{{"a":{},"b":{},"frames":{},"depth_m":{},"frame":{}}})", touching.empty() ? "" : ",",
+                            json_text((*pairs_.names)[pair.first]), json_text((*pairs_.names)[pair.second]),
+                            touch.frames, json_number(touch.deepest_m), touch.deepest_frame);
+  const std::string nearest = totals.nearest ? fmt::format(R"({{"frame":{},"pair":{}}})", totals.nearest_frame,
+                                                           near_json(pairs_, *totals.nearest))
+                                             : "null";
+  const HistogramSnapshot& times = totals.times;
+  put(out_,
+      "\n],\"summary\":{{\"frames\":{},\"frames_with_collisions\":{},\"frames_in_doubt\":{},\"collisions\":[{}],"
+      "\"min_distance\":{},\"time_mean_us\":{},\"time_p50_us\":{},\"time_p99_us\":{},\"time_max_us\":{}}}}}\n",
+      totals.frames, totals.frames_touching, totals.frames_in_doubt, touching, nearest, us(times.mean()),
+      us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+}
+
+CollideText::CollideText(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)
+    : heading_(heading), pairs_(pairs), out_(out) {
+  const std::size_t tested = tested_pairs(pairs);
+  put(out_, "{}: {} bodies, {} triangles; {} pairs tested, {} left out (--pairs says why), {} rigid\n",
+      printable(heading.cell), pairs.bodies.size(), pairs.triangles, tested, pairs.pairs.size() - tested,
+      pairs.rigid_pairs);
+  for (const std::string& doubt : pairs.doubts) put(out_, "in doubt: {}\n", printable(doubt, kMostNames));
+}
+
+void CollideText::frame(std::uint64_t number, const ProximityState& state) {
+  if (heading_.frames <= kListed) return whole_frame(number, state);
+  changes(number, state);
+}
+
+void CollideText::whole_frame(std::uint64_t number, const ProximityState& state) {
+  const NearPair* nearest = state.nearest();
+  if (!state.touching.empty()) {
+    put(out_, "frame {}: {} {}\n", number, state.touching.size(),
+        state.touching.size() == 1 ? "collision" : "collisions");
+  } else if (nearest != nullptr) {
+    put(out_, "frame {}: free; nearest {} {:.4f} m{}\n", number, pair_text(pairs_, nearest->a, nearest->b),
+        nearest->distance_m, nearest->doubtful ? " at least" : "");
+  } else {
+    put(out_, "frame {}: no pair is tested\n", number);
+  }
+  for (const TouchingPair& pair : state.touching)
+    put(out_, "  {}: {:.4f} m deep at {}{}\n", pair_text(pairs_, pair.a, pair.b), pair.depth_m,
+        point_text(pair.point_m), pair.doubtful ? ", in doubt" : "");
+  for (const NearPair& pair : state.near) {
+    if (pair.within_warning && pair.distance_m > 0.0 && &pair != nearest)
+      put(out_, "  within {:g} m: {} {:.4f} m\n", heading_.warning_distance_m, pair_text(pairs_, pair.a, pair.b),
+          pair.distance_m);
+  }
+  for (const std::string& doubt : state.doubts) put(out_, "  in doubt: {}\n", printable(doubt, kMostNames));
+}
+
+void CollideText::changes(std::uint64_t number, const ProximityState& state) {
+  std::set<BodyPair> now;
+  for (const TouchingPair& pair : state.touching) {
+    now.emplace(pair.a, pair.b);
+    if (!touching_.contains({pair.a, pair.b}))
+      change(fmt::format("frame {}: {} touch, {:.4f} m deep at {}{}\n", number, pair_text(pairs_, pair.a, pair.b),
+                         pair.depth_m, point_text(pair.point_m), pair.doubtful ? ", in doubt" : ""));
+  }
+  for (const BodyPair& pair : touching_) {
+    if (!now.contains(pair))
+      change(fmt::format("frame {}: {} part\n", number, pair_text(pairs_, pair.first, pair.second)));
+  }
+  touching_ = std::move(now);
+}
+
+void CollideText::change(const std::string& line) {
+  if (++changes_ <= kMostChanges) std::fputs(line.c_str(), out_);
+}
+
+void CollideText::end(const CollideTotals& totals) {
+  if (changes_ > kMostChanges) put(out_, "... and {} more changes (--json has them all)\n", changes_ - kMostChanges);
+  put(out_, "\n{} {}: {} with collisions", totals.frames, totals.frames == 1 ? "frame" : "frames",
+      totals.frames_touching);
+  if (totals.frames_in_doubt > 0) put(out_, ", {} in doubt", totals.frames_in_doubt);
+  put(out_, "\n");
+  for (const auto& [pair, touch] : totals.touching)
+    put(out_, "  {}: {} {}, at most {:.4f} m deep (frame {})\n", pair_text(pairs_, pair.first, pair.second),
+        touch.frames, touch.frames == 1 ? "frame" : "frames", touch.deepest_m, touch.deepest_frame);
+  if (totals.nearest)
+    put(out_, "smallest distance {:.4f} m in frame {}: {}\n", totals.nearest->distance_m, totals.nearest_frame,
+        pair_text(pairs_, totals.nearest->a, totals.nearest->b));
+  const HistogramSnapshot& times = totals.times;
+  put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", us(times.mean()),
+      us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+}
+
+plot::Figure figure(const CollideHeading& heading, const CollideTotals& totals) {
+  plot::Figure out;
+  out.title = "Distances in " + printable(heading.cell);
+  out.subtitle = fmt::format("{} frames, {} with collisions; warning distance {:g} m", totals.frames,
+                             totals.frames_touching, heading.warning_distance_m);
+  out.columns = 1;
+  out.panel_width = 1400;
+  plot::Line distance{"smallest distance", totals.distances.numbers(), totals.distances.values()};
+  const double last = static_cast<double>(std::max<std::uint64_t>(totals.frames, 2));
+  plot::Line warning{"warning distance", {1.0, last}, {heading.warning_distance_m, heading.warning_distance_m}};
+  plot::Panel distances;
+  distances.title = "Smallest distance of all pairs";
+  distances.x = {"frame"};
+  distances.y = {"distance [m]"};
+  distances.lines = {std::move(distance), std::move(warning)};
+  out.panels.push_back(std::move(distances));
+  if (totals.frames_touching == 0) return out;
+  plot::Line depth{"", totals.depths.numbers(), totals.depths.values()};
+  for (double& value : depth.y) value = -value;
+  plot::Panel depths;
+  depths.title = "Depth of the deepest collision";
+  depths.x = {"frame", false, 1.0, last};
+  depths.y = {"depth [m]"};
+  depths.lines = {std::move(depth)};
+  out.panels.push_back(std::move(depths));
+  return out;
+}
+
+}  // namespace cellmirror::app

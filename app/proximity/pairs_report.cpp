@@ -1,0 +1,91 @@
+#include "app/proximity/pairs_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "app/proximity/json_writer.hpp"
+#include "app/subcommands/put.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+using collision::Pair;
+using collision::PairState;
+using collision::PairTable;
+
+struct StateText {
+  PairState state;
+  std::string_view word;
+  std::string_view meaning;
+};
+
+// In the order in which they are printed.
+constexpr std::array kStates{
+    StateText{PairState::tested, "tested", "tested"},
+    StateText{PairState::rule_test, "rule-test", "tested because of a rule"},
+    StateText{PairState::neighbours, "neighbours", "left out: links of one robot with one joint between them"},
+    StateText{PairState::always, "always", "left out: touched in every sampled posture"},
+    StateText{PairState::never, "never", "left out: came near each other in no sampled posture"},
+    StateText{PairState::rule_ignore, "rule-ignore", "left out because of a rule"},
+    StateText{PairState::rigid, "rigid", "left out: no joint between them"},
+};
+
+std::size_t count(const PairTable& pairs, PairState state) {
+  const auto listed =
+      std::count_if(pairs.pairs.begin(), pairs.pairs.end(), [state](const Pair& pair) { return pair.state == state; });
+  return static_cast<std::size_t>(listed) + (state == PairState::rigid ? pairs.rigid_pairs : 0);
+}
+
+}  // namespace
+
+std::string_view word_of(PairState state) {
+  const auto found =
+      std::find_if(kStates.begin(), kStates.end(), [state](const StateText& text) { return text.state == state; });
+  return found == kStates.end() ? "unknown" : found->word;
+}
+
+void print_pairs(const std::string& cell, const PairTable& pairs, std::FILE* out) {
+  constexpr std::size_t kMost = 200;
+  put(out, "{}: {} bodies, {} triangles\n\n", printable(cell), pairs.bodies.size(), pairs.triangles);
+  for (const StateText& text : kStates) {
+    if (const std::size_t number = count(pairs, text.state); number > 0)
+      put(out, "{:>7}  {:<12} {}\n", number, text.word, text.meaning);
+  }
+  for (const StateText& text : kStates) {
+    bool first = true;
+    for (const Pair& pair : pairs.pairs) {
+      if (pair.state != text.state) continue;
+      if (first) put(out, "\n{}\n", text.word);
+      first = false;
+      put(out, "  {} - {}{}{}\n", printable((*pairs.names)[pair.a], kMost), printable((*pairs.names)[pair.b], kMost),
+          pair.reason.empty() ? "" : ": ", pair.reason);
+    }
+  }
+  for (const std::string& doubt : pairs.doubts) put(out, "\nin doubt: {}\n", printable(doubt, kMost));
+}
+
+void print_pairs_json(const std::string& cell, const PairTable& pairs, std::FILE* out) {
+  put(out, R"({{"cell":{},"triangles":{},"bodies":[)", json_text(cell), pairs.triangles);
+  for (std::size_t i = 0; i < pairs.bodies.size(); ++i)
+    put(out, "{}{}", i == 0 ? "" : ",", json_text((*pairs.names)[i]));
+  put(out, "],\"counts\":{{");
+  for (const StateText& text : kStates)
+    put(out, R"({}"{}":{})", &text == kStates.data() ? "" : ",", text.word, count(pairs, text.state));
+  put(out, "}},\"pairs\":[");
+  const char* separator = "\n";
+  for (const Pair& pair : pairs.pairs) {
+    put(out, R"({}{{"a":{},"b":{},"tested":{},"state":"{}","reason":{}}})", separator,
+        json_text((*pairs.names)[pair.a]), json_text((*pairs.names)[pair.b]), collision::is_tested(pair.state),
+        word_of(pair.state), json_text(pair.reason));
+    separator = ",\n";
+  }
+  put(out, "\n],\"doubts\":[");
+  for (std::size_t i = 0; i < pairs.doubts.size(); ++i) put(out, "{}{}", i == 0 ? "" : ",", json_text(pairs.doubts[i]));
+  put(out, "]}}\n");
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,121 @@
+#include "app/proximity/range_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/proximity/json_writer.hpp"
+#include "app/subcommands/put.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::uint64_t kListed = 12;  // frames that are shown one by one
+constexpr std::size_t kMostNames = 200;
+
+double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
+
+std::string reading_json(const RangeReading& reading) {
+  const bool seen = reading.distance_m.has_value();
+  return fmt::format(R"({{"id":{},"path":{},"distance_m":{},"point_m":{},"object":{},"in_blind_zone":{}{}}})",
+                     json_text(reading.id), json_text(reading.path), seen ? json_number(*reading.distance_m) : "null",
+                     seen ? json_point(reading.point_m) : "null", seen ? json_text(reading.object) : "null",
+                     reading.in_blind_zone, reading.doubtful ? ",\"doubtful\":true" : "");
+}
+
+std::string reading_text(const RangeReading& reading) {
+  const std::string id = printable(reading.id, kMostNames);
+  const char* doubt = reading.doubtful ? ", in doubt" : "";
+  if (!reading.distance_m) return fmt::format("  {:<12} nothing up to {:g} m{}\n", id, reading.range_m, doubt);
+  const Eigen::Vector3d& p = reading.point_m;
+  return fmt::format("  {:<12} {:.4f} m  {} at {:.3f} {:.3f} {:.3f}{}{}\n", id, *reading.distance_m,
+                     printable(reading.object, kMostNames), p.x(), p.y(), p.z(),
+                     reading.in_blind_zone ? ", in the blind zone" : "", doubt);
+}
+
+}  // namespace
+
+RangeJson::RangeJson(const RangeHeading& heading, const CompiledCell& cell, std::FILE* out) : cell_(cell), out_(out) {
+  put(out_, R"({{"cell":{},"frames":[)", json_text(heading.cell));
+}
+
+void RangeJson::frame(std::span<const RangeReading> readings) {
+  std::string sensors;
+  for (const RangeReading& reading : readings) sensors += (sensors.empty() ? "" : ",") + reading_json(reading);
+  put(out_, R"({}{{"sensors":[{}]}})", first_ ? "\n" : ",\n", sensors);
+  first_ = false;
+}
+
+void RangeJson::end(const RangeTotals& totals) {
+  std::string sensors;
+  for (std::size_t i = 0; i < totals.sensors.size(); ++i) {
+    const SensorTotals& sensor = totals.sensors[i];
+    const bool seen = sensor.seen > 0;
+    sensors += fmt::format(
+        R"({}{{"id":{},"frames_seen":{},"frames_in_blind_zone":{},"smallest_m":{},"smallest_frame":{},"largest_m":{}}})",
+        i == 0 ? "" : ",", json_text(cell_.sensors[i].name), sensor.seen, sensor.in_blind_zone,
+        seen ? json_number(sensor.smallest_m) : "null", seen ? fmt::format("{}", sensor.smallest_frame) : "null",
+        seen ? json_number(sensor.largest_m) : "null");
+  }
+  const HistogramSnapshot& times = totals.times;
+  put(out_,
+      "\n],\"summary\":{{\"frames\":{},\"sensors\":[{}],\"time_mean_us\":{},\"time_p50_us\":{},"
+      "\"time_p99_us\":{},\"time_max_us\":{}}}}}\n",
+      totals.frames, sensors, us(times.mean()), us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+}
+
+RangeText::RangeText(const RangeHeading& heading, const CompiledCell& cell, std::FILE* out)
+    : heading_(heading), cell_(cell), out_(out) {
+  put(out_, "{}: {} {}\n", printable(heading.cell), cell.sensors.size(),
+      cell.sensors.size() == 1 ? "sensor" : "sensors");
+}
+
+void RangeText::frame(std::uint64_t number, std::span<const RangeReading> readings) {
+  if (heading_.frames > kListed) return;
+  put(out_, "frame {}\n", number);
+  for (const RangeReading& reading : readings) std::fputs(reading_text(reading).c_str(), out_);
+}
+
+void RangeText::end(const RangeTotals& totals) {
+  put(out_, "\n{} {}\n", totals.frames, totals.frames == 1 ? "frame" : "frames");
+  for (std::size_t i = 0; totals.frames > kListed && i < totals.sensors.size(); ++i) {
+    const SensorTotals& sensor = totals.sensors[i];
+    const std::string id = printable(cell_.sensors[i].name, kMostNames);
+    if (sensor.seen == 0) {
+      put(out_, "  {:<12} nothing up to {:g} m\n", id, cell_.sensors[i].sensor.range_m);
+      continue;
+    }
+    put(out_, "  {:<12} {} seen, {:.4f} .. {:.4f} m; nearest in frame {}: {}", id, sensor.seen, sensor.smallest_m,
+        sensor.largest_m, sensor.smallest_frame, printable(sensor.smallest_object, kMostNames));
+    if (sensor.in_blind_zone > 0) put(out_, "; {} in the blind zone", sensor.in_blind_zone);
+    if (sensor.in_doubt > 0) put(out_, "; {} in doubt", sensor.in_doubt);
+    put(out_, "\n");
+  }
+  const HistogramSnapshot& times = totals.times;
+  put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", us(times.mean()),
+      us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+}
+
+plot::Figure figure(const RangeHeading& heading, const CompiledCell& cell, const RangeTotals& totals) {
+  constexpr std::size_t kMostLines = 16;  // what an eye can tell apart
+  plot::Figure out;
+  out.title = "Range sensors of " + printable(heading.cell);
+  out.subtitle = fmt::format("{} frames, {} sensors{}", totals.frames, totals.sensors.size(),
+                             totals.sensors.size() > kMostLines ? fmt::format(", the first {} drawn", kMostLines) : "");
+  out.columns = 1;
+  out.panel_width = 1400;
+  plot::Panel panel;
+  panel.title = "Readings; a gap: nothing in the cone";
+  panel.x = {"frame", false, 1.0, static_cast<double>(std::max<std::uint64_t>(totals.frames, 2))};
+  panel.y = {"distance [m]"};
+  for (std::size_t i = 0; i < std::min(kMostLines, totals.sensors.size()); ++i) {
+    const Envelope& distances = totals.sensors[i].distances;
+    panel.lines.push_back({printable(cell.sensors[i].name), distances.numbers(), distances.values()});
+  }
+  out.panels.push_back(std::move(panel));
+  return out;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,132 @@
+// cellmirror collide: what touches and what is near in a cell, for postures from a file.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/proximity/collide_report.hpp"
+#include "app/proximity/collide_run.hpp"
+#include "app/proximity/pairs_report.hpp"
+#include "app/proximity/postures.hpp"
+#include "app/proximity/proximity_cell.hpp"
+#include "app/subcommands/progress_line.hpp"
+#include "app/subcommands/subcommand.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct CollideOptions {
+  std::string cell;
+  std::string postures;
+  std::string warning;
+  bool pairs = false;
+  std::string plot;
+  bool json = false;
+};
+
+constexpr double kLongestWarning = 1e3;  // m
+
+CLI::Validator warning_distance() {
+  const auto check = [](const std::string& text) {
+    const auto value = parse_number(text);
+    if (value && *value >= 0.0 && *value <= kLongestWarning) return std::string{};
+    return fmt::format("{} is no distance from 0 to {:g} m", printable(text), kLongestWarning);
+  };
+  return {check, "M"};
+}
+
+// All that was written has to have arrived: a full disk is a failure.
+bool flushed(const std::string& what) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  refuse(what + " cannot be written: " + std::strerror(errno));
+  return false;
+}
+
+int tell_pairs(const CollideOptions& options, const std::string& cell, const collision::PairTable& pairs) {
+  if (options.json) {
+    print_pairs_json(cell, pairs, stdout);
+  } else {
+    print_pairs(cell, pairs, stdout);
+  }
+  return flushed("standard output") ? kExitDone : kExitRefused;
+}
+
+int tell_frames(const CollideOptions& options, const CollideInput& input, const std::string& cell, Postures& postures) {
+  const CollideHeading heading{cell, input.settings.warning_distance_m, postures.count()};
+  std::optional<CollideJson> json;
+  std::optional<CollideText> text;
+  if (options.json) {
+    json.emplace(heading, *input.pairs, stdout);
+  } else {
+    text.emplace(heading, *input.pairs, stdout);
+  }
+  Result<CollideTotals> totals;
+  {
+    ProgressLine line("frames");
+    totals = run_collide(input, postures, [&](std::uint64_t frame, const ProximityState& state) {
+      if (json) json->frame(state);
+      if (text) text->frame(frame, state);
+      line.tell(frame, heading.frames);
+    });
+  }
+  if (!totals) return refuse(totals.error().text());
+  if (json) json->end(*totals);
+  if (text) text->end(*totals);
+  if (!flushed("standard output")) return kExitRefused;
+  if (options.plot.empty()) return kExitDone;
+  const auto drawn = plot::write_png(figure(heading, *totals), options.plot);
+  return drawn ? kExitDone : refuse(drawn.error().text());
+}
+
+int collide(const CollideOptions& options) {
+  Diagnostics diagnostics;
+  auto cell = load_proximity_cell(options.cell, diagnostics);
+  std::unique_ptr<Postures> postures;
+  if (cell) {
+    ProgressLine line("bytes of postures checked");
+    postures = Postures::open(options.postures, cell->loaded.cell, diagnostics,
+                              [&line](std::uint64_t done, std::uint64_t total) { line.tell(done, total); });
+  }
+  std::fputs(diagnostics.text().c_str(), stderr);
+  if (!cell || !postures) return kExitRefused;
+  CollideInput input;
+  input.cell = cell->compiled;
+  input.settings = cell->loaded.collision;
+  input.settings.active = true;  // asked for by name
+  if (!options.warning.empty()) input.settings.warning_distance_m = *parse_number(options.warning);
+  collision::PairDerivation derivation(std::make_shared<geometry::SolidLibrary>());
+  input.pairs = derivation.derive(*input.cell, input.settings);
+  if (options.pairs) return tell_pairs(options, cell->loaded.name, *input.pairs);
+  return tell_frames(options, input, cell->loaded.name, *postures);
+}
+
+}  // namespace
+
+void add_collide(CLI::App& cli, Action& action) {
+  auto options = std::make_shared<CollideOptions>();
+  CLI::App* sub = cli.add_subcommand("collide", "Find what touches and what is near in a cell");
+  sub->add_option("--cell", options->cell, "the cell file")->required();
+  auto* postures = sub->add_option("--poses", options->postures,
+                                   "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
+  auto* warning = sub->add_option("--warning", options->warning, "warning distance in m, instead of the cell file's")
+                      ->check(warning_distance());
+  auto* plot = sub->add_option("--plot", options->plot, "draw the smallest distance over the frames: a PNG file");
+  sub->add_flag("--pairs", options->pairs, "only list the pairs: which are tested, and why others are not")
+      ->excludes(postures)
+      ->excludes(warning)
+      ->excludes(plot);
+  sub->add_flag("--json", options->json, "one JSON document (docs/collisions.md)");
+  sub->footer(
+      "Collisions are findings, no failure: the exit status is 0.\n"
+      "Example: cellmirror collide --cell config/cells/transfer_cell/cell.toml --poses day.csv --plot day.png");
+  sub->callback([options, &action] { action = [options] { return collide(*options); }; });
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,87 @@
+// cellmirror range: what the ultrasonic sensors of a cell read, for postures from a file.
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/proximity/postures.hpp"
+#include "app/proximity/proximity_cell.hpp"
+#include "app/proximity/range_report.hpp"
+#include "app/proximity/range_run.hpp"
+#include "app/subcommands/progress_line.hpp"
+#include "app/subcommands/subcommand.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct RangeOptions {
+  std::string cell;
+  std::string postures;
+  std::string plot;
+  bool json = false;
+};
+
+int tell(const RangeOptions& options, const ProximityCell& cell, Postures& postures) {
+  const RangeHeading heading{cell.loaded.name, postures.count()};
+  std::optional<RangeJson> json;
+  std::optional<RangeText> text;
+  if (options.json) {
+    json.emplace(heading, *cell.compiled, stdout);
+  } else {
+    text.emplace(heading, *cell.compiled, stdout);
+  }
+  Result<RangeTotals> totals;
+  {
+    ProgressLine line("frames");
+    totals = run_range(cell.compiled, std::make_shared<geometry::SolidLibrary>(), postures,
+                       [&](std::uint64_t frame, std::span<const RangeReading> readings) {
+                         if (json) json->frame(readings);
+                         if (text) text->frame(frame, readings);
+                         line.tell(frame, heading.frames);
+                       });
+  }
+  if (!totals) return refuse(totals.error().text());
+  if (json) json->end(*totals);
+  if (text) text->end(*totals);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return refuse(std::string("standard output cannot be written: ") + std::strerror(errno));
+  if (options.plot.empty()) return kExitDone;
+  const auto drawn = plot::write_png(figure(heading, *cell.compiled, *totals), options.plot);
+  return drawn ? kExitDone : refuse(drawn.error().text());
+}
+
+int range(const RangeOptions& options) {
+  Diagnostics diagnostics;
+  auto cell = load_proximity_cell(options.cell, diagnostics);
+  std::unique_ptr<Postures> postures;
+  if (cell) {
+    ProgressLine line("bytes of postures checked");
+    postures = Postures::open(options.postures, cell->loaded.cell, diagnostics,
+                              [&line](std::uint64_t done, std::uint64_t total) { line.tell(done, total); });
+  }
+  std::fputs(diagnostics.text().c_str(), stderr);
+  if (!cell || !postures) return kExitRefused;
+  return tell(options, *cell, *postures);
+}
+
+}  // namespace
+
+void add_range(CLI::App& cli, Action& action) {
+  auto options = std::make_shared<RangeOptions>();
+  CLI::App* sub = cli.add_subcommand("range", "Read the ultrasonic sensors of a cell");
+  sub->add_option("--cell", options->cell, "the cell file")->required();
+  sub->add_option("--poses", options->postures,
+                  "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
+  sub->add_option("--plot", options->plot, "draw the readings over the frames: a PNG file");
+  sub->add_flag("--json", options->json, "one JSON document (docs/ranging.md)");
+  sub->footer(
+      "All sensors of the cell are read, also those that are not active.\n"
+      "Example: cellmirror range --cell config/cells/transfer_cell/cell.toml");
+  sub->callback([options, &action] { action = [options] { return range(*options); }; });
+}
+
+}  // namespace cellmirror::app
