@@ -99,10 +99,14 @@ TEST(BeamFrame, LooksAlongItsXAxisWhereTheSensorLooksAlongZ) {
   const FramePose sut = beam_frame_pose(tilted);
   EXPECT_EQ(sut.parent, "world");
   EXPECT_EQ(sut.child, "cell.robot.USS_1B/beam");
-  EXPECT_TRUE(sut.X_PC.translation().isApprox(tilted.X_WS.translation()));
-  EXPECT_TRUE(sut.X_PC.linear().col(0).isApprox(tilted.X_WS.linear().col(2)));
-  EXPECT_TRUE(sut.X_PC.linear().col(1).isApprox(tilted.X_WS.linear().col(1)));
-  EXPECT_NEAR(sut.X_PC.linear().determinant(), 1.0, 1e-12);
+  const auto& X_WB = sut.X_PC.matrix();
+  const auto& X_WS = tilted.X_WS.matrix();
+  for (int row = 0; row < 3; ++row) {
+    EXPECT_NEAR(X_WB(row, 3), X_WS(row, 3), 1e-12);
+    EXPECT_NEAR(X_WB(row, 0), X_WS(row, 2), 1e-12) << "x is the sensor's z";
+    EXPECT_NEAR(X_WB(row, 1), X_WS(row, 1), 1e-12);
+    EXPECT_NEAR(X_WB(row, 2), -X_WS(row, 0), 1e-12) << "right-handed";
+  }
 }
 
 ProximityState state_of(Timestamp time) {
@@ -226,18 +230,18 @@ TEST(RangeMarkers, DrawConesAsLongAsTheReading) {
     EXPECT_EQ(cone.id, i);
     EXPECT_EQ(cone.type, MarkerType::triangle_list);
     ASSERT_EQ(cone.points.size() % 3, 0U);
-    const Eigen::Vector3d apex(cone.points[0][0], cone.points[0][1], cone.points[0][2]);
+    const MarkerPoint& apex = cone.points[0];
     const double length = i == 0 ? 2.0 : i == 1 ? 3.0 : 0.1;
     for (std::size_t p = 0; p < cone.points.size(); ++p) {
-      const Eigen::Vector3d point(cone.points[p][0], cone.points[p][1], cone.points[p][2]);
+      const MarkerPoint& point = cone.points[p];
       if (p % 3 == 0) {
         EXPECT_EQ(point, apex);
       } else {
-        EXPECT_NEAR((point - apex).norm(), length, 1e-12);
-        EXPECT_NEAR((point - apex).z(), length * std::cos(0.125), 1e-12);
+        EXPECT_NEAR(std::hypot(point[0] - apex[0], point[1] - apex[1], point[2] - apex[2]), length, 1e-12);
+        EXPECT_NEAR(point[2] - apex[2], length * std::cos(0.125), 1e-12);
       }
     }
-    EXPECT_EQ(apex.x(), i == 0 ? 1.0 : 0.0);
+    EXPECT_EQ(apex[0], i == 0 ? 1.0 : 0.0);
   }
   EXPECT_EQ(sut.markers[3].ns, "echoes");
   EXPECT_EQ(sut.markers[3].points.size(), 2U);

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
-#include <regex>
+#include <sstream>
 #include <string>
 
 #include "docs/examples/cellmirror_messages.h"
@@ -35,14 +35,20 @@ Table documented(const std::string& title) {
   const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
   std::ifstream in(std::string(source == nullptr ? "." : source) + "/docs/messages.md");
   EXPECT_TRUE(in) << "docs/messages.md is missing; CELLMIRROR_SOURCE_DIR names the sources";
-  const std::regex row(R"(\| (\d+) \| (\S+) \| (\w+) \|.*)");
   Table table;
   std::string line;
   bool here = false;
   while (std::getline(in, line)) {
     if (line.starts_with("#")) here = line == "### " + title;
-    std::smatch match;
-    if (here && std::regex_match(line, match, row)) table[match[3]] = {std::stoul(match[1]), match[2]};
+    // "| offset | type | name | ..."; the heading and the rule below it begin otherwise.
+    std::istringstream words(here ? line : "");
+    std::size_t offset = 0;
+    std::string bar[4];
+    std::string type;
+    std::string name;
+    if (words >> bar[0] >> offset >> bar[1] >> type >> bar[2] >> name >> bar[3] && bar[3] == "|") {
+      table[name] = {offset, type};
+    }
   }
   return table;
 }
