@@ -23,6 +23,14 @@ std::size_t skip_blanks(std::string_view line, std::size_t at) {
   return std::min(line.find_first_not_of(" \t", at), line.size());
 }
 
+std::string example_column(const Cell& cell) {
+  for (const std::string& id : cell.robot_ids()) {
+    const RobotModel* robot = cell.robot(id);
+    if (robot != nullptr && robot->joint_count() > 0) return "e.g. " + id + "." + robot->joints().front().name;
+  }
+  return "the cell has no robot with joints";
+}
+
 }  // namespace
 
 PostureReader::PostureReader(std::istream& in, std::string file, const Cell& cell, Diagnostics& diagnostics)
@@ -117,33 +125,25 @@ bool PostureReader::split() {
 }
 
 bool PostureReader::find_joint(const std::string& name, Column& column) const {
-  for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0; dot = name.rfind('.', dot - 1)) {
-    const RobotModel* robot = cell_.robot(std::string_view(name).substr(0, dot));
-    if (robot == nullptr) continue;
-    const std::string_view joint = std::string_view(name).substr(dot + 1);
-    const auto joints = robot->joints();
-    const auto found = std::find_if(joints.begin(), joints.end(), [&](const RobotJoint& j) { return j.name == joint; });
-    if (found == joints.end()) continue;
-    column.slot = robot->slot();
-    column.joint = static_cast<std::size_t>(found - joints.begin());
-    column.kind = found->kind;
-    column.lower = robot->parameters().min_range[column.joint];
-    column.upper = robot->parameters().max_range[column.joint];
-    return true;
-  }
-  return false;
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return false;
+  const RobotModel* robot = cell_.robot(std::string_view(name).substr(0, dot));
+  if (robot == nullptr) return false;
+  const std::string_view joint = std::string_view(name).substr(dot + 1);
+  const auto joints = robot->joints();
+  const auto found = std::find_if(joints.begin(), joints.end(), [&](const RobotJoint& j) { return j.name == joint; });
+  if (found == joints.end()) return false;
+  column.slot = robot->slot();
+  column.joint = static_cast<std::size_t>(found - joints.begin());
+  column.kind = found->kind;
+  column.lower = robot->parameters().min_range[column.joint];
+  column.upper = robot->parameters().max_range[column.joint];
+  return true;
 }
 
 Error PostureReader::explain_joint(const std::string& name) const {
   const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos)
-    return {printable(name) + " is no robot.joint", "e.g. " + [&] {
-              for (const std::string& id : cell_.robot_ids()) {
-                const RobotModel* robot = cell_.robot(id);
-                if (robot != nullptr && robot->joint_count() > 0) return id + "." + robot->joints().front().name;
-              }
-              return std::string("PUMA_762.J_1");
-            }()};
+  if (dot == std::string::npos) return {printable(name) + " is no robot.joint", example_column(cell_)};
   const std::string robot_name = name.substr(0, dot);
   const RobotModel* robot = cell_.robot(robot_name);
   if (robot == nullptr) return cell_.explain_robot(robot_name);

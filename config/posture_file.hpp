@@ -22,9 +22,9 @@ inline constexpr std::size_t kMaxPostureColumns = 1024;
 inline constexpr double kGreatestJointValue = 1e6;  // rad or m, of either sign
 
 // Accepted: columns in any order; columns for some of the joints only; LF and CRLF; a UTF-8 byte order mark; fields in
-// double quotes; blanks around fields; lines that begin with #; blank lines at the end. A robot's name may hold dots:
-// the last dot at which a robot and its joint are found divides it from the joint. Values beyond a joint's range are
-// taken, since a real robot may stand there, and told in a warning a column by finish(). Any bytes are allowed as text.
+// double quotes; blanks around fields; lines that begin with #; blank lines at the end. Values beyond a joint's range
+// are taken, since a real robot may stand there, and told in a warning a column by finish(). Any bytes are allowed as
+// text.
 class PostureReader {
  public:
   // `in`, `diagnostics` and `cell` are used until the last call.

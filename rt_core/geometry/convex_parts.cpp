@@ -7,11 +7,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "rt_core/geometry/convex_hull.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair_steps.hpp"
 #include "rt_core/geometry/triangle.hpp"
 
 namespace cellmirror::geometry {
@@ -24,6 +25,7 @@ constexpr std::size_t kSamples = 1500;  // triangles that are looked at to judge
 
 struct Piece {
   std::vector<Triangle> surface;  // the part of the mesh's surface in it
+  std::vector<Plane> cuts;        // it lies where none of them has a positive distance
   TriangleMesh hull;
   double volume = 0;     // of the hull, m3
   double concavity = 0;  // m; 0 where it is not to be cut any more
@@ -69,9 +71,41 @@ Halves split(const std::vector<Triangle>& surface, const Plane& plane, double to
     const auto [low, high] = std::minmax({d[0], d[1], d[2]});
     const bool above = low >= -tolerance;
     const bool below = high <= tolerance;
-    if (above) out.above.push_back(t);
-    if (below) out.below.push_back(t);
-    if (!above && !below) cut(t, d, out);
+    if (above && below) {
+      // In the plane: the body is behind it.
+      const double facing = (t[1] - t[0]).cross(t[2] - t[0]).dot(plane.normal());
+      (facing > 0.0 ? out.below : out.above).push_back(t);
+    } else if (above || below) {
+      (above ? out.above : out.below).push_back(t);
+    } else {
+      cut(t, d, out);
+    }
+  }
+  return out;
+}
+
+Plane reversed(const Plane& plane) {
+  Plane out = plane;
+  out.coeffs() = -out.coeffs();
+  return out;
+}
+
+// The points in which three of the planes meet and none of the others cuts them off.
+std::vector<Eigen::Vector3d> corners_of_region(const std::vector<Plane>& planes, double tolerance) {
+  std::vector<Eigen::Vector3d> out;
+  constexpr double kParallel = 1e-9;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      for (std::size_t k = j + 1; k < planes.size(); ++k) {
+        Eigen::Matrix3d normals;
+        normals << planes[i].normal().transpose(), planes[j].normal().transpose(), planes[k].normal().transpose();
+        if (std::abs(normals.determinant()) < kParallel) continue;
+        const Eigen::Vector3d offsets(planes[i].offset(), planes[j].offset(), planes[k].offset());
+        const Eigen::Vector3d p = normals.inverse() * -offsets;
+        if (std::ranges::all_of(planes, [&](const Plane& plane) { return plane.signedDistance(p) <= tolerance; }))
+          out.push_back(p);
+      }
+    }
   }
   return out;
 }
@@ -93,12 +127,15 @@ class Decomposition {
       surface.push_back({mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]});
     auto whole = convex_hull(mesh_.name, mesh_.vertices);
     if (!whole) return std::unexpected(whole.error());
-    pieces_.push_back(piece_of(std::move(surface), std::move(*whole)));
+    all_.resize(mesh_.triangles.size());
+    std::iota(all_.begin(), all_.end(), 0U);
+    pieces_.push_back(piece_of(std::move(surface), {}, std::move(*whole)));
     while (pieces_.size() < std::max<std::size_t>(settings_.most, 1)) {
       const auto worst = std::ranges::max_element(pieces_, {}, &Piece::concavity);
       if (worst->concavity <= settings_.concavity * size_) break;
       cut_piece(static_cast<std::size_t>(worst - pieces_.begin()));
     }
+    merge();
     std::vector<TriangleMesh> out;
     for (Piece& piece : pieces_) {
       piece.hull.name = fmt::format("{} part {}", mesh_.name, out.size() + 1);
@@ -108,9 +145,10 @@ class Decomposition {
   }
 
  private:
-  Piece piece_of(std::vector<Triangle> surface, TriangleMesh hull) const {
+  static Piece piece_of(std::vector<Triangle> surface, std::vector<Plane> cuts, TriangleMesh hull) {
     Piece piece;
     piece.surface = std::move(surface);
+    piece.cuts = std::move(cuts);
     piece.hull = std::move(hull);
     piece.volume = signed_volume(piece.hull);
     judge(piece);
@@ -171,32 +209,84 @@ class Decomposition {
     return signed_volume(*above) + signed_volume(*below);
   }
 
-  // In two by the plane that leaves the least volume; not at all where none leaves less.
-  void cut_piece(std::size_t index) {
-    Piece& piece = pieces_[index];
+  // The plane that leaves the least volume; where none leaves less, as with rings, the middle of the longest side.
+  [[nodiscard]] Plane best_cut(const Piece& piece) const {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : piece.hull.vertices) box.extend(p);
+    Eigen::Index longest = 0;
+    box.sizes().maxCoeff(&longest);
+    const Eigen::Vector3d across = Eigen::Vector3d::Unit(longest);
+    const Eigen::Vector3d centre = box.center();
+    Plane best(across, centre);
     constexpr double kWorthIt = 0.99;
-    double best = kWorthIt * piece.volume;
-    std::optional<Plane> chosen;
+    double least = kWorthIt * piece.volume;
     for (const Plane& plane : candidates(piece)) {
       const auto volume = volume_after(piece, plane);
-      if (!volume || *volume >= best) continue;
-      best = *volume;
-      chosen = plane;
+      if (!volume || *volume >= least) continue;
+      least = *volume;
+      best = plane;
     }
+    return best;
+  }
+
+  // The hull of what a piece holds of the surface and of the inside. Corners of the inside lie on the surface, but for
+  // those in which three cuts meet.
+  [[nodiscard]] Result<TriangleMesh> hull_of(const std::vector<Triangle>& surface,
+                                             const std::vector<Plane>& cuts) const {
+    std::vector<Eigen::Vector3d> points = corners(surface);
+    if (mesh_.closed) {
+      constexpr double kPerhapsInside = 0.1;  // a corner too many does no harm
+      for (const Eigen::Vector3d& p : corners_of_region(cuts, tolerance_)) {
+        if (std::abs(winding_number(mesh_.vertices, mesh_.triangles, all_, p)) > kPerhapsInside) points.push_back(p);
+      }
+    }
+    return convex_hull(mesh_.name, points);
+  }
+
+  // Where there are not two bodies afterwards the piece stays as it is.
+  void cut_piece(std::size_t index) {
+    Piece& piece = pieces_[index];
+    const Plane plane = best_cut(piece);
     piece.concavity = 0.0;  // unless it is replaced
-    if (!chosen) return;
-    Halves halves = split(piece.surface, *chosen, tolerance_, 1);
-    auto above = convex_hull(mesh_.name, corners(halves.above));
-    auto below = convex_hull(mesh_.name, corners(halves.below));
-    if (!above || !below) return;
-    pieces_[index] = piece_of(std::move(halves.above), std::move(*above));
-    pieces_.push_back(piece_of(std::move(halves.below), std::move(*below)));
+    Halves halves = split(piece.surface, plane, tolerance_, 1);
+    std::vector<Plane> cuts_above = piece.cuts;
+    cuts_above.push_back(reversed(plane));
+    std::vector<Plane> cuts_below = piece.cuts;
+    cuts_below.push_back(plane);
+    auto above = hull_of(halves.above, cuts_above);
+    if (!above) return;
+    auto below = hull_of(halves.below, cuts_below);
+    if (!below) return;
+    pieces_[index] = piece_of(std::move(halves.above), std::move(cuts_above), std::move(*above));
+    pieces_.push_back(piece_of(std::move(halves.below), std::move(cuts_below), std::move(*below)));
+  }
+
+  // Makes one of two pieces that fill their common hull.
+  void merge() {
+    constexpr double kFilled = 1.002;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      for (std::size_t k = i + 1; k < pieces_.size();) {
+        std::vector<Eigen::Vector3d> points = pieces_[i].hull.vertices;
+        points.insert(points.end(), pieces_[k].hull.vertices.begin(), pieces_[k].hull.vertices.end());
+        auto both = convex_hull(mesh_.name, points);
+        const double volume = both ? signed_volume(*both) : 0.0;
+        if (!both || volume > kFilled * (pieces_[i].volume + pieces_[k].volume)) {
+          ++k;
+          continue;
+        }
+        pieces_[i].hull = std::move(*both);
+        pieces_[i].volume = volume;
+        pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(k));
+        k = i + 1;
+      }
+    }
   }
 
   const TriangleMesh& mesh_;
   PartsSettings settings_;
-  double size_ = 0;       // m
-  double tolerance_ = 0;  // m; nearer to the plane is on it
+  std::vector<std::uint32_t> all_;  // triangles of the mesh
+  double size_ = 0;                 // m
+  double tolerance_ = 0;            // m; nearer to the plane is on it
   std::vector<Piece> pieces_;
 };
 

@@ -16,7 +16,7 @@ struct PartsSettings {
 };
 
 // Conservative: every point of the mesh, and of its inside where it is closed, lies in some piece (up to 1e-10 of its
-// size). Where a plane cannot cut a piece any better, it stays whole. Refused: flat meshes (see convex_hull()).
+// size). Refused: flat meshes (see convex_hull()).
 [[nodiscard]] Result<std::vector<TriangleMesh>> convex_parts(const TriangleMesh& mesh,
                                                              const PartsSettings& settings = {});
 

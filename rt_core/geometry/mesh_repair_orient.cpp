@@ -24,6 +24,21 @@ std::vector<EdgeUse> edge_uses(const Triangles& triangles) {
   return uses;
 }
 
+double winding_number(const Vertices& vertices, const Triangles& triangles, std::span<const std::uint32_t> which,
+                      const Eigen::Vector3d& p) {
+  double half_angles = 0.0;
+  for (const std::uint32_t i : which) {
+    const Eigen::Vector3d a = vertices[triangles[i][0]] - p;
+    const Eigen::Vector3d b = vertices[triangles[i][1]] - p;
+    const Eigen::Vector3d c = vertices[triangles[i][2]] - p;
+    const double la = a.norm();
+    const double lb = b.norm();
+    const double lc = c.norm();
+    half_angles += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return half_angles / (2.0 * std::numbers::pi);
+}
+
 std::span<const EdgeUse> uses_of(const std::vector<EdgeUse>& uses, std::uint64_t edge) {
   const auto range = std::ranges::equal_range(uses, edge, {}, &EdgeUse::edge);
   return {range.begin(), range.end()};
@@ -170,24 +185,9 @@ class Orienter {
       if (&other == &shell || !other.closed || !other.box.contains(p)) continue;
       if (budget < other.triangles.size()) return std::nullopt;
       budget -= other.triangles.size();
-      if (std::abs(winding_number(other, p)) > 0.5) inside = !inside;
+      if (std::abs(winding_number(vertices_, triangles_, other.triangles, p)) > 0.5) inside = !inside;
     }
     return inside;
-  }
-
-  // How often the shell goes round p. Source: van Oosterom, Strackee 1983 (solid angle of a triangle).
-  [[nodiscard]] double winding_number(const Shell& shell, const Eigen::Vector3d& p) const {
-    double half_angles = 0.0;
-    for (const std::uint32_t i : shell.triangles) {
-      const Eigen::Vector3d a = vertices_[triangles_[i][0]] - p;
-      const Eigen::Vector3d b = vertices_[triangles_[i][1]] - p;
-      const Eigen::Vector3d c = vertices_[triangles_[i][2]] - p;
-      const double la = a.norm();
-      const double lb = b.norm();
-      const double lc = c.norm();
-      half_angles += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    }
-    return half_angles / (2.0 * std::numbers::pi);
   }
 
   const Vertices& vertices_;

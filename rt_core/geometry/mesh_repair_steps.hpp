@@ -48,6 +48,10 @@ void remove_degenerate(const Vertices& vertices, Triangles& triangles, MeshFindi
 void remove_duplicates(Triangles& triangles, MeshFindings& findings);
 // Makes neighbours face the same way and closed shells outwards; says whether the mesh is closed.
 bool orient(const Vertices& vertices, Triangles& triangles, MeshFindings& findings);
+// How often the triangles go round p: 1 inside of a closed mesh that faces outwards, 0 outside. Source: van Oosterom,
+// Strackee 1983 (solid angle of a triangle).
+[[nodiscard]] double winding_number(const Vertices& vertices, const Triangles& triangles,
+                                    std::span<const std::uint32_t> which, const Eigen::Vector3d& p);
 // Forgets vertices without triangles.
 void remove_unused(Vertices& vertices, Triangles& triangles);
 

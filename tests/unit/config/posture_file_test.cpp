@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Robot "ARM" with LIFT (0..2 m), TURN and BEND (-2..1 rad), and a second one whose name holds a dot.
+// Robot "ARM" with LIFT (0..2 m), TURN and BEND (-2..1 rad), and a second one of the same kind.
 struct PostureFile : testing::Test {
   PostureFile() {
     auto files = std::make_shared<TextFiles>();
@@ -21,7 +21,7 @@ struct PostureFile : testing::Test {
     Diagnostics findings;
     auto built = build_cell(
         "[[node]]\nname = \"A\"\nabstract = \"arm.mpc\"\n"
-        "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"ARM.2\"\n",
+        "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"ARM_2\"\n",
         files, findings);
     EXPECT_TRUE(built) << findings.text();
     cell.emplace(std::move(*built));
@@ -56,15 +56,15 @@ struct PostureFile : testing::Test {
 };
 
 TEST_F(PostureFile, takesColumnsInAnyOrderAndLeavesTheOthersAtTheirStart) {
-  const Read sut = read("ARM.BEND,ARM.2.TURN,ARM.LIFT\n-1.5,0.25,1\n0.5,-0.25,2\n");
+  const Read sut = read("ARM.BEND,ARM_2.TURN,ARM.LIFT\n-1.5,0.25,1\n0.5,-0.25,2\n");
   ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
   ASSERT_EQ(sut.postures.size(), 2U);
   EXPECT_EQ(of(sut.postures[0], "ARM")[0], 1.0);
   EXPECT_EQ(of(sut.postures[0], "ARM")[1], 0.0);
   EXPECT_EQ(of(sut.postures[0], "ARM")[2], -1.5);
-  EXPECT_EQ(of(sut.postures[0], "ARM.2")[1], 0.25);
-  EXPECT_EQ(of(sut.postures[1], "ARM.2")[1], -0.25);
-  EXPECT_EQ(of(sut.postures[1], "ARM.2")[0], 0.0);
+  EXPECT_EQ(of(sut.postures[0], "ARM_2")[1], 0.25);
+  EXPECT_EQ(of(sut.postures[1], "ARM_2")[1], -0.25);
+  EXPECT_EQ(of(sut.postures[1], "ARM_2")[0], 0.0);
 }
 
 TEST_F(PostureFile, takesWhatSpreadsheetsWrite) {

@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+
+#include "config/mesh_file.hpp"
+#include "config/polygon.hpp"
+#include "tests/unit/config/mesh_text.hpp"
+#include "tests/unit/config/temporary_home.hpp"
+
+namespace cellmirror {
+namespace {
+
+using geometry::TriangleMesh;
+
+Result<TriangleMesh> parse(std::string_view bytes, std::string_view extension,
+                           const Eigen::Vector3d& scale = Eigen::Vector3d::Ones()) {
+  geometry::MeshFindings findings;
+  return parse_mesh(bytes, extension, "m", scale, {}, findings);
+}
+
+Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : mesh.vertices) box.extend(p);
+  return box;
+}
+
+void expect_tetrahedron(const Result<TriangleMesh>& sut, double low_z = 0.0) {
+  ASSERT_TRUE(sut) << sut.error().text();
+  EXPECT_TRUE(sut->closed);
+  EXPECT_EQ(sut->triangles.size(), 4U);
+  EXPECT_EQ(sut->vertices.size(), 4U);
+  EXPECT_NEAR(geometry::signed_volume(*sut), 1.0 / 6.0, 1e-7);
+  EXPECT_TRUE(
+      box_of(*sut).isApprox(Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, low_z), Eigen::Vector3d(1, 1, low_z + 1)), 1e-6));
+}
+
+std::string refusal(std::string_view bytes, std::string_view extension) {
+  const auto result = parse(bytes, extension);
+  return result ? "accepted" : result.error().what;
+}
+
+TEST(MeshFile, reads_stl_in_both_kinds) {
+  expect_tetrahedron(parse(tetra_stl(), ".stl"));
+  expect_tetrahedron(parse(tetra_stl("solid, says the header of this binary file"), ".stl"));
+  expect_tetrahedron(parse(tetra_ascii_stl(), ".stl"));
+}
+
+TEST(MeshFile, reads_ply) { expect_tetrahedron(parse(kTetraPly, ".ply")); }
+
+TEST(MeshFile, reads_obj_with_polygons_and_without_lines_and_points) {
+  const auto sut = parse(kLObj, ".obj");
+  ASSERT_TRUE(sut) << sut.error().text();
+  EXPECT_TRUE(sut->closed);
+  EXPECT_EQ(sut->vertices.size(), 12U);
+  EXPECT_EQ(sut->triangles.size(), 20U);
+  EXPECT_NEAR(geometry::signed_volume(*sut), 3.0, 1e-12);
+}
+
+TEST(MeshFile, takes_the_unit_of_dae_and_leaves_its_axes) {
+  expect_tetrahedron(parse(tetra_dae("Z_UP"), ".dae"), 0.5);
+  expect_tetrahedron(parse(tetra_dae("Y_UP"), ".dae"), 0.5);
+}
+
+TEST(MeshFile, merges_what_the_nodes_of_gltf_show) {
+  for (const auto& sut : {parse(tetra_glb(), ".glb")}) {
+    ASSERT_TRUE(sut) << sut.error().text();
+    EXPECT_TRUE(sut->closed);
+    EXPECT_EQ(sut->triangles.size(), 8U);
+    EXPECT_NEAR(box_of(*sut).max().z(), 6.0, 1e-6);
+  }
+}
+
+TEST(MeshFile, reads_the_buffer_beside_a_gltf_and_no_other_file) {
+  const TemporaryHome home;
+  home.write("envlib/buffers/t.bin", tetra_buffer());
+  home.write("t.bin", tetra_buffer());
+  const auto read = [&](const std::string& uri) {
+    geometry::MeshFindings findings;
+    return read_mesh_file(home.write("envlib/t.gltf", tetra_gltf("\"uri\":\"" + uri + "\",")), Eigen::Vector3d::Ones(),
+                          findings);
+  };
+  const auto sut = read("buffers/t.bin");
+  ASSERT_TRUE(sut) << sut.error().text();
+  EXPECT_EQ(sut->triangles.size(), 8U);
+  EXPECT_EQ(sut->name, "t.gltf");
+  for (const std::string uri : {"missing.bin", "../t.bin", "/etc/hostname", "buffers"}) {
+    EXPECT_FALSE(read(uri)) << uri;
+  }
+}
+
+TEST(MeshFile, scales_and_mirrors) {
+  const auto larger = parse(tetra_stl(), ".stl", {2, 3, 4});
+  ASSERT_TRUE(larger);
+  EXPECT_NEAR(geometry::signed_volume(*larger), 4.0, 1e-12);
+  geometry::MeshFindings findings;
+  const auto mirrored = parse_mesh(tetra_stl(), ".stl", "m", {-1, 1, 1}, {}, findings);
+  ASSERT_TRUE(mirrored);
+  EXPECT_NEAR(geometry::signed_volume(*mirrored), 1.0 / 6.0, 1e-12);
+  EXPECT_EQ(findings.inside_out_shells, 0U);
+}
+
+TEST(MeshFile, refuses_damaged_files_with_the_reason) {
+  const std::string stl = tetra_stl();
+  EXPECT_EQ(refusal(stl.substr(0, stl.size() - 1), ".stl"),
+            "the mesh m is refused: it is no STL: 4 triangles make 284 bytes, but there are 283");
+  EXPECT_EQ(refusal(stl.substr(0, 50), ".stl"), "the mesh m is refused: it is no STL");
+  EXPECT_EQ(refusal("", ".stl"), "the mesh m is refused: it is empty");
+  EXPECT_EQ(refusal("solid\nendsolid\n", ".stl"), "the mesh m is refused: there are no facets in it");
+  EXPECT_EQ(refusal(stl, ".step"), "the mesh m is refused: its kind is not known");
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(refusal(binary_stl({{{{0, 0, 0}, {1, 0, 0}, {0, 1, kNan}}}}), ".stl"),
+            "the mesh m is refused: a coordinate of vertex 3 is no number");
+  EXPECT_EQ(refusal(binary_stl({{{{0, 0, 0}, {1e9F, 0, 0}, {0, 1, 0}}}}), ".stl"),
+            "the mesh m is refused: vertex 2 is 1e+09 m away from the origin");
+  for (const char* extension : {".obj", ".dae", ".ply", ".gltf", ".glb"}) {
+    EXPECT_TRUE(refusal("nonsense", extension).starts_with("the mesh m is refused: ")) << extension;
+    EXPECT_TRUE(refusal(stl, extension).starts_with("the mesh m is refused: ")) << extension;
+  }
+  EXPECT_EQ(refusal("v 0 0 0\nv 1 0 0\nl 1 2\n", ".obj").substr(0, 23), "the mesh m is refused: ");
+}
+
+// The area that triangles of a plane polygon cover, those that face down counted negative.
+double covered(const std::vector<Eigen::Vector3d>& vertices, const std::vector<geometry::TriangleIndices>& triangles) {
+  double area = 0.0;
+  for (const auto& [a, b, c] : triangles)
+    area += 0.5 * (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]).z();
+  return area;
+}
+
+TEST(Polygon, cuts_concave_polygons_without_overlap) {
+  // A comb: every other corner lies deep.
+  std::vector<Eigen::Vector3d> vertices{{0, -1, 0}, {40, -1, 0}};
+  for (int i = 40; i >= 0; --i) vertices.emplace_back(i, i % 2 == 0 ? 10 : 0.1, 0);
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) corners.push_back(i);
+  std::vector<geometry::TriangleIndices> sut;
+  cut_polygon(corners, vertices, sut);
+  ASSERT_EQ(sut.size(), corners.size() - 2);
+  double absolute = 0.0;
+  for (const auto& triangle : sut) {
+    const double area = covered(vertices, {triangle});
+    EXPECT_GE(area, 0.0);
+    absolute += std::abs(area);
+  }
+  EXPECT_NEAR(absolute, 40.0 * (10.0 + 0.1) / 2.0 + 40.0, 1e-9);
+}
+
+TEST(Polygon, leaves_nothing_out_where_a_polygon_crosses_itself_or_is_flat) {
+  const std::vector<Eigen::Vector3d> vertices{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 2, 0}};
+  std::vector<geometry::TriangleIndices> sut;
+  cut_polygon(std::vector<std::uint32_t>{0, 1, 2, 3}, vertices, sut);
+  EXPECT_EQ(sut.size(), 2U);
+  sut.clear();
+  cut_polygon(std::vector<std::uint32_t>{0, 0, 0, 0, 0}, vertices, sut);
+  EXPECT_EQ(sut.size(), 3U);
+  sut.clear();
+  cut_polygon(std::vector<std::uint32_t>{0, 1}, vertices, sut);
+  EXPECT_TRUE(sut.empty());
+}
+
+}  // namespace
+}  // namespace cellmirror
