@@ -61,6 +61,7 @@ MeshTree::MeshTree(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(m
   }
   shells_ = shells_of(*mesh_);
   wide_ = WideTree(*this);
+  polytope_ = polytope_of(*mesh_);
 }
 
 std::size_t MeshTree::memory_bytes() const {

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "rt_core/geometry/polytope.hpp"
 #include "rt_core/geometry/triangle.hpp"
 #include "rt_core/geometry/triangle_mesh.hpp"
 #include "rt_core/geometry/wide_tree.hpp"
@@ -49,6 +51,8 @@ class MeshTree {
   [[nodiscard]] int depth() const { return depth_; }                       // levels, at most kMaxDepth
   [[nodiscard]] std::span<const Shell> shells() const { return shells_; }  // at least one
   [[nodiscard]] const WideTree& wide() const { return wide_; }
+  // Of convex meshes that are not too large; else null.
+  [[nodiscard]] const Polytope* polytope() const { return polytope_ ? &*polytope_ : nullptr; }
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
@@ -58,6 +62,7 @@ class MeshTree {
   std::vector<std::uint32_t> original_;
   std::vector<Shell> shells_;
   WideTree wide_;
+  std::optional<Polytope> polytope_;
   int depth_ = 0;
 };
 

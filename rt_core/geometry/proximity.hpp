@@ -49,7 +49,10 @@ struct Contact {
 };
 
 // Of solids that touch; false where they do not. Two convex solids: depth is the shortest way that parts them. Else it
-// is the greatest depth of one's surface below the other's (0 between open surfaces, which have no inside).
+// is the greatest depth of one's surface below the other's (0 between open surfaces, which have no inside). Bounded
+// work: of very many triangles that meet only a part is looked at (contact_surfaces.hpp), so that points and depth are
+// those of the part; whether the solids touch never depends on that. Unlike the others it may take heap memory, until
+// each thread has met its largest contact.
 bool contact(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, std::size_t most,
              Contact& out) noexcept;
 
