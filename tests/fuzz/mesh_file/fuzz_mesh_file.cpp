@@ -1,0 +1,40 @@
+// Any bytes as a mesh file; the first says which format. A mesh that is fit for geometry, or a reason; its hull and
+// convex parts, where it has them, are convex.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "config/mesh_file.hpp"
+#include "rt_core/base/contract.hpp"
+#include "rt_core/geometry/convex_hull.hpp"
+#include "rt_core/geometry/convex_parts.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace cellmirror;
+  static constexpr std::array<std::string_view, 6> kExtensions{".stl", ".obj", ".dae", ".ply", ".gltf", ".glb"};
+  constexpr std::size_t kLargest = 16UL << 10U;
+  if (size < 1 || size > kLargest) return 0;
+  const std::string_view bytes{reinterpret_cast<const char*>(data) + 1, size - 1};
+  geometry::MeshFindings findings;
+  const auto mesh = parse_mesh(
+      bytes, kExtensions[data[0] % kExtensions.size()], "fuzz", Eigen::Vector3d(1, -2, 0.5),
+      [](const std::string&) { return Result<std::string>(std::string(72, '\1')); }, findings);
+  if (!mesh) {
+    CELLMIRROR_EXPECTS(!mesh.error().what.empty());
+    return 0;
+  }
+  CELLMIRROR_EXPECTS(!mesh->triangles.empty());
+  for (const auto& triangle : mesh->triangles) {
+    for (const std::uint32_t corner : triangle) CELLMIRROR_EXPECTS(corner < mesh->vertices.size());
+  }
+  for (const Eigen::Vector3d& p : mesh->vertices) CELLMIRROR_EXPECTS(p.allFinite());
+  CELLMIRROR_EXPECTS(mesh->closed == findings.why_open().empty());
+  if (mesh->closed) CELLMIRROR_EXPECTS(geometry::signed_volume(*mesh) > 0.0);
+  if (const auto hull = geometry::convex_hull("fuzz", mesh->vertices)) CELLMIRROR_EXPECTS(hull->closed && hull->convex);
+  constexpr std::size_t kMostForParts = 100;
+  if (mesh->triangles.size() > kMostForParts) return 0;
+  if (const auto parts = geometry::convex_parts(*mesh, {0.05, 6})) CELLMIRROR_EXPECTS(!parts->empty());
+  return 0;
+}
