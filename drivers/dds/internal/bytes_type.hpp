@@ -7,15 +7,10 @@
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <functional>
 #include <string>
-#include <vector>
+
+#include "drivers/dds/internal/bytes_sample.hpp"
 
 namespace cellmirror::dds {
-
-inline constexpr std::size_t kMaxPayloadBytes = 1U << 20U;
-
-struct BytesSample {
-  std::vector<std::byte> payload;  // encapsulation header included
-};
 
 // Announces a name and no type information: Cyclone DDS ignores Fast DDS endpoints that announce theirs.
 class BytesType final : public eprosima::fastdds::dds::TopicDataType {

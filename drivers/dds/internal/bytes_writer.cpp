@@ -2,7 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <atomic>
 #include <exception>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <utility>
 
 namespace cellmirror::dds {
@@ -11,7 +14,20 @@ namespace {
 constexpr int kMaxDepth = 400;  // the library's default of max_samples_per_instance
 }
 
-BytesWriter::BytesWriter(std::shared_ptr<Participant> participant) : participant_(std::move(participant)) {}
+class BytesWriter::Listener final : public eprosima::fastdds::dds::DataWriterListener {
+ public:
+  void on_publication_matched(eprosima::fastdds::dds::DataWriter* /*writer*/,
+                              const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
+    matched_.store(status.current_count, std::memory_order_relaxed);
+  }
+  [[nodiscard]] int matched() const { return matched_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<int> matched_{0};
+};
+
+BytesWriter::BytesWriter(std::shared_ptr<Participant> participant)
+    : participant_(std::move(participant)), listener_(std::make_unique<Listener>()) {}
 
 Result<std::unique_ptr<BytesWriter>> BytesWriter::make(const std::shared_ptr<Participant>& participant,
                                                        const EndpointConfig& config) {
@@ -20,7 +36,7 @@ Result<std::unique_ptr<BytesWriter>> BytesWriter::make(const std::shared_ptr<Par
                 fmt::format("use 1 to {}", kMaxDepth));
   }
   std::unique_ptr<BytesWriter> made(new BytesWriter(participant));
-  const auto writer = participant->add_writer(config, made.get());
+  const auto writer = participant->add_writer(config, made->listener_.get());
   if (!writer) return std::unexpected(writer.error());
   made->writer_ = *writer;
   return made;
@@ -43,9 +59,6 @@ bool BytesWriter::all_confirmed() const {
          eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 }
 
-void BytesWriter::on_publication_matched(eprosima::fastdds::dds::DataWriter*,
-                                         const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
-  matched_.store(status.current_count, std::memory_order_relaxed);
-}
+int BytesWriter::matched_readers() const { return listener_->matched(); }
 
 }  // namespace cellmirror::dds

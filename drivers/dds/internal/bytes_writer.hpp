@@ -1,24 +1,23 @@
 // A DDS writer of serialized samples.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "drivers/dds/internal/bytes_type.hpp"
+#include "drivers/dds/internal/bytes_sample.hpp"
 #include "drivers/dds/internal/participant.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror::dds {
 
 // One calling thread, but for matched_readers().
-class BytesWriter final : private eprosima::fastdds::dds::DataWriterListener {
+class BytesWriter final {
  public:
   // `config.depth`: 1..400.
   [[nodiscard]] static Result<std::unique_ptr<BytesWriter>> make(const std::shared_ptr<Participant>& participant,
                                                                  const EndpointConfig& config);
-  ~BytesWriter() override;
+  ~BytesWriter();
   BytesWriter(const BytesWriter&) = delete;
   BytesWriter& operator=(const BytesWriter&) = delete;
 
@@ -28,17 +27,16 @@ class BytesWriter final : private eprosima::fastdds::dds::DataWriterListener {
   bool write();
   // Whether every reliable reader has confirmed every sample; true where there is none. Does not wait.
   [[nodiscard]] bool all_confirmed() const;
-  [[nodiscard]] int matched_readers() const { return matched_.load(std::memory_order_relaxed); }
+  [[nodiscard]] int matched_readers() const;
 
  private:
   explicit BytesWriter(std::shared_ptr<Participant> participant);
-  void on_publication_matched(eprosima::fastdds::dds::DataWriter* writer,
-                              const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
 
+  class Listener;
   std::shared_ptr<Participant> participant_;
+  std::unique_ptr<Listener> listener_;  // outlives the writer
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
   BytesSample sample_;
-  std::atomic<int> matched_{0};
 };
 
 }  // namespace cellmirror::dds

@@ -1,6 +1,8 @@
 #include "drivers/dds/internal/joint_state_topic.hpp"
 
 #include <exception>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <map>
 #include <tuple>
 #include <utility>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <memory>
 #include <mutex>
 #include <string>

@@ -1,20 +1,25 @@
 // The process's DDS participants, and endpoints on them.
 #pragma once
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/DataWriterListener.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
 
 #include "rt_core/base/result.hpp"
+
+// The library's headers take seconds to compile: only sources that call it include them.
+namespace eprosima::fastdds::dds {
+class DataReader;
+class DataReaderListener;
+class DataWriter;
+class DataWriterListener;
+class DomainParticipant;
+class DomainParticipantFactory;
+class Publisher;
+class Subscriber;
+class Topic;
+}  // namespace eprosima::fastdds::dds
 
 namespace cellmirror::dds {
 

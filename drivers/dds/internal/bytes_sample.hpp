@@ -1,0 +1,15 @@
+// A sample as its serialized bytes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace cellmirror::dds {
+
+inline constexpr std::size_t kMaxPayloadBytes = 1U << 20U;
+
+struct BytesSample {
+  std::vector<std::byte> payload;  // encapsulation header included
+};
+
+}  // namespace cellmirror::dds
