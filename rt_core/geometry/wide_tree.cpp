@@ -15,6 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint32_t kNoNode = ~0U;
+constexpr std::uint32_t kManyTriangles = 256;
 
 // Consecutive triangles: those of a node of the binary tree, or one alone.
 struct Part {
@@ -55,15 +56,19 @@ struct OrientedBox {
   [[nodiscard]] double half_area() const { return half.x() * half.y() + half.y() * half.z() + half.z() * half.x(); }
 };
 
+double dot(const Vector3d& a, const Vector3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
 OrientedBox box_along(const Eigen::Matrix3d& axes, std::span<const Triangle> triangles) {
-  const Eigen::Matrix3d turn = axes.transpose();
-  Vector3d lower = turn * triangles[0][0];
+  const std::array<Vector3d, 3> columns{axes.col(0), axes.col(1), axes.col(2)};
+  Vector3d lower = axes.transpose() * triangles[0][0];
   Vector3d upper = lower;
   for (const Triangle& t : triangles) {
     for (const Vector3d& p : t) {
-      const Vector3d turned = turn * p;
-      lower = lower.cwiseMin(turned);
-      upper = upper.cwiseMax(turned);
+      for (int k = 0; k < 3; ++k) {
+        const double along = dot(columns[static_cast<std::size_t>(k)], p);
+        lower[k] = std::min(lower[k], along);
+        upper[k] = std::max(upper[k], along);
+      }
     }
   }
   return {axes, axes * (0.5 * lower + 0.5 * upper), 0.5 * (upper - lower)};
@@ -78,15 +83,18 @@ Eigen::Matrix3d axes_of_triangle(const Triangle& t) {
   return axes_along(longest, (t[1] - t[0]).cross(t[2] - t[0]));
 }
 
-// How a surface extends and which way it faces, weighted by area.
+// How a surface extends and which way it faces, weighted by area. Of a large one some triangles stand for all.
 class Spread {
  public:
   explicit Spread(std::span<const Triangle> triangles) {
+    constexpr std::size_t kEnough = 128;
+    const std::size_t step = 1 + triangles.size() / kEnough;
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     Vector3d mean = Vector3d::Zero();
     double area = 0;
     const Vector3d about = triangles[0][0];
-    for (const Triangle& t : triangles) {
+    for (std::size_t i = 0; i < triangles.size(); i += step) {
+      const Triangle& t = triangles[i];
       const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
       const double weight = n.norm();
       const Vector3d middle = (t[0] + t[1] + t[2]) / 3 - about;
@@ -206,10 +214,15 @@ class Builder {
     }
   }
 
+  [[nodiscard]] OrientedBox box_of(std::uint32_t node) const {
+    const MeshTree::Node& box = nodes_[node];
+    return {Eigen::Matrix3d::Identity(), 0.5 * box.lower + 0.5 * box.upper, 0.5 * (box.upper - box.lower)};
+  }
+
   // The smallest box of a few orientations that are likely to fit.
   void set_place(WideNode& node, std::size_t place, const Part& part) const {
     const std::span<const Triangle> triangles = triangles_.subspan(part.first, part.count);
-    OrientedBox best = box_along(Eigen::Matrix3d::Identity(), triangles);
+    OrientedBox best = part.node == kNoNode ? box_along(Eigen::Matrix3d::Identity(), triangles) : box_of(part.node);
     const auto consider = [&](const Eigen::Matrix3d& axes) {
       const OrientedBox box = box_along(axes, triangles);
       if (box.half_area() < best.half_area()) best = box;
@@ -219,7 +232,8 @@ class Builder {
     } else {
       const Spread spread(triangles);
       consider(spread.principal_axes());
-      consider(spread.axes_along_normal());
+      // Large surfaces have no direction that would be worth the time.
+      if (part.count <= kManyTriangles) consider(spread.axes_along_normal());
     }
     const Vector3d centre = best.centre - origin_;
     const Eigen::Vector3f rounded = centre.cast<float>();
