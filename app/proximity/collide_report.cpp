@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/proximity/json_writer.hpp"
+#include "app/proximity/short_names.hpp"
 #include "app/subcommands/put.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -15,15 +16,7 @@ namespace {
 
 constexpr std::uint64_t kListed = 12;       // frames that are shown one by one
 constexpr std::uint64_t kMostChanges = 40;  // lines about frames in which something changes
-constexpr std::size_t kMostNames = 200;     // characters of a name
-
-std::string name(const collision::PairTable& pairs, std::uint32_t body) {
-  return printable((*pairs.names)[body], kMostNames);
-}
-
-std::string pair_text(const collision::PairTable& pairs, std::uint32_t a, std::uint32_t b) {
-  return name(pairs, a) + " - " + name(pairs, b);
-}
+constexpr std::size_t kMostDoubt = 400;     // characters of a sentence
 
 std::string point_text(const Eigen::Vector3d& p) { return fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z()); }
 
@@ -96,13 +89,15 @@ void CollideJson::end(const CollideTotals& totals) {
 }
 
 CollideText::CollideText(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)
-    : heading_(heading), pairs_(pairs), out_(out) {
+    : heading_(heading), names_(short_names(*pairs.names)), out_(out) {
   const std::size_t tested = tested_pairs(pairs);
   put(out_, "{}: {} bodies, {} triangles; {} pairs tested, {} left out (--pairs says why), {} rigid\n",
       printable(heading.cell), pairs.bodies.size(), pairs.triangles, tested, pairs.pairs.size() - tested,
       pairs.rigid_pairs);
-  for (const std::string& doubt : pairs.doubts) put(out_, "in doubt: {}\n", printable(doubt, kMostNames));
+  for (const std::string& doubt : pairs.doubts) put(out_, "in doubt: {}\n", printable(doubt, kMostDoubt));
 }
+
+std::string CollideText::pair_text(std::uint32_t a, std::uint32_t b) const { return names_[a] + " - " + names_[b]; }
 
 void CollideText::frame(std::uint64_t number, const ProximityState& state) {
   if (heading_.frames <= kListed) return whole_frame(number, state);
@@ -115,20 +110,20 @@ void CollideText::whole_frame(std::uint64_t number, const ProximityState& state)
     put(out_, "frame {}: {} {}\n", number, state.touching.size(),
         state.touching.size() == 1 ? "collision" : "collisions");
   } else if (nearest != nullptr) {
-    put(out_, "frame {}: free; nearest {} {:.4f} m{}\n", number, pair_text(pairs_, nearest->a, nearest->b),
-        nearest->distance_m, nearest->doubtful ? " at least" : "");
+    put(out_, "frame {}: free; nearest {} {:.4f} m{}\n", number, pair_text(nearest->a, nearest->b), nearest->distance_m,
+        nearest->doubtful ? " at least" : "");
   } else {
     put(out_, "frame {}: no pair is tested\n", number);
   }
   for (const TouchingPair& pair : state.touching)
-    put(out_, "  {}: {:.4f} m deep at {}{}\n", pair_text(pairs_, pair.a, pair.b), pair.depth_m,
-        point_text(pair.point_m), pair.doubtful ? ", in doubt" : "");
+    put(out_, "  {}: {:.4f} m deep at {}{}\n", pair_text(pair.a, pair.b), pair.depth_m, point_text(pair.point_m),
+        pair.doubtful ? ", in doubt" : "");
   for (const NearPair& pair : state.near) {
     if (pair.within_warning && pair.distance_m > 0.0 && &pair != nearest)
-      put(out_, "  within {:g} m: {} {:.4f} m\n", heading_.warning_distance_m, pair_text(pairs_, pair.a, pair.b),
+      put(out_, "  within {:g} m: {} {:.4f} m\n", heading_.warning_distance_m, pair_text(pair.a, pair.b),
           pair.distance_m);
   }
-  for (const std::string& doubt : state.doubts) put(out_, "  in doubt: {}\n", printable(doubt, kMostNames));
+  for (const std::string& doubt : state.doubts) put(out_, "  in doubt: {}\n", printable(doubt, kMostDoubt));
 }
 
 void CollideText::changes(std::uint64_t number, const ProximityState& state) {
@@ -136,12 +131,11 @@ void CollideText::changes(std::uint64_t number, const ProximityState& state) {
   for (const TouchingPair& pair : state.touching) {
     now.emplace(pair.a, pair.b);
     if (!touching_.contains({pair.a, pair.b}))
-      change(fmt::format("frame {}: {} touch, {:.4f} m deep at {}{}\n", number, pair_text(pairs_, pair.a, pair.b),
-                         pair.depth_m, point_text(pair.point_m), pair.doubtful ? ", in doubt" : ""));
+      change(fmt::format("frame {}: {} touch, {:.4f} m deep at {}{}\n", number, pair_text(pair.a, pair.b), pair.depth_m,
+                         point_text(pair.point_m), pair.doubtful ? ", in doubt" : ""));
   }
   for (const BodyPair& pair : touching_) {
-    if (!now.contains(pair))
-      change(fmt::format("frame {}: {} part\n", number, pair_text(pairs_, pair.first, pair.second)));
+    if (!now.contains(pair)) change(fmt::format("frame {}: {} part\n", number, pair_text(pair.first, pair.second)));
   }
   touching_ = std::move(now);
 }
@@ -157,11 +151,11 @@ void CollideText::end(const CollideTotals& totals) {
   if (totals.frames_in_doubt > 0) put(out_, ", {} in doubt", totals.frames_in_doubt);
   put(out_, "\n");
   for (const auto& [pair, touch] : totals.touching)
-    put(out_, "  {}: {} {}, at most {:.4f} m deep (frame {})\n", pair_text(pairs_, pair.first, pair.second),
-        touch.frames, touch.frames == 1 ? "frame" : "frames", touch.deepest_m, touch.deepest_frame);
+    put(out_, "  {}: {} {}, at most {:.4f} m deep (frame {})\n", pair_text(pair.first, pair.second), touch.frames,
+        touch.frames == 1 ? "frame" : "frames", touch.deepest_m, touch.deepest_frame);
   if (totals.nearest)
     put(out_, "smallest distance {:.4f} m in frame {}: {}\n", totals.nearest->distance_m, totals.nearest_frame,
-        pair_text(pairs_, totals.nearest->a, totals.nearest->b));
+        pair_text(totals.nearest->a, totals.nearest->b));
   const HistogramSnapshot& times = totals.times;
   put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", us(times.mean()),
       us(times.percentile(50)), us(times.percentile(99)), us(times.max()));

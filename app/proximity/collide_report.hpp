@@ -43,9 +43,10 @@ class CollideText {
   void whole_frame(std::uint64_t number, const ProximityState& state);
   void changes(std::uint64_t number, const ProximityState& state);
   void change(const std::string& line);
+  [[nodiscard]] std::string pair_text(std::uint32_t a, std::uint32_t b) const;
 
   const CollideHeading heading_;
-  const collision::PairTable& pairs_;
+  const std::vector<std::string> names_;
   std::FILE* out_;
   std::set<BodyPair> touching_;
   std::uint64_t changes_ = 0;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "app/proximity/json_writer.hpp"
+#include "app/proximity/short_names.hpp"
 #include "app/subcommands/put.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -49,7 +51,7 @@ std::string_view word_of(PairState state) {
 }
 
 void print_pairs(const std::string& cell, const PairTable& pairs, std::FILE* out) {
-  constexpr std::size_t kMost = 200;
+  const std::vector<std::string> names = short_names(*pairs.names);
   put(out, "{}: {} bodies, {} triangles\n\n", printable(cell), pairs.bodies.size(), pairs.triangles);
   for (const StateText& text : kStates) {
     if (const std::size_t number = count(pairs, text.state); number > 0)
@@ -61,11 +63,10 @@ void print_pairs(const std::string& cell, const PairTable& pairs, std::FILE* out
       if (pair.state != text.state) continue;
       if (first) put(out, "\n{}\n", text.word);
       first = false;
-      put(out, "  {} - {}{}{}\n", printable((*pairs.names)[pair.a], kMost), printable((*pairs.names)[pair.b], kMost),
-          pair.reason.empty() ? "" : ": ", pair.reason);
+      put(out, "  {} - {}{}{}\n", names[pair.a], names[pair.b], pair.reason.empty() ? "" : ": ", pair.reason);
     }
   }
-  for (const std::string& doubt : pairs.doubts) put(out, "\nin doubt: {}\n", printable(doubt, kMost));
+  for (const std::string& doubt : pairs.doubts) put(out, "\nin doubt: {}\n", printable(doubt, 400));
 }
 
 void print_pairs_json(const std::string& cell, const PairTable& pairs, std::FILE* out) {

@@ -20,7 +20,7 @@ const Cell& two_arms() {
     Diagnostics findings;
     auto built = build_cell(
         "[[node]]\nname = \"A\"\nabstract = \"arm.mpc\"\n"
-        "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"ARM.2\"\n",
+        "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"ARM_2\"\n",
         files, findings);
     CELLMIRROR_EXPECTS(built.has_value());
     return std::move(*built);
