@@ -8,6 +8,8 @@
 #include <span>
 
 #include "rt_core/base/contract.hpp"
+#include "rt_core/geometry/wide_tree.hpp"
+#include "rt_core/ranging/cone_bounds.hpp"
 
 namespace cellmirror::ranging {
 
@@ -15,19 +17,71 @@ namespace {
 
 using Eigen::Vector3d;
 using geometry::MeshTree;
+using geometry::WideNode;
+using geometry::WideTree;
 
 class Walk {
  public:
   Walk(const ConeShape& cone, const MeshTree& tree, const Pose& X_SG, Nearest& best)
       : cone_(cone),
-        nodes_(tree.nodes()),
+        nodes_(tree.wide().nodes()),
         triangles_(tree.triangles()),
         X_SG_(X_SG),
         apex_(-(X_SG.linear().transpose() * X_SG.translation())),
         axis_(X_SG.linear().row(2)),
-        best_(best),
-        limit_(best.distance),
-        squared_limit_(limit_ * limit_) {}
+        best_(best) {
+    const WideTree& wide = tree.wide();
+    const Vector3d from_origin = apex_ - wide.origin();
+    size_ = apex_.norm() + wide.origin().norm() + wide.reach();
+    single_size_ = from_origin.norm() + wide.reach();
+    for (int i = 0; i < 3; ++i) {
+      single_.apex[static_cast<std::size_t>(i)] = static_cast<float>(from_origin[i]);
+      single_.axis[static_cast<std::size_t>(i)] = static_cast<float>(axis_[i]);
+    }
+    single_.sine = static_cast<float>(cone.sine);
+    single_.cosine = static_cast<float>(cone.cosine);
+    single_.margin = static_cast<float>(kSingleMargin * single_size_ * single_size_);
+    set_limit(best.distance);
+  }
+
+  std::uint32_t run(std::uint32_t first) {
+    nearest_ = first;
+    if (first < triangles_.size()) look_at(first);
+    push(0);
+    while (waiting_ > 0) {
+      const Waiting next = stack_[--waiting_];
+      if (next.square > single_limit_) continue;
+      if ((next.child & WideTree::kTriangle) != 0) {
+        look_at(next.child & ~WideTree::kTriangle);
+      } else {
+        push(next.child);
+      }
+    }
+    return nearest_;
+  }
+
+ private:
+  struct Waiting {
+    float square;  // of a bound of the distance, m^2
+    std::uint32_t child;
+  };
+  // At each of 64 levels at most seven wait while the eighth is looked at.
+  static constexpr std::size_t kMostWaiting = 512;
+
+  // The children of a node that the cone may meet within the limit; the nearest one ends on top.
+  void push(std::uint32_t node) {
+    CELLMIRROR_EXPECTS(waiting_ + WideNode::kWidth <= kMostWaiting);
+    const WideNode& opened = nodes_[node];
+    alignas(32) std::array<float, WideNode::kWidth> squares;
+    kernels_.bounds(opened, single_, squares.data());
+    const std::size_t bottom = waiting_;
+    for (std::size_t i = 0; i < WideNode::kWidth; ++i) {
+      if (squares[i] > single_limit_ || opened.child[i] == WideTree::kNone) continue;
+      std::size_t at = waiting_++;
+      for (; at > bottom && stack_[at - 1].square < squares[i]; --at) stack_[at] = stack_[at - 1];
+      stack_[at] = {squares[i], opened.child[i]};
+    }
+  }
 
   void look_at(std::uint32_t triangle) {
     const geometry::Triangle& t = triangles_[triangle];
@@ -37,67 +91,20 @@ class Walk {
     nearest_on_polygon(cone_, corners, best_);
     if (!(best_.distance < before)) return;
     nearest_ = triangle;
-    limit_ = best_.distance;
-    squared_limit_ = limit_ * limit_;
+    set_limit(best_.distance);
   }
 
-  std::uint32_t run(std::uint32_t first) {
-    nearest_ = first;
-    if (first < triangles_.size()) look_at(first);
-    std::uint32_t at = 0;
-    double bound = bound_of(nodes_[0]);
-    std::size_t waiting = 0;
-    for (;;) {
-      if (bound < squared_limit_) {
-        const MeshTree::Node& node = nodes_[at];
-        if (!node.leaf()) {
-          const std::uint32_t left = at + 1;
-          const std::uint32_t right = node.right;
-          const double at_left = bound_of(nodes_[left]);
-          const double at_right = bound_of(nodes_[right]);
-          const bool left_first = at_left <= at_right;
-          const double later = left_first ? at_right : at_left;
-          if (later < squared_limit_) stack_[waiting++] = {later, left_first ? right : left};
-          at = left_first ? left : right;
-          bound = left_first ? at_left : at_right;
-          continue;
-        }
-        for (std::uint32_t i = node.right; i < node.right + node.count; ++i) look_at(i);
-      }
-      if (waiting == 0) return nearest_;
-      --waiting;
-      at = stack_[waiting].node;
-      bound = stack_[waiting].bound;
-    }
+  // At most the square that marks what is beside the cone, so that this is never looked at.
+  void set_limit(double limit) {
+    limit_ = limit;
+    const double with_rounding = (limit + kSingleMargin * single_size_) * (1.0 + kSingleMargin);
+    constexpr double kFarthest = 0.5 * static_cast<double>(kBesideCone);
+    single_limit_ = static_cast<float>(std::min(with_rounding * with_rounding, kFarthest));
   }
 
- private:
-  struct Waiting {
-    double bound;
-    std::uint32_t node;
-  };
-  static constexpr std::size_t kDeepest = 64;  // levels of a tree
-
-  // The square of a distance that nothing of the box in the cone is below; infinite where nothing is in the cone.
-  [[nodiscard]] double bound_of(const MeshTree::Node& node) const {
-    const Vector3d half = 0.5 * (node.upper - node.lower);
-    const Vector3d d = 0.5 * (node.upper + node.lower) - apex_;
-    const double squared = (d.cwiseAbs() - half).cwiseMax(0.0).squaredNorm();
-    if (!(squared < squared_limit_)) return kNever;
-    // The plane that touches the cone along the line nearest to the box's centre; its normal, times `across`.
-    const double along = d.dot(axis_);
-    const Vector3d outward = d - along * axis_;
-    const double squared_across = outward.squaredNorm();
-    const double across = std::sqrt(squared_across);
-    const Vector3d normal = cone_.cosine * outward - (cone_.sine * across) * axis_;
-    const double centre = cone_.cosine * squared_across - cone_.sine * across * along;
-    const double reach = normal.cwiseAbs().dot(half);
-    if (centre > reach + kRounding * across * (apex_size_ + reach + across)) return kNever;
-    return squared;
-  }
-
-  // Most triangles of a leaf are: beside the cone, or of a plane whose nearest point in the cone is too far away. Asked
-  // here without turning the triangle into the sensor's frame and without telling where that point is.
+  // Most triangles whose boxes the cone meets are: beside the cone, or of a plane whose nearest point in the cone is
+  // too far away. Asked here without turning the triangle into the sensor's frame and without telling where that point
+  // is.
   [[nodiscard]] bool out_of_sight(const geometry::Triangle& t) const {
     const Vector3d a = t[0] - apex_;
     const Vector3d b = t[1] - apex_;
@@ -124,7 +131,7 @@ class Walk {
       const double across = std::sqrt(std::max(0.0, squared_area - ahead * ahead));
       const bool foot_within = ahead > 0.0 && ahead * ahead >= cone_.cosine * cone_.cosine * squared_area;
       if (!foot_within && d > limit * std::max(0.0, cone_.sine * across + cone_.cosine * ahead) +
-                                  kRounding * apex_size_ * std::sqrt(squared_area)) {
+                                  kRounding * size_ * std::sqrt(squared_area)) {
         return true;
       }
     }
@@ -133,30 +140,32 @@ class Walk {
     const double across = outward.norm();
     const Vector3d touching = cone_.cosine * outward - (cone_.sine * across) * axis_;
     const double least = std::min(touching.dot(a), std::min(touching.dot(b), touching.dot(c)));
-    return least > kRounding * across * (apex_size_ + middle.cwiseAbs().sum() + first.cwiseAbs().sum());
+    return least > kRounding * size_ * size_;
   }
 
-  static constexpr double kRounding = 1e-13;  // of numbers that were subtracted, in parts of them
-  static constexpr double kNever = 1e300;
+  static constexpr double kRounding = 1e-13;  // of differences, in parts of the numbers
   const ConeShape& cone_;
-  std::span<const MeshTree::Node> nodes_;
+  std::span<const WideNode> nodes_;
   std::span<const geometry::Triangle> triangles_;
   const Pose& X_SG_;
   Vector3d apex_;  // in G
   Vector3d axis_;
-  double apex_size_ = apex_.norm();
   Nearest& best_;
-  double limit_;  // of `best_`
-  double squared_limit_;
+  double size_ = 0;         // m; no double below is a difference of larger numbers
+  double single_size_ = 0;  // m; no float is
+  double limit_ = 0;        // m, of `best_`
+  float single_limit_ = 0;  // m^2
+  SingleCone single_;
+  const ConeKernels& kernels_ = cone_kernels();
   std::uint32_t nearest_ = 0;
-  std::array<Waiting, kDeepest> stack_;
+  std::size_t waiting_ = 0;
+  std::array<Waiting, kMostWaiting> stack_;
 };
 
 }  // namespace
 
 void nearest_on_mesh(const ConeShape& cone, const MeshTree& tree, const Pose& X_SG, Nearest& best,
                      std::uint32_t& triangle) noexcept {
-  CELLMIRROR_EXPECTS(tree.depth() <= 64);
   Walk walk(cone, tree, X_SG, best);
   triangle = walk.run(triangle);
 }
