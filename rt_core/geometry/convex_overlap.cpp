@@ -119,7 +119,19 @@ class Search {
   void consider_sphere();
 
  private:
-  void refine_on_circle(const Vector3d& x, const Vector3d& y, double from, double to);
+  struct Circle {
+    Vector3d x;
+    Vector3d y;
+  };
+  struct CirclePoint {
+    double angle = 0;  // from x to y
+    double depth = 0;
+    double slope = 0;  // of the depth over the angle
+  };
+  // Considers it, too.
+  CirclePoint on_circle(const Circle& circle, double angle);
+  CirclePoint on_circle(const Circle& circle, double angle, double cosine, double sine);
+  void refine_on_circle(const Circle& circle, CirclePoint from, CirclePoint to);
   void refine_on_sphere(Vector3d n);
 
   const Core& a_;
@@ -127,47 +139,70 @@ class Search {
   LeastOverlap best_;
 };
 
-void Search::refine_on_circle(const Vector3d& x, const Vector3d& y, double from, double to) {
-  const double golden = 2.0 - std::numbers::phi;
-  const auto at = [&](double angle) { return Vector3d(std::cos(angle) * x + std::sin(angle) * y); };
-  double left = from + golden * (to - from);
-  double right = to - golden * (to - from);
-  double at_left = overlap(at(left));
-  double at_right = overlap(at(right));
-  for (int i = 0; i < 40; ++i) {
-    if (at_left < at_right) {
-      to = right;
-      right = left;
-      at_right = at_left;
-      left = from + golden * (to - from);
-      at_left = overlap(at(left));
+// Between two angles at which the overlap falls and rises: where its slope passes 0, by false position with halved
+// weights (Illinois). Kinks are faces that were considered by themselves.
+void Search::refine_on_circle(const Circle& circle, CirclePoint from, CirclePoint to) {
+  constexpr double kEnough = 1e-8;  // rad: smooth minima are then right to the square of it
+  double weight_from = from.slope;
+  double weight_to = to.slope;
+  for (int i = 0; i < 40 && to.angle - from.angle > kEnough; ++i) {
+    const double sum = weight_to - weight_from;
+    double angle = sum > 0.0 ? (from.angle * weight_to - to.angle * weight_from) / sum : 0.0;
+    const double least_step = 0.01 * (to.angle - from.angle);
+    angle = std::min(std::max(angle, from.angle + least_step), to.angle - least_step);
+    const CirclePoint middle = on_circle(circle, angle);
+    if (middle.slope < 0.0) {
+      from = middle;
+      weight_from = middle.slope;
+      weight_to *= 0.5;
     } else {
-      from = left;
-      left = right;
-      at_left = at_right;
-      right = to - golden * (to - from);
-      at_right = overlap(at(right));
+      to = middle;
+      weight_to = middle.slope;
+      weight_from *= 0.5;
     }
   }
-  consider(at(0.5 * (from + to)));
+}
+
+Search::CirclePoint Search::on_circle(const Circle& circle, double angle) {
+  return on_circle(circle, angle, std::cos(angle), std::sin(angle));
+}
+
+Search::CirclePoint Search::on_circle(const Circle& circle, double angle, double cosine, double sine) {
+  const Vector3d n = cosine * circle.x + sine * circle.y;
+  const Vector3d along = cosine * circle.y - sine * circle.x;
+  const Vector3d point = difference(n);
+  const CirclePoint out{angle, dot(point, n), dot(point, along)};
+  if (out.depth < best_.depth) best_ = {out.depth, n};
+  return out;
 }
 
 void Search::consider_circle(const Vector3d& edge) {
-  constexpr std::size_t kSteps = 48;
+  constexpr std::size_t kSteps = 32;
   constexpr double kStep = 2.0 * std::numbers::pi / kSteps;
-  const Vector3d x = across(edge);
-  const Vector3d y = cross(edge, x);
-  std::array<double, kSteps> depths{};
+  Circle circle;
+  circle.x = across(edge);
+  circle.y = cross(edge, circle.x);
+  std::array<CirclePoint, kSteps + 1> points;
+  const double cosine_step = std::cos(kStep);
+  const double sine_step = std::sin(kStep);
+  double cosine = 1.0;
+  double sine = 0.0;
   for (std::size_t i = 0; i < kSteps; ++i) {
-    const double angle = kStep * static_cast<double>(i);
-    depths[i] = overlap(std::cos(angle) * x + std::sin(angle) * y);
+    points[i] = on_circle(circle, kStep * static_cast<double>(i), cosine, sine);
+    const double next = cosine * cosine_step - sine * sine_step;
+    sine = sine * cosine_step + cosine * sine_step;
+    cosine = next;
   }
+  points[kSteps] = points[0];
+  points[kSteps].angle = 2.0 * std::numbers::pi;
   for (std::size_t i = 0; i < kSteps; ++i) {
-    const double before = depths[i == 0 ? kSteps - 1 : i - 1];
-    const double after = depths[i + 1 == kSteps ? 0 : i + 1];
-    if (depths[i] > before || depths[i] > after) continue;
-    const double angle = kStep * static_cast<double>(i);
-    refine_on_circle(x, y, angle - kStep, angle + kStep);
+    const CirclePoint& from = points[i];
+    const CirclePoint& to = points[i + 1];
+    if (!(from.slope < 0.0 && to.slope > 0.0)) continue;
+    // A support function is at least what any of its points makes of the direction: can it be less than the best?
+    const double beyond_from = from.depth * cosine_step + from.slope * sine_step;
+    const double beyond_to = to.depth * cosine_step - to.slope * sine_step;
+    if (std::max(beyond_from, beyond_to) < best_.depth) refine_on_circle(circle, from, to);
   }
 }
 
@@ -188,7 +223,7 @@ struct RimCurvature {
 // Newton's method on the sphere, for two cylinders. The gradient of a support function is the support point.
 void Search::refine_on_sphere(Vector3d n) {
   double depth = overlap(n);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 30; ++i) {
     const Vector3d point = difference(n);
     const Vector3d x = across(n);
     const Vector3d y = cross(n, x);
@@ -209,13 +244,14 @@ void Search::refine_on_sphere(Vector3d n) {
       step = -slope;  // a saddle or a hill: down
     }
     const double length = step.norm();
-    if (!(length > 0.0)) break;
+    constexpr double kEnough = 1e-9;  // rad
+    if (!(length > kEnough)) break;
     if (length > kMaxStep) step *= kMaxStep / length;
     bool lower = false;
-    for (int halving = 0; halving < 30 && !lower; ++halving) {
+    for (int halving = 0; halving < 12 && !lower; ++halving) {
       const Vector3d next = unit(n + step[0] * x + step[1] * y);
       const double there = overlap(next);
-      lower = there < depth;
+      lower = there < depth * (1.0 - 1e-12);
       if (lower) {
         depth = there;
         n = next;
@@ -238,7 +274,12 @@ void Search::consider_sphere() {
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / std::numbers::phi;
     const double r = std::sqrt(1.0 - z * z);
     const Vector3d n(r * std::cos(angle), r * std::sin(angle), z);
-    LeastOverlap start{overlap(n), n};
+    const Vector3d point = difference(n);
+    LeastOverlap start{dot(point, n), n};
+    // Near it the overlap is at least what this point makes of it: can it be less than the best?
+    constexpr double kNear = 0.3;  // rad: half the greatest gap between directions, and some more
+    const double slope = std::sqrt(std::max(0.0, dot(point, point) - start.depth * start.depth));
+    if (start.depth * std::cos(kNear) - slope * std::sin(kNear) >= best_.depth) continue;
     for (LeastOverlap& kept : starts) {
       if (start.depth < kept.depth) std::swap(start, kept);
     }
