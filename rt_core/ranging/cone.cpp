@@ -31,10 +31,11 @@ void nearest_on_box(const ConeShape& cone, const Pose& X_SG, const Vector3d& hal
 
 // The whole box around the solid is out of the cone or of reach.
 bool out_of_sight(const geometry::Solid& solid, const Pose& X_SG, const ConeShape& cone, double up_to) {
+  constexpr double kRounding = 1e-9;  // m, and in parts of the radius
+  const double radius = solid.radius * (1.0 + kRounding) + kRounding;
   const Vector3d centre = X_SG * solid.centre;
-  const double reach = up_to + solid.radius;
-  constexpr double kRounding = 1e-9;
-  return !(centre.squaredNorm() < reach * reach) || cone.beyond(centre) > solid.radius * (1.0 + kRounding);
+  const double reach = up_to + radius;
+  return !(centre.squaredNorm() < reach * reach) || cone.beyond(centre) > radius;
 }
 
 }  // namespace

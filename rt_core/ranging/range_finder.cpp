@@ -154,10 +154,11 @@ Nearest RangeFinder::State::nearest(Sensor& sensor, const Pose& X_WS) {
 void RangeFinder::State::collect(const Sensor& sensor, const Pose& X_WS, double limit) {
   const Vector3d apex = X_WS.translation();
   const Vector3d axis = X_WS.linear().col(2);
+  constexpr double kRounding = 1e-9;  // m, and in parts of the radius
   candidates.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Vector3d d = parts.centre(i) - apex;
-    const double radius = parts.radius(i) * (1.0 + 1e-9);
+    const double radius = parts.radius(i) * (1.0 + kRounding) + kRounding;
     const double squared = d.squaredNorm();
     const double reach = limit + radius;
     if (!(squared < reach * reach)) continue;

@@ -55,6 +55,13 @@ Pose looking_along_x(const Vector3d& at = Vector3d::Zero()) {
   return pose_from_xyz_rpy(at, {0, 0.5 * std::numbers::pi, 0});
 }
 
+std::shared_ptr<const geometry::TriangleMesh> mesh_of_plate(double x, double half) {
+  auto mesh = std::make_shared<geometry::TriangleMesh>();
+  mesh->vertices = {{x, -half, -half}, {x, half, -half}, {x, half, half}, {x, -half, half}};
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
 class OneArm final : public ComponentSource {
  public:
   explicit OneArm(std::shared_ptr<const Component> arm) : arm_(std::move(arm)) {}
@@ -214,6 +221,55 @@ TEST_F(Ranging, sees_only_what_is_active_and_collides) {
   EXPECT_FALSE(read()[0].distance_m);
   ASSERT_TRUE(cell_->activate("WALL"));
   EXPECT_TRUE(read()[0].distance_m);
+}
+
+TEST_F(Ranging, sees_the_mesh_itself_where_a_hull_collides_for_it) {
+  scene.root.nodes.push_back(node("CASTING", -1, Pose::Identity()));
+  Geometry casting;
+  casting.shape = Shape::mesh;
+  casting.size = Vector3d::Ones();
+  casting.mesh = mesh_of_plate(3.0, 1.0);
+  casting.collide_as = CollideAs::hull;
+  casting.pieces = {mesh_of_plate(2.0, 1.0)};
+  scene.root.nodes.back().geometry.push_back(casting);
+  EXPECT_NEAR(*read()[0].distance_m, 2.0, 1e-12);
+  cell_.reset();
+  scene.root.nodes.back().geometry.back().mesh = nullptr;
+  EXPECT_NEAR(*read()[0].distance_m, 1.0, 1e-12);
+  EXPECT_FALSE(read()[0].doubtful);
+}
+
+TEST_F(Ranging, does_not_depend_on_what_it_saw_before) {
+  for (int i = 0; i < 60; ++i) {
+    const double turn = 2.4 * i;
+    const double out = 1.3 + 0.02 * i;
+    const Pose X =
+        pose_from_xyz_rpy({out * std::cos(turn), out * std::sin(turn), 0.1 * std::sin(5.0 * i)}, {1.0 * i, turn, 0});
+    scene.root.nodes.push_back(node("THING_" + std::to_string(i), -1, X));
+    Geometry thing = i % 2 == 0 ? ball(0.02) : box({0.05, 0.08, 0.02});
+    if (i % 5 == 0) {
+      thing.shape = Shape::mesh;
+      thing.size = Vector3d::Ones();
+      thing.mesh = mesh_of_plate(0.0, 0.1);
+    }
+    scene.root.nodes.back().geometry.push_back(thing);
+  }
+  scene.root.nodes.push_back(sensor("POLE", -1, looking_along_x({-3.0, 0, 0})));
+  int seen = 0;
+  for (int i = 0; i < 300; ++i) {
+    const auto readings = read(0.02 * i - 3.0);
+    ranging::RangeFinder fresh{std::make_shared<geometry::SolidLibrary>()};
+    fresh.adopt(compiled_);
+    const auto again = fresh.read(poses, kNow, Selection::active_sensors);
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      ASSERT_EQ(readings[k].distance_m.has_value(), again[k].distance_m.has_value()) << i;
+      if (!readings[k].distance_m) continue;
+      ++seen;
+      EXPECT_NEAR(*readings[k].distance_m, *again[k].distance_m, 1e-14) << i;
+      EXPECT_EQ(readings[k].object, again[k].object) << i;
+    }
+  }
+  EXPECT_GT(seen, 300);
 }
 
 TEST_F(Ranging, reads_the_active_sensors_or_all_in_the_order_of_the_cell) {
