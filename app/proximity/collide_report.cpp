@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/proximity/for_people.hpp"
 #include "app/proximity/json_writer.hpp"
-#include "app/proximity/short_names.hpp"
 #include "app/subcommands/put.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -16,9 +16,8 @@ namespace {
 
 constexpr std::uint64_t kListed = 12;       // frames that are shown one by one
 constexpr std::uint64_t kMostChanges = 40;  // lines about frames in which something changes
+constexpr std::size_t kMostPairs = 30;      // of the summary: those that touch in most frames
 constexpr std::size_t kMostDoubt = 400;     // characters of a sentence
-
-std::string point_text(const Eigen::Vector3d& p) { return fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z()); }
 
 std::size_t tested_pairs(const collision::PairTable& pairs) {
   return static_cast<std::size_t>(
@@ -150,15 +149,25 @@ void CollideText::end(const CollideTotals& totals) {
       totals.frames_touching);
   if (totals.frames_in_doubt > 0) put(out_, ", {} in doubt", totals.frames_in_doubt);
   put(out_, "\n");
-  for (const auto& [pair, touch] : totals.touching)
-    put(out_, "  {}: {} {}, at most {:.4f} m deep (frame {})\n", pair_text(pair.first, pair.second), touch.frames,
-        touch.frames == 1 ? "frame" : "frames", touch.deepest_m, touch.deepest_frame);
+  touching_summary(totals);
   if (totals.nearest)
     put(out_, "smallest distance {:.4f} m in frame {}: {}\n", totals.nearest->distance_m, totals.nearest_frame,
         pair_text(totals.nearest->a, totals.nearest->b));
   const HistogramSnapshot& times = totals.times;
   put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", us(times.mean()),
       us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+}
+
+void CollideText::touching_summary(const CollideTotals& totals) {
+  std::vector<std::pair<BodyPair, TouchTotals>> pairs(totals.touching.begin(), totals.touching.end());
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const auto& a, const auto& b) { return a.second.frames > b.second.frames; });
+  if (pairs.size() > kMostPairs) pairs.resize(kMostPairs);
+  for (const auto& [pair, touch] : pairs)
+    put(out_, "  {}: {} {}, at most {:.4f} m deep (frame {})\n", pair_text(pair.first, pair.second), touch.frames,
+        touch.frames == 1 ? "frame" : "frames", touch.deepest_m, touch.deepest_frame);
+  if (pairs.size() < totals.touching.size())
+    put(out_, "  ... and {} more pairs (--json has them all)\n", totals.touching.size() - pairs.size());
 }
 
 plot::Figure figure(const CollideHeading& heading, const CollideTotals& totals) {

@@ -43,6 +43,7 @@ class CollideText {
   void whole_frame(std::uint64_t number, const ProximityState& state);
   void changes(std::uint64_t number, const ProximityState& state);
   void change(const std::string& line);
+  void touching_summary(const CollideTotals& totals);
   [[nodiscard]] std::string pair_text(std::uint32_t a, std::uint32_t b) const;
 
   const CollideHeading heading_;

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "app/proximity/for_people.hpp"
 #include "app/proximity/json_writer.hpp"
-#include "app/proximity/short_names.hpp"
 #include "app/subcommands/put.hpp"
 #include "rt_core/base/text.hpp"
 

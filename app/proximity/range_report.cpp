@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/proximity/for_people.hpp"
 #include "app/proximity/json_writer.hpp"
 #include "app/subcommands/put.hpp"
 #include "rt_core/base/text.hpp"
@@ -29,9 +30,8 @@ std::string reading_text(const RangeReading& reading) {
   const std::string id = printable(reading.id, kMostNames);
   const char* doubt = reading.doubtful ? ", in doubt" : "";
   if (!reading.distance_m) return fmt::format("  {:<12} nothing up to {:g} m{}\n", id, reading.range_m, doubt);
-  const Eigen::Vector3d& p = reading.point_m;
-  return fmt::format("  {:<12} {:.4f} m  {} at {:.3f} {:.3f} {:.3f}{}{}\n", id, *reading.distance_m,
-                     printable(reading.object, kMostNames), p.x(), p.y(), p.z(),
+  return fmt::format("  {:<12} {:.4f} m  {} at {}{}{}\n", id, *reading.distance_m,
+                     printable(reading.object, kMostNames), point_text(reading.point_m),
                      reading.in_blind_zone ? ", in the blind zone" : "", doubt);
 }
 

@@ -1,5 +1,8 @@
-#include "app/proximity/short_names.hpp"
+#include "app/proximity/for_people.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <map>
 
 #include "rt_core/base/text.hpp"
@@ -22,6 +25,11 @@ std::vector<std::string> short_names(const std::vector<std::string>& paths) {
     names.push_back(printable(uses[ends] == 1 ? ends : path, kMost));
   }
   return names;
+}
+
+std::string point_text(const Eigen::Vector3d& p) {
+  const auto shown = [](double value) { return std::abs(value) < 5e-4 ? 0.0 : value; };
+  return fmt::format("{:.3f} {:.3f} {:.3f}", shown(p.x()), shown(p.y()), shown(p.z()));
 }
 
 }  // namespace cellmirror::app
