@@ -10,4 +10,9 @@ namespace cellmirror {
 
 [[nodiscard]] Result<void> check_mesh_bytes(std::string_view bytes, std::string_view extension);
 
+// Parts of it.
+[[nodiscard]] Result<void> check_dae(std::string_view bytes);
+[[nodiscard]] Result<void> check_gltf(std::string_view text);
+[[nodiscard]] Result<void> check_glb(std::string_view bytes);
+
 }  // namespace cellmirror
