@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "rt_core/base/contract.hpp"
@@ -27,6 +30,10 @@ struct PairHistory {
   bool disputed = false;      // FCL said something else, and has not taken it back
 };
 
+bool touches(const Found& found) {
+  return found.usable && found.at.plausible && found.at.distance <= geometry::kTouchDistance;
+}
+
 }  // namespace
 
 struct Checker::State {
@@ -41,6 +48,8 @@ struct Checker::State {
   std::uint64_t next_event = 1;
   std::uint64_t round_robin = 0;
   std::size_t disputes_left = 0;
+  std::size_t contact_limit = std::numeric_limits<std::size_t>::max();
+  std::vector<std::uint32_t> stale_contacts;  // pairs that go on touching and keep the contact that they had
   ProximityState findings;
   CheckCounters counters;
 
@@ -51,10 +60,12 @@ struct Checker::State {
   void tell_touching(const Found& found, const geometry::Contact* contact, bool doubtful);
   void tell_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later, Nanoseconds ahead);
   void doubt(std::string text);
+  void choose_stale_contacts(const std::vector<Found>& found);
   // Null: they do not touch, or there is no telling.
   [[nodiscard]] const geometry::Contact* contact(const Found& found) {
-    const bool touching = found.usable && found.at.plausible && found.at.distance <= geometry::kTouchDistance;
-    return touching ? &search.tracker().contact(found.pair) : nullptr;
+    if (!touches(found)) return nullptr;
+    const bool stale = std::ranges::binary_search(stale_contacts, found.pair);
+    return stale ? &search.tracker().last_contact(found.pair) : &search.tracker().contact(found.pair);
   }
   [[nodiscard]] std::string pair_text(const Found& found) const;
   [[nodiscard]] const std::string& name(std::uint32_t body) const { return (*table->names)[body]; }
@@ -84,6 +95,19 @@ std::optional<double> closing_speed(const Body& a, const Body& b, const PairDist
 }
 
 }  // namespace
+
+// Of the pairs that touched in the posture before as well, all but those whose contacts are the oldest.
+void Checker::State::choose_stale_contacts(const std::vector<Found>& found) {
+  stale_contacts.clear();
+  for (const Found& one : found) {
+    if (touches(one) && history[one.pair].own_touching && search.tracker().contact_frame(one.pair) != 0)
+      stale_contacts.push_back(one.pair);
+  }
+  const std::size_t anew = std::min(contact_limit, stale_contacts.size());
+  std::ranges::sort(stale_contacts, {}, [&](std::uint32_t pair) { return search.tracker().contact_frame(pair); });
+  stale_contacts.erase(stale_contacts.begin(), stale_contacts.begin() + static_cast<std::ptrdiff_t>(anew));
+  std::ranges::sort(stale_contacts);
+}
 
 void Checker::State::doubt(std::string text) {
   ++counters.doubts;
@@ -185,6 +209,8 @@ Checker::~Checker() = default;
 
 const CheckCounters& Checker::counters() const { return state_->counters; }
 
+void Checker::limit_contacts(std::size_t pairs) { state_->contact_limit = pairs; }
+
 void Checker::adopt(std::shared_ptr<const CompiledCell> cell, std::shared_ptr<const PairTable> pairs,
                     const Settings& settings) {
   State& state = *state_;
@@ -237,6 +263,7 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
         state.doubt(state.name(static_cast<std::uint32_t>(i)) + ": its place is not known; taken as touching");
     }
     state.disputes_left = kMostDisputes;
+    state.choose_stale_contacts(found);
     const std::size_t turn = found.empty() ? 0 : state.round_robin++ % found.size();
     for (std::size_t i = 0; i < found.size(); ++i) state.judge(found[i], state.contact(found[i]), i == turn, poses);
     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -4,6 +4,7 @@
 // FCL); where they disagree the pair counts as touching and is marked as a doubt (docs/decisions/).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -34,6 +35,12 @@ class Checker {
   // The cell has changed, or the rules. What is known about pairs that stay is kept, so that no event repeats.
   void adopt(std::shared_ptr<const CompiledCell> cell, std::shared_ptr<const PairTable> pairs,
              const Settings& settings);
+
+  // Depth and points of a contact cost more than all distances. With a limit, check() computes them for pairs that
+  // begin to touch and for at most `pairs` of those that go on touching, the oldest first; the others keep what they
+  // had in one of the last postures. Verdicts and distances are always those of the posture. At first there is no
+  // limit.
+  void limit_contacts(std::size_t pairs);
 
   // The findings at these poses of the adopted cell. `later`: the poses that mirrored robots will have `ahead` later at
   // present velocities, for closing speeds; null: none are told. Valid until the next call. Off the tick.

@@ -50,6 +50,9 @@ class PairTracker {
   // Deepest first, at most kMostContactPoints, of a pair that touches; no points where no part touches another. Valid
   // until the next call for that pair.
   const geometry::Contact& contact(std::size_t index);
+  // What contact() found last, and in which frame: 0 where it was not asked.
+  [[nodiscard]] const geometry::Contact& last_contact(std::size_t index) { return memory_of(index).contact; }
+  [[nodiscard]] std::uint64_t contact_frame(std::size_t index) { return memory_of(index).contact_frame; }
   // Stops at the first touch.
   [[nodiscard]] bool touches(std::size_t index);
 

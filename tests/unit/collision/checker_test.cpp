@@ -1,7 +1,9 @@
 // What the checker finds, tells once, and doubts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "tests/unit/collision/cell_of_bodies.hpp"
 
@@ -70,6 +72,30 @@ TEST_F(CheckerTest, TellsDepthAndPlaceOfATouch) {
   EXPECT_EQ(findings.nearest()->distance_m, 0.0);
   EXPECT_TRUE(findings.nearest()->within_warning);
   EXPECT_TRUE(findings.doubts.empty());
+}
+
+TEST_F(CheckerTest, TakesTurnsWithContactsWhereTheyAreLimited) {
+  build(std::string(kTrack) +
+        "[[node]]\nname = \"Pillar\"\nxyz_m = [1.5, 1.0, 0.0]\n"
+        "geometry = [{ name = \"pillar\", box_m = [1.0, 4.0, 4.0] }]\n");
+  adopt();
+  sut.limit_contacts(1);
+  for (const TouchingPair& touching : at(0.95).touching) EXPECT_NEAR(touching.depth_m, 0.05, 1e-9);
+  const auto depths = [&](double x) {
+    std::vector<double> sorted;
+    for (const TouchingPair& touching : at(x).touching) sorted.push_back(touching.depth_m);
+    std::ranges::sort(sorted);
+    return sorted;
+  };
+  const auto one_anew = depths(0.96);
+  ASSERT_EQ(one_anew.size(), 2U);
+  EXPECT_NEAR(one_anew[0], 0.05, 1e-9);
+  EXPECT_NEAR(one_anew[1], 0.06, 1e-9);
+  const auto the_other = depths(0.97);
+  EXPECT_NEAR(the_other[0], 0.06, 1e-9);
+  EXPECT_NEAR(the_other[1], 0.07, 1e-9);
+  EXPECT_TRUE(at(0.5).touching.empty());
+  for (const TouchingPair& touching : at(0.98).touching) EXPECT_NEAR(touching.depth_m, 0.08, 1e-9);
 }
 
 TEST_F(CheckerTest, TellsEveryChangeOnce) {
