@@ -115,7 +115,11 @@ struct Scene {
 };
 
 class Ranging : public testing::Test {
- protected:
+ public:
+  Scene scene;
+  CellPoses poses;
+  ranging::RangeFinder sut{std::make_shared<geometry::SolidLibrary>()};
+
   std::span<const RangeReading> read(double q = 0.0, Selection selection = Selection::active_sensors) {
     if (!cell_) cell_.emplace(scene.build());
     adopt();
@@ -131,11 +135,9 @@ class Ranging : public testing::Test {
     sut.adopt(now);
   }
 
-  Scene scene;
+ protected:
   std::optional<Cell> cell_;
   std::shared_ptr<const CompiledCell> compiled_;
-  CellPoses poses;
-  ranging::RangeFinder sut{std::make_shared<geometry::SolidLibrary>()};
 };
 
 TEST_F(Ranging, follows_the_robot_that_bears_the_sensor) {

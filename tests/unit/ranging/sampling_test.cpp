@@ -25,17 +25,17 @@ struct Case {
   Pose X_SG = Pose::Identity();
 };
 
-bool well_within(const Cone& cone, const SurfacePoint& at_S) {
+bool well_within(const Cone& cone, const SurfacePoint& seen) {
   constexpr double kSlack = 1e-9;
-  const double distance = at_S.p.norm();
+  const double distance = seen.p.norm();
   if (!(distance > 0.0)) return false;
-  const double angle = std::atan2(std::hypot(at_S.p.x(), at_S.p.y()), at_S.p.z());
-  const double incidence = std::acos(std::min(1.0, std::abs(at_S.normal.dot(at_S.p)) / distance));
+  const double angle = std::atan2(std::hypot(seen.p.x(), seen.p.y()), seen.p.z());
+  const double incidence = std::acos(std::min(1.0, std::abs(seen.normal.dot(seen.p)) / distance));
   return angle < cone.half_angle_rad - kSlack && incidence < cone.max_incidence_rad - kSlack;
 }
 
-SurfacePoint in_sensor(const Pose& X_SG, const SurfacePoint& at_G) {
-  return {X_SG * at_G.p, X_SG.linear() * at_G.normal};
+SurfacePoint in_sensor(const Pose& X_SG, const SurfacePoint& on_body) {
+  return {X_SG * on_body.p, X_SG.linear() * on_body.normal};
 }
 
 // `project`: from a point in G to a point of the surface in G.
@@ -45,14 +45,14 @@ double nearest_sample(const Case& c, const std::optional<ConeHit>& hit, double s
   double nearest = std::numeric_limits<double>::infinity();
   const Pose X_GS = c.X_SG.inverse();
   const auto look = [&](const Vector3d& p_G) {
-    const SurfacePoint at_S = in_sensor(c.X_SG, project(p_G));
-    if (well_within(c.cone, at_S)) nearest = std::min(nearest, at_S.p.norm());
+    const SurfacePoint seen = in_sensor(c.X_SG, project(p_G));
+    if (well_within(c.cone, seen)) nearest = std::min(nearest, seen.p.norm());
   };
   for (int i = 0; i < samples; ++i) look(in_cube(random, 1.2 * size));
   if (!hit) return nearest;
-  const Vector3d read_G = X_GS * hit->p_S;
+  const Vector3d read = X_GS * hit->p_S;
   for (int i = 0; i < samples; ++i) {
-    look(read_G + in_cube(random, size * std::pow(10.0, uniform(random, -8.0, 0.0))));
+    look(read + in_cube(random, size * std::pow(10.0, uniform(random, -8.0, 0.0))));
   }
   return nearest;
 }

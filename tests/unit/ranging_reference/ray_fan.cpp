@@ -75,9 +75,10 @@ std::size_t RayFan::add(const std::shared_ptr<const geometry::TriangleMesh>& mes
 
 void RayFan::place(std::size_t instance, const Pose& X_WG) {
   std::array<float, 12> columns{};
+  std::size_t at = 0;
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 3; ++row) {
-      columns[static_cast<std::size_t>(3 * column + row)] = single(X_WG.matrix()(row, column));
+      columns[at++] = single(X_WG.matrix()(row, column));
     }
   }
   rtcSetGeometryTransform(scene_->instances[instance], 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
@@ -86,16 +87,16 @@ void RayFan::place(std::size_t instance, const Pose& X_WG) {
 
 void RayFan::commit() { rtcCommitScene(scene_->top); }
 
-std::optional<double> RayFan::along(const Vector3d& from_W, const Vector3d& direction_W, double range) const {
+std::optional<double> RayFan::along(const Vector3d& from, const Vector3d& direction, double range) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit ray{};
-  ray.ray.org_x = single(from_W.x());
-  ray.ray.org_y = single(from_W.y());
-  ray.ray.org_z = single(from_W.z());
-  ray.ray.dir_x = single(direction_W.x());
-  ray.ray.dir_y = single(direction_W.y());
-  ray.ray.dir_z = single(direction_W.z());
+  ray.ray.org_x = single(from.x());
+  ray.ray.org_y = single(from.y());
+  ray.ray.org_z = single(from.z());
+  ray.ray.dir_x = single(direction.x());
+  ray.ray.dir_y = single(direction.y());
+  ray.ray.dir_z = single(direction.z());
   ray.ray.tfar = single(range);
   ray.ray.mask = ~0U;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;

@@ -23,8 +23,8 @@ class RayFan {
   void place(std::size_t instance, const Pose& X_WG);
   void commit();  // after the last place()
 
-  // Along one ray, m.
-  [[nodiscard]] std::optional<double> along(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W,
+  // Along one ray in the world, m.
+  [[nodiscard]] std::optional<double> along(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                                             double range) const;
   // The nearest hit of `rays` rays that are spread evenly over the cone; rounded up to packets of eight.
   [[nodiscard]] std::optional<double> nearest(const Pose& X_WS, double half_angle, double range,
