@@ -86,7 +86,9 @@ void check(const geometry::Solid& solid, const Pose& X_SG, const ranging::Cone& 
                           std::sin(cone.half_angle_rad) * hit->p_S.z();
     CELLMIRROR_EXPECTS(beyond <= tolerance + 2e-6 * hit->distance);  // half-angles below 1e-6 count as 1e-6
   }
-  if (!solid.tree || !X_SG.matrix().allFinite() || cone.max_incidence_rad < 0.5 * std::numbers::pi) return;
+  constexpr double kLeast = 1e-100;  // the square of it is a number
+  if (up_to < kLeast || !solid.tree || !X_SG.matrix().allFinite() || cone.max_incidence_rad < 0.5 * std::numbers::pi)
+    return;
   for (const Vector3d& corner : solid.tree->mesh().vertices) {
     const Vector3d p = X_SG * corner;
     constexpr double kWellWithin = 1e-4;
