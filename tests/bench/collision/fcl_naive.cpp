@@ -46,7 +46,7 @@ struct FclNaive::State {
   std::vector<Part> parts;
   std::vector<std::vector<bool>> tested;
   fcl::DynamicAABBTreeCollisionManagerd manager;
-  std::set<std::pair<std::size_t, std::size_t>> touching;
+  Answer answer;
   double warning = 0;
   double distance = 0;
 
@@ -86,14 +86,14 @@ FclNaive::FclNaive(std::shared_ptr<const collision::PairTable> table) : state_(s
 
 FclNaive::~FclNaive() = default;
 
-FclNaive::Answer FclNaive::check(const CellPoses& poses, double warning) {
+const FclNaive::Answer& FclNaive::check(const CellPoses& poses, double warning) {
   State& state = *state_;
   for (Part& part : state.parts) {
     part.object->setTransform(poses.X_WN[static_cast<std::size_t>(part.node)] * part.X_NG);
     part.object->computeAABB();
   }
   state.manager.update();
-  state.touching.clear();
+  state.answer = {};
   state.warning = warning;
   state.distance = std::numeric_limits<double>::infinity();
   state.manager.collide(&state, [](CollisionObjectd* a, CollisionObjectd* b, void* data) {
@@ -102,21 +102,23 @@ FclNaive::Answer FclNaive::check(const CellPoses& poses, double warning) {
     fcl::CollisionRequestd request;
     fcl::CollisionResultd result;
     fcl::collide(a, b, request, result);
-    if (result.isCollision()) self.touching.insert(State::pair_of(a, b));
+    if (result.isCollision()) self.answer.touching.insert(State::pair_of(a, b));
     return false;  // all that touch are wanted
   });
   state.manager.distance(&state, [](CollisionObjectd* a, CollisionObjectd* b, void* data, double& least) {
     auto& self = *static_cast<State*>(data);
     // The distance between bodies that touch may abort the program.
-    if (!self.wanted(a, b) || self.touching.contains(State::pair_of(a, b))) return false;
+    if (!self.wanted(a, b) || self.answer.touching.contains(State::pair_of(a, b))) return false;
     fcl::DistanceRequestd request;
     fcl::DistanceResultd result;
     fcl::distance(a, b, request, result);
+    double& known = self.answer.apart.try_emplace(State::pair_of(a, b), result.min_distance).first->second;
+    known = std::min(known, result.min_distance);
     self.distance = std::min(self.distance, result.min_distance);
     least = std::max(self.warning, self.distance);
     return false;
   });
-  return {state.touching.size(), state.distance};
+  return state.answer;
 }
 
 }  // namespace cellmirror

@@ -1,7 +1,10 @@
 // The yardstick: FCL's dynamic tree manager, updated and asked anew in every frame, as most programs use it.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/collision/pairs.hpp"
@@ -14,12 +17,12 @@ class FclNaive {
   ~FclNaive();
 
   struct Answer {
-    std::size_t touching = 0;  // pairs of bodies
-    double distance = 0;       // m, of the nearest pair of those that do not touch
+    std::set<std::pair<std::size_t, std::size_t>> touching;       // bodies
+    std::map<std::pair<std::size_t, std::size_t>, double> apart;  // m
   };
   // Over the tested pairs of the table: all that touch, and the distances of all others that are within `warning` (m),
   // or that of the nearest.
-  Answer check(const CellPoses& poses, double warning);
+  const Answer& check(const CellPoses& poses, double warning);
 
  private:
   struct State;
