@@ -132,17 +132,9 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
-  owner = std::make_unique<CellOwner>(CellOwner::Parts{std::move(loaded.cell),
-                                                       loaded.home,
-                                                       std::move(streams),
-                                                       std::move(loaded.views),
-                                                       std::move(loaded.collision),
-                                                       *engine,
-                                                       board,
-                                                       clock,
-                                                       stream_priority,
-                                                       save,
-                                                       reply});
+  owner = std::make_unique<CellOwner>(CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams),
+                                                       std::move(loaded.views), std::move(loaded.collision), *engine,
+                                                       board, clock, stream_priority, save, reply});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;

@@ -44,7 +44,8 @@ void TickWorker::count_run() {
   if (!window_start_.known()) window_start_ = now;
   ++runs_in_window_;
   if (now - window_start_ < kWindow) return;
-  rate_hz_.store(static_cast<double>(runs_in_window_) / seconds(now - window_start_), std::memory_order_relaxed);
+  const double rate = static_cast<double>(runs_in_window_) / seconds(now - window_start_);
+  rate_mhz_.store(static_cast<std::uint64_t>(1e3 * rate), std::memory_order_relaxed);
   window_start_ = now;
   runs_in_window_ = 0;
 }
@@ -52,7 +53,7 @@ void TickWorker::count_run() {
 void TickWorker::rest() {
   window_start_ = Timestamp();
   runs_in_window_ = 0;
-  rate_hz_.store(0, std::memory_order_relaxed);
+  rate_mhz_.store(0, std::memory_order_relaxed);
   wake_.wait(kIdle);
 }
 

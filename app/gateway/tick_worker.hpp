@@ -38,7 +38,7 @@ class TickWorker {
 
   // Any thread.
   // How often the job ran in the last second; 0 while there is nothing to do.
-  [[nodiscard]] double rate_hz() const { return rate_hz_.load(std::memory_order_relaxed); }
+  [[nodiscard]] double rate_hz() const { return 1e-3 * static_cast<double>(rate_mhz_.load(std::memory_order_relaxed)); }
   // Ticks that passed while the job was busy with an older one.
   [[nodiscard]] std::uint64_t skipped() const { return skipped_.load(std::memory_order_relaxed); }
 
@@ -58,7 +58,7 @@ class TickWorker {
   WakeSignal wake_;
   Timestamp window_start_;  // of the rate
   std::uint64_t runs_in_window_ = 0;
-  std::atomic<double> rate_hz_{0};
+  std::atomic<std::uint64_t> rate_mhz_{0};  // millihertz
   std::atomic<std::uint64_t> skipped_{0};
   std::jthread thread_;  // last: it uses everything above
 };

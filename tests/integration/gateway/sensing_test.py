@@ -45,8 +45,8 @@ class Sensing(unittest.TestCase):
         return self.scratch.status()["collisions"]
 
     def settled(self):
-        """What is found for a posture that was taken after this call."""
-        asked = time.monotonic()
+        """What is found for a posture that was taken after this call, and after commands have reached the workers."""
+        asked = time.monotonic() + 0.05
 
         def new():
             found = self.collisions()
