@@ -77,7 +77,6 @@ bool PairWalk::next(std::uint32_t& triangle_a, std::uint32_t& triangle_b) noexce
 }
 
 void PairWalk::open(const Entry& entry) noexcept {
-  ++opens;
   const WideNode& node_a = a_.nodes()[entry.place_a / 8];
   const WideNode& node_b = b_.nodes()[entry.place_b / 8];
   const std::size_t in_a = entry.place_a % 8;
@@ -91,33 +90,40 @@ void PairWalk::open(const Entry& entry) noexcept {
     const WideNode& opened = b_.nodes()[child_b];
     kernels_.place_box(node_a, in_a, a_in_b_, box_of_a_);
     kernels_.bounds(opened, box_of_a_, squares.data());
-    push(squares, opened, 8 * child_b, true, entry);
+    push(squares, 8 * child_b, true, entry);
   } else {
     const WideNode& opened = a_.nodes()[child_a];
     kernels_.place_box(node_b, in_b, b_in_a_, box_of_b_);
     kernels_.bounds(opened, box_of_b_, squares.data());
-    push(squares, opened, 8 * child_a, false, entry);
+    push(squares, 8 * child_a, false, entry);
   }
 }
 
-void PairWalk::push(const std::array<float, 8>& squares, const WideNode& node, std::uint32_t first, bool opened_b,
+void PairWalk::push(const std::array<float, 8>& squares, std::uint32_t first, bool opened_b,
                     const Entry& entry) noexcept {
   CELLMIRROR_EXPECTS(size_ + 8 <= kCapacity);
   const std::size_t bottom = size_;
+  std::size_t top = bottom;
+  std::size_t nearest = bottom;
+  float least = std::numeric_limits<float>::infinity();
+  float left_out = least_left_out_;
+  // Without branches: whether a box is near enough cannot be predicted. Empty places are infinitely far.
   for (std::uint32_t i = 0; i < 8; ++i) {
-    if (node.child[i] == WideTree::kNone) continue;
-    if (squares[i] > limit_square_) {
-      least_left_out_ = std::min(least_left_out_, squares[i]);
-      continue;
-    }
-    Entry child = entry;
-    child.square = std::max(squares[i], entry.square);
-    (opened_b ? child.place_b : child.place_a) = first + i;
-    // The nearest one ends on top.
-    std::size_t at = size_++;
-    for (; at > bottom && stack_[at - 1].square < child.square; --at) stack_[at] = stack_[at - 1];
-    stack_[at] = child;
+    const float square = squares[i];
+    const bool kept = !(square > limit_square_);
+    Entry& child = stack_[top];
+    child.square = std::max(square, entry.square);
+    child.place_a = opened_b ? entry.place_a : first + i;
+    child.place_b = opened_b ? first + i : entry.place_b;
+    left_out = !kept && square < left_out ? square : left_out;
+    nearest = kept && square < least ? top : nearest;
+    least = kept && square < least ? square : least;
+    top += kept ? 1 : 0;
   }
+  least_left_out_ = left_out;
+  size_ = top;
+  // The nearest one comes next; the order of the others matters little.
+  if (top > bottom + 1) std::swap(stack_[nearest], stack_[top - 1]);
 }
 
 }  // namespace cellmirror::geometry

@@ -41,8 +41,7 @@ class PairWalk {
   static constexpr std::size_t kCapacity = 7 * 2 * 66 + 8;
 
   void open(const Entry& entry) noexcept;
-  void push(const std::array<float, 8>& squares, const WideNode& node, std::uint32_t first, bool opened_b,
-            const Entry& entry) noexcept;
+  void push(const std::array<float, 8>& squares, std::uint32_t first, bool opened_b, const Entry& entry) noexcept;
 
   const WideTree& a_;
   const WideTree& b_;
@@ -56,11 +55,6 @@ class PairWalk {
   float limit_square_ = 0;
   float least_left_out_ = 0;
   std::size_t size_ = 0;
-
- public:
-  std::size_t opens = 0;
-
- private:
   std::array<Entry, kCapacity> stack_;  // not filled before use: it is large
 };
 
