@@ -88,7 +88,8 @@ bool nearest_on_segment(const ConeShape& cone, const Vector3d& a, const Vector3d
   const Vector3d D = b - a;
   const double squared_length = D.squaredNorm();
   const double squared_limit = limit * limit;
-  if (!(squared_length > 0.0)) {
+  constexpr double kPoint = 1e-200;  // m^2; products of smaller numbers would be lost
+  if (!(squared_length > kPoint)) {
     p = a;
     return a.squaredNorm() < squared_limit && cone.holds(a);
   }
