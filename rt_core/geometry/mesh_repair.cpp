@@ -70,7 +70,7 @@ std::string MeshFindings::why_open() const {
   if (open_edges > 0)
     add(counted(open_edges, "edge belongs to one triangle only", "edges belong to one triangle only"));
   if (crowded_edges > 0)
-    add(counted(crowded_edges, "edge belongs to more than two triangles", "edges belong to more than two triangles"));
+    add(counted(crowded_edges, "edge belongs to too many triangles", "edges belong to too many triangles"));
   if (not_orientable) add("a shell has only one side");
   if (flat_shell) add("a shell has no volume");
   if (too_nested) add("too many shells face inwards");

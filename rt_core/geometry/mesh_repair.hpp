@@ -27,7 +27,7 @@ struct MeshFindings {
   std::size_t inside_out_shells = 0;     // closed shells that were turned outside
   std::size_t shells = 0;                // connected by edges
   std::size_t open_edges = 0;            // with one triangle
-  std::size_t crowded_edges = 0;         // with three triangles or more
+  std::size_t crowded_edges = 0;         // with three triangles or more that do not run through it in pairs
   bool not_orientable = false;           // some shell has one side only, as a Moebius strip
   bool flat_shell = false;               // some shell is closed and has no volume
   bool too_nested = false;               // too many shells turned inwards to see which are cavities

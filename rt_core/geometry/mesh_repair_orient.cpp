@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -51,9 +52,10 @@ constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
 struct Neighbour {
   std::uint32_t triangle = kNone;
   bool opposite = false;  // runs through the common edge in the opposite direction, as it should
+  bool crowded = false;   // no neighbour, since the edge has more than two triangles
 };
 
-// Triangles that hang together by edges with exactly two of them.
+// Triangles that hang together by edges with exactly two of them; after join_shells() also by edges with more.
 struct Shell {
   std::vector<std::uint32_t> triangles;
   bool closed = true;
@@ -67,6 +69,7 @@ class Orienter {
       : vertices_(vertices),
         triangles_(triangles),
         findings_(findings),
+        shell_of_(triangles.size(), kNone),
         seen_(triangles.size()),
         flip_(triangles.size()) {}
 
@@ -75,6 +78,7 @@ class Orienter {
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
       if (!seen_[i]) grow_shell(i);
     }
+    join_shells();
     const bool closed = findings_.open_edges == 0 && findings_.crowded_edges == 0 && !findings_.not_orientable;
     for (Shell& shell : closed_shells_) measure(shell);
     turn_outwards();
@@ -87,11 +91,12 @@ class Orienter {
     std::vector<std::uint8_t> filled(triangles_.size());
     for_each_edge(edge_uses(triangles_), [&](std::span<const EdgeUse> uses) {
       if (uses.size() == 1) ++findings_.open_edges;
-      if (uses.size() > 2) ++findings_.crowded_edges;
+      if (uses.size() > 2) crowded_.emplace_back(uses.begin(), uses.end());
       for (const EdgeUse& use : uses) {
         const EdgeUse& other = &use == &uses.front() ? uses.back() : uses.front();
         Neighbour& neighbour = neighbours_[use.triangle][filled[use.triangle]++];
-        if (uses.size() == 2) neighbour = {other.triangle, use.forward != other.forward};
+        if (uses.size() == 2) neighbour = {other.triangle, use.forward != other.forward, false};
+        neighbour.crowded = uses.size() > 2;
       }
     });
   }
@@ -107,7 +112,7 @@ class Orienter {
       const std::uint32_t i = shell.triangles[at];
       for (const Neighbour& neighbour : neighbours_[i]) {
         if (neighbour.triangle == kNone) {
-          shell.closed = false;
+          shell.closed = shell.closed && neighbour.crowded;
           continue;
         }
         const bool wanted = flip_[i] == neighbour.opposite;
@@ -123,7 +128,53 @@ class Orienter {
     }
     finish_shell(shell, flipped, orientable);
     ++findings_.shells;
-    if (shell.closed) closed_shells_.push_back(std::move(shell));
+    if (!shell.closed) return;
+    for (const std::uint32_t i : shell.triangles) shell_of_[i] = static_cast<std::uint32_t>(closed_shells_.size());
+    closed_shells_.push_back(std::move(shell));
+  }
+
+  [[nodiscard]] bool runs_forward(const EdgeUse& use) const {
+    const TriangleIndices& t = triangles_[use.triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (edge_key(t[k], t[(k + 1) % 3]) == use.edge) return t[k] < t[(k + 1) % 3];
+    }
+    return use.forward;
+  }
+
+  // Shells that touch along an edge are closed together where the edge is run through as often in one direction as in
+  // the other: there is an inside all the same.
+  void join_shells() {
+    std::vector<std::uint32_t> root(closed_shells_.size());
+    std::iota(root.begin(), root.end(), 0U);
+    const auto root_of = [&](std::uint32_t shell) {
+      while (root[shell] != shell) shell = root[shell] = root[root[shell]];
+      return shell;
+    };
+    for (const std::vector<EdgeUse>& uses : crowded_) {
+      std::ptrdiff_t balance = 0;
+      bool closed = true;
+      std::uint32_t first = kNone;
+      for (const EdgeUse& use : uses) {
+        balance += runs_forward(use) ? 1 : -1;
+        const std::uint32_t shell = shell_of_[use.triangle];
+        closed = closed && shell != kNone;
+        if (shell == kNone) continue;
+        if (first == kNone) first = root_of(shell);
+        root[root_of(shell)] = first;
+      }
+      if (balance != 0) ++findings_.crowded_edges;
+      if (first != kNone && (balance != 0 || !closed)) closed_shells_[first].closed = false;
+    }
+    for (std::uint32_t i = 0; i < root.size(); ++i) {
+      Shell& shell = closed_shells_[i];
+      Shell& whole = closed_shells_[root_of(i)];
+      if (&shell == &whole) continue;
+      whole.triangles.insert(whole.triangles.end(), shell.triangles.begin(), shell.triangles.end());
+      whole.closed = whole.closed && shell.closed;
+      shell.triangles.clear();
+      --findings_.shells;
+    }
+    std::erase_if(closed_shells_, [](const Shell& shell) { return !shell.closed || shell.triangles.empty(); });
   }
 
   void finish_shell(Shell& shell, std::size_t flipped, bool orientable) {
@@ -194,6 +245,8 @@ class Orienter {
   Triangles& triangles_;
   MeshFindings& findings_;
   std::vector<std::array<Neighbour, 3>> neighbours_;
+  std::vector<std::vector<EdgeUse>> crowded_;
+  std::vector<std::uint32_t> shell_of_;  // in closed_shells_, until they are joined
   std::vector<bool> seen_;
   std::vector<bool> flip_;
   std::vector<Shell> closed_shells_;

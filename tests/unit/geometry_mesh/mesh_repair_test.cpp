@@ -219,13 +219,29 @@ TEST(MeshRepair, an_open_mesh_is_kept_as_a_surface) {
   EXPECT_TRUE(findings.repairs().empty());
 }
 
-TEST(MeshRepair, cubes_that_touch_along_an_edge_are_a_surface) {
+TEST(MeshRepair, cubes_that_touch_along_an_edge_are_a_solid) {
+  for (const bool inside_out : {false, true}) {
+    Soup soup = cube();
+    soup.add(cube().moved({1, 1, 0}));
+    const auto [findings, sut] = repair(inside_out ? soup.inside_out() : soup);
+    ASSERT_TRUE(sut);
+    expect_fit(*sut);
+    EXPECT_TRUE(sut->closed) << findings.why_open();
+    EXPECT_EQ(findings.shells, 1U);
+    EXPECT_NEAR(signed_volume(*sut), 2.0, 1e-12);
+  }
+}
+
+TEST(MeshRepair, a_fin_on_a_cube_makes_a_surface_of_it) {
   Soup soup = cube();
-  soup.add(cube().moved({1, 1, 0}));
+  soup.vertices.emplace_back(-2, -2, -0.5);
+  soup.triangles.push_back({0, 4, 8});
   const auto [findings, sut] = repair(soup);
   ASSERT_TRUE(sut);
   EXPECT_FALSE(sut->closed);
   EXPECT_EQ(findings.crowded_edges, 1U);
+  EXPECT_EQ(findings.open_edges, 2U);
+  EXPECT_EQ(findings.why_open(), "2 edges belong to one triangle only, 1 edge belongs to too many triangles");
 }
 
 TEST(MeshRepair, turns_a_mesh_that_is_inside_out) {
