@@ -43,7 +43,7 @@ struct NearPair {
   Eigen::Vector3d point_b_m = Eigen::Vector3d::Zero();
   bool within_warning = false;
   bool doubtful = false;                    // the distance is a lower bound
-  std::optional<double> closing_speed_m_s;  // positive: they approach; only where a mirrored robot is part of it
+  std::optional<double> closing_speed_m_s;  // positive: they approach; none where neither of them moves
   std::optional<double> time_to_contact_s;  // at present velocities; none where they do not approach
 };
 

@@ -42,6 +42,9 @@ class Examples(unittest.TestCase):
             self.assertIn(REFUSED[example], done.stderr)
         elif implemented:
             self.assertEqual(done.returncode, 0, f"{example}: {done.stderr}")
+            if example.startswith("EXEC_SCRIPT"):
+                # It goes on by itself; its moves would take the place of those of the examples that follow.
+                self.assertTrue(g.eventually(lambda: scratch.status()["script"]["running"] == 0, 60))
         else:
             self.assertEqual(done.returncode, 1, example)
             self.assertIn("not available yet", done.stderr, example)
