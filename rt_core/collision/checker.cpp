@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "rt_core/base/contract.hpp"
@@ -272,7 +273,8 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
       if (pair.zone == Zone::touching) state.tell_touching(found[i], state.contact(found[i]), doubtful);
       state.tell_near(found[i], doubtful, poses, later, ahead);
     }
-    std::ranges::stable_sort(findings.near, {}, &NearPair::distance_m);
+    std::ranges::sort(findings.near, {},
+                      [](const NearPair& near) { return std::tuple(near.distance_m, near.a, near.b); });
     // Beyond the warning distance only the nearest pair is told.
     const auto far = std::ranges::find(findings.near, false, &NearPair::within_warning);
     if (far != findings.near.end())

@@ -176,7 +176,7 @@ const geometry::Contact& PairTracker::contact(std::size_t index) {
     out.points.insert(out.points.end(), part_contact_.points.begin(), part_contact_.points.end());
   }
   if (out.points.empty()) return out;
-  std::ranges::stable_sort(out.points, std::ranges::greater{}, &geometry::ContactPoint::depth);
+  std::ranges::sort(out.points, std::ranges::greater{}, &geometry::ContactPoint::depth);
   if (out.points.size() > kMostContactPoints) out.points.resize(kMostContactPoints);
   out.deepest = out.points.front();
   return out;

@@ -67,7 +67,7 @@ xyz_m = [1.2, 0.2, 0.0]
       if (near.distance_m < result.nearest.distance_m) result.nearest = near;
       if (near.distance_m == 0.0) result.touching = true;
     }
-    std::ranges::stable_sort(result.within, {}, &NearPair::distance_m);
+    std::ranges::sort(result.within, {}, &NearPair::distance_m);
     return result;
   }
   double distance_of(const Body& a, const Body& b) const {
