@@ -1,3 +1,7 @@
+# Folders whose sources compute with poses.
+set(CELLMIRROR_POSE_FOLDERS "^rt_core/(cell|collision|engine|geometry|inverse_kinematics|kinematics|motion|ranging)$")
+cellmirror_precompiled(poses HEADERS <algorithm> <cmath> <functional> <map> <optional> <string> <vector> <Eigen/Geometry> LINK Eigen3::Eigen)
+
 # cellmirror_library(SOURCES a.cpp b.cpp USES rt_core/base ... PRIVATE fmt::fmt ... PUBLIC Eigen3::Eigen)
 #
 # One library a folder, named after it (rt_core/rt -> cellmirror_rt_core_rt). USES names folders of ours and is checked
@@ -27,6 +31,9 @@ function(cellmirror_library)
     target_link_libraries(${target} PRIVATE cellmirror_flags ${ARG_PRIVATE} PUBLIC Threads::Threads ${ARG_PUBLIC})
     target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR})
     cellmirror_link_folders(${target} PUBLIC ${ARG_USES})
+    if(folder MATCHES "${CELLMIRROR_POSE_FOLDERS}")
+      cellmirror_use_precompiled(${target} poses)
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE ${CMAKE_SOURCE_DIR})

@@ -5,7 +5,7 @@
 # cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY])  a GoogleTest program, one ctest entry.
 #   RELEASE_ONLY: not built with sanitizers. For long comparisons of numbers whose code a fuzz target runs under them.
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
-#   CELLMIRROR_FUZZERS a libFuzzer program, always also <name>_replay, which runs the corpus as an ordinary test.
+#   CELLMIRROR_FUZZERS a libFuzzer program, else <name>_replay, which runs the corpus as an ordinary test.
 # cellmirror_benchmark(name SOURCES ... USES ... [LINK ...] [SMOKE])       with SMOKE, a short round of it is a test
 if(CELLMIRROR_TESTS)
   enable_testing()
@@ -20,6 +20,11 @@ endif()
 foreach(label unit integration golden fuzz stress concurrency)
   add_custom_target(tests_${label})
 endforeach()
+
+# What nearly every unit test includes is parsed once a build (PrecompiledHeaders.cmake).
+if(CELLMIRROR_TESTS)
+  cellmirror_precompiled(tests HEADERS <gtest/gtest.h> <Eigen/Geometry> <functional> <map> <optional> <string> <vector> LINK GTest::gtest Eigen3::Eigen)
+endif()
 
 # cellmirror_describe_test(name): kind label, serial where needed, and what every test may rely on in its environment.
 # For tests added with add_test() by hand too. Sanitizers make a program up to ten times slower.
@@ -56,6 +61,9 @@ function(cellmirror_test name)
     return()
   endif()
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK})
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/(unit|golden|stress)/")
+    cellmirror_use_precompiled(${name} tests)
+  endif()
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
   cellmirror_describe_test(${name} TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABELS})
 endfunction()
@@ -65,10 +73,11 @@ function(cellmirror_fuzz_target name)
     return()
   endif()
   cmake_parse_arguments(ARG "" "SOURCE;CORPUS" "USES;LINK" ${ARGN})
-  cellmirror_executable(${name}_replay SOURCES ${ARG_SOURCE} ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_main.cpp USES ${ARG_USES} LINK ${ARG_LINK})
-  add_test(NAME ${name}_replay COMMAND ${name}_replay ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
-  cellmirror_describe_test(${name}_replay LABELS fuzz)
-  if(CELLMIRROR_FUZZERS)
+  if(NOT CELLMIRROR_FUZZERS)  # libFuzzer begins with the corpus by itself
+    cellmirror_executable(${name}_replay SOURCES ${ARG_SOURCE} ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_main.cpp USES ${ARG_USES} LINK ${ARG_LINK})
+    add_test(NAME ${name}_replay COMMAND ${name}_replay ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
+    cellmirror_describe_test(${name}_replay LABELS fuzz)
+  else()
     cellmirror_executable(${name} SOURCES ${ARG_SOURCE} USES ${ARG_USES} LINK ${ARG_LINK} -fsanitize=fuzzer)
     add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/tests/support/fuzz_for.sh $<TARGET_FILE:${name}> ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
     cellmirror_describe_test(${name} LABELS fuzz libfuzzer)

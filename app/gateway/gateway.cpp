@@ -38,7 +38,7 @@ constexpr std::int32_t kIdleWakeLimitUs = 10;  // keeps idle processors out of s
 
 Result<LoadedCell> load(const GatewayOptions& options) {
   Diagnostics diagnostics;
-  std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics);
+  std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics, options.progress);
   if (!loaded) {
     const std::string count = diagnostics.errors() == 1 ? "an error" : fmt::format("{} errors", diagnostics.errors());
     return fail(fmt::format("the cell {} has {}:\n{}nothing was started", options.cell_file.string(), count,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "config/cell_file.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 
@@ -16,6 +17,7 @@ struct GatewayOptions {
   std::optional<std::string> startup_script;  // instead of the cell file's own
   std::optional<double> rate_hz;              // instead of the cell file's own
   std::string instance = "default";
+  LoadProgress progress;  // told while the cell is loaded; may be empty
 };
 
 class Gateway {

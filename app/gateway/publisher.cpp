@@ -32,6 +32,10 @@ void FindingsPublisher::publish_news(FindingsOutput& output, RangeSendMode mode)
     if (!outgoing_.events.empty()) newest_event_ = outgoing_.events.back().sequence;
     newest_proximity_ = state->sequence;
     output.publish_proximity(outgoing_);
+  } else if (state) {
+    // Once more, without what has been told: the output itself sees that it grows old.
+    outgoing_.events.clear();
+    output.publish_proximity(outgoing_);
   }
   const std::shared_ptr<const RangeReadings> ranges = ranges_.look();
   if (ranges && ranges->sequence != newest_ranges_) {

@@ -11,6 +11,7 @@
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/robot_streams.hpp"
 #include "app/subcommands/check_bus_files.hpp"
+#include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/home.hpp"
@@ -40,8 +41,8 @@ void check_script_file(const std::filesystem::path& path, const NameDirectory* n
 }
 
 // A cell file with everything it names: components, and the bus descriptions of its streams.
-void check_cell_file(const std::filesystem::path& path, Diagnostics& diagnostics) {
-  const std::optional<LoadedCell> cell = load_cell(path, diagnostics);
+void check_cell_file(const std::filesystem::path& path, Diagnostics& diagnostics, const LoadProgress& progress) {
+  const std::optional<LoadedCell> cell = load_cell(path, diagnostics, progress);
   if (!cell) return;
   const SystemClock clock;
   for (const RobotStream& stream : cell->streams) {
@@ -52,10 +53,11 @@ void check_cell_file(const std::filesystem::path& path, Diagnostics& diagnostics
 }
 
 void check_one(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
+  ProgressLine line("files loaded");
   if (path.extension() == ".spt") return check_script_file(path, names, diagnostics);
-  if (path.extension() == ".toml") return check_cell_file(path, diagnostics);
+  if (path.extension() == ".toml") return check_cell_file(path, diagnostics, load_progress(line));
   if (is_bus_file(path)) return check_bus_file(path, diagnostics);
-  if (is_checkable(path)) return check_file(path, diagnostics);
+  if (is_checkable(path)) return check_file(path, diagnostics, load_progress(line));
   diagnostics.error({path.string()}, "files of this kind cannot be checked",
                     "known: .spt .toml .mpc .urdf .dbc .eds .dcf");
 }
@@ -81,7 +83,8 @@ int check(const CheckOptions& options) {
   std::optional<LoadedCell> cell;
   std::optional<CellNames> names;
   if (!options.cell.empty()) {
-    cell = load_cell(options.cell, diagnostics);
+    ProgressLine line("files loaded");
+    cell = load_cell(options.cell, diagnostics, load_progress(line));
     if (cell) names.emplace(cell->cell);
   }
   for (const std::string& file : options.files) check_one(file, names ? &*names : nullptr, diagnostics);

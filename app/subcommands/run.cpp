@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <ctime>
 #include <memory>
+#include <optional>
 
 #include "app/gateway/gateway.hpp"
+#include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "rt_core/base/log.hpp"
 
@@ -59,7 +61,10 @@ int run(const RunOptions& options) {
   GatewayOptions gateway_options = options.gateway;
   if (!options.script.empty()) gateway_options.startup_script = options.script;
   if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
+  std::optional<ProgressLine> line("files loaded");
+  gateway_options.progress = load_progress(*line);
   auto gateway = Gateway::start(gateway_options);
+  line.reset();
   if (!gateway) return refuse(gateway.error().text());
   std::printf("%s\n", (*gateway)->greeting().c_str());
   std::fflush(stdout);

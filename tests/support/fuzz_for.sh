@@ -1,5 +1,5 @@
 #!/bin/bash
-# fuzz_for.sh TARGET CORPUS: fuzzes for ${FUZZ_SECONDS:-10} s, starting from the corpus. New inputs go to a scratch folder,
+# fuzz_for.sh TARGET CORPUS: fuzzes for ${FUZZ_SECONDS:-5} s, starting from the corpus. New inputs go to a scratch folder,
 # what fails to ${FUZZ_ARTIFACTS:-crashes beside the folder of the program}. Status 1 where something failed: libFuzzer's
 # own 77 would read as "skipped".
 set -eu
@@ -8,5 +8,5 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/new"
 artifacts=${FUZZ_ARTIFACTS:-$(dirname "$1")/../crashes}
 mkdir -p "$artifacts"
-"$1" -max_total_time="${FUZZ_SECONDS:-10}" -timeout=5 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=0 -verbosity=0 \
+"$1" -max_total_time="${FUZZ_SECONDS:-5}" -timeout=5 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=0 -verbosity=0 \
   -artifact_prefix="$artifacts/" "$scratch/new" "$2" || exit 1

@@ -16,6 +16,7 @@
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/motion_desk.hpp"
+#include "app/gateway/sensing.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/log.hpp"
@@ -66,12 +67,14 @@ class Stage {
         robots_(cell_, fleet_, desk_, names_),
         programs_(desk_),
         view_host_(cell_, views_, clock_),
+        sensing_(cell_, {}),
         diagnosis_([](std::string_view) { return Result<void>(); }) {
     EXPECT_TRUE(fleet_.follow_cell());
   }
 
   std::string run(const KismetHome& home, const std::string& name) {
-    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, view_host_, diagnosis_}, home, clock_);
+    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, view_host_, sensing_, diagnosis_}, home,
+                                clock_);
     std::string end = "still waiting\n";
     runner.on_run_ended([&](const script::RunReport& report) {
       end = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
@@ -106,6 +109,7 @@ class Stage {
   app::CellRobots robots_;
   app::CellPrograms programs_;
   app::CellViews view_host_;
+  app::CellSensing sensing_;
   app::CellDiagnosis diagnosis_;
 };
 
