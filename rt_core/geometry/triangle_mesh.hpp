@@ -16,8 +16,8 @@ struct TriangleMesh {
   std::string name;                        // of the file, for messages
   std::vector<Eigen::Vector3d> vertices;   // m, in the frame G of its geometry (scale applied); no two are equal
   std::vector<TriangleIndices> triangles;  // into `vertices`; none has an area of zero, none stands twice
-  // Every edge is run through by as many triangles in one direction as in the other (by one each, but where shells touch
-  // along an edge), and the volume is positive: there is an inside, and what lies in it touches the body.
+  // Every edge is run through by as many triangles in one direction as in the other (by one each, but where shells
+  // touch along an edge), and the volume is positive: there is an inside, and what lies in it touches the body.
   bool closed = false;
   bool convex = false;  // closed, and a convex polyhedron (hulls and pieces of decompositions)
 };

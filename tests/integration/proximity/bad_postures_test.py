@@ -67,7 +67,7 @@ class BadInput(unittest.TestCase):
         self.assertIn("postures.csv:2:1: warning: S1.Slide is -3 m, beyond its range -1 .. 3; so in 2 rows", done.stderr)
 
     def test_progress_is_for_terminals_only(self):
-        rows = "S1.Slide\n" + "0.5\n" * 60_000
+        rows = "S1.Slide\n" + "0.5\n" * 1_000_000
         path = self.home.postures(rows)
         command = [str(g.BIN / "cellmirror"), "collide", "--cell", str(self.home.cell), "--poses", str(path)]
         quiet = subprocess.run(command, capture_output=True, text=True, timeout=100)
@@ -84,7 +84,7 @@ class BadInput(unittest.TestCase):
                 shown += piece
         os.close(leader)
         self.assertEqual(running.returncode, DONE)
-        self.assertIn(b"of 60000 frames", shown)
+        self.assertIn(b"of 1000000 frames", shown)
 
 
 if __name__ == "__main__":
