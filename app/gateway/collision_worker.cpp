@@ -11,7 +11,8 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr Nanoseconds kAhead{10'000'000};  // for closing speeds: short beside the time in which a robot brakes
+constexpr std::uint64_t kContactPeriod = 16;  // postures from one refreshed contact of a lasting touch to the next
+constexpr Nanoseconds kAhead{10'000'000};     // for closing speeds: short beside the time in which a robot brakes
 
 void log_event(const ProximityEvent& event) {
   switch (event.change) {
@@ -53,7 +54,8 @@ void CollisionWorker::adopt(const OwnerPicture& picture) {
   settings_ = picture.collision;
   std::shared_ptr<const collision::PairTable> pairs = derivation_.derive(*follower_.cell(), *settings_);
   checker_.adopt(follower_.cell(), pairs, *settings_);
-  checker_.limit_contacts(1);  // deep overlaps cost half a millisecond each; the rate of results comes first
+  // Deep overlaps cost some milliseconds each; the rate of results comes first.
+  checker_.limit_contacts(1, kContactPeriod);
   nothing_to_test_ =
       std::ranges::none_of(pairs->pairs, [](const collision::Pair& pair) { return is_tested(pair.state); });
   const std::scoped_lock lock(mutex_);

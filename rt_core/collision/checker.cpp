@@ -50,6 +50,7 @@ struct Checker::State {
   std::uint64_t round_robin = 0;
   std::size_t disputes_left = 0;
   std::size_t contact_limit = std::numeric_limits<std::size_t>::max();
+  std::uint64_t contact_period = 1;
   std::vector<std::uint32_t> stale_contacts;  // pairs that go on touching and keep the contact that they had
   ProximityState findings;
   CheckCounters counters;
@@ -104,7 +105,8 @@ void Checker::State::choose_stale_contacts(const std::vector<Found>& found) {
     if (touches(one) && history[one.pair].own_touching && search.tracker().contact_frame(one.pair) != 0)
       stale_contacts.push_back(one.pair);
   }
-  const std::size_t anew = std::min(contact_limit, stale_contacts.size());
+  const bool turn = counters.checks % contact_period == 0;
+  const std::size_t anew = turn ? std::min(contact_limit, stale_contacts.size()) : 0;
   std::ranges::sort(stale_contacts, {}, [&](std::uint32_t pair) { return search.tracker().contact_frame(pair); });
   stale_contacts.erase(stale_contacts.begin(), stale_contacts.begin() + static_cast<std::ptrdiff_t>(anew));
   std::ranges::sort(stale_contacts);
@@ -210,7 +212,11 @@ Checker::~Checker() = default;
 
 const CheckCounters& Checker::counters() const { return state_->counters; }
 
-void Checker::limit_contacts(std::size_t pairs) { state_->contact_limit = pairs; }
+void Checker::limit_contacts(std::size_t pairs, std::uint64_t period) {
+  CELLMIRROR_EXPECTS(period > 0);
+  state_->contact_limit = pairs;
+  state_->contact_period = period;
+}
 
 void Checker::adopt(std::shared_ptr<const CompiledCell> cell, std::shared_ptr<const PairTable> pairs,
                     const Settings& settings) {

@@ -37,10 +37,10 @@ class Checker {
              const Settings& settings);
 
   // Depth and points of a contact cost more than all distances. With a limit, check() computes them for pairs that
-  // begin to touch and for at most `pairs` of those that go on touching, the oldest first; the others keep what they
-  // had in one of the last postures. Verdicts and distances are always those of the posture. At first there is no
-  // limit.
-  void limit_contacts(std::size_t pairs);
+  // begin to touch and, in every `period`-th posture, for at most `pairs` of those that go on touching, the oldest
+  // first; the others keep what they had in one of the last postures. Verdicts and distances are always those of the
+  // posture. At first there is no limit.
+  void limit_contacts(std::size_t pairs, std::uint64_t period = 1);
 
   // The findings at these poses of the adopted cell. `later`: the poses `ahead` later at present velocities, for
   // closing speeds; null: none are told. Valid until the next call. Off the tick.

@@ -112,7 +112,7 @@ struct Comparison {
 
 // `every`: of how many frames one is given to FCL as well.
 Times run_frames(MovingCell& cell, Prepared& prepared, int frames, int every) {
-  prepared.checker.limit_contacts(1);  // as the gateway does
+  prepared.checker.limit_contacts(1, 16);  // as the gateway does
   Times times;
   FclNaive naive(prepared.table);
   Comparison comparison;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -96,6 +97,24 @@ TEST_F(CheckerTest, TakesTurnsWithContactsWhereTheyAreLimited) {
   EXPECT_NEAR(the_other[1], 0.07, 1e-9);
   EXPECT_TRUE(at(0.5).touching.empty());
   for (const TouchingPair& touching : at(0.98).touching) EXPECT_NEAR(touching.depth_m, 0.08, 1e-9);
+}
+
+TEST_F(CheckerTest, RefreshesContactsInEveryPeriodThPostureOnly) {
+  track();
+  sut.limit_contacts(1, 3);
+  EXPECT_NEAR(at(0.95).touching.at(0).depth_m, 0.05, 1e-9);
+  int refreshed = 0;
+  double before = 0.05;
+  for (int i = 1; i <= 9; ++i) {
+    const double x = 0.95 + 0.001 * i;
+    const double depth = at(x).touching.at(0).depth_m;
+    if (std::abs(depth - before) > 1e-6) {
+      ++refreshed;
+      EXPECT_NEAR(depth, x - 0.9, 1e-9);
+    }
+    before = depth;
+  }
+  EXPECT_EQ(refreshed, 3);
 }
 
 TEST_F(CheckerTest, TellsEveryChangeOnce) {
