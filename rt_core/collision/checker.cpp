@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMostDoubts = 100;  // sentences a computation; beyond, they are only counted
 constexpr std::size_t kMostDisputes = 4;  // disputed pairs that are asked about again in one computation
+constexpr double kLeaveMargin = 0.5e-3;   // m beyond the warning distance
 constexpr double kLeastSpeed = 1e-6;      // m/s; slower is standing still: no time to contact is told
 
 enum class Zone : std::uint8_t { far, warning, touching };
@@ -171,7 +172,9 @@ void Checker::State::judge(const Found& found, const geometry::Contact* contact,
   if (pair.disputed)
     doubt(fmt::format("two ways of testing {} disagree whether they touch: taken as touching", pair_text(found)));
   const bool taken_as_touching = touching || pair.disputed;
-  const bool within = found.at.distance <= settings.warning_distance_m;
+  // A pair leaves a little later than it comes, so that noise of a joint gives no stream of events.
+  const double leave = settings.warning_distance_m + (pair.zone == Zone::far ? 0.0 : kLeaveMargin);
+  const bool within = found.at.distance <= leave;
   change_zone(found, pair, taken_as_touching ? Zone::touching : within ? Zone::warning : Zone::far);
 }
 

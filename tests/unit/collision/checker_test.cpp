@@ -99,6 +99,13 @@ TEST_F(CheckerTest, TakesTurnsWithContactsWhereTheyAreLimited) {
   for (const TouchingPair& touching : at(0.98).touching) EXPECT_NEAR(touching.depth_m, 0.08, 1e-9);
 }
 
+TEST_F(CheckerTest, NoiseAtTheWarningDistanceGivesOneEventOnly) {
+  track();
+  EXPECT_EQ(told(at(0.8501)), "entered_warning");
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(told(at(0.85 + (i % 2 == 0 ? -3e-4 : 3e-4))), "");
+  EXPECT_EQ(told(at(0.849)), "left_warning");
+}
+
 TEST_F(CheckerTest, RefreshesContactsInEveryPeriodThPostureOnly) {
   track();
   sut.limit_contacts(1, 3);
