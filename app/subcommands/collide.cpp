@@ -12,7 +12,6 @@
 #include "app/proximity/collide_report.hpp"
 #include "app/proximity/collide_run.hpp"
 #include "app/proximity/pairs_report.hpp"
-#include "app/proximity/postures.hpp"
 #include "app/proximity/proximity_cell.hpp"
 #include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
@@ -86,16 +85,9 @@ int tell_frames(const CollideOptions& options, const CollideInput& input, const 
 }
 
 int collide(const CollideOptions& options) {
-  Diagnostics diagnostics;
-  auto cell = load_proximity_cell(options.cell, diagnostics);
-  std::unique_ptr<Postures> postures;
-  if (cell) {
-    ProgressLine line("bytes of postures checked");
-    postures = Postures::open(options.postures, cell->loaded.cell, diagnostics,
-                              [&line](std::uint64_t done, std::uint64_t total) { line.tell(done, total); });
-  }
-  std::fputs(diagnostics.text().c_str(), stderr);
-  if (!cell || !postures) return kExitRefused;
+  auto cell = load_proximity_cell(options.cell);
+  auto postures = cell ? open_postures(options.postures, *cell) : nullptr;
+  if (!postures) return kExitRefused;
   CollideInput input;
   input.cell = cell->compiled;
   input.settings = cell->loaded.collision;

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "app/proximity/postures.hpp"
 #include "app/proximity/proximity_cell.hpp"
 #include "app/proximity/range_report.hpp"
 #include "app/proximity/range_run.hpp"
@@ -55,16 +54,9 @@ int tell(const RangeOptions& options, const ProximityCell& cell, Postures& postu
 }
 
 int range(const RangeOptions& options) {
-  Diagnostics diagnostics;
-  auto cell = load_proximity_cell(options.cell, diagnostics);
-  std::unique_ptr<Postures> postures;
-  if (cell) {
-    ProgressLine line("bytes of postures checked");
-    postures = Postures::open(options.postures, cell->loaded.cell, diagnostics,
-                              [&line](std::uint64_t done, std::uint64_t total) { line.tell(done, total); });
-  }
-  std::fputs(diagnostics.text().c_str(), stderr);
-  if (!cell || !postures) return kExitRefused;
+  auto cell = load_proximity_cell(options.cell);
+  auto postures = cell ? open_postures(options.postures, *cell) : nullptr;
+  if (!postures) return kExitRefused;
   return tell(options, *cell, *postures);
 }
 
