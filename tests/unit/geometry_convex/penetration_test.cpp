@@ -103,7 +103,7 @@ TEST_P(EveryOverlap, partsThemJust) {
         const Pose X_parted = shifted(X_WB, (sut.depth + hair) * sut.normal);
         ASSERT_NEAR(convex_distance(a, X_WA, b, X_parted).points.distance, hair, kExact);
         if (sut.depth < hair) return;
-        // Zero but for rounding: compilers where a line just pierces a round wall.
+        // Zero but for rounding, which differs between compilers where a line just pierces a round wall.
         ASSERT_LE(convex_distance(a, X_WA, b, shifted(X_WB, 0.99 * sut.depth * sut.normal)).points.distance, 1e-15);
         // The other way round they are as deep, and parted by moving a.
         ASSERT_NEAR(convex_penetration(b, X_WB, a, X_WA).depth, sut.depth, 1e-7);
