@@ -31,9 +31,9 @@ class GltfCheck {
 
  private:
   [[nodiscard]] const nlohmann::json& list(const char* key) const {
-    static const nlohmann::json kNone = nlohmann::json::array();
+    static const nlohmann::json none = nlohmann::json::array();
     const auto at = json_.find(key);
-    return at != json_.end() && at->is_array() ? *at : kNone;
+    return at != json_.end() && at->is_array() ? *at : none;
   }
 
   [[nodiscard]] static bool counts_are_bounded(const nlohmann::json& all) {

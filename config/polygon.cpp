@@ -12,7 +12,7 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 
 // The corners in a plane in which the polygon runs counter-clockwise (normal by Newell's method).
 std::vector<Vector2d> flatten(std::span<const std::uint32_t> corners, std::span<const Eigen::Vector3d> vertices) {
-  const Eigen::Vector3d o = vertices[corners[0]];
+  const Eigen::Vector3d& o = vertices[corners[0]];
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     normal += (vertices[corners[i]] - o).cross(vertices[corners[(i + 1) % corners.size()]] - o);

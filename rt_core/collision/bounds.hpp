@@ -57,11 +57,11 @@ struct PlacedBox {
 
 // At most how far any point of a body, within `radius` of a point that moved by `shift`, moved from one pose to
 // another.
-[[nodiscard]] inline double travel(const Eigen::Matrix3d& R_before, const Eigen::Matrix3d& R_now, double shift,
+[[nodiscard]] inline double travel(const Eigen::Matrix3d& before, const Eigen::Matrix3d& now, double shift,
                                    double radius) {
-  // |R_now - R_before| = 2 sin(angle / 2) as an operator, and sqrt(2) times that as a Frobenius norm.
+  // |now - before| = 2 sin(angle / 2) as an operator, and sqrt(2) times that as a Frobenius norm.
   constexpr double kHalfSqrt2 = 0.70710678118654757;
-  return shift + radius * kHalfSqrt2 * (R_now - R_before).norm();
+  return shift + radius * kHalfSqrt2 * (now - before).norm();
 }
 
 }  // namespace cellmirror::collision

@@ -75,10 +75,10 @@ bool convex_contact(const Placed& a, const Placed& b, const Pose& X_AB, ContactP
 }
 
 // In W, with normals from a to b; a comes first. At least one point.
-void find_points(const Placed& a, const Placed& b, const Vector3d& common_W, std::vector<ContactPoint>& points) {
+void find_points(const Placed& a, const Placed& b, const Vector3d& p_W_common, std::vector<ContactPoint>& points) {
   if (a.solid.shape != Shape::mesh) {
     const Penetration found = convex_penetration(a.solid.core, a.X_W, b.solid.core, b.X_W);
-    points.push_back({found.depth > 0 ? found.point : common_W, found.normal, found.depth});
+    points.push_back({found.depth > 0 ? found.point : p_W_common, found.normal, found.depth});
     return;
   }
   const Pose X_AB = a.X_W.inverse(Eigen::Isometry) * b.X_W;
@@ -97,7 +97,7 @@ void find_points(const Placed& a, const Placed& b, const Vector3d& common_W, std
     point.p_W = a.X_W * point.p_W;
     point.normal = a.X_W.linear() * point.normal;
   }
-  if (points.empty()) points.push_back({common_W, Vector3d::Zero(), 0.0});
+  if (points.empty()) points.push_back({p_W_common, Vector3d::Zero(), 0.0});
 }
 
 bool sound(const ContactPoint& point) {

@@ -37,7 +37,9 @@ CoreSamples samples_of(const ConvexCore& core) {
       break;
     case CoreKind::box:
       for (int i = 0; i < 27; ++i) {
-        const Vector3d corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        const int row = i / 3 % 3;
+        const int layer = i / 9;
+        const Vector3d corner(i % 3 - 1, row - 1, layer - 1);
         if (i != 13) out.add(corner.cwiseProduct(core.half));
       }
       break;

@@ -36,8 +36,8 @@ std::vector<MeshTree::Shell> shells_of(const TriangleMesh& mesh) {
     for (const std::uint32_t v : t) {
       const Eigen::Vector3d& p = mesh.vertices[v];
       for (int axis = 0; axis < 3; ++axis) {
-        Eigen::Vector3d& least = shells[shell].extremes[static_cast<std::size_t>(2 * axis)];
-        Eigen::Vector3d& greatest = shells[shell].extremes[static_cast<std::size_t>(2 * axis + 1)];
+        Eigen::Vector3d& least = shells[shell].extremes[2 * static_cast<std::size_t>(axis)];
+        Eigen::Vector3d& greatest = shells[shell].extremes[2 * static_cast<std::size_t>(axis) + 1];
         if (p[axis] < least[axis]) least = p;
         if (p[axis] > greatest[axis]) greatest = p;
       }
