@@ -22,8 +22,8 @@ struct PublishedOutput {
 };
 
 // Gives what is on the boards to one output. Results that were replaced in the meantime are left out, but none of their
-// events; where there is nothing new, the newest pairs are given again without events, so that the output sees them grow
-// old. One thread.
+// events; where there is nothing new, the newest pairs are given again without events, so that the output sees them
+// grow old. One thread.
 class FindingsPublisher {
  public:
   FindingsPublisher(const ProximityBoard& proximity, const RangeBoard& ranges)

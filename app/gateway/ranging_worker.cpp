@@ -17,8 +17,23 @@ RangingWorker::RangingWorker(engine::Engine& engine, const PictureBoard& picture
 bool RangingWorker::wanted(const OwnerPicture& picture) {
   const bool wanted =
       std::ranges::any_of(picture.cell->sensors, [](const CompiledSensor& sensor) { return sensor.sensor.active; });
-  if (!wanted) ages_.paused();
+  if (!wanted) {
+    ages_.paused();
+    show_nothing();
+  }
   return wanted;
+}
+
+// When the last sensor was switched off: whoever draws readings takes them away.
+void RangingWorker::show_nothing() {
+  const auto last = board_.look();
+  if (!last || last->readings.empty()) return;
+  std::shared_ptr<RangeReadings> nothing = recycled_.take();
+  nothing->sequence = ++sequence_;
+  nothing->posture_time = last->posture_time;
+  nothing->finished = last->finished;
+  nothing->readings.clear();
+  board_.hang_up(std::move(nothing));
 }
 
 void RangingWorker::run(const OwnerPicture& picture, const engine::TickState& tick) {

@@ -40,6 +40,7 @@ class RangingWorker final : private TickJob {
  private:
   bool wanted(const OwnerPicture& picture) override;
   void run(const OwnerPicture& picture, const engine::TickState& tick) override;
+  void show_nothing();
 
   const Clock& clock_;
 

@@ -38,7 +38,7 @@ const std::string& name(const ProximityState& state, std::uint32_t body) {
   return state.names && body < state.names->size() ? (*state.names)[body] : unknown;
 }
 
-json touching_json(const ProximityState& state, const TouchingPair& pair) {
+json touching_json(const ProximityState& state, const TouchingPair& pair, Timestamp now) {
   json points = json::array();
   for (const TouchingPoint& point : pair.points) {
     points.push_back(
@@ -50,6 +50,7 @@ json touching_json(const ProximityState& state, const TouchingPair& pair) {
           {"point_m", vector_json(pair.point_m)},
           {"normal", vector_json(pair.normal)},
           {"points", std::move(points)},
+          {"contact_age_s", seconds(now - pair.contact_time)},
           {"doubtful", pair.doubtful}};
 }
 
@@ -84,7 +85,7 @@ void add_findings(json& out, const ProximityState& state, Timestamp now) {
   out["sequence"] = state.sequence;
   for (const TouchingPair& pair : state.touching) {
     if (out["touching"].size() == kMostPairs) break;
-    out["touching"].push_back(touching_json(state, pair));
+    out["touching"].push_back(touching_json(state, pair, now));
   }
   out["touching_count"] = state.touching.size();
   for (const NearPair& pair : state.near) {

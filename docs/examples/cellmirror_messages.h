@@ -115,7 +115,8 @@
 #define CELLMIRROR_PAIR_OFFSET_TIME_TO_CONTACT_S 352
 #define CELLMIRROR_PAIR_OFFSET_FLAGS 360
 #define CELLMIRROR_PAIR_OFFSET_CONTACTS 364
-#define CELLMIRROR_PAIR_BYTES 368
+#define CELLMIRROR_PAIR_OFFSET_CONTACT_AGE_S 368
+#define CELLMIRROR_PAIR_BYTES 376
 
 #define CELLMIRROR_EVENT_OFFSET_EVENT 40
 #define CELLMIRROR_EVENT_OFFSET_CHANGE 48
@@ -240,7 +241,8 @@ struct cellmirror_pair {
   double closing_speed;     /* m/s; NaN: not known */
   double time_to_contact_s; /* NaN: they do not approach, or not known */
   uint32_t flags;
-  uint32_t contacts; /* contact points that were found */
+  uint32_t contacts;    /* contact points that were found */
+  double contact_age_s; /* how much older the contact is than the record's posture */
 };
 
 struct cellmirror_proximity {

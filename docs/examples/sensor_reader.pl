@@ -17,7 +17,7 @@ use constant { MESSAGE_TYPE => 5, MAX_MESSAGE => 8192, MSG_NOERROR => 010000 };
 # Places in a record: docs/messages.md
 use constant { PAYLOAD => 40, WORLD_TCP => 176, JOINTS => 232, JOINT_BYTES => 112, JOINT_POSITION => 72 };
 use constant { RANGE_BYTES => 296, RANGES => 48, RANGE_ENTRY_BYTES => 112 };
-use constant { PAIRS => 88, PAIR_BYTES => 368, EVENT_BYTES => 320 };
+use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320 };
 
 my $usage = <<'END';
 usage: sensor_reader.pl [--count N] [--timeout SECONDS] [--key KEY]

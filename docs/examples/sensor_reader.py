@@ -29,7 +29,7 @@ RANGE = struct.Struct("<64s128s7dI4x")  # distance, range, blind zone, half angl
 RANGES = struct.Struct("<4H")  # part, parts, count, total
 RANGE_ENTRY = struct.Struct("<64s5dI4x")  # distance, range, point; flags
 PROXIMITY = struct.Struct("<Q2d5IH2x")  # tested, touching, within warning, doubts, found; pairs
-PAIR = struct.Struct("<128s128s13d2I")  # distance, depth, points, normal, closing speed, time to contact
+PAIR = struct.Struct("<128s128s13d2Id")  # distance, depth, points, normal, closing speed, time to contact; flags; contact age
 EVENT = struct.Struct("<QB7xd128s128s")
 STATES = ("none", "fresh", "stale", "lost", "invalid")
 CHANGES = ("entered_warning", "touched", "parted", "left_warning")
@@ -74,7 +74,7 @@ def ranges(payload):
 def proximity(payload):
     _, _, _, tested, touching, warning, _, _, _ = PROXIMITY.unpack_from(payload)
     words = f"proximity touching {touching} warning {warning} of {tested} pairs:".split()
-    for a, b, distance, *_, flags, _ in PAIR.iter_unpack(payload[PROXIMITY.size :]):
+    for a, b, distance, *_, flags, _, _ in PAIR.iter_unpack(payload[PROXIMITY.size :]):
         words.append(f"{name(a)}|{name(b)}=" + ("touching" if flags & PAIR_TOUCHING else f"{distance:.6f}"))
     return words
 

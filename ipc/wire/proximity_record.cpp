@@ -41,6 +41,7 @@ PairRecord pair_record(const ProximityState& state, const TouchingPair& pair) {
   record.touching = record.within_warning = true;
   record.doubtful = pair.doubtful;
   record.contacts = counted(pair.points.size());
+  record.contact_age = seconds(state.posture_time - pair.contact_time);
   if (const NearPair* near = find_pair(state.near, pair.a, pair.b)) {
     record.closing_speed = near->closing_speed_m_s.value_or(kNaN);
     record.time_to_contact = near->time_to_contact_s.value_or(kNaN);
@@ -77,6 +78,7 @@ void put_pair(std::span<std::byte> bytes, const PairRecord& pair) {
       (pair.touching ? kPairTouching : 0U) | (pair.within_warning ? kPairWithinWarning : 0U) |
           (pair.doubtful ? kPairDoubtful : 0U));
   put(bytes, kPairContacts, pair.contacts);
+  put(bytes, kPairContactAge, pair.contact_age);
 }
 
 Result<PairRecord> get_pair(std::span<const std::byte> bytes) {
@@ -103,6 +105,7 @@ Result<PairRecord> get_pair(std::span<const std::byte> bytes) {
   pair.within_warning = (flags & kPairWithinWarning) != 0;
   pair.doubtful = (flags & kPairDoubtful) != 0;
   pair.contacts = get<std::uint32_t>(bytes, kPairContacts);
+  pair.contact_age = get<double>(bytes, kPairContactAge);
   return pair;
 }
 

@@ -47,7 +47,8 @@ inline constexpr std::size_t kPairClosingSpeed = 344;   // f64
 inline constexpr std::size_t kPairTimeToContact = 352;  // f64
 inline constexpr std::size_t kPairFlags = 360;          // u32
 inline constexpr std::size_t kPairContacts = 364;       // u32
-inline constexpr std::size_t kPairBytes = 368;
+inline constexpr std::size_t kPairContactAge = 368;     // f64
+inline constexpr std::size_t kPairBytes = 376;
 }  // namespace proximity_record_offset
 
 namespace event_record_offset {
@@ -79,6 +80,7 @@ struct PairRecord {
   bool within_warning = false;
   bool doubtful = false;
   std::uint32_t contacts = 0;  // contact points that were found
+  double contact_age = 0;      // s that the contact is older than the record's posture
 };
 
 struct ProximityRecord {

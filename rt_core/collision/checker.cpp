@@ -30,6 +30,7 @@ struct PairHistory {
   Zone zone = Zone::far;
   bool own_touching = false;  // what our narrow phase said last
   bool disputed = false;      // FCL said something else, and has not taken it back
+  Timestamp contact_time;     // of the posture in which the contact that is told was computed
 };
 
 bool touches(const Found& found) {
@@ -65,10 +66,11 @@ struct Checker::State {
   void doubt(std::string text);
   void choose_stale_contacts(const std::vector<Found>& found);
   // Null: they do not touch, or there is no telling.
-  [[nodiscard]] const geometry::Contact* contact(const Found& found) {
+  const geometry::Contact* contact(const Found& found) {
     if (!touches(found)) return nullptr;
-    const bool stale = std::ranges::binary_search(stale_contacts, found.pair);
-    return stale ? &search.tracker().last_contact(found.pair) : &search.tracker().contact(found.pair);
+    if (std::ranges::binary_search(stale_contacts, found.pair)) return &search.tracker().last_contact(found.pair);
+    history[found.pair].contact_time = findings.posture_time;
+    return &search.tracker().contact(found.pair);
   }
   [[nodiscard]] std::string pair_text(const Found& found) const;
   [[nodiscard]] const std::string& name(std::uint32_t body) const { return (*table->names)[body]; }
@@ -184,8 +186,10 @@ void Checker::State::tell_touching(const Found& found, const geometry::Contact* 
   touching.a = pair.a;
   touching.b = pair.b;
   touching.doubtful = doubtful;
+  touching.contact_time = findings.posture_time;
   touching.point_m = 0.5 * (found.at.p_a + found.at.p_b);
   if (contact == nullptr || contact->points.empty()) return;
+  touching.contact_time = history[found.pair].contact_time;
   touching.depth_m = contact->deepest.depth;
   touching.point_m = contact->deepest.p_W;
   touching.normal = contact->deepest.normal;
@@ -202,7 +206,7 @@ void Checker::State::tell_near(const Found& found, bool doubtful, const CellPose
   near.distance_m = touching ? 0.0 : found.at.distance;
   near.point_a_m = found.at.p_a;
   near.point_b_m = found.at.p_b;
-  near.within_warning = near.distance_m <= settings.warning_distance_m;
+  near.within_warning = history[found.pair].zone != Zone::far;
   near.doubtful = doubtful || !found.at.certain;
   if (touching || later == nullptr || ahead.count() <= 0 || later->X_WN.size() != poses.X_WN.size()) return;
   near.closing_speed_m_s = closing_speed(table->bodies[pair.a], table->bodies[pair.b], found.at, poses, *later, ahead);
@@ -285,9 +289,11 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     std::ranges::sort(findings.near, {},
                       [](const NearPair& near) { return std::tuple(near.distance_m, near.a, near.b); });
     // Beyond the warning distance only the nearest pair is told.
-    const auto far = std::ranges::find(findings.near, false, &NearPair::within_warning);
-    if (far != findings.near.end())
-      findings.near.erase(far == findings.near.begin() ? far + 1 : far, findings.near.end());
+    if (!findings.near.empty()) {
+      const auto beyond = std::remove_if(findings.near.begin() + 1, findings.near.end(),
+                                         [](const NearPair& near) { return !near.within_warning; });
+      findings.near.erase(beyond, findings.near.end());
+    }
     state.counters.pairs_computed = state.search.tracker().queries() + state.plain_search.tracker().queries();
   }
   findings.finished = SystemClock().now();

@@ -32,7 +32,8 @@ struct TouchingPair {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   std::vector<TouchingPoint> points;
-  bool doubtful = false;  // two ways of testing it disagree, or one could not settle it: treat it as touching
+  bool doubtful = false;     // two ways of testing it disagree, or one could not settle it: treat it as touching
+  Timestamp contact_time{};  // of the posture that depth, point, normal and points are for
 };
 
 struct NearPair {
@@ -41,7 +42,7 @@ struct NearPair {
   double distance_m = 0;  // 0 for a pair that touches
   Eigen::Vector3d point_a_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d point_b_m = Eigen::Vector3d::Zero();
-  bool within_warning = false;
+  bool within_warning = false;              // entered, and has not left yet
   bool doubtful = false;                    // the distance is a lower bound
   std::optional<double> closing_speed_m_s;  // positive: they approach; none where neither of them moves
   std::optional<double> time_to_contact_s;  // at present velocities; none where they do not approach
@@ -58,7 +59,8 @@ struct ProximityEvent {
   Timestamp posture_time;  // of the posture in which it was seen
 };
 
-// One computation. Everything in it is for the posture of `posture_time`.
+// One computation. Everything in it is for the posture of `posture_time`, but for the contacts of bodies that go on
+// touching: those may be older and carry their own time.
 struct ProximityState {
   Timestamp posture_time;  // the tick's instant
   Timestamp finished;      // when the computation ended

@@ -33,6 +33,7 @@ CollisionReport report() {
   TouchingPair touching;
   touching.b = 1;
   touching.depth_m = 0.0125;
+  touching.contact_time = Timestamp{9'990'000'000};
   touching.point_m = {1, 2, 3};
   touching.points.push_back({{1, 2, 3}, {0, 0, 1}, 0.0125});
   state->touching.push_back(touching);
@@ -75,6 +76,7 @@ TEST(StatusOfCollisions, TellsFindingsWithTheAgeOfTheirPosture) {
   ASSERT_EQ(sut["touching"].size(), 1U);
   EXPECT_EQ(sut["touching"][0]["a"], "Arm.J1");
   EXPECT_EQ(sut["touching"][0]["depth_m"], 0.0125);
+  EXPECT_DOUBLE_EQ(sut["touching"][0]["contact_age_s"].get<double>(), 0.01);
   EXPECT_EQ(sut["touching"][0]["points"][0]["normal"], (json{0.0, 0.0, 1.0}));
   EXPECT_EQ(sut["near"][1]["b"], "Wall");
   EXPECT_EQ(sut["near"][1]["time_to_contact_s"], 0.2);

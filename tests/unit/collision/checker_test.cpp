@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "tests/unit/collision/cell_of_bodies.hpp"
@@ -104,6 +105,29 @@ TEST_F(CheckerTest, NoiseAtTheWarningDistanceGivesOneEventOnly) {
   EXPECT_EQ(told(at(0.8501)), "entered_warning");
   for (int i = 0; i < 20; ++i) EXPECT_EQ(told(at(0.85 + (i % 2 == 0 ? -3e-4 : 3e-4))), "");
   EXPECT_EQ(told(at(0.849)), "left_warning");
+}
+
+TEST_F(CheckerTest, PairThatHasNotLeftTheWarningDistanceIsToldWithinIt) {
+  track();
+  EXPECT_TRUE(at(0.851).nearest()->within_warning);
+  const ProximityState& findings = at(0.8497);
+  EXPECT_GT(findings.nearest()->distance_m, findings.warning_distance_m);
+  EXPECT_TRUE(findings.nearest()->within_warning);
+  EXPECT_FALSE(at(0.849).nearest()->within_warning);
+}
+
+TEST_F(CheckerTest, ContactsTellOfWhichPostureTheyAre) {
+  track();
+  sut.limit_contacts(1, 3);
+  std::map<std::int64_t, double> depths;  // by the time of the posture
+  for (int i = 0; i < 12; ++i) {
+    const double x = 0.95 + 0.001 * i;
+    const ProximityState& findings = at(x);
+    depths[findings.posture_time.ns] = x - 0.9;
+    const TouchingPair& touching = findings.touching.at(0);
+    ASSERT_TRUE(depths.contains(touching.contact_time.ns));
+    EXPECT_NEAR(touching.depth_m, depths[touching.contact_time.ns], 1e-9);
+  }
 }
 
 TEST_F(CheckerTest, RefreshesContactsInEveryPeriodThPostureOnly) {

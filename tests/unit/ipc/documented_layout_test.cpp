@@ -211,7 +211,9 @@ TEST(DocumentedLayout, OfAPair) {
        {"time_to_contact_s", "f64", proximity::kPairTimeToContact, offsetof(Struct, time_to_contact_s),
         CELLMIRROR_PAIR_OFFSET_TIME_TO_CONTACT_S},
        {"flags", "u32", proximity::kPairFlags, offsetof(Struct, flags), CELLMIRROR_PAIR_OFFSET_FLAGS},
-       {"contacts", "u32", proximity::kPairContacts, offsetof(Struct, contacts), CELLMIRROR_PAIR_OFFSET_CONTACTS}});
+       {"contacts", "u32", proximity::kPairContacts, offsetof(Struct, contacts), CELLMIRROR_PAIR_OFFSET_CONTACTS},
+       {"contact_age_s", "f64", proximity::kPairContactAge, offsetof(Struct, contact_age_s),
+        CELLMIRROR_PAIR_OFFSET_CONTACT_AGE_S}});
   EXPECT_EQ(sizeof(Struct), proximity::kPairBytes);
 }
 

@@ -22,10 +22,10 @@ void place_header(Bytes& bytes, int kind, int length) {
   place(bytes, 32, {0x00, 0x00, 0x2A, 0x36, 0xFE, 0x9C, 0x97, 0x17});  // 1,700,000,000,000,000,000 ns
 }
 
-// One pair that touches and one that is near: 88 + 2 * 368 = 824 = 0x338 bytes.
+// One pair that touches and one that is near: 88 + 2 * 376 = 840 = 0x348 bytes.
 Bytes golden_proximity() {
-  Bytes bytes(824, std::byte{0});
-  place_header(bytes, 5, 824);
+  Bytes bytes(840, std::byte{0});
+  place_header(bytes, 5, 840);
   place(bytes, 40, {0x02, 0x01, 0, 0, 0, 0, 0, 0});        // check 258
   place(bytes, 48, {0, 0, 0, 0, 0, 0, 0xC0, 0x3F});        // warning distance 0.125
   place(bytes, 56, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F});        // computed after 0.5 s
@@ -41,14 +41,15 @@ Bytes golden_proximity() {
   place(bytes, 432, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F});  // closing speed NaN
   place(bytes, 440, {0, 0, 0, 0, 0, 0, 0xF8, 0x7F});  // time to contact NaN
   place(bytes, 448, {7, 0, 0, 0, 3, 0, 0, 0});        // touching, within warning, doubtful; 3 contacts
-  place(bytes, 456, "w.A");
-  place(bytes, 584, "w.C");
-  place(bytes, 712, {0, 0, 0, 0, 0, 0, 0xB0, 0x3F});  // distance 0.0625
-  place(bytes, 728, {0, 0, 0, 0, 0, 0, 0x00, 0x40});  // point a: x 2
-  place(bytes, 760, {0, 0, 0, 0, 0, 0, 0x08, 0x40});  // point b: y 3
-  place(bytes, 800, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F});  // closing speed 0.5
-  place(bytes, 808, {0, 0, 0, 0, 0, 0, 0xC0, 0x3F});  // time to contact 0.125
-  place(bytes, 816, {2, 0, 0, 0, 0, 0, 0, 0});        // within warning
+  place(bytes, 456, {0, 0, 0, 0, 0, 0, 0xC0, 0x3F});  // contact age 0.125 s
+  place(bytes, 464, "w.A");
+  place(bytes, 592, "w.C");
+  place(bytes, 720, {0, 0, 0, 0, 0, 0, 0xB0, 0x3F});  // distance 0.0625
+  place(bytes, 736, {0, 0, 0, 0, 0, 0, 0x00, 0x40});  // point a: x 2
+  place(bytes, 768, {0, 0, 0, 0, 0, 0, 0x08, 0x40});  // point b: y 3
+  place(bytes, 808, {0, 0, 0, 0, 0, 0, 0xE0, 0x3F});  // closing speed 0.5
+  place(bytes, 816, {0, 0, 0, 0, 0, 0, 0xC0, 0x3F});  // time to contact 0.125
+  place(bytes, 824, {2, 0, 0, 0, 0, 0, 0, 0});        // within warning
   return bytes;
 }
 
@@ -61,7 +62,7 @@ ProximityState golden_state() {
   state.warning_distance_m = 0.125;
   state.pairs = 300;
   state.doubts = {"A and B"};
-  state.touching = {{0, 1, 0.25, {1, 0, 0}, {0, 0, -1}, std::vector<TouchingPoint>(3), true}};
+  state.touching = {{0, 1, 0.25, {1, 0, 0}, {0, 0, -1}, std::vector<TouchingPoint>(3), true, Timestamp{875'000'000}}};
   state.near = {{0, 1, 0, {1, 0, 0}, {1, 0, 0}, true, true, {}, {}},
                 {0, 2, 0.0625, {2, 0, 0}, {0, 3, 0}, true, false, 0.5, 0.125}};
   return state;
@@ -99,6 +100,8 @@ TEST(ProximityRecord, IsDecodedAsDocumented) {
   EXPECT_EQ(sut->pairs[0].normal, (PointRecord{0, 0, -1}));
   EXPECT_TRUE(sut->pairs[0].touching && sut->pairs[0].within_warning && sut->pairs[0].doubtful);
   EXPECT_EQ(sut->pairs[0].contacts, 3U);
+  EXPECT_EQ(sut->pairs[0].contact_age, 0.125);
+  EXPECT_EQ(sut->pairs[1].contact_age, 0.0);
   EXPECT_TRUE(std::isnan(sut->pairs[0].time_to_contact));
   EXPECT_EQ(sut->pairs[1].distance, 0.0625);
   EXPECT_EQ(sut->pairs[1].point_b, (PointRecord{0, 3, 0}));
@@ -146,7 +149,7 @@ TEST(ProximityRecord, RefusesWhatTheEncoderWouldNotWrite) {
     bytes[damage.offset] = static_cast<std::byte>(damage.value);
     EXPECT_FALSE(decode_proximity_record(bytes)) << damage.what;
   }
-  for (std::size_t length = 0; length < 824; ++length) {
+  for (std::size_t length = 0; length < 840; ++length) {
     Bytes shorter = golden_proximity();
     shorter.resize(length);
     if (length >= 10) place(shorter, 8, {static_cast<int>(length & 0xFF), static_cast<int>(length >> 8)});
