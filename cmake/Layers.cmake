@@ -13,25 +13,30 @@ set(CELLMIRROR_LAYERS
   "rt_core/cell: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry"
   "rt_core/collision: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell"
   "rt_core/ranging: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell"
-  "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion"
-  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision"
+  "rt_core/haptics: rt_core/base rt_core/ports rt_core/kinematics"
+  "rt_core/dynamics: rt_core/base rt_core/ports rt_core/kinematics rt_core/cell"
+  "rt_core/contact_model: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
+  "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion rt_core/haptics"
+  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "drivers/haptic: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "drivers/footswitch: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "ipc/runtime: rt_core/base"
   "ipc/sysv: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
   "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
-  "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds"
+  "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds"
   "app/plot: rt_core/base"
   "app: *"
   "tests: *")
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
-  rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/engine config drivers/can
-  drivers/dds ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
+  rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model
+  rt_core/engine config drivers/can drivers/dds drivers/haptic drivers/footswitch ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
   sim_devices app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)

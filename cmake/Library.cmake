@@ -1,5 +1,5 @@
 # Folders whose sources compute with poses.
-set(CELLMIRROR_POSE_FOLDERS "^rt_core/(cell|collision|engine|geometry|inverse_kinematics|kinematics|motion|ranging)$")
+set(CELLMIRROR_POSE_FOLDERS "^rt_core/(cell|collision|contact_model|dynamics|engine|geometry|haptics|inverse_kinematics|kinematics|motion|ranging)$")
 cellmirror_precompiled(poses HEADERS <algorithm> <cmath> <functional> <map> <optional> <string> <vector> <Eigen/Geometry> LINK Eigen3::Eigen)
 
 # cellmirror_library(SOURCES a.cpp b.cpp USES rt_core/base ... PRIVATE fmt::fmt ... PUBLIC Eigen3::Eigen)

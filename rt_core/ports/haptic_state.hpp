@@ -1,0 +1,62 @@
+// What the tick tells of a haptic device and its instrument. Plain data of fixed size; SI, world frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/haptic_device.hpp"
+
+namespace cellmirror {
+
+enum class HapticPhase : std::uint8_t {
+  closed,    // no device belongs to this place
+  waiting,   // no device has written yet; force zero
+  clutched,  // the hand moves, the instrument does not; force zero
+  engaging,  // the force is being faded in
+  active,
+  faulted,  // latched: force zero until it is reset (RESET_HAPTIC)
+};
+
+// The first that was met counts.
+enum class HapticFault : std::uint8_t {
+  none,
+  stale,        // no new sample for longer than stale_after, or samples whose time is older than that
+  vanished,     // the device's process is gone
+  not_finite,   // a value was no number, or the quaternion no rotation
+  invalid,      // the device says so itself
+  jump,         // faster than a hand can be
+  two_writers,  // two processes write into the same block
+  torn,         // the block could not be read whole for longer than stale_after
+  late_tick,    // the loop missed more periods than allowed
+  stale_model,  // the surroundings have not been looked at for too long
+  not_passive,  // energy was generated faster than damping could take it
+};
+
+struct HapticState {
+  HapticPhase phase = HapticPhase::closed;
+  HapticFault fault = HapticFault::none;
+  std::uint8_t slot = 0;  // of the instrument's robot
+  std::uint64_t device_sequence = 0;
+  std::uint32_t device_writer = 0;  // process id
+  Timestamp device_time;
+  std::uint32_t buttons = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t skipped = 0;  // samples that were overwritten before they were read, by their numbers
+  std::uint64_t torn = 0;     // reads that found the device writing
+  std::uint64_t faults = 0;
+  std::uint64_t resets = 0;
+  std::uint64_t saturated = 0;  // ticks in which the force was cut to its limit or its slew limit
+  Eigen::Vector3d x_device = Eigen::Vector3d::Zero();  // where the hand wants the tip, in the world
+  Eigen::Vector3d x_proxy = Eigen::Vector3d::Zero();   // where the tip is: never inside of a body
+  Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   // N, on the hand, before scaling for the device
+  Eigen::Vector3d force_E = Eigen::Vector3d::Zero();   // the same in the end-effector frame
+  double axis_torque = 0;                              // Nm, about the tool axis (z of the end-effector frame)
+  JointValues joint_torques{};                         // Nm or N, of the instrument's joints
+  std::uint8_t contacts = 0;                           // constraints that bear force
+  double energy = 0;             // J, that the passivity observer has seen come out (negative: generated)
+  double passivity_damping = 0;  // Ns/m, that the passivity controller added in this tick
+  Timestamp model_time;          // posture time of the contact model in use
+};
+
+}  // namespace cellmirror
