@@ -5,7 +5,9 @@
 #include <cstdint>
 
 #include "rt_core/engine/tick_state.hpp"
+#include "rt_core/haptics/haptic_channel.hpp"
 #include "rt_core/kinematics/chain.hpp"
+#include "rt_core/ports/haptic_device.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
 namespace cellmirror::engine {
@@ -19,6 +21,10 @@ enum class CommandKind : std::uint8_t {
   set_chain,      // slot, chain; only while the robot is simulated
   add_move,       // slot; only while the robot is simulated. Its move travels beside it: Engine::send_move()
   stop_motion,    // slot; only while the robot is simulated
+  open_haptic,    // channel, instrument, device; one that is open is closed before
+  close_haptic,   // channel
+  reset_haptic,   // channel; refused where there is no fault, or its cause is still there
+  haptic_device,  // channel, device_gone: whether the device's process is known to have ended
 };
 
 struct Command {
@@ -36,6 +42,12 @@ struct Command {
   // has passed a later set_chain, set_mode to mirrored or remove_robot of this slot and, after a set_chain, every move
   // that was sent before it has ended (MotionState::finished in the same state). Its variables are the robot's joints.
   const kinematics::Chain* chain = nullptr;
+  // Of haptic devices. The sender owns both and keeps them until commands_done has passed a later close_haptic or
+  // open_haptic of this channel.
+  std::uint8_t channel = 0;
+  bool device_gone = false;
+  const haptics::Instrument* instrument = nullptr;
+  HapticDevicePort* device = nullptr;
 };
 
 }  // namespace cellmirror::engine

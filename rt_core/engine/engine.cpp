@@ -26,7 +26,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   head_.time = context.now;
   head_.missed_periods += context.missed;
   const int commands = take_commands(context.now);
-  const int samples = take_samples();
+  const int samples = take_samples() + step_haptics(context);
   move_robots(context);
   for (RobotSlot& slot : slots_) {
     if (slot.used()) slot.update(context.now);
@@ -36,6 +36,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   publish(for_status_);
   publish(for_collision_);
   publish(for_ranging_);
+  publish(for_contacts_);
   record_tick(context, commands, samples);
   watchdog_.beat();
 }
@@ -56,6 +57,7 @@ int Engine::take_commands(Timestamp now) CELL_RT {
 }
 
 bool Engine::carry_out(const Command& command) CELL_RT {
+  if (HapticChannels::concerns(command)) return haptics_.apply(command, head_.time);
   if (command.kind != CommandKind::add_move) return command.slot < kMaxRobots && slots_[command.slot].apply(command);
   const bool done = slots_[command.slot].add_move(moves_[command.move]);
   free_moves_.push(command.move);
@@ -89,6 +91,20 @@ int Engine::take_samples() CELL_RT {
   return taken;
 }
 
+int Engine::step_haptics(const CycleContext& context) CELL_RT {
+  int taken = 0;
+  JointSample sample;
+  for (std::size_t channel = 0; channel < kMaxHapticDevices; ++channel) {
+    if (!haptics_.used(channel)) continue;
+    const std::size_t slot = haptics_.slot(channel);
+    if (!haptics_.step(channel, context, slots_[slot].state(), sample)) continue;
+    ++taken;
+    slots_[slot].take(sample);
+    record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
+  }
+  return taken;
+}
+
 void Engine::publish(Latest<TickState>& edge) CELL_RT {
   TickState& out = edge.writable();
   out.tick = head_.tick;
@@ -105,6 +121,7 @@ void Engine::publish(Latest<TickState>& edge) CELL_RT {
       out.robots[i].mode = RobotMode::absent;
     }
   }
+  haptics_.publish(out.haptics);
   edge.publish();
 }
 

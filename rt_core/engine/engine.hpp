@@ -11,6 +11,7 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/command.hpp"
 #include "rt_core/engine/flight_record.hpp"
+#include "rt_core/engine/haptic_channels.hpp"
 #include "rt_core/engine/robot_slot.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -41,7 +42,8 @@ struct QueueStatus {
 
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
 // owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
-// collision_view() and ranging_view() to the workers of that name; each inlet() to the one driver thread of its stream;
+// collision_view(), ranging_view() and contact_view() to the workers of that name, contact_inlet() to the last of them;
+// each inlet() to the one driver thread of its stream;
 // the rest to any thread.
 class Engine final : public Cycle {
  public:
@@ -57,6 +59,8 @@ class Engine final : public Cycle {
   std::uint64_t send_move(std::size_t slot, const motion::Move& move);
   // Where the stream of the robot in this slot puts its samples.
   [[nodiscard]] JointSampleSink& inlet(std::size_t slot);
+  // Where the surroundings of the instrument of a haptic channel are put.
+  [[nodiscard]] Latest<haptics::ContactModel>& contact_inlet(std::size_t channel) { return haptics_.inlet(channel); }
 
   // The newest published state. The reference stays valid and unchanged until the same reader asks again.
   [[nodiscard]] const TickState& owner_view() { return for_owner_.read().value; }
@@ -64,6 +68,7 @@ class Engine final : public Cycle {
   [[nodiscard]] const TickState& status_view() { return for_status_.read().value; }
   [[nodiscard]] const TickState& collision_view() { return for_collision_.read().value; }
   [[nodiscard]] const TickState& ranging_view() { return for_ranging_.read().value; }
+  [[nodiscard]] const TickState& contact_view() { return for_contacts_.read().value; }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -81,6 +86,7 @@ class Engine final : public Cycle {
   int take_commands(Timestamp now) CELL_RT;
   bool carry_out(const Command& command) CELL_RT;
   int take_samples() CELL_RT;
+  int step_haptics(const CycleContext& context) CELL_RT;
   void move_robots(const CycleContext& context) CELL_RT;
   void publish(Latest<TickState>& edge) CELL_RT;
   void record_tick(const CycleContext& context, int commands, int samples) CELL_RT;
@@ -100,6 +106,8 @@ class Engine final : public Cycle {
   Latest<TickState> for_status_;
   Latest<TickState> for_collision_;
   Latest<TickState> for_ranging_;
+  Latest<TickState> for_contacts_;
+  HapticChannels haptics_;
   Watchdog& watchdog_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;

@@ -43,8 +43,12 @@ bool RobotSlot::apply(const Command& command) CELL_RT {
       if (!simulated()) return false;
       executor_.stop();
       return true;
+    case CommandKind::open_haptic:
+    case CommandKind::close_haptic:
+    case CommandKind::reset_haptic:
+    case CommandKind::haptic_device:
     case CommandKind::add_move:
-      return false;  // the engine has its move and calls add_move()
+      return false;  // the engine carries them out itself
   }
   return false;
 }

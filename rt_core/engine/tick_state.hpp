@@ -7,6 +7,7 @@
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/motion/executor.hpp"
+#include "rt_core/ports/haptic_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
@@ -47,6 +48,7 @@ struct TickState {
   std::uint64_t commands_done = 0;   // id of the newest command that was carried out
   std::uint64_t commands_refused = 0;
   std::array<RobotTickState, kMaxRobots> robots{};
+  std::array<HapticState, kMaxHapticDevices> haptics{};
 };
 
 }  // namespace cellmirror::engine

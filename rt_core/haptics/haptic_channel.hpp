@@ -33,6 +33,7 @@ struct TickInput {
   std::uint64_t missed = 0;             // periods just before this tick
   const ContactModel* model = nullptr;  // newest; null: none yet
   std::span<const double> q;            // rad or m, where the robot stands (all joints)
+  bool device_gone = false;             // the device's process is known to have ended
 };
 
 // All memory is inside; everything but the construction belongs to the tick.

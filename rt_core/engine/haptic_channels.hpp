@@ -1,0 +1,54 @@
+// The haptic devices inside the tick: a channel each, with the newest surroundings of its instrument.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/contract.hpp"
+#include "rt_core/base/real_time.hpp"
+#include "rt_core/engine/command.hpp"
+#include "rt_core/engine/tick_state.hpp"
+#include "rt_core/haptics/contact_model.hpp"
+#include "rt_core/haptics/haptic_channel.hpp"
+#include "rt_core/rt/cyclic_thread.hpp"
+#include "rt_core/rt/latest.hpp"
+
+namespace cellmirror::engine {
+
+// Tick thread only, but for inlet().
+class HapticChannels {
+ public:
+  [[nodiscard]] static bool concerns(const Command& command) CELL_RT;
+  // False where the command names no channel, no instrument or no device, or reset_haptic was refused.
+  bool apply(const Command& command, Timestamp now) CELL_RT;
+
+  [[nodiscard]] bool used(std::size_t channel) const CELL_RT { return channels_[channel].channel.used(); }
+  // Of the instrument's robot.
+  [[nodiscard]] std::size_t slot(std::size_t channel) const CELL_RT { return channels_[channel].instrument->slot; }
+  // Reads the device, answers it. `robot` is the instrument's. True where `sample` holds where it is to stand.
+  bool step(std::size_t channel, const CycleContext& context, const RobotTickState& robot, JointSample& sample) CELL_RT;
+  void publish(std::span<HapticState, kMaxHapticDevices> out) const CELL_RT;
+
+  // For one worker thread.
+  [[nodiscard]] Latest<haptics::ContactModel>& inlet(std::size_t channel) {
+    CELLMIRROR_EXPECTS(channel < kMaxHapticDevices);
+    return channels_[channel].inlet;
+  }
+
+ private:
+  struct Entry {
+    haptics::HapticChannel channel;
+    const haptics::Instrument* instrument = nullptr;
+    Timestamp opened;
+    bool device_gone = false;
+    Latest<haptics::ContactModel> inlet;
+  };
+
+  static void open(Entry& entry, const Command& command, Timestamp now) CELL_RT;
+
+  std::array<Entry, kMaxHapticDevices> channels_;
+};
+
+}  // namespace cellmirror::engine
