@@ -43,7 +43,8 @@ CellOwner::CellOwner(Parts parts)
       log_warning("cell", "[[view]] {}: {}", view.id, set.error().text());
   }
   runner_ = std::make_unique<script::ScriptRunner>(
-      CommandHost{names_, world_, robots_, motion_, programs_, views_, sensing_, diagnosis_}, home_, clock_);
+      CommandHost{names_, world_, robots_, motion_, programs_, views_, sensing_, interaction_, diagnosis_}, home_,
+      clock_);
 }
 
 CellOwner::~CellOwner() { stop(); }

@@ -11,6 +11,7 @@
 
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
+#include "app/gateway/interaction.hpp"
 #include "app/gateway/motion_desk.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/sensing.hpp"
@@ -88,6 +89,7 @@ class CellOwner {
   CellPrograms programs_;
   CellViews views_;
   CellSensing sensing_;
+  CellInteraction interaction_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;
   Fifo<QueuedCommand, kCommandQueue> queue_;

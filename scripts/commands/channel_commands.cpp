@@ -1,4 +1,7 @@
 // Manual 1.2.6.
+#include <cstddef>
+#include <cstdint>
+
 #include "scripts/commands/registry.hpp"
 #include "scripts/lang/lexer.hpp"
 
@@ -11,11 +14,33 @@ Outcome show_message(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.views.show_message(joined_lines(command.text(0))));
 }
 
+// A System V key is a 32-bit pattern; the command accepts the whole of it as a positive number.
+std::int32_t key_of(const ParsedCommand& command, std::size_t slot) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(command.integer(slot)));
+}
+
+Outcome set_force_memory(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.interaction.set_force_memory(static_cast<std::uint64_t>(command.integer(0)),
+                                                       key_of(command, 1),
+                                                       static_cast<std::size_t>(command.integer(2))));
+}
+
+Outcome set_switch_memory(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.interaction.set_switch_memory(static_cast<std::uint64_t>(command.integer(0)),
+                                                        key_of(command, 1),
+                                                        static_cast<std::size_t>(command.integer(2))));
+}
+
+Outcome set_switches_online(const ParsedCommand& command, CommandHost& host) {
+  constexpr std::size_t kOnline = 0;
+  return Outcome::of(host.interaction.set_switches_online(command.choice(0) == kOnline));
+}
+
 constexpr Registration kHandlers[] = {
-    {FormId::eladyn_calc, not_available},  {FormId::rob_ela_interact, not_available},
-    {FormId::ela_clip_def, not_available}, {FormId::eladyn_geo_def_cylinders, not_available},
-    {FormId::rob_ela_shm, not_available},  {FormId::bin_ela_shm, not_available},
-    {FormId::bin_ela, not_available},      {FormId::hot_message, show_message},
+    {FormId::eladyn_calc, not_available},    {FormId::rob_ela_interact, not_available},
+    {FormId::ela_clip_def, not_available},   {FormId::eladyn_geo_def_cylinders, not_available},
+    {FormId::rob_ela_shm, set_force_memory}, {FormId::bin_ela_shm, set_switch_memory},
+    {FormId::bin_ela, set_switches_online},  {FormId::hot_message, show_message},
 };
 
 }  // namespace

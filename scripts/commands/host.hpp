@@ -13,6 +13,7 @@
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/ports/view_change.hpp"
+#include "scripts/commands/interaction_host.hpp"
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/lang/names.hpp"
 
@@ -106,6 +107,7 @@ struct CommandHost {
   ProgramHost& programs;
   ViewHost& views;
   SensingHost& sensing;
+  InteractionHost& interaction;
   DiagnosisHost& diagnosis;
 };
 

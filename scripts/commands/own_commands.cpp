@@ -9,8 +9,13 @@ Outcome save_flight(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.diagnosis.save_flight_record(command.text(0)));
 }
 
+Outcome reset_haptic(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.interaction.reset_haptic(command.text(0)));
+}
+
 constexpr Registration kHandlers[] = {
     {FormId::save_flight, save_flight},
+    {FormId::reset_haptic, reset_haptic},
 };
 
 }  // namespace

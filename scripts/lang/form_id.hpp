@@ -127,9 +127,10 @@ enum class FormId : std::uint8_t {
   set_collpar_active,
   set_collpar_warning,
   set_collpar_pair,
+  reset_haptic,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::set_collpar_pair) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::reset_haptic) + 1;
 
 }  // namespace cellmirror::script

@@ -10,8 +10,6 @@ using namespace parts;
 
 constexpr std::string_view kSection = "1.2.6";
 constexpr std::string_view kTissue = "deformable objects";
-constexpr std::string_view kHaptics = "haptic devices";
-constexpr std::string_view kSwitches = "foot switches";
 
 constexpr Choice kTests[] = {{"0", "no test, interaction off"},
                              {"1", "value >= testval1"},
@@ -96,24 +94,27 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kForceMemory,
      .help = "sets the shared memory through which forces and joint torques go to a haptic device's process",
-     .missing = kHaptics,
-     .definition = "at least 12 bytes, force x, y, z; the key also in hexadecimal, not 0",
-     .effect = LoopEffect::queued},
+     .definition =
+         "of the active robot; at least 12 bytes, force x, y, z as float32, then the joint torques, and what is ours "
+         "behind them as far as they fit; the key also in hexadecimal, not 0",
+     .effect = LoopEffect::queued,
+     .needs_active_robot = true},
     {.id = FormId::bin_ela_shm,
      .name = "bin_ela_shm",
      .syntax = "bin_ela_shm <send_type> <be_shmkey> <be_buflen>",
      .section = kSection,
      .parameters = kSwitchMemory,
      .help = "sets the shared memory from which binary inputs (foot switches) are read",
-     .missing = kSwitches,
-     .definition = "bit 0 of the first byte is BININP1; the key also in hexadecimal, not 0",
+     .definition =
+         "bit 0 of the first byte is BININP1, bit 0 of the second BININP9, and so on, through the first 4096 bytes; "
+         "the key also in hexadecimal, not 0; BIN_ELA online starts the processing",
      .effect = LoopEffect::queued},
     {.id = FormId::binary_input_files,
      .name = "BININPn_ON.spt, BININPn_OFF.spt",
      .syntax = "files for n = 1..8, bit n-1",
      .section = kSection,
      .help = "the SCRIPT files that run when a binary input goes on or off",
-     .missing = kSwitches,
+     .definition = "in scripts/ of the home, once a change and one after another; inputs beyond 8 likewise",
      .kind = FormKind::convention},
     {.id = FormId::bin_ela,
      .name = "BIN_ELA",
@@ -121,7 +122,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kBinary,
      .help = "switches the processing of binary inputs",
-     .missing = kSwitches,
+     .definition = "inputs that are on when it goes online count as pressed from before: no file runs for them",
      .effect = LoopEffect::queued},
     {.id = FormId::hot_message,
      .name = "hot_message",

@@ -9,7 +9,6 @@ namespace {
 using namespace parts;
 
 constexpr std::string_view kSection = "1.2.4";
-constexpr std::string_view kDynamics = "multibody dynamics";
 
 constexpr Choice kArrows[] = {
     {"0", "none"}, {"1", "x component"}, {"2", "y component"}, {"3", "z component"}, {"4", "resultant"}};
@@ -36,22 +35,19 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kForceArrow,
      .help = "sets which components of force arrows are drawn",
-     .missing = kDynamics,
      .definition = "int_1 joint forces, int_2 joint torques, int_3 TCP force; 0 none, 1 x, 2 y, 3 z, 4 resultant"},
     {.id = FormId::set_torque_limit,
      .name = "SET_TORQUE_LIMIT",
      .syntax = "SET_TORQUE_LIMIT <max_force> <max_torque>",
      .section = kSection,
      .parameters = kTorqueLimit,
-     .help = "sets limits beyond which forces that go to shared memory 1313 raise a warning; 0: no limit",
-     .missing = kDynamics},
+     .help = "sets limits beyond which forces that go to shared memory 1313 raise a warning; 0: no limit"},
     {.id = FormId::set_ext_tcp_test,
      .name = "SET_EXT_TCP_TEST",
      .syntax = "SET_EXT_TCP_TEST [on | off] <v1> <v2> <v3> <v4>",
      .section = kSection,
      .parameters = kTcpTest,
      .help = "writes test values to shared memory 1313 in place of simulated ones, or not",
-     .missing = kDynamics,
      .definition = "force x, y, z [N] and torque about the tool axis [Nm]",
      .effect = LoopEffect::queued},
     {.id = FormId::set_frc_arr_special,
@@ -59,8 +55,7 @@ constexpr Form kForms[] = {
      .syntax = "SET_FRC_ARR_SPECIAL [on | off]",
      .section = kSection,
      .parameters = kSpecial,
-     .help = "shows of forces and torques only what the motors bear, or all",
-     .missing = kDynamics},
+     .help = "shows of forces and torques only what the motors bear, or all"},
     {.id = FormId::master_slave,
      .name = "MASTER_SLAVE",
      .syntax = "MASTER_SLAVE [on | off] <master_robot> <n_slaves> { <slave_robot> <n_dof> { <master_joint> "
@@ -68,7 +63,6 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kMasterSlave,
      .help = "lets joints of up to five slaves follow joints of a master, or no longer",
-     .missing = "master-slave coupling",
      .definition = "a slave is not its own master, and each of its joints follows one joint only",
      .effect = LoopEffect::queued,
      .commas = true},

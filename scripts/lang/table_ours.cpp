@@ -44,6 +44,7 @@ constexpr Parameter kScreenInc[] = {robot(), kPath, word("SCREEN_INC"), kX, kY, 
 constexpr Parameter kStart[] = {robot(), choice("PTP", "path", kPtpOnly), word("START")};
 constexpr Parameter kReference[] = {robot(), choice("PTP", "path", kPtpOnly), word("REFERENCE")};
 constexpr Parameter kStop[] = {robot()};
+constexpr Parameter kResetHaptic[] = {robot()};
 
 constexpr Choice kPairTreatments[] = {{"ignore", "they are not tested"},
                                       {"test", "they are tested, whatever was derived"},
@@ -168,6 +169,16 @@ constexpr Form kForms[] = {
          "those of the cell file are older; derive takes back the rules for just these two, also of the cell "
          "file",
      .selector = Selector::by_first_word,
+     .origin = Origin::ours},
+    {.id = FormId::reset_haptic,
+     .name = "RESET_HAPTIC",
+     .syntax = "RESET_HAPTIC <Robot_id>",
+     .section = kSection,
+     .parameters = kResetHaptic,
+     .help = "lets a haptic device bear force again after a fault, which latches and takes the force away",
+     .example = "RESET_HAPTIC MANTEC_RM3",
+     .definition = "forces fade in again; refused where the robot has no haptic device",
+     .effect = LoopEffect::queued,
      .origin = Origin::ours},
 };
 

@@ -15,12 +15,13 @@ class QuietHost final : public WorldHost,
                         public ProgramHost,
                         public ViewHost,
                         public SensingHost,
+                        public InteractionHost,
                         public DiagnosisHost {
  public:
   FakeNames names;
   std::size_t calls = 0;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this}; }
 
   Result<void> activate(std::string_view /*node*/) override { return called(); }
   Result<void> deactivate(std::string_view /*node*/) override { return called(); }
@@ -77,6 +78,29 @@ class QuietHost final : public WorldHost,
   Result<void> set_collision_pair(std::string_view /*a*/, std::string_view /*b*/,
                                   PairTreatment /*treatment*/) override {
     return called();
+  }
+  Result<void> set_force_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/, std::size_t /*bytes*/) override {
+    return called();
+  }
+  Result<void> reset_haptic(std::string_view /*robot*/) override { return called(); }
+  Result<void> set_switch_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/, std::size_t /*bytes*/) override {
+    return called();
+  }
+  Result<void> set_switches_online(bool /*online*/) override { return called(); }
+  Result<void> set_force_arrows(const ForceArrowSettings& /*settings*/) override { return called(); }
+  Result<void> set_motor_forces_only(bool /*on*/) override { return called(); }
+  Result<void> set_force_limits(const ForceLimits& /*limits*/) override { return called(); }
+  Result<void> set_tcp_test(bool /*on*/, const std::array<double, 4>& /*values*/) override { return called(); }
+  // Looks at every name, so that the sanitizers see where they point to.
+  Result<void> couple(std::string_view master, std::span<const SlaveJoints> slaves) override {
+    std::size_t letters = master.size();
+    for (const SlaveJoints& slave : slaves) {
+      for (const auto& [of_master, of_slave] : slave.joints) letters += of_master.size() + of_slave.size();
+    }
+    return letters > 0 ? called() : fail("names are empty");
+  }
+  Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override {
+    return couple(master, slaves);
   }
   Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
 

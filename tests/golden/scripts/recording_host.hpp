@@ -23,6 +23,7 @@ class RecordingHost final : public WorldHost,
                             public ProgramHost,
                             public ViewHost,
                             public SensingHost,
+                            public InteractionHost,
                             public DiagnosisHost {
  public:
   std::vector<std::string> calls;
@@ -32,7 +33,7 @@ class RecordingHost final : public WorldHost,
   // What POS_ROB begins; null: the robot stands there at once.
   std::shared_ptr<Activity> activity;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this}; }
   [[nodiscard]] std::string trace() const {
     std::string text;
     for (const std::string& call : calls) text += call + "\n";
@@ -162,6 +163,33 @@ class RecordingHost final : public WorldHost,
     constexpr std::array<std::string_view, 3> kNames = {"ignore", "test", "derive"};
     return record("set_collision_pair {} {} {}", a, b, kNames[static_cast<std::size_t>(treatment)]);
   }
+  Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override {
+    return record("set_force_memory {} {:#x} {}", send_type, static_cast<std::uint32_t>(key), bytes);
+  }
+  Result<void> reset_haptic(std::string_view robot) override { return record("reset_haptic {}", robot); }
+  Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override {
+    return record("set_switch_memory {} {:#x} {}", send_type, static_cast<std::uint32_t>(key), bytes);
+  }
+  Result<void> set_switches_online(bool online) override { return record("set_switches_online {}", online); }
+  Result<void> set_force_arrows(const ForceArrowSettings& settings) override {
+    constexpr std::array<std::string_view, 5> kNames = {"none", "x", "y", "z", "resultant"};
+    return record("set_force_arrows {} {} {}", kNames[static_cast<std::size_t>(settings.joint_forces)],
+                  kNames[static_cast<std::size_t>(settings.joint_torques)],
+                  kNames[static_cast<std::size_t>(settings.tcp_force)]);
+  }
+  Result<void> set_motor_forces_only(bool on) override { return record("set_motor_forces_only {}", on); }
+  Result<void> set_force_limits(const ForceLimits& limits) override {
+    return record("set_force_limits {:.9g} {:.9g}", limits.max_force, limits.max_torque);
+  }
+  Result<void> set_tcp_test(bool on, const std::array<double, 4>& values) override {
+    return record("set_tcp_test {} {}", on, list_text(values));
+  }
+  Result<void> couple(std::string_view master, std::span<const SlaveJoints> slaves) override {
+    return record("couple {}{}", master, slaves_text(slaves));
+  }
+  Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override {
+    return record("uncouple {}{}", master, slaves_text(slaves));
+  }
   Result<void> save_flight_record(std::string_view file_name) override {
     return record("save_flight_record {}", file_name);
   }
@@ -187,6 +215,14 @@ class RecordingHost final : public WorldHost,
       default:
         return mode + " " + pose_text(target.pose);
     }
+  }
+  static std::string slaves_text(std::span<const SlaveJoints> slaves) {
+    std::string text;
+    for (const SlaveJoints& slave : slaves) {
+      text += fmt::format(" > {}", slave.robot);
+      for (const auto& [of_master, of_slave] : slave.joints) text += fmt::format(" {}={}", of_slave, of_master);
+    }
+    return text;
   }
   static std::string list_text(std::span<const double> values) {
     std::string text;

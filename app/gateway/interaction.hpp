@@ -1,0 +1,23 @@
+// Haptic devices, foot switches, forces and coupled robots behind SCRIPT's interface: hands each command to the desk
+// that it concerns. Belongs to the thread that owns the cell.
+#pragma once
+
+#include "scripts/commands/interaction_host.hpp"
+
+namespace cellmirror::app {
+
+class CellInteraction final : public InteractionHost {
+ public:
+  Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
+  Result<void> reset_haptic(std::string_view robot) override;
+  Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
+  Result<void> set_switches_online(bool online) override;
+  Result<void> set_force_arrows(const ForceArrowSettings& settings) override;
+  Result<void> set_motor_forces_only(bool on) override;
+  Result<void> set_force_limits(const ForceLimits& limits) override;
+  Result<void> set_tcp_test(bool on, const std::array<double, 4>& values) override;
+  Result<void> couple(std::string_view master, std::span<const SlaveJoints> slaves) override;
+  Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override;
+};
+
+}  // namespace cellmirror::app
