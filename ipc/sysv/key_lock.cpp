@@ -39,7 +39,7 @@ Result<LockFile> take_file(std::int32_t key, const std::string& instance) {
   if (file) return std::move(*file);
   const LockFile::Refused& refused = file.error();
   if (refused.why == LockFile::Refusal::failed) return std::unexpected(refused.error);
-  return fail(fmt::format("the message key {} is in use by process {}, the gateway of the instance {}", key_text(key),
+  return fail(fmt::format("the key {} is in use by process {}, the gateway of the instance {}", key_text(key),
                           refused.holder.pid, refused.holder.note.empty() ? "?" : refused.holder.note),
               "end that gateway, or start this one with --instance NAME and keys of its own");
 }

@@ -22,7 +22,7 @@ union SemaphoreArgument {
 };
 
 std::unexpected<Error> other_users(std::int32_t key) {
-  return fail(fmt::format("the message key {:#x} ({}) is in use by another user", static_cast<std::uint32_t>(key), key),
+  return fail(fmt::format("the key {:#x} ({}) is in use by another user", static_cast<std::uint32_t>(key), key),
               fmt::format("start this gateway with --instance NAME and keys of its own; where that user's gateway was "
                           "killed, have its owner or root run ipcrm -S {:#x}",
                           static_cast<std::uint32_t>(key)));
@@ -62,7 +62,7 @@ Result<KeySemaphore> KeySemaphore::take(std::int32_t key) {
       return other_users(key);
     }
     if (errno == EIDRM || errno == EINVAL) continue;  // its holder just ended
-    return fail(fmt::format("the message key {:#x} ({}) is in use by process {}, a gateway with another runtime folder",
+    return fail(fmt::format("the key {:#x} ({}) is in use by process {}, a gateway with another runtime folder",
                             static_cast<std::uint32_t>(key), key, ::semctl(id, 0, GETPID)),
                 "end that gateway, or start this one with --instance NAME and keys of its own");
   }

@@ -48,22 +48,38 @@ inline constexpr std::size_t kSize = 512;
 }  // namespace haptic_block_offset
 
 inline constexpr std::uint16_t kHapticBlockVersion = 1;
-inline constexpr std::size_t kLeastHapticBytes = 12;  // force only, as in 1999
+inline constexpr std::uint32_t kHapticBlockMagic = 0x50484D43;  // the bytes "CMHP"
+inline constexpr std::size_t kLeastHapticBytes = 12;            // force only, as in 1999
 
-// `memory` is shared with other processes, aligned to 8 bytes; whatever they write there is only ever read by value.
-// Smaller memories hold what fits: below kSize no samples and nothing behind the joint torques.
+// `memory` is shared with other processes and aligned to 8 bytes (one that is not holds nothing); whatever they write
+// there is only ever read by value. Smaller memories hold what fits: below kSize no samples and nothing behind the
+// joint torques, and of these the whole float32 values that fit. All functions: bounded time, no system call; SI.
 
-// Gateway: once, before the first force. Leaves a device's section as it is.
-void prepare_haptic_block(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process);
-// Gateway, each tick.
+// Gateway: once, before the first force. Makes all forces zero and leaves the device's section as it is. `joint_count`
+// is that of the robot, at most kMaxJointsPerRobot (more counts as that); `process` the gateway's number.
+void prepare_haptic_block(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process) CELL_RT;
+// Gateway: writes the bytes 128 to 143 anew where they are no longer as prepare_haptic_block() left them (the memory
+// was renewed, or somebody wrote there). True where it did. Costs two loads else: for each tick.
+bool restore_haptic_header(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process) CELL_RT;
+// Gateway, each tick. Forces and torques of which any is not finite, as float32 where it is written as such, are all
+// written as zero, with the fault not_finite where `output` tells of none. The sequence is the caller's to count.
 void write_haptic_output(std::span<std::byte> memory, const HapticOutput& output) CELL_RT;
-// Gateway: `last` is the device's lock as of the last call that gave `fresh`; it is updated. Tries a few times.
+// Gateway, at its end: all forces zero, phase closed, and the gateway's process number 0.
+void end_haptic_block(std::span<std::byte> memory) CELL_RT;
+// Gateway: `last` is the device's lock as of the last call that gave `fresh` (0 at first); it is updated. Tries
+// shared_words::kTries times. `sample` changes only with `fresh`, and holds the device's numbers as they are: finite or
+// not, of whatever length the quaternion. A number of axes beyond kMaxHapticAxes gives no axes and a sample that is
+// not valid.
 [[nodiscard]] HapticRead read_haptic_sample(std::span<const std::byte> memory, std::uint64_t& last,
                                             HapticSample& sample) CELL_RT;
 
-// Device's side, for simulators and tests.
+// Device's side, for simulators and tests: the sample as it is, faults and all (axes beyond kMaxHapticAxes are cut).
+// Nothing is written into a memory below kSize.
 void write_haptic_sample(std::span<std::byte> memory, const HapticSample& sample) CELL_RT;
-// False where it was torn in every try, or the memory holds no block of this version.
+// False where it was torn in every try, or the memory holds no block of this version. Leaves `output` alone then. Of
+// force_E and joint_torques it gives the float32 values.
 [[nodiscard]] bool read_haptic_output(std::span<const std::byte> memory, HapticOutput& output) CELL_RT;
+// The process number of the gateway that writes; 0 where none does or the memory holds no block of this version.
+[[nodiscard]] std::uint32_t haptic_block_gateway(std::span<const std::byte> memory) CELL_RT;
 
 }  // namespace cellmirror

@@ -15,6 +15,8 @@
 namespace cellmirror {
 
 inline constexpr std::int32_t kTcpForceKey = 1313;
+inline constexpr std::uint32_t kTcpForceMagic = 0x46544D43;  // the bytes "CMTF"
+inline constexpr std::uint16_t kTcpForceVersion = 1;
 
 namespace tcp_force_block_offset {
 inline constexpr std::size_t kValues = 0;     // f32[4]
@@ -43,9 +45,14 @@ struct TcpForce {
   FixedText<64> robot;
 };
 
-// Memories below kSize hold the four values only.
+// `memory` is shared with other processes and aligned to 8 bytes (one that is not holds nothing). Both functions: N and
+// Nm, bounded time, no system call, no heap.
+
+// One writer at a time. Memories below kSize hold as many of the four values as fit and nothing else. Values of which
+// any is not finite are all written as zero, without kTcpForceValid. The robot's id is cut at 63 bytes. A gateway that
+// ends writes a last time with flags and process 0.
 void write_tcp_force(std::span<std::byte> memory, const TcpForce& force);
-// False where it was torn in every try, or is no block of this version.
+// False where it was torn in every try, or is no block of this version; leaves `force` alone then.
 [[nodiscard]] bool read_tcp_force(std::span<const std::byte> memory, TcpForce& force);
 
 }  // namespace cellmirror
