@@ -18,6 +18,7 @@ set(CELLMIRROR_LAYERS
   "rt_core/contact_model: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
   "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion rt_core/haptics"
   "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
+  "config/command_line: rt_core/base"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/haptic: rt_core/base rt_core/rt rt_core/ports ipc/wire"
@@ -28,7 +29,7 @@ set(CELLMIRROR_LAYERS
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
-  "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds"
+  "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "app/plot: rt_core/base"
   "app: *"
   "tests: *")
@@ -36,7 +37,7 @@ set(CELLMIRROR_LAYERS
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model
-  rt_core/engine config drivers/can drivers/dds drivers/haptic drivers/footswitch ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
+  rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
   sim_devices app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)
