@@ -28,7 +28,7 @@ struct ContactModel {
   std::uint8_t slot = 0;       // of the instrument's robot
   bool certain = true;         // false: something could not be settled; treat what is near as touching
   Eigen::Vector3d x_ref = Eigen::Vector3d::Zero();  // the tip's origin in that posture
-  double reach = 0;                                 // m: everything nearer than this to the instrument is in
+  double reach = 0;  // m: everything nearer than this to the instrument is in; the proxy stays within it. 0: all is in
   std::uint8_t count = 0;
   std::array<ContactConstraint, kMaxConstraints> constraints{};
 };

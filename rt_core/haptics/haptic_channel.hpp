@@ -1,31 +1,25 @@
 // One haptic device and its instrument inside the tick: reads the device, moves the instrument, answers with a force.
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/haptics/contact_model.hpp"
-#include "rt_core/haptics/settings.hpp"
-#include "rt_core/kinematics/chain.hpp"
+#include "rt_core/haptics/device_judge.hpp"
+#include "rt_core/haptics/instrument.hpp"
+#include "rt_core/haptics/instrument_map.hpp"
+#include "rt_core/haptics/model_watch.hpp"
+#include "rt_core/haptics/passivity.hpp"
+#include "rt_core/haptics/proxy.hpp"
+#include "rt_core/haptics/tip_solver.hpp"
+#include "rt_core/haptics/virtual_coupling.hpp"
 #include "rt_core/ports/haptic_device.hpp"
 #include "rt_core/ports/haptic_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 
 namespace cellmirror::haptics {
-
-// What the owner of the cell prepares off the tick for a channel. It outlives the channel's use of it.
-struct Instrument {
-  std::uint8_t slot = 0;
-  std::uint8_t joint_count = 0;  // of the robot
-  kinematics::Chain chain;       // from its base to its TCP; the joints of the robot that are on the way
-  std::array<std::int8_t, kMaxJointsPerRobot> variable_joint{};  // joint of the robot that a variable of the chain is
-  Pose X_WB = Pose::Identity();  // its base in the world; it does not move while the channel is open
-  JointValues lower{};           // rad or m, of the robot's joints
-  JointValues upper{};
-  HapticSettings settings;
-};
 
 struct TickInput {
   Timestamp now;
@@ -36,6 +30,9 @@ struct TickInput {
   bool device_gone = false;             // the device's process is known to have ended
 };
 
+// How long a device has to behave before a fault may be taken back.
+inline constexpr Nanoseconds kQuietBeforeReset{20'000'000};
+
 // All memory is inside; everything but the construction belongs to the tick.
 class HapticChannel {
  public:
@@ -43,7 +40,8 @@ class HapticChannel {
   void open(const Instrument& instrument, HapticDevicePort& port) CELL_RT;
   // Writes a last output of zero force.
   void close() CELL_RT;
-  // Takes a latched fault back: the force fades in anew. False where there is none, or its cause is still there.
+  // Takes a latched fault back: the force fades in anew. False where there is none, or its cause was still there within
+  // the last kQuietBeforeReset.
   bool reset() CELL_RT;
 
   // One tick: read, judge, move, answer. True where `sample` holds new joint values of the instrument (every joint,
@@ -54,7 +52,38 @@ class HapticChannel {
   [[nodiscard]] const HapticState& state() const CELL_RT { return state_; }
 
  private:
+  HapticFault look(const TickInput& input, bool& fresh) CELL_RT;
+  [[nodiscard]] bool counts_while_waiting(HapticFault fault) const CELL_RT;
+  void latch(HapticFault fault) CELL_RT;
+  void engage(const TickInput& input) CELL_RT;
+  void restart_force() CELL_RT;
+  void work_clutch() CELL_RT;
+  void move_and_answer(const TickInput& input) CELL_RT;
+  void stand_at(const Eigen::Vector3d& x_before) CELL_RT;
+  Eigen::Vector3d answer(const ProxyContact& contact, double period) CELL_RT;
+  void spread(const ProxyContact& contact, const Eigen::Vector3d& force_device) CELL_RT;
+  void write(Timestamp now, Nanoseconds period) CELL_RT;
+  void tell() CELL_RT;
+  void fill(JointSample& sample) const CELL_RT;
+
   HapticState state_;
+  const Instrument* instrument_ = nullptr;
+  HapticDevicePort* port_ = nullptr;
+  DeviceJudge judge_;
+  ModelWatch models_;
+  InstrumentMap map_;
+  Proxy proxy_;
+  VirtualCoupling coupling_;
+  ForceLimit limit_;
+  Passivity passivity_;
+  Wish wish_;
+  Posture posture_;
+  TipPosture tip_;                                        // of posture_, in the base
+  Eigen::Vector3d held_force_ = Eigen::Vector3d::Zero();  // N, at the device, world axes: what it has now
+  double stored_energy_ = 0;                              // J, in the spring, as the device feels it
+  HapticOutput output_;
+  Timestamp last_tick_;
+  Timestamp last_bad_;
 };
 
 }  // namespace cellmirror::haptics

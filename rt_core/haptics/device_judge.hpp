@@ -1,0 +1,66 @@
+// Whether a device's samples may move an instrument and be answered with a force.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "rt_core/base/real_time.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/ports/haptic_device.hpp"
+#include "rt_core/ports/haptic_state.hpp"
+
+namespace cellmirror::haptics {
+
+struct JudgeSettings {
+  bool uses_pose = true;  // the orientation has to be one
+  Nanoseconds stale_after{};
+  double max_speed = 0;  // m/s
+};
+
+struct Verdict {
+  HapticFault fault = HapticFault::none;
+  bool fresh = false;  // sample() is another one than before, and good
+};
+
+// Counts, ages and compares; knows nothing of the instrument. Goes on judging while a fault is latched, so that it can
+// be told whether the cause lasts.
+class DeviceJudge {
+ public:
+  void restart(Timestamp now) CELL_RT;
+
+  // What port.read() gave in this tick.
+  Verdict judge(HapticRead read, const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT;
+  // The place (m) that the fresh sample stands for, where the device's own position is not what moves: `jump` when no
+  // hand comes there from the last one in that time.
+  HapticFault moved_to(const Eigen::Vector3d& p, const JudgeSettings& settings) CELL_RT;
+  // Forgets the last place, after its meaning has changed.
+  void forget_place() CELL_RT { place_known_ = false; }
+
+  [[nodiscard]] bool seen() const CELL_RT { return seen_; }                   // a good sample was ever there
+  [[nodiscard]] const HapticSample& sample() const CELL_RT { return last_; }  // the last good one
+  [[nodiscard]] Timestamp received() const CELL_RT { return received_; }
+  [[nodiscard]] std::uint64_t samples() const CELL_RT { return samples_; }
+  [[nodiscard]] std::uint64_t skipped() const CELL_RT { return skipped_; }
+  [[nodiscard]] std::uint64_t torn() const CELL_RT { return torn_; }
+
+ private:
+  Verdict judge_new(const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT;
+  [[nodiscard]] bool old(Timestamp now, const JudgeSettings& settings) const CELL_RT;
+  void take(const HapticSample& sample, Timestamp now) CELL_RT;
+
+  bool seen_ = false;
+  bool place_known_ = false;
+  bool tearing_ = false;
+  HapticSample last_;
+  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  Timestamp place_time_;
+  Timestamp received_;        // when the count last went on
+  std::uint64_t count_ = 0;   // last sequence, of good samples and of bad ones
+  std::uint32_t writer_ = 0;  // likewise
+  bool writer_known_ = false;
+  std::uint64_t samples_ = 0;
+  std::uint64_t skipped_ = 0;
+  std::uint64_t torn_ = 0;
+};
+
+}  // namespace cellmirror::haptics

@@ -1,0 +1,352 @@
+#include "rt_core/haptics/haptic_channel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt_core/kinematics/forward.hpp"
+
+namespace cellmirror::haptics {
+
+namespace {
+
+constexpr double kTipPlayed = 1e-6;  // m, between the proxy and the tip: as good as equal
+
+double period_of(const TickInput& input) CELL_RT { return std::clamp(seconds(input.period), 1e-5, 0.1); }
+
+JudgeSettings judge_settings(const HapticSettings& settings) CELL_RT {
+  return {
+      .uses_pose = settings.drive == Drive::pose, .stale_after = settings.stale_after, .max_speed = settings.max_speed};
+}
+
+PassivitySettings passivity_settings(const HapticSettings& settings) CELL_RT {
+  return {.control = settings.passivity_control,
+          .allowance = settings.energy_allowance,
+          .max_damping = settings.max_passivity_damping};
+}
+
+// Metres of the cell a metre of what the device moves.
+double scale_of(const HapticSettings& settings) CELL_RT {
+  return settings.drive == Drive::pose ? settings.workspace_scale : 1.0;
+}
+
+// J, that a spring stretched so far may give back through a force that is cut at max_force, as the device feels it.
+double recoverable(double elongation, const HapticSettings& settings) CELL_RT {
+  const double stiffness = settings.stiffness * settings.force_scale;
+  const double full = std::min(elongation, stiffness > 0 ? settings.max_force / stiffness : elongation);
+  return (0.5 * stiffness * full * full + settings.max_force * (elongation - full)) / scale_of(settings);
+}
+
+}  // namespace
+
+void HapticChannel::open(const Instrument& instrument, HapticDevicePort& port) CELL_RT {
+  const std::uint64_t outputs = output_.sequence;
+  state_ = HapticState{};
+  output_ = HapticOutput{};
+  output_.sequence = outputs;
+  instrument_ = &instrument;
+  port_ = &port;
+  state_.phase = HapticPhase::waiting;
+  state_.slot = instrument.slot;
+  judge_.restart(Timestamp{});
+  models_.restart();
+  map_.restart();
+  wish_ = Wish{};
+  posture_ = Posture{};
+  last_bad_ = Timestamp{};
+  restart_force();
+}
+
+void HapticChannel::close() CELL_RT {
+  if (!used()) return;
+  restart_force();
+  state_.phase = HapticPhase::closed;
+  write(last_tick_, output_.period);
+  instrument_ = nullptr;
+  port_ = nullptr;
+}
+
+bool HapticChannel::reset() CELL_RT {
+  if (state_.phase != HapticPhase::faulted) return false;
+  if (!judge_.seen() || last_tick_ - last_bad_ < kQuietBeforeReset) return false;
+  state_.phase = HapticPhase::waiting;
+  state_.fault = HapticFault::none;
+  ++state_.resets;
+  return true;
+}
+
+void HapticChannel::restart_force() CELL_RT {
+  coupling_.restart();
+  limit_.restart();
+  held_force_.setZero();
+  stored_energy_ = 0;
+  passivity_.restart(wish_.p_handle);
+  spread({}, Eigen::Vector3d::Zero());
+}
+
+// What is wrong in this tick, whether or not something is latched already. The order is that of what explains the rest.
+HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
+  const HapticSettings& settings = instrument_->settings;
+  HapticSample sample;
+  const HapticRead read = port_->read(sample);
+  const Verdict verdict = judge_.judge(read, sample, input.now, judge_settings(settings));
+  HapticFault moved = HapticFault::none;
+  if (verdict.fresh) {
+    const Wish wish = map_.wish(*instrument_, judge_.sample(), posture_.q);
+    moved = judge_.moved_to(settings.drive == Drive::pose ? judge_.sample().p_DH : wish.x_WE, judge_settings(settings));
+    if (moved == HapticFault::none) wish_ = wish;
+  }
+  models_.look_at(input.model, instrument_->slot);
+  fresh = verdict.fresh && moved == HapticFault::none;
+  if (input.missed > settings.allowed_missed_periods) return HapticFault::late_tick;
+  if (input.device_gone) return HapticFault::vanished;
+  if (verdict.fault != HapticFault::none) return verdict.fault;
+  if (moved != HapticFault::none) return moved;
+  return models_.stale(input.now, settings.model_stale_after) ? HapticFault::stale_model : HapticFault::none;
+}
+
+// A device that is not there yet, or is getting ready, is waited for; nonsense is told at once.
+bool HapticChannel::counts_while_waiting(HapticFault fault) const CELL_RT {
+  return fault == HapticFault::not_finite || fault == HapticFault::jump || fault == HapticFault::two_writers;
+}
+
+void HapticChannel::latch(HapticFault fault) CELL_RT {
+  if (state_.phase == HapticPhase::faulted) {
+    // The same event, known better.
+    if (fault == HapticFault::vanished && state_.fault == HapticFault::stale) state_.fault = fault;
+    return;
+  }
+  state_.phase = HapticPhase::faulted;
+  state_.fault = fault;
+  ++state_.faults;
+  restart_force();
+}
+
+void HapticChannel::engage(const TickInput& input) CELL_RT {
+  const std::size_t joints = std::min<std::size_t>(instrument_->joint_count, kMaxJointsPerRobot);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double stands = i < input.q.size() && std::isfinite(input.q[i]) ? input.q[i] : posture_.q[i];
+    posture_.q[i] = within_limits(*instrument_, i, stands);
+  }
+  const JointValues values = chain_values(*instrument_, posture_.q);
+  tip_ = TipPosture{};
+  tip_.X_BE = kinematics::forward(instrument_->chain, values, tip_.J);
+  posture_.X_WE = instrument_->X_WB * tip_.X_BE;
+  map_.anchor_orientation(*instrument_, judge_.sample(), posture_);
+  wish_ = map_.wish(*instrument_, judge_.sample(), posture_.q);
+  proxy_.start(posture_.X_WE.translation());
+  judge_.forget_place();  // joints without an axis stand elsewhere than was taken for granted
+  restart_force();
+  state_.phase = HapticPhase::engaging;
+}
+
+// While the clutch is pressed the force leaves as fast as max_slew lets it; when it is let go, the hand is where the
+// instrument is.
+void HapticChannel::work_clutch() CELL_RT {
+  const int button = instrument_->settings.clutch_button;
+  const bool pressed = button >= 0 && button < 32 && (judge_.sample().buttons >> button & 1U) != 0;
+  if (pressed) {
+    state_.phase = HapticPhase::clutched;
+  } else if (state_.phase == HapticPhase::clutched) {
+    map_.anchor(*instrument_, judge_.sample(), posture_);
+    judge_.forget_place();
+    wish_ = map_.wish(*instrument_, judge_.sample(), posture_.q);
+    proxy_.start(posture_.X_WE.translation());
+    restart_force();
+    state_.phase = HapticPhase::engaging;
+  }
+}
+
+bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
+  if (!used()) return false;
+  last_tick_ = input.now;
+  bool fresh = false;
+  const HapticFault fault = look(input, fresh);
+  const bool waiting = state_.phase == HapticPhase::waiting;
+  if (fault != HapticFault::none && (!waiting || counts_while_waiting(fault))) {
+    last_bad_ = input.now;
+    latch(fault);
+  }
+  if (waiting && fault == HapticFault::none && fresh) engage(input);
+  const bool driving = state_.phase != HapticPhase::waiting && state_.phase != HapticPhase::faulted;
+  if (driving) move_and_answer(input);
+  tell();
+  write(input.now, input.period);
+  if (!driving || state_.phase == HapticPhase::faulted) return false;
+  fill(sample);
+  return true;
+}
+
+void HapticChannel::move_and_answer(const TickInput& input) CELL_RT {
+  const HapticSettings& settings = instrument_->settings;
+  const double period = period_of(input);
+  passivity_.observe(wish_.p_handle, held_force_, stored_energy_, passivity_settings(settings), period);
+  work_clutch();
+  ProxyContact contact;
+  if (state_.phase != HapticPhase::clutched) {
+    const Eigen::Vector3d before = proxy_.x();
+    contact = proxy_.follow(models_.model(), wish_.x_WE,
+                            {.at_rest = settings.static_friction, .sliding = settings.dynamic_friction},
+                            settings.max_speed * scale_of(settings) * period);
+    stand_at(before);
+  }
+  if (settings.gripper_joint >= 0 && variable_of(*instrument_, settings.gripper_joint) < 0) {
+    posture_.q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(*instrument_, judge_.sample());
+  }
+  const Eigen::Vector3d force = answer(contact, period);
+  if (passivity_.lost(passivity_settings(settings))) {
+    last_bad_ = input.now;
+    latch(HapticFault::not_passive);
+    return;
+  }
+  held_force_ = force;
+  spread(contact, force);
+  if (state_.phase == HapticPhase::engaging && coupling_.faded_in() >= 1.0 && !proxy_.approaching()) {
+    state_.phase = HapticPhase::active;
+  }
+}
+
+// Brings the instrument to the proxy. Where its joints do not reach, the proxy is where the tip is, unless that is
+// inside of a body.
+void HapticChannel::stand_at(const Eigen::Vector3d& x_before) CELL_RT {
+  const Instrument& instrument = *instrument_;
+  const HapticSettings& settings = instrument.settings;
+  const Pose X_BW = instrument.X_WB.inverse();
+  JointValues q = posture_.q;
+  if (settings.drive == Drive::joints) {
+    q = wish_.q;
+  } else if (settings.gripper_joint >= 0) {
+    q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(instrument, judge_.sample());
+  }
+  JointValues values = chain_values(instrument, q);
+  const JointValues lower = chain_values(instrument, instrument.lower);
+  const JointValues upper = chain_values(instrument, instrument.upper);
+  const int gripper = settings.gripper_joint >= 0 ? variable_of(instrument, settings.gripper_joint) : -1;
+  const TipGoal goal{.p_BE = X_BW * proxy_.x(), .R_BE = X_BW.linear() * wish_.R_WE};
+  const TipPosture tip = solve_tip(
+      instrument.chain, goal, {.lower = lower, .upper = upper, .fixed = gripper >= 0 ? 1U << gripper : 0U}, values);
+  const Pose X_WE = instrument.X_WB * tip.X_BE;
+  const ContactModel* model = models_.model();
+  if (!tip.met) {
+    if (model != nullptr && violation(*model, X_WE.translation()) > violation(*model, x_before) + kTipPlayed) {
+      proxy_.settle_at(x_before);
+      return;
+    }
+    proxy_.settle_at(X_WE.translation());
+  }
+  tip_ = tip;
+  posture_.X_WE = X_WE;
+  for (std::size_t i = 0; i < instrument.chain.variable_count(); ++i) {
+    q[static_cast<std::size_t>(instrument.variable_joint[i])] = values[i];
+  }
+  posture_.q = q;
+}
+
+// The force at the device, in the world's axes.
+Eigen::Vector3d HapticChannel::answer(const ProxyContact& contact, double period) CELL_RT {
+  const HapticSettings& settings = instrument_->settings;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  stored_energy_ = 0;
+  if (state_.phase != HapticPhase::clutched && !proxy_.approaching()) {
+    const CouplingSettings spring{
+        .stiffness = settings.stiffness, .damping = settings.damping, .engage_time = seconds(settings.engage_time)};
+    force = coupling_.force(contact.elongation, contact.normal, spring, period) * settings.force_scale;
+    stored_energy_ = recoverable(contact.elongation.norm(), settings);
+  }
+  force = passivity_.control(force, contact.contacts > 0, passivity_settings(settings), period);
+  force = limit_.limit(force, settings.max_force, settings.max_slew, period);
+  if (limit_.cut()) ++state_.saturated;
+  return force;
+}
+
+// The one force in all the forms in which it is told.
+void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& force_device) CELL_RT {
+  state_.contacts = contact.contacts;
+  state_.passivity_damping = passivity_.damping();
+  if (instrument_ == nullptr || force_device.isZero(0) || instrument_->settings.force_scale <= 0) {
+    state_.force_W.setZero();
+    state_.force_E.setZero();
+    state_.axis_torque = 0;
+    state_.joint_torques = JointValues{};
+    output_.gripper_torque = 0;
+    output_.force_D.setZero();
+    output_.torque_D.setZero();
+    output_.joint_torques = JointValues{};
+    return;
+  }
+  const HapticSettings& settings = instrument_->settings;
+  const double scale = settings.force_scale;
+  state_.force_W = force_device / scale;
+  state_.force_E = posture_.X_WE.linear().transpose() * state_.force_W;
+  const Eigen::Vector3d axis_W = posture_.X_WE.linear().col(2);
+  state_.axis_torque = 0;
+  const ContactModel* model = models_.model();
+  double pressed = 0;
+  for (std::size_t k = 0; model != nullptr && k < contact.held.active_count; ++k) {
+    const ContactConstraint& constraint = model->constraints[contact.held.active[k]];
+    const Eigen::Vector3d lever = constraint.point - model->x_ref;
+    pressed += contact.held.multiplier[k];
+    state_.axis_torque += contact.held.multiplier[k] * lever.cross(constraint.normal).dot(axis_W);
+  }
+  // Cut and faded as the force is.
+  const double elongation = contact.elongation.norm();
+  state_.axis_torque *= pressed > 0 && elongation > 0 ? state_.force_W.norm() / elongation : 0.0;
+  const Eigen::Matrix3d R_BW = instrument_->X_WB.linear().transpose();
+  Eigen::Matrix<double, 6, 1> wrench_B;
+  wrench_B << R_BW * state_.force_W, R_BW * (state_.axis_torque * axis_W);
+  state_.joint_torques = JointValues{};
+  output_.joint_torques = JointValues{};
+  for (std::size_t i = 0; i < instrument_->chain.variable_count(); ++i) {
+    const auto joint = static_cast<std::size_t>(instrument_->variable_joint[i]);
+    state_.joint_torques[joint] = tip_.J.col(static_cast<Eigen::Index>(i)).dot(wrench_B);
+    output_.joint_torques[joint] = state_.joint_torques[joint] * scale;
+  }
+  const Eigen::Matrix3d R_DW = settings.X_WD.linear().transpose();
+  const double torque_scale = scale / scale_of(settings);
+  output_.force_D = R_DW * force_device;
+  output_.torque_D = R_DW * (axis_W * (state_.axis_torque * torque_scale));
+  output_.gripper_torque = 0;
+  if (settings.gripper_joint >= 0) {
+    output_.gripper_torque =
+        state_.joint_torques[static_cast<std::size_t>(settings.gripper_joint)] * settings.gripper_scale * torque_scale;
+  }
+}
+
+void HapticChannel::write(Timestamp now, Nanoseconds period) CELL_RT {
+  ++output_.sequence;
+  output_.time = now;
+  output_.period = period;
+  output_.answers = judge_.sample().sequence;
+  output_.phase = static_cast<std::uint32_t>(state_.phase);
+  output_.fault = static_cast<std::uint32_t>(state_.fault);
+  output_.force_E = state_.force_E;
+  output_.joint_count = instrument_->joint_count;
+  output_.max_force = instrument_->settings.max_force;
+  port_->write(output_);
+}
+
+void HapticChannel::tell() CELL_RT {
+  const HapticSample& sample = judge_.sample();
+  state_.device_sequence = sample.sequence;
+  state_.device_writer = sample.writer;
+  state_.device_time = sample.time;
+  state_.buttons = sample.buttons;
+  state_.samples = judge_.samples();
+  state_.skipped = judge_.skipped();
+  state_.torn = judge_.torn();
+  state_.x_device = wish_.x_WE;
+  state_.x_proxy = proxy_.x();
+  state_.energy = passivity_.energy();
+  state_.model_time = models_.model() != nullptr ? models_.model()->posture_time : Timestamp{};
+}
+
+void HapticChannel::fill(JointSample& sample) const CELL_RT {
+  sample = JointSample{};
+  sample.receive_time = judge_.received();
+  sample.source_time = judge_.sample().time;
+  sample.sequence = judge_.sample().sequence;
+  const std::size_t joints = std::min<std::size_t>(instrument_->joint_count, kMaxJointsPerRobot);
+  sample.present = static_cast<std::uint32_t>((std::uint64_t{1} << joints) - 1);
+  for (std::size_t i = 0; i < joints; ++i) sample.position[i] = within_limits(*instrument_, i, posture_.q[i]);
+}
+
+}  // namespace cellmirror::haptics

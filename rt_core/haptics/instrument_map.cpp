@@ -1,0 +1,93 @@
+#include "rt_core/haptics/instrument_map.hpp"
+
+#include <algorithm>
+
+#include "rt_core/kinematics/forward.hpp"
+
+namespace cellmirror::haptics {
+
+namespace {
+
+// The axes in their order are the joints in theirs; the joint of the gripper has no axis.
+std::size_t joint_of_axis(const Instrument& instrument, std::size_t axis) CELL_RT {
+  const int gripper = instrument.settings.gripper_joint;
+  return gripper >= 0 && axis >= static_cast<std::size_t>(gripper) ? axis + 1 : axis;
+}
+
+Eigen::Matrix3d handle_orientation(const Instrument& instrument, const HapticSample& sample) CELL_RT {
+  return instrument.settings.X_WD.linear() * sample.q_DH.normalized().toRotationMatrix();
+}
+
+}  // namespace
+
+double within_limits(const Instrument& instrument, std::size_t joint, double value) CELL_RT {
+  return std::min(std::max(value, instrument.lower[joint]), instrument.upper[joint]);
+}
+
+double gripper_value(const Instrument& instrument, const HapticSample& sample) CELL_RT {
+  const HapticSettings& settings = instrument.settings;
+  return within_limits(instrument, static_cast<std::size_t>(settings.gripper_joint),
+                       settings.gripper_scale * sample.gripper + settings.gripper_offset);
+}
+
+int variable_of(const Instrument& instrument, int joint) CELL_RT {
+  for (std::size_t i = 0; i < instrument.chain.variable_count(); ++i) {
+    if (instrument.variable_joint[i] == joint) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+JointValues chain_values(const Instrument& instrument, const JointValues& q) CELL_RT {
+  JointValues values{};
+  for (std::size_t i = 0; i < instrument.chain.variable_count(); ++i) {
+    values[i] = q[static_cast<std::size_t>(instrument.variable_joint[i])];
+  }
+  return values;
+}
+
+Wish InstrumentMap::wish(const Instrument& instrument, const HapticSample& sample, const JointValues& q) const CELL_RT {
+  const HapticSettings& settings = instrument.settings;
+  Wish wish;
+  if (settings.drive == Drive::pose) {
+    wish.p_handle = settings.X_WD.linear() * sample.p_DH;
+    wish.x_WE = settings.X_WD.translation() + offset_W_ + settings.workspace_scale * wish.p_handle;
+    wish.R_WE = R_offset_ * handle_orientation(instrument, sample);
+    return wish;
+  }
+  wish.q = q;
+  for (std::size_t axis = 0; axis < sample.axis_count; ++axis) {
+    const std::size_t joint = joint_of_axis(instrument, axis);
+    if (joint >= instrument.joint_count) break;
+    wish.q[joint] = within_limits(instrument, joint, sample.axes[axis] + joint_offset_[joint]);
+  }
+  if (settings.gripper_joint >= 0) {
+    wish.q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(instrument, sample);
+  }
+  const Pose X_WE = instrument.X_WB * kinematics::forward(instrument.chain, chain_values(instrument, wish.q));
+  wish.x_WE = X_WE.translation();
+  wish.R_WE = X_WE.linear();
+  wish.p_handle = wish.x_WE;
+  return wish;
+}
+
+void InstrumentMap::anchor_orientation(const Instrument& instrument, const HapticSample& sample,
+                                       const Posture& posture) CELL_RT {
+  R_offset_ = posture.X_WE.linear() * handle_orientation(instrument, sample).transpose();
+}
+
+void InstrumentMap::anchor(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT {
+  const HapticSettings& settings = instrument.settings;
+  if (settings.drive == Drive::pose) {
+    anchor_orientation(instrument, sample, posture);
+    offset_W_ = posture.X_WE.translation() - settings.X_WD.translation() -
+                settings.workspace_scale * (settings.X_WD.linear() * sample.p_DH);
+    return;
+  }
+  for (std::size_t axis = 0; axis < sample.axis_count; ++axis) {
+    const std::size_t joint = joint_of_axis(instrument, axis);
+    if (joint >= instrument.joint_count) break;
+    joint_offset_[joint] = posture.q[joint] - sample.axes[axis];
+  }
+}
+
+}  // namespace cellmirror::haptics

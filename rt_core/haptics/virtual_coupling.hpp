@@ -1,0 +1,46 @@
+// The spring and damper between hand and proxy, and the limits on what reaches the hand. Forces are those on the hand.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "rt_core/base/real_time.hpp"
+
+namespace cellmirror::haptics {
+
+struct CouplingSettings {
+  double stiffness = 0;    // N/m
+  double damping = 0;      // Ns/m
+  double engage_time = 0;  // s, in which the force fades in
+};
+
+class VirtualCoupling {
+ public:
+  void restart() CELL_RT;
+  // N. `elongation`: from the hand to the proxy (m); `normal`: the unit vector that pushes the hand out, or zero. The
+  // damper never pulls the hand into a surface. `period` in s.
+  Eigen::Vector3d force(const Eigen::Vector3d& elongation, const Eigen::Vector3d& normal,
+                        const CouplingSettings& settings, double period) CELL_RT;
+  // Goes on fading in, by one period.
+  void fade(double engage_time, double period) CELL_RT;
+  [[nodiscard]] double faded_in() const CELL_RT { return share_; }  // 0 to 1
+
+ private:
+  double share_ = 0;
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();  // m/s
+};
+
+// Keeps a force within its length and its rate of change.
+class ForceLimit {
+ public:
+  void restart() CELL_RT { last_.setZero(); }
+  // N, N/s, s. What it gives is what the hand gets until the next tick. A force that is no number becomes zero.
+  Eigen::Vector3d limit(const Eigen::Vector3d& force, double largest, double largest_rate, double period) CELL_RT;
+  [[nodiscard]] bool cut() const CELL_RT { return cut_; }  // in the last tick
+
+ private:
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+  bool cut_ = false;
+};
+
+}  // namespace cellmirror::haptics
