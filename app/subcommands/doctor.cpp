@@ -3,7 +3,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,7 +14,9 @@
 #include <vector>
 
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "ipc/sysv/limits.hpp"
+#include "ipc/sysv/shared_memory_limits.hpp"
 #include "rt_core/rt/memory_lock.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
@@ -82,9 +83,13 @@ Finding receive_buffer_finding() {
 std::vector<Finding> examine() {
   std::vector<Finding> findings = {scheduling_finding(), memory_finding(),    idle_finding(),
                                    can_finding(),        interface_finding(), receive_buffer_finding()};
-  for (const IpcFinding& finding : ipc_findings(read_sysv_limits(), read_remove_ipc())) {
-    findings.push_back({finding.name, finding.value, finding.ok, finding.remedy});
-  }
+  const auto add = [&](const std::vector<IpcFinding>& more) {
+    for (const IpcFinding& finding : more) {
+      findings.push_back({finding.name, finding.value, finding.ok, finding.remedy});
+    }
+  };
+  add(ipc_findings(read_sysv_limits(), read_remove_ipc()));
+  add(shared_memory_findings(read_shared_memory_limits(), read_left_segments(::geteuid())));
   findings.push_back({"GL renderer", "not available yet", true, {}});
   return findings;
 }
@@ -109,11 +114,11 @@ int doctor(bool json) {
 
 }  // namespace
 
-void add_doctor(CLI::App& cli, Action& action) {
+void add_doctor(cli::Command program, Action& action) {
   auto json = std::make_shared<bool>(false);
-  CLI::App* sub = cli.add_subcommand("doctor", "Tell what this machine allows, and how to mend what it does not");
-  sub->add_flag("--json", *json, "one JSON document");
-  sub->callback([json, &action] { action = [json] { return doctor(*json); }; });
+  cli::Command sub = program.subcommand("doctor", "Tell what this machine allows, and how to mend what it does not");
+  sub.flag("--json", *json, "one JSON document");
+  sub.when_named([json, &action] { action = [json] { return doctor(*json); }; });
 }
 
 }  // namespace cellmirror::app
