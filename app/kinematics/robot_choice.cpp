@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 
 #include "config/cell_file.hpp"
+#include "config/command_line/command_line.hpp"
 #include "config/parse.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/text.hpp"
@@ -65,13 +65,13 @@ std::optional<ChosenRobot> robot_of_file(const RobotChoice& choice, Diagnostics&
 
 }  // namespace
 
-void add_robot_options(CLI::App& sub, RobotChoice& choice) {
-  sub.add_option("--urdf", choice.file, "URDF or component file (.mpc)");
-  sub.add_option("--base", choice.base, "link or node in which poses are given");
-  sub.add_option("--tip", choice.tip, "link or node that is moved");
-  sub.add_option("--cell", choice.cell,
-                 "instead of --urdf: a cell file; the base is the robot's ZP frame, the tip its TCP");
-  sub.add_option("--robot", choice.robot, "robot of the cell");
+void add_robot_options(cli::Command sub, RobotChoice& choice) {
+  sub.option("--urdf", choice.file, "URDF or component file (.mpc)");
+  sub.option("--base", choice.base, "link or node in which poses are given");
+  sub.option("--tip", choice.tip, "link or node that is moved");
+  sub.option("--cell", choice.cell,
+             "instead of --urdf: a cell file; the base is the robot's ZP frame, the tip its TCP");
+  sub.option("--robot", choice.robot, "robot of the cell");
 }
 
 std::string misuse(const RobotChoice& choice) {

@@ -9,8 +9,8 @@
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
-namespace CLI {
-class App;
+namespace cellmirror::cli {
+class Command;
 }
 
 namespace cellmirror::app {
@@ -33,7 +33,7 @@ struct ChosenRobot {
 };
 
 // --urdf, --base, --tip, --cell, --robot.
-void add_robot_options(CLI::App& sub, RobotChoice& choice);
+void add_robot_options(cli::Command sub, RobotChoice& choice);
 
 // What is missing or contradicts itself, as one sentence; empty: nothing. Wrong usage.
 [[nodiscard]] std::string misuse(const RobotChoice& choice);

@@ -1,5 +1,4 @@
 // cellmirror check FILE...: all diagnostics of cell files, components, SCRIPT and bus descriptions.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
+#include "config/command_line/command_line.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/lang/reader.hpp"
 
@@ -100,16 +100,16 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& cli, Action& action) {
+void add_check(cli::Command program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* sub = cli.add_subcommand("check", "Check files and print everything that is wrong with them");
-  sub->add_option("files", options->files, ".spt .toml .mpc .urdf .dbc .eds .dcf")->required();
-  sub->add_option("--cell", options->cell, "check the names in SCRIPT files against this cell");
-  sub->add_option("--language", options->language, "language of robot programs (not available yet)")
-      ->check(CLI::IsMember({"irdata", "srcl", "jet_boom", "jet_tarm"}));
-  sub->add_flag("--json", options->json, "one JSON document: errors, warnings, diagnostics");
-  sub->footer("Example: cellmirror check scripts/demo.spt --cell cell.toml");
-  sub->callback([options, &action] { action = [options] { return check(*options); }; });
+  cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
+  sub.option("files", options->files, ".spt .toml .mpc .urdf .dbc .eds .dcf").required();
+  sub.option("--cell", options->cell, "check the names in SCRIPT files against this cell");
+  sub.option("--language", options->language, "language of robot programs (not available yet)")
+      .one_of({"irdata", "srcl", "jet_boom", "jet_tarm"});
+  sub.flag("--json", options->json, "one JSON document: errors, warnings, diagnostics");
+  sub.footer("Example: cellmirror check scripts/demo.spt --cell cell.toml");
+  sub.when_named([options, &action] { action = [options] { return check(*options); }; });
 }
 
 }  // namespace cellmirror::app

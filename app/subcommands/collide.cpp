@@ -1,7 +1,6 @@
 // cellmirror collide: what touches and what is near in a cell, for postures from a file.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +14,7 @@
 #include "app/proximity/proximity_cell.hpp"
 #include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -32,13 +32,10 @@ struct CollideOptions {
 
 constexpr double kLongestWarning = 1e3;  // m
 
-CLI::Validator warning_distance() {
-  const auto check = [](const std::string& text) {
-    const auto value = parse_number(text);
-    if (value && *value >= 0.0 && *value <= kLongestWarning) return std::string{};
-    return fmt::format("{} is no distance from 0 to {:g} m", printable(text), kLongestWarning);
-  };
-  return {check, "M"};
+std::string wrong_warning(const std::string& text) {
+  const auto value = parse_number(text);
+  if (value && *value >= 0.0 && *value <= kLongestWarning) return {};
+  return fmt::format("{} is no distance from 0 to {:g} m", printable(text), kLongestWarning);
 }
 
 // All that was written has to have arrived: a full disk is a failure.
@@ -101,24 +98,24 @@ int collide(const CollideOptions& options) {
 
 }  // namespace
 
-void add_collide(CLI::App& cli, Action& action) {
+void add_collide(cli::Command program, Action& action) {
   auto options = std::make_shared<CollideOptions>();
-  CLI::App* sub = cli.add_subcommand("collide", "Find what touches and what is near in a cell");
-  sub->add_option("--cell", options->cell, "the cell file")->required();
-  auto* postures = sub->add_option("--poses", options->postures,
-                                   "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
-  auto* warning = sub->add_option("--warning", options->warning, "warning distance in m, instead of the cell file's")
-                      ->check(warning_distance());
-  auto* plot = sub->add_option("--plot", options->plot, "draw the smallest distance over the frames: a PNG file");
-  sub->add_flag("--pairs", options->pairs, "only list the pairs: which are tested, and why others are not")
-      ->excludes(postures)
-      ->excludes(warning)
-      ->excludes(plot);
-  sub->add_flag("--json", options->json, "one JSON document (docs/collisions.md)");
-  sub->footer(
+  cli::Command sub = program.subcommand("collide", "Find what touches and what is near in a cell");
+  sub.option("--cell", options->cell, "the cell file").required();
+  auto postures = sub.option("--poses", options->postures,
+                             "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
+  auto warning = sub.option("--warning", options->warning, "warning distance in m, instead of the cell file's")
+                     .check(wrong_warning, "M");
+  auto plot = sub.option("--plot", options->plot, "draw the smallest distance over the frames: a PNG file");
+  sub.flag("--pairs", options->pairs, "only list the pairs: which are tested, and why others are not")
+      .excludes(postures)
+      .excludes(warning)
+      .excludes(plot);
+  sub.flag("--json", options->json, "one JSON document (docs/collisions.md)");
+  sub.footer(
       "Collisions are findings, no failure: the exit status is 0.\n"
       "Example: cellmirror collide --cell config/cells/transfer_cell/cell.toml --poses day.csv --plot day.png");
-  sub->callback([options, &action] { action = [options] { return collide(*options); }; });
+  sub.when_named([options, &action] { action = [options] { return collide(*options); }; });
 }
 
 }  // namespace cellmirror::app

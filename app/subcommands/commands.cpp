@@ -1,10 +1,10 @@
 // cellmirror commands: the table of all SCRIPT commands.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "scripts/lang/command_table.hpp"
 #include "scripts/lang/help.hpp"
 
@@ -30,13 +30,13 @@ int print_commands(const CommandsOptions& options) {
 
 }  // namespace
 
-void add_commands(CLI::App& cli, Action& action) {
+void add_commands(cli::Command program, Action& action) {
   auto options = std::make_shared<CommandsOptions>();
-  CLI::App* sub = cli.add_subcommand("commands", "List the SCRIPT commands, or explain one");
-  auto* name = sub->add_option("name", options->name, "the command to explain, e.g. POS_ROB");
-  sub->add_flag("--json", options->json, "one JSON document with the whole table")->excludes(name);
-  sub->footer("Example: cellmirror commands POS_ROB");
-  sub->callback([options, &action] { action = [options] { return print_commands(*options); }; });
+  cli::Command sub = program.subcommand("commands", "List the SCRIPT commands, or explain one");
+  auto name = sub.option("name", options->name, "the command to explain, e.g. POS_ROB");
+  sub.flag("--json", options->json, "one JSON document with the whole table").excludes(name);
+  sub.footer("Example: cellmirror commands POS_ROB");
+  sub.when_named([options, &action] { action = [options] { return print_commands(*options); }; });
 }
 
 }  // namespace cellmirror::app

@@ -1,7 +1,6 @@
 // cellmirror fk: where the tip is at given joint values.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 
 #include "app/kinematics/robot_choice.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "rt_core/base/units.hpp"
 #include "rt_core/kinematics/forward.hpp"
 
@@ -116,18 +116,16 @@ int show(const FkOptions& options) {
 
 }  // namespace
 
-void add_fk(CLI::App& cli, Action& action) {
+void add_fk(cli::Command program, Action& action) {
   auto options = std::make_shared<FkOptions>();
-  CLI::App* sub = cli.add_subcommand("fk", "Compute where the tip is at given joint values (forward kinematics)");
-  add_robot_options(*sub, options->robot);
-  sub->add_option("--joints", options->joints, "'q1 q2 ...': a value a joint, rad or m")->required();
-  sub->add_flag("--jacobian", options->jacobian, "the Jacobian too");
-  sub->add_flag("--json", options->json, "one JSON document (docs/kinematics.md)");
-  sub->footer("Example: cellmirror fk --urdf arm.urdf --base base_link --tip tool0 --joints '0 0.5 1 0 0.5 0'");
-  sub->callback([options, &action] {
-    if (const std::string wrong = misuse(options->robot); !wrong.empty()) throw CLI::ValidationError("fk", wrong);
-    action = [options] { return show(*options); };
-  });
+  cli::Command sub = program.subcommand("fk", "Compute where the tip is at given joint values (forward kinematics)");
+  add_robot_options(sub, options->robot);
+  sub.option("--joints", options->joints, "'q1 q2 ...': a value a joint, rad or m").required();
+  sub.flag("--jacobian", options->jacobian, "the Jacobian too");
+  sub.flag("--json", options->json, "one JSON document (docs/kinematics.md)");
+  sub.footer("Example: cellmirror fk --urdf arm.urdf --base base_link --tip tool0 --joints '0 0.5 1 0 0.5 0'");
+  sub.when_named([options, &action] { action = [options] { return show(*options); }; },
+                 [options] { return misuse(options->robot); });
 }
 
 }  // namespace cellmirror::app

@@ -1,6 +1,5 @@
 // cellmirror ik: joint values for poses of the tip, and how well and how fast they are found.
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "app/kinematics/targets.hpp"
 #include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "config/target_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/text.hpp"
@@ -59,35 +59,36 @@ std::optional<InverseClass> class_of(const std::string& name) {
   return std::nullopt;
 }
 
-// A number above zero up to `most`; CLI11's own range takes nan.
-CLI::Validator positive_up_to(double most) {
-  const auto check = [most](const std::string& text) {
+// A number above zero up to `most`; a range of the command line takes nan.
+void above_zero(cli::Option option, double most) {
+  const auto wrong = [most](const std::string& text) {
     const auto value = parse_number(text);
     if (value && *value > 0.0 && *value <= most) return std::string{};
     return fmt::format("{} is no number above 0 up to {:g}", printable(text), most);
   };
-  return {check, fmt::format("(0..{:g}]", most)};
+  option.check(wrong, fmt::format("(0..{:g}]", most));
 }
 
-CLI::Validator count_up_to(std::size_t most) {
-  const auto check = [most](const std::string& text) {
-    const auto value = parse_integer(text);
-    if (value && *value >= 1 && *value <= static_cast<long long>(most)) return std::string{};
-    return fmt::format("{} is no count from 1 to {}", printable(text), most);
-  };
-  return {check, fmt::format("1..{}", most)};
+std::string wrong_count(const std::string& text) {
+  const auto value = parse_integer(text);
+  if (value && *value >= 1 && *value <= static_cast<long long>(kMaxTargets)) return {};
+  return fmt::format("{} is no count from 1 to {}", printable(text), kMaxTargets);
 }
 
-CLI::Validator class_name() {
-  const auto check = [](const std::string& text) {
-    if (class_of(text)) return std::string{};
-    std::vector<std::string> names;
-    for (const script::Choice& choice : classes()) names.emplace_back(choice.word);
-    std::string hint = did_you_mean(text, names);
-    if (hint.empty()) hint = "cellmirror commands rob_inverse_class lists them";
-    return fmt::format("there is no class {}; {}", printable(text), hint);
-  };
-  return {check, "CLASS"};
+std::string wrong_class(const std::string& text) {
+  if (class_of(text)) return {};
+  std::vector<std::string> names;
+  for (const script::Choice& choice : classes()) names.emplace_back(choice.word);
+  std::string hint = did_you_mean(text, names);
+  if (hint.empty()) hint = "cellmirror commands rob_inverse_class lists them";
+  return fmt::format("there is no class {}; {}", printable(text), hint);
+}
+
+// What the options have to do with each other; empty: all is well.
+std::string wrong_usage(const IkOptions& options) {
+  if (std::string wrong = misuse(options.robot); !wrong.empty()) return wrong;
+  if (options.samples || !options.targets.empty()) return {};
+  return "there are no targets; name a file (--targets F.csv) or a count (--samples N)";
 }
 
 Method method_of(const std::string& name) {
@@ -172,39 +173,30 @@ int solve(const IkOptions& options) {
 
 }  // namespace
 
-void add_ik(CLI::App& cli, Action& action) {
+void add_ik(cli::Command program, Action& action) {
   auto options = std::make_shared<IkOptions>();
-  CLI::App* sub = cli.add_subcommand("ik", "Find joint values for poses of the tip (inverse kinematics)");
-  add_robot_options(*sub, options->robot);
-  auto* targets = sub->add_option("--targets", options->targets,
-                                  "CSV of targets: header px,py,pz,qx,qy,qz,qw; tip in base, m, unit quaternion");
-  auto* samples = sub->add_option("--samples", options->samples, "draw so many reachable targets at random")
-                      ->check(count_up_to(kMaxTargets))
-                      ->excludes(targets);
-  sub->add_option("--seed", options->seed, "of the drawing")->capture_default_str()->needs(samples);
-  sub->add_option("--timeout-ms", options->timeout_ms, "time limit a target")
-      ->capture_default_str()
-      ->check(positive_up_to(kLongestTimeout));
-  sub->add_option("--tol", options->tolerance, "bound of each component of the error: m, rad")
-      ->capture_default_str()
-      ->check(positive_up_to(kWidestTolerance));
-  sub->add_option("--method", options->method, "auto, ipopt or fast")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "ipopt", "fast"}));
-  sub->add_option("--class", options->class_name, "what has to be met, as in rob_inverse_class (default: align_FRAME)")
-      ->check(class_name());
-  sub->add_option("--seed-joints", options->start,
-                  "'q1 q2 ...': where the search starts, rad or m (default: middle of the range)");
-  sub->add_flag("--all", options->all, "several solutions a target");
-  sub->add_option("--plot", options->plot, "draw the distributions of times and errors: a PNG file");
-  sub->add_flag("--json", options->json, "one JSON document (docs/kinematics.md)");
-  sub->footer("Example: cellmirror ik --urdf arm.urdf --base base_link --tip tool0 --samples 1000 --plot arm.png");
-  sub->callback([options, &action] {
-    if (const std::string wrong = misuse(options->robot); !wrong.empty()) throw CLI::ValidationError("ik", wrong);
-    if (!options->samples && options->targets.empty())
-      throw CLI::ValidationError("ik", "there are no targets; name a file (--targets F.csv) or a count (--samples N)");
-    action = [options] { return solve(*options); };
-  });
+  cli::Command sub = program.subcommand("ik", "Find joint values for poses of the tip (inverse kinematics)");
+  add_robot_options(sub, options->robot);
+  auto targets = sub.option("--targets", options->targets,
+                            "CSV of targets: header px,py,pz,qx,qy,qz,qw; tip in base, m, unit quaternion");
+  auto samples = sub.option("--samples", options->samples, "draw so many reachable targets at random")
+                     .check(wrong_count, fmt::format("1..{}", kMaxTargets))
+                     .excludes(targets);
+  sub.option("--seed", options->seed, "of the drawing").show_default().needs(samples);
+  above_zero(sub.option("--timeout-ms", options->timeout_ms, "time limit a target").show_default(), kLongestTimeout);
+  above_zero(sub.option("--tol", options->tolerance, "bound of each component of the error: m, rad").show_default(),
+             kWidestTolerance);
+  sub.option("--method", options->method, "auto, ipopt or fast").show_default().one_of({"auto", "ipopt", "fast"});
+  sub.option("--class", options->class_name, "what has to be met, as in rob_inverse_class (default: align_FRAME)")
+      .check(wrong_class, "CLASS");
+  sub.option("--seed-joints", options->start,
+             "'q1 q2 ...': where the search starts, rad or m (default: middle of the range)");
+  sub.flag("--all", options->all, "several solutions a target");
+  sub.option("--plot", options->plot, "draw the distributions of times and errors: a PNG file");
+  sub.flag("--json", options->json, "one JSON document (docs/kinematics.md)");
+  sub.footer("Example: cellmirror ik --urdf arm.urdf --base base_link --tip tool0 --samples 1000 --plot arm.png");
+  sub.when_named([options, &action] { action = [options] { return solve(*options); }; },
+                 [options] { return wrong_usage(*options); });
 }
 
 }  // namespace cellmirror::app

@@ -1,19 +1,18 @@
 // Formatted output to a stream. What cannot be written is told by ferror() in the end: fmt::print() would throw.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdio>
-#include <iterator>
-#include <utility>
 
 namespace cellmirror::app {
 
+// put() with its arguments bundled. The formatting itself stays out of the header: it takes seconds to compile.
+void put_bundled(std::FILE* out, fmt::string_view text, fmt::format_args args);
+
 template <class... Args>
 void put(std::FILE* out, fmt::format_string<Args...> text, Args&&... args) {
-  fmt::memory_buffer line;
-  fmt::format_to(std::back_inserter(line), text, std::forward<Args>(args)...);
-  std::fwrite(line.data(), 1, line.size(), out);
+  put_bundled(out, text, fmt::make_format_args(args...));
 }
 
 }  // namespace cellmirror::app

@@ -1,5 +1,4 @@
 // cellmirror range: what the ultrasonic sensors of a cell read, for postures from a file.
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include "app/proximity/range_run.hpp"
 #include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 
 namespace cellmirror::app {
 
@@ -62,18 +62,18 @@ int range(const RangeOptions& options) {
 
 }  // namespace
 
-void add_range(CLI::App& cli, Action& action) {
+void add_range(cli::Command program, Action& action) {
   auto options = std::make_shared<RangeOptions>();
-  CLI::App* sub = cli.add_subcommand("range", "Read the ultrasonic sensors of a cell");
-  sub->add_option("--cell", options->cell, "the cell file")->required();
-  sub->add_option("--poses", options->postures,
-                  "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
-  sub->add_option("--plot", options->plot, "draw the readings over the frames: a PNG file");
-  sub->add_flag("--json", options->json, "one JSON document (docs/ranging.md)");
-  sub->footer(
+  cli::Command sub = program.subcommand("range", "Read the ultrasonic sensors of a cell");
+  sub.option("--cell", options->cell, "the cell file").required();
+  sub.option("--poses", options->postures,
+             "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
+  sub.option("--plot", options->plot, "draw the readings over the frames: a PNG file");
+  sub.flag("--json", options->json, "one JSON document (docs/ranging.md)");
+  sub.footer(
       "All sensors of the cell are read, also those that are not active.\n"
       "Example: cellmirror range --cell config/cells/transfer_cell/cell.toml");
-  sub->callback([options, &action] { action = [options] { return range(*options); }; });
+  sub.when_named([options, &action] { action = [options] { return range(*options); }; });
 }
 
 }  // namespace cellmirror::app

@@ -1,5 +1,4 @@
 // cellmirror run CELL.toml: the gateway until it is told to end.
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +9,7 @@
 #include "app/gateway/gateway.hpp"
 #include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
@@ -18,6 +18,7 @@ namespace {
 
 struct RunOptions {
   GatewayOptions gateway;
+  std::string cell;
   std::string script;
   double rate_hz = 0;
   double seconds = 0;  // 0: until a signal
@@ -59,6 +60,7 @@ int run(const RunOptions& options) {
   if (options.port != 0) return refuse("the monitor page is not available yet; leave out --port");
   const sigset_t signals = block_end_signals();
   GatewayOptions gateway_options = options.gateway;
+  gateway_options.cell_file = options.cell;
   if (!options.script.empty()) gateway_options.startup_script = options.script;
   if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
   std::optional<ProgressLine> line("files loaded");
@@ -74,23 +76,20 @@ int run(const RunOptions& options) {
 
 }  // namespace
 
-void add_run(CLI::App& cli, Action& action) {
+void add_run(cli::Command program, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* sub = cli.add_subcommand("run", "Start the gateway of a cell; Ctrl-C ends it");
-  sub->add_option("cell", options->gateway.cell_file, "the cell file, e.g. config/cells/transfer_cell/cell.toml")
-      ->required();
-  sub->add_option("--script", options->script, "startup SCRIPT, instead of the cell file's own");
-  sub->add_option("--for", options->seconds, "end after so many seconds")->check(CLI::PositiveNumber);
-  sub->add_option("--rate", options->rate_hz, "periods of the loop a second, 100 to 4000")
-      ->check(CLI::Range(100.0, 4000.0));
-  auto* port = sub->add_option("--port", options->port, "port of the monitor page (not available yet)")
-                   ->check(CLI::Range(1, 65535));
-  sub->add_flag("--no-web", options->no_web, "without the monitor page")->excludes(port);
-  sub->add_flag("--headless", options->headless, "without pictures");
-  sub->add_option("--instance", options->gateway.instance, "name of this gateway where several run beside each other");
-  sub->add_flag("--verbose", options->verbose, "log what is going on");
-  sub->footer("Example: cellmirror run config/cells/transfer_cell/cell.toml --for 60 --instance test");
-  sub->callback([options, &action] { action = [options] { return run(*options); }; });
+  cli::Command sub = program.subcommand("run", "Start the gateway of a cell; Ctrl-C ends it");
+  sub.option("cell", options->cell, "the cell file, e.g. config/cells/transfer_cell/cell.toml").required();
+  sub.option("--script", options->script, "startup SCRIPT, instead of the cell file's own");
+  sub.option("--for", options->seconds, "end after so many seconds").positive();
+  sub.option("--rate", options->rate_hz, "periods of the loop a second, 100 to 4000").between(100.0, 4000.0);
+  auto port = sub.option("--port", options->port, "port of the monitor page (not available yet)").between(1, 65535);
+  sub.flag("--no-web", options->no_web, "without the monitor page").excludes(port);
+  sub.flag("--headless", options->headless, "without pictures");
+  sub.option("--instance", options->gateway.instance, "name of this gateway where several run beside each other");
+  sub.flag("--verbose", options->verbose, "log what is going on");
+  sub.footer("Example: cellmirror run config/cells/transfer_cell/cell.toml --for 60 --instance test");
+  sub.when_named([options, &action] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace cellmirror::app

@@ -1,5 +1,4 @@
 // cellmirror send 'COMMAND': one SCRIPT command by message, with its acknowledgement.
-#include <CLI/CLI.hpp>
 #include <cctype>
 #include <cstdio>
 #include <memory>
@@ -7,6 +6,7 @@
 #include <string_view>
 
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/sysv/script_client.hpp"
 #include "rt_core/base/text.hpp"
@@ -44,17 +44,15 @@ int send(const SendOptions& options) {
 
 }  // namespace
 
-void add_send(CLI::App& cli, Action& action) {
+void add_send(cli::Command program, Action& action) {
   auto options = std::make_shared<SendOptions>();
-  CLI::App* sub =
-      cli.add_subcommand("send", "Send one SCRIPT command to the running gateway and print its acknowledgement");
-  sub->add_option("command", options->command, "the command, in quotes")->required();
-  sub->add_option("--timeout", options->timeout_s, "seconds to wait for the acknowledgement")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  sub->add_option("--instance", options->instance, "name of the gateway")->capture_default_str();
-  sub->footer("Example: cellmirror send 'ROBOT PUMA_762 online'\nList of commands: cellmirror commands");
-  sub->callback([options, &action] { action = [options] { return send(*options); }; });
+  cli::Command sub =
+      program.subcommand("send", "Send one SCRIPT command to the running gateway and print its acknowledgement");
+  sub.option("command", options->command, "the command, in quotes").required();
+  sub.option("--timeout", options->timeout_s, "seconds to wait for the acknowledgement").positive().show_default();
+  sub.option("--instance", options->instance, "name of the gateway").show_default();
+  sub.footer("Example: cellmirror send 'ROBOT PUMA_762 online'\nList of commands: cellmirror commands");
+  sub.when_named([options, &action] { action = [options] { return send(*options); }; });
 }
 
 }  // namespace cellmirror::app

@@ -1,7 +1,6 @@
 // cellmirror status: what the running gateway does now.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
 #include <memory>
@@ -9,6 +8,7 @@
 
 #include "app/subcommands/status_table.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/instance.hpp"
 
@@ -59,14 +59,14 @@ int show(const StatusOptions& options) {
 
 }  // namespace
 
-void add_status(CLI::App& cli, Action& action) {
+void add_status(cli::Command program, Action& action) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* sub = cli.add_subcommand("status", "Show what the running gateway does now");
-  auto* json = sub->add_flag("--json", options->json, "one JSON document (docs/status.md)");
-  sub->add_flag("--watch", options->watch, "refresh every second until Ctrl-C")->excludes(json);
-  sub->add_option("--instance", options->instance, "name of the gateway")->capture_default_str();
-  sub->footer("Example: cellmirror status --json | jq '.robots[] | {id, mode}'");
-  sub->callback([options, &action] { action = [options] { return show(*options); }; });
+  cli::Command sub = program.subcommand("status", "Show what the running gateway does now");
+  auto json = sub.flag("--json", options->json, "one JSON document (docs/status.md)");
+  sub.flag("--watch", options->watch, "refresh every second until Ctrl-C").excludes(json);
+  sub.option("--instance", options->instance, "name of the gateway").show_default();
+  sub.footer("Example: cellmirror status --json | jq '.robots[] | {id, mode}'");
+  sub.when_named([options, &action] { action = [options] { return show(*options); }; });
 }
 
 }  // namespace cellmirror::app

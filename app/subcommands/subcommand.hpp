@@ -5,28 +5,28 @@
 #include <functional>
 #include <string>
 
-namespace CLI {
-class App;
+namespace cellmirror::cli {
+class Command;
 }
 
 namespace cellmirror::app {
 
 inline constexpr int kExitDone = 0;     // done
 inline constexpr int kExitRefused = 1;  // refused or failed, with a message on standard error
-inline constexpr int kExitUsage = 2;    // wrong usage
+// 2 is wrong usage: cli::kExitWrongUsage.
 
 using Action = std::function<int()>;
 
-void add_run(CLI::App& cli, Action& action);
-void add_send(CLI::App& cli, Action& action);
-void add_status(CLI::App& cli, Action& action);
-void add_check(CLI::App& cli, Action& action);
-void add_commands(CLI::App& cli, Action& action);
-void add_doctor(CLI::App& cli, Action& action);
-void add_fk(CLI::App& cli, Action& action);
-void add_ik(CLI::App& cli, Action& action);
-void add_collide(CLI::App& cli, Action& action);
-void add_range(CLI::App& cli, Action& action);
+void add_run(cli::Command program, Action& action);
+void add_send(cli::Command program, Action& action);
+void add_status(cli::Command program, Action& action);
+void add_check(cli::Command program, Action& action);
+void add_commands(cli::Command program, Action& action);
+void add_doctor(cli::Command program, Action& action);
+void add_fk(cli::Command program, Action& action);
+void add_ik(cli::Command program, Action& action);
+void add_collide(cli::Command program, Action& action);
+void add_range(cli::Command program, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.
 int refuse(const std::string& what);

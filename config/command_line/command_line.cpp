@@ -105,9 +105,11 @@ void Command::require_subcommand() { app_->require_subcommand(1); }
 
 void Command::footer(const std::string& text) { app_->footer(text); }
 
-void Command::when_named(std::function<std::string()> action) {
-  app_->callback([name = app_->get_name(), action = std::move(action)] {
-    if (const std::string wrong = action(); !wrong.empty()) throw CLI::ValidationError(name, wrong);
+void Command::when_named(std::function<void()> action, std::function<std::string()> wrong) {
+  app_->callback([name = app_->get_name(), action = std::move(action), wrong = std::move(wrong)] {
+    if (const std::string sentence = wrong ? wrong() : std::string{}; !sentence.empty())
+      throw CLI::ValidationError(name, sentence);
+    action();
   });
 }
 

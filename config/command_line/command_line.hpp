@@ -71,8 +71,9 @@ class Command {
   // One of the subcommands has to be named.
   void require_subcommand();
   void footer(const std::string& text);
-  // Called after everything was read, where this command was named. A sentence that is given back is wrong usage.
-  void when_named(std::function<std::string()> action);
+  // Called after everything was read, where this command was named. Before it `wrong`, where given: a sentence that it
+  // gives back is wrong usage, and nothing is wrong where it is empty.
+  void when_named(std::function<void()> action, std::function<std::string()> wrong = {});
   [[nodiscard]] bool named() const;
 
  protected:
