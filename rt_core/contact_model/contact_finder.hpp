@@ -11,24 +11,37 @@
 namespace cellmirror::contact_model {
 
 struct FinderSettings {
-  double reach_m = 0.02;  // what is farther from the instrument than this is left out
+  double reach_m = 0.01;  // the tip's way that a model is good for, at most: a metre a second for 10 ms
+  // A gap is zero where the surfaces are still so far apart: there is a direction between them then.
+  double margin_m = 2e-5;
 };
 
-// One thread. No heap memory in steady state.
+struct FinderCounters {
+  std::uint64_t models = 0;
+  std::uint64_t uncertain = 0;
+  std::uint64_t short_reach = 0;  // models with less reach than asked for: too much is near
+  std::uint64_t overlaps = 0;     // models with something deeper inside than the skin of a capsule
+};
+
+// One thread. No heap memory in steady state (but where bodies overlap deeply).
 class ContactFinder {
  public:
   // `slot`: the instrument's robot. Its bodies are what its joints move, with all that is attached; the surroundings
   // are all other bodies with which the pair table tests them (so the trocar that guides a shaft is left out by a
   // rule).
-  ContactFinder(std::shared_ptr<geometry::SolidLibrary> solids, std::size_t slot, const FinderSettings& settings);
+  ContactFinder(std::size_t slot, const FinderSettings& settings);
   ~ContactFinder();
   ContactFinder(const ContactFinder&) = delete;
   ContactFinder& operator=(const ContactFinder&) = delete;
 
+  // The cell has changed, or its pairs. Takes time for meshes that were not met before (some ms for thousands of
+  // triangles).
   void adopt(std::shared_ptr<const CompiledCell> cell, std::shared_ptr<const collision::PairTable> pairs);
-  // In the posture `poses`, which is that of the instrument at joint values `q` (all joints of its robot). The nearest
-  // kMaxConstraints, nearest first, spread so that several on the same flat face do not crowd out others.
-  void find(const CellPoses& poses, std::span<const double> q, Timestamp posture_time, haptics::ContactModel& out);
+  // The constraints in the posture `poses` of the adopted cell: the nearest first, without those that others imply
+  // (selection.hpp). Without an adopted cell, and where its robot is gone: none, and not certain.
+  void find(const CellPoses& poses, Timestamp posture_time, haptics::ContactModel& out);
+
+  [[nodiscard]] const FinderCounters& counters() const;
 
  private:
   struct State;
