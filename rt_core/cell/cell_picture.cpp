@@ -101,9 +101,24 @@ class Picture {
     if (node.kind() == NodeKind::camera)
       cell_->cameras.push_back({node.name, here, node.camera.focal_distance_m, node.camera.fovy_rad});
     if (node.kind() == NodeKind::sensor) cell_->sensors.push_back({node.name, here, node.sensor});
+    if (there(id)) {
+      add_inertia(here, node.definition->inertia);
+      if (node.content) add_inertia(here, node.content->inertia);
+    }
     if (cell_->visible.back() == 0) return;
     add_geometry(node, here, node.declared_in, node.definition->geometry);
     if (node.content) add_geometry(node, here, node.content, node.content->geometry);
+  }
+
+  [[nodiscard]] bool there(NodeId id) const {
+    for (NodeId up = id; up != kNoNode; up = state_.at(up).parent) {
+      if (state_.at(up).shown == Shown::hidden) return false;
+    }
+    return true;
+  }
+
+  void add_inertia(std::int32_t here, const BodyInertia& inertia) {
+    if (inertia.mass_kg != 0.0 || !inertia.I_C.isZero(0.0)) cell_->inertia.push_back({here, inertia});
   }
 
   void add_joint(const Node& node) {
@@ -139,7 +154,10 @@ class Picture {
       compiled.slot = robot->slot();
       compiled.joint_names = robot->joint_names();
       compiled.joint_kinds.assign(robot->joint_kinds().begin(), robot->joint_kinds().end());
-      for (const RobotJoint& joint : robot->joints()) compiled.joint_nodes.push_back(index(joint.node));
+      for (const RobotJoint& joint : robot->joints()) {
+        compiled.joint_nodes.push_back(index(joint.node));
+        compiled.drives.push_back(joint.drive);
+      }
       compiled.min_range = robot->parameters().min_range;
       compiled.max_range = robot->parameters().max_range;
       compiled.start_position = robot->parameters().start_position;

@@ -35,6 +35,7 @@ struct CompiledRobot {
   std::size_t slot = 0;
   std::vector<std::string> joint_names;  // bare names, in the order of the file
   std::vector<JointKind> joint_kinds;
+  std::vector<JointDrive> drives;
   JointValues min_range{};  // rad or m; what SCRIPT's parameters say at this revision
   JointValues max_range{};
   JointValues start_position{};
@@ -64,6 +65,11 @@ struct CompiledGeometry {
   std::shared_ptr<const Geometry> geometry;
 };
 
+struct CompiledInertia {
+  std::int32_t node = 0;
+  BodyInertia inertia;
+};
+
 // Arrays are indexed by node. Parents stand before their children; nodes that no joint can move stand first.
 struct CompiledCell {
   std::uint64_t revision = 0;
@@ -79,7 +85,10 @@ struct CompiledCell {
   std::array<std::int16_t, kMaxRobots> robot_of_slot{};  // into `robots`, -1: none
   std::vector<CompiledCamera> cameras;
   std::vector<CompiledSensor> sensors;
-  std::vector<CompiledGeometry> geometry;                 // what is visible, coarse geometry included
+  std::vector<CompiledGeometry> geometry;  // what is visible, coarse geometry included
+  // Of what is there: not hidden (DEACTIVATE), by itself or with what it is named within. A part that is shown coarsely
+  // weighs what it weighs in detail. A node may have two: its own and that of its component's root.
+  std::vector<CompiledInertia> inertia;
   std::shared_ptr<const std::vector<std::string>> paths;  // full dotted paths; shared as long as the tree stays
 
   [[nodiscard]] std::size_t size() const { return parent.size(); }

@@ -11,6 +11,7 @@
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
+#include "rt_core/ports/robot_state.hpp"
 
 namespace cellmirror {
 
@@ -35,10 +36,15 @@ struct ForceLimits {      // SET_TORQUE_LIMIT; 0: no limit
 };
 
 struct JointForce {
-  double effort = 0;      // Nm or N, joint side, computed
-  double max_effort = 0;  // 0: not known
+  std::string name;
+  JointKind kind = JointKind::revolute;
+  double position = 0;      // rad or m
+  double velocity = 0;      // rad/s or m/s; zero where the data of a mirrored robot is too old
+  double acceleration = 0;  // rad/s2 or m/s2, filtered
+  double effort = 0;        // Nm or N, joint side, computed: of the drive, friction and rotor included
+  double max_effort = 0;    // 0: not known
   bool beyond_limit = false;
-  Wrench wrench_J;  // what the part before the joint bears, at its origin, in its frame
+  Wrench wrench_J;  // what the part before the joint gives to the part behind it, at its origin, in its frame
   Pose X_WJ = Pose::Identity();
   Eigen::Vector3d axis_J = Eigen::Vector3d::UnitZ();
 };
@@ -46,7 +52,9 @@ struct JointForce {
 struct RobotForces {
   std::string id;
   std::uint8_t slot = 0;
-  double payload_kg = 0;  // beside the model's own: what is attached
+  bool computed = false;  // false: only the force at its TCP is known
+  double model_kg = 0;    // of what its joints move, by its own model
+  double payload_kg = 0;  // of what is attached beside
   std::vector<JointForce> joints;
   Wrench tcp_T;  // of the surroundings on the TCP, in its frame: of a haptic instrument's contact; else zero
   Pose X_WT = Pose::Identity();
