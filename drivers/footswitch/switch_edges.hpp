@@ -13,27 +13,34 @@ namespace cellmirror::footswitch {
 struct SwitchEdge {
   std::uint32_t input = 0;  // from 1, as in BININP1: bit 0 of the first byte
   bool on = false;
-  Timestamp time;  // when the bit changed, before debouncing
+  Timestamp time;      // when the bit was first seen changed
+  Timestamp not_told;  // the look before the one that told it: how late it is told at most
 };
 
-// A change counts at once when the bit was quiet for `debounce` before it; further changes within `debounce` are
-// bounces: when that time is over the bit's state counts, and where it is another one than the last that was told, that
-// is told. Inputs are on their first state without a change.
+// A change counts at once where the bit was quiet for `debounce` before it. Further changes are bounces until the bit
+// has been quiet for `debounce`; then its state counts, and where it is another one than the last that was told, that
+// is told. So the changes of an input that are told alternate, and its last state is told at the latest `debounce`
+// after it came. Inputs begin in the state of the first look, without a change.
 class SwitchEdges {
  public:
   SwitchEdges(std::size_t bytes, Nanoseconds debounce);
-  // Appends the changes, lower inputs first. `bytes`: a copy of the buffer.
+  // Appends the changes, lower inputs first. `bytes`: a copy of the buffer; what is shorter than the buffer leaves the
+  // rest as it was. `now` never goes back. Room for 16 changes a byte keeps `edges` from allocating.
   void look(std::span<const std::uint8_t> bytes, Timestamp now, std::vector<SwitchEdge>& edges);
   [[nodiscard]] std::uint64_t bounces() const { return bounces_; }
+  // As they were told last; bit 0 of the first byte is input 1.
+  [[nodiscard]] std::span<const std::uint8_t> told() const { return told_; }
 
  private:
-  struct Input {
-    bool seen = false;
-    bool told = false;
-    Timestamp quiet_since;
-  };
-  std::vector<Input> inputs_;
+  void look_at_input(std::size_t byte, unsigned bit, bool raw, Timestamp now, std::vector<SwitchEdge>& edges);
+  void tell(std::size_t byte, unsigned bit, bool on, Timestamp time, std::vector<SwitchEdge>& edges);
+
+  std::vector<std::uint8_t> seen_;      // as of the last look
+  std::vector<std::uint8_t> told_;      // what counts
+  std::vector<std::uint8_t> settling_;  // changed within the last `debounce`
+  std::vector<Timestamp> changed_at_;   // of each input
   Nanoseconds debounce_;
+  Timestamp last_look_;
   std::uint64_t bounces_ = 0;
   bool started_ = false;
 };

@@ -48,6 +48,7 @@ class ScriptRun {
   bool waiting = false;                            // in WAIT
   ActivityHandle activity;                         // not null: of the last command, which is done when this has ended
   Place activity_place;
+  Timestamp first_command;
   RunReport report;
 };
 

@@ -171,10 +171,12 @@ void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
     ++counters_.file.received;
     if (step == CommandReader::Step::command) {
       execute_command(run);
+      note_first_command(run);
       continue;
     }
     refuse(run, findings);
     findings = {};
+    note_first_command(run);
   }
 }
 
@@ -241,10 +243,16 @@ void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
   for (const Diagnostic& diagnostic : findings.all()) remember(diagnostic);
 }
 
+void ScriptRunner::note_first_command(ScriptRun& run) {
+  if (!run.first_command.known()) run.first_command = clock_.now();
+}
+
 void ScriptRunner::end_run(std::size_t index, bool stopped) {
   const std::unique_ptr<ScriptRun> run = std::move(runs_[index]);
   runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(index));
   ++counters_.scripts_ended;
+  ended_.emplace_back(run->report.id, RunProgress{true, run->report.counters, run->first_command});
+  if (ended_.size() > kMaxRuns) ended_.pop_front();
   run->report.stopped = stopped;
   if (run_ended_) run_ended_(run->report);
 }
@@ -254,6 +262,19 @@ bool ScriptRunner::stop(std::uint64_t id) {
   if (found == runs_.end()) return false;
   end_run(static_cast<std::size_t>(found - runs_.begin()), true);
   return true;
+}
+
+void ScriptRunner::give_turn(std::uint64_t id) {
+  const auto found = std::find_if(runs_.begin(), runs_.end(), [id](const auto& run) { return run->report.id == id; });
+  if (found != runs_.end()) next_run_ = static_cast<std::size_t>(found - runs_.begin());
+}
+
+RunProgress ScriptRunner::progress(std::uint64_t id) const {
+  const auto run = std::find_if(runs_.begin(), runs_.end(), [id](const auto& r) { return r->report.id == id; });
+  if (run != runs_.end()) return {false, (*run)->report.counters, (*run)->first_command};
+  const auto ended = std::find_if(ended_.begin(), ended_.end(), [id](const auto& entry) { return entry.first == id; });
+  if (ended != ended_.end()) return ended->second;
+  return {true, {}, {}};
 }
 
 void ScriptRunner::stop_all() {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rt_core/base/diagnostics.hpp"
@@ -63,6 +64,13 @@ struct RunStatus {
   bool waiting = false;            // in WAIT, or for a robot to arrive
 };
 
+// What has come of a run so far. A run that has ended is remembered until others have ended too (kMaxRuns of them).
+struct RunProgress {
+  bool ended = false;
+  SourceCounters counters;
+  Timestamp first_command;  // when it had been executed; never: none yet, or the script has none
+};
+
 class ScriptRunner {
  public:
   static constexpr std::size_t kMaxRuns = 32;                        // side by side
@@ -70,7 +78,7 @@ class ScriptRunner {
   static constexpr std::size_t kKeptErrors = 20;                     // last_errors
   static constexpr std::size_t kSlice = 64;                          // commands of one run before the next has its turn
 
-  // The host, the home and the clock must outlive the runner. The clock only dates errors.
+  // The host, the home and the clock must outlive the runner. The clock dates errors and first commands.
   ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock);
   ~ScriptRunner();
   ScriptRunner(const ScriptRunner&) = delete;
@@ -101,6 +109,12 @@ class ScriptRunner {
   [[nodiscard]] std::vector<RunStatus> runs() const;
   // Ends a run, or all of them, before their next command; with all of them, messages that wait are refused.
   bool stop(std::uint64_t id);
+  // The run is the next one to execute commands.
+  void give_turn(std::uint64_t id);
+  // Of a run that is under way, or has ended not long ago; unknown ones have ended.
+  [[nodiscard]] RunProgress progress(std::uint64_t id) const;
+  // No other file can be started.
+  [[nodiscard]] bool full() const { return runs_.size() == kMaxRuns; }
   void stop_all();
 
   [[nodiscard]] const ScriptCounters& counters() const { return counters_; }
@@ -126,6 +140,7 @@ class ScriptRunner {
   std::size_t answer_messages();
   void refuse_waiting_messages();
   void end_run(std::size_t index, bool stopped);
+  void note_first_command(ScriptRun& run);
   void remember(const Diagnostic& diagnostic);
 
   CommandHost host_;
@@ -140,6 +155,7 @@ class ScriptRunner {
 
   std::vector<std::unique_ptr<ScriptRun>> runs_;
   std::vector<WaitingMessage> waiting_messages_;
+  std::deque<std::pair<std::uint64_t, RunProgress>> ended_;  // newest last
   std::size_t next_run_ = 0;
   std::size_t work_ = 0;              // done in this step
   std::size_t ended_activities_ = 0;  // in this step

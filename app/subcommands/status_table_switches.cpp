@@ -1,0 +1,65 @@
+#include "app/subcommands/status_table_switches.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace cellmirror::app {
+
+namespace {
+
+using nlohmann::json;
+
+std::uint64_t count(const json& value) { return value.get<std::uint64_t>(); }
+
+std::string milliseconds(const json& number) {
+  return number.is_number() ? fmt::format("{:.2f}", number.get<double>()) : std::string("-");
+}
+
+std::string script_line(const json& switches) {
+  const json& scripts = switches.at("scripts");
+  std::string out =
+      fmt::format("  scripts: {} run, {} wait", count(scripts.at("started")), count(scripts.at("waiting")));
+  for (const char* what : {"missing", "refused", "dropped", "with_errors"}) {
+    if (count(scripts.at(what)) > 0) out += fmt::format(", {} {}", count(scripts.at(what)), what);
+  }
+  const json& last = switches.at("last_script");
+  if (last.is_object()) {
+    out += fmt::format("; last {} {:.1f} s ago{}", last.at("file").get<std::string>(), last.at("age_s").get<double>(),
+                       last.at("running").get<bool>() ? ", running" : "");
+  }
+  const json& first = switches.at("first_command_ms");
+  out += fmt::format("; first command after p50 {} p99 {} ms\n", milliseconds(first.at("p50")),
+                     milliseconds(first.at("p99")));
+  return out;
+}
+
+std::string inputs_text(const json& inputs) {
+  if (inputs.empty()) return "none";
+  std::string out;
+  for (const json& input : inputs) out += fmt::format("{}{}", out.empty() ? "" : " ", count(input));
+  return out;
+}
+
+}  // namespace
+
+std::string switches_table(const json& status) {
+  if (!status.contains("foot_switches")) return {};
+  const json& switches = status.at("foot_switches");
+  if (!switches.at("key").is_number()) return {};
+  const bool online = switches.at("online").get<bool>();
+  std::string out =
+      fmt::format("\nfoot switches  {}, key {}, {} inputs, {} attached", online ? "online" : "offline",
+                  count(switches.at("key")), count(switches.at("inputs")), count(switches.at("attached")));
+  if (online) out += fmt::format("; on: {}", inputs_text(switches.at("inputs_on")));
+  out += fmt::format("; {} changes, {} bounces", count(switches.at("edges")), count(switches.at("bounces")));
+  if (count(switches.at("edges_dropped")) > 0) out += fmt::format(", {} dropped", count(switches.at("edges_dropped")));
+  out += "\n" + script_line(switches);
+  for (const json& file : switches.at("missing_files"))
+    out += fmt::format("  there is no scripts/{}\n", file.get<std::string>());
+  const std::string trouble = switches.at("trouble").get<std::string>();
+  if (!trouble.empty()) out += fmt::format("  trouble: {}\n", trouble);
+  return out;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,12 @@
+// The part of `cellmirror status` about foot switches.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace cellmirror::app {
+
+// Empty where no memory of foot switches was named.
+[[nodiscard]] std::string switches_table(const nlohmann::json& status);
+
+}  // namespace cellmirror::app

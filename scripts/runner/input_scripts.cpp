@@ -1,0 +1,83 @@
+#include "scripts/runner/input_scripts.hpp"
+
+#include <fmt/format.h>
+
+#include "rt_core/base/log.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+constexpr std::string_view kLogKind = "foot-switches";
+
+}  // namespace
+
+std::string input_script_name(std::uint32_t input, bool on) {
+  return fmt::format("BININP{}_{}.spt", input, on ? "ON" : "OFF");
+}
+
+bool InputScripts::add(const InputChange& change) {
+  ++counters_.changes;
+  if (waiting_.size() == kMostWaiting) {
+    ++counters_.dropped;
+    log_warning(kLogKind, "{} does not run: {} changes wait already", input_script_name(change.input, change.on),
+                kMostWaiting);
+    return false;
+  }
+  waiting_.push_back(change);
+  return true;
+}
+
+void InputScripts::forget() {
+  counters_.dropped += waiting_.size();
+  waiting_.clear();
+}
+
+bool InputScripts::follow() {
+  look_at_run();
+  while (run_ == 0 && !waiting_.empty() && !runner_.full()) {
+    const InputChange change = waiting_.front();
+    waiting_.pop_front();
+    if (start(change)) return true;
+  }
+  return false;
+}
+
+void InputScripts::look_at_run() {
+  if (run_ == 0) return;
+  const RunProgress progress = runner_.progress(run_);
+  if (since_.known() && progress.first_command.known()) {
+    if (first_command_) first_command_(progress.first_command - since_);
+    since_ = Timestamp{};
+  }
+  last_.refused = progress.counters.refused;
+  if (!progress.ended) return;
+  if (progress.counters.refused > 0) ++counters_.with_errors;
+  last_.running = false;
+  run_ = 0;
+}
+
+bool InputScripts::start(const InputChange& change) {
+  const std::string name = input_script_name(change.input, change.on);
+  if (const auto path = home_.file("scripts", name); !path) {
+    ++counters_.missing;
+    if (told_missing_.insert(name).second) log_warning(kLogKind, "{} (said once)", path.error().text());
+    return false;
+  }
+  told_missing_.erase(name);
+  last_ = {name, clock_.now(), false, 0};
+  const auto id = runner_.start_file(name);
+  if (!id) {
+    ++counters_.refused;
+    log_warning(kLogKind, "{} does not run: {}", name, id.error().text());
+    return false;
+  }
+  ++counters_.started;
+  last_.running = true;
+  run_ = *id;
+  since_ = change.since;
+  runner_.give_turn(run_);
+  return true;
+}
+
+}  // namespace cellmirror::script
