@@ -29,7 +29,10 @@ set(CELLMIRROR_LAYERS
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
-  "sim_devices: sim_devices rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
+  "sim_devices/base: rt_core/base ipc/sysv"
+  "sim_devices/haptic: sim_devices/haptic sim_devices/base rt_core/base rt_core/ports ipc/wire ipc/sysv config/command_line"
+  "sim_devices/footswitch: sim_devices/footswitch sim_devices/base rt_core/base ipc/sysv config/command_line"
+  "sim_devices: sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "app/plot: rt_core/base"
   "app: *"
   "tests: *")
@@ -38,7 +41,7 @@ set(CELLMIRROR_LAYERS
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model
   rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
-  sim_devices app/plot app tests)
+  sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

@@ -10,7 +10,7 @@
 
 #include "sim_devices/faults/fault_spec.hpp"
 #include "sim_devices/faults/message.hpp"
-#include "sim_devices/faults/random.hpp"
+#include "sim_devices/base/random.hpp"
 
 namespace cellmirror::sim {
 

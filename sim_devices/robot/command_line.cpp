@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "config/command_line/command_line.hpp"
 #include "sim_devices/motion/motion_source.hpp"
 #include "sim_devices/robot/options.hpp"
 
@@ -23,94 +22,81 @@ constexpr const char* kFooter =
     "  sim_robot motions          all motions\n"
     "  sim_robot commands         what can be told to a running sim_robot\n";
 
-void add_common(CLI::App& app, CommonOptions& options) {
-  app.add_option("--rate", options.rate_hz, "samples a second and robot")
-      ->check(CLI::Range(0.01, 10000.0))
-      ->capture_default_str();
-  app.add_option("--robots", options.robots, "how many robots")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--first-robot", options.first_robot, "number of the first robot")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("--motion", options.motion,
-                 "hold, ramp, sine, waypoints:FILE.csv, recorded:FILE.csv; see `sim_robot motions`")
-      ->capture_default_str();
-  app.add_option("--fault", options.faults,
-                 "KIND[:key=value,...][@START..END], may be repeated; see `sim_robot faults`")
-      ->allow_extra_args(false);
-  app.add_option("--seed", options.seed, "of all chance")->capture_default_str();
-  app.add_option("--for", options.for_s, "end after so many seconds; 0: run until quit or a signal")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
-  app.add_option("--control", options.control, "a FIFO to read commands from, or the path of a Unix socket to make");
-  app.add_flag("--no-input", options.no_input, "take no commands from standard input");
-  app.add_option("--priority", options.priority, "SCHED_FIFO priority of the sending threads, where allowed")
-      ->check(CLI::Range(0, 98));
-  app.add_flag("--json", options.json, "print the report as JSON on standard output at the end");
-  app.add_flag("-q,--quiet", options.quiet, "only errors");
-  app.add_flag("-v,--verbose", options.verbose, "what the drivers log as well");
+void add_common(cli::Command app, CommonOptions& options) {
+  app.option("--rate", options.rate_hz, "samples a second and robot").between(0.01, 10000.0).show_default();
+  app.option("--robots", options.robots, "how many robots").between(1, 64).show_default();
+  app.option("--first-robot", options.first_robot, "number of the first robot").between(1, 64).show_default();
+  app.option("--motion", options.motion,
+             "hold, ramp, sine, waypoints:FILE.csv, recorded:FILE.csv; see `sim_robot motions`")
+      .show_default();
+  app.option("--fault", options.faults, "KIND[:key=value,...][@START..END], may be repeated; see `sim_robot faults`")
+      .one_value_each();
+  app.option("--seed", options.seed, "of all chance").show_default();
+  app.option("--for", options.for_s, "end after so many seconds; 0: run until quit or a signal")
+      .between(0.0, 1e9)
+      .show_default();
+  app.option("--control", options.control, "a FIFO to read commands from, or the path of a Unix socket to make");
+  app.flag("--no-input", options.no_input, "take no commands from standard input");
+  app.option("--priority", options.priority, "SCHED_FIFO priority of the sending threads, where allowed")
+      .between(0, 98);
+  app.flag("--json", options.json, "print the report as JSON on standard output at the end");
+  app.flag("-q,--quiet", options.quiet, "only errors");
+  app.flag("-v,--verbose", options.verbose, "what the drivers log as well");
 }
 
-void add_cia402(CLI::App& app, Cia402Options& options) {
-  app.add_option("--channel", options.channels,
-                 "socketcan:IF or udp:GROUP:PORT; when repeated, the robots are dealt out over the channels")
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  app.add_option("--interface", options.interface, "udp: the network interface")->capture_default_str();
-  app.add_option("--nodes", options.nodes,
-                 "node ids of the first robot's joints, e.g. 1-6 or 1,2,5; "
-                 "each further robot on the channel has the ids that follow")
-      ->capture_default_str();
-  app.add_flag("--sync,!--no-sync", options.sync, "send TPDOs with each SYNC instead of by the event timer");
-  app.add_option("--sync-producer", options.sync_producer_hz, "produce SYNC so often a second")
-      ->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--increments-per-rad", options.increments,
-                 "increments of object 0x6064 for a rad (or m); "
-                 "one value, or one a joint; negative turns it round")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--heartbeat", options.heartbeat_ms, "heartbeat period in ms; 0: none")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str();
-  app.add_flag("--self-starting", options.self_starting, "operational at once, without an NMT start");
-  app.add_flag("--with-velocity", options.with_velocity, "TPDO2 with velocity and torque");
-  app.add_flag("--follow", options.follow, "move as commanded over the bus instead of by --motion");
+void add_cia402(cli::Command app, Cia402Options& options) {
+  app.option("--channel", options.channels,
+             "socketcan:IF or udp:GROUP:PORT; when repeated, the robots are dealt out over the channels")
+      .one_value_each()
+      .show_default();
+  app.option("--interface", options.interface, "udp: the network interface").show_default();
+  app.option("--nodes", options.nodes,
+             "node ids of the first robot's joints, e.g. 1-6 or 1,2,5; "
+             "each further robot on the channel has the ids that follow")
+      .show_default();
+  app.flag("--sync,!--no-sync", options.sync, "send TPDOs with each SYNC instead of by the event timer");
+  app.option("--sync-producer", options.sync_producer_hz, "produce SYNC so often a second").between(0.0, 10000.0);
+  app.option("--increments-per-rad", options.increments,
+             "increments of object 0x6064 for a rad (or m); "
+             "one value, or one a joint; negative turns it round")
+      .list_divided_by(',')
+      .show_default();
+  app.option("--heartbeat", options.heartbeat_ms, "heartbeat period in ms; 0: none").between(0, 65535).show_default();
+  app.flag("--self-starting", options.self_starting, "operational at once, without an NMT start");
+  app.flag("--with-velocity", options.with_velocity, "TPDO2 with velocity and torque");
+  app.flag("--follow", options.follow, "move as commanded over the bus instead of by --motion");
 }
 
-void add_dbc(CLI::App& app, DbcOptions& options) {
-  app.add_option("--channel", options.channel, "socketcan:IF or udp:GROUP:PORT")->capture_default_str();
-  app.add_option("--interface", options.interface, "udp: the network interface")->capture_default_str();
-  app.add_option("--dbc", options.file, "the DBC file")->required();
-  app.add_option("--position", options.positions, "MESSAGE.SIGNAL of each joint, comma separated")
-      ->delimiter(',')
-      ->required();
-  app.add_option("--velocity", options.velocities, "MESSAGE.SIGNAL of each joint's velocity")->delimiter(',');
-  app.add_option("--effort", options.efforts, "MESSAGE.SIGNAL of each joint's effort")->delimiter(',');
-  app.add_option("--units-per-rad", options.units_per_rad,
-                 "the DBC's physical units for a rad (or m), e.g. 57.29578 for deg")
-      ->capture_default_str();
+void add_dbc(cli::Command app, DbcOptions& options) {
+  app.option("--channel", options.channel, "socketcan:IF or udp:GROUP:PORT").show_default();
+  app.option("--interface", options.interface, "udp: the network interface").show_default();
+  app.option("--dbc", options.file, "the DBC file").required();
+  app.option("--position", options.positions, "MESSAGE.SIGNAL of each joint, comma separated")
+      .list_divided_by(',')
+      .required();
+  app.option("--velocity", options.velocities, "MESSAGE.SIGNAL of each joint's velocity").list_divided_by(',');
+  app.option("--effort", options.efforts, "MESSAGE.SIGNAL of each joint's effort").list_divided_by(',');
+  app.option("--units-per-rad", options.units_per_rad,
+             "the DBC's physical units for a rad (or m), e.g. 57.29578 for deg")
+      .show_default();
 }
 
-void add_dds(CLI::App& app, DdsOptions& options) {
-  app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
-  app.add_option("--interface-address", options.interface_address, "IPv4 address of the network interface")
-      ->capture_default_str();
-  app.add_option("--topic", options.topic, "DDS topic; with {}: a topic a robot, {} is its number")
-      ->capture_default_str();
-  app.add_option("--joint-names", options.joint_names, "a,b,c")->delimiter(',');
-  app.add_option("--joints", options.joints, "without --joint-names: joint_1, joint_2, ...")
-      ->check(CLI::Range(1, 128))
-      ->capture_default_str();
-  app.add_option("--prefix", options.prefix,
-                 "before each joint name; {} is the robot's number "
-                 "(default: none for one robot, robot{}_ for several on one topic)");
-  app.add_flag("--best-effort", options.best_effort, "instead of reliable");
-  app.add_flag("--no-stamp", options.no_stamp, "header.stamp stays zero");
-  app.add_option("--spread", options.spread, "send the robots of a period in so many groups, evenly spread")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("--wait-for-reader", options.wait_for_reader_s,
-                 "wait so many seconds at most for a reader, then start")
-      ->check(CLI::Range(0.0, 3600.0));
+void add_dds(cli::Command app, DdsOptions& options) {
+  app.option("--domain", options.domain, "DDS domain").between(0, 232).show_default();
+  app.option("--interface-address", options.interface_address, "IPv4 address of the network interface").show_default();
+  app.option("--topic", options.topic, "DDS topic; with {}: a topic a robot, {} is its number").show_default();
+  app.option("--joint-names", options.joint_names, "a,b,c").list_divided_by(',');
+  app.option("--joints", options.joints, "without --joint-names: joint_1, joint_2, ...").between(1, 128).show_default();
+  app.option("--prefix", options.prefix,
+             "before each joint name; {} is the robot's number "
+             "(default: none for one robot, robot{}_ for several on one topic)");
+  app.flag("--best-effort", options.best_effort, "instead of reliable");
+  app.flag("--no-stamp", options.no_stamp, "header.stamp stays zero");
+  app.option("--spread", options.spread, "send the robots of a period in so many groups, evenly spread")
+      .between(1, 64)
+      .show_default();
+  app.option("--wait-for-reader", options.wait_for_reader_s, "wait so many seconds at most for a reader, then start")
+      .between(0.0, 3600.0);
 }
 
 ParsedCommandLine refused(int exit_code, const std::string& message) {
@@ -140,42 +126,38 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   Cia402Options cia402_options;
   DbcOptions dbc_options;
   DdsOptions dds_options;
-  CLI::App app("sim_robot stands in for a robot controller, with every fault on demand.");
-  app.require_subcommand(1);
-  app.footer(kFooter);
-  CLI::App* cia402 = app.add_subcommand("cia402", "drives of CiA 402 on CAN, one a joint");
-  CLI::App* dbc = app.add_subcommand("dbc", "signals of a DBC file on CAN");
-  CLI::App* dds = app.add_subcommand("dds", "ROS 2 JointState on DDS");
-  CLI::App* faults = app.add_subcommand("faults", "print all faults and their keys");
-  CLI::App* motions = app.add_subcommand("motions", "print all motions");
-  CLI::App* commands = app.add_subcommand("commands", "print what can be told to a running sim_robot");
-  add_common(*cia402, common);
-  add_cia402(*cia402, cia402_options);
-  add_common(*dbc, common);
-  add_dbc(*dbc, dbc_options);
-  add_common(*dds, common);
-  add_dds(*dds, dds_options);
-  for (CLI::App* sub : {cia402, dbc, dds}) sub->footer(kFooter);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return {app.exit(error) == 0 ? 0 : 2, {}};
-  }
-  if (faults->parsed() || motions->parsed() || commands->parsed()) {
-    fmt::print("{}", faults->parsed() ? fault_help() : motions->parsed() ? motion_help() : control_help());
+  cli::CommandLine program("sim_robot stands in for a robot controller, with every fault on demand.");
+  program.require_subcommand();
+  program.footer(kFooter);
+  cli::Command cia402 = program.subcommand("cia402", "drives of CiA 402 on CAN, one a joint");
+  cli::Command dbc = program.subcommand("dbc", "signals of a DBC file on CAN");
+  cli::Command dds = program.subcommand("dds", "ROS 2 JointState on DDS");
+  cli::Command faults = program.subcommand("faults", "print all faults and their keys");
+  cli::Command motions = program.subcommand("motions", "print all motions");
+  cli::Command commands = program.subcommand("commands", "print what can be told to a running sim_robot");
+  add_common(cia402, common);
+  add_cia402(cia402, cia402_options);
+  add_common(dbc, common);
+  add_dbc(dbc, dbc_options);
+  add_common(dds, common);
+  add_dds(dds, dds_options);
+  for (cli::Command sub : {cia402, dbc, dds}) sub.footer(kFooter);
+  if (const std::optional<int> status = program.parse(argc, argv)) return {status, {}};
+  if (faults.named() || motions.named() || commands.named()) {
+    fmt::print("{}", faults.named() ? fault_help() : motions.named() ? motion_help() : control_help());
     return {0, {}};
   }
   auto fault_specs = read_faults(common.faults);
   if (!fault_specs) return refused(2, fault_specs.error().text());
-  auto built = cia402->parsed() ? build_cia402(common, cia402_options)
-               : dbc->parsed()  ? build_dbc(common, dbc_options)
-                                : build_dds(common, dds_options);
+  auto built = cia402.named() ? build_cia402(common, cia402_options)
+               : dbc.named()  ? build_dbc(common, dbc_options)
+                              : build_dds(common, dds_options);
   if (!built) return refused(built.error().exit_code, built.error().error.text());
   Job job;
   job.devices = std::move(built->devices);
   job.readers = std::move(built->readers);
   job.wait_for_reader_s = dds_options.wait_for_reader_s;
-  job.runner.kind = cia402->parsed() ? "cia402" : dbc->parsed() ? "dbc" : "dds";
+  job.runner.kind = cia402.named() ? "cia402" : dbc.named() ? "dbc" : "dds";
   job.runner.faults = std::move(*fault_specs);
   if (common.for_s > 0) job.runner.seconds = common.for_s;
   job.runner.control_path = common.control;

@@ -12,7 +12,7 @@
 #include "sim_devices/faults/can_traits.hpp"
 #include "sim_devices/motion/motion_source.hpp"
 #include "sim_devices/robot/device.hpp"
-#include "sim_devices/robot/pacer.hpp"
+#include "sim_devices/base/pacer.hpp"
 
 namespace cellmirror::sim {
 

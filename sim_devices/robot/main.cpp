@@ -5,7 +5,7 @@
 
 #include "rt_core/base/log.hpp"
 #include "sim_devices/robot/command_line.hpp"
-#include "sim_devices/robot/pacer.hpp"
+#include "sim_devices/base/pacer.hpp"
 
 namespace {
 

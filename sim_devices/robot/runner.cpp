@@ -1,9 +1,6 @@
 #include "sim_devices/robot/runner.hpp"
 
 #include <fmt/format.h>
-#include <pthread.h>
-#include <sched.h>
-#include <sys/prctl.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,32 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sim_devices/base/process.hpp"
+
 namespace cellmirror::sim {
 namespace {
-
-volatile std::sig_atomic_t g_signalled = 0;
-
-void on_signal(int) { g_signalled = 1; }
-
-void install_signal_handlers() {
-  struct sigaction action{};
-  action.sa_handler = on_signal;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGTTIN, SIG_IGN);  // in the background of a terminal, standard input is simply not there
-}
-
-void become_punctual(int priority) {
-  prctl(PR_SET_TIMERSLACK, 1UL);
-  if (priority <= 0) return;
-  sched_param parameters{};
-  parameters.sched_priority = priority;
-  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) != 0) {
-    fmt::print(stderr, "sim_robot: no SCHED_FIFO for this user; sending with ordinary priority\n");
-  }
-}
 
 nlohmann::ordered_json counts(const DeviceStatus& status) {
   nlohmann::ordered_json sent;
@@ -88,6 +63,7 @@ Result<std::unique_ptr<Runner>> Runner::make(RunnerConfig config,
                                              std::vector<std::unique_ptr<SimulatedDevice>> devices) {
   std::unique_ptr<Runner> runner(new Runner(std::move(config)));
   install_signal_handlers();
+  std::signal(SIGTTIN, SIG_IGN);  // in the background of a terminal, standard input is simply not there
   for (auto& device : devices) {
     runner->seats_.push_back(std::make_unique<Seat>());
     runner->seats_.back()->device = std::move(device);
@@ -111,7 +87,7 @@ void Runner::run() {
     seat->device->start(started_);
     seat->thread = std::thread([this, &seat] { work(*seat); });
   }
-  while (!quit_ && g_signalled == 0) {
+  while (!quit_ && !signalled()) {
     const Nanoseconds left = ends_ - clock_.now();
     if (left.count() <= 0) break;
     // Rounded up, and often enough to see a signal that came between the test and the wait.
@@ -123,7 +99,9 @@ void Runner::run() {
 }
 
 void Runner::work(Seat& seat) {
-  become_punctual(config_.priority);
+  if (!become_punctual(config_.priority)) {
+    fmt::print(stderr, "sim_robot: no SCHED_FIFO for this user; sending with ordinary priority\n");
+  }
   constexpr Nanoseconds kLongestWait{20'000'000};  // so that commands and the end are seen
   while (!seat.stop) {
     Timestamp next;

@@ -4,7 +4,7 @@
 
 #include "sim_devices/faults/fault_spec.hpp"
 #include "sim_devices/robot/control_command.hpp"
-#include "sim_devices/robot/pacer.hpp"
+#include "sim_devices/base/pacer.hpp"
 
 namespace cellmirror::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim_devices/robot/pacer.hpp"
+#include "sim_devices/base/pacer.hpp"
 
 #include <ctime>
 

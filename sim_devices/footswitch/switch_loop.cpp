@@ -1,0 +1,126 @@
+#include "sim_devices/footswitch/switch_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <limits>
+#include <system_error>
+
+#include "sim_devices/base/pacer.hpp"
+#include "sim_devices/base/process.hpp"
+#include "sim_devices/footswitch/switch_bits.hpp"
+
+namespace cellmirror::sim {
+namespace {
+
+constexpr Nanoseconds kNap{20'000'000};
+
+Nanoseconds from_seconds(double s) { return Nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
+
+}  // namespace
+
+std::string to_json(const FootSwitchSummary& s) {
+  return fmt::format(
+      R"({{"device":"foot switches","duration_s":{:.3f},"waited_s":{:.3f},"attachments":{},"changes":{},"bounces":{},"left_out":{},"latest_us":{:.1f}}})",
+      s.duration_s, s.waited_s, s.attachments, s.changes, s.bounces, s.left_out, s.latest_us);
+}
+
+SwitchLoop::SwitchLoop(FootSwitchOptions options)
+    : options_(std::move(options)), seeker_(options_.key, options_.bytes, false) {}
+
+SwitchLoop::~SwitchLoop() {
+  if (log_ != nullptr) std::fclose(log_);
+}
+
+Result<std::unique_ptr<SwitchLoop>> SwitchLoop::make(FootSwitchOptions options) {
+  std::unique_ptr<SwitchLoop> loop(new SwitchLoop(std::move(options)));
+  if (loop->options_.log.empty()) return loop;
+  loop->log_ = std::fopen(loop->options_.log.c_str(), "w");
+  if (loop->log_ == nullptr) {
+    return fail(fmt::format("--log {}: {}", loop->options_.log, std::generic_category().message(errno)),
+                "name a file in a folder that you may write to");
+  }
+  fmt::print(loop->log_, "time_ns,input,on,bounce\n");
+  return loop;
+}
+
+bool SwitchLoop::wait_for_memory() {
+  const Timestamp begin = clock_.now();
+  bool told = options_.quiet;
+  while (!seeker_.look(clock_.now())) {
+    const double waited = seconds(clock_.now() - begin);
+    if (signalled() || (options_.wait_s > 0 && waited > options_.wait_s)) {
+      fmt::print(stderr, "sim_footswitch: {}\n", seeker_.reason());
+      return false;
+    }
+    if (!told && waited > 1) {
+      fmt::print(stderr, "sim_footswitch: waiting: {}\n", seeker_.reason());
+      told = true;
+    }
+    sleep_until(clock_.now() + kNap);
+  }
+  summary_.waited_s = seconds(clock_.now() - begin);
+  return true;
+}
+
+void SwitchLoop::wait_until(Timestamp t) {
+  while (!signalled()) {
+    const Timestamp now = clock_.now();
+    if (now >= t) return;
+    static_cast<void>(seeker_.look(now));
+    sleep_until(std::min(t, now + kNap));
+  }
+}
+
+bool SwitchLoop::run() {
+  if (!become_punctual(options_.priority)) {
+    fmt::print(stderr, "sim_footswitch: no SCHED_FIFO for this user; going on with ordinary priority\n");
+  }
+  if (!wait_for_memory()) return false;
+  const Timestamp started = clock_.now();
+  const std::vector<SwitchChange>& plan = options_.plan;
+  for (std::size_t i = 0; i < plan.size() && !signalled();) {
+    std::size_t end = i;
+    while (end < plan.size() && plan[end].at_s == plan[i].at_s) ++end;
+    const Timestamp due = started + from_seconds(plan[i].at_s);
+    wait_until(due);
+    if (!signalled()) put(std::span(plan).subspan(i, end - i), due);
+    i = end;
+  }
+  const Timestamp last =
+      options_.for_s < 0 ? Timestamp{std::numeric_limits<std::int64_t>::max()} : started + from_seconds(options_.for_s);
+  wait_until(last);
+  release();
+  summary_.attachments = seeker_.attachments();
+  summary_.duration_s = seconds(clock_.now() - started);
+  return true;
+}
+
+// A foot that goes away presses nothing any more: what it held, and after a signal whatever it was about to open.
+void SwitchLoop::release() {
+  std::vector<std::uint32_t> inputs = options_.holds;
+  if (signalled()) {
+    for (const SwitchChange& change : options_.plan) inputs.push_back(change.input);
+  }
+  std::ranges::sort(inputs);
+  const auto same = std::ranges::unique(inputs);
+  inputs.erase(same.begin(), same.end());
+  std::vector<SwitchChange> open;
+  for (const std::uint32_t input : inputs) open.push_back({0, input, false, false});
+  if (!open.empty()) put(open, clock_.now());
+}
+
+void SwitchLoop::put(std::span<const SwitchChange> changes, Timestamp due) {
+  const Timestamp now = clock_.now();
+  summary_.latest_us = std::max(summary_.latest_us, 1e6 * seconds(now - due));
+  summary_.left_out += put_switches(seeker_.memory(), changes);
+  for (const SwitchChange& change : changes) {
+    ++(change.bounce ? summary_.bounces : summary_.changes);
+    if (log_ != nullptr) {
+      fmt::print(log_, "{},{},{},{}\n", now.ns, change.input, change.on ? 1 : 0, change.bounce ? 1 : 0);
+    }
+  }
+}
+
+}  // namespace cellmirror::sim

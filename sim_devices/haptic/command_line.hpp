@@ -1,0 +1,18 @@
+// The command line of sim_haptic. Its names are a contract with scripts and tests.
+#pragma once
+
+#include <optional>
+
+#include "sim_devices/haptic/options.hpp"
+
+namespace cellmirror::sim {
+
+// exit_code is set where there is nothing to run: help was printed (0), or the arguments do not fit (2). Messages are
+// printed here.
+struct ParsedHaptic {
+  std::optional<int> exit_code;
+  HapticOptions options;
+};
+[[nodiscard]] ParsedHaptic parse_haptic_command_line(int argc, const char* const* argv);
+
+}  // namespace cellmirror::sim

@@ -1,0 +1,60 @@
+#include "sim_devices/haptic/second_writer.hpp"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <bit>
+#include <csignal>
+
+#include "ipc/wire/haptic_block.hpp"
+#include "sim_devices/base/pacer.hpp"
+
+namespace cellmirror::sim {
+namespace {
+
+// The copy of a process with threads may only do what a signal handler may: memory, clock and sleep.
+[[noreturn]] void write_on(std::span<std::byte> memory, HapticSample sample, Nanoseconds period, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const SystemClock clock;
+  sample.writer = static_cast<std::uint32_t>(::getpid());
+  Pacer pacer(clock.now() + period / 2, period);
+  while (::getppid() == parent) {
+    sleep_until(pacer.next());
+    const Timestamp now = clock.now();
+    pacer.advance(now);
+    ++sample.sequence;
+    sample.time = now;
+    write_haptic_sample(memory, sample);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+void SecondWriter::begin(std::span<std::byte> memory, const HapticSample& sample, Nanoseconds period) {
+  if (runs()) return;
+  const pid_t parent = ::getpid();
+  child_ = ::fork();
+  if (child_ == 0) write_on(memory, sample, period, parent);
+}
+
+void SecondWriter::end() {
+  if (!runs()) return;
+  ::kill(child_, SIGKILL);
+  ::waitpid(child_, nullptr, 0);
+  child_ = -1;
+}
+
+void tear(std::span<std::byte> memory) {
+  if (memory.size() < haptic_block_offset::kSize) return;
+  const auto word = [&](std::size_t offset) {
+    return std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(memory.data() + offset));
+  };
+  word(haptic_block_offset::kDeviceLock).fetch_or(1);
+  word(haptic_block_offset::kDeviceSequence).fetch_add(1);
+  word(haptic_block_offset::kPosition).store(std::bit_cast<std::uint64_t>(1.0));
+}
+
+}  // namespace cellmirror::sim
