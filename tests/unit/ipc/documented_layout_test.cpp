@@ -1,10 +1,7 @@
 // docs/messages.md, docs/examples/cellmirror_messages.h and the codec tell the same offsets.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <map>
-#include <sstream>
+#include <initializer_list>
 #include <string>
 
 #include "docs/examples/cellmirror_messages.h"
@@ -13,6 +10,7 @@
 #include "ipc/wire/robot_record.hpp"
 #include "ipc/wire/script_message.hpp"
 #include "rt_core/ports/stream_config.hpp"
+#include "tests/unit/ipc/documented_table.hpp"
 
 namespace cellmirror {
 namespace {
@@ -24,54 +22,10 @@ namespace ranges = range_array_offset;
 namespace proximity = proximity_record_offset;
 namespace event = event_record_offset;
 
-struct Row {
-  std::size_t offset;
-  std::string type;
-};
-using Table = std::map<std::string, Row>;  // by name
+using test::DocumentedField;
 
-// The table behind the heading "### `title`".
-Table documented(const std::string& title) {
-  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
-  std::ifstream in(std::string(source == nullptr ? "." : source) + "/docs/messages.md");
-  EXPECT_TRUE(in) << "docs/messages.md is missing; CELLMIRROR_SOURCE_DIR names the sources";
-  Table table;
-  std::string line;
-  bool here = false;
-  while (std::getline(in, line)) {
-    if (line.starts_with("#")) here = line == "### " + title;
-    // "| offset | type | name | ..."; the heading and the rule below it begin otherwise.
-    std::istringstream words(here ? line : "");
-    std::size_t offset = 0;
-    std::string bar[4];
-    std::string type;
-    std::string name;
-    if (words >> bar[0] >> offset >> bar[1] >> type >> bar[2] >> name >> bar[3] && bar[3] == "|") {
-      table[name] = {offset, type};
-    }
-  }
-  return table;
-}
-
-struct Field {
-  const char* name;
-  const char* type;
-  std::size_t codec;
-  std::size_t in_struct;
-  std::size_t macro;
-};
-
-void expect_agreement(const std::string& title, std::initializer_list<Field> fields) {
-  const Table table = documented(title);
-  EXPECT_EQ(table.size(), fields.size()) << title;
-  for (const Field& field : fields) {
-    const auto row = table.find(field.name);
-    ASSERT_NE(row, table.end()) << title << ": " << field.name << " is not documented";
-    EXPECT_EQ(row->second.offset, field.codec) << title << ": " << field.name;
-    EXPECT_EQ(row->second.type, field.type) << title << ": " << field.name;
-    EXPECT_EQ(field.in_struct, field.codec) << title << ": " << field.name;
-    EXPECT_EQ(field.macro, field.codec) << title << ": " << field.name;
-  }
+void expect_agreement(const std::string& title, std::initializer_list<DocumentedField> fields) {
+  test::expect_agreement("messages.md", title, fields);
 }
 
 TEST(DocumentedLayout, OfTheHeader) {
