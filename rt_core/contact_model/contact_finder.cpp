@@ -188,7 +188,7 @@ void ContactFinder::adopt(std::shared_ptr<const CompiledCell> cell, std::shared_
 
 void ContactFinder::find(const CellPoses& poses, Timestamp posture_time, haptics::ContactModel& out) {
   State& s = *state_;
-  out.sequence = ++s.counters.models;
+  out.sequence = 0;
   out.posture_time = posture_time;
   out.slot = static_cast<std::uint8_t>(s.slot);
   out.count = 0;
@@ -198,17 +198,19 @@ void ContactFinder::find(const CellPoses& poses, Timestamp posture_time, haptics
   s.levers.move(poses);
   out.x_ref = s.levers.tip();
   if (!out.x_ref.allFinite()) return;
+  out.sequence = ++s.counters.models;
   const bool placed_instrument = s.place(s.instrument, poses);
   const bool placed_surroundings = s.place(s.surroundings, poses);
   out.certain = placed_instrument && placed_surroundings;
   double reach = s.settings.reach_m;
   int halvings = 0;
   while (!s.gather(reach, out)) {
-    if (++halvings > kMostHalvings) {
-      out.certain = false;
-      return;
-    }
     reach *= 0.5;
+    if (++halvings <= kMostHalvings) continue;
+    // The tip stands still until something can be told.
+    out.certain = false;
+    out.reach = reach;
+    return;
   }
   s.fill(reach, out);
   if (!out.certain) ++s.counters.uncertain;

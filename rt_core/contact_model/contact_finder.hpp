@@ -38,7 +38,7 @@ class ContactFinder {
   // triangles).
   void adopt(std::shared_ptr<const CompiledCell> cell, std::shared_ptr<const collision::PairTable> pairs);
   // The constraints in the posture `poses` of the adopted cell: the nearest first, without those that others imply
-  // (selection.hpp). Without an adopted cell, and where its robot is gone: none, and not certain.
+  // (selection.hpp). Numbered from 1; without an adopted cell, and where its robot is gone, number 0 and nothing in it.
   void find(const CellPoses& poses, Timestamp posture_time, haptics::ContactModel& out);
 
   [[nodiscard]] const FinderCounters& counters() const;
