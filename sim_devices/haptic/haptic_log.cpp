@@ -25,7 +25,7 @@ Result<std::unique_ptr<HapticLog>> HapticLog::make(const std::string& path, cons
                 "name a file in a folder that you may write to");
   }
   fmt::memory_buffer head;
-  fmt::format_to(std::back_inserter(head), "time_ns,sequence,sample_time_ns");
+  fmt::format_to(std::back_inserter(head), "time_ns,sequence,sample_time_ns,writer");
   for (const std::string_view name : layout.names()) fmt::format_to(std::back_inserter(head), ",{}", name);
   for (const std::string_view name : layout.names()) fmt::format_to(std::back_inserter(head), ",effort_{}", name);
   fmt::format_to(std::back_inserter(head),
@@ -83,7 +83,7 @@ void HapticLog::write(const std::vector<HapticLogRow>& rows) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   for (const HapticLogRow& row : rows) {
-    fmt::format_to(out, "{},{},{}", row.time_ns, row.sequence, row.sample_time_ns);
+    fmt::format_to(out, "{},{},{},{}", row.time_ns, row.sequence, row.sample_time_ns, row.writer);
     for (std::size_t i = 0; i < axes_; ++i) fmt::format_to(out, ",{:.9g}", row.axes[i]);
     for (std::size_t i = 0; i < axes_; ++i) fmt::format_to(out, ",{:.6g}", row.efforts[i]);
     fmt::format_to(out, ",{},{},{},{},{},{:.6g},{:.6g},{}\n", row.force_sequence, row.force_time_ns, row.answers,

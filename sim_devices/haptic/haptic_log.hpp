@@ -19,6 +19,7 @@ struct HapticLogRow {
   std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, when the sample was written (a watcher: when the row was read)
   std::uint64_t sequence = 0;
   std::int64_t sample_time_ns = 0;  // as the sample says
+  std::uint32_t writer = 0;         // process id, as the sample says
   Coordinates axes{};               // as written, m or rad
   Coordinates efforts{};            // as felt, N or Nm
   std::uint64_t force_sequence = 0;

@@ -146,6 +146,7 @@ void HapticLoop::log(Timestamp now) {
   row.time_ns = now.ns;
   row.sequence = last_.sequence;
   row.sample_time_ns = last_.time.ns;
+  row.writer = last_.writer;
   row.axes = last_.axes;
   row.efforts = device_.efforts();
   row.force_sequence = answer.sequence;

@@ -50,6 +50,7 @@ void HapticWatcher::look(Timestamp now) {
   row.time_ns = now.ns;
   row.sequence = sample_.sequence;
   row.sample_time_ns = sample_.time.ns;
+  row.writer = sample_.writer;
   row.axes = sample_.axes;
   row.efforts = layout_.efforts(answer);
   row.force_sequence = answer.sequence;
