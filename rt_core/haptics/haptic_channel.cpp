@@ -252,7 +252,7 @@ Eigen::Vector3d HapticChannel::answer(const ProxyContact& contact, double period
     force = coupling_.force(contact.elongation, contact.normal, spring, period) * settings.force_scale;
     stored_energy_ = recoverable(contact.elongation.norm(), settings);
   }
-  force = passivity_.control(force, contact.contacts > 0, passivity_settings(settings), period);
+  force = passivity_.control(force, passivity_settings(settings), period);
   force = limit_.limit(force, settings.max_force, settings.max_slew, period);
   if (limit_.cut()) ++state_.saturated;
   return force;

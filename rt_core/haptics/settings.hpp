@@ -36,8 +36,8 @@ struct HapticSettings {
   Nanoseconds model_stale_after{100'000'000};  // of the contact model
   std::uint32_t allowed_missed_periods = 2;    // in a row
   bool passivity_control = true;
-  double energy_allowance = 1e-3;       // J that may be generated before the controller damps
-  double max_passivity_damping = 50.0;  // Ns/m
+  double energy_allowance = 1e-3;         // J that may be generated before the controller takes force away
+  double max_passivity_damping = 1000.0;  // Ns/m, that taking force away may amount to
 };
 
 }  // namespace cellmirror::haptics
