@@ -5,15 +5,20 @@
 #include <cstdint>
 #include <span>
 
+#include "rt_core/base/capacity.hpp"
 #include "rt_core/base/real_time.hpp"
-#include "rt_core/engine/tick_state.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
 
 namespace cellmirror::engine {
+
+class RobotSlot;
 
 struct CoupledJoint {
   std::uint8_t master_joint = 0;
   std::uint8_t slave_joint = 0;
 };
+
+using CoupledJoints = std::array<CoupledJoint, kMaxJointsPerRobot>;
 
 // Of one slave. A coupled joint follows to the master's value, not faster than the slave's own velocity limit and not
 // beyond its range; the slave's other joints stay free.
@@ -21,10 +26,42 @@ struct Coupling {
   std::uint8_t master = 0;  // slots
   std::uint8_t slave = 0;
   std::uint8_t count = 0;
-  std::array<CoupledJoint, kMaxJointsPerRobot> joints{};
+  CoupledJoints joints{};
   JointValues max_velocity{};  // rad/s or m/s, of the slave's joints
+
+  [[nodiscard]] std::uint16_t slave_joints() const CELL_RT {
+    unsigned mask = 0;
+    for (std::size_t i = 0; i < count; ++i) mask |= 1U << joints[i].slave_joint;
+    return static_cast<std::uint16_t>(mask);
+  }
 };
 
 inline constexpr std::size_t kMaxCouplings = kMaxRobots;
+
+// All couplings of the cell. Tick thread only. A slave has one master; masters may be slaves themselves.
+class Couplings {
+ public:
+  // Takes the place of the slave's coupling to the same master. False where it is not sound: slots that are not used, a
+  // slave that is not simulated, joints that are not there or driven twice, a velocity that is not positive, another
+  // master, a circle.
+  bool couple(const Coupling& coupling, std::span<RobotSlot> slots) CELL_RT;
+  // False where it follows nobody. It stays where it is.
+  bool uncouple(std::uint8_t slave, std::span<RobotSlot> slots) CELL_RT;
+  // The robot in this slot is gone: so are the couplings in which it has a part.
+  void remove(std::uint8_t slot, std::span<RobotSlot> slots) CELL_RT;
+
+  // Moves the slaves on by `dt` seconds, masters before their slaves, so that a value passes through all of a chain
+  // within one tick. After samples and moves, and after the states of the joints were brought up to date: a slave holds
+  // where the master's data are not fresh. Returns the slots that have moved, one bit each.
+  std::uint64_t step(double dt, std::span<RobotSlot> slots) CELL_RT;
+
+ private:
+  [[nodiscard]] bool follows(std::uint8_t slave, std::uint8_t master) const CELL_RT;
+  void sort() CELL_RT;
+
+  std::array<Coupling, kMaxCouplings> of_slave_{};  // by the slave's slot; count 0: it follows nobody
+  std::array<std::uint8_t, kMaxCouplings> order_{};
+  std::size_t count_ = 0;
+};
 
 }  // namespace cellmirror::engine

@@ -1,0 +1,97 @@
+#include "rt_core/engine/coupling.hpp"
+
+#include <cmath>
+
+#include "rt_core/engine/robot_slot.hpp"
+
+namespace cellmirror::engine {
+
+static_assert(kMaxRobots <= 64, "step() has a bit for each");
+static_assert(kMaxJointsPerRobot <= 16, "joints of a slave are bits of 16");
+
+namespace {
+
+bool joints_are_sound(const Coupling& coupling, const RobotTickState& master, const RobotTickState& slave) CELL_RT {
+  unsigned driven = 0;
+  for (std::size_t i = 0; i < coupling.count; ++i) {
+    const CoupledJoint& joint = coupling.joints[i];
+    if (joint.master_joint >= master.joint_count || joint.slave_joint >= slave.joint_count) return false;
+    const unsigned bit = 1U << joint.slave_joint;
+    if ((driven & bit) != 0) return false;
+    driven |= bit;
+    const double velocity = coupling.max_velocity[joint.slave_joint];
+    if (!std::isfinite(velocity) || velocity <= 0.0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool Couplings::couple(const Coupling& coupling, std::span<RobotSlot> slots) CELL_RT {
+  if (coupling.master >= slots.size() || coupling.slave >= slots.size()) return false;
+  if (coupling.count == 0 || coupling.count > kMaxJointsPerRobot) return false;
+  const RobotTickState& master = slots[coupling.master].state();
+  const RobotTickState& slave = slots[coupling.slave].state();
+  if (master.mode == RobotMode::absent || slave.mode != RobotMode::simulated) return false;
+  const Coupling& present = of_slave_[coupling.slave];
+  if (present.count > 0 && present.master != coupling.master) return false;
+  if (coupling.master == coupling.slave || follows(coupling.master, coupling.slave)) return false;
+  if (!joints_are_sound(coupling, master, slave)) return false;
+  of_slave_[coupling.slave] = coupling;
+  slots[coupling.slave].set_follow(coupling.master, coupling.slave_joints());
+  sort();
+  return true;
+}
+
+bool Couplings::uncouple(std::uint8_t slave, std::span<RobotSlot> slots) CELL_RT {
+  if (slave >= slots.size() || of_slave_[slave].count == 0) return false;
+  of_slave_[slave].count = 0;
+  slots[slave].set_follow(0, 0);
+  sort();
+  return true;
+}
+
+void Couplings::remove(std::uint8_t slot, std::span<RobotSlot> slots) CELL_RT {
+  if (slot >= slots.size()) return;
+  for (std::uint8_t slave = 0; slave < kMaxCouplings; ++slave) {
+    if (of_slave_[slave].count > 0 && (slave == slot || of_slave_[slave].master == slot)) uncouple(slave, slots);
+  }
+}
+
+// Through however many others. There are no circles yet, so that the way up ends.
+bool Couplings::follows(std::uint8_t slave, std::uint8_t master) const CELL_RT {
+  for (std::size_t up = 0; up < kMaxCouplings && of_slave_[slave].count > 0; ++up) {
+    slave = of_slave_[slave].master;
+    if (slave == master) return true;
+  }
+  return false;
+}
+
+// By how many masters are above a slave.
+void Couplings::sort() CELL_RT {
+  std::array<std::uint8_t, kMaxCouplings> depth{};
+  std::size_t deepest = 0;
+  for (std::size_t slave = 0; slave < kMaxCouplings; ++slave) {
+    for (std::size_t at = slave; of_slave_[at].count > 0 && depth[slave] < kMaxCouplings; at = of_slave_[at].master)
+      ++depth[slave];
+    deepest = depth[slave] > deepest ? depth[slave] : deepest;
+  }
+  count_ = 0;
+  for (std::size_t level = 1; level <= deepest; ++level) {
+    for (std::size_t slave = 0; slave < kMaxCouplings; ++slave) {
+      if (depth[slave] == level) order_[count_++] = static_cast<std::uint8_t>(slave);
+    }
+  }
+}
+
+std::uint64_t Couplings::step(double dt, std::span<RobotSlot> slots) CELL_RT {
+  std::uint64_t moved = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Coupling& coupling = of_slave_[order_[i]];
+    if (slots[coupling.slave].follow(slots[coupling.master].state(), coupling, dt))
+      moved |= std::uint64_t{1} << coupling.slave;
+  }
+  return moved;
+}
+
+}  // namespace cellmirror::engine

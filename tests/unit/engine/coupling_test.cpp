@@ -1,0 +1,290 @@
+// Robots that follow others (MASTER_SLAVE), in the tick.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/rt/allocation_guard.hpp"
+
+namespace cellmirror::engine {
+namespace {
+
+constexpr Nanoseconds kPeriod{1'000'000};
+constexpr std::uint8_t kMaster = 5;  // behind the slaves, so that the order of the slots is not that of dependence
+constexpr std::uint8_t kSlave = 1;
+constexpr std::uint8_t kSecond = 0;
+constexpr double kFast = 1.0;
+
+class CouplingTest : public testing::Test {
+ protected:
+  CouplingTest() {
+    for (const std::uint8_t slot : {kMaster, kSlave, kSecond}) add(slot);
+    tick();
+  }
+
+  void add(std::uint8_t slot) {
+    Command command = of(CommandKind::add_robot, slot);
+    command.joint_count = 3;
+    command.lower.fill(-0.5);
+    command.upper.fill(0.5);
+    if (slot == kMaster) command.upper.fill(10.0);
+    sut_->send(command);
+  }
+
+  static Command of(CommandKind kind, std::uint8_t slot) {
+    Command command;
+    command.kind = kind;
+    command.slot = slot;
+    return command;
+  }
+
+  // The slave's joints 0 and 2 follow the master's 1 and 0.
+  static Command coupling(std::uint8_t master, std::uint8_t slave, double max_velocity = kFast) {
+    Command command = of(CommandKind::couple, slave);
+    command.master = master;
+    command.joint_count = 2;
+    command.coupled[0] = {1, 0};
+    command.coupled[1] = {0, 2};
+    command.values.fill(max_velocity);
+    return command;
+  }
+
+  void put(std::uint8_t slot, double a, double b, double c) {
+    Command command = of(CommandKind::set_positions, slot);
+    command.values = {a, b, c};
+    sut_->send(command);
+  }
+
+  // Whether the tick took the command.
+  bool accepts(const Command& command) {
+    const std::uint64_t before = sut_->owner_view().commands_refused;
+    sut_->send(command);
+    tick();
+    return sut_->owner_view().commands_refused == before;
+  }
+
+  void tick(int count = 1) {
+    for (int i = 0; i < count; ++i) {
+      now_ = now_ + kPeriod;
+      CycleContext context;
+      context.now = now_;
+      context.scheduled = now_;
+      context.cycle = cycle_++;
+      context.period = kPeriod;
+      sut_->run(context);
+    }
+  }
+
+  const RobotTickState& robot(std::uint8_t slot) { return sut_->owner_view().robots[slot]; }
+  double position(std::uint8_t slot, std::size_t joint) { return robot(slot).joints[joint].position; }
+
+  void mirror_master() {
+    Command command = of(CommandKind::set_mode, kMaster);
+    command.mode = RobotMode::mirrored;
+    command.ages = {Nanoseconds(10'000'000), Nanoseconds(50'000'000)};
+    sut_->send(command);
+  }
+  void sample(double value) {
+    JointSample sample;
+    sample.receive_time = now_ + kPeriod;
+    sample.present = 0b111;
+    sample.position.fill(value);
+    sut_->inlet(kMaster).push(sample);
+  }
+
+  Watchdog watchdog_{std::chrono::milliseconds(100), {}};
+  std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  Timestamp now_{1'000'000'000};
+  std::uint64_t cycle_ = 0;
+};
+
+TEST_F(CouplingTest, CoupledJointsFollowByNameAndTheOthersStay) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  put(kMaster, 0.2, 0.1, 0.4);
+  tick(201);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.1);
+  EXPECT_DOUBLE_EQ(position(kSlave, 1), 0.0);
+  EXPECT_DOUBLE_EQ(position(kSlave, 2), 0.2);
+  EXPECT_EQ(robot(kSlave).follow.joints, 0b101);
+  EXPECT_EQ(robot(kSlave).follow.master, kMaster);
+  EXPECT_EQ(robot(kSlave).follow.limited, 0);
+  EXPECT_EQ(robot(kSlave).joints[0].velocity, 0.0);
+}
+
+TEST_F(CouplingTest, ASlaveIsNotFasterThanItsOwnLimitAndTellsThatItLags) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave, 0.5)));
+  put(kMaster, 0.0, 0.4, 0.0);
+  tick();
+  EXPECT_NEAR(position(kSlave, 0), 0.5e-3, 1e-12);
+  EXPECT_NEAR(robot(kSlave).joints[0].velocity, 0.5, 1e-9);
+  EXPECT_EQ(robot(kSlave).follow.limited, 0b001);
+  double before = position(kSlave, 0);
+  for (int i = 0; i < 900; ++i) {
+    tick();
+    ASSERT_LE(std::abs(position(kSlave, 0) - before), 0.5e-3 + 1e-12);
+    before = position(kSlave, 0);
+  }
+  EXPECT_DOUBLE_EQ(before, 0.4);
+  EXPECT_EQ(robot(kSlave).follow.limited, 0);
+}
+
+TEST_F(CouplingTest, ASlaveStaysWithinItsRange) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  put(kMaster, 0.0, 3.0, 0.0);
+  tick(1000);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.5);
+  EXPECT_EQ(robot(kSlave).follow.limited, 0b001);
+  put(kMaster, 0.0, 0.3, 0.0);
+  tick(300);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.3);
+  EXPECT_EQ(robot(kSlave).follow.limited, 0);
+}
+
+TEST_F(CouplingTest, AValuePassesThroughAChainWithinOneTick) {
+  ASSERT_TRUE(accepts(coupling(kSlave, kSecond)));
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  put(kMaster, 0.0, 0.0005, 0.0);
+  tick();
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0005);
+  EXPECT_DOUBLE_EQ(position(kSecond, 2), 0.0005);
+}
+
+TEST_F(CouplingTest, ASlaveOfAMirroredMasterHoldsWhileItsDataAreNotFresh) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  mirror_master();
+  tick();
+  EXPECT_TRUE(robot(kSlave).follow.holding);  // nothing has come yet
+  sample(0.0004);
+  tick();
+  EXPECT_FALSE(robot(kSlave).follow.holding);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0004);
+  sample(0.4);
+  tick();
+  const double on_its_way = position(kSlave, 0);
+  EXPECT_LT(on_its_way, 0.01);
+  tick(20);  // the data are stale after 10 ms
+  EXPECT_TRUE(robot(kSlave).follow.holding);
+  const double held = position(kSlave, 0);
+  EXPECT_LT(held, on_its_way + 0.0115);
+  tick(100);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), held);
+  EXPECT_EQ(robot(kSlave).joints[0].velocity, 0.0);
+  sample(0.4);
+  tick();
+  EXPECT_GT(position(kSlave, 0), held);
+}
+
+TEST_F(CouplingTest, ValuesThatAreNotFiniteHoldToo) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  mirror_master();
+  sample(0.0004);
+  tick(2);
+  sample(std::numeric_limits<double>::quiet_NaN());
+  tick();
+  EXPECT_TRUE(robot(kSlave).follow.holding);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0004);
+}
+
+TEST_F(CouplingTest, MovesLeaveCoupledJointsAndOneUnderWayIsBraked) {
+  motion::Move move;
+  move.id = 1;
+  move.target = {0.4, 0.4, 0.4};
+  move.velocity = {0.5, 0.5, 0.5};
+  move.max_velocity = move.velocity;
+  move.acceleration = {2.0, 2.0, 2.0};
+  sut_->send_move(kSlave, move);
+  tick(300);
+  ASSERT_TRUE(robot(kSlave).motion.moving);
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  tick(1000);
+  EXPECT_FALSE(robot(kSlave).motion.moving);
+  EXPECT_EQ(robot(kSlave).motion.outcome, motion::Outcome::stopped);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0);  // of the master
+  EXPECT_GT(position(kSlave, 1), 0.05);
+  EXPECT_LT(position(kSlave, 1), 0.35);
+  move.id = 2;
+  sut_->send_move(kSlave, move);
+  tick(2000);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0);
+  EXPECT_NEAR(position(kSlave, 1), 0.4, 1e-12);
+  EXPECT_DOUBLE_EQ(position(kSlave, 2), 0.0);
+  EXPECT_EQ(robot(kSlave).motion.outcome, motion::Outcome::arrived);
+  put(kSlave, 0.2, 0.2, 0.2);
+  tick();
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0);
+  EXPECT_DOUBLE_EQ(position(kSlave, 1), 0.2);
+}
+
+TEST_F(CouplingTest, AnUncoupledSlaveStaysWhereItIsAndIsFree) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  put(kMaster, 0.2, 0.1, 0.0);
+  tick(300);
+  ASSERT_TRUE(accepts(of(CommandKind::uncouple, kSlave)));
+  put(kMaster, 0.0, 0.0, 0.0);
+  tick(300);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.1);
+  EXPECT_FALSE(robot(kSlave).follow.follows());
+  put(kSlave, 0.3, 0.3, 0.3);
+  tick();
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.3);
+  EXPECT_FALSE(accepts(of(CommandKind::uncouple, kSlave)));
+}
+
+TEST_F(CouplingTest, WhatIsNotSoundIsRefused) {
+  EXPECT_FALSE(accepts(coupling(kSlave, kSlave)));
+  EXPECT_FALSE(accepts(coupling(40, kSlave)));
+  EXPECT_FALSE(accepts(coupling(200, kSlave)));
+  EXPECT_FALSE(accepts(coupling(kMaster, 40)));
+  EXPECT_FALSE(accepts(coupling(kMaster, kSlave, 0.0)));
+  EXPECT_FALSE(accepts(coupling(kMaster, kSlave, std::numeric_limits<double>::infinity())));
+  Command command = coupling(kMaster, kSlave);
+  command.joint_count = 0;
+  EXPECT_FALSE(accepts(command));
+  command.joint_count = 17;
+  EXPECT_FALSE(accepts(command));
+  command = coupling(kMaster, kSlave);
+  command.coupled[0] = {3, 0};
+  EXPECT_FALSE(accepts(command));
+  command.coupled[0] = {1, 2};  // 2 is driven already
+  EXPECT_FALSE(accepts(command));
+  mirror_master();
+  EXPECT_FALSE(accepts(coupling(kSlave, kMaster)));  // a mirrored slave
+}
+
+TEST_F(CouplingTest, CirclesAndSecondMastersAreRefused) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  ASSERT_TRUE(accepts(coupling(kSlave, kSecond)));
+  EXPECT_FALSE(accepts(coupling(kSecond, kMaster)));
+  EXPECT_FALSE(accepts(coupling(kSlave, kMaster)));
+  EXPECT_FALSE(accepts(coupling(kMaster, kSecond)));
+  EXPECT_TRUE(accepts(coupling(kMaster, kSlave, 0.1)));  // the same master: takes its place
+}
+
+TEST_F(CouplingTest, ARobotThatVanishesTakesItsCouplingsAlong) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  ASSERT_TRUE(accepts(coupling(kSlave, kSecond)));
+  sut_->send(of(CommandKind::remove_robot, kSlave));
+  tick();
+  EXPECT_FALSE(robot(kSecond).follow.follows());
+  add(kSlave);
+  tick(10);
+  EXPECT_FALSE(robot(kSlave).follow.follows());
+  put(kMaster, 0.1, 0.1, 0.1);
+  tick(200);
+  EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0);
+}
+
+TEST_F(CouplingTest, CouplingAndFollowingAllocateNothing) {
+  if (!AllocationGuard::armed()) GTEST_SKIP() << "skipped: the allocation guard is not armed in this build";
+  sut_->send(coupling(kMaster, kSlave));
+  sut_->send(coupling(kSlave, kSecond));
+  put(kMaster, 0.3, 0.3, 0.3);
+  const AllocationGuard guard;
+  tick(100);
+  EXPECT_EQ(guard.allocations(), 0U);
+}
+
+}  // namespace
+}  // namespace cellmirror::engine
