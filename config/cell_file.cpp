@@ -70,6 +70,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
   if (readable) {
     source->load(reader.root, of_components);
     reader.read_streams(source->robots(), true);
+    reader.read_haptics(source->robots(), true);
     // Findings so far keep Cell::build() from giving a cell, but not from looking on.
     Diagnostics building = of_components;
     building.take(reader.findings);
@@ -88,8 +89,11 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     std::move(reader.description),
                     path,
                     std::move(*home),
+                    reader.gravity_m_s2,
                     reader.loop,
                     std::move(reader.streams),
+                    std::move(reader.haptics),
+                    reader.foot_switches,
                     reader.dds,
                     reader.queues,
                     reader.web,

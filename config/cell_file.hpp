@@ -2,6 +2,7 @@
 // docs/cell-files.md. Not for the tick; any thread, one at a time a call.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,15 +12,20 @@
 #include <string_view>
 #include <vector>
 
+#include "config/foot_switches.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/collision/settings.hpp"
+#include "rt_core/haptics/settings.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
 
 namespace cellmirror {
+
+// Downwards, in the world: the standard value (CGPM 1901).
+inline const Eigen::Vector3d kStandardGravity(0.0, 0.0, -9.80665);  // m/s2
 
 struct LoopSettings {
   double rate_hz = 1000.0;  // 100..4000
@@ -33,11 +39,23 @@ struct RobotStream {
   StreamConfig config;
 };
 
+// The haptic device that drives one robot, and the shared memory where its process meets the gateway.
+struct RobotHaptic {
+  std::string robot;
+  haptics::HapticSettings settings;
+  double reach_m = 0.02;            // how far from the instrument its surroundings are looked at
+  std::optional<std::int32_t> key;  // none: rob_ela_shm names it
+  std::size_t bytes = 512;
+  std::uint32_t mode = 0600;
+  bool online = false;  // at the start
+};
+
 // What the cell file says about the message queues; only what it says.
 struct QueueOverrides {
   std::optional<std::int32_t> script_key;
   std::optional<std::int32_t> sensor_key;
   std::optional<std::int32_t> reply_key;
+  std::optional<std::int32_t> tcp_force_key;
   std::optional<std::uint32_t> mode;
   std::optional<double> sensor_rate_hz;
 
@@ -55,8 +73,11 @@ struct LoadedCell {
   std::string description;
   std::filesystem::path file;  // as given
   KismetHome home;
+  Eigen::Vector3d gravity_m_s2 = kStandardGravity;  // in the world
   LoopSettings loop;
   std::vector<RobotStream> streams;  // each of another robot
+  std::vector<RobotHaptic> haptics;  // each of another robot, which has no stream
+  FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;

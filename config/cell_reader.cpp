@@ -6,18 +6,23 @@
 #include <charconv>
 #include <numbers>
 
+#include "config/foot_switch_reader.hpp"
+#include "config/haptic_reader.hpp"
 #include "config/node_reader.hpp"
 #include "config/stream_reader.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/text.hpp"
+#include "rt_core/ports/haptic_device.hpp"
 
 namespace cellmirror {
 
 namespace {
 
 constexpr Range kOutputRate{0.0, 1000.0, true};
+constexpr Range kGravity{-1000.0, 1000.0};
 
-// "0600": permissions as people write them.
+}  // namespace
+
 std::optional<std::uint32_t> octal(std::string_view text) {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 8);
@@ -25,13 +30,12 @@ std::optional<std::uint32_t> octal(std::string_view text) {
   return value;
 }
 
-}  // namespace
-
 void QueueOverrides::apply_to(QueueConfig& config) const {
   config.script_key = script_key.value_or(config.script_key);
   config.sensor_key = sensor_key.value_or(config.sensor_key);
   config.reply_key = reply_key.value_or(config.reply_key);
   config.mode = mode.value_or(config.mode);
+  config.tcp_force_key = tcp_force_key.value_or(config.tcp_force_key);
   config.sensor_rate_hz = sensor_rate_hz.value_or(config.sensor_rate_hz);
 }
 
@@ -54,6 +58,7 @@ bool CellReader::read(std::string_view text) {
       findings.error(root.place(node), fmt::format("the joint {} stands in a cell file", node.name),
                      "joints belong to component files with a [robot]");
   }
+  if (const auto g = top.numbers("gravity_m_s2", 3, kGravity)) gravity_m_s2 = {(*g)[0], (*g)[1], (*g)[2]};
   read_loop(top);
   read_dds_output(top);
   read_queues(top);
@@ -61,8 +66,10 @@ bool CellReader::read(std::string_view text) {
   collision.read(top);
   read_startup(top);
   read_views(top);
+  foot_switches = read_foot_switches(top);
   constexpr std::size_t kMostStreams = kMaxRobots;
   stream_tables_ = top.tables("stream", kMostStreams);
+  haptic_tables_ = top.tables("haptic", kMaxHapticDevices);
   top.finish();
   return true;
 }
@@ -75,6 +82,24 @@ void CellReader::read_streams(const RobotDirectory& robots, bool complete) {
         streams, [&](const RobotStream& other) { return !other.robot.empty() && other.robot == stream->robot; });
     if (twice) table.error("robot", fmt::format("there is another stream of {}", printable(stream->robot)));
     streams.push_back(std::move(*stream));
+  }
+}
+
+void CellReader::read_haptics(const RobotDirectory& robots, bool complete) {
+  for (TableReader& table : haptic_tables_) {
+    auto haptic = read_haptic(table, robots, complete);
+    if (!haptic) continue;
+    const auto same_robot = [&](const auto& other) { return other.robot == haptic->robot; };
+    if (std::ranges::any_of(haptics, same_robot))
+      table.error("robot", fmt::format("there is another haptic device of {}", printable(haptic->robot)));
+    if (std::ranges::any_of(streams, same_robot)) {
+      table.error("robot", fmt::format("{} has a stream and a haptic device", printable(haptic->robot)),
+                  "it can follow one of them: take the other table away");
+    }
+    const auto same_key = [&](const RobotHaptic& other) { return haptic->key && other.key == haptic->key; };
+    if (std::ranges::any_of(haptics, same_key))
+      table.error("shm_key", fmt::format("another haptic device has the key {} too", *haptic->key));
+    haptics.push_back(std::move(*haptic));
   }
 }
 
@@ -105,6 +130,7 @@ void CellReader::read_dds_output(TableReader& top) {
   dds.joint_states_topic = table->text("joint_states_topic").value_or(dds.joint_states_topic);
   dds.tf_topic = table->text("tf_topic").value_or(dds.tf_topic);
   dds.range_topic_prefix = table->text("range_topic_prefix").value_or(dds.range_topic_prefix);
+  dds.wrench_topic_prefix = table->text("wrench_topic_prefix").value_or(dds.wrench_topic_prefix);
   dds.diagnostics_topic = table->text("diagnostics_topic").value_or(dds.diagnostics_topic);
   dds.markers_topic = table->text("markers_topic").value_or(dds.markers_topic);
   dds.rate_hz = table->number("rate_hz", kOutputRate).value_or(dds.rate_hz);
@@ -122,6 +148,7 @@ void CellReader::read_queues(TableReader& top) {
   queues.script_key = key("script_key");
   queues.sensor_key = key("sensor_key");
   queues.reply_key = key("reply_key");
+  queues.tcp_force_key = key("tcp_force_key");
   if (const auto mode = table->text("mode")) {
     queues.mode = octal(*mode);
     if (!queues.mode)

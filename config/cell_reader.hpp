@@ -19,16 +19,21 @@ class CellReader {
   CellReader(const CellReader&) = delete;
   CellReader& operator=(const CellReader&) = delete;
 
-  // Everything but the streams. False where the text is no TOML.
+  // Everything but the streams and haptic devices. False where the text is no TOML.
   bool read(std::string_view text);
   // `complete`: all robots of the cell are in `robots`.
   void read_streams(const RobotDirectory& robots, bool complete);
+  // After the streams.
+  void read_haptics(const RobotDirectory& robots, bool complete);
 
   std::string name;
   std::string description;
   Component root;
+  Eigen::Vector3d gravity_m_s2 = kStandardGravity;
   LoopSettings loop;
   std::vector<RobotStream> streams;
+  std::vector<RobotHaptic> haptics;
+  FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
@@ -49,6 +54,7 @@ class CellReader {
   const FileFinder& files_;
   std::optional<toml::table> table_;
   std::vector<TableReader> stream_tables_;
+  std::vector<TableReader> haptic_tables_;
 };
 
 }  // namespace cellmirror

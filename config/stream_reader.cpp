@@ -120,6 +120,19 @@ std::optional<JointReference> read_joint_reference(TableReader& reader, const Ro
   return JointReference{number, *name, robot->joint_kinds[number]};
 }
 
+const RobotFacts* find_robot(const TableReader& reader, const std::string& robot, const RobotDirectory& robots,
+                             bool complete) {
+  const auto at = robots.find(robot);
+  if (at != robots.end()) return &at->second;
+  if (!complete) return nullptr;
+  std::vector<std::string> ids;
+  for (const auto& [id, other] : robots) ids.push_back(id);
+  std::string remedy = did_you_mean(robot, ids);
+  if (remedy.empty() && !ids.empty()) remedy = fmt::format("the robots are {}", fmt::join(ids, ", "));
+  reader.error("robot", fmt::format("there is no robot {}", printable(robot)), remedy);
+  return nullptr;
+}
+
 std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory& robots, bool complete,
                                        const FileFinder& files) {
   RobotStream stream;
@@ -130,15 +143,7 @@ std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory
   if (robot) {
     stream.robot = *robot;
     reader.set_where("stream of " + printable(*robot));
-    const auto at = robots.find(*robot);
-    if (at != robots.end()) facts = &at->second;
-    if (at == robots.end() && complete) {
-      std::vector<std::string> ids;
-      for (const auto& [id, other] : robots) ids.push_back(id);
-      std::string remedy = did_you_mean(*robot, ids);
-      if (remedy.empty() && !ids.empty()) remedy = fmt::format("the robots are {}", fmt::join(ids, ", "));
-      reader.error("robot", fmt::format("there is no robot {}", printable(*robot)), remedy);
-    }
+    facts = find_robot(reader, *robot, robots, complete);
   }
   const auto kind = reader.choice<StreamKind>(
       "kind", {{"can-cia402", StreamKind::cia402}, {"can-dbc", StreamKind::dbc}, {"dds", StreamKind::dds}});

@@ -15,6 +15,10 @@ namespace cellmirror {
 [[nodiscard]] std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory& robots, bool complete,
                                                      const FileFinder& files);
 
+// The robot that a table names with the key "robot"; null where it is not known, with an error where `complete`.
+[[nodiscard]] const RobotFacts* find_robot(const TableReader& reader, const std::string& robot,
+                                           const RobotDirectory& robots, bool complete);
+
 // The number of a joint that a table names with the key "joint"; nothing, with an error, where it is unknown.
 struct JointReference {
   std::size_t number = 0;

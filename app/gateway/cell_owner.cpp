@@ -16,9 +16,10 @@ constexpr std::size_t kScriptBudget = 256;
 constexpr std::size_t kScriptSlice = 32;
 constexpr Nanoseconds kScriptTime{5'000'000};
 constexpr int kMessageBudget = 64;
-constexpr Nanoseconds kPicturePeriod{20'000'000};    // at most so old while commands keep coming
-constexpr std::chrono::milliseconds kIdleWait{50};   // messages expire from the picture
-constexpr std::chrono::milliseconds kMovingWait{1};  // how soon an arrival is noticed, and WAIT goes on
+constexpr Nanoseconds kPicturePeriod{20'000'000};     // at most so old while commands keep coming
+constexpr std::chrono::milliseconds kIdleWait{50};    // messages expire from the picture
+constexpr std::chrono::milliseconds kHapticWait{10};  // how soon a device that has vanished is noticed
+constexpr std::chrono::milliseconds kMovingWait{1};   // how soon an arrival is noticed, and WAIT goes on
 
 }  // namespace
 
@@ -32,11 +33,16 @@ CellOwner::CellOwner(Parts parts)
       fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
       view_parameters_(extent_of(*cell_.compile(), cell_.start_positions())),
       motion_(cell_, names_, view_parameters_, *fleet_),
+      couplings_(cell_, *fleet_, motion_),
       world_(cell_, *fleet_, motion_, [this] { hang_up_picture(); }),
-      robots_(cell_, *fleet_, motion_, names_),
+      robots_(cell_, *fleet_, motion_, couplings_, names_),
       programs_(motion_),
       views_(cell_, view_parameters_, clock_),
       sensing_(cell_, std::move(parts.collision)),
+      haptics_({cell_, *fleet_, parts.engine, clock_, parts.instance, std::move(parts.haptics)}),
+      forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
+               [this](std::string_view text) { static_cast<void>(views_.show_message(text)); }}),
+      interaction_(names_, haptics_, forces_),
       diagnosis_(std::move(parts.save_flight_record)) {
   for (const ViewSetting& view : parts.views) {
     if (const auto set = view_parameters_.change(view.id, view.change); !set)
@@ -45,12 +51,23 @@ CellOwner::CellOwner(Parts parts)
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, motion_, programs_, views_, sensing_, interaction_, diagnosis_}, home_,
       clock_);
+  switches_ = std::make_unique<SwitchDesk>(
+      SwitchDesk::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
+      *runner_, home_, clock_);
+  interaction_.set_desks(*switches_, couplings_);
+  motion_.set_coupled(&couplings_);
 }
 
 CellOwner::~CellOwner() { stop(); }
 
 Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
   if (auto followed = fleet_->follow_cell(); !followed) return followed;
+  if (auto made = haptics_.prepare(); !made) return made;
+  if (haptics_.used()) {
+    // Not what anybody has asked for in so many words: the gateway goes on without.
+    if (const auto made = forces_.make_memory(); !made) log_warning("force.memory", "{}", made.error().text());
+  }
+  if (auto prepared = switches_->prepare(); !prepared) return prepared;
   hang_up_picture();
   if (script.empty()) return {};
   auto started = is_path ? runner_->start_path(script) : runner_->start_file(script);
@@ -113,7 +130,8 @@ bool CellOwner::execute_files() {
   const Timestamp end = clock_.now() + kScriptTime;
   bool any = false;
   for (std::size_t budget = 0; budget < kScriptBudget; budget += kScriptSlice) {
-    if (runner_->step(kScriptSlice) == 0) break;
+    const bool begun = switches_->follow();
+    if (runner_->step(kScriptSlice) == 0 && !begun) break;
     any = true;
     if (clock_.now() > end) break;
   }
@@ -125,8 +143,12 @@ void CellOwner::loop(const std::stop_token& stop) {
   bool changed = true;
   while (!stop.stop_requested()) {
     motion_.follow();
-    bool busy = execute_messages();
-    busy = execute_files() || busy;
+    couplings_.follow();
+    haptics_.follow();
+    forces_.follow();
+    // Files first: what a foot switch begins does not wait behind a flood of messages.
+    bool busy = execute_files();
+    busy = execute_messages() || busy;
     changed = changed || busy;
     const bool due = clock_.now() - last_picture_ > kPicturePeriod;
     if (changed && (due || !busy)) {
@@ -134,11 +156,13 @@ void CellOwner::loop(const std::stop_token& stop) {
       changed = false;
     }
     if (!busy) {
-      wake_.wait(runner_->idle() && !motion_.moving() ? kIdleWait : kMovingWait);
+      const bool quiet = runner_->idle() && !motion_.moving() && !switches_->busy();
+      wake_.wait(!quiet ? kMovingWait : haptics_.any_online() ? kHapticWait : kIdleWait);
       changed = changed || clock_.now() - last_picture_ > kPicturePeriod;
     }
   }
   runner_->stop_all();
+  haptics_.shut_down();
 }
 
 void CellOwner::hang_up_picture() {
@@ -153,11 +177,16 @@ void CellOwner::hang_up_picture() {
                                cell_.robot(robot->id)->parameters(), motion_.target(robot->id),
                                motion_.positioning(robot->id)});
   }
+  picture->haptics = haptics_.pictures();
+  picture->forces = forces_.settings();
+  picture->tcp_force = forces_.memory();
   picture->active_robot = names_.active_robot();
   picture->language = programs_.language();
   picture->script = runner_->counters();
   picture->runs = runner_->runs();
   picture->script_errors = runner_->last_errors();
+  picture->switches = switches_->picture();
+  picture->couplings = couplings_.pictures();
   const Timestamp now = clock_.now();
   for (const ShownMessage& message : views_.messages()) {
     if (now - message.time < CellViews::kMessageTime) picture->messages.push_back(message);

@@ -9,12 +9,16 @@
 #include <thread>
 #include <vector>
 
+#include "app/gateway/coupling_desk.hpp"
 #include "app/gateway/fleet.hpp"
+#include "app/gateway/force_desk.hpp"
+#include "app/gateway/haptic_desk.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/interaction.hpp"
 #include "app/gateway/motion_desk.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/sensing.hpp"
+#include "app/gateway/switch_desk.hpp"
 #include "app/gateway/wake_signal.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/base/capacity.hpp"
@@ -41,12 +45,17 @@ class CellOwner {
     Cell cell;
     KismetHome home;
     std::map<std::string, StreamConfig, std::less<>> streams;
+    std::vector<RobotHaptic> haptics;
     std::vector<ViewSetting> views;
     collision::Settings collision;
+    FootSwitchSettings foot_switches;
     engine::Engine& engine;
     PictureBoard& board;
     const Clock& clock;
     int stream_priority = 0;  // SCHED_FIFO priority of the streams' threads; 0: none
+    std::string instance;
+    std::int32_t tcp_force_key = kTcpForceKey;
+    std::uint32_t memory_mode = 0600;
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
     std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
   };
@@ -84,17 +93,21 @@ class CellOwner {
   std::unique_ptr<Fleet> fleet_;
   Views view_parameters_;
   MotionDesk motion_;
+  CouplingDesk couplings_;
   CellWorld world_;
   CellRobots robots_;
   CellPrograms programs_;
   CellViews views_;
   CellSensing sensing_;
+  HapticDesk haptics_;
+  ForceDesk forces_;
   CellInteraction interaction_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;
   Fifo<QueuedCommand, kCommandQueue> queue_;
   WakeSignal wake_;
-  WakeSignal room_;  // wakes the receiver's thread when the queue has room again
+  std::unique_ptr<SwitchDesk> switches_;  // its thread wakes the owner's
+  WakeSignal room_;                       // wakes the receiver's thread when the queue has room again
   Timestamp last_picture_;
   std::stop_source stopping_;  // apart from the thread, so that submit() may ask before the thread is there
   std::thread thread_;

@@ -144,22 +144,30 @@ Result<void> Fleet::set_online(std::string_view id, bool online) {
   return online ? bring_online(robot) : take_offline(robot);
 }
 
-Result<void> Fleet::bring_online(FleetRobot& robot) {
+Result<void> Fleet::make_stream(FleetRobot& robot) {
   const auto config = streams_.find(robot.id);
   if (config == streams_.end()) {
-    return fail(fmt::format("the cell file names no stream for the robot {}", robot.id),
-                fmt::format("add a [[stream]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
+    robot.stream = device_streams_ ? device_streams_(robot.id) : nullptr;
+    if (robot.stream) return {};
+    return fail(
+        fmt::format("the cell file names no stream and no haptic device for the robot {}", robot.id),
+        fmt::format("add a [[stream]] or [[haptic]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
   }
+  auto made = make_robot_stream(config->second, clock_, stream_priority_);
+  if (!made) return std::unexpected(made.error());
+  robot.stream = std::move(*made);
+  return {};
+}
+
+Result<void> Fleet::bring_online(FleetRobot& robot) {
   if (!robot.stream) {
-    auto made = make_robot_stream(config->second, clock_, stream_priority_);
-    if (!made) return std::unexpected(made.error());
-    robot.stream = std::move(*made);
+    if (auto made = make_stream(robot); !made) return made;
   }
   engine::Command command;
   command.kind = engine::CommandKind::set_mode;
   command.slot = static_cast<std::uint8_t>(robot.slot);
   command.mode = engine::RobotMode::mirrored;
-  command.ages = ages_of(config->second);
+  if (const auto config = streams_.find(robot.id); config != streams_.end()) command.ages = ages_of(config->second);
   // The mode first: commands are taken before samples, so the first sample already finds a mirrored robot.
   if (auto sent = send(command); !sent) return std::unexpected(sent.error());
   if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) {

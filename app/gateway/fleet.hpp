@@ -66,15 +66,25 @@ class Fleet final : public MotionPort {
   Result<void> add_move(std::string_view id, const motion::Move& move) override;
   Result<void> stop_motion(std::string_view id) override;
 
+  // For robots without a stream in the cell file: what they follow when they go online; gives null for robots that have
+  // nothing of the kind. Empty: none has.
+  void set_device_streams(std::function<std::shared_ptr<JointStream>(std::string_view robot)> streams) {
+    device_streams_ = std::move(streams);
+  }
+  [[nodiscard]] bool has_stream(std::string_view id) const { return streams_.find(id) != streams_.end(); }
+
+  // Any command but add_move; waits while the tick's queue is full. Its id.
+  Result<std::uint64_t> send(const engine::Command& command);
   // Waits until the tick has carried out everything that was sent so far.
   Result<void> settle();
 
  private:
-  Result<std::uint64_t> send(const engine::Command& command);
   // Asks `give` for the id of a command again while the tick's queue is full.
   Result<std::uint64_t> patiently(const std::function<std::uint64_t()>& give);
   Result<void> add(const RobotModel& robot);
   Result<void> bring_online(FleetRobot& robot);
+  // The stream of the cell file, else that of the robot's device.
+  Result<void> make_stream(FleetRobot& robot);
   Result<void> take_offline(FleetRobot& robot);
   // A command for a robot of the fleet.
   [[nodiscard]] engine::Command command_for(std::string_view id, engine::CommandKind kind) const;
@@ -82,6 +92,7 @@ class Fleet final : public MotionPort {
   Cell& cell_;
   engine::Engine& engine_;
   std::map<std::string, StreamConfig, std::less<>> streams_;
+  std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_streams_;
   const Clock& clock_;
   int stream_priority_;
   std::map<std::string, FleetRobot, std::less<>> robots_;

@@ -11,13 +11,16 @@
 
 #include "app/gateway/cell_owner.hpp"
 #include "app/gateway/collision_worker.hpp"
+#include "app/gateway/contact_worker.hpp"
 #include "app/gateway/fault_monitor.hpp"
 #include "app/gateway/flight_file.hpp"
+#include "app/gateway/force_worker.hpp"
 #include "app/gateway/outputs.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/publisher.hpp"
 #include "app/gateway/ranging_worker.hpp"
 #include "app/gateway/status_document.hpp"
+#include "app/gateway/tcp_force_worker.hpp"
 #include "config/cell_file.hpp"
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
@@ -71,6 +74,9 @@ struct Gateway::Parts {
   std::unique_ptr<CyclicThread> loop;
   std::unique_ptr<CollisionWorker> collisions;
   std::unique_ptr<RangingWorker> ranging;
+  std::unique_ptr<ContactWorker> contacts;
+  std::unique_ptr<ForceWorker> forces;
+  std::unique_ptr<TcpForceWorker> tcp_force;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<FaultMonitor> faults;
   RobotStateBuilder status_builder;  // the control server's thread
@@ -80,6 +86,9 @@ struct Gateway::Parts {
     control.reset();
     faults.reset();
     publisher.reset();
+    forces.reset();
+    tcp_force.reset();
+    contacts.reset();
     ranging.reset();
     collisions.reset();
     // The receiver's handler may wait for the owner to take a command, so it has to end first.
@@ -93,7 +102,7 @@ struct Gateway::Parts {
   Result<void> take_instance(const GatewayOptions& options);
   Result<void> make_owner(LoadedCell loaded, const GatewayOptions& options);
   Result<void> start_loop();
-  void start_sensing();
+  void start_sensing(const Eigen::Vector3d& gravity_W);
   Result<void> start_messages();
   Result<void> start_outputs(const DdsOutputConfig& dds);
   void start_fault_monitor();
@@ -132,9 +141,10 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
-  owner = std::make_unique<CellOwner>(CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams),
-                                                       std::move(loaded.views), std::move(loaded.collision), *engine,
-                                                       board, clock, stream_priority, save, reply});
+  owner = std::make_unique<CellOwner>(
+      CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams), std::move(loaded.haptics),
+                       std::move(loaded.views), std::move(loaded.collision), loaded.foot_switches, *engine, board,
+                       clock, stream_priority, instance->info().name, queues.tcp_force_key, queues.mode, save, reply});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -155,12 +165,15 @@ Result<void> Gateway::Parts::start_loop() {
   return {};
 }
 
-void Gateway::Parts::start_sensing() {
+void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   // Both look at the same shapes.
   const auto solids = std::make_shared<geometry::SolidLibrary>();
   const Nanoseconds period = loop->options().period;
   collisions = std::make_unique<CollisionWorker>(*engine, board, clock, period, solids);
   ranging = std::make_unique<RangingWorker>(*engine, board, clock, period, solids);
+  contacts = std::make_unique<ContactWorker>(*engine, board, clock, period, solids);
+  forces = std::make_unique<ForceWorker>(*engine, board, clock, period, gravity_W);
+  tcp_force = std::make_unique<TcpForceWorker>(*engine, board, clock, period);
 }
 
 Result<void> Gateway::Parts::start_messages() {
@@ -171,7 +184,7 @@ Result<void> Gateway::Parts::start_messages() {
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
   auto outputs = make_outputs(queues, dds, instance->info().name);
   if (!outputs) return std::unexpected(outputs.error());
-  publisher = std::make_unique<Publisher>(*engine, board, collisions->board(), ranging->board(), clock,
+  publisher = std::make_unique<Publisher>(*engine, board, collisions->board(), ranging->board(), forces->board(), clock,
                                           loop->options().period, std::move(*outputs));
   return {};
 }
@@ -227,11 +240,13 @@ std::string Gateway::Parts::status() {
   const ScriptMessageStatus message_status = messages->status();
   const CollisionReport collision_report = collisions->report();
   const RangeReport range_report = ranging->report();
+  const ContactReport contact_report = contacts->report();
+  const ForceReport force_report = forces->report();
   const Timestamp now = clock.now();
   return status_document({instance->info().name, cell_name, home->root().string(), seconds(now - started),
                           loop_settings.rate_hz, now, *loop, memory, fault_status, *picture, tick,
                           status_builder.build(*picture, tick), message_status, collision_report, range_report,
-                          std::move(thread_queues), std::move(outputs)});
+                          contact_report, force_report, std::move(thread_queues), std::move(outputs)});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -249,13 +264,14 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   loaded->queues.apply_to(parts->queues);
   parts->engine = std::make_unique<engine::Engine>(parts->watchdog);
   const DdsOutputConfig dds = loaded->dds;
+  const Eigen::Vector3d gravity_W = loaded->gravity_m_s2;
   Result<void> step = check_instance_name(options.instance);
   if (step) step = parts->prepare_machine();
   if (step) step = parts->take_instance(options);
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
   if (step) step = parts->start_loop();
-  if (step) parts->start_sensing();
+  if (step) parts->start_sensing(gravity_W);
   if (step) step = parts->start_outputs(dds);
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();

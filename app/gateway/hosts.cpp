@@ -97,6 +97,10 @@ Result<void> CellRobots::set_active_robot(std::string_view robot) {
 Result<void> CellRobots::set_online(std::string_view robot, bool online) {
   const FleetRobot* known = fleet_.find(robot);
   const bool changes = known != nullptr && known->online != online;
+  if (online && changes && !couplings_.master_of(robot).empty()) {
+    return fail(fmt::format("{} follows {}, so it cannot follow its stream", robot, couplings_.master_of(robot)),
+                "free it first with MASTER_SLAVE off");
+  }
   auto set = fleet_.set_online(robot, online);
   if (set && changes)
     motion_.give_up(robot, {fmt::format("the robot {} went {}", robot, online ? "online" : "offline"), {}});
@@ -113,6 +117,7 @@ Result<void> CellRobots::set_joint_parameter(JointParameter which, std::span<con
   auto robot = active();
   if (!robot) return std::unexpected(robot.error());
   if (auto set = (*robot)->set_joint_parameter(which, values); !set) return set;
+  if (which == JointParameter::max_velocity) return couplings_.update_velocities(**robot);
   const bool is_limit = which == JointParameter::max_range || which == JointParameter::min_range;
   return is_limit ? fleet_.update_limits(**robot) : Result<void>();
 }

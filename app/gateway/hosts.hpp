@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/gateway/coupling_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/motion_desk.hpp"
 #include "rt_core/cell/cell.hpp"
@@ -61,8 +62,8 @@ class CellWorld final : public WorldHost {
 
 class CellRobots final : public RobotHost {
  public:
-  CellRobots(Cell& cell, Fleet& fleet, MotionDesk& motion, CellNames& names)
-      : cell_(cell), fleet_(fleet), motion_(motion), names_(names) {}
+  CellRobots(Cell& cell, Fleet& fleet, MotionDesk& motion, CouplingDesk& couplings, CellNames& names)
+      : cell_(cell), fleet_(fleet), motion_(motion), couplings_(couplings), names_(names) {}
   Result<void> set_active_robot(std::string_view robot) override;
   Result<void> set_online(std::string_view robot, bool online) override;
   Result<void> set_sending(std::string_view robot, bool sending) override { return fleet_.set_sending(robot, sending); }
@@ -81,6 +82,7 @@ class CellRobots final : public RobotHost {
   Cell& cell_;
   Fleet& fleet_;
   MotionDesk& motion_;
+  CouplingDesk& couplings_;
   CellNames& names_;
 };
 

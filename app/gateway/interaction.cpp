@@ -1,39 +1,32 @@
 #include "app/gateway/interaction.hpp"
 
-#include <fmt/format.h>
-
 namespace cellmirror::app {
 
-namespace {
-
-Result<void> not_there(std::string_view what) { return fail(fmt::format("{} are not available yet", what)); }
-
-}  // namespace
-
-Result<void> CellInteraction::set_force_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/,
-                                               std::size_t /*bytes*/) {
-  return not_there("haptic devices");
+Result<void> CellInteraction::set_force_memory(std::uint64_t /*send_type*/, std::int32_t key, std::size_t bytes) {
+  if (names_.active_robot().empty()) return fail("no robot is active", "make one active with ROBACT <robot>");
+  return haptics_.set_force_memory(names_.active_robot(), key, bytes);
 }
-Result<void> CellInteraction::reset_haptic(std::string_view /*robot*/) { return not_there("haptic devices"); }
+Result<void> CellInteraction::reset_haptic(std::string_view robot) { return haptics_.reset(robot); }
 
-Result<void> CellInteraction::set_switch_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/,
-                                                std::size_t /*bytes*/) {
-  return not_there("foot switches");
+Result<void> CellInteraction::set_switch_memory(std::uint64_t /*send_type*/, std::int32_t key, std::size_t bytes) {
+  return switches_->set_memory(key, bytes);
 }
-Result<void> CellInteraction::set_switches_online(bool /*online*/) { return not_there("foot switches"); }
+Result<void> CellInteraction::set_switches_online(bool online) { return switches_->set_online(online); }
 
-Result<void> CellInteraction::set_force_arrows(const ForceArrowSettings& /*settings*/) { return not_there("forces"); }
-Result<void> CellInteraction::set_motor_forces_only(bool /*on*/) { return not_there("forces"); }
-Result<void> CellInteraction::set_force_limits(const ForceLimits& /*limits*/) { return not_there("forces"); }
-Result<void> CellInteraction::set_tcp_test(bool /*on*/, const std::array<double, 4>& /*values*/) {
-  return not_there("forces");
+Result<void> CellInteraction::set_force_arrows(const ForceArrowSettings& settings) {
+  return forces_.set_arrows(settings);
+}
+Result<void> CellInteraction::set_motor_forces_only(bool on) { return forces_.set_motors_only(on); }
+Result<void> CellInteraction::set_force_limits(const ForceLimits& limits) { return forces_.set_limits(limits); }
+Result<void> CellInteraction::set_tcp_test(bool on, const std::array<double, 4>& values) {
+  return forces_.set_test(on, values);
 }
 
-Result<void> CellInteraction::couple(std::string_view /*master*/, std::span<const SlaveJoints> /*slaves*/) {
-  return not_there("couplings");
+Result<void> CellInteraction::couple(std::string_view master, std::span<const SlaveJoints> slaves) {
+  return couplings_->couple(master, slaves);
 }
-Result<void> CellInteraction::uncouple(std::string_view /*master*/, std::span<const SlaveJoints> /*slaves*/) {
-  return not_there("couplings");
+Result<void> CellInteraction::uncouple(std::string_view master, std::span<const SlaveJoints> slaves) {
+  return couplings_->uncouple(master, slaves);
 }
 
 }  // namespace cellmirror::app

@@ -2,12 +2,25 @@
 // that it concerns. Belongs to the thread that owns the cell.
 #pragma once
 
+#include "app/gateway/coupling_desk.hpp"
+#include "app/gateway/force_desk.hpp"
+#include "app/gateway/haptic_desk.hpp"
+#include "app/gateway/switch_desk.hpp"
 #include "scripts/commands/interaction_host.hpp"
+#include "scripts/lang/names.hpp"
 
 namespace cellmirror::app {
 
 class CellInteraction final : public InteractionHost {
  public:
+  CellInteraction(const NameDirectory& names, HapticDesk& haptics, ForceDesk& forces)
+      : names_(names), haptics_(haptics), forces_(forces) {}
+  // Before the first command. The desks outlive this.
+  void set_desks(SwitchDesk& switches, CouplingDesk& couplings) {
+    switches_ = &switches;
+    couplings_ = &couplings;
+  }
+
   Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
   Result<void> reset_haptic(std::string_view robot) override;
   Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
@@ -18,6 +31,13 @@ class CellInteraction final : public InteractionHost {
   Result<void> set_tcp_test(bool on, const std::array<double, 4>& values) override;
   Result<void> couple(std::string_view master, std::span<const SlaveJoints> slaves) override;
   Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override;
+
+ private:
+  const NameDirectory& names_;
+  HapticDesk& haptics_;
+  ForceDesk& forces_;
+  SwitchDesk* switches_ = nullptr;
+  CouplingDesk* couplings_ = nullptr;
 };
 
 }  // namespace cellmirror::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -135,6 +136,13 @@ MotionDesk::Goal MotionDesk::goal_of(const RobotModel& robot, const Record& reco
   Goal goal = record.goal.value_or(Goal{port_.positions()[robot.slot()], {}, {}});
   // Another tool: the TCP is elsewhere than it was commanded to.
   if (goal.chain != record.kinematics.chain()) goal.X_ZT.reset();
+  const unsigned coupled = coupled_ == nullptr ? 0U : coupled_->coupled_joints(robot.id());
+  if (coupled == 0) return goal;
+  const JointValues& stands = port_.positions()[robot.slot()];
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    if ((coupled >> i & 1U) != 0) goal.joints[i] = stands[i];
+  }
+  goal.X_ZT.reset();
   return goal;
 }
 
@@ -195,10 +203,12 @@ Result<MotionDesk::Planned> MotionDesk::plan(const RobotModel& robot, Record& re
   if (path == MovePath::joints) {
     auto goal = point(robot, record, target, from);
     if (!goal) return std::unexpected(goal.error());
+    if (auto free = check_coupled(robot, from.joints, goal->joints); !free) return std::unexpected(free.error());
     auto move = motion::plan_joint_move(chain, robot.parameters(), goal->joints);
     if (!move) return std::unexpected(move.error());
     return Planned{*move, std::move(*goal)};
   }
+  if (auto free = check_uncoupled(robot); !free) return std::unexpected(free.error());
   const auto X_ZG = pose_target(robot, record, target, from);
   if (!X_ZG) return std::unexpected(X_ZG.error());
   // A move that takes the place of another one begins on the way.
@@ -231,12 +241,36 @@ Result<void> MotionDesk::jump(const RobotModel& robot, Record& record, const Mot
   if (!is_joint_target(target.mode)) {
     if (auto updated = record.kinematics.update(cell_, robot); !updated) return updated;
   }
-  auto goal = point(robot, record, target, goal_of(robot, record));
+  const Goal from = goal_of(robot, record);
+  auto goal = point(robot, record, target, from);
   if (!goal) return std::unexpected(goal.error());
+  if (auto free = check_coupled(robot, from.joints, goal->joints); !free) return free;
   if (auto jumped = port_.jump(robot.id(), goal->joints); !jumped) return jumped;
   record.pending.give_up({fmt::format("{} was put elsewhere before it arrived", robot.id()), {}});
   record.goal = std::move(*goal);
   return {};
+}
+
+Result<void> MotionDesk::check_coupled(const RobotModel& robot, const JointValues& from, JointValues& goal) const {
+  constexpr double kSame = 1e-6;  // rad or m: as a command's text may round it
+  const unsigned coupled = coupled_ == nullptr ? 0U : coupled_->coupled_joints(robot.id());
+  for (std::size_t i = 0; coupled != 0 && i < robot.joint_count(); ++i) {
+    if ((coupled >> i & 1U) == 0) continue;
+    if (std::abs(goal[i] - from[i]) > kSame) {
+      return fail(fmt::format("joint {} ({}) of {} follows {}; nothing was moved", i + 1, robot.joints()[i].name,
+                              robot.id(), coupled_->master_of(robot.id())),
+                  "move the master, or free the joint with MASTER_SLAVE off");
+    }
+    goal[i] = from[i];
+  }
+  return {};
+}
+
+Result<void> MotionDesk::check_uncoupled(const RobotModel& robot) const {
+  if (coupled_ == nullptr || coupled_->coupled_joints(robot.id()) == 0) return {};
+  return fail(fmt::format("joints of {} follow {}, so its TCP cannot keep to a line; nothing was moved", robot.id(),
+                          coupled_->master_of(robot.id())),
+              "move the master, or free the joints with MASTER_SLAVE off");
 }
 
 // The tick refuses a posture as a whole, so a joint that was not commanded but stands beyond its limit (the limit was

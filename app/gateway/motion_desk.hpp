@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/gateway/coupled_robots.hpp"
 #include "app/gateway/motion_port.hpp"
 #include "app/gateway/pending_moves.hpp"
 #include "app/gateway/robot_kinematics.hpp"
@@ -21,6 +22,9 @@ class MotionDesk final : public MotionHost {
  public:
   MotionDesk(const Cell& cell, const NameDirectory& names, const Views& views, MotionPort& port)
       : cell_(cell), names_(names), views_(views), port_(port) {}
+
+  // Null, as in the beginning: no robot follows another. They outlive the desk.
+  void set_coupled(const CoupledRobots* coupled) { coupled_ = coupled; }
 
   Result<ActivityHandle> position(std::string_view robot, const MotionTarget& target) override;
   Result<void> queue_move(std::string_view robot, MovePath path, const MotionTarget& target) override;
@@ -74,12 +78,16 @@ class MotionDesk final : public MotionHost {
                        motion::Start start);
   Result<void> send(const RobotModel& robot, Record& record, Planned planned, motion::Start start);
   Result<void> jump(const RobotModel& robot, Record& record, const MotionTarget& target);
+  // Coupled joints stay with their master: refused where the goal has them elsewhere, or a path would move them.
+  [[nodiscard]] Result<void> check_coupled(const RobotModel& robot, const JointValues& from, JointValues& goal) const;
+  [[nodiscard]] Result<void> check_uncoupled(const RobotModel& robot) const;
   [[nodiscard]] Result<void> check_limits(const RobotModel& robot, const JointValues& joints) const;
 
   const Cell& cell_;
   const NameDirectory& names_;
   const Views& views_;
   MotionPort& port_;
+  const CoupledRobots* coupled_ = nullptr;
   std::map<std::string, Record, std::less<>> records_;
 };
 

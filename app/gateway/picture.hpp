@@ -9,7 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "app/gateway/coupling_desk.hpp"
+#include "app/gateway/force_settings.hpp"
+#include "app/gateway/haptic_desk.hpp"
 #include "app/gateway/hosts.hpp"
+#include "app/gateway/switch_desk.hpp"
+#include "app/gateway/tcp_force_memory.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -35,12 +40,17 @@ struct OwnerPicture {
   std::shared_ptr<const collision::Settings> collision;  // the same object as long as nothing changes
   RangeSendMode range_send_mode = RangeSendMode::one_message_a_sensor;
   std::vector<RobotPicture> robots;  // in the order of the slots
+  std::vector<HapticPicture> haptics;
+  ForceSettings forces;
+  std::shared_ptr<TcpForceMemory> tcp_force;  // null: not made yet
   std::string active_robot;
   RobotLanguage language = RobotLanguage::irdata;
   script::ScriptCounters script;
   std::vector<script::RunStatus> runs;
   std::vector<std::string> script_errors;
   std::vector<ShownMessage> messages;
+  SwitchPicture switches;
+  std::vector<CouplingPicture> couplings;
 };
 
 // Between workers only; the tick has no part in it, so a lock is allowed.

@@ -44,11 +44,21 @@ void FindingsPublisher::publish_news(FindingsOutput& output, RangeSendMode mode)
   }
 }
 
+void take_efforts(const ForceState& forces, std::span<RobotState> robots) {
+  for (RobotState& robot : robots) {
+    if (robot.online) continue;
+    const auto computed = std::ranges::find(forces.robots, robot.id, &RobotForces::id);
+    if (computed == forces.robots.end() || computed->joints.size() != robot.joints.size()) continue;
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) robot.joints[i].effort = computed->joints[i].effort;
+  }
+}
+
 Publisher::Publisher(engine::Engine& engine, const PictureBoard& board, const ProximityBoard& proximity,
-                     const RangeBoard& ranges, const Clock& clock, Nanoseconds tick_period,
+                     const RangeBoard& ranges, const ForceBoard& forces, const Clock& clock, Nanoseconds tick_period,
                      std::vector<PublishedOutput> outputs)
     : engine_(engine),
       board_(board),
+      forces_(forces),
       clock_(clock),
       tick_period_(tick_period),
       outputs_(std::move(outputs)),
@@ -94,10 +104,13 @@ Timestamp Publisher::publish_due(Timestamp now) {
     const std::shared_ptr<const OwnerPicture> picture = board_.look();
     const engine::TickState& state = engine_.publisher_view();
     select_sending(*picture, builder_.build(*picture, state));
+    const std::shared_ptr<const ForceState> forces = forces_.look();
+    if (forces) take_efforts(*forces, sending_);
     const std::span<const FramePose> frames = builder_.frames(*picture, wanted_);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       if (due_[i] > now + tick_period_ / 2) continue;
       if (!sending_.empty()) outputs_[i].output->publish(state.time, sending_, frames);
+      if (outputs_[i].forces != nullptr && forces) outputs_[i].forces->publish_forces(*forces);
       if (outputs_[i].findings != nullptr) findings_[i].publish_news(*outputs_[i].findings, picture->range_send_mode);
       due_[i] = due_[i] + outputs_[i].period;
       if (due_[i] < now) due_[i] = now + outputs_[i].period;  // it was late by more than a period

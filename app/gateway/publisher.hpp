@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <thread>
 #include <vector>
 
 #include "app/gateway/findings_board.hpp"
+#include "app/gateway/force_board.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/robot_states.hpp"
 #include "rt_core/base/time.hpp"
@@ -19,6 +21,7 @@ struct PublishedOutput {
   std::unique_ptr<RobotStateOutput> output;
   Nanoseconds period{0};
   FindingsOutput* findings = nullptr;  // the same object; null: it has no use for collisions and ranges
+  ForceOutput* forces = nullptr;       // likewise
 };
 
 // Gives what is on the boards to one output. Results that were replaced in the meantime are left out, but none of their
@@ -40,11 +43,14 @@ class FindingsPublisher {
   ProximityState outgoing_;
 };
 
+// The efforts of robots that are moved by commands are those that were computed: nobody measures them.
+void take_efforts(const ForceState& forces, std::span<RobotState> robots);
+
 class Publisher {
  public:
   // All but the outputs are not owned and outlive the publisher.
   Publisher(engine::Engine& engine, const PictureBoard& board, const ProximityBoard& proximity,
-            const RangeBoard& ranges, const Clock& clock, Nanoseconds tick_period,
+            const RangeBoard& ranges, const ForceBoard& forces, const Clock& clock, Nanoseconds tick_period,
             std::vector<PublishedOutput> outputs);
   ~Publisher();
   Publisher(const Publisher&) = delete;
@@ -60,6 +66,7 @@ class Publisher {
 
   engine::Engine& engine_;
   const PictureBoard& board_;
+  const ForceBoard& forces_;
   const Clock& clock_;
   Nanoseconds tick_period_;
   std::vector<PublishedOutput> outputs_;

@@ -10,7 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/gateway/status_collisions.hpp"
+#include "app/gateway/status_couplings.hpp"
+#include "app/gateway/status_forces.hpp"
+#include "app/gateway/status_haptics.hpp"
 #include "app/gateway/status_ranges.hpp"
+#include "app/gateway/status_switches.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
 
 namespace cellmirror::app {
@@ -302,6 +306,10 @@ std::string status_document(const StatusSources& sources) {
                          {"cameras", cameras_json(cell)},
                          {"collisions", collisions_json(sources.collisions, sources.now)},
                          {"ranges", ranges_json(sources.ranges, sources.picture, sources.now)},
+                         {"haptics", haptics_json(sources.picture, sources.tick, sources.contacts, sources.now)},
+                         {"forces", forces_json(sources.forces, sources.picture.forces, sources.now)},
+                         {"foot_switches", switches_json(sources.picture.switches, sources.now)},
+                         {"couplings", couplings_json(sources.picture.couplings, sources.tick)},
                          {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.
   return document.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "app/gateway/collision_worker.hpp"
+#include "app/gateway/contact_worker.hpp"
 #include "app/gateway/fault_monitor.hpp"
+#include "app/gateway/force_worker.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/ranging_worker.hpp"
 #include "ipc/control/control_server.hpp"
@@ -35,6 +37,8 @@ struct StatusSources {
   const ScriptMessageStatus& messages;
   const CollisionReport& collisions;
   const RangeReport& ranges;
+  const ContactReport& contacts;
+  const ForceReport& forces;
   std::vector<engine::QueueStatus> queues;  // of the threads
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
 };

@@ -6,7 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "app/subcommands/status_table_forces.hpp"
+#include "app/subcommands/status_table_haptics.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
+#include "app/subcommands/status_table_switches.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -25,7 +28,11 @@ class TableWriter {
     write_head(status);
     write_loop(status.at("loop"));
     for (const json& robot : status.at("robots")) write_robot(robot);
+    out_ += couplings_table(status);
     out_ += sensing_table(status);
+    out_ += forces_table(status);
+    out_ += haptics_table(status);
+    out_ += switches_table(status);
     write_script(status);
     write_queues(status.at("queues"));
     return std::move(out_);

@@ -62,4 +62,19 @@ std::string switches_table(const json& status) {
   return out;
 }
 
+std::string couplings_table(const json& status) {
+  if (!status.contains("couplings")) return {};
+  std::string out;
+  for (const json& coupling : status.at("couplings")) {
+    out += fmt::format("{} follows {}: {};", coupling.at("slave").get<std::string>(),
+                       coupling.at("master").get<std::string>(), coupling.at("state").get<std::string>());
+    for (const json& joint : coupling.at("joints")) {
+      out += fmt::format(" {}={}{}", joint.at("slave").get<std::string>(), joint.at("master").get<std::string>(),
+                         joint.at("limited").get<bool>() ? " (limited)" : "");
+    }
+    out += "\n";
+  }
+  return out;
+}
+
 }  // namespace cellmirror::app

@@ -1,4 +1,4 @@
-// The part of `cellmirror status` about foot switches.
+// The parts of `cellmirror status` about foot switches and coupled robots.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,5 +8,7 @@ namespace cellmirror::app {
 
 // Empty where no memory of foot switches was named.
 [[nodiscard]] std::string switches_table(const nlohmann::json& status);
+// Empty where no robot follows another.
+[[nodiscard]] std::string couplings_table(const nlohmann::json& status);
 
 }  // namespace cellmirror::app

@@ -8,6 +8,7 @@
 
 #include "drivers/dds/internal/counting_writer.hpp"
 #include "drivers/dds/internal/findings_writer.hpp"
+#include "drivers/dds/internal/wrench_writer.hpp"
 #include "drivers/dds/robot_state_messages.hpp"
 #include "rt_core/base/time.hpp"
 
@@ -26,11 +27,13 @@ constexpr int kMostDepth = 400;
 class Output final : public DdsOutput {
  public:
   Output(const DdsOutputConfig& config, std::unique_ptr<CountingWriter> joint_states,
-         std::unique_ptr<CountingWriter> transforms, std::unique_ptr<FindingsWriter> findings)
+         std::unique_ptr<CountingWriter> transforms, std::unique_ptr<FindingsWriter> findings,
+         std::unique_ptr<WrenchWriter> wrenches)
       : name_(fmt::format("dds domain {} on {}", config.domain, config.interface_address)),
         joint_states_(std::move(joint_states)),
         transforms_(std::move(transforms)),
-        findings_(std::move(findings)) {}
+        findings_(std::move(findings)),
+        wrenches_(std::move(wrenches)) {}
 
   void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) override {
     const RosTime stamp = ros_time(to_wall_clock_ns(time));
@@ -53,6 +56,8 @@ class Output final : public DdsOutput {
     publish_frames(ros_time(to_wall_clock_ns(readings.front().posture_time)), beams_);
   }
 
+  void publish_forces(const ForceState& state) override { wrenches_->publish(state); }
+
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override {
     std::uint64_t sent = joint_states_->sent() + transforms_->sent();
     std::uint64_t dropped = joint_states_->dropped() + transforms_->dropped();
@@ -64,6 +69,7 @@ class Output final : public DdsOutput {
                                                                    {"tf_readers", transforms_->readers()},
                                                                    {"not_finite", left_out_.get()}};
     findings_->add_counters(counters, sent, dropped);
+    wrenches_->add_counters(counters, sent, dropped);
     counters.insert(counters.begin(), {{"sent", sent}, {"dropped", dropped}});
     return counters;
   }
@@ -82,6 +88,7 @@ class Output final : public DdsOutput {
   std::unique_ptr<CountingWriter> joint_states_;
   std::unique_ptr<CountingWriter> transforms_;
   std::unique_ptr<FindingsWriter> findings_;
+  std::unique_ptr<WrenchWriter> wrenches_;
   JointNames names_;
   JointState joint_state_;        // reused
   TfMessage tf_;                  // reused
@@ -107,7 +114,10 @@ Result<std::unique_ptr<DdsOutput>> make_dds_output(const DdsOutputConfig& config
   if (!transforms) return std::unexpected(transforms.error());
   auto findings = FindingsWriter::make(*participant, config, {kLeastDepth, counts});
   if (!findings) return std::unexpected(findings.error());
-  return std::make_unique<Output>(config, std::move(*joint_states), std::move(*transforms), std::move(*findings));
+  auto wrenches = std::make_unique<WrenchWriter>(*participant, config.wrench_topic_prefix,
+                                                 CountingWriter::Options{kLeastDepth, counts});
+  return std::make_unique<Output>(config, std::move(*joint_states), std::move(*transforms), std::move(*findings),
+                                  std::move(wrenches));
 }
 
 }  // namespace cellmirror::dds

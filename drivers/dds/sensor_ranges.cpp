@@ -22,23 +22,25 @@ std::uint32_t fnv_1a(std::string_view text) {
 }
 
 // A token of a topic's name; an underscore in front would hide the topic from ROS 2's tools.
-std::string token(std::string_view id) {
+std::string token(std::string_view kind, std::string_view id) {
   std::string made;
   for (const char c : id) {
     const char allowed = is_letter(c) || is_digit(c) ? c : '_';
     if (allowed != '_' || (!made.empty() && made.back() != '_')) made += allowed;
   }
-  if (made.empty() || is_digit(made.front())) made.insert(0, "uss_");
+  if (made.empty() || is_digit(made.front())) made.insert(0, std::string(kind) + "_");
   return made;
 }
 
 }  // namespace
 
-std::string range_topic(std::string_view prefix, std::string_view id) {
-  std::string name = token(id);
+std::string topic_of(std::string_view kind, std::string_view prefix, std::string_view id) {
+  std::string name = token(kind, id);
   if (name != id) name += fmt::format("{}{:08x}", name.ends_with('_') ? "" : "_", fnv_1a(id));
   return fmt::format("{}/{}", prefix, name);
 }
+
+std::string range_topic(std::string_view prefix, std::string_view id) { return topic_of("uss", prefix, id); }
 
 std::string beam_frame(const RangeReading& reading) { return reading.path + "/beam"; }
 

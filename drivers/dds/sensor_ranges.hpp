@@ -11,7 +11,9 @@
 namespace cellmirror::dds {
 
 // "<prefix>/<id>" as ROS 2 allows topics (letters, digits, single underscores, no digit in front). An id that is no
-// such name has its other characters replaced and a number of its own appended, so that no two sensors share a topic.
+// such name has its other characters replaced and a number of its own appended, so that no two share a topic.
+// `kind` stands before an id that begins with a digit.
+[[nodiscard]] std::string topic_of(std::string_view kind, std::string_view prefix, std::string_view id);
 [[nodiscard]] std::string range_topic(std::string_view prefix, std::string_view id);
 
 // "<path>/beam": the sensor's frame as ROS 2 sees range sensors, the cone opening along x. Our workframe's opens along

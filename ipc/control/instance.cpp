@@ -118,6 +118,8 @@ QueueConfig default_queues(std::string_view instance) {
   queues.script_key = base;
   queues.sensor_key = base + 1;
   queues.reply_key = base + 2;
+  constexpr std::int32_t kFirstForceKey = 0x434E'0000;
+  queues.tcp_force_key = kFirstForceKey + static_cast<std::int32_t>(hash % 0x1'0000u);
   return queues;
 }
 
@@ -127,6 +129,7 @@ QueueConfig queues_of_instance(std::string_view instance, QueueConfig from_cell)
   if (from_cell.script_key == manual.script_key) from_cell.script_key = own.script_key;
   if (from_cell.sensor_key == manual.sensor_key) from_cell.sensor_key = own.sensor_key;
   if (from_cell.reply_key == manual.reply_key) from_cell.reply_key = own.reply_key;
+  if (from_cell.tcp_force_key == manual.tcp_force_key) from_cell.tcp_force_key = own.tcp_force_key;
   return from_cell;
 }
 

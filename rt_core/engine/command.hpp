@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "rt_core/engine/coupling.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/haptics/haptic_channel.hpp"
 #include "rt_core/kinematics/chain.hpp"
@@ -21,6 +22,8 @@ enum class CommandKind : std::uint8_t {
   set_chain,      // slot, chain; only while the robot is simulated
   add_move,       // slot; only while the robot is simulated. Its move travels beside it: Engine::send_move()
   stop_motion,    // slot; only while the robot is simulated
+  couple,         // slot = the slave, master, joint_count, coupled, values = greatest velocities; its moves are braked
+  uncouple,       // slot = the slave
   open_haptic,    // channel, instrument, device; one that is open is closed before
   close_haptic,   // channel
   reset_haptic,   // channel; refused where there is no fault, or its cause is still there
@@ -32,12 +35,14 @@ struct Command {
   CommandKind kind = CommandKind::set_positions;
   std::uint8_t slot = 0;
   std::uint8_t joint_count = 0;
-  std::uint16_t move = 0;  // of add_move: the engine's own
+  std::uint8_t master = 0;  // slot
+  std::uint16_t move = 0;   // of add_move: the engine's own
   RobotMode mode = RobotMode::simulated;
   StreamAges ages;
   JointValues values{};  // rad or m
   JointValues lower{};
   JointValues upper{};
+  CoupledJoints coupled{};
   // Of set_chain: for the linear moves that are added from then on. The sender owns it and keeps it until commands_done
   // has passed a later set_chain, set_mode to mirrored or remove_robot of this slot and, after a set_chain, every move
   // that was sent before it has ended (MotionState::finished in the same state). Its variables are the robot's joints.

@@ -13,6 +13,14 @@ std::uint32_t saturated_ns(Nanoseconds d) CELL_RT {
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(d.count(), 0, std::numeric_limits<std::uint32_t>::max()));
 }
 
+// In seconds, since the tick before.
+double passed_time(const CycleContext& context) CELL_RT {
+  const auto longest = std::max(context.period, kLongestStep);
+  // In doubles: a machine that slept for hours has missed more periods than fit into the nanoseconds.
+  const double passed_ns = static_cast<double>(context.period.count()) * (1.0 + static_cast<double>(context.missed));
+  return std::min(passed_ns, static_cast<double>(longest.count())) * 1e-9;
+}
+
 }  // namespace
 
 Engine::Engine(Watchdog& watchdog) : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog) {
@@ -27,16 +35,20 @@ void Engine::run(const CycleContext& context) CELL_RT {
   head_.missed_periods += context.missed;
   const int commands = take_commands(context.now);
   const int samples = take_samples() + step_haptics(context);
-  move_robots(context);
+  const double dt = passed_time(context);
+  move_robots(context, dt);
   for (RobotSlot& slot : slots_) {
     if (slot.used()) slot.update(context.now);
   }
+  follow_masters(context, dt);
   publish(for_owner_);
   publish(for_publisher_);
   publish(for_status_);
   publish(for_collision_);
   publish(for_ranging_);
   publish(for_contacts_);
+  publish(for_forces_);
+  publish(for_tcp_force_);
   record_tick(context, commands, samples);
   watchdog_.beat();
 }
@@ -58,17 +70,36 @@ int Engine::take_commands(Timestamp now) CELL_RT {
 
 bool Engine::carry_out(const Command& command) CELL_RT {
   if (HapticChannels::concerns(command)) return haptics_.apply(command, head_.time);
-  if (command.kind != CommandKind::add_move) return command.slot < kMaxRobots && slots_[command.slot].apply(command);
+  if (command.kind != CommandKind::add_move) return command.slot < kMaxRobots && apply_to_robot(command);
   const bool done = slots_[command.slot].add_move(moves_[command.move]);
   free_moves_.push(command.move);
   return done;
 }
 
-void Engine::move_robots(const CycleContext& context) CELL_RT {
-  const auto longest = std::max(context.period, kLongestStep);
-  // In doubles: a machine that slept for hours has missed more periods than fit into the nanoseconds.
-  const double passed_ns = static_cast<double>(context.period.count()) * (1.0 + static_cast<double>(context.missed));
-  const double dt = std::min(passed_ns, static_cast<double>(longest.count())) * 1e-9;
+bool Engine::apply_to_robot(const Command& command) CELL_RT {
+  switch (command.kind) {
+    case CommandKind::couple:
+      return couplings_.couple({command.master, command.slot, command.joint_count, command.coupled, command.values},
+                               slots_);
+    case CommandKind::uncouple:
+      return couplings_.uncouple(command.slot, slots_);
+    case CommandKind::add_robot:
+    case CommandKind::remove_robot:
+      couplings_.remove(command.slot, slots_);
+      return slots_[command.slot].apply(command);
+    default:
+      return slots_[command.slot].apply(command);
+  }
+}
+
+void Engine::follow_masters(const CycleContext& context, double dt) CELL_RT {
+  const std::uint64_t moved = couplings_.step(dt, slots_);
+  for (std::size_t i = 0; moved != 0 && i < kMaxRobots; ++i) {
+    if ((moved >> i & 1U) != 0) record_robot(FlightEvent::setpoint, i, context.now, 0);
+  }
+}
+
+void Engine::move_robots(const CycleContext& context, double dt) CELL_RT {
   for (std::size_t i = 0; i < kMaxRobots; ++i) {
     if (!slots_[i].used() || !slots_[i].move(dt)) continue;
     record_robot(FlightEvent::setpoint, i, context.now, slots_[i].state().motion.running);

@@ -10,6 +10,7 @@
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/command.hpp"
+#include "rt_core/engine/coupling.hpp"
 #include "rt_core/engine/flight_record.hpp"
 #include "rt_core/engine/haptic_channels.hpp"
 #include "rt_core/engine/robot_slot.hpp"
@@ -42,9 +43,8 @@ struct QueueStatus {
 
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
 // owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
-// collision_view(), ranging_view() and contact_view() to the workers of that name, contact_inlet() to the last of them;
-// each inlet() to the one driver thread of its stream;
-// the rest to any thread.
+// collision_view(), ranging_view(), contact_view(), force_view() and tcp_force_view() to the workers of that name,
+// contact_inlet() to that of contacts; each inlet() to the one driver thread of its stream; the rest to any thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
@@ -69,6 +69,8 @@ class Engine final : public Cycle {
   [[nodiscard]] const TickState& collision_view() { return for_collision_.read().value; }
   [[nodiscard]] const TickState& ranging_view() { return for_ranging_.read().value; }
   [[nodiscard]] const TickState& contact_view() { return for_contacts_.read().value; }
+  [[nodiscard]] const TickState& force_view() { return for_forces_.read().value; }
+  [[nodiscard]] const TickState& tcp_force_view() { return for_tcp_force_.read().value; }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -87,7 +89,9 @@ class Engine final : public Cycle {
   bool carry_out(const Command& command) CELL_RT;
   int take_samples() CELL_RT;
   int step_haptics(const CycleContext& context) CELL_RT;
-  void move_robots(const CycleContext& context) CELL_RT;
+  bool apply_to_robot(const Command& command) CELL_RT;
+  void move_robots(const CycleContext& context, double dt) CELL_RT;
+  void follow_masters(const CycleContext& context, double dt) CELL_RT;
   void publish(Latest<TickState>& edge) CELL_RT;
   void record_tick(const CycleContext& context, int commands, int samples) CELL_RT;
   void record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT;
@@ -107,7 +111,10 @@ class Engine final : public Cycle {
   Latest<TickState> for_collision_;
   Latest<TickState> for_ranging_;
   Latest<TickState> for_contacts_;
+  Latest<TickState> for_forces_;
+  Latest<TickState> for_tcp_force_;
   HapticChannels haptics_;
+  Couplings couplings_;
   Watchdog& watchdog_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;

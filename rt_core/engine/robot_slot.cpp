@@ -47,6 +47,9 @@ bool RobotSlot::apply(const Command& command) CELL_RT {
     case CommandKind::close_haptic:
     case CommandKind::reset_haptic:
     case CommandKind::haptic_device:
+    case CommandKind::couple:
+    case CommandKind::uncouple:
+      return false;  // the engine asks its couplings
     case CommandKind::add_move:
       return false;  // the engine carries them out itself
   }
@@ -67,7 +70,10 @@ void RobotSlot::set_mode(const Command& command) CELL_RT {
   if (!used()) return;
   state_.mode = command.mode;
   executor_.abort(motion::Outcome::stopped);
-  if (!simulated()) executor_.set_chain(nullptr);
+  if (!simulated()) {
+    executor_.set_chain(nullptr);
+    state_.follow = {};
+  }
   state_.motion = executor_.state();
   ages_ = command.ages;
   state_.sequence = 0;
@@ -96,6 +102,7 @@ bool RobotSlot::set_positions(const Command& command) CELL_RT {
   }
   executor_.abort(motion::Outcome::stopped);
   for (std::size_t i = 0; i < n; ++i) {
+    if (follows(i)) continue;
     state_.joints[i].position = command.values[i];
     state_.joints[i].velocity = 0;
   }
@@ -127,6 +134,9 @@ bool RobotSlot::move(double dt) CELL_RT {
   const bool moved = executor_.step(dt, {std::span(lower).first(n), std::span(upper).first(n)},
                                     std::span(next).first(n), std::span(velocity).first(n));
   if (moved) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (follows(i)) next[i] = present[i];
+    }
     LimiterVerdict verdict =
         check_setpoints(std::span(next).first(n), std::span(lower).first(n), std::span(upper).first(n));
     if (verdict == LimiterVerdict::passed) {
@@ -140,12 +150,69 @@ bool RobotSlot::move(double dt) CELL_RT {
       velocity.fill(0);
     }
     for (std::size_t i = 0; i < n; ++i) {
+      if (follows(i)) continue;
       state_.joints[i].position = next[i];
       state_.joints[i].velocity = velocity[i];
     }
   }
   state_.motion = executor_.state();
   return moved;
+}
+
+void RobotSlot::set_follow(std::uint8_t master, std::uint16_t joints) CELL_RT {
+  // Joints that become free are elsewhere than the move under way has them: it ends where the robot stands.
+  if ((state_.follow.joints & ~joints) != 0) {
+    executor_.abort(motion::Outcome::stopped);
+  } else {
+    executor_.stop();
+  }
+  for (std::size_t i = 0; i < state_.joint_count; ++i) {
+    if (follows(i)) state_.joints[i].velocity = 0;
+  }
+  state_.follow = {};
+  state_.follow.master = master;
+  state_.follow.joints = joints;
+}
+
+bool RobotSlot::follow(const RobotTickState& master, const Coupling& coupling, double dt) CELL_RT {
+  if (!simulated()) return false;
+  state_.follow.holding = false;
+  state_.follow.limited = 0;
+  bool moved = false;
+  for (std::size_t i = 0; i < coupling.count; ++i) {
+    const CoupledJoint& pair = coupling.joints[i];
+    const JointTickState& of_master = master.joints[pair.master_joint];
+    const bool known = master.mode == RobotMode::simulated ||
+                       (master.mode == RobotMode::mirrored && of_master.state == DataState::fresh);
+    if (!known) {
+      state_.follow.holding = true;
+      state_.joints[pair.slave_joint].velocity = 0;
+      continue;
+    }
+    const double max_step = coupling.max_velocity[pair.slave_joint] * dt;
+    moved = follow_joint(of_master, pair.slave_joint, max_step, dt) || moved;
+  }
+  return moved;
+}
+
+bool RobotSlot::follow_joint(const JointTickState& master, std::size_t joint, double max_step, double dt) CELL_RT {
+  JointTickState& own = state_.joints[joint];
+  const double present = own.position;
+  // One that stands beyond its range, since that was narrowed, may come back into it, and not go further.
+  const double lower = std::min(lower_[joint], present);
+  const double upper = std::max(upper_[joint], present);
+  const double wanted = std::clamp(master.position, lower, upper);
+  const double next = present + std::clamp(wanted - present, -max_step, max_step);
+  if (check_setpoints(std::span(&next, 1), std::span(&lower, 1), std::span(&upper, 1)) != LimiterVerdict::passed) {
+    ++state_.refused_setpoints;
+    own.velocity = 0;
+    return false;
+  }
+  if (std::abs(master.position - next) > kLimitSlack)
+    state_.follow.limited = static_cast<std::uint16_t>(state_.follow.limited | 1U << joint);
+  own.position = std::abs(wanted - present) <= max_step ? wanted : next;
+  own.velocity = dt > 0.0 ? (own.position - present) / dt : 0.0;
+  return own.position != present;
 }
 
 void RobotSlot::take(const JointSample& sample) CELL_RT {

@@ -20,6 +20,12 @@ class RobotSlot {
   bool add_move(const motion::Move& move) CELL_RT;
   // Moves a simulated robot on by `dt` seconds. True where it moved.
   bool move(double dt) CELL_RT;
+  // The joints (bits) that follow a master from now on; 0: none. What moves is braked, or ends
+  // at once where joints become free. Joints that follow are moved by
+  // follow() alone: moves and positions leave them as they are.
+  void set_follow(std::uint8_t master, std::uint16_t joints) CELL_RT;
+  // Moves the coupled joints towards the master's. True where one moved.
+  bool follow(const RobotTickState& master, const Coupling& coupling, double dt) CELL_RT;
   // Ages every joint by `now`.
   void update(Timestamp now) CELL_RT;
 
@@ -31,6 +37,8 @@ class RobotSlot {
   void add(const Command& command) CELL_RT;
   void set_mode(const Command& command) CELL_RT;
   bool set_chain(const kinematics::Chain* chain) CELL_RT;
+  bool follow_joint(const JointTickState& master, std::size_t joint, double max_step, double dt) CELL_RT;
+  [[nodiscard]] bool follows(std::size_t joint) const CELL_RT { return ((state_.follow.joints >> joint) & 1U) != 0; }
   [[nodiscard]] bool simulated() const CELL_RT { return state_.mode == RobotMode::simulated; }
 
   RobotTickState state_;

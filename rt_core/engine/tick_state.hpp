@@ -28,6 +28,16 @@ struct JointTickState {
   DataState state = DataState::none;
 };
 
+// Of a slave (MASTER_SLAVE). Joints are bits, bit 0 the first.
+struct FollowTickState {
+  std::uint8_t master = 0;    // slot; means something where joints is not 0
+  bool holding = false;       // the master's data are not fresh: a joint stays where it is
+  std::uint16_t joints = 0;   // that follow
+  std::uint16_t limited = 0;  // that are kept behind the master by their velocity or their range
+
+  [[nodiscard]] bool follows() const { return joints != 0; }
+};
+
 struct RobotTickState {
   RobotMode mode = RobotMode::absent;
   std::uint8_t joint_count = 0;
@@ -38,6 +48,7 @@ struct RobotTickState {
   std::uint64_t refused_values = 0;     // not finite, or named as refused by the driver
   std::uint64_t refused_setpoints = 0;  // by the limiter
   motion::MotionState motion;           // of a simulated robot
+  FollowTickState follow;               // of a simulated robot
   std::array<JointTickState, kMaxJointsPerRobot> joints{};
 };
 

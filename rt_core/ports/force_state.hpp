@@ -74,4 +74,11 @@ struct ForceState {
   std::vector<RobotForces> robots;  // those with masses in their models, and haptic instruments
 };
 
+// Somebody to whom forces are given, as RobotStateOutput.
+class ForceOutput {
+ public:
+  virtual ~ForceOutput() = default;
+  virtual void publish_forces(const ForceState& state) = 0;
+};
+
 }  // namespace cellmirror

@@ -120,18 +120,21 @@ struct DdsOutputConfig {
   std::string tf_topic = "rt/tf";
   // Of what collision tests and sensors found; empty: not published.
   std::string range_topic_prefix = "rt/cellmirror/range";  // a sensor's topic is <prefix>/<id>
+  std::string wrench_topic_prefix =
+      "rt/cellmirror/tcp_wrench";  // a robot's topic is <prefix>/<id>; empty: not published
   std::string diagnostics_topic = "rt/diagnostics";
   std::string markers_topic = "rt/cellmirror/markers";
   double rate_hz = 50.0;
 };
 
-// The System V queues of an instance.
+// The System V queues of an instance, and the shared memory that it has beside those of haptic devices.
 struct QueueConfig {
-  std::int32_t script_key = 2351;  // manual 1.1
-  std::int32_t sensor_key = 1990;  // manual 1.2.1, ROBOT send_on
-  std::int32_t reply_key = 2352;   // ours: acknowledgements
-  std::uint32_t mode = 0600;       // permissions of the queues
-  double sensor_rate_hz = 50.0;    // robot-parameter messages a second and robot
+  std::int32_t script_key = 2351;     // manual 1.1
+  std::int32_t sensor_key = 1990;     // manual 1.2.1, ROBOT send_on
+  std::int32_t reply_key = 2352;      // ours: acknowledgements
+  std::int32_t tcp_force_key = 1313;  // manual 1.2.4: force at the TCP
+  std::uint32_t mode = 0600;          // permissions of the queues
+  double sensor_rate_hz = 50.0;       // robot-parameter messages a second and robot
 };
 
 }  // namespace cellmirror

@@ -1,0 +1,77 @@
+#include "app/gateway/contact_worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace cellmirror::app {
+
+ContactWorker::ContactWorker(engine::Engine& engine, const PictureBoard& pictures, const Clock& clock,
+                             Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
+    : engine_(engine),
+      clock_(clock),
+      derivation_(std::move(solids)),
+      worker_(
+          "contacts", *this, [&engine]() -> const engine::TickState& { return engine.contact_view(); }, pictures, clock,
+          tick_period) {}
+
+bool ContactWorker::wanted(const OwnerPicture& picture) {
+  const bool wanted = std::ranges::any_of(picture.haptics, &HapticPicture::online);
+  if (!wanted) ages_.paused();
+  return wanted;
+}
+
+ContactWorker::Finder& ContactWorker::finder_for(const HapticPicture& haptic) {
+  Finder& out = finders_[haptic.channel];
+  if (out.finder && out.slot == haptic.slot && out.reach_m == haptic.reach_m) return out;
+  out.slot = haptic.slot;
+  out.reach_m = haptic.reach_m;
+  out.finder =
+      std::make_unique<contact_model::ContactFinder>(haptic.slot, contact_model::FinderSettings{haptic.reach_m});
+  out.finder->adopt(follower_.cell(), pairs_);
+  return out;
+}
+
+bool ContactWorker::follow(const OwnerPicture& picture) {
+  const bool news = follower_.take_cell(picture.cell);
+  if (!news && settings_ == picture.collision) return false;
+  const Timestamp start = clock_.now();
+  settings_ = picture.collision;
+  pairs_ = derivation_.derive(*follower_.cell(), *settings_);
+  for (Finder& finder : finders_) {
+    if (finder.finder) finder.finder->adopt(follower_.cell(), pairs_);
+  }
+  adopting_.record(clock_.now() - start);
+  return true;
+}
+
+void ContactWorker::run(const OwnerPicture& picture, const engine::TickState& tick) {
+  // After a long derivation the posture is old, and a component that was just loaded reaches the tick a moment later.
+  if (follow(picture) || !follower_.take_posture(tick)) return;
+  const Timestamp start = clock_.now();
+  for (const HapticPicture& haptic : picture.haptics) {
+    if (!haptic.online || tick.haptics[haptic.channel].phase == HapticPhase::closed) continue;
+    Finder& finder = finder_for(haptic);
+    finder.finder->find(follower_.poses(), tick.time, finder.found);
+    Latest<haptics::ContactModel>& inlet = engine_.contact_inlet(haptic.channel);
+    inlet.writable() = finder.found;
+    inlet.publish();
+    ages_.shown(tick.time, clock_.now());
+    const std::scoped_lock lock(mutex_);
+    newest_[haptic.channel] = finder.found;
+  }
+  compute_.record(clock_.now() - start);
+}
+
+ContactReport ContactWorker::report() const {
+  ContactReport out;
+  out.skipped = worker_.skipped();
+  out.rate_hz = worker_.rate_hz();
+  out.compute = compute_.snapshot();
+  out.visible_after = ages_.visible_after().snapshot();
+  out.adopting = adopting_.snapshot();
+  const std::scoped_lock lock(mutex_);
+  out.newest = newest_;
+  return out;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,76 @@
+// Finds the surroundings of the instruments of haptic devices, in a thread of its own: every tick, or as often as it
+// can. The tick evaluates what was found last.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "app/gateway/age_keeper.hpp"
+#include "app/gateway/cell_follower.hpp"
+#include "app/gateway/tick_worker.hpp"
+#include "rt_core/collision/pairs.hpp"
+#include "rt_core/contact_model/contact_finder.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/geometry/solid.hpp"
+#include "rt_core/haptics/contact_model.hpp"
+#include "rt_core/rt/latency_histogram.hpp"
+
+namespace cellmirror::app {
+
+// All that status tells of it, as of one moment.
+struct ContactReport {
+  std::uint64_t skipped = 0;  // ticks for which nothing was computed because the computation took longer
+  double rate_hz = 0;
+  HistogramSnapshot compute;        // of one tick's instruments together
+  HistogramSnapshot visible_after;  // from a tick to the moment the tick can use what was found for it
+  HistogramSnapshot adopting;       // how long nothing was found because the cell had changed
+  std::array<haptics::ContactModel, kMaxHapticDevices> newest;
+};
+
+class ContactWorker final : private TickJob {
+ public:
+  // All but `solids` are not owned and outlive the worker.
+  ContactWorker(engine::Engine& engine, const PictureBoard& pictures, const Clock& clock, Nanoseconds tick_period,
+                std::shared_ptr<geometry::SolidLibrary> solids);
+
+  // Any thread.
+  [[nodiscard]] ContactReport report() const;
+
+ private:
+  struct Finder {
+    std::uint8_t slot = 0;
+    double reach_m = 0;
+    std::unique_ptr<contact_model::ContactFinder> finder;
+    haptics::ContactModel found;
+  };
+
+  bool wanted(const OwnerPicture& picture) override;
+  void run(const OwnerPicture& picture, const engine::TickState& tick) override;
+  // True where pairs or finders are others than before.
+  bool follow(const OwnerPicture& picture);
+  Finder& finder_for(const HapticPicture& haptic);
+
+  engine::Engine& engine_;
+  const Clock& clock_;
+
+  // The worker's own.
+  collision::PairDerivation derivation_;
+  CellFollower follower_{false};
+  std::shared_ptr<const collision::Settings> settings_;
+  std::shared_ptr<const collision::PairTable> pairs_;
+  std::array<Finder, kMaxHapticDevices> finders_;
+
+  AgeKeeper ages_;
+  LatencyHistogram compute_;
+  LatencyHistogram adopting_;
+  mutable std::mutex mutex_;  // of what follows
+  std::array<haptics::ContactModel, kMaxHapticDevices> newest_;
+
+  TickWorker worker_;  // last: it uses everything above
+};
+
+}  // namespace cellmirror::app

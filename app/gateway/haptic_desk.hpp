@@ -1,0 +1,126 @@
+// The haptic devices of the running cell: their shared memories, and their channels in the tick. Belongs to the thread
+// that owns the cell.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/gateway/fleet.hpp"
+#include "app/gateway/haptic_meter.hpp"
+#include "app/gateway/haptic_stream.hpp"
+#include "config/cell_file.hpp"
+#include "ipc/sysv/process_watch.hpp"
+#include "ipc/sysv/shared_segment.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/haptics/haptic_channel.hpp"
+
+namespace cellmirror::app {
+
+// What other threads see of a haptic device.
+struct HapticPicture {
+  std::string robot;
+  std::uint8_t slot = 0;
+  std::uint8_t channel = 0;  // in the tick
+  bool online = false;
+  double reach_m = 0;
+  haptics::HapticSettings settings;
+  std::optional<std::int32_t> key;  // of its memory; none: it has none yet
+  std::size_t bytes = 0;
+  std::uint64_t attached = 0;  // processes that share it, ourselves included
+  std::uint64_t renewed = 0;   // times that the memory was taken away and made anew
+  bool device_gone = false;
+  std::shared_ptr<const HapticMeter> meter;
+};
+
+class HapticDesk {
+ public:
+  struct Parts {
+    const Cell& cell;
+    Fleet& fleet;
+    engine::Engine& engine;
+    const Clock& clock;
+    std::string instance;
+    std::vector<RobotHaptic> devices;  // of the cell file
+  };
+
+  explicit HapticDesk(Parts parts);
+  // The loop stands still, or shut_down() was called. Leaves zero forces in the memories.
+  ~HapticDesk();
+  HapticDesk(const HapticDesk&) = delete;
+  HapticDesk& operator=(const HapticDesk&) = delete;
+
+  // Makes the memories that the cell file names, and takes the robots online that it wants so.
+  Result<void> prepare();
+  // While the loop still runs: closes all channels.
+  void shut_down();
+  // Looks after processes that came or went, memories that were removed, and instruments that changed. Often; does
+  // something every kFollowEvery.
+  void follow();
+
+  // rob_ela_shm. A robot without [[haptic]] gets the defaults. Refused: a robot with a [[stream]]; a size without room
+  // for a force; more than kMaxHapticDevices; a key that others hold.
+  Result<void> set_force_memory(std::string_view robot, std::int32_t key, std::size_t bytes);
+  // RESET_HAPTIC. Without a fault, nothing happens. Refused: the cause is still there.
+  Result<void> reset(std::string_view robot);
+
+  [[nodiscard]] bool used() const { return !devices_.empty(); }
+  [[nodiscard]] bool any_online() const;
+  [[nodiscard]] std::vector<HapticPicture> pictures() const;
+
+ private:
+  static constexpr Nanoseconds kFollowEvery{10'000'000};
+
+  struct Device {
+    RobotHaptic config;
+    std::uint8_t channel = 0;
+    bool online = false;
+    std::unique_ptr<SharedSegment> segment;
+    std::unique_ptr<MeteredDevice> port;
+    std::shared_ptr<HapticMeter> meter;
+    std::shared_ptr<const haptics::Instrument> instrument;
+    std::shared_ptr<HapticStream> stream;
+    std::uint64_t revision = 0;  // of the cell for which `instrument` is right
+    SegmentUsers users;
+    ProcessWatch process;
+    std::uint64_t samples_seen = 0;
+    std::uint64_t faults_seen = 0;
+    bool gone = false;
+  };
+
+  Device& add(RobotHaptic config);
+  Result<Device*> device_for(std::string_view robot);
+  Result<HapticState> try_reset(Device& device);
+  Result<void> make_memory(Device& device, std::int32_t key, std::size_t bytes);
+  Result<void> open(Device& device);
+  void close(Device& device);
+  Result<void> send_open(Device& device, std::shared_ptr<const haptics::Instrument> instrument);
+  Result<std::shared_ptr<const haptics::Instrument>> instrument_of(const Device& device);
+  void drop_memory(Device& device);
+  void follow(Device& device, const HapticState& state);
+  void follow_memory(Device& device);
+  void follow_process(Device& device, const HapticState& state);
+  void follow_cell(Device& device);
+  void tell_faults(Device& device, const HapticState& state);
+  [[nodiscard]] engine::Command command_for(const Device& device, engine::CommandKind kind) const;
+
+  const Cell& cell_;
+  Fleet& fleet_;
+  engine::Engine& engine_;
+  const Clock& clock_;
+  std::string instance_;
+  std::map<std::string, Device, std::less<>> devices_;
+  // What the tick may still look into, where it did not tell that it has let go.
+  std::vector<std::shared_ptr<const void>> kept_;
+  std::vector<std::unique_ptr<SharedSegment>> kept_segments_;
+  std::vector<std::unique_ptr<MeteredDevice>> kept_ports_;  // before the segments in destruction
+  Timestamp last_look_;
+};
+
+}  // namespace cellmirror::app
