@@ -6,7 +6,7 @@ namespace cellmirror::sim {
 namespace {
 
 constexpr double kLongest = 1e6;
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kBlanks = " \t\r\n:";
 
 }  // namespace
 

@@ -62,6 +62,8 @@ void add_options(cli::Command& app, FootSwitchOptions& options, Texts& texts) {
       .show_default();
   app.option("--priority", options.priority, "SCHED_FIFO priority, where allowed").between(0, 98);
   app.option("--log", options.log, "a CSV file of every change: time_ns,input,on,bounce");
+  app.option("--control", options.control, "a FIFO to read commands from: a sequence a line, or quit");
+  app.flag("--no-input", options.no_input, "take no commands from standard input (it never does)");
   app.flag("--json", options.json, "print the summary as JSON on standard output at the end");
   app.flag("-q,--quiet", options.quiet, "only errors");
 }
@@ -123,12 +125,14 @@ std::string read_texts(const Texts& texts, FootSwitchOptions& options) {
                                        texts.for_s >= 0 ? texts.for_s : 10, texts.seed);
     options.plan.insert(options.plan.end(), random.begin(), random.end());
   }
-  if (options.plan.empty() && problems.empty()) {
-    problems = "sim_footswitch: nothing to do; name --press, --hold, --sequence or --random\n";
+  if (options.plan.empty() && options.control.empty() && problems.empty()) {
+    problems = "sim_footswitch: nothing to do; name --press, --hold, --sequence, --random or --control\n";
   }
   sort_by_time(options.plan);
   read_bounce(texts, options, problems);
-  options.for_s = texts.for_s >= 0 ? texts.for_s : options.holds.empty() ? 0 : -1;
+  const bool until_told = !options.holds.empty() || !options.control.empty();
+  options.for_s = texts.for_s >= 0 ? texts.for_s : until_told ? -1 : 0;
+  options.gap_s = texts.gap_s;
   for (const SwitchChange& change : options.plan) {
     options.bytes = std::max<std::uint64_t>(options.bytes, bytes_for(change.input));
   }

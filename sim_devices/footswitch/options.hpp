@@ -18,6 +18,9 @@ struct FootSwitchOptions {
   double wait_s = 0;                 // for the memory; 0: as long as it takes
   int priority = 0;
   std::string log;
+  std::string control;
+  bool no_input = false;  // there is none anyway: as sim_robot
+  double gap_s = 0.1;     // of sequences that come by command
   bool json = false;
   bool quiet = false;
 };

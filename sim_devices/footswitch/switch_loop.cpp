@@ -7,6 +7,7 @@
 #include <limits>
 #include <system_error>
 
+#include "rt_core/base/text.hpp"
 #include "sim_devices/base/pacer.hpp"
 #include "sim_devices/base/process.hpp"
 #include "sim_devices/footswitch/switch_bits.hpp"
@@ -35,6 +36,11 @@ SwitchLoop::~SwitchLoop() {
 
 Result<std::unique_ptr<SwitchLoop>> SwitchLoop::make(FootSwitchOptions options) {
   std::unique_ptr<SwitchLoop> loop(new SwitchLoop(std::move(options)));
+  if (!loop->options_.control.empty()) {
+    auto opened = ControlFifo::open(loop->options_.control);
+    if (!opened) return std::unexpected(opened.error());
+    loop->control_ = std::move(*opened);
+  }
   if (loop->options_.log.empty()) return loop;
   loop->log_ = std::fopen(loop->options_.log.c_str(), "w");
   if (loop->log_ == nullptr) {
@@ -65,11 +71,47 @@ bool SwitchLoop::wait_for_memory() {
 }
 
 void SwitchLoop::wait_until(Timestamp t) {
-  while (!signalled()) {
+  while (!signalled() && !quit_) {
     const Timestamp now = clock_.now();
     if (now >= t) return;
     static_cast<void>(seeker_.look(now));
-    sleep_until(std::min(t, now + kNap));
+    listen(now);
+    Timestamp next = std::min(t, now + kNap);
+    if (!told_.empty()) next = std::min(next, started_ + from_seconds(told_.front().at_s));
+    sleep_until(next);
+    put_told();
+  }
+}
+
+// Sequences by command: their first change comes at once.
+void SwitchLoop::listen(Timestamp now) {
+  if (!control_) return;
+  for (const std::string& line : control_->lines()) {
+    if (trimmed(line) == "quit") {
+      quit_ = true;
+      return;
+    }
+    Diagnostics diagnostics;
+    const auto changes = parse_switch_sequence(line, "command", options_.gap_s, diagnostics);
+    if (!diagnostics.ok()) {
+      fmt::print(stderr, "sim_footswitch: {}\n", diagnostics.text());
+      continue;
+    }
+    if (told_.size() + changes.size() > kMaxSwitchChanges) continue;
+    for (SwitchChange change : changes) {
+      change.at_s += seconds(now - started_);
+      told_.push_back(change);
+    }
+    sort_by_time(told_);
+  }
+}
+
+void SwitchLoop::put_told() {
+  while (!told_.empty() && started_ + from_seconds(told_.front().at_s) <= clock_.now()) {
+    std::size_t end = 0;
+    while (end < told_.size() && told_[end].at_s == told_.front().at_s) ++end;
+    put(std::span(told_).first(end), started_ + from_seconds(told_.front().at_s));
+    told_.erase(told_.begin(), told_.begin() + static_cast<std::ptrdiff_t>(end));
   }
 }
 
@@ -78,29 +120,28 @@ bool SwitchLoop::run() {
     fmt::print(stderr, "sim_footswitch: no SCHED_FIFO for this user; going on with ordinary priority\n");
   }
   if (!wait_for_memory()) return false;
-  const Timestamp started = clock_.now();
+  started_ = clock_.now();
   const std::vector<SwitchChange>& plan = options_.plan;
-  for (std::size_t i = 0; i < plan.size() && !signalled();) {
+  for (std::size_t i = 0; i < plan.size() && !signalled() && !quit_;) {
     std::size_t end = i;
     while (end < plan.size() && plan[end].at_s == plan[i].at_s) ++end;
-    const Timestamp due = started + from_seconds(plan[i].at_s);
+    const Timestamp due = started_ + from_seconds(plan[i].at_s);
     wait_until(due);
-    if (!signalled()) put(std::span(plan).subspan(i, end - i), due);
+    if (!signalled() && !quit_) put(std::span(plan).subspan(i, end - i), due);
     i = end;
   }
-  const Timestamp last =
-      options_.for_s < 0 ? Timestamp{std::numeric_limits<std::int64_t>::max()} : started + from_seconds(options_.for_s);
-  wait_until(last);
+  wait_until(options_.for_s < 0 ? Timestamp{std::numeric_limits<std::int64_t>::max()}
+                                : started_ + from_seconds(options_.for_s));
   release();
   summary_.attachments = seeker_.attachments();
-  summary_.duration_s = seconds(clock_.now() - started);
+  summary_.duration_s = seconds(clock_.now() - started_);
   return true;
 }
 
 // A foot that goes away presses nothing any more: what it held, and after a signal whatever it was about to open.
 void SwitchLoop::release() {
   std::vector<std::uint32_t> inputs = options_.holds;
-  if (signalled()) {
+  if (signalled() || quit_) {
     for (const SwitchChange& change : options_.plan) inputs.push_back(change.input);
   }
   std::ranges::sort(inputs);

@@ -6,9 +6,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
+#include "sim_devices/base/control_fifo.hpp"
 #include "sim_devices/base/segment_seeker.hpp"
 #include "sim_devices/footswitch/options.hpp"
 
@@ -41,11 +43,17 @@ class SwitchLoop {
   explicit SwitchLoop(FootSwitchOptions options);
   bool wait_for_memory();
   void wait_until(Timestamp t);
+  void listen(Timestamp now);
+  void put_told();
   void release();
   void put(std::span<const SwitchChange> changes, Timestamp due);
 
   FootSwitchOptions options_;
   std::FILE* log_ = nullptr;
+  std::unique_ptr<ControlFifo> control_;
+  std::vector<SwitchChange> told_;  // by command, still to come; at_s counts from the start
+  Timestamp started_;
+  bool quit_ = false;
   SystemClock clock_;
   SegmentSeeker seeker_;
   FootSwitchSummary summary_;

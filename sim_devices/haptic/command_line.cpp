@@ -72,6 +72,8 @@ void add_options(cli::Command& app, HapticOptions& options, Texts& texts) {
   app.option("--priority", options.priority, "SCHED_FIFO priority, where allowed").between(0, 98);
   app.flag("--watch", options.watch, "write nothing: record the gateway's answers (see --log)");
   app.option("--log", options.log, "a CSV file of every period");
+  app.option("--control", options.control, "a FIFO to read commands from: motion MOTION, fault FAULT, clear, quit");
+  app.flag("--no-input", options.no_input, "take no commands from standard input (it never does)");
   app.flag("--json", options.json, "print the summary as JSON on standard output at the end");
   app.flag("-q,--quiet", options.quiet, "only errors");
   app.flag("--motions", texts.show_motions, "print all motions");

@@ -19,6 +19,7 @@ HapticDevice::HapticDevice(const HapticOptions& options)
       player_(options.motion, options.start, options.repeat) {}
 
 const HapticSample& HapticDevice::step(const HapticOutput& answer, Timestamp now, double since_start, double dt) {
+  since_start_ = since_start;
   efforts_ = layout_.efforts(answer);
   const HandWish& wish = player_.step(hand_.coordinates(), efforts_, dt);
   Coordinates begin = wish.position;
@@ -37,6 +38,19 @@ const HapticSample& HapticDevice::step(const HapticOutput& answer, Timestamp now
   }
   if (in_force(HapticFaultKind::stuck) == nullptr) stuck_at_.reset();
   return sample_;
+}
+
+bool HapticDevice::add_fault(HapticFaultSpec fault) {
+  if (options_.faults.size() >= kMaxFaults) return false;
+  fault.from_s += since_start_;
+  fault.until_s += since_start_;
+  options_.faults.push_back(std::move(fault));
+  return true;
+}
+
+void HapticDevice::clear_faults() {
+  options_.faults.clear();
+  struck_ = 0;
 }
 
 const HapticFaultSpec* HapticDevice::in_force(HapticFaultKind kind) const {

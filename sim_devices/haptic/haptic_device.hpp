@@ -4,7 +4,12 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "sim_devices/base/control_fifo.hpp"
 #include "sim_devices/base/pacer.hpp"
 #include "sim_devices/base/segment_seeker.hpp"
 #include "sim_devices/haptic/force_reader.hpp"
@@ -30,12 +35,19 @@ class HapticDevice {
   [[nodiscard]] const Coordinates& efforts() const { return efforts_; }
   [[nodiscard]] const Coordinates& measured() const { return measured_; }
   [[nodiscard]] bool done() const { return player_.done(); }
+  void play(std::vector<MotionStep> steps) { player_.replace(std::move(steps)); }
+  // Its window counts from now. False where there are kMaxFaults already.
+  bool add_fault(HapticFaultSpec fault);
+  void clear_faults();
+  [[nodiscard]] std::span<const HapticFaultSpec> faults() const { return options_.faults; }
   // The fault of this kind that is in force now; null: none.
   [[nodiscard]] const HapticFaultSpec* in_force(HapticFaultKind kind) const;
   [[nodiscard]] std::uint32_t struck() const { return struck_; }  // bit a fault, in their order
 
  private:
   void measure(Timestamp now);
+
+  static constexpr std::size_t kMaxFaults = 32;
 
   HapticOptions options_;
   AxisLayout layout_;
@@ -47,11 +59,13 @@ class HapticDevice {
   HapticSample sample_;
   std::optional<HapticSample> stuck_at_;
   std::uint32_t struck_ = 0;
+  double since_start_ = 0;
 };
 
 class HapticLoop {
  public:
-  HapticLoop(const HapticOptions& options, HapticLog* log);
+  // Not owned; null: none.
+  HapticLoop(const HapticOptions& options, HapticLog* log, ControlFifo* control);
 
   // Returns at the end of the motion or of --for, or after a signal. False where the memory never came.
   bool run();
@@ -66,9 +80,13 @@ class HapticLoop {
   void end_by_fault(bool torn);
   void wait_for_answer(Timestamp until);
   void log(Timestamp now);
+  void listen(Timestamp now);
+  // Why it was not obeyed; empty where it was.
+  [[nodiscard]] std::string obey(std::string_view line);
 
   HapticOptions options_;
   HapticLog* log_;
+  ControlFifo* control_;
   SystemClock clock_;
   HapticSummary summary_;
   HapticDevice device_;
@@ -78,6 +96,8 @@ class HapticLoop {
   SecondWriter second_;
   Nanoseconds period_;
   Timestamp started_;
+  Timestamp next_listen_;
+  bool quit_ = false;
   std::uint64_t sequence_ = 0;
   std::uint64_t attachments_ = 0;
   std::uint32_t noted_ = 0;  // faults that stand in the summary

@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "ipc/wire/haptic_block.hpp"
+#include "rt_core/base/text.hpp"
 #include "sim_devices/base/process.hpp"
 #include "sim_devices/haptic/haptic_device.hpp"
 
@@ -12,16 +13,19 @@ namespace cellmirror::sim {
 namespace {
 
 constexpr Nanoseconds kWaiting{10'000'000};
+constexpr Nanoseconds kBetweenCommands{20'000'000};
 constexpr Nanoseconds kBeforeNext{50'000};  // polling ends so long before the next period
 constexpr std::int64_t kMostPeriodsAtOnce = 100;
+constexpr std::size_t kMostNotes = 1000;  // faults in the summary
 
 Nanoseconds from_seconds(double s) { return Nanoseconds(static_cast<std::int64_t>(s * 1e9)); }
 
 }  // namespace
 
-HapticLoop::HapticLoop(const HapticOptions& options, HapticLog* log)
+HapticLoop::HapticLoop(const HapticOptions& options, HapticLog* log, ControlFifo* control)
     : options_(options),
       log_(log),
+      control_(control),
       device_(options),
       seeker_(options.key, haptic_block_offset::kSize, false),
       reader_(summary_),
@@ -50,9 +54,9 @@ bool HapticLoop::wait_for_memory() {
 }
 
 bool HapticLoop::over(Timestamp now) const {
-  if (signalled()) return true;
+  if (signalled() || quit_) return true;
   if (options_.for_s > 0) return seconds(now - started_) >= options_.for_s;
-  return options_.for_s < 0 && !options_.motion.empty() && device_.done();
+  return options_.for_s < 0 && control_ == nullptr && !options_.motion.empty() && device_.done();
 }
 
 bool HapticLoop::run() {
@@ -72,6 +76,7 @@ bool HapticLoop::run() {
     const Timestamp planned = pacer.next();
     pacer.advance(now);
     const std::int64_t periods = std::min((pacer.next() - planned) / period_, kMostPeriodsAtOnce);
+    listen(now);
     const bool there = seeker_.look(now);
     if (seeker_.attachments() != attachments_) reader_.restart();
     attachments_ = seeker_.attachments();
@@ -115,8 +120,9 @@ void HapticLoop::write(const HapticSample& sample) {
 
 void HapticLoop::note_faults(Timestamp now) {
   const std::uint32_t begun = device_.struck() & ~noted_;
-  for (std::size_t i = 0; begun != 0 && i < options_.faults.size(); ++i) {
-    if ((begun >> i & 1U) != 0) summary_.faults.push_back({options_.faults[i].text, now.ns, sequence_ + 1});
+  for (std::size_t i = 0; begun != 0 && i < device_.faults().size(); ++i) {
+    if ((begun >> i & 1U) == 0 || summary_.faults.size() >= kMostNotes) continue;
+    summary_.faults.push_back({device_.faults()[i].text, now.ns, sequence_ + 1});
   }
   noted_ |= begun;
 }
@@ -126,6 +132,39 @@ void HapticLoop::end_by_fault(bool torn) {
   if (log_ != nullptr) log_->flush();
   if (torn) tear(seeker_.memory());
   std::raise(SIGKILL);
+}
+
+void HapticLoop::listen(Timestamp now) {
+  if (control_ == nullptr || now < next_listen_) return;
+  next_listen_ = now + kBetweenCommands;
+  for (const std::string& line : control_->lines()) {
+    if (const std::string problem = obey(line); !problem.empty()) fmt::print(stderr, "sim_haptic: {}\n", problem);
+  }
+}
+
+std::string HapticLoop::obey(std::string_view line) {
+  line = trimmed(line);
+  const std::size_t end = std::min(line.find(' '), line.size());
+  const std::string_view word = line.substr(0, end);
+  const std::string_view rest = trimmed(line.substr(end));
+  if (word == "motion") {
+    Diagnostics diagnostics;
+    auto steps = parse_motion(rest, "motion", device_.layout(), diagnostics);
+    if (!diagnostics.ok()) return diagnostics.text();
+    device_.play(std::move(steps));
+  } else if (word == "fault") {
+    auto fault = parse_haptic_fault(rest);
+    if (!fault) return fault.error().text();
+    if (!device_.add_fault(std::move(*fault))) return "there are too many faults; say clear first";
+  } else if (word == "clear") {
+    device_.clear_faults();
+    noted_ = 0;
+  } else if (word == "quit") {
+    quit_ = true;
+  } else if (!line.empty()) {
+    return fmt::format("'{}' is no command; say motion MOTION, fault FAULT, clear or quit", printable(line, 40));
+  }
+  return {};
 }
 
 void HapticLoop::wait_for_answer(Timestamp until) {

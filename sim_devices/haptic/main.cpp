@@ -42,7 +42,16 @@ int main(int argc, char** argv) {
     watcher.run();
     return tell(options, watcher.summary());
   }
-  sim::HapticLoop loop(options, log.get());
+  std::unique_ptr<sim::ControlFifo> control;
+  if (!options.control.empty()) {
+    auto opened = sim::ControlFifo::open(options.control);
+    if (!opened) {
+      fmt::print(stderr, "sim_haptic: {}\n", opened.error().text());
+      return 1;
+    }
+    control = std::move(*opened);
+  }
+  sim::HapticLoop loop(options, log.get(), control.get());
   if (!loop.run()) return 1;
   return tell(options, loop.summary());
 }

@@ -50,6 +50,13 @@ const HandWish& MotionPlayer::step(const Coordinates& hand, const Coordinates& e
   return wish_;
 }
 
+void MotionPlayer::replace(std::vector<MotionStep> steps) {
+  steps_ = std::move(steps);
+  next_ = 0;
+  begun_ = false;
+  wish_.holding = true;
+}
+
 void MotionPlayer::begin(const MotionStep& step) {
   begun_ = true;
   t_ = 0;

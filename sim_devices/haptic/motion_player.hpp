@@ -22,6 +22,8 @@ class MotionPlayer {
 
   // The wish `dt` seconds after the last one. `efforts` is what the hand feels, `hand` where it is.
   [[nodiscard]] const HandWish& step(const Coordinates& hand, const Coordinates& efforts, double dt);
+  // Goes on with other steps from where it is; `back` keeps its place.
+  void replace(std::vector<MotionStep> steps);
   [[nodiscard]] bool done() const { return next_ >= steps_.size(); }
   [[nodiscard]] const HandWish& wish() const { return wish_; }
 

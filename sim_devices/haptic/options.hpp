@@ -30,6 +30,8 @@ struct HapticOptions {
   int priority = 0;
   bool watch = false;  // only look: nothing is written
   std::string log;
+  std::string control;
+  bool no_input = false;  // there is none anyway: as sim_robot
   bool json = false;
   bool quiet = false;
 };

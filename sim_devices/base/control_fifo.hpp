@@ -1,0 +1,30 @@
+// Commands that somebody writes into a FIFO while a simulator runs: a line each.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror::sim {
+
+class ControlFifo {
+ public:
+  // Fails where `path` is no FIFO.
+  static Result<std::unique_ptr<ControlFifo>> open(const std::string& path);
+  ~ControlFifo();
+  ControlFifo(const ControlFifo&) = delete;
+  ControlFifo& operator=(const ControlFifo&) = delete;
+
+  // What has come since the last call, whole lines only; never waits. Lines that are too long are dropped.
+  [[nodiscard]] std::vector<std::string> lines();
+
+ private:
+  explicit ControlFifo(int descriptor) : descriptor_(descriptor) {}
+
+  int descriptor_;
+  std::string partial_;
+};
+
+}  // namespace cellmirror::sim
