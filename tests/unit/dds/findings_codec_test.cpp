@@ -1,9 +1,12 @@
-// Bytes of Range, DiagnosticArray and MarkerArray, written by hand from the CDR rules (see golden.hpp).
+// Bytes of Range, WrenchStamped, DiagnosticArray and MarkerArray, written by hand from the CDR rules (see golden.hpp).
 #include <gtest/gtest.h>
+
+#include <limits>
 
 #include "drivers/dds/diagnostic_messages.hpp"
 #include "drivers/dds/marker_messages.hpp"
 #include "drivers/dds/range_message.hpp"
+#include "drivers/dds/wrench_message.hpp"
 #include "golden.hpp"
 
 namespace cellmirror::dds::test {
@@ -31,6 +34,40 @@ TEST(RangeCodec, WritesWhatTheStandardSays) {
                          0x00, 0x00, 0x80, 0x3f,                          // 28: range 1
                          0x00, 0x00, 0x00, 0x00,                          // 32: variance 0
                      }));
+}
+
+TEST(WrenchStampedCodec, WritesWhatTheStandardSays) {
+  std::vector<std::byte> written;
+  encode(WrenchStamped{.header = {.stamp = {1, 2}, .frame_id = "R/tcp"}, .force = {1, 2, -2}, .torque = {0.5, 0, 4}},
+         written);
+  EXPECT_EQ(written, bytes({
+                         0x00, 0x01, 0x00, 0x00,                                     // CDR_LE, no options
+                         0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00,             // 0: sec, nanosec
+                         0x06, 0x00, 0x00, 0x00, 'R',  '/',  't',  'c',  'p', 0x00,  // 8: frame_id
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00,                         // 18: padding
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xf0, 0x3f,             // 24: force.x 1
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x40,             // 32: force.y 2
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xc0,             // 40: force.z -2
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xe0, 0x3f,             // 48: torque.x 0.5
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,             // 56: torque.y 0
+                         0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x10, 0x40,             // 64: torque.z 4
+                     }));
+}
+
+// What the surroundings do to a TCP is told where anything tells of it, in the frame of /tf.
+TEST(WrenchStamped, IsTheForceAtTheTcp) {
+  RobotForces robot;
+  robot.id = "R";
+  robot.tcp_T = {{1, 2, 3}, {4, 5, 6}};
+  WrenchStamped message;
+  EXPECT_FALSE(fill_tcp_wrench({1, 2}, robot, message));
+  robot.tcp_known = true;
+  ASSERT_TRUE(fill_tcp_wrench({1, 2}, robot, message));
+  EXPECT_EQ(message.header.frame_id, "R/tcp");
+  EXPECT_EQ(message.force, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(message.torque, (std::array<double, 3>{4, 5, 6}));
+  robot.tcp_T.force.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(fill_tcp_wrench({1, 2}, robot, message));
 }
 
 TEST(DiagnosticArrayCodec, WritesWhatTheStandardSays) {
