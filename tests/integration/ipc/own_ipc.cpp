@@ -27,7 +27,7 @@ class OwnIpc : public ::testing::Environment {
   }
   void TearDown() override {
     if (in_own_namespace) {
-      EXPECT_EQ(objects_in_namespace(), 0) << "queues or semaphores were left behind";
+      EXPECT_EQ(objects_in_namespace(), 0) << "queues, semaphores or memories were left behind";
     }
   }
 
@@ -67,7 +67,7 @@ void remove_semaphore(std::int32_t key) {
 
 int objects_in_namespace() {
   int objects = 0;
-  for (const char* table : {"/proc/sysvipc/msg", "/proc/sysvipc/sem"}) {
+  for (const char* table : {"/proc/sysvipc/msg", "/proc/sysvipc/sem", "/proc/sysvipc/shm"}) {
     std::ifstream in(table);
     --objects;  // the heading
     for (std::string line; std::getline(in, line);) ++objects;

@@ -1,6 +1,5 @@
 // An IPC namespace of the test program's own where that is allowed, keys of its own in any case, and a runtime folder
-// of its own; queues and semaphores that are left at the end are a
-// failure.
+// of its own; queues, semaphores and memories that are left at the end are a failure.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +23,7 @@ void remove_queue(std::int32_t key);
 int make_queue(std::int32_t key, int mode);
 // Removes the semaphore of a key, if it exists.
 void remove_semaphore(std::int32_t key);
-// All queues and semaphores of the namespace; meaningful only in one's own.
+// All queues, semaphores and memories of the namespace; meaningful only in one's own.
 int objects_in_namespace();
 
 }  // namespace cellmirror::test
