@@ -49,7 +49,7 @@ std::string device_lines(const json& haptic) {
 }
 
 std::string tcp_force_line(const json& force) {
-  if (!force.is_object()) return {};
+  if (!force.is_object() || text(force.at("robot")).empty()) return {};  // no robot is active
   const bool valid = force.at("valid").get<bool>();
   const char* mark = force.at("beyond_limit").get<bool>() ? " BEYOND LIMIT" : "";
   return fmt::format(

@@ -89,7 +89,7 @@ class Moving(Trainer):
         def there():
             robot = self.scratch.robot("LAP_LEFT")
             moved = [a - b for a, b in zip(robot["tcp"]["position_m"], before)]
-            return all(abs(m - t) < 1e-4 for m, t in zip(moved, self.device.target)) and robot
+            return all(abs(m - t) < 5e-4 for m, t in zip(moved, self.device.target)) and robot
 
         robot = g.eventually(there, 5)
         self.assertTrue(robot, self.scratch.robot("LAP_LEFT")["tcp"])

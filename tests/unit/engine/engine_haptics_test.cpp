@@ -1,0 +1,282 @@
+// Haptic devices inside the tick.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/rt/allocation_guard.hpp"
+
+namespace cellmirror::engine {
+namespace {
+
+constexpr Nanoseconds kPeriod{1'000'000};
+constexpr std::uint8_t kSlot = 5;
+constexpr std::uint8_t kChannel = 2;
+
+// Three slides along x, y, z: the tip stands where the joints say.
+kinematics::Chain slides() {
+  std::vector<kinematics::Variable> variables;
+  for (const char* name : {"X", "Y", "Z"}) variables.push_back({name, JointKind::prismatic, -1.0, 1.0});
+  // The z axis of each joint's frame points along world x, y, z in turn: a turn of all axes into each other.
+  Pose turn = Pose::Identity();
+  turn.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // x to y, y to z, z to x
+  kinematics::ChainJoint joint;
+  joint.kind = JointKind::prismatic;
+  std::vector<kinematics::ChainJoint> joints(3, joint);
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    joints[i].variable = i;
+    joints[i].X_PJ = turn;
+  }
+  return *kinematics::Chain::make(variables, joints, Pose::Identity());
+}
+
+// Says what the test tells it to say, each tick anew, and keeps what it hears.
+class TestDevice final : public HapticDevicePort {
+ public:
+  HapticRead read(HapticSample& out) CELL_RT override {
+    if (silent) return HapticRead::unchanged;
+    ++sample.sequence;
+    sample.time = *now;
+    out = sample;
+    return HapticRead::fresh;
+  }
+  void write(const HapticOutput& output) CELL_RT override {
+    ++written;
+    last = output;
+  }
+
+  HapticSample sample;
+  HapticOutput last;
+  std::uint64_t written = 0;
+  bool silent = false;
+  const Timestamp* now = nullptr;
+};
+
+class EngineHapticsTest : public testing::Test {
+ protected:
+  EngineHapticsTest() {
+    device_.now = &now_;
+    device_.sample.valid = true;
+    device_.sample.writer = 4711;
+    instrument_.settings.engage_time = Nanoseconds(10'000'000);
+    instrument_.settings.max_speed = 100;
+    instrument_.lower.fill(-1.0);
+    instrument_.upper.fill(1.0);
+    for (std::int8_t i = 0; i < 3; ++i) instrument_.variable_joint[static_cast<std::size_t>(i)] = i;
+    Command add;
+    add.kind = CommandKind::add_robot;
+    add.slot = kSlot;
+    add.joint_count = 3;
+    add.lower.fill(-1.0);
+    add.upper.fill(1.0);
+    sut_->send(add);
+    Command mirror;
+    mirror.kind = CommandKind::set_mode;
+    mirror.slot = kSlot;
+    mirror.mode = RobotMode::mirrored;
+    sut_->send(mirror);
+    tick();
+  }
+
+  void tick(int times = 1) {
+    for (int i = 0; i < times; ++i) {
+      now_ = now_ + kPeriod;
+      CycleContext context;
+      context.now = now_;
+      context.scheduled = now_;
+      context.cycle = cycle_++;
+      context.period = kPeriod;
+      sut_->run(context);
+    }
+  }
+
+  // The newest surroundings: a wall whose surface is at x = `wall`, free below it.
+  void give_model(double wall) {
+    haptics::ContactModel& model = sut_->contact_inlet(kChannel).writable();
+    model = haptics::ContactModel();
+    model.sequence = ++model_sequence_;
+    model.posture_time = now_;
+    model.slot = kSlot;
+    model.reach = 1.0;
+    model.x_ref = {0, 0, 0};
+    model.count = 1;
+    model.constraints[0].a = -Eigen::Vector3d::UnitX();
+    model.constraints[0].normal = -Eigen::Vector3d::UnitX();
+    model.constraints[0].gap = wall;
+    sut_->contact_inlet(kChannel).publish();
+  }
+
+  // Ticks with a fresh model each, until the channel is active.
+  void run(int ticks, double wall = 0.5) {
+    for (int i = 0; i < ticks; ++i) {
+      give_model(wall);
+      tick();
+    }
+  }
+
+  void send(CommandKind kind, bool gone = false) {
+    Command command;
+    command.kind = kind;
+    command.channel = kChannel;
+    command.instrument = kind == CommandKind::open_haptic ? &instrument_ : nullptr;
+    command.device = kind == CommandKind::open_haptic ? &device_ : nullptr;
+    command.device_gone = gone;
+    sut_->send(command);
+  }
+
+  void engage() {
+    send(CommandKind::open_haptic);
+    run(50);
+    ASSERT_EQ(haptic().phase, HapticPhase::active);
+  }
+
+  const HapticState& haptic() { return sut_->owner_view().haptics[kChannel]; }
+  const RobotTickState& robot() { return sut_->owner_view().robots[kSlot]; }
+
+  Watchdog watchdog_{std::chrono::milliseconds(100), {}};
+  std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  Timestamp now_{1'000'000'000};
+  std::uint64_t cycle_ = 0;
+  std::uint64_t model_sequence_ = 0;
+  haptics::Instrument instrument_{kSlot, 3, slides(), {}, Pose::Identity(), {}, {}, {}};
+  TestDevice device_;
+};
+
+TEST_F(EngineHapticsTest, InstrumentFollowsTheHandAsAMirroredRobot) {
+  engage();
+  device_.sample.p_DH = {0.01, -0.02, 0.03};
+  run(200);
+  EXPECT_EQ(robot().mode, RobotMode::mirrored);
+  EXPECT_EQ(robot().state, DataState::fresh);
+  EXPECT_NEAR((haptic().x_device - Eigen::Vector3d(0.01, -0.02, 0.03)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((haptic().x_proxy - haptic().x_device).norm(), 0.0, 5e-4);
+  EXPECT_EQ(haptic().slot, kSlot);
+  EXPECT_EQ(haptic().device_writer, 4711U);
+  EXPECT_EQ(sut_->status_view().haptics[kChannel].samples, haptic().samples);
+}
+
+TEST_F(EngineHapticsTest, EveryTickIsAnsweredInTheSameTick) {
+  engage();
+  const std::uint64_t before = device_.written;
+  run(10);
+  EXPECT_EQ(device_.written, before + 10);
+  EXPECT_EQ(device_.last.answers, device_.sample.sequence);
+  EXPECT_EQ(device_.last.time, now_);
+}
+
+TEST_F(EngineHapticsTest, WallPushesBack) {
+  engage();
+  for (int i = 0; i < 100; ++i) {
+    device_.sample.p_DH.x() = 0.503 * (i + 1) / 100.0;
+    run(1);
+  }
+  run(200);
+  EXPECT_LT(haptic().x_proxy.x(), 0.5 + 1e-6);
+  EXPECT_NEAR(device_.last.force_D.x(), -0.003 * instrument_.settings.stiffness, 0.05);
+  EXPECT_EQ(haptic().contacts, 1);
+}
+
+TEST_F(EngineHapticsTest, ClosingWritesZeroAndClearsTheStateInEveryBuffer) {
+  engage();
+  send(CommandKind::close_haptic);
+  tick();
+  EXPECT_EQ(device_.last.force_D, Eigen::Vector3d::Zero());
+  const std::uint64_t written = device_.written;
+  for (int i = 0; i < 5; ++i) {
+    tick();
+    EXPECT_EQ(haptic().phase, HapticPhase::closed);
+    EXPECT_EQ(haptic().samples, 0U);
+  }
+  EXPECT_EQ(device_.written, written);
+}
+
+TEST_F(EngineHapticsTest, FaultTakesTheForceWithinTwoTicksAndStaysUntilReset) {
+  engage();
+  device_.sample.p_DH.y() = std::numeric_limits<double>::quiet_NaN();
+  run(2);
+  EXPECT_EQ(haptic().phase, HapticPhase::faulted);
+  EXPECT_EQ(haptic().fault, HapticFault::not_finite);
+  EXPECT_EQ(device_.last.force_D, Eigen::Vector3d::Zero());
+  const std::uint64_t refused = sut_->owner_view().commands_refused;
+  send(CommandKind::reset_haptic);
+  run(1);
+  EXPECT_EQ(sut_->owner_view().commands_refused, refused + 1);  // the cause is still there
+  device_.sample.p_DH.y() = 0;
+  run(50);
+  EXPECT_EQ(haptic().phase, HapticPhase::faulted);
+  send(CommandKind::reset_haptic);
+  run(60);
+  EXPECT_EQ(haptic().phase, HapticPhase::active);
+}
+
+TEST_F(EngineHapticsTest, DeviceThatIsKnownToHaveEndedIsAFaultThatCannotBeResetBeforeItIsBack) {
+  instrument_.settings.stale_after = Nanoseconds(1'000'000'000);
+  engage();
+  device_.silent = true;
+  send(CommandKind::haptic_device, true);
+  run(3);
+  EXPECT_EQ(haptic().fault, HapticFault::vanished);
+  run(50);
+  send(CommandKind::reset_haptic);
+  run(2);
+  EXPECT_EQ(haptic().phase, HapticPhase::faulted);
+  device_.silent = false;
+  send(CommandKind::haptic_device, false);
+  run(50);
+  send(CommandKind::reset_haptic);
+  run(60);
+  EXPECT_EQ(haptic().phase, HapticPhase::active);
+}
+
+TEST_F(EngineHapticsTest, CommandsThatNameNothingAreRefused) {
+  Command command;
+  command.kind = CommandKind::open_haptic;
+  command.channel = kChannel;
+  sut_->send(command);
+  command.channel = kMaxHapticDevices;
+  command.instrument = &instrument_;
+  command.device = &device_;
+  sut_->send(command);
+  send(CommandKind::reset_haptic);
+  const std::uint64_t before = sut_->owner_view().commands_refused;
+  tick();
+  EXPECT_EQ(sut_->owner_view().commands_refused, before + 3);
+  EXPECT_EQ(haptic().phase, HapticPhase::closed);
+}
+
+TEST_F(EngineHapticsTest, ModelOfAnInstrumentThatHadTheChannelBeforeIsNotUsed) {
+  give_model(0.5);
+  tick();
+  send(CommandKind::open_haptic);
+  tick(2);
+  EXPECT_FALSE(haptic().model_time.known());
+  run(2);
+  EXPECT_TRUE(haptic().model_time.known());
+}
+
+TEST_F(EngineHapticsTest, FourOpenChannelsTakeNoHeapMemory) {
+  if (!AllocationGuard::armed()) GTEST_SKIP() << "skipped: the allocation guard is not armed in this build";
+  std::array<TestDevice, kMaxHapticDevices> devices;
+  for (std::uint8_t i = 0; i < kMaxHapticDevices; ++i) {
+    devices[i] = device_;
+    Command command;
+    command.kind = CommandKind::open_haptic;
+    command.channel = i;
+    command.instrument = &instrument_;
+    command.device = &devices[i];
+    sut_->send(command);
+  }
+  const AllocationGuard guard;
+  run(300, 0.0);
+  for (TestDevice& device : devices) device.sample.p_DH.x() = 0.002;
+  run(300, 0.0);
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_EQ(guard.frees(), 0U);
+  EXPECT_LT(devices[kChannel].last.force_D.x(), -1.0);
+}
+
+}  // namespace
+}  // namespace cellmirror::engine
