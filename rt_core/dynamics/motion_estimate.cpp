@@ -8,6 +8,11 @@
 namespace cellmirror::dynamics {
 
 double FilteredDerivative::update(double input, double dt, double time_constant) CELL_RT {
+  constexpr double kRest = 1e-12;  // there, so that nothing fades out through numbers that processors are slow with
+  if (std::abs(input - value_) < kRest) {
+    reset(input);
+    return rate_;
+  }
   const double step = (1.0 - std::exp(-dt / time_constant)) * (input - value_);
   value_ += step;
   rate_ = step / dt;
