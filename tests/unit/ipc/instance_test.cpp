@@ -32,14 +32,16 @@ TEST(InstanceKeys, DefaultHasTheManualsOnes) {
   EXPECT_EQ(sut.script_key, 2351);
   EXPECT_EQ(sut.sensor_key, 1990);
   EXPECT_EQ(sut.reply_key, 2352);
+  EXPECT_EQ(sut.tcp_force_key, 1313);
 }
 
 // 0xe40c292c is the published test vector of FNV-1a for "a".
-TEST(InstanceKeys, OthersHaveThreeOfTheirOwn) {
+TEST(InstanceKeys, OthersHaveKeysOfTheirOwn) {
   const QueueConfig sut = default_queues("a");
   EXPECT_EQ(sut.script_key, 0x434D0000 + 3 * static_cast<int>(0xe40c292cu % 21845u));
   EXPECT_EQ(sut.sensor_key, sut.script_key + 1);
   EXPECT_EQ(sut.reply_key, sut.script_key + 2);
+  EXPECT_EQ(sut.tcp_force_key, 0x434E0000 + static_cast<int>(0xe40c292cu % 0x10000u));
 }
 
 TEST(InstanceKeys, StayInTheirRangeAndRarelyMeet) {
