@@ -21,6 +21,9 @@ using geometry::CoreKind;
 constexpr double kNoDirection = 1e-7;  // m
 // What a plane may cut off from a place that is nearer, m.
 constexpr double kSlack = 5e-6;
+// How much a hollow rises, compared with how much it turns: an arc has 0.5, a crease 1, a saddle 0.
+constexpr double kLeastRise = 0.3;
+constexpr double kSameSurface = 1e-7;  // m
 // How far a direction may lean towards the cut end of a shaft.
 constexpr double kLean = 0.02;
 constexpr std::size_t kContactPoints = 4;
@@ -46,6 +49,17 @@ bool nearest_of_whole(const Piece& piece, const Vector3d& p_W, const Vector3d& d
   const double near_end = piece.core.half.z() * (1 - 1e-9) - 1e-9;
   if ((piece.cut_low && z <= -near_end) || (piece.cut_high && z >= near_end)) return std::abs(axis.dot(d_W)) < kLean;
   return true;
+}
+
+// Whether the plane of a facet must not count while `place` is what is nearest. Of a hollow both sides count. Over a
+// hump the far side does not: its plane would cut off the near one. Nor on a saddle, along which the surface turns
+// without rising: there the plane would soon bar a way that is free.
+bool is_beyond(const Candidate& plane, const Candidate& place) {
+  const double c = place.normal.dot(plane.normal);
+  if (plane.gap < place.gap * c - kSlack) return true;
+  const Vector3d back = place.surface - plane.surface;
+  const double sine = std::sqrt(std::max(0.0, 1 - c * c));
+  return plane.normal.dot(back) < kLeastRise * sine * back.norm() + kSameSurface;
 }
 
 }  // namespace
@@ -153,6 +167,7 @@ void PairQuery::consider(const Piece& instrument, const Piece& obstacle, const T
   found.distance = distance - skins;
   found.normal = place.normal;
   found.point = touch.p_I - instrument.skin * place.normal;
+  found.surface = touch.p_O;
   if (place.nearest) {
     found.gap = found.distance - margin_;
     push(nearest_i || place.face ? near_ : only_reference_, found);
@@ -260,10 +275,7 @@ bool PairQuery::one_in_the_other(const Piece& instrument, const Piece& obstacle)
 void PairQuery::keep_what_fits(std::vector<Candidate>& out) {
   out.insert(out.end(), near_.begin(), near_.end());
   for (const Candidate& plane : planes_) {
-    // Of a hollow both sides count; over a hump the far side does not: its plane would cut off the near one.
-    const auto cuts_off = [&plane](const Candidate& place) {
-      return plane.gap < place.gap * place.normal.dot(plane.normal) - kSlack;
-    };
+    const auto cuts_off = [&plane](const Candidate& place) { return is_beyond(plane, place); };
     if (std::ranges::any_of(near_, cuts_off) || std::ranges::any_of(only_reference_, cuts_off)) continue;
     out.push_back(plane);
   }

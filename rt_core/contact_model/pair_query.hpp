@@ -12,11 +12,12 @@ namespace cellmirror::contact_model {
 
 // The instrument is free as long as normal . displacement of `point` + gap >= 0. World frame.
 struct Candidate {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // unit vector, towards the instrument
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // m, on the instrument
-  double gap = 0;                                    // m, along the normal
-  double distance = 0;                               // m, of the features; what is nearer counts first
-  std::int32_t node = 0;                             // that `point` is fixed to
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();   // unit vector, towards the instrument
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // m, on the instrument
+  Eigen::Vector3d surface = Eigen::Vector3d::Zero();  // m, on the obstacle
+  double gap = 0;                                     // m, along the normal
+  double distance = 0;                                // m, of the features; what is nearer counts first
+  std::int32_t node = 0;                              // that `point` is fixed to
 };
 
 enum class QueryResult : std::uint8_t {
