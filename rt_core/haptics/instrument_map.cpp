@@ -51,7 +51,7 @@ Wish InstrumentMap::wish(const Instrument& instrument, const HapticSample& sampl
   if (settings.drive == Drive::pose) {
     wish.p_handle = settings.X_WD.linear() * sample.p_DH;
     wish.x_WE = settings.X_WD.translation() + offset_W_ + settings.workspace_scale * wish.p_handle;
-    wish.R_WE = R_offset_ * handle_orientation(instrument, sample);
+    wish.R_WE = handle_orientation(instrument, sample) * R_HE_;
     return wish;
   }
   wish.q = q;
@@ -72,7 +72,7 @@ Wish InstrumentMap::wish(const Instrument& instrument, const HapticSample& sampl
 
 void InstrumentMap::anchor_orientation(const Instrument& instrument, const HapticSample& sample,
                                        const Posture& posture) CELL_RT {
-  R_offset_ = posture.X_WE.linear() * handle_orientation(instrument, sample).transpose();
+  R_HE_ = handle_orientation(instrument, sample).transpose() * posture.X_WE.linear();
 }
 
 void InstrumentMap::anchor(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT {

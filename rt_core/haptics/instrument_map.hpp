@@ -38,8 +38,8 @@ class InstrumentMap {
   void anchor_orientation(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT;
 
  private:
-  Eigen::Vector3d offset_W_ = Eigen::Vector3d::Zero();      // m
-  Eigen::Matrix3d R_offset_ = Eigen::Matrix3d::Identity();  // before the handle's orientation in the world
+  Eigen::Vector3d offset_W_ = Eigen::Vector3d::Zero();  // m
+  Eigen::Matrix3d R_HE_ = Eigen::Matrix3d::Identity();  // how the tool lies in the hand
   JointValues joint_offset_{};
 };
 

@@ -15,7 +15,7 @@ constexpr double kMet = 1e-6;            // m
 constexpr double kEnough = 1e-9;         // m
 constexpr double kEnoughTurn = 1e-5;     // rad: a change of roll that is worth another step
 constexpr double kPlaceDamping = 1e-10;  // m2: far below what a lever of a millimetre gives
-constexpr double kTurnDamping = 1e-6;    // rad2
+constexpr double kTurnDamping = 1e-3;    // rad2: what no motion can take off must not be blown up
 constexpr double kLongestStep = 0.3;     // rad or m, of one variable in one iteration
 constexpr double kLargestTurn = 0.1;     // rad, likewise, for the orientation
 
@@ -65,6 +65,8 @@ class Stepper {
     const Columns projected = turn_ - (turn_ * place_.transpose()) * damped_inverse(place_, kPlaceDamping) * place_;
     const Eigen::Vector3d left = error - all_turn_ * step_;
     Step wanted = projected.transpose() * (damped_inverse(projected, kTurnDamping) * left);
+    // Once more, since damping has let a trace of what moves the place through.
+    wanted -= place_.transpose() * (damped_inverse(place_, kPlaceDamping) * (place_ * wanted));
     const double largest = wanted.cwiseAbs().maxCoeff();
     if (largest > kLargestTurn) wanted *= kLargestTurn / largest;
     // A limit in the way shortens the motion as a whole, so that it still leaves the place alone.
