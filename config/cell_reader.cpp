@@ -99,6 +99,8 @@ void CellReader::read_haptics(const RobotDirectory& robots, bool complete) {
     const auto same_key = [&](const RobotHaptic& other) { return haptic->key && other.key == haptic->key; };
     if (std::ranges::any_of(haptics, same_key))
       table.error("shm_key", fmt::format("another haptic device has the key {} too", *haptic->key));
+    if (haptic->key && haptic->key == foot_switches.key)
+      table.error("shm_key", fmt::format("the foot switches have the key {} too", *haptic->key));
     haptics.push_back(std::move(*haptic));
   }
 }

@@ -111,6 +111,7 @@ std::optional<RobotHaptic> read_haptic(TableReader& reader, const RobotDirectory
   read_mapping(reader, facts, haptic.settings);
   read_rendering(reader, haptic.settings);
   read_guards(reader, haptic.settings);
+  haptic.placed = reader.has("xyz_m");
   haptic.reach_m = reader.number("reach_m", {0.001, 1.0}).value_or(haptic.reach_m);
   read_memory(reader, haptic);
   reader.finish();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "rt_core/base/log.hpp"
@@ -129,10 +130,12 @@ void ForceComputation::take_tcp(const engine::TickState& tick, std::size_t robot
   const HapticState* haptic = haptic_of(tick, out.slot);
   out.tcp_known = haptic != nullptr;
   out.tcp_T = {};
+  out.X_WT = Pose::Identity();
   if (haptic == nullptr) return;
   // What pushes the hand pushes the tip.
   out.tcp_T = {haptic->force_E, Eigen::Vector3d(0, 0, haptic->axis_torque)};
-  if (mechanisms_[robot].mechanism) return;
+  const std::optional<Mechanism>& mechanism = mechanisms_[robot].mechanism;
+  if (mechanism && mechanism->tip_link() >= 0) return;  // its links tell
   compute_poses(*cell_, positions_, poses_);
   out.X_WT = tcp_poses(cell_->robots[robot], poses_).X_WT;
 }

@@ -88,11 +88,19 @@ Result<void> HapticDesk::open(Device& device) {
                 fmt::format("name it with ROBACT {0} and rob_ela_shm, or with shm_key in the [[haptic]] table of {0}",
                             device.config.robot));
   }
+  if (!device.config.placed) place_at_tip(device);
   auto instrument = instrument_of(device);
   if (!instrument) return std::unexpected(instrument.error());
   if (auto sent = send_open(device, std::move(*instrument)); !sent) return sent;
   device.online = true;
   return {};
+}
+
+void HapticDesk::place_at_tip(Device& device) {
+  const RobotModel* robot = cell_.robot(device.config.robot);
+  if (robot == nullptr) return;
+  const Pose X_WT = cell_.world_pose(robot->flange(), fleet_.positions()) * robot->X_FT();
+  device.config.settings.X_WD.translation() = X_WT.translation();
 }
 
 Result<void> HapticDesk::send_open(Device& device, std::shared_ptr<const Instrument> instrument) {
@@ -160,7 +168,7 @@ Result<HapticDesk::Device*> HapticDesk::device_for(std::string_view robot) {
   }
   if (devices_.size() >= kMaxHapticDevices)
     return fail(fmt::format("there are {} haptic devices already", kMaxHapticDevices));
-  return &add(RobotHaptic{.robot = std::string(robot), .settings = {}, .reach_m = 0.02, .key = {}});
+  return &add(RobotHaptic{.robot = std::string(robot), .settings = {}, .key = {}});
 }
 
 Result<void> HapticDesk::set_force_memory(std::string_view robot, std::int32_t key, std::size_t bytes) {
@@ -224,7 +232,9 @@ void HapticDesk::follow() {
   if (last_look_.known() && now - last_look_ < kFollowEvery) return;
   last_look_ = now;
   for (auto& [robot, device] : devices_) {
-    if (device.segment) follow(device, engine_.owner_view().haptics[device.channel]);
+    if (!device.segment) continue;
+    const HapticState state = engine_.owner_view().haptics[device.channel];
+    follow(device, state);
   }
 }
 

@@ -100,6 +100,8 @@ class HapticDesk {
   Result<void> make_memory(Device& device, std::int32_t key, std::size_t bytes);
   Result<void> open(Device& device);
   void close(Device& device);
+  // The device's zero goes where the tip stands now.
+  void place_at_tip(Device& device);
   Result<void> send_open(Device& device, std::shared_ptr<const haptics::Instrument> instrument);
   Result<std::shared_ptr<const haptics::Instrument>> instrument_of(const Device& device);
   void drop_memory(Device& device);

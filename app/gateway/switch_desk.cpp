@@ -10,6 +10,7 @@ namespace cellmirror::app {
 namespace {
 
 constexpr Nanoseconds kLookAfter{200'000'000};  // how often the memory itself is asked after (system calls)
+constexpr int kEdgesInATurn = 1024;             // a flood of changes must not hold the owner up
 constexpr std::size_t kShownInputs = 64;
 constexpr std::size_t kShownFiles = 16;
 constexpr std::string_view kLogKind = "foot-switches";
@@ -91,7 +92,8 @@ void SwitchDesk::stop_watching() {
 
 void SwitchDesk::take_edges() {
   footswitch::SwitchEdge edge;
-  while (reader_ && reader_->next(edge)) scripts_.add({edge.input, edge.on, edge.not_told});
+  for (int taken = 0; taken < kEdgesInATurn && reader_ && reader_->next(edge); ++taken)
+    scripts_.add({edge.input, edge.on, edge.not_told});
 }
 
 bool SwitchDesk::follow() {

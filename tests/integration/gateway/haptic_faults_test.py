@@ -8,21 +8,25 @@ import trainer as t
 
 STALE_NS = 30_000_000  # trainer.PATIENT
 INTO = t.LEFT["into"]
-TOUCH = f"hold 1500ms; touch {INTO} 0.12 speed=0.12 at=0.3; press 0.006 60s"
+TOUCH = f"motion touch {INTO} 0.12 speed=0.12 at=0.3; press 0.006 60s"
 
 # fault, what the gateway says, whether the program is gone afterwards, how its instant is known
 FAULTS = (
-    ("freeze@4..5", {"stale"}, False, "silence"),
-    ("jump:by=0.05@4..4.05", {"jump"}, False, "value"),
-    ("nan@4..4.05", {"not_finite"}, False, "value"),
-    ("rotation@4..4.05", {"not_finite"}, False, "value"),
-    ("unbounded@4..4.05", {"not_finite", "jump"}, False, "value"),
-    ("late:s=0.1@4..4.4", {"stale"}, False, "value"),
-    ("invalid@4..4.05", {"invalid"}, False, "value"),
-    ("twice@4..4.2", {"two_writers", "jump"}, False, "writer"),
-    ("dead@4", {"stale", "vanished"}, True, "silence"),
-    ("torn@4", {"stale", "torn", "vanished"}, True, "silence"),
+    ("freeze@0.1..0.6", {"stale"}, False, "silence"),
+    ("jump:by=0.05@0.1..0.15", {"jump"}, False, "value"),
+    ("nan@0.1..0.15", {"not_finite"}, False, "value"),
+    ("rotation@0.1..0.15", {"not_finite"}, False, "value"),
+    ("unbounded@0.1..0.15", {"not_finite", "jump", "invalid"}, False, "value"),
+    ("late:s=0.1@0.1..0.4", {"stale"}, False, "value"),
+    ("invalid@0.1..0.15", {"invalid"}, False, "value"),
+    ("twice@0.1..0.3", {"two_writers", "jump"}, False, "writer"),
+    ("dead@0.1", {"stale", "vanished"}, True, "silence"),
+    ("torn@0.1", {"stale", "torn", "vanished"}, True, "silence"),
 )
+
+# As in the block (docs/shared-memory.md), from 0.
+FAULT_NAMES = ("none", "stale", "vanished", "not_finite", "invalid", "jump", "two_writers", "torn", "late_tick", "stale_model",
+               "not_passive")
 
 
 def detectable_ns(how, seen, summary):
@@ -66,54 +70,94 @@ class Haptic(unittest.TestCase):
 
     def hand(self, *arguments, robot="LAP_LEFT"):
         """A device whose force is on: what was latched before it (the last one's end is a fault too) is reset."""
-        device = self.sim(*arguments, robot=robot)
+        self.sims.append(t.Hand(self.scratch, self.keys[robot], *arguments))
+        self.engage(self.sims[-1], robot)
+        return self.sims[-1]
 
+    def engage(self, device, robot="LAP_LEFT"):
         def engaged():
-            phase = t.haptic(self.scratch, robot)["phase"]
-            if phase == "faulted":
+            state = t.haptic(self.scratch, robot)
+            if state["device"]["process"] != device.child.pid:
+                return False
+            if state["phase"] == "faulted":
                 self.scratch.send(f"RESET_HAPTIC {robot}")
-            return phase in ("engaging", "active")
-        self.assertTrue(g.eventually(engaged, 5), t.haptic(self.scratch, robot))
-        return device
+            return state["phase"] == "active"
+        self.assertTrue(g.eventually(engaged, 20), t.haptic(self.scratch, robot))
+
+    def press(self, device, motion=TOUCH, robot="LAP_LEFT"):
+        """Until a force is felt."""
+        device.say(motion)
+
+        def felt():
+            return sum(part * part for part in t.haptic(self.scratch, robot)["force"]["world_n"]) > 0.25
+        self.assertTrue(g.eventually(felt, 20), t.haptic(self.scratch, robot))
+
+    def end(self, device):
+        device.say("quit")
+        return device.finish()
 
     def test_a_hand_feels_the_organ_against_its_motion(self):
-        summary = self.hand("--axes", 7, "--motion", f"hold 1500ms; touch {INTO} 0.12 speed=0.12 at=0.3; press 0.008 1s; letgo; hold 200ms",
-                           "--log", self.log).finish()
+        device = self.hand("--axes", 7, "--log", self.log)
+        self.press(device)
+        time.sleep(0.5)
+        device.say("motion letgo; back; hold 60s")
+        time.sleep(2.0)
+        self.assertEqual(t.haptic(self.scratch, "LAP_LEFT")["force"]["world_n"], [0, 0, 0])
+        summary = self.end(device)
         self.assertEqual(summary["fault"], "none", summary)
-        self.assertTrue(summary["motion_done"])
-        self.assertGreater(summary["max_force_n"], 1.0)
+        self.assertGreater(summary["max_force_n"], 0.5)
         self.assertLess(summary["max_force_n"], 8.01)
         pressing = max(t.rows(self.log), key=lambda row: row["force_n"])
         against = 0.5722 * pressing["effort_x"] + 0.3587 * pressing["effort_y"] - 0.7374 * pressing["effort_z"]
-        self.assertLess(against, -0.5)
+        self.assertLess(against, -0.4)
         self.assertLess(summary["max_work_j"], 5e-3)
-        self.assertLess(summary["latency_us"]["p50"], 3000)
 
     def test_a_handle_on_a_trocar_feels_torques(self):
-        summary = self.hand("--axes", 5, "--start", "0,0,0.12,0,0", "--motion",
-                            "hold 1500ms; touch insertion 0.1 speed=0.1 at=0.3; press 0.006 1s; letgo", robot="LAP_RIGHT").finish()
+        device = self.hand("--axes", 5, "--start", "0,0,0.12,0,0", robot="LAP_RIGHT")
+        self.press(device, "motion touch insertion 0.1 speed=0.1 at=0.3; press 0.006 60s", robot="LAP_RIGHT")
+        time.sleep(0.5)
+        summary = self.end(device)
         self.assertEqual(summary["fault"], "none", summary)
         self.assertGreater(summary["max_torque_nm"], 0.5)  # N of the insertion
-        self.assertTrue(summary["motion_done"])
 
     def test_the_hand_moves_the_instrument_and_the_jaw(self):
-        self.hand("--axes", 7, "--motion", "drag x 0.01; drag gripper 0.3 speed=1; hold 60s")
-        time.sleep(1.5)
-        tip = t.haptic(self.scratch, "LAP_LEFT")["proxy_position_m"]
-        self.assertAlmostEqual(tip[0], t.LEFT["tip"][0] + 0.01, delta=2e-3)
-        jaw = next(joint for joint in self.scratch.robot("LAP_LEFT")["joints"] if "JAW" in str(joint.get("name", "")))
-        self.assertAlmostEqual(jaw.get("position_rad", jaw.get("position")), 0.3, delta=0.02)
+        device = self.hand("--axes", 7)
+        device.say("motion drag x 0.01; drag gripper 0.3 speed=1")
+
+        def there():
+            tip = t.haptic(self.scratch, "LAP_LEFT")["proxy_position_m"]
+            joints = self.scratch.robot("LAP_LEFT")["joints"]
+            jaw = joints[-1].get("position_rad", joints[-1].get("position"))
+            return abs(tip[0] - t.LEFT["tip"][0] - 0.01) < 1e-3 and abs(jaw - 0.3) < 0.02
+        self.assertTrue(g.eventually(there, 10), (t.haptic(self.scratch, "LAP_LEFT")["proxy_position_m"], self.scratch.robot("LAP_LEFT")))
+        self.end(device)
 
     def check_fault(self, fault, words, killed, how):
-        device = self.hand("--axes", 7, "--motion", TOUCH, "--fault", fault, "--for", 5.5)
-        watcher = self.sim("--axes", 7, "--watch", "--for", 6, "--log", self.log)
-        summary = device.finish(killed=killed)
+        device = self.hand("--axes", 7)
+        self.press(device)
+        watcher = self.sim("--axes", 7, "--watch", "--for", 2.5, "--log", self.log)
+        time.sleep(0.8)
+        device.say("fault " + fault)
         watcher.finish()
-        seen = t.rows(self.log)
+        if killed:
+            device.finish(killed=True)
+        else:
+            device.say("motion back speed=0.3")
+        state = t.haptic(self.scratch, "LAP_LEFT")
+        self.assertEqual(state["phase"], "faulted")
+        self.assertTrue(state["remedy"])
+        # It is well again: reset works, and the force comes back.
+        again = self.hand("--axes", 7) if killed else device
+        self.engage(again)
+        self.press(again)
+        summary = self.end(again)
+        self.check_record(t.rows(self.log), fault, words, how, summary)
+
+    def check_record(self, seen, fault, words, how, summary):
         self.assertGreater(len(seen), 1000)
         begin = detectable_ns(how, seen, summary)
         before = [row for row in seen if begin - 200_000_000 < row["force_time_ns"] < begin - STALE_NS]
-        self.assertGreater(max((row["force_n"] for row in before), default=0), 0.3, "nothing was felt before the fault")
+        self.assertGreater(max((row["force_n"] for row in before), default=0), 0.3, f"nothing was felt before the fault; before: {before[:1]}")
         after = [row for row in seen if row["force_time_ns"] >= begin]
         first = after[0]["force_sequence"]
         zero_from = next((row["force_sequence"] for row in after if row["force_n"] == 0 and row["torque_nm"] == 0), None)
@@ -123,15 +167,7 @@ class Haptic(unittest.TestCase):
         for row in after:
             if row["force_sequence"] >= zero_from:
                 self.assertEqual((row["force_n"], row["torque_nm"], row["phase"]), (0, 0, 5), "not latched")
-        state = t.haptic(self.scratch, "LAP_LEFT")
-        self.assertEqual(state["phase"], "faulted")
-        self.assertIn(state["fault"], words)
-        self.assertTrue(state["remedy"])
-
-    def check_recovery(self):
-        summary = self.hand("--axes", 7, "--motion", TOUCH, "--for", 4.5).finish()
-        self.assertEqual((summary["phase"], summary["fault"]), ("active", "none"))
-        self.assertGreater(summary["max_force_n"], 0.3)
+        self.assertIn(FAULT_NAMES[next(row["fault"] for row in after if row["phase"] == 5)], words)
 
     def test_without_a_device_nothing_is_felt_and_reset_tells_so(self):
         done = self.scratch.send("RESET_HAPTIC LAP_RIGHT")
@@ -142,7 +178,6 @@ class Haptic(unittest.TestCase):
 def add_fault_test(fault, words, killed, how):
     def test(self):
         self.check_fault(fault, words, killed, how)
-        self.check_recovery()
     setattr(Haptic, f"test_fault_{fault.split('@')[0].split(':')[0]}", test)
 
 

@@ -276,6 +276,27 @@ class Processes(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.wait_for(phase)
 
+    def test_an_instrument_that_is_taken_away_and_brought_back(self):
+        self.start_device()
+        self.wait_for("active")
+        refused = self.scratch.send("DELETE_NODE Left")
+        self.assertEqual(refused.returncode, 1, refused.stdout)
+        self.assertIn("ROBOT LAP_LEFT offline first", refused.stderr)
+        for command in ("ROBOT LAP_LEFT offline", "DELETE_NODE Left", "ACTIVATE Left", "ROBOT LAP_LEFT online"):
+            done = self.scratch.send(command)
+            self.assertEqual(done.returncode, 0, f"{command}: {done.stderr}")
+        self.wait_for("active")
+
+    def test_changes_of_the_cell_do_not_stop_the_force(self):
+        self.start_device()
+        self.wait_for("active")
+        for command in ("ACTIVATE LampCutting", "DEACTIVATE LampCutting", "DEACTIVATE Phantom", "ACTIVATE Phantom",
+                        "SET_FRAME LampCutting PLACEMENT 0 0 400 0 0 0"):
+            self.scratch.send(command)
+            time.sleep(0.05)
+        self.assertEqual(self.haptic()["phase"], "active")
+        self.assertGreater(self.scratch.status()["haptics"]["contact_models"]["adopting_us"]["count"], 1)
+
     def test_another_memory(self):
         key = self.scratch.keys["LAP_LEFT"] + 2
         for command in ("ROBACT LAP_LEFT", f"rob_ela_shm 0 {key} 512"):

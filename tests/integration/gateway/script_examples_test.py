@@ -20,6 +20,7 @@ REFUSED = {
     "STVW 0 VP 1238 1511 -662.28 VA 22.5 STEPS 35": "not available yet: view sequences",
     "STVW 0 VP 519.7 -539 -850 LP 2183 9570 3391 TIME 15.0": "not available yet: view sequences",
     "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0": "below its lower limit",
+    "RESET_HAPTIC MANTEC_RM3": "has no haptic device",
 }
 # The examples of 1.2.2 fit robots with so many joints; ROBACT comes first, as the manual says.
 ROBOT_OF_COUNT = {6: "MANTEC_R3", 3: "ZELLENKRAN"}

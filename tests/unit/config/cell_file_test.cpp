@@ -50,6 +50,21 @@ TEST_F(CellFile, hasDefaultsForEverythingButFormatAndName) {
   EXPECT_TRUE(sut->streams.empty());
 }
 
+TEST_F(CellFile, readsFootSwitches) {
+  auto sut = load("");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_FALSE(sut->foot_switches.key);
+  EXPECT_FALSE(sut->foot_switches.online);
+  EXPECT_EQ(sut->foot_switches.debounce, std::chrono::milliseconds(10));
+  sut = load("[foot_switches]\nkey = 0x57b\nbytes = 2\nmode = \"0660\"\ndebounce_s = 0.025\nonline = true\n");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->foot_switches.key, 1403);
+  EXPECT_EQ(sut->foot_switches.bytes, 2U);
+  EXPECT_EQ(sut->foot_switches.mode, 0660U);
+  EXPECT_EQ(sut->foot_switches.debounce, std::chrono::milliseconds(25));
+  EXPECT_TRUE(sut->foot_switches.online);
+}
+
 TEST_F(CellFile, readsViewsAndTellsWhatIsWrongWithThem) {
   const auto sut =
       load("[[view]]\nid = 3\nviewpoint_m = [1, 2, 3]\nopening_angle_rad = 0.5\n[[view]]\nid = 0\nnear_m = 0.1\n");

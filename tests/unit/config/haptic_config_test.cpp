@@ -38,6 +38,7 @@ TEST_F(HapticConfig, NeedsARobotAndNothingElse) {
   EXPECT_EQ(haptic.bytes, 512U);
   EXPECT_EQ(haptic.mode, 0600U);
   EXPECT_FALSE(haptic.online);
+  EXPECT_FALSE(haptic.placed);
   EXPECT_EQ(haptic.settings.stiffness, defaults.stiffness);
   EXPECT_EQ(haptic.settings.stale_after, defaults.stale_after);
   EXPECT_EQ(haptic.settings.clutch_button, -1);
@@ -107,6 +108,7 @@ tcp_force_key = 99
   EXPECT_EQ(haptic.bytes, 4096U);
   EXPECT_EQ(haptic.mode, 0660U);
   EXPECT_TRUE(haptic.online);
+  EXPECT_TRUE(haptic.placed);
   EXPECT_EQ(sut->queues.tcp_force_key, 99);
 }
 

@@ -1,0 +1,200 @@
+// The forces of a cell at one tick after the other, and what becomes of them.
+#include "app/gateway/force_worker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/gateway/publisher.hpp"
+#include "app/gateway/status_forces.hpp"
+#include "app/subcommands/status_table_forces.hpp"
+#include "tests/unit/cell/cell_from_text.hpp"
+
+namespace cellmirror::app {
+namespace {
+
+constexpr double kG = 9.80665;
+
+// A lift of 10 kg that can bear 150 N, and an arm without masses.
+constexpr const char* kLift = R"(
+[[node]]
+name = "LIFT"
+body = { mass_kg = 10.0 }
+[node.joint]
+type = "prismatic"
+axis = [0, 0, 1]
+range_m = [0.0, 2.0]
+velocity_m_s = 1.5
+effort_n = 150.0
+[[node]]
+name = "TOP"
+parent = "LIFT"
+xyz_m = [0.0, 0.0, 0.5]
+[robot]
+id = "LIFTER"
+flange = "TOP"
+)";
+
+struct ForceComputationTest : testing::Test {
+  ForceComputationTest() {
+    auto files = std::make_shared<TextFiles>();
+    files->add("lift.mpc", kLift);
+    files->add("arm.mpc", kArm);
+    files->add("weight.mpc", "body = { mass_kg = 7.0 }\n");
+    Diagnostics diagnostics;
+    cell = build_cell(R"(
+[[node]]
+name = "Lift"
+abstract = "lift.mpc"
+[[node]]
+name = "Arm"
+abstract = "arm.mpc"
+[[node]]
+name = "Weight"
+abstract = "weight.mpc"
+)",
+                      files, diagnostics);
+    EXPECT_TRUE(cell) << diagnostics.text();
+    tick.time = Timestamp{1'000'000'000};
+    for (const char* id : {"LIFTER", "ARM"}) {
+      engine::RobotTickState& robot = tick.robots[cell->robot(id)->slot()];
+      robot.mode = engine::RobotMode::simulated;
+      robot.joint_count = static_cast<std::uint8_t>(cell->robot(id)->joints().size());
+    }
+    sut.take_cell(cell->compile());
+  }
+  engine::RobotTickState& lift() { return tick.robots[cell->robot("LIFTER")->slot()]; }
+  const RobotForces& computed() {
+    EXPECT_TRUE(sut.compute(tick, state));
+    return state.robots.at(0);
+  }
+  void next(std::int64_t ms) { tick.time = tick.time + Nanoseconds(ms * 1'000'000); }
+
+  std::optional<Cell> cell;
+  engine::TickState tick;
+  ForceState state;
+  ForceComputation sut{Eigen::Vector3d(0, 0, -kG)};
+};
+
+TEST_F(ForceComputationTest, TellsOfRobotsWithMasses) {
+  lift().joints[0].position = 0.25;
+  const RobotForces& forces = computed();
+  ASSERT_EQ(state.robots.size(), 1U);
+  EXPECT_TRUE(sut.has_mechanisms());
+  EXPECT_EQ(forces.id, "LIFTER");
+  EXPECT_EQ(forces.model_kg, 10.0);
+  ASSERT_EQ(forces.joints.size(), 1U);
+  EXPECT_NEAR(forces.joints[0].effort, 10.0 * kG, 1e-12);
+  EXPECT_EQ(forces.joints[0].max_effort, 150.0);
+  EXPECT_FALSE(forces.joints[0].beyond_limit);
+  EXPECT_NEAR(forces.joints[0].X_WJ.translation().z(), 0.25, 1e-12);
+  EXPECT_NEAR(forces.X_WT.translation().z(), 0.75, 1e-12);
+  EXPECT_FALSE(forces.tcp_known);
+}
+
+TEST_F(ForceComputationTest, CountsLimitsThatArePassedOnce) {
+  ASSERT_TRUE(cell->connect("Weight", "TOP", cell->start_positions()));
+  EXPECT_TRUE(sut.take_cell(cell->compile()));
+  EXPECT_EQ(computed().payload_kg, 7.0);
+  EXPECT_TRUE(state.robots[0].joints[0].beyond_limit);
+  next(1);
+  computed();
+  EXPECT_EQ(sut.limit_warnings(), 1U);
+  ASSERT_TRUE(cell->deactivate("Weight"));
+  sut.take_cell(cell->compile());
+  EXPECT_FALSE(computed().joints[0].beyond_limit);
+  ASSERT_TRUE(cell->activate("Weight"));
+  sut.take_cell(cell->compile());
+  computed();
+  EXPECT_EQ(sut.limit_warnings(), 2U);
+}
+
+TEST_F(ForceComputationTest, DerivesAccelerationsOfMoves) {
+  for (int i = 0; i < 200; ++i, next(1)) {
+    lift().joints[0].velocity = 2.0 * 1e-3 * i;
+    computed();
+  }
+  EXPECT_NEAR(state.robots[0].joints[0].acceleration, 2.0, 1e-3);
+  EXPECT_NEAR(state.robots[0].joints[0].effort, 10.0 * (kG + 2.0), 1e-2);
+}
+
+// A mirrored robot whose data is too old stands still as far as anybody knows.
+TEST_F(ForceComputationTest, TakesAMirroredRobotWithOldDataForStanding) {
+  lift().mode = engine::RobotMode::mirrored;
+  lift().state = DataState::fresh;
+  for (int i = 0; i < 50; ++i, next(10)) {
+    lift().receive_time = tick.time;
+    lift().joints[0].position = 0.01 * i;
+    computed();
+  }
+  EXPECT_NEAR(state.robots[0].joints[0].velocity, 1.0, 1e-2) << "from positions: no velocities are sent";
+  lift().state = DataState::stale;
+  EXPECT_EQ(computed().joints[0].velocity, 0.0);
+  EXPECT_NEAR(state.robots[0].joints[0].effort, 10.0 * kG, 1e-12);
+}
+
+TEST_F(ForceComputationTest, TakesTheForceAtTheTipOfAnInstrument) {
+  tick.haptics[1].phase = HapticPhase::active;
+  tick.haptics[1].slot = static_cast<std::uint8_t>(cell->robot("LIFTER")->slot());
+  tick.haptics[1].force_E = Eigen::Vector3d(0, 0, -20);
+  tick.haptics[1].axis_torque = 0.5;
+  EXPECT_TRUE(computed().tcp_known);
+  EXPECT_NEAR(state.robots[0].joints[0].effort, 10.0 * kG + 20.0, 1e-12);
+  EXPECT_EQ(state.robots[0].tcp_T.torque.z(), 0.5);
+  // A robot without masses is told of too, without efforts.
+  tick.haptics[1].slot = static_cast<std::uint8_t>(cell->robot("ARM")->slot());
+  computed();
+  ASSERT_EQ(state.robots.size(), 2U);
+  const RobotForces& arm = state.robots[cell->robot("ARM")->slot() < cell->robot("LIFTER")->slot() ? 0 : 1];
+  EXPECT_FALSE(arm.computed);
+  EXPECT_TRUE(arm.joints.empty());
+  EXPECT_EQ(arm.tcp_T.force.z(), -20.0);
+  EXPECT_NEAR(arm.X_WT.translation().x(), 3.0, 1e-12);
+}
+
+TEST_F(ForceComputationTest, WaitsForRobotsThatTheTickDoesNotKnowYet) {
+  lift().mode = engine::RobotMode::absent;
+  EXPECT_FALSE(sut.compute(tick, state));
+}
+
+// What is computed goes out as the effort of robots that nobody measures.
+TEST_F(ForceComputationTest, GivesEffortsToRobotStates) {
+  computed();
+  std::vector<RobotState> robots(2);
+  robots[0].id = robots[1].id = "LIFTER";
+  robots[0].joints.resize(1);
+  robots[1].joints.resize(1);
+  robots[1].online = true;
+  robots[1].joints[0].effort = 5.0;
+  take_efforts(state, robots);
+  EXPECT_NEAR(robots[0].joints[0].effort, 10.0 * kG, 1e-12);
+  EXPECT_EQ(robots[1].joints[0].effort, 5.0) << "measured";
+}
+
+TEST_F(ForceComputationTest, IsToldInStatus) {
+  computed();
+  ForceReport report;
+  report.active = true;
+  report.gravity_m_s2 = Eigen::Vector3d(0, 0, -kG);
+  report.state = std::make_shared<const ForceState>(state);
+  report.not_computed = {{"BIG", "too many joints"}};
+  ForceSettings settings;
+  settings.arrows.joint_forces = ArrowComponent::resultant;
+  const nlohmann::json status = {{"forces", forces_json(report, settings, tick.time + Nanoseconds(1'000'000))}};
+  const nlohmann::json& forces = status.at("forces");
+  EXPECT_NEAR(forces.at("robots").at(0).at("joints").at(0).at("effort_n").get<double>(), 10.0 * kG, 1e-9);
+  EXPECT_EQ(forces.at("robots").at(0).at("joints").at(0).at("max_effort_n"), 150.0);
+  EXPECT_TRUE(forces.at("robots").at(0).at("tcp").is_null());
+  EXPECT_EQ(forces.at("arrows").at("shown").size(), 1U);
+  EXPECT_EQ(forces.at("arrows").at("joint_forces"), "resultant");
+  EXPECT_NEAR(forces.at("age_s").get<double>(), 1e-3, 1e-9);
+  const std::string text = forces_table(status);
+  EXPECT_NE(text.find("LIFTER 10.0 kg: LIFT 98.1 N"), std::string::npos) << text;
+  EXPECT_NE(text.find("BIG not computed: too many joints"), std::string::npos) << text;
+  EXPECT_EQ(forces_table({{"forces", forces_json({}, {}, tick.time)}}), "");
+  EXPECT_EQ(forces_table(nlohmann::json::object()), "");
+}
+
+}  // namespace
+}  // namespace cellmirror::app

@@ -1,0 +1,127 @@
+// Haptic devices and the force at the TCP, as other programs and people see them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "app/gateway/haptic_words.hpp"
+#include "app/gateway/status_haptics.hpp"
+#include "app/gateway/tcp_force_worker.hpp"
+#include "app/subcommands/status_table_haptics.hpp"
+
+namespace cellmirror::app {
+namespace {
+
+constexpr std::uint8_t kSlot = 4;
+constexpr std::uint8_t kChannel = 1;
+
+struct Haptics : testing::Test {
+  Haptics() {
+    RobotPicture robot;
+    robot.id = "LAP";
+    robot.slot = kSlot;
+    picture.robots.push_back(robot);
+    picture.active_robot = "LAP";
+    HapticPicture haptic;
+    haptic.robot = "LAP";
+    haptic.slot = kSlot;
+    haptic.channel = kChannel;
+    haptic.online = true;
+    haptic.key = 4711;
+    haptic.bytes = 512;
+    haptic.meter = std::make_shared<HapticMeter>();
+    picture.haptics.push_back(haptic);
+    tick.time = Timestamp{2'000'000'000};
+    HapticState& state = tick.haptics[kChannel];
+    state.phase = HapticPhase::active;
+    state.slot = kSlot;
+    state.force_E = {1, 2, -2};
+    state.force_W = {0, 3, 0};
+    state.axis_torque = 0.25;
+    state.device_time = Timestamp{1'999'000'000};
+  }
+
+  OwnerPicture picture;
+  engine::TickState tick;
+  ContactReport contacts;
+};
+
+TEST_F(Haptics, ForceAtTheTcpIsThatOfTheActiveRobotsDevice) {
+  const TcpForce sut = tcp_force_of(picture, tick);
+  EXPECT_EQ(sut.values, (std::array<float, 4>{1, 2, -2, 0.25F}));
+  EXPECT_EQ(sut.flags, kTcpForceValid);
+  EXPECT_EQ(sut.robot.view(), "LAP");
+  EXPECT_EQ(sut.time, tick.time);
+}
+
+TEST_F(Haptics, NothingIsKnownOfOtherRobotsAndClosedDevices) {
+  tick.haptics[kChannel].slot = kSlot + 1;
+  EXPECT_EQ(tcp_force_of(picture, tick).flags, 0U);
+  EXPECT_EQ(tcp_force_of(picture, tick).values, (std::array<float, 4>{}));
+  tick.haptics[kChannel].slot = kSlot;
+  tick.haptics[kChannel].phase = HapticPhase::closed;
+  EXPECT_EQ(tcp_force_of(picture, tick).flags, 0U);
+  picture.active_robot.clear();
+  EXPECT_EQ(tcp_force_of(picture, tick).robot.view(), "");
+}
+
+TEST_F(Haptics, LimitsCountOnlyWhereTheyAreSet) {
+  picture.forces.limits = {2.9, 0};  // the force is 3 N
+  EXPECT_NE(tcp_force_of(picture, tick).flags & kTcpForceBeyondLimit, 0U);
+  picture.forces.limits = {3.1, 0};
+  EXPECT_EQ(tcp_force_of(picture, tick).flags & kTcpForceBeyondLimit, 0U);
+  picture.forces.limits = {0, 0.2};
+  EXPECT_NE(tcp_force_of(picture, tick).flags & kTcpForceBeyondLimit, 0U);
+}
+
+TEST_F(Haptics, TestValuesTakeThePlaceOfTheTruth) {
+  picture.forces.test = std::array<double, 4>{9, 0, 0, -1};
+  picture.forces.limits = {5, 0};
+  const TcpForce sut = tcp_force_of(picture, tick);
+  EXPECT_EQ(sut.values, (std::array<float, 4>{9, 0, 0, -1}));
+  EXPECT_EQ(sut.flags, kTcpForceValid | kTcpForceTest | kTcpForceBeyondLimit);
+}
+
+TEST_F(Haptics, StatusTellsPhaseAgeAndForce) {
+  const nlohmann::json sut = haptics_json(picture, tick, contacts, tick.time);
+  const nlohmann::json& device = sut.at("devices").at(0);
+  EXPECT_EQ(device.at("phase"), "active");
+  EXPECT_EQ(device.at("fault"), "none");
+  EXPECT_NEAR(device.at("device").at("age_s").get<double>(), 0.001, 1e-12);
+  EXPECT_EQ(device.at("force").at("world_n").at(1), 3.0);
+  EXPECT_EQ(device.at("memory").at("key"), 4711);
+  EXPECT_TRUE(sut.at("tcp_force").is_null());
+}
+
+TEST_F(Haptics, TableTellsAFaultAndWhatToDo) {
+  tick.haptics[kChannel].phase = HapticPhase::faulted;
+  tick.haptics[kChannel].fault = HapticFault::two_writers;
+  const std::string sut = haptics_table({{"haptics", haptics_json(picture, tick, contacts, tick.time)}});
+  EXPECT_NE(sut.find("FAULT two_writers"), std::string::npos) << sut;
+  EXPECT_NE(sut.find("end one of the two processes; then RESET_HAPTIC LAP"), std::string::npos) << sut;
+  EXPECT_EQ(haptics_table(nlohmann::json::object()), "");
+}
+
+TEST_F(Haptics, DeviceWithoutMemoryIsShownAsSuch) {
+  picture.haptics.front().key.reset();
+  picture.haptics.front().online = false;
+  const nlohmann::json sut = haptics_json(picture, tick, contacts, tick.time);
+  EXPECT_TRUE(sut.at("devices").at(0).at("memory").is_null());
+  EXPECT_NE(haptics_table({{"haptics", sut}}).find("offline  no shared memory"), std::string::npos);
+}
+
+TEST(HapticWords, EveryFaultHasAWordAnExplanationAndARemedy) {
+  std::set<std::string> words;
+  for (int i = 1; i <= static_cast<int>(HapticFault::not_passive); ++i) {
+    const auto fault = static_cast<HapticFault>(i);
+    EXPECT_TRUE(words.insert(word(fault)).second) << i;
+    EXPECT_NE(std::string(explanation(fault)), "") << i;
+    EXPECT_NE(std::string(remedy(fault)), "") << i;
+  }
+  for (int i = 0; i <= static_cast<int>(HapticPhase::faulted); ++i)
+    EXPECT_TRUE(words.insert(word(static_cast<HapticPhase>(i))).second) << i;
+}
+
+}  // namespace
+}  // namespace cellmirror::app
