@@ -94,7 +94,7 @@ void SwitchLoop::listen(Timestamp now) {
     Diagnostics diagnostics;
     const auto changes = parse_switch_sequence(line, "command", options_.gap_s, diagnostics);
     if (!diagnostics.ok()) {
-      fmt::print(stderr, "sim_footswitch: {}\n", diagnostics.text());
+      fmt::print(stderr, "{}", diagnostics.text());
       continue;
     }
     if (told_.size() + changes.size() > kMaxSwitchChanges) continue;

@@ -111,7 +111,7 @@ std::string read_texts(const Texts& texts, HapticOptions& options) {
   read_start(texts.start, options, problems);
   Diagnostics diagnostics;
   options.motion = parse_motion(texts.motion, "--motion", AxisLayout(options.axes), diagnostics);
-  if (!diagnostics.ok()) problems += diagnostics.text() + "\n";
+  if (!diagnostics.ok()) problems += diagnostics.text();
   if (texts.faults.size() > kMaxFaults) problems += fmt::format("sim_haptic: more than {} faults\n", kMaxFaults);
   for (const std::string& text : texts.faults) {
     auto fault = parse_haptic_fault(text);

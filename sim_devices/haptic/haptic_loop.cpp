@@ -150,7 +150,7 @@ std::string HapticLoop::obey(std::string_view line) {
   if (word == "motion") {
     Diagnostics diagnostics;
     auto steps = parse_motion(rest, "motion", device_.layout(), diagnostics);
-    if (!diagnostics.ok()) return diagnostics.text();
+    if (!diagnostics.ok()) return std::string(trimmed(diagnostics.text()));
     device_.play(std::move(steps));
   } else if (word == "fault") {
     auto fault = parse_haptic_fault(rest);
