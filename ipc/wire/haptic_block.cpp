@@ -97,6 +97,11 @@ HapticOutput without_force(const HapticOutput& output) CELL_RT {
 
 double number(std::uint64_t word) CELL_RT { return std::bit_cast<double>(word); }
 
+// CLOCK_MONOTONIC begins at 0. What lies before it is no time, and its difference to one might overflow.
+Timestamp time_of(std::uint64_t word) CELL_RT {
+  return Timestamp{std::max(std::bit_cast<std::int64_t>(word), std::int64_t{0})};
+}
+
 }  // namespace
 
 void prepare_haptic_block(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process) CELL_RT {
@@ -165,7 +170,7 @@ HapticRead read_haptic_sample(std::span<const std::byte> memory, std::uint64_t& 
 
   const auto word = [&](std::size_t offset) CELL_RT { return words[(offset - at::kDeviceSequence) / 8]; };
   sample.sequence = word(at::kDeviceSequence);
-  sample.time.ns = std::bit_cast<std::int64_t>(word(at::kDeviceTime));
+  sample.time = time_of(word(at::kDeviceTime));
   sample.writer = first_of(word(at::kDeviceProcess));
   sample.buttons = first_of(word(at::kButtons));
   const std::uint32_t axis_count = second_of(word(at::kButtons));
@@ -220,7 +225,7 @@ bool read_haptic_output(std::span<const std::byte> memory, HapticOutput& output)
 
   const auto word = [&](std::size_t offset) CELL_RT { return words[(offset - at::kForceSequence) / 8]; };
   output.sequence = word(at::kForceSequence);
-  output.time.ns = std::bit_cast<std::int64_t>(word(at::kForceTime));
+  output.time = time_of(word(at::kForceTime));
   output.period = Nanoseconds(std::bit_cast<std::int64_t>(word(at::kPeriod)));
   output.answers = word(at::kAnswers);
   output.phase = first_of(word(at::kPhase));

@@ -68,8 +68,8 @@ void write_haptic_output(std::span<std::byte> memory, const HapticOutput& output
 void end_haptic_block(std::span<std::byte> memory) CELL_RT;
 // Gateway: `last` is the device's lock as of the last call that gave `fresh` (0 at first); it is updated. Tries
 // shared_words::kTries times. `sample` changes only with `fresh`, and holds the device's numbers as they are: finite or
-// not, of whatever length the quaternion. A number of axes beyond kMaxHapticAxes gives no axes and a sample that is
-// not valid.
+// not, of whatever length the quaternion. A time before 0 is read as 0, "never". A number of axes beyond kMaxHapticAxes
+// gives no axes and a sample that is not valid.
 [[nodiscard]] HapticRead read_haptic_sample(std::span<const std::byte> memory, std::uint64_t& last,
                                             HapticSample& sample) CELL_RT;
 

@@ -81,7 +81,7 @@ bool read_tcp_force(std::span<const std::byte> memory, TcpForce& force) {
   const auto word = [&](std::size_t offset) { return words[(offset - at::kSequence) / 8]; };
   for (std::size_t i = 0; i < values.size(); ++i) force.values[i] = std::bit_cast<float>(values[i]);
   force.sequence = word(at::kSequence);
-  force.time.ns = std::bit_cast<std::int64_t>(word(at::kTime));
+  force.time.ns = std::max(std::bit_cast<std::int64_t>(word(at::kTime)), std::int64_t{0});  // never before 0
   force.flags = first_of(word(at::kFlags));
   force.process = second_of(word(at::kFlags));
   NameWords robot{};

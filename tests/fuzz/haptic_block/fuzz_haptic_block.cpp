@@ -25,7 +25,7 @@ void read_everything(std::span<const std::byte> memory) {
   const HapticRead read = read_haptic_sample(memory, last, sample);
   CELLMIRROR_EXPECTS(sample.axis_count <= kMaxHapticAxes);
   CELLMIRROR_EXPECTS((read == HapticRead::fresh) == (last != 0));
-  CELLMIRROR_EXPECTS(last % 2 == 0);
+  CELLMIRROR_EXPECTS(last % 2 == 0 && sample.time.ns >= 0);
   if (read == HapticRead::fresh) {
     CELLMIRROR_EXPECTS(read_haptic_sample(memory, last, sample) == HapticRead::unchanged);
   }

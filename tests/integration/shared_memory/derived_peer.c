@@ -29,7 +29,7 @@ static int read_all(const void* memory, size_t bytes, uint64_t last) {
   unsigned long long whole = 0, retried = 0, inconsistent = 0;
   uint64_t newest = 0;
   struct cellmirror_haptic_force force;
-  const time_t end = time(NULL) + 30;
+  const time_t end = time(NULL) + 60;
   memset(&force, 0, sizeof force);
   puts("ready");
   fflush(stdout);

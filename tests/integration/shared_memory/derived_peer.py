@@ -20,7 +20,7 @@ def is_derived(values):
 
 def read_all(memory, last):
     whole = retried = inconsistent = sequence = 0
-    end = time.monotonic() + 30
+    end = time.monotonic() + 60
     print("ready", flush=True)
     while sequence < last and time.monotonic() < end:
         copy, tries = memory.read(0, cellmirror.FORCE.size, cellmirror.FORCE_LOCK)

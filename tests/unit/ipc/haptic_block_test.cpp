@@ -111,7 +111,7 @@ TEST(HapticBlock, SamplesAndOutputsComeBackAsTheyWere) {
   Block block;
   HapticSample sample;
   sample.sequence = 9;
-  sample.time.ns = -3;
+  sample.time.ns = 3;
   sample.writer = 77;
   sample.valid = true;
   sample.buttons = 3;
@@ -125,7 +125,7 @@ TEST(HapticBlock, SamplesAndOutputsComeBackAsTheyWere) {
   HapticSample read;
   ASSERT_EQ(read_haptic_sample(block.memory(), last, read), HapticRead::fresh);
   EXPECT_EQ(read.sequence, 9u);
-  EXPECT_EQ(read.time.ns, -3);
+  EXPECT_EQ(read.time.ns, 3);
   EXPECT_EQ(read.writer, 77u);
   EXPECT_EQ(read.buttons, 3u);
   EXPECT_EQ(read.p_DH, sample.p_DH);
@@ -189,6 +189,19 @@ TEST(HapticBlock, ImpossibleNumberOfAxesGivesASampleThatIsNotValid) {
   ASSERT_EQ(read_haptic_sample(block.memory(), last, sut), HapticRead::fresh);
   EXPECT_EQ(sut.axis_count, 0);
   EXPECT_FALSE(sut.valid);
+}
+
+// So that nobody's age overflows.
+TEST(HapticBlock, TimesBeforeZeroAreNever) {
+  Block block;
+  HapticSample sample;
+  sample.time.ns = std::numeric_limits<std::int64_t>::min();
+  write_haptic_sample(block.memory(), sample);
+  std::uint64_t last = 0;
+  HapticSample sut;
+  sut.time.ns = 5;
+  ASSERT_EQ(read_haptic_sample(block.memory(), last, sut), HapticRead::fresh);
+  EXPECT_FALSE(sut.time.known());
 }
 
 TEST(HapticBlock, ForcesThatAreNoNumbersAreWrittenAsZero) {
