@@ -1,8 +1,8 @@
 #!/usr/bin/perl
 # Reads a force as a program of 1999 does: float32 values at the beginning of the memory, and nothing else.
 #
-#   perl force_reader_1999.pl 1313 4         four values of the TCP force: x y z [N], torque [Nm]
-#   perl force_reader_1999.pl 0x434F0001 7   force x y z [N] of a haptic device and four joint torques [Nm]
+#   perl force_reader_1999.pl 1313 4     four values of the TCP force: x y z [N], torque [Nm]
+#   perl force_reader_1999.pl 1401 7     force x y z [N] of a haptic device and four joint torques [Nm]
 #
 # The values are each whole, but may be of two neighbouring writes. SPDX-License-Identifier: Apache-2.0
 use strict;

@@ -4,7 +4,7 @@
  *   sequence phase fault force x y z N age MICROSECONDS us
  *
  *   cc -o haptic_device haptic_device.c -lm
- *   ./haptic_device --key 0x434F0001 --seconds 10
+ *   ./haptic_device --key 1401 --seconds 10
  *
  * A driver of real hardware looks the same: replace measure() and render(). SPDX-License-Identifier: Apache-2.0
  */

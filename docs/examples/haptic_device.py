@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A haptic device without hardware: writes a pose on a slow circle and prints the force that comes back.
 
-    python3 haptic_device.py --key 0x434F0001 --seconds 10
+    python3 haptic_device.py --key 1401 --seconds 10
 
     sequence phase fault force x y z N age MICROSECONDS us
 
