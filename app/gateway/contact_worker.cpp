@@ -1,9 +1,16 @@
 #include "app/gateway/contact_worker.hpp"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 
 namespace cellmirror::app {
+
+namespace {
+
+constexpr Nanoseconds kLongestRest{4'000'000};
+
+}  // namespace
 
 ContactWorker::ContactWorker(engine::Engine& engine, const PictureBoard& pictures, const Clock& clock,
                              Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
@@ -59,7 +66,11 @@ void ContactWorker::run(const OwnerPicture& picture, const engine::TickState& ti
     const std::scoped_lock lock(mutex_);
     newest_[haptic.channel] = finder.found;
   }
-  compute_.record(clock_.now() - start);
+  const Nanoseconds taken = clock_.now() - start;
+  compute_.record(taken);
+  // At most half of a processor: planes are good for some millimetres of way, and the rest of the gateway is to fit
+  // beside this on one core.
+  std::this_thread::sleep_for(std::min(taken, kLongestRest));
 }
 
 ContactReport ContactWorker::report() const {

@@ -1,5 +1,5 @@
-// Finds the surroundings of the instruments of haptic devices, in a thread of its own: every tick, or as often as it
-// can. The tick evaluates what was found last.
+// Finds the surroundings of the instruments of haptic devices, in a thread of its own: every tick, or as often as half
+// of a processor allows. The tick evaluates what was found last.
 #pragma once
 
 #include <array>
