@@ -81,7 +81,9 @@ void SwitchDesk::start_watching() {
 
 void SwitchDesk::stop_watching() {
   if (!reader_) return;
-  take_edges();
+  footswitch::SwitchEdge edge;
+  for (std::size_t taken = 0; taken < footswitch::kEdgeQueue && reader_->next(edge); ++taken)
+    scripts_.add({edge.input, edge.on, edge.not_told});
   const footswitch::SwitchReader::Counters last = reader_->counters();
   earlier_.looks += last.looks;
   earlier_.edges += last.edges;

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "ipc/wire/shared_words.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
 namespace cellmirror::footswitch {
@@ -30,7 +31,7 @@ void copy_shared_bytes(std::span<const std::byte> from, std::span<std::uint8_t> 
   const std::size_t count = std::min(from.size(), to.size());
   for (std::size_t i = 0; i < count; ++i) {
     // Relaxed: each byte stands for itself.
-    to[i] = __atomic_load_n(reinterpret_cast<const std::uint8_t*>(&from[i]), __ATOMIC_RELAXED);
+    to[i] = shared_words::at<std::uint8_t>(from, i).load(std::memory_order_relaxed);
   }
 }
 
@@ -60,8 +61,7 @@ SwitchReader::SwitchReader(std::span<const std::byte> memory, Options options)
     : memory_(looked_at(memory)),
       options_(std::move(options)),
       edges_(memory_.size(), options_.debounce),
-      copy_(memory_.size()),
-      told_(memory_.size()) {
+      copy_(memory_.size()) {
   found_.reserve(2 * kBits * memory_.size());
   // The first state is that of this moment, whenever the thread gets its first turn.
   look(SystemClock().now());
@@ -78,7 +78,8 @@ void SwitchReader::look(Timestamp now) {
   bounces_.store(edges_.bounces(), std::memory_order_relaxed);
   if (found_.empty() && !first) return;
   for (const SwitchEdge& edge : found_) queue_.push(edge);
-  for (std::size_t i = 0; i < told_.size(); ++i) told_[i].store(edges_.told()[i], std::memory_order_relaxed);
+  std::copy_n(edges_.told().begin(), memory_.size(), told_.writable().begin());  // the rest is 0 for ever
+  told_.publish();
   if (!found_.empty() && options_.wake) options_.wake();
 }
 
@@ -87,10 +88,11 @@ SwitchReader::Counters SwitchReader::counters() const {
           bounces_.load(std::memory_order_relaxed)};
 }
 
-std::vector<std::uint32_t> SwitchReader::inputs_on(std::size_t most) const {
+std::vector<std::uint32_t> SwitchReader::inputs_on(std::size_t most) {
   std::vector<std::uint32_t> inputs;
-  for (std::size_t i = 0; i < told_.size(); ++i) {
-    const std::uint8_t byte = told_[i].load(std::memory_order_relaxed);
+  const Inputs& told = told_.read().value;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const std::uint8_t byte = told[i];
     for (std::size_t bit = 0; bit < kBits && inputs.size() < most; ++bit) {
       if (((byte >> bit) & 1U) != 0) inputs.push_back(static_cast<std::uint32_t>(i * kBits + bit + 1));
     }

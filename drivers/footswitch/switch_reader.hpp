@@ -2,6 +2,7 @@
 // changed. The other process may be hostile, dead or come back: its bytes are only ever read by value, one by one.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "drivers/footswitch/switch_edges.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/rt/fifo.hpp"
+#include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::footswitch {
 
@@ -44,11 +46,12 @@ class SwitchReader {
   bool next(SwitchEdge& edge) { return queue_.pop(edge); }
   // Any thread.
   [[nodiscard]] Counters counters() const;
-  // Any thread: inputs that are on, from 1, at most `most` of them.
-  [[nodiscard]] std::vector<std::uint32_t> inputs_on(std::size_t most) const;
+  // The owner's thread: inputs that are on, from 1, at most `most` of them.
+  [[nodiscard]] std::vector<std::uint32_t> inputs_on(std::size_t most);
 
  private:
   class Thread;
+  using Inputs = std::array<std::uint8_t, kMostSwitchBytes>;
 
   void look(Timestamp now);
 
@@ -58,7 +61,7 @@ class SwitchReader {
   std::vector<std::uint8_t> copy_;
   std::vector<SwitchEdge> found_;
   Fifo<SwitchEdge, kEdgeQueue> queue_;
-  std::vector<std::atomic<std::uint8_t>> told_;  // for inputs_on()
+  Latest<Inputs> told_;
   std::atomic<std::uint64_t> looks_{0};
   std::atomic<std::uint64_t> bounces_{0};
   std::unique_ptr<Thread> thread_;  // last: ends before what it uses

@@ -9,6 +9,8 @@ namespace cellmirror::script {
 namespace {
 
 constexpr std::string_view kLogKind = "foot-switches";
+// Files that are not there are looked for all the same: a flood of such changes must not hold the owner up.
+constexpr int kFilesInATurn = 64;
 
 }  // namespace
 
@@ -20,10 +22,14 @@ bool InputScripts::add(const InputChange& change) {
   ++counters_.changes;
   if (waiting_.size() == kMostWaiting) {
     ++counters_.dropped;
-    log_warning(kLogKind, "{} does not run: {} changes wait already", input_script_name(change.input, change.on),
-                kMostWaiting);
+    if (!dropping_) {
+      log_warning(kLogKind, "{} does not run, nor do those behind it: {} changes wait already",
+                  input_script_name(change.input, change.on), kMostWaiting);
+    }
+    dropping_ = true;
     return false;
   }
+  dropping_ = false;
   waiting_.push_back(change);
   return true;
 }
@@ -35,7 +41,8 @@ void InputScripts::forget() {
 
 bool InputScripts::follow() {
   look_at_run();
-  while (run_ == 0 && !waiting_.empty() && !runner_.full()) {
+  for (int looked_for = 0; looked_for < kFilesInATurn; ++looked_for) {
+    if (run_ != 0 || waiting_.empty() || runner_.full()) return false;
     const InputChange change = waiting_.front();
     waiting_.pop_front();
     if (start(change)) return true;

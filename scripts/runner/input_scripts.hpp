@@ -73,6 +73,7 @@ class InputScripts {
   const KismetHome& home_;
   const Clock& clock_;
   std::deque<InputChange> waiting_;
+  bool dropping_ = false;  // the newest change was dropped
   std::uint64_t run_ = 0;  // of the script under way; 0: none
   Timestamp since_;        // of its change; never: its first command was told
   std::set<std::string> told_missing_;
