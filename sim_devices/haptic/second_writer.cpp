@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <csignal>
@@ -19,7 +20,9 @@ namespace {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const SystemClock clock;
   sample.writer = static_cast<std::uint32_t>(::getpid());
-  Pacer pacer(clock.now() + period / 2, period);
+  // Not quite the device's own period: with it, one of the two could be the last before each tick for ever.
+  const Nanoseconds own_period(std::max<std::int64_t>(period.count() * 93 / 100, 1));
+  Pacer pacer(clock.now() + period / 2, own_period);
   while (::getppid() == parent) {
     sleep_until(pacer.next());
     const Timestamp now = clock.now();

@@ -2,9 +2,11 @@
 
 import csv
 import json
+import os
 import pathlib
 import re
 import subprocess
+import uuid
 
 import gateway as g
 from shared_memory import unused_key
@@ -16,8 +18,8 @@ RIGHT = {"tip": (0.0413, -0.0170, 0.1115), "into": "-0.5722,0.3587,-0.7374"}
 # Ordinary machines are late at times; a test of faults is not to find others than it makes.
 PATIENT = """
 stale_after_s = 0.03
-model_stale_after_s = 2.0
-allowed_missed_periods = 100
+model_stale_after_s = 10.0
+allowed_missed_periods = 500
 """
 
 
@@ -64,6 +66,19 @@ class Sim:
         if self.child.poll() is None:
             self.child.kill()
         self.child.communicate()
+
+
+class Hand(Sim):
+    """A simulated hand that is told what to do while it runs."""
+
+    def __init__(self, scratch, key, *arguments):
+        self.fifo = scratch.root / f"hand-{key}-{uuid.uuid4().hex[:8]}"
+        os.mkfifo(self.fifo)
+        super().__init__("sim_haptic", "--key", key, "--priority", 60, "--for", 120, "--control", self.fifo, *arguments)
+
+    def say(self, line):
+        with open(self.fifo, "w", encoding="ascii") as fifo:
+            fifo.write(line + "\n")
 
 
 def sim_haptic(key, *arguments):
