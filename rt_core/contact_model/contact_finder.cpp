@@ -21,6 +21,11 @@ constexpr double kLeastLever = 0.02;
 constexpr double kMostLever = 10.0;
 constexpr std::size_t kMostCandidates = 4096;
 constexpr int kMostHalvings = 6;
+// How deep a place that no plane stands for may be entered: at least, and in parts of the way there.
+constexpr double kEntered = 5e-5;  // m
+constexpr double kEnteredOnTheWay = 0.05;
+// However crooked the surface, the tip may go so far.
+constexpr double kLeastReach = 0.001;  // m
 
 bool can_be_computed_with(const Pose& X) { return X.matrix().allFinite() && X.translation().norm() < 1e6; }
 
@@ -37,6 +42,7 @@ struct ContactFinder::State {
   State(std::size_t slot_in, const FinderSettings& settings_in)
       : slot(slot_in), settings(settings_in), query(settings_in.margin_m) {
     candidates.reserve(kMostCandidates);
+    refused.reserve(kMostCandidates);
     planes.reserve(kMostCandidates);
   }
 
@@ -46,6 +52,7 @@ struct ContactFinder::State {
   // False: it has to be tried with less reach.
   [[nodiscard]] bool gather(double reach, haptics::ContactModel& out);
   void fill(double reach, haptics::ContactModel& out);
+  void shorten(haptics::ContactModel& out) const;
 
   std::size_t slot;
   FinderSettings settings;
@@ -60,6 +67,7 @@ struct ContactFinder::State {
   std::vector<std::uint32_t> others;  // into `surroundings`
   PairQuery query;
   std::vector<Candidate> candidates;
+  std::vector<Candidate> refused;
   std::vector<TipPlane> planes;
   FinderCounters counters;
 };
@@ -123,6 +131,7 @@ double ContactFinder::State::largest_lever(const Piece& piece) const {
 
 bool ContactFinder::State::gather(double reach, haptics::ContactModel& out) {
   candidates.clear();
+  refused.clear();
   bool overlapping = false;
   std::uint32_t last_overlap_part = ~0U;
   std::uint32_t last_overlap_other = ~0U;
@@ -139,6 +148,8 @@ bool ContactFinder::State::gather(double reach, haptics::ContactModel& out) {
       const bool new_overlap = piece.part != last_overlap_part || index != last_overlap_other;
       const QueryResult result = query.ask(piece, other, piece_reach, new_overlap, candidates);
       if (result == QueryResult::crowded || candidates.size() > kMostCandidates) return false;
+      if (refused.size() + query.refused().size() > kMostCandidates) return false;
+      refused.insert(refused.end(), query.refused().begin(), query.refused().end());
       out.certain = out.certain && result == QueryResult::done;
       if (!query.overlapped()) continue;
       overlapping = true;
@@ -173,6 +184,23 @@ void ContactFinder::State::fill(double reach, haptics::ContactModel& out) {
   }
   std::sort(out.constraints.begin(), out.constraints.begin() + out.count,
             [](const auto& a, const auto& b) { return a.gap < b.gap; });
+}
+
+// On a surface that bends both ways no few planes are both safe and free. So the tip may not go as far as to a place
+// that it would enter there before a new model says more.
+void ContactFinder::State::shorten(haptics::ContactModel& out) const {
+  for (const Candidate& place : refused) {
+    const Eigen::Matrix3d lever = levers.lever(place.node, place.point);
+    if (!(std::abs(lever.determinant()) > kLeastLever * kLeastLever)) continue;
+    const Vector3d way = lever.inverse() * (place.surface - place.point);
+    const double length = way.norm();
+    if (!(length < out.reach)) continue;
+    double room = length;
+    for (std::size_t i = 0; i < out.count; ++i) {
+      room = std::min(room, out.constraints[i].a.dot(way) + out.constraints[i].gap);
+    }
+    if (room > std::max(kEntered, kEnteredOnTheWay * length)) out.reach = std::max(length, kLeastReach);
+  }
 }
 
 ContactFinder::ContactFinder(std::size_t slot, const FinderSettings& settings)
@@ -213,6 +241,7 @@ void ContactFinder::find(const CellPoses& poses, Timestamp posture_time, haptics
     return;
   }
   s.fill(reach, out);
+  s.shorten(out);
   if (!out.certain) ++s.counters.uncertain;
   if (out.reach < s.settings.reach_m) ++s.counters.short_reach;
 }

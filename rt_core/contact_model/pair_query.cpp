@@ -65,12 +65,12 @@ bool is_beyond(const Candidate& plane, const Candidate& place) {
 }  // namespace
 
 PairQuery::PairQuery(double margin) : margin_(margin) {
-  for (auto* list : {&near_, &only_reference_, &planes_}) list->reserve(kMost);
+  for (auto* list : {&near_, &only_reference_, &planes_, &refused_}) list->reserve(kMost);
 }
 
 QueryResult PairQuery::ask(const Piece& instrument, const Piece& obstacle, double reach, bool with_overlap,
                            std::vector<Candidate>& out) {
-  for (auto* list : {&near_, &only_reference_, &planes_}) list->clear();
+  for (auto* list : {&near_, &only_reference_, &planes_, &refused_}) list->clear();
   reach_ = reach;
   crowded_ = overlapped_ = perhaps_inside_ = false;
   certain_ = true;
@@ -276,8 +276,8 @@ void PairQuery::keep_what_fits(std::vector<Candidate>& out) {
   out.insert(out.end(), near_.begin(), near_.end());
   for (const Candidate& plane : planes_) {
     const auto cuts_off = [&plane](const Candidate& place) { return is_beyond(plane, place); };
-    if (std::ranges::any_of(near_, cuts_off) || std::ranges::any_of(only_reference_, cuts_off)) continue;
-    out.push_back(plane);
+    const bool refuse = std::ranges::any_of(near_, cuts_off) || std::ranges::any_of(only_reference_, cuts_off);
+    refuse ? refused_.push_back(plane) : out.push_back(plane);
   }
 }
 

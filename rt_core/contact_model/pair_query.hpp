@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "rt_core/contact_model/pieces.hpp"
@@ -34,6 +35,8 @@ class PairQuery {
   // whole: `with_overlap`. No heap memory in steady state.
   QueryResult ask(const Piece& instrument, const Piece& obstacle, double reach, bool with_overlap,
                   std::vector<Candidate>& out);
+  // Of the last pair: places that nearer ones bar well, but perhaps not on long ways.
+  [[nodiscard]] std::span<const Candidate> refused() const { return refused_; }
   // Whether the last pair overlapped so that it was, or would have been, asked for its depth.
   [[nodiscard]] bool overlapped() const { return overlapped_; }
 
@@ -80,6 +83,7 @@ class PairQuery {
   std::vector<Candidate> near_;                              // true nearest points
   std::vector<Candidate> only_reference_;  // true nearest points of the obstacle, but not of the whole instrument
   std::vector<Candidate> planes_;          // of triangles whose nearest point is not the nearest of its surroundings
+  std::vector<Candidate> refused_;
   geometry::Contact contact_;
 };
 

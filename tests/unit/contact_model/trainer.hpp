@@ -1,8 +1,6 @@
 // The trainer cell with one instrument that is placed by its tip, and how deep it really is in anything.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

@@ -1,8 +1,7 @@
-// A proxy that obeys old contact models does not enter the phantom: hands up to 0.5 m/s, models 1 to 5 ms old.
+// The trainer cell: a proxy that obeys old contact models does not enter the phantom, shafts have levers, and what the
+// other hand or a foot switch changes is followed.
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <cstdio>
 #include <random>
 
 #include "rt_core/haptics/proxy.hpp"
@@ -13,115 +12,169 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick = 1e-3;  // s
+constexpr double kTick = 1e-3;     // s
+constexpr double kBound = 2e-4;    // m, that the instrument may enter anything by
+constexpr double kTypical = 1e-4;  // m, in 99 of 100 ticks
 
 struct Sweep {
-  std::string where;
-  double deepest = -1.0;  // m
-  int touching_ticks = 0;
-  int short_models = 0;
-  int uncertain = 0;
-  int models = 0;
-  double least_reach = 1.0;
-  double largest_turn = 0;  // rad, of the force's direction from tick to tick, while pressed
+  std::vector<double> depths;  // m, by tick
+  int touching = 0;            // ticks
+  int uncertain = 0;           // models
+  std::string where;           // of the deepest
 };
 
-struct TrainerSweep : testing::Test {
-  TrainerSweep() { sut.adopt(trainer.compiled, trainer.pairs); }
+struct TrainerContacts : testing::Test {
+  TrainerContacts() { sut.adopt(trainer.compiled, trainer.pairs); }
 
-  // Follows the hand through `way` at `speed`; a model is taken from the posture at every `age`-th tick and used from
-  // the next tick on until the next one.
-  Sweep run(const std::vector<Vector3d>& way, double speed, int age) {
+  // Follows the hand along `way`; a model is found at every `age`-th tick, from the posture at the end of the tick
+  // before, so that models are 1 to `age` ticks old.
+  Sweep follow(const std::vector<Vector3d>& way, double speed, int age) {
     Sweep out;
     haptics::Proxy proxy;
     haptics::ContactModel model;
     Vector3d hand = way.front();
+    double deepest = -1;
     trainer.pose();
     trainer.move_tip(trainer.left, hand);
     trainer.pose();
     proxy.start(hand);
-    sut.find(trainer.poses, Timestamp{}, model);
     std::size_t goal = 1;
-    Vector3d last_direction = Vector3d::Zero();
     for (int tick = 0; goal < way.size(); ++tick) {
       Vector3d step = way[goal] - hand;
-      if (step.norm() <= speed * kTick)
+      if (step.norm() <= speed * kTick) {
         ++goal;
-      else
+      } else {
         step *= speed * kTick / step.norm();
+      }
       hand += step;
       if (tick % age == 0) {
-        sut.find(trainer.poses, Timestamp{tick}, model);  // of the posture at the end of the last tick
-        ++out.models;
-        out.short_models += model.reach < 0.005 ? 1 : 0;
+        sut.find(trainer.poses, Timestamp{tick}, model);
         out.uncertain += model.certain ? 0 : 1;
-        out.least_reach = std::min(out.least_reach, model.reach);
       }
-      const haptics::ProxyContact contact = proxy.follow(&model, hand, {}, 0.003);
+      out.touching += proxy.follow(&model, hand, {}, 3.0 * kTick).contacts > 0 ? 1 : 0;
       trainer.move_tip(trainer.left, proxy.x());
       trainer.pose();
-      if (const double depth = trainer.depth(trainer.left); depth > out.deepest) {
-        out.deepest = depth;
-        out.where = trainer.where;
-        if (depth > 1e-4) std::printf("tick %d age %d depth %.1f um %s moved from x_ref %.3f mm reach %.3f count %d dhand %.2f mm\n", tick, tick % age, 1e6 * depth, trainer.where.c_str(), 1e3 * (proxy.x() - model.x_ref).norm(), 1e3 * model.reach, model.count, 1e3 * (proxy.x() - hand).norm());
-      }
-      if (contact.contacts == 0) {
-        last_direction.setZero();
-        continue;
-      }
-      ++out.touching_ticks;
-      const Vector3d direction = contact.elongation.normalized();
-      if (!last_direction.isZero() && contact.elongation.norm() > 1e-3) {
-        out.largest_turn = std::max(out.largest_turn, std::acos(std::min(1.0, direction.dot(last_direction))));
-      }
-      last_direction = direction;
+      out.depths.push_back(trainer.depth(trainer.left));
+      if (out.depths.back() > deepest) out.where = trainer.where;
+      deepest = std::max(deepest, out.depths.back());
     }
     return out;
   }
 
-  // Points on and below the surface of the organ, each reached from the last in a straight line.
-  std::vector<Vector3d> over_the_organ(unsigned seed, std::size_t points) {
+  // Points around a middle, each reached from the last in a straight line: through whatever is there.
+  static std::vector<Vector3d> through(const Vector3d& middle, const Vector3d& half, unsigned seed, std::size_t count) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> x(-0.05, 0.05);
-    std::uniform_real_distribution<double> y(-0.03, 0.05);
-    std::uniform_real_distribution<double> z(0.025, 0.075);
+    std::uniform_real_distribution<double> part(-1.0, 1.0);
     std::vector<Vector3d> way{{0.0, 0.0, 0.10}};
-    while (way.size() < points) way.push_back({x(random), y(random), z(random)});
+    while (way.size() < count) {
+      way.push_back(middle + half.cwiseProduct(Vector3d(part(random), part(random), part(random))));
+    }
     return way;
+  }
+  void expect_outside(Sweep sweep, double bound) {
+    ASSERT_GT(sweep.touching, 200);
+    EXPECT_EQ(sweep.uncertain, 0);
+    std::ranges::sort(sweep.depths);
+    EXPECT_LT(sweep.depths.back(), bound) << sweep.where;
+    EXPECT_LT(sweep.depths[sweep.depths.size() * 99 / 100], kTypical);
+    RecordProperty("deepest_um", static_cast<int>(1e6 * sweep.depths.back()));
   }
 
   Trainer trainer;
   ContactFinder sut{trainer.left, {}};
 };
 
-TEST_F(TrainerSweep, StaysOutOfTheOrgan) {
-  for (const double speed : {0.2, 0.5}) {
-    for (const int age : {2, 5}) {
-      const Sweep sweep = run(over_the_organ(7, 30), speed, age);
-      std::printf(
-          "speed %.2f age %d: deepest %.1f um, touching %d, models %d, short %d, least reach %.2f mm, uncertain %d, "
-          "turn %.3f\n",
-          speed, age, 1e6 * sweep.deepest, sweep.touching_ticks, sweep.models, sweep.short_models,
-          1e3 * sweep.least_reach, sweep.uncertain, sweep.largest_turn);
-    }
+TEST_F(TrainerContacts, TheOrganIsNotEnteredAtAnySpeed) {
+  const auto way = through({0.0, 0.01, 0.05}, {0.05, 0.04, 0.025}, 7, 16);
+  for (const auto& [speed, age] : {std::pair(0.1, 1), {0.2, 5}, {0.5, 1}, {0.5, 2}, {0.5, 5}}) {
+    SCOPED_TRACE(testing::Message() << speed << " m/s, models up to " << age << " ms old");
+    expect_outside(follow(way, speed, age), kBound);
   }
 }
 
-TEST_F(TrainerSweep, Timing) {
+TEST_F(TrainerContacts, NorAreTheTubeThePegsAndThePlate) {
+  // The left instrument reaches the board with its pegs, and with its shaft the organ.
+  const auto way = through({-0.08, 0.05, 0.012}, {0.03, 0.03, 0.018}, 11, 16);
+  for (const auto& [speed, age] : {std::pair(0.2, 2), {0.5, 5}}) {
+    SCOPED_TRACE(testing::Message() << speed << " m/s, models up to " << age << " ms old");
+    expect_outside(follow(way, speed, age), kBound);
+  }
+  ContactFinder other{trainer.left, {}};
+  const auto tube = through({0.095, 0.035, 0.028}, {0.02, 0.02, 0.02}, 13, 12);
+  expect_outside(follow(tube, 0.2, 2), kBound);
+}
+
+TEST_F(TrainerContacts, AConstraintsLeverIsHowItsPointMoves) {
   haptics::ContactModel model;
-  std::vector<double> times;
   trainer.pose();
-  for (const Vector3d& x : over_the_organ(3, 2000)) {
+  const auto roll = static_cast<std::size_t>(trainer.compiled->robot(trainer.left)->joint_nodes[3]);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  int at_tip = 0;
+  int at_shaft = 0;
+  for (const Vector3d& x : through({0.0, 0.05, 0.02}, {0.05, 0.05, 0.03}, 5, 200)) {
     trainer.move_tip(trainer.left, x);
     trainer.pose();
-    const auto start = std::chrono::steady_clock::now();
     sut.find(trainer.poses, Timestamp{}, model);
-    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    EXPECT_LT((model.x_ref - x).norm(), 1e-12);
+    const Pose before = trainer.poses.X_WN[roll];
+    const Vector3d step = 1e-5 * Vector3d(part(random), part(random), part(random));
+    trainer.move_tip(trainer.left, x + step);
+    trainer.pose();
+    const Pose moved = trainer.poses.X_WN[roll] * before.inverse();
+    for (std::size_t i = 0; i < model.count; ++i) {
+      const haptics::ContactConstraint& c = model.constraints[i];
+      const double real = c.normal.dot(moved * c.point - c.point);
+      // To first order in the step.
+      ASSERT_NEAR(c.a.dot(step), real, 2e-8) << (c.point - x).norm();
+      const double away = (c.point - x).norm();
+      at_tip += away < 0.003 ? 1 : 0;
+      at_shaft += away > 0.05 ? 1 : 0;
+      if (away < 0.003) {
+        EXPECT_NEAR(c.a.norm(), 1.0, 0.05);
+      }
+    }
   }
-  std::ranges::sort(times);
-  std::printf("median %.0f us, p99 %.0f us, max %.0f us, overlaps %lu\n", 1e6 * times[times.size() / 2],
-              1e6 * times[times.size() * 99 / 100], 1e6 * times.back(),
-              static_cast<unsigned long>(sut.counters().overlaps));
+  EXPECT_GT(at_tip, 20);
+  EXPECT_GT(at_shaft, 20);
+}
+
+TEST_F(TrainerContacts, AFootSwitchTakesTheOrganAway) {
+  haptics::ContactModel model;
+  trainer.pose();
+  for (double z = 0.09; z > 0.05 && model.count == 0; z -= 0.002) {
+    trainer.move_tip(trainer.left, {-0.02, 0.01, z});
+    trainer.pose();
+    sut.find(trainer.poses, Timestamp{}, model);
+  }
+  ASSERT_GT(model.count, 0);
+  ASSERT_TRUE(trainer.cell().deactivate("Phantom.Organ"));
+  trainer.refresh();
+  sut.adopt(trainer.compiled, trainer.pairs);
+  trainer.pose();
+  sut.find(trainer.poses, Timestamp{}, model);
+  EXPECT_EQ(model.count, 0);
+  EXPECT_GT(model.sequence, 0U);
+  ASSERT_TRUE(trainer.cell().activate("Phantom.Organ"));
+  trainer.refresh();
+  sut.adopt(trainer.compiled, trainer.pairs);
+  trainer.pose();
+  sut.find(trainer.poses, Timestamp{}, model);
+  EXPECT_GT(model.count, 0);
+}
+
+TEST_F(TrainerContacts, TheOtherHandsInstrumentIsFelt) {
+  haptics::ContactModel model;
+  trainer.pose();
+  trainer.move_tip(trainer.left, {0.0, 0.0, 0.11});
+  for (int i = 0; i < 10; ++i) {
+    trainer.move_tip(trainer.right, {0.008 - 0.0005 * i, 0.0, 0.11});
+    trainer.pose();
+    sut.find(trainer.poses, Timestamp{}, model);
+    ASSERT_GT(model.count, 0) << i;
+    EXPECT_LT(model.constraints[0].normal.x(), -0.3) << i;
+    EXPECT_LT(model.constraints[0].gap, 0.008 - 0.0005 * i);
+  }
 }
 
 }  // namespace
