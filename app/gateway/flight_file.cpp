@@ -32,25 +32,24 @@ std::string header_line(const FlightFileHeader& header) {
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-void append_tick(fmt::memory_buffer& out, const engine::FlightTick& record) {
-  fmt::format_to(std::back_inserter(out),
-                 "{{\"kind\":\"tick\",\"tick\":{},\"time_ns\":{},\"wakeup_latency_us\":{:.3f},\"compute_us\":{:.3f},"
-                 "\"missed\":{},\"commands\":{},\"samples\":{}}}\n",
-                 record.tick, record.time.ns, record.wakeup_latency_ns * 1e-3, record.compute_ns * 1e-3,
-                 record.missed_periods, record.commands, record.samples);
+void append_tick(std::string& out, const engine::FlightTick& record) {
+  out += fmt::format(
+      "{{\"kind\":\"tick\",\"tick\":{},\"time_ns\":{},\"wakeup_latency_us\":{:.3f},\"compute_us\":{:.3f},"
+      "\"missed\":{},\"commands\":{},\"samples\":{}}}\n",
+      record.tick, record.time.ns, record.wakeup_latency_ns * 1e-3, record.compute_ns * 1e-3, record.missed_periods,
+      record.commands, record.samples);
 }
 
-void append_robot(fmt::memory_buffer& out, const engine::FlightRobot& record, const FlightFileHeader& header) {
+void append_robot(std::string& out, const engine::FlightRobot& record, const FlightFileHeader& header) {
   const nlohmann::json id = record.slot < header.robots.size() ? header.robots[record.slot] : std::string();
-  fmt::format_to(
-      std::back_inserter(out),
+  out += fmt::format(
       "{{\"kind\":\"robot\",\"event\":\"{}\",\"robot\":{},\"tick\":{},\"time_ns\":{},\"sequence\":{},\"position\":[",
       word(record.event), id.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), record.tick,
       record.time.ns, record.sequence);
   for (std::size_t i = 0; i < record.joint_count; ++i) {
-    fmt::format_to(std::back_inserter(out), "{}{:.7g}", i == 0 ? "" : ",", record.position[i]);
+    out += fmt::format("{}{:.7g}", i == 0 ? "" : ",", record.position[i]);
   }
-  fmt::format_to(std::back_inserter(out), "]}}\n");
+  out += "]}\n";
 }
 
 }  // namespace
@@ -65,7 +64,7 @@ Result<void> write_flight_file(const std::filesystem::path& path, const FlightFi
   };
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "we"), std::fclose);
   if (!file) return failed();
-  fmt::memory_buffer out;
+  std::string out;
   const auto flush = [&](std::size_t at_least) {
     if (out.size() < at_least) return true;
     const bool written = std::fwrite(out.data(), 1, out.size(), file.get()) == out.size();
@@ -73,7 +72,7 @@ Result<void> write_flight_file(const std::filesystem::path& path, const FlightFi
     return written;
   };
   constexpr std::size_t kChunk = std::size_t{1} << 16;
-  fmt::format_to(std::back_inserter(out), "{}\n", header_line(header));
+  out += header_line(header) + "\n";
   for (const engine::FlightTick& record : ticks) {
     append_tick(out, record);
     if (!flush(kChunk)) return failed();

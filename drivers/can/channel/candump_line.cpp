@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <optional>
 
 namespace cellmirror::can {
@@ -146,25 +145,24 @@ std::expected<CandumpLine, std::string_view> parse_candump_line(std::string_view
 
 std::string format_candump_line(std::int64_t time_ns, std::string_view interface, const CanFrame& frame) {
   std::string text;
-  auto out = std::back_inserter(text);
-  fmt::format_to(out, "({:010}.{:06}) {} ", time_ns / 1'000'000'000, time_ns % 1'000'000'000 / 1000, interface);
+  text += fmt::format("({:010}.{:06}) {} ", time_ns / 1'000'000'000, time_ns % 1'000'000'000 / 1000, interface);
   if (frame.error) {
-    fmt::format_to(out, "{:08X}#", frame.id | kErrorFlag);
+    text += fmt::format("{:08X}#", frame.id | kErrorFlag);
   } else if (frame.extended) {
-    fmt::format_to(out, "{:08X}#", frame.id);
+    text += fmt::format("{:08X}#", frame.id);
   } else {
-    fmt::format_to(out, "{:03X}#", frame.id);
+    text += fmt::format("{:03X}#", frame.id);
   }
   if (frame.remote) {
     text += 'R';
-    if (frame.length > 0) fmt::format_to(out, "{}", frame.length);
+    if (frame.length > 0) text += fmt::format("{}", frame.length);
     return text;
   }
   if (frame.fd) {
     const unsigned flags = (frame.bit_rate_switch ? 1U : 0U) | (frame.error_state_indicator ? 2U : 0U);
-    fmt::format_to(out, "#{:X}", flags);
+    text += fmt::format("#{:X}", flags);
   }
-  for (const std::uint8_t b : frame.payload()) fmt::format_to(out, "{:02X}", b);
+  for (const std::uint8_t b : frame.payload()) text += fmt::format("{:02X}", b);
   return text;
 }
 
