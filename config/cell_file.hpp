@@ -44,7 +44,7 @@ struct RobotHaptic {
   std::string robot;
   haptics::HapticSettings settings;
   bool placed = false;              // xyz_m was given; else its zero is where the tip stands when it goes online
-  double reach_m = 0.02;            // how far from the instrument its surroundings are looked at
+  double reach_m = 0.006;           // how far from the instrument its surroundings are looked at
   std::optional<std::int32_t> key;  // none: rob_ela_shm names it
   std::size_t bytes = 512;
   std::uint32_t mode = 0600;

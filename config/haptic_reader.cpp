@@ -18,6 +18,7 @@ using haptics::HapticSettings;
 constexpr Range kScale{0.0, 1000.0, true};
 constexpr Range kStiffness{0.0, 100'000.0, true};
 constexpr Range kDamping{0.0, 1000.0};
+constexpr Range kPassivityDamping{0.0, 100'000.0};
 constexpr Range kFriction{0.0, 10.0};
 constexpr Range kForce{0.0, 200.0, true};
 constexpr Range kSlew{0.0, 1e6, true};
@@ -72,7 +73,7 @@ void read_guards(TableReader& reader, HapticSettings& settings) {
   settings.passivity_control = reader.boolean("passivity_control").value_or(settings.passivity_control);
   settings.energy_allowance = reader.number("energy_allowance_j", kEnergy).value_or(settings.energy_allowance);
   settings.max_passivity_damping =
-      reader.number("max_passivity_damping_n_s_m", kDamping).value_or(settings.max_passivity_damping);
+      reader.number("max_passivity_damping_n_s_m", kPassivityDamping).value_or(settings.max_passivity_damping);
 }
 
 void read_memory(TableReader& reader, RobotHaptic& haptic) {

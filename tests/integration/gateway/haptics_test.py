@@ -89,7 +89,7 @@ class Moving(Trainer):
         def there():
             robot = self.scratch.robot("LAP_LEFT")
             moved = [a - b for a, b in zip(robot["tcp"]["position_m"], before)]
-            return all(abs(m - t) < 5e-4 for m, t in zip(moved, self.device.target)) and robot
+            return all(abs(m - t) < 1e-5 for m, t in zip(moved, self.device.target)) and robot
 
         robot = g.eventually(there, 5)
         self.assertTrue(robot, self.scratch.robot("LAP_LEFT")["tcp"])
@@ -246,6 +246,32 @@ class Processes(unittest.TestCase):
         self.assertEqual((end["gateway"], end["force_device"], end["force"]), (0, (0.0,) * 3, (0.0,) * 3))
         self.assertTrue(device.memory.removed())
         device.close()
+
+    def test_a_memory_that_somebody_removes(self):
+        first = h.Device(self.scratch.keys["LAP_LEFT"])
+        self.wait_for("active")
+        libc = ctypes.CDLL(None, use_errno=True)
+        self.assertEqual(libc.shmctl(first.memory._id, 0, None), 0)  # IPC_RMID: what ipcrm does, and log-out
+        self.assertTrue(g.eventually(lambda: self.haptic()["memory"]["renewed"] == 1, 10), self.haptic())
+        self.wait_for("faulted")
+        self.assertTrue(first.memory.removed())
+        first.close()
+        second = h.Device(self.scratch.keys["LAP_LEFT"])
+        self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"], 10), self.haptic())
+        done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.wait_for("active")
+        second.close()
+
+    def test_a_memory_too_small_for_samples(self):
+        key = self.scratch.keys["LAP_LEFT"] + 2
+        for command in ("ROBACT LAP_LEFT", f"rob_ela_shm 0 {key} 16"):
+            done = self.scratch.send(command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        memory = h.attach(key, 16)
+        self.assertEqual(struct.unpack("<3f", ctypes.string_at(memory._address, 12)), (0.0, 0.0, 0.0))
+        self.assertEqual(self.haptic()["phase"], "waiting")  # such a device is told forces, and moves nothing
+        memory.detach()
 
     def test_a_key_that_another_gateway_has(self):
         other = g.Scratch("trainer")

@@ -152,7 +152,7 @@ TEST_F(EngineHapticsTest, InstrumentFollowsTheHandAsAMirroredRobot) {
   EXPECT_EQ(robot().mode, RobotMode::mirrored);
   EXPECT_EQ(robot().state, DataState::fresh);
   EXPECT_NEAR((haptic().x_device - Eigen::Vector3d(0.01, -0.02, 0.03)).norm(), 0.0, 1e-9);
-  EXPECT_NEAR((haptic().x_proxy - haptic().x_device).norm(), 0.0, 5e-4);
+  EXPECT_NEAR((haptic().x_proxy - haptic().x_device).norm(), 0.0, 1e-6);
   EXPECT_EQ(haptic().slot, kSlot);
   EXPECT_EQ(haptic().device_writer, 4711U);
   EXPECT_EQ(sut_->status_view().haptics[kChannel].samples, haptic().samples);
