@@ -31,7 +31,7 @@ set(CELLMIRROR_LAYERS
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
   "sim_devices/base: rt_core/base ipc/sysv"
   "sim_devices/haptic: sim_devices/haptic sim_devices/base rt_core/base rt_core/ports ipc/wire ipc/sysv config/command_line"
-  "sim_devices/footswitch: sim_devices/footswitch sim_devices/base rt_core/base ipc/sysv config/command_line"
+  "sim_devices/footswitch: sim_devices/footswitch sim_devices/base rt_core/base ipc/wire ipc/sysv config/command_line"
   "sim_devices: sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "app/plot: rt_core/base"
   "app: *"

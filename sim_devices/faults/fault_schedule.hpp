@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "sim_devices/base/random.hpp"
 #include "sim_devices/faults/fault_spec.hpp"
 #include "sim_devices/faults/message.hpp"
-#include "sim_devices/base/random.hpp"
 
 namespace cellmirror::sim {
 

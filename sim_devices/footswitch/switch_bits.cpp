@@ -1,7 +1,8 @@
 #include "sim_devices/footswitch/switch_bits.hpp"
 
 #include <array>
-#include <atomic>
+
+#include "ipc/wire/shared_words.hpp"
 
 namespace cellmirror::sim {
 
@@ -29,10 +30,10 @@ std::size_t put_switches(std::span<std::byte> memory, std::span<const SwitchChan
   for (std::size_t i = 0; i < bytes.size() && i < memory.size(); ++i) {
     const Masks masks = bytes[i];
     if ((masks.set | masks.clear) == 0) continue;
-    std::atomic_ref<std::uint8_t> byte(*reinterpret_cast<std::uint8_t*>(memory.data() + i));
-    std::uint8_t old = byte.load();
-    while (!byte.compare_exchange_weak(old, static_cast<std::uint8_t>((old | masks.set) & ~masks.clear))) {
-    }
+    // Turned round rather than stored: what others do to other bits meanwhile stays.
+    const auto byte = shared_words::at<std::uint8_t>(memory, i);
+    const unsigned old = byte.load();
+    byte.fetch_xor(static_cast<std::uint8_t>((old & masks.clear) | (~old & masks.set)));
   }
   return left_out;
 }

@@ -5,11 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <csignal>
 
 #include "ipc/wire/haptic_block.hpp"
+#include "ipc/wire/shared_words.hpp"
 #include "sim_devices/base/pacer.hpp"
 
 namespace cellmirror::sim {
@@ -52,12 +51,9 @@ void SecondWriter::end() {
 
 void tear(std::span<std::byte> memory) {
   if (memory.size() < haptic_block_offset::kSize) return;
-  const auto word = [&](std::size_t offset) {
-    return std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(memory.data() + offset));
-  };
-  word(haptic_block_offset::kDeviceLock).fetch_or(1);
-  word(haptic_block_offset::kDeviceSequence).fetch_add(1);
-  word(haptic_block_offset::kPosition).store(std::bit_cast<std::uint64_t>(1.0));
+  shared_words::at<std::uint64_t>(memory, haptic_block_offset::kDeviceLock).fetch_or(1);
+  shared_words::at<std::uint64_t>(memory, haptic_block_offset::kDeviceSequence).fetch_add(1);
+  shared_words::store_f64(memory, haptic_block_offset::kPosition, 1.0);
 }
 
 }  // namespace cellmirror::sim

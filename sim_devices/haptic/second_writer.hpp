@@ -18,7 +18,8 @@ class SecondWriter {
   SecondWriter(const SecondWriter&) = delete;
   SecondWriter& operator=(const SecondWriter&) = delete;
 
-  // Forks a process that writes `sample`, with its own number and times, about once a period until end() or the parent's end.
+  // Forks a process that writes `sample`, with its own number and times, about once a period until end() or the
+  // parent's end.
   void begin(std::span<std::byte> memory, const HapticSample& sample, Nanoseconds period);
   void end();
   [[nodiscard]] bool runs() const { return child_ > 0; }

@@ -8,10 +8,10 @@
 
 #include "drivers/can/cia402/drive.hpp"
 #include "rt_core/ports/can_channel.hpp"
+#include "sim_devices/base/pacer.hpp"
 #include "sim_devices/faults/can_traits.hpp"
 #include "sim_devices/motion/motion_source.hpp"
 #include "sim_devices/robot/device.hpp"
-#include "sim_devices/base/pacer.hpp"
 
 namespace cellmirror::sim {
 

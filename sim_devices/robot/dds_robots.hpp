@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "drivers/dds/joint_state_publisher.hpp"
+#include "sim_devices/base/pacer.hpp"
 #include "sim_devices/faults/joint_state_traits.hpp"
 #include "sim_devices/motion/motion_source.hpp"
 #include "sim_devices/robot/device.hpp"
-#include "sim_devices/base/pacer.hpp"
 
 namespace cellmirror::sim {
 

@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include "rt_core/base/log.hpp"
-#include "sim_devices/robot/command_line.hpp"
 #include "sim_devices/base/pacer.hpp"
+#include "sim_devices/robot/command_line.hpp"
 
 namespace {
 

@@ -123,6 +123,10 @@ def measure(scratch, gateway, keys, seconds, alone, children):
     reference = cyclic.result()
     spent = (cpu_seconds(gateway.child.pid) - cpu) / (time.monotonic() - begin)
     after = scratch.status()["loop"]
+    if not alone:
+        states = {robot: scratch.robot(robot)["joints"][0]["state"] for robot in ROBOTS}
+        if set(states.values()) != {"fresh"}:
+            raise SystemExit(f"the robots are not mirrored: {states}")
     told = [t.haptic(scratch, robot) for robot in ("LAP_LEFT", "LAP_RIGHT")]
     left, right = hands[0].finish(seconds + 30), hands[1].finish(seconds + 30)
     return scheduler, before, after, spent, reference, told, left, right

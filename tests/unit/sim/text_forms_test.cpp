@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim_devices/base/pacer.hpp"
 #include "sim_devices/faults/fault_spec.hpp"
 #include "sim_devices/robot/control_command.hpp"
-#include "sim_devices/base/pacer.hpp"
 
 namespace cellmirror::sim {
 namespace {
