@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <utility>
 
 #include "ipc/runtime/system_error.hpp"
+#include "ipc/wire/shared_words.hpp"
 
 namespace cellmirror {
 namespace {
@@ -121,11 +121,10 @@ Result<Found> find_or_make(const SharedSegment::Options& options, std::size_t ma
               "end that program, or set another key in the cell file");
 }
 
-// Takes every page into this process's page table, writable, and changes nothing: adding nothing is a write.
+// Takes every page into this process's page table, writable, and changes nothing.
 void touch_pages(std::byte* memory, std::size_t bytes) {
-  for (std::size_t at = 0; at < bytes; at += page_bytes()) {
-    std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(memory + at)).fetch_or(0);
-  }
+  const std::span<std::byte> pages(memory, whole_pages(bytes));
+  for (std::size_t at = 0; at < pages.size(); at += page_bytes()) shared_words::touch(pages, at);
 }
 
 void touch_pages_read_only(const std::byte* memory, std::size_t bytes) {

@@ -67,6 +67,11 @@ void store(std::span<std::byte> memory, std::size_t offset, Word word) CELL_RT {
   at<Word>(memory, offset).store(little(word), std::memory_order_release);
 }
 
+// Writes a word without changing it: its page belongs to this process then, and access does not fault.
+inline void touch(std::span<std::byte> memory, std::size_t offset) CELL_RT {
+  at<std::uint64_t>(memory, offset).fetch_or(0, std::memory_order_relaxed);
+}
+
 inline void store_f64(std::span<std::byte> memory, std::size_t offset, double value) CELL_RT {
   store(memory, offset, std::bit_cast<std::uint64_t>(value));
 }
