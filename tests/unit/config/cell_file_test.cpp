@@ -50,6 +50,19 @@ TEST_F(CellFile, hasDefaultsForEverythingButFormatAndName) {
   EXPECT_TRUE(sut->streams.empty());
 }
 
+TEST_F(CellFile, readsGravity) {
+  auto sut = load("");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->gravity_m_s2, Eigen::Vector3d(0, 0, -9.80665));
+  sut = load("gravity_m_s2 = [1.62, 0, 0]\n");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->gravity_m_s2, Eigen::Vector3d(1.62, 0, 0));
+  EXPECT_FALSE(load("gravity_m_s2 = [0, 0]\n"));
+  EXPECT_FALSE(load("gravity_m_s2 = [0, 0, -1e6]\n"));
+  EXPECT_FALSE(load("gravity_m_s2 = [0, 0, nan]\n"));
+  EXPECT_FALSE(load("gravity_m_s2 = -9.8\n"));
+}
+
 TEST_F(CellFile, readsFootSwitches) {
   auto sut = load("");
   ASSERT_TRUE(sut) << findings();
