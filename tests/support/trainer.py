@@ -12,8 +12,8 @@ import gateway as g
 from shared_memory import unused_key
 
 # Where the tips of the two instruments stand at the start (insertion 0.12 m), and the direction of their shafts.
-LEFT = {"tip": (-0.0413, -0.0170, 0.1115), "into": "0.5722,0.3587,-0.7374"}
-RIGHT = {"tip": (0.0413, -0.0170, 0.1115), "into": "-0.5722,0.3587,-0.7374"}
+LEFT = {"tip": (-0.0413, -0.0169, 0.1115), "into": "0.5722,0.3587,-0.7374"}
+RIGHT = {"tip": (0.0413, -0.0169, 0.1115), "into": "-0.5722,0.3587,-0.7374"}
 
 # Ordinary machines are late at times; a test of faults is not to find others than it makes.
 PATIENT = """
@@ -23,17 +23,29 @@ allowed_missed_periods = 500
 """
 
 
-def with_own_memories(scratch, drives=("pose", "joints"), more=PATIENT):
-    """Rewrites the scratch cell's haptic devices and foot switches; the keys by name. `more`: further keys of [[haptic]]."""
+def _table(text, drive, key, more):
+    """A table [[haptic]] of the cell with another drive and key; `more` takes the place of what it says of the same."""
+    replaced = {"shm_key", "online"} | set(re.findall(r"^(\w+) *=", more, re.M)) | ({"drive", "xyz_m"} if drive == "joints" else set())
+    kept = [line for line in text.splitlines() if line.split("=")[0].strip() not in replaced]
+    return "\n".join(kept) + f"\nshm_key = {key}\nonline = true\n" + ('drive = "joints"\n' if drive == "joints" else "") + more + "\n"
+
+
+def with_own_memories(scratch, drives=("pose", "pose"), more=PATIENT):
+    """Gives the scratch cell's haptic devices and foot switches keys of this run's own; the keys by name. `more`: further
+    keys of [[haptic]]."""
     keys = {"LAP_LEFT": unused_key(), "LAP_RIGHT": unused_key(), "switches": unused_key()}
+    drive_of = dict(zip(("LAP_LEFT", "LAP_RIGHT"), drives))
+
+    def own(match):
+        robot = re.search(r'^robot *= *"(\w+)"', match[0], re.M)[1]
+        return _table(match[0], drive_of[robot], keys[robot], more)
+
     text = scratch.cell_file.read_text()
     # A table ends where the next one begins.
-    text = re.sub(r"(?ms)^\[\[?(haptic|foot_switches)\]\]?$.*?(?=^\[|\Z)", "", text)
-    for robot, place, drive in (("LAP_LEFT", LEFT, drives[0]), ("LAP_RIGHT", RIGHT, drives[1])):
-        text += f'\n[[haptic]]\nrobot = "{robot}"\ndrive = "{drive}"\ngripper_joint = "JAW"\nshm_key = {keys[robot]}\nonline = true\n'
-        if drive == "pose":
-            text += f"xyz_m = {list(place['tip'])}\n"
-        text += more
+    text, devices = re.subn(r"(?ms)^\[\[haptic\]\]$.*?(?=^\[|\Z)", own, text)
+    text = re.sub(r"(?ms)^\[foot_switches\]$.*?(?=^\[|\Z)", "", text)
+    if devices != 2:
+        raise AssertionError(f"the trainer cell has {devices} haptic devices")
     text += f"\n[foot_switches]\nkey = {keys['switches']}\nbytes = 1\ndebounce_s = 0.01\nonline = true\n"
     scratch.cell_file.write_text(text)
     return keys

@@ -137,7 +137,7 @@ def main():
     numbers = [word for word in sys.argv[1:] if not word.startswith("-")]
     seconds = float(numbers[0]) if numbers else 60
     scratch = g.Scratch("trainer")
-    keys = t.with_own_memories(scratch, drives=("pose", "pose"))
+    keys = t.with_own_memories(scratch)
     if not alone:
         add_robots(scratch)
     gateway = g.Gateway(scratch)

@@ -48,9 +48,8 @@ class Haptic(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = g.Scratch("trainer")
-        cls.keys = t.with_own_memories(cls.scratch)
+        cls.keys = t.with_own_memories(cls.scratch, drives=("pose", "joints"))
         cls.gateway = g.Gateway(cls.scratch)
-        cls.key = cls.keys["LAP_LEFT"]
 
     @classmethod
     def tearDownClass(cls):
