@@ -30,8 +30,7 @@ void sleep_until(Timestamp time) {
 void copy_shared_bytes(std::span<const std::byte> from, std::span<std::uint8_t> to) {
   const std::size_t count = std::min(from.size(), to.size());
   for (std::size_t i = 0; i < count; ++i) {
-    // Relaxed: each byte stands for itself.
-    to[i] = shared_words::at<std::uint8_t>(from, i).load(std::memory_order_relaxed);
+    to[i] = shared_words::load<std::uint8_t>(from, i);
   }
 }
 
