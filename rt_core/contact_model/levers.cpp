@@ -14,6 +14,8 @@ using Eigen::Vector3d;
 // radian and a metre weigh the same here, and an instrument that is 10 mm deep still moves sideways.
 constexpr double kLeastMotion = 1e-3;
 
+const Matrix3d kZero = Matrix3d::Zero();
+
 }  // namespace
 
 void Levers::adopt(const CompiledCell& cell, const CompiledRobot& robot) {
@@ -34,6 +36,7 @@ void Levers::adopt(const CompiledCell& cell, const CompiledRobot& robot) {
     moving.axis = joint.axis;
     joints_.push_back(moving);
   }
+  affine_.assign(joints_.size(), {});
   flange_ = robot.flange;
   X_FT_ = robot.X_FT;
 }
@@ -59,13 +62,25 @@ void Levers::move(const CellPoses& poses) {
     const Vector3d v = solver.eigenvectors().col(i);
     inverse += v * v.transpose() / squares[i];
   }
-  for (std::size_t j = 0; j < columns.size(); ++j) of_tip_[j] = columns[j].transpose() * inverse;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const MovingJoint& joint = joints_[i];
+    const Eigen::RowVector3d of_tip = columns[joint.joint].transpose() * inverse;
+    AffineLever& lever = affine_[i];
+    const auto& above = joints_above(joint.node);  // the last is this one
+    lever = above.size() > 1 ? affine_[above[above.size() - 2]] : AffineLever{Matrix3d::Zero(), {kZero, kZero, kZero}};
+    lever.base += velocity(joint, Vector3d::Zero()) * of_tip;
+    if (joint.kind == JointKind::prismatic) continue;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      lever.along[static_cast<std::size_t>(k)] += joint.multiplier * joint.axis_W.cross(Vector3d::Unit(k)) * of_tip;
+    }
+  }
 }
 
 Matrix3d Levers::lever(std::int32_t node, const Vector3d& p_W) const {
-  Matrix3d out = Matrix3d::Zero();
-  for (const std::uint32_t i : joints_above(node)) out += velocity(joints_[i], p_W) * of_tip_[joints_[i].joint];
-  return out;
+  const auto& above = joints_above(node);
+  if (above.empty()) return Matrix3d::Zero();
+  const AffineLever& lever = affine_[above.back()];
+  return lever.base + p_W.x() * lever.along[0] + p_W.y() * lever.along[1] + p_W.z() * lever.along[2];
 }
 
 }  // namespace cellmirror::contact_model

@@ -45,13 +45,18 @@ class Levers {
     return joint.multiplier * v;
   }
 
+  // M of a point is affine in it: base + x * along[0] + y * along[1] + z * along[2], in the world.
+  struct AffineLever {
+    Eigen::Matrix3d base = Eigen::Matrix3d::Zero();
+    std::array<Eigen::Matrix3d, 3> along{};
+  };
+
   std::vector<MovingJoint> joints_;
   std::vector<std::vector<std::uint32_t>> above_;  // by node: joints of the robot on the way to the world
+  std::vector<AffineLever> affine_;                // by joint: of what it carries; the last joint above a node decides
   std::int32_t flange_ = 0;
   Pose X_FT_ = Pose::Identity();
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();
-  // By joint of the robot: what it does for a translation of the tip.
-  std::array<Eigen::RowVector3d, kMaxJointsPerRobot> of_tip_{};
 };
 
 }  // namespace cellmirror::contact_model

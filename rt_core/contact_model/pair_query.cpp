@@ -72,6 +72,8 @@ QueryResult PairQuery::ask(const Piece& instrument, const Piece& obstacle, doubl
                            std::vector<Candidate>& out) {
   for (auto* list : {&near_, &only_reference_, &planes_, &refused_}) list->clear();
   reach_ = reach;
+  X_OW_ = obstacle.X_WG.inverse(Eigen::Isometry);
+  X_IW_ = instrument.X_WG.inverse(Eigen::Isometry);
   crowded_ = overlapped_ = perhaps_inside_ = false;
   certain_ = true;
   nearest_ = std::numeric_limits<double>::infinity();
@@ -98,7 +100,7 @@ void PairQuery::primitive_near_primitive(const Piece& instrument, const Piece& o
 
 void PairQuery::primitive_near_mesh(const Piece& instrument, const Piece& obstacle) {
   const geometry::MeshTree& tree = *obstacle.solid->tree;
-  const Pose X_MP = obstacle.X_WG.inverse(Eigen::Isometry) * instrument.X_WG;
+  const Pose X_MP = X_OW_ * instrument.X_WG;
   const double limit = reach_ + instrument.skin;
   geometry::BoxWalk walk(tree.wide(), X_MP, instrument.core.half, 0.0);
   walk.set_limit(limit);
@@ -116,7 +118,7 @@ void PairQuery::primitive_near_mesh(const Piece& instrument, const Piece& obstac
 
 void PairQuery::mesh_near_primitive(const Piece& instrument, const Piece& obstacle) {
   const geometry::MeshTree& tree = *instrument.solid->tree;
-  const Pose X_MP = instrument.X_WG.inverse(Eigen::Isometry) * obstacle.X_WG;
+  const Pose X_MP = X_IW_ * obstacle.X_WG;
   const double limit = reach_ + obstacle.skin;
   geometry::BoxWalk walk(tree.wide(), X_MP, obstacle.core.half, 0.0);
   walk.set_limit(limit);
@@ -135,7 +137,7 @@ void PairQuery::mesh_near_primitive(const Piece& instrument, const Piece& obstac
 void PairQuery::mesh_near_mesh(const Piece& instrument, const Piece& obstacle) {
   const geometry::MeshTree& a = *instrument.solid->tree;
   const geometry::MeshTree& b = *obstacle.solid->tree;
-  const Pose X_AB = instrument.X_WG.inverse(Eigen::Isometry) * obstacle.X_WG;
+  const Pose X_AB = X_IW_ * obstacle.X_WG;
   geometry::PairWalk walk(a.wide(), b.wide(), X_AB);
   walk.set_limit(reach_);
   std::uint32_t i = 0;
@@ -190,8 +192,8 @@ PairQuery::ObstaclePlace PairQuery::look_at_obstacle(const Piece& obstacle, cons
   const MeshSurface& surface = *obstacle.surface;
   const bool closed = obstacle.solid->tree->mesh().closed;
   const Eigen::Matrix3d& R = obstacle.X_WG.linear();
-  const Vector3d p_M = obstacle.X_WG.inverse(Eigen::Isometry) * touch.p_O;
-  const Vector3d d_M = R.transpose() * d;
+  const Vector3d p_M = X_OW_ * touch.p_O;
+  const Vector3d d_M = X_OW_.linear() * d;
   const Feature feature = surface.feature(touch.triangle_O, p_M);
   const double facing = surface.facet_normal(touch.triangle_O).dot(d_M);
   if (distance < nearest_) {
@@ -215,8 +217,8 @@ PairQuery::ObstaclePlace PairQuery::look_at_obstacle(const Piece& obstacle, cons
 
 bool PairQuery::nearest_on_instrument(const Piece& instrument, const Touch& touch, const Vector3d& d) {
   if (!instrument.mesh()) return nearest_of_whole(instrument, touch.p_I, d);
-  const Vector3d p_M = instrument.X_WG.inverse(Eigen::Isometry) * touch.p_I;
-  const Vector3d back_M = -(instrument.X_WG.linear().transpose() * d);
+  const Vector3d p_M = X_IW_ * touch.p_I;
+  const Vector3d back_M = -(X_IW_.linear() * d);
   const Feature feature = instrument.surface->feature(touch.triangle_I, p_M);
   const double facing = instrument.surface->facet_normal(touch.triangle_I).dot(back_M);
   if (touch.triangle_O == kNone && d.dot(touch.p_I - touch.p_O) < nearest_) {
@@ -246,7 +248,7 @@ void PairQuery::add_ends(const Piece& instrument, const Piece& obstacle, const T
 }
 
 bool PairQuery::over_face(const Piece& obstacle, std::uint32_t triangle, const Vector3d& p_W) const {
-  const Vector3d p = obstacle.X_WG.inverse(Eigen::Isometry) * p_W;
+  const Vector3d p = X_OW_ * p_W;
   if (obstacle.mesh()) {
     // A smooth surface bends away between the ends; only where it is flat do they bear.
     const Feature feature = obstacle.surface->feature(triangle, p);

@@ -74,6 +74,8 @@ class PairQuery {
 
   double margin_;
   double reach_ = 0;
+  Pose X_OW_ = Pose::Identity();  // the world in the obstacle's piece, and in the instrument's
+  Pose X_IW_ = Pose::Identity();
   bool crowded_ = false;
   bool certain_ = true;
   bool overlapped_ = false;

@@ -1,7 +1,7 @@
 // How long a contact model takes on the trainer cell, for instruments that touch: the times of single models.
 #include <benchmark/benchmark.h>
 
-#include <chrono>
+#include <ctime>
 #include <random>
 
 #include "rt_core/haptics/proxy.hpp"
@@ -12,10 +12,17 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Of the processor: what else runs on the machine does not count.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 // A hand that wanders through the organ at 0.1 m/s; the proxy slides over its surface.
 void slide_over_the_organ(benchmark::State& state) {
   Trainer trainer;
-  ContactFinder finder(trainer.left, {});
+  ContactFinder finder(trainer.left, {.reach_m = 0.006});  // as its cell file asks for
   finder.adopt(trainer.compiled, trainer.pairs);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(-1.0, 1.0);
@@ -31,9 +38,9 @@ void slide_over_the_organ(benchmark::State& state) {
   std::size_t constraints = 0;
   double least_reach = 1;
   for (auto _ : state) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = thread_seconds();
     finder.find(trainer.poses, Timestamp{}, model);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = thread_seconds() - start;
     state.SetIterationTime(seconds);
     times.push_back(seconds);
     constraints += model.count;
