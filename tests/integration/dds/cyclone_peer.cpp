@@ -84,6 +84,10 @@ dds_entity_t CyclonePeer::reader(const dds_topic_descriptor_t& type, const std::
 
 dds_entity_t CyclonePeer::tf_reader(const std::string& name) { return reader(tf2_msgs_msg_dds__TFMessage__desc, name); }
 
+dds_entity_t CyclonePeer::wrench_reader(const std::string& name) {
+  return reader(geometry_msgs_msg_dds__WrenchStamped__desc, name);
+}
+
 dds_entity_t CyclonePeer::range_reader(const std::string& name, bool humble) {
   if (!humble) return reader(sensor_msgs_msg_dds__Range__desc, name);
   // Without type information, which tells the type's own name.
@@ -208,6 +212,16 @@ std::vector<PlainRange> CyclonePeer::take_ranges(dds_entity_t reader, bool humbl
       taken.back().variance = sample.variance;
     });
   }
+  return taken;
+}
+
+std::vector<PlainWrench> CyclonePeer::take_wrenches(dds_entity_t reader) {
+  std::vector<PlainWrench> taken;
+  take_all<geometry_msgs_msg_dds__WrenchStamped_>(reader, [&](const auto& sample) {
+    const auto& force = sample.wrench.force;
+    const auto& torque = sample.wrench.torque;
+    taken.push_back({sample.header.frame_id, {force.x, force.y, force.z}, {torque.x, torque.y, torque.z}});
+  });
   return taken;
 }
 

@@ -38,6 +38,12 @@ struct PlainRange {
   std::optional<float> variance;  // none in Humble's type
 };
 
+struct PlainWrench {
+  std::string frame_id;
+  std::array<double, 3> force{};
+  std::array<double, 3> torque{};
+};
+
 struct PlainStatus {
   int level = -1;
   std::string name, message, hardware_id;
@@ -68,6 +74,7 @@ class CyclonePeer {
   [[nodiscard]] dds_entity_t tf_reader(const std::string& topic);
   // `humble`: with the type that this release has.
   [[nodiscard]] dds_entity_t range_reader(const std::string& topic, bool humble);
+  [[nodiscard]] dds_entity_t wrench_reader(const std::string& topic);
   [[nodiscard]] dds_entity_t diagnostics_reader(const std::string& topic);
   [[nodiscard]] dds_entity_t marker_reader(const std::string& topic);
 
@@ -75,6 +82,7 @@ class CyclonePeer {
   static std::vector<PlainJointState> take_joint_states(dds_entity_t reader);
   static std::vector<PlainTransform> take_transforms(dds_entity_t reader);
   static std::vector<PlainRange> take_ranges(dds_entity_t reader, bool humble);
+  static std::vector<PlainWrench> take_wrenches(dds_entity_t reader);
   static std::vector<PlainStatus> take_diagnostics(dds_entity_t reader);
   static std::vector<PlainMarker> take_markers(dds_entity_t reader);
   static int matched_readers(dds_entity_t writer);

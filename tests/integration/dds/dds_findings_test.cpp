@@ -97,6 +97,30 @@ TEST_F(DdsFindingsTest, RangesAreReadByBothTypesOfRos2AndHaveTheirFrames) {
   EXPECT_EQ(counter("ranges_readers"), 2U);
 }
 
+// Every robot that is told of has a topic of its own.
+TEST_F(DdsFindingsTest, ForcesAtTcpsAreWrenches) {
+  const dds_entity_t wrench = peer_.wrench_reader("rt/cellmirror/tcp_wrench/TOOL_1");
+  ForceState state;
+  state.robots.resize(2);
+  state.robots[0].id = "ARM";  // nothing tells of its TCP
+  state.robots[1].id = "TOOL_1";
+  state.robots[1].tcp_known = true;
+  state.robots[1].tcp_T = {{1, -2, 3}, {0, 0, 0.5}};
+  std::vector<PlainWrench> seen;
+  ASSERT_TRUE(eventually([&] {
+    // The writer is made at the first force.
+    state.posture_time = clock_.now();
+    sut_->publish_forces(state);
+    for (auto& one : CyclonePeer::take_wrenches(wrench)) seen.push_back(one);
+    return !seen.empty();
+  }));
+  EXPECT_EQ(seen[0].frame_id, "TOOL_1/tcp");
+  EXPECT_EQ(seen[0].force, (std::array<double, 3>{1, -2, 3}));
+  EXPECT_EQ(seen[0].torque, (std::array<double, 3>{0, 0, 0.5}));
+  EXPECT_GE(counter("wrenches_sent"), 1U);
+  EXPECT_EQ(counter("wrenches_readers"), 1U);
+}
+
 TEST_F(DdsFindingsTest, WhatIsNotFiniteIsRefusedAndCounted) {
   const Timestamp time = clock_.now();
   sut_->publish_ranges(
