@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "rt_core/base/text.hpp"
 #include "sim_devices/base/random.hpp"
@@ -73,8 +75,15 @@ double end_of(const std::vector<SwitchChange>& plan) {
 }
 
 void sort_by_time(std::vector<SwitchChange>& plan) {
-  std::stable_sort(plan.begin(), plan.end(),
-                   [](const SwitchChange& a, const SwitchChange& b) { return a.at_s < b.at_s; });
+  std::vector<std::size_t> order(plan.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return plan[a].at_s != plan[b].at_s ? plan[a].at_s < plan[b].at_s : a < b;
+  });
+  std::vector<SwitchChange> sorted;
+  sorted.reserve(plan.size());
+  for (const std::size_t i : order) sorted.push_back(plan[i]);
+  plan = std::move(sorted);
 }
 
 std::vector<SwitchChange> random_presses(double presses_per_s, std::uint32_t inputs, double for_s, std::uint64_t seed) {

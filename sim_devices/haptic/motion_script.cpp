@@ -86,6 +86,7 @@ class ScriptReader {
       return false;
     }
     const auto all = words(statement, kMaxWords + 1);
+    if (all.empty()) return true;
     if (all.size() > kMaxWords) {
       error(all.back(), "too many words for one step", "part steps by ';'");
       return true;
