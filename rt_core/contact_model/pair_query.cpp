@@ -29,8 +29,8 @@ constexpr double kLean = 0.02;
 constexpr std::size_t kContactPoints = 4;
 
 // Of a primitive's flat face, in W; false where the direction is not that of one.
-bool face_of_primitive(const Piece& piece, const Vector3d& d_W, Vector3d& n_W) {
-  const Vector3d d = piece.X_WG.linear().transpose() * d_W;
+bool face_of_primitive(const Piece& piece, const Vector3d& d_in_world, Vector3d& n_W) {
+  const Vector3d d = piece.X_WG.linear().transpose() * d_in_world;
   constexpr double kAlong = 1 - 1e-8;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const bool flat = piece.core.kind == CoreKind::box || (piece.core.kind == CoreKind::cylinder && i == 2);
@@ -42,12 +42,13 @@ bool face_of_primitive(const Piece& piece, const Vector3d& d_W, Vector3d& n_W) {
 }
 
 // Whether the nearest point of a piece is one of the whole: not at an end where the shaft goes on.
-bool nearest_of_whole(const Piece& piece, const Vector3d& p_W, const Vector3d& d_W) {
+bool nearest_of_whole(const Piece& piece, const Vector3d& p_W, const Vector3d& d_in_world) {
   if (!piece.cut_low && !piece.cut_high) return true;
   const Vector3d axis = piece.X_WG.linear().col(2);
   const double z = axis.dot(p_W - piece.X_WG.translation());
   const double near_end = piece.core.half.z() * (1 - 1e-9) - 1e-9;
-  if ((piece.cut_low && z <= -near_end) || (piece.cut_high && z >= near_end)) return std::abs(axis.dot(d_W)) < kLean;
+  if ((piece.cut_low && z <= -near_end) || (piece.cut_high && z >= near_end))
+    return std::abs(axis.dot(d_in_world)) < kLean;
   return true;
 }
 
@@ -193,21 +194,21 @@ PairQuery::ObstaclePlace PairQuery::look_at_obstacle(const Piece& obstacle, cons
   const bool closed = obstacle.solid->tree->mesh().closed;
   const Eigen::Matrix3d& R = obstacle.X_WG.linear();
   const Vector3d p_M = X_OW_ * touch.p_O;
-  const Vector3d d_M = X_OW_.linear() * d;
+  const Vector3d d_in_mesh = X_OW_.linear() * d;
   const Feature feature = surface.feature(touch.triangle_O, p_M);
-  const double facing = surface.facet_normal(touch.triangle_O).dot(d_M);
+  const double facing = surface.facet_normal(touch.triangle_O).dot(d_in_mesh);
   if (distance < nearest_) {
     nearest_ = distance;
     perhaps_inside_ = closed && facing < 0;
     nearest_point_ = touch.p_I;
   }
-  out.nearest = surface.nearest_around(feature, p_M, d_M);
+  out.nearest = surface.nearest_around(feature, p_M, d_in_mesh);
   out.face = feature.kind == FeatureKind::face;
   out.behind = closed && facing <= 0 && (out.face || !out.nearest);
   // An open mesh has two sides.
   const double side = !closed && facing < 0 ? -1.0 : 1.0;
   Vector3d smooth;
-  if (surface.smooth_normal(feature, smooth) && side * smooth.dot(d_M) > 0) {
+  if (surface.smooth_normal(feature, smooth) && side * smooth.dot(d_in_mesh) > 0) {
     out.normal = side * (R * smooth);
   } else if (!out.nearest || out.face) {
     out.normal = side * (R * surface.facet_normal(touch.triangle_O));
@@ -218,15 +219,15 @@ PairQuery::ObstaclePlace PairQuery::look_at_obstacle(const Piece& obstacle, cons
 bool PairQuery::nearest_on_instrument(const Piece& instrument, const Touch& touch, const Vector3d& d) {
   if (!instrument.mesh()) return nearest_of_whole(instrument, touch.p_I, d);
   const Vector3d p_M = X_IW_ * touch.p_I;
-  const Vector3d back_M = -(X_IW_.linear() * d);
+  const Vector3d back_in_mesh = -(X_IW_.linear() * d);
   const Feature feature = instrument.surface->feature(touch.triangle_I, p_M);
-  const double facing = instrument.surface->facet_normal(touch.triangle_I).dot(back_M);
+  const double facing = instrument.surface->facet_normal(touch.triangle_I).dot(back_in_mesh);
   if (touch.triangle_O == kNone && d.dot(touch.p_I - touch.p_O) < nearest_) {
     nearest_ = d.dot(touch.p_I - touch.p_O);
     perhaps_inside_ = instrument.solid->tree->mesh().closed && facing < 0;
     nearest_point_ = touch.p_O;
   }
-  return instrument.surface->nearest_around(feature, p_M, back_M);
+  return instrument.surface->nearest_around(feature, p_M, back_in_mesh);
 }
 
 // Where a shaft lies along a face, both of its ends bear; which point between them is the nearest is rounding.
