@@ -59,10 +59,10 @@ Wrench inertial_wrench(const Inertia& inertia, const LinkState& state) CELL_RT {
 void take_tip_wrench(const Mechanism& mechanism, const DynamicsInput& input, DynamicsOutput& output) CELL_RT {
   if (mechanism.tip_link() < 0) return;
   const Pose& X_LT = mechanism.X_LT();
-  const Vector3d force_L = X_LT.linear() * input.tip_force_T;
+  const Vector3d tip_force = X_LT.linear() * input.tip_force_T;
   Wrench& wrench = output.joint_wrench[static_cast<std::size_t>(mechanism.tip_link())];
-  wrench.force -= force_L;
-  wrench.torque -= X_LT.linear() * input.tip_torque_T + Vector3d(X_LT.translation()).cross(force_L);
+  wrench.force -= tip_force;
+  wrench.torque -= X_LT.linear() * input.tip_torque_T + Vector3d(X_LT.translation()).cross(tip_force);
 }
 
 }  // namespace
@@ -98,9 +98,9 @@ void inverse_dynamics(const Mechanism& mechanism, const DynamicsInput& input, Dy
     output.effort[link.variable] += link.multiplier * link.axis.dot(slides ? wrench.force : wrench.torque);
     if (link.parent < 0) continue;
     Wrench& before = output.joint_wrench[static_cast<std::size_t>(link.parent)];
-    const Vector3d force_P = states[i].R_PJ * wrench.force;
-    before.force += force_P;
-    before.torque += states[i].R_PJ * wrench.torque + states[i].p_PJ.cross(force_P);
+    const Vector3d force_before = states[i].R_PJ * wrench.force;
+    before.force += force_before;
+    before.torque += states[i].R_PJ * wrench.torque + states[i].p_PJ.cross(force_before);
   }
 }
 

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxLinks = kinematics::kMaxChainJoints;
 
 // A joint with everything that moves with it up to the next joints. Its value is multiplier * q[variable] + offset.
 struct Link {
-  std::int8_t parent = -1;       // link before it; -1: the base
+  int parent = -1;               // link before it; -1: the base
   Pose X_PJ = Pose::Identity();  // the joint's frame at value zero, in the parent's joint frame (in the base)
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector in J
   JointKind kind = JointKind::revolute;

@@ -135,7 +135,7 @@ class Builder {
     const CompiledJoint& joint = joint_at(node);
     const std::int32_t carrier = nodes_.carrier[at(node)];
     Link link;
-    link.parent = static_cast<std::int8_t>(carrier < 0 ? kNone : link_of_[at(carrier)]);
+    link.parent = carrier < 0 ? kNone : link_of_[at(carrier)];
     link.X_PJ = nodes_.X_CN[at(node)];
     link.axis = joint.axis;
     link.kind = joint.kind;

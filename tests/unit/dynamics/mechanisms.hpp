@@ -47,7 +47,7 @@ struct RandomMechanism {
     std::vector<Link> links(kLinks);
     for (std::size_t i = 0; i < kLinks; ++i) {
       const bool branch = i > 0 && random() % 3 == 0;
-      links[i].parent = static_cast<std::int8_t>(branch ? random() % i : i - 1);
+      links[i].parent = static_cast<int>(branch ? random() % i : i - 1);
       if (i == 0) links[i].parent = -1;
       links[i].variable = static_cast<std::uint8_t>(i);
       links[i].kind = random() % 3 == 0 ? JointKind::prismatic : JointKind::revolute;
