@@ -71,7 +71,8 @@ void ForceComputation::place_links(const Mechanism& mechanism, std::span<const d
   const auto links = mechanism.links();
   for (std::size_t i = 0; i < links.size(); ++i) {
     const Link& link = links[i];
-    X_WJ_[i] = link.parent < 0 ? link.X_PJ : X_WJ_[static_cast<std::size_t>(link.parent)] * link.X_PJ;
+    const int parent = link.parent;
+    X_WJ_[i] = parent < 0 ? link.X_PJ : X_WJ_[static_cast<std::size_t>(parent)] * link.X_PJ;
     kinematics::apply_joint(link.kind, link.axis, link.multiplier * q[link.variable] + link.offset, X_WJ_[i]);
   }
 }
