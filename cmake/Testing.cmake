@@ -2,7 +2,8 @@
 # ThreadSanitizer as well, as every stress test does. Integration and stress tests run alone, since they watch
 # the clock or share ports.
 #
-# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY])  a GoogleTest program, one ctest entry.
+# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY] [PRECOMPILED none])  a GoogleTest program, one ctest entry.
+#   PRECOMPILED none: with sources in C (cmake/PrecompiledHeaders.cmake).
 #   RELEASE_ONLY: not built with sanitizers. For long comparisons of numbers whose code a fuzz target runs under them.
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
 #   CELLMIRROR_FUZZERS a libFuzzer program, else <name>_replay, which runs the corpus as an ordinary test.
@@ -21,9 +22,12 @@ foreach(label unit integration golden fuzz stress concurrency)
   add_custom_target(tests_${label})
 endforeach()
 
+# Builds the programs of tests/bench that no test runs; the others (SMOKE) are built with the tests.
+add_custom_target(benches)
+
 # What nearly every unit test includes is parsed once a build (PrecompiledHeaders.cmake).
 if(CELLMIRROR_TESTS)
-  cellmirror_precompiled(tests HEADERS <gtest/gtest.h> <Eigen/Geometry> <functional> <map> <optional> <string> <vector> LINK GTest::gtest Eigen3::Eigen)
+  cellmirror_precompiled(tests HEADERS <gtest/gtest.h> LINK GTest::gtest)
 endif()
 
 # cellmirror_describe_test(name): kind label, serial where needed, and what every test may rely on in its environment.
@@ -56,14 +60,15 @@ function(cellmirror_test name)
   if(NOT CELLMIRROR_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "RELEASE_ONLY" "TIMEOUT" "SOURCES;USES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RELEASE_ONLY" "TIMEOUT;PRECOMPILED" "SOURCES;USES;LINK;LABELS" ${ARGN})
   if(ARG_RELEASE_ONLY AND CELLMIRROR_SANITIZE)
     return()
   endif()
-  cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK})
-  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/(unit|golden|stress)/")
-    cellmirror_use_precompiled(${name} tests)
+  if(NOT ARG_PRECOMPILED)
+    set(ARG_PRECOMPILED tests)
   endif()
+  cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK}
+    PRECOMPILED ${ARG_PRECOMPILED})
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
   cellmirror_describe_test(${name} TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABELS})
 endfunction()
@@ -91,6 +96,7 @@ function(cellmirror_benchmark name)
   cmake_parse_arguments(ARG "SMOKE" "" "SOURCES;USES;LINK" ${ARGN})
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK benchmark::benchmark ${ARG_LINK})
   if(ARG_SMOKE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL OFF)
     add_test(NAME ${name}_smoke COMMAND ${name} --benchmark_min_time=0.01)
     cellmirror_describe_test(${name}_smoke)
   endif()

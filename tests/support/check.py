@@ -60,7 +60,8 @@ class Check:
     def release(self) -> None:
         cache = ROOT / "build/CMakeCache.txt"
         without_tests = cache.exists() and "CELLMIRROR_TESTS:BOOL=OFF" in cache.read_text()
-        if not self.build("release", "build", configure_arguments="-DCELLMIRROR_TESTS=ON" if without_tests else ""):
+        targets = ("all", "benches") if self.options.label == "bench" else ()
+        if not self.build("release", "build", *targets, configure_arguments="-DCELLMIRROR_TESTS=ON" if without_tests else ""):
             return
         if self.options.label:
             self.tests("tests", "build", "-L", f"^({self.options.label})$")
