@@ -296,7 +296,8 @@ void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& f
   state_.joint_torques = JointValues{};
   output_.joint_torques = JointValues{};
   for (std::size_t i = 0; i < instrument_->chain.variable_count(); ++i) {
-    const auto joint = static_cast<std::size_t>(instrument_->variable_joint[i]);
+    const int number = instrument_->variable_joint[i];
+    const auto joint = static_cast<std::size_t>(number);
     state_.joint_torques[joint] = tip_.J.col(static_cast<Eigen::Index>(i)).dot(wrench_B);
     output_.joint_torques[joint] = state_.joint_torques[joint] * scale;
   }

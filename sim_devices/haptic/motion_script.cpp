@@ -155,7 +155,7 @@ class ScriptReader {
         error(word, fmt::format("{} is farther than {} m (rad)", printable(word, 40), kFarthest), "");
         return;
       }
-      amount_ = *number;
+      amount_ = number;
       return;
     }
     if (const auto direction = parse_direction(word); direction && directions_ < verb.directions) {

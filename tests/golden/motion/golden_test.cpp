@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/gateway/coupling_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/motion_desk.hpp"
@@ -24,6 +25,7 @@
 #include "rt_core/rt/watchdog.hpp"
 #include "scripts/runner/script_runner.hpp"
 #include "tests/golden/motion/recording_port.hpp"
+#include "tests/golden/scripts/quiet_host.hpp"
 
 namespace cellmirror {
 namespace {
@@ -63,8 +65,9 @@ class Stage {
         port(fleet_, cell_),
         names_(cell_),
         desk_(cell_, names_, views_, port),
+        couplings_(cell_, fleet_, desk_),
         world_(cell_, fleet_, desk_, [] {}),
-        robots_(cell_, fleet_, desk_, names_),
+        robots_(cell_, fleet_, desk_, couplings_, names_),
         programs_(desk_),
         view_host_(cell_, views_, clock_),
         sensing_(cell_, {}),
@@ -73,8 +76,8 @@ class Stage {
   }
 
   std::string run(const KismetHome& home, const std::string& name) {
-    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, view_host_, sensing_, diagnosis_}, home,
-                                clock_);
+    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, view_host_, sensing_, quiet_, diagnosis_},
+                                home, clock_);
     std::string end = "still waiting\n";
     runner.on_run_ended([&](const script::RunReport& report) {
       end = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
@@ -105,11 +108,13 @@ class Stage {
  private:
   app::CellNames names_;
   app::MotionDesk desk_;
+  app::CouplingDesk couplings_;
   app::CellWorld world_;
   app::CellRobots robots_;
   app::CellPrograms programs_;
   app::CellViews view_host_;
   app::CellSensing sensing_;
+  cellmirror::testing::QuietHost quiet_;  // hands and feet: no motion here
   app::CellDiagnosis diagnosis_;
 };
 
