@@ -39,7 +39,8 @@ class Scratch:
         self.runtime = self.root / "runtime"
         self.runtime.mkdir(mode=0o700)
         self.home = self.root / "cell"
-        shutil.copytree(CELLS / cell, self.home)
+        # Not the records that a gateway may have left in the cell of the tree.
+        shutil.copytree(CELLS / cell, self.home, ignore=shutil.ignore_patterns("records"))
         self.cell_file = self.home / "cell.toml"
         if not startup:
             (self.home / "scripts" / "startup.spt").write_text("# empty for tests\n")
