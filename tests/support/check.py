@@ -73,7 +73,7 @@ class Check:
     def sanitizers(self) -> None:
         # One clang build serves the address and undefined-behaviour sanitizers and the fuzzers.
         if self.build("fuzz", "build-fuzz", "tests_unit", "tests_golden", "tests_fuzz", "cellmirror_precompiled_app"):
-            seconds = os.environ.get("FUZZ_SECONDS", "5")
+            seconds = os.environ.get("FUZZ_SECONDS", "3")
             self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
             self.tests(f"fuzzing, {seconds} s each", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds, **SANITIZER_OPTIONS)
         if self.build("tsan", "build-tsan", "tests_stress", "tests_concurrency"):
