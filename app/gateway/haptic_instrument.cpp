@@ -41,7 +41,7 @@ Result<std::shared_ptr<const haptics::Instrument>> make_instrument(const Cell& c
                           .upper = robot.parameters().max_range,
                           .settings = settings};
   for (std::size_t i = 0; i < chain->joint.size(); ++i)
-    out.variable_joint[i] = static_cast<std::int8_t>(chain->joint[i]);
+    out.variable_joint[i] = static_cast<std::uint8_t>(chain->joint[i]);
   return std::make_shared<const haptics::Instrument>(std::move(out));
 }
 

@@ -236,7 +236,7 @@ void HapticChannel::stand_at(const Eigen::Vector3d& x_before) CELL_RT {
   tip_ = tip;
   posture_.X_WE = X_WE;
   for (std::size_t i = 0; i < instrument.chain.variable_count(); ++i) {
-    q[static_cast<std::size_t>(instrument.variable_joint[i])] = values[i];
+    q[instrument.variable_joint[i]] = values[i];
   }
   posture_.q = q;
 }
@@ -296,8 +296,7 @@ void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& f
   state_.joint_torques = JointValues{};
   output_.joint_torques = JointValues{};
   for (std::size_t i = 0; i < instrument_->chain.variable_count(); ++i) {
-    const int number = instrument_->variable_joint[i];
-    const auto joint = static_cast<std::size_t>(number);
+    const std::size_t joint = instrument_->variable_joint[i];
     state_.joint_torques[joint] = tip_.J.col(static_cast<Eigen::Index>(i)).dot(wrench_B);
     output_.joint_torques[joint] = state_.joint_torques[joint] * scale;
   }

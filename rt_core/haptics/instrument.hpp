@@ -16,7 +16,7 @@ struct Instrument {
   std::uint8_t slot = 0;
   std::uint8_t joint_count = 0;  // of the robot
   kinematics::Chain chain;       // from its base to its TCP; the joints of the robot that are on the way
-  std::array<std::int8_t, kMaxJointsPerRobot> variable_joint{};  // joint of the robot that a variable of the chain is
+  std::array<std::uint8_t, kMaxJointsPerRobot> variable_joint{};  // joint of the robot that a variable of the chain is
   Pose X_WB = Pose::Identity();  // its base in the world; it does not move while the channel is open
   JointValues lower{};           // rad or m, of the robot's joints
   JointValues upper{};

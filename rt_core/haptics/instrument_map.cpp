@@ -40,7 +40,7 @@ int variable_of(const Instrument& instrument, int joint) CELL_RT {
 JointValues chain_values(const Instrument& instrument, const JointValues& q) CELL_RT {
   JointValues values{};
   for (std::size_t i = 0; i < instrument.chain.variable_count(); ++i) {
-    values[i] = q[static_cast<std::size_t>(instrument.variable_joint[i])];
+    values[i] = q[instrument.variable_joint[i]];
   }
   return values;
 }

@@ -65,7 +65,7 @@ class EngineHapticsTest : public testing::Test {
     instrument_.settings.max_speed = 100;
     instrument_.lower.fill(-1.0);
     instrument_.upper.fill(1.0);
-    for (std::int8_t i = 0; i < 3; ++i) instrument_.variable_joint[static_cast<std::size_t>(i)] = i;
+    for (std::uint8_t i = 0; i < 3; ++i) instrument_.variable_joint[i] = i;
     Command add;
     add.kind = CommandKind::add_robot;
     add.slot = kSlot;

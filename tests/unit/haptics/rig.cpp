@@ -33,7 +33,7 @@ Instrument instrument_of(const std::vector<kinematics::ChainJoint>& joints,
   CELLMIRROR_EXPECTS(chain.has_value());
   Instrument made{.slot = 3, .joint_count = 5, .chain = *chain, .settings = settings};
   for (std::size_t i = 0; i < 4; ++i) {
-    made.variable_joint[i] = static_cast<std::int8_t>(i);
+    made.variable_joint[i] = static_cast<std::uint8_t>(i);
     made.lower[i] = variables[i].lower;
     made.upper[i] = variables[i].upper;
   }
