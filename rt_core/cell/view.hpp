@@ -9,19 +9,10 @@
 
 #include "rt_core/base/result.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/ports/view.hpp"
 #include "rt_core/ports/view_change.hpp"
 
 namespace cellmirror {
-
-struct View {
-  Eigen::Vector3d viewpoint = Eigen::Vector3d(0, -5, 2);  // m, world
-  Eigen::Vector3d lookpoint = Eigen::Vector3d::Zero();
-  double twist = 0;             // rad: the screen turns so far about its own z axis
-  double opening_angle = 0.7;   // rad, of the whole picture in vertical direction
-  double near_distance = 0.05;  // m: clipping planes, from the viewpoint
-  double far_distance = 100;
-  bool orthogonal = false;  // parallel projection; its size is that of the perspective one at the lookpoint
-};
 
 // The axes of the screen in the world: x to the right, y up, z out of the screen towards the viewer. The world's z is
 // up on the screen before the twist; in a view straight up or down, its y is.

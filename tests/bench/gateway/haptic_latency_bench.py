@@ -67,6 +67,7 @@ class Cyclictest:
 
     def __init__(self, seconds, priority):
         self.child = None
+        self.seconds = seconds
         if shutil.which("cyclictest"):
             self.child = subprocess.Popen(["cyclictest", "-q", "-t1", "-m", f"-p{priority}", "-i1000", f"-D{int(seconds)}", "-h2000"],
                                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -75,7 +76,7 @@ class Cyclictest:
         """(cycles, missed periods, p99 us, max us)"""
         if self.child is None:
             return None
-        out, _ = self.child.communicate(timeout=60)
+        out, _ = self.child.communicate(timeout=self.seconds + 60)
         counts = [(int(us), int(n)) for us, n in re.findall(r"^(\d{6})\s+(\d+)$", out, re.M)]
         over = sum(map(int, re.findall(r"^# Histogram Overflows:\s*(\d+)", out, re.M)))
         largest = re.search(r"^# Max Latencies:\s*(\d+)", out, re.M)

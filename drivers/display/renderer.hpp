@@ -1,0 +1,57 @@
+// Draws scenes into pictures without a display: OpenGL 3.3 core by OSMesa, or by EGL without a surface.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/image.hpp"
+#include "rt_core/ports/scene.hpp"
+
+namespace cellmirror::display {
+
+enum class Backend : std::uint8_t { automatic, osmesa, egl };  // automatic: OSMesa, then EGL
+
+struct RendererOptions {
+  Backend backend = Backend::automatic;
+  int threads = 1;  // of a software renderer beside the calling one; 0: it draws in the calling thread alone
+};
+
+struct RendererCounters {
+  std::uint64_t frames = 0;
+  std::uint64_t meshes = 0;           // uploaded now
+  std::uint64_t uploads = 0;          // since the start: a mesh is uploaded once as long as it is in use
+  std::uint64_t bodies_drawn = 0;     // in the newest frame
+  std::uint64_t bodies_left_out = 0;  // in the newest frame, by the visibility test
+};
+
+// Belongs to the thread that made it. Not real time.
+class Renderer {
+ public:
+  // Fails where no backend can be had, with what was tried and the package that brings it.
+  [[nodiscard]] static Result<std::unique_ptr<Renderer>> create(const RendererOptions& options = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // "OSMesa: llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5": the backend and the renderer's own name and version.
+  [[nodiscard]] std::string_view name() const;
+
+  // Fails for sizes outside of 16..kLargestImageEdge and where memory does not suffice. What is not finite is left out.
+  Result<void> draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture);
+  // The object under each pixel, rows from the top; 0: none. Without anti-aliasing, overlays, floor.
+  Result<void> objects(const Scene& scene, std::span<const Pane> panes, int width, int height,
+                       std::vector<std::uint32_t>& objects);
+  [[nodiscard]] RendererCounters counters() const;
+
+ private:
+  struct Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cellmirror::display

@@ -1,0 +1,31 @@
+// Where the cameras of the cell are and what they see. A camera looks along the z axis of its workframe; x is to the
+// right of its picture, y points down (docs/cell-files.md).
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/ports/display_state.hpp"
+
+namespace cellmirror::scene {
+
+struct CameraNow {
+  std::size_t camera = 0;  // index into CompiledCell::cameras
+  Pose X_WC = Pose::Identity();
+  double focal_distance_m = 0;  // viewing distance; of a tracking camera the distance to what it tracks
+  double fovy_rad = 0;
+  bool tracking = false;
+  double pan_rad = 0;   // of a tracking camera: how far it had to turn out of its workframe, about its y axis,
+  double tilt_rad = 0;  // then about its new x axis; 0 for others
+};
+
+// A camera that tracks (CAM_TRACKING) is turned about its own position until its z axis meets the origin of the frame
+// it tracks; twist is kept. No camera of that name: none.
+[[nodiscard]] std::optional<CameraNow> camera_now(const CompiledCell& cell, const CellPoses& poses,
+                                                  const DisplayState& display, std::string_view name);
+[[nodiscard]] std::vector<CameraNow> cameras_now(const CompiledCell& cell, const CellPoses& poses,
+                                                 const DisplayState& display);
+
+}  // namespace cellmirror::scene

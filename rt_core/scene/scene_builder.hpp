@@ -1,0 +1,54 @@
+// Makes the scene that is drawn from the cell, its posture and what is known about it: bodies as SCRIPT wants them
+// drawn, frames, traces, near and touching pairs, cones of sensors, arrows of forces, pyramids of cameras, labels,
+// legend.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "rt_core/cell/compiled_cell.hpp"
+#include "rt_core/ports/display_state.hpp"
+#include "rt_core/ports/force_state.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/proximity_state.hpp"
+#include "rt_core/ports/scene.hpp"
+
+namespace cellmirror::scene {
+
+// Of a robot, by its slot.
+struct RobotCondition {
+  std::size_t slot = 0;
+  bool mirrored = false;
+  DataState state = DataState::none;
+  double age_s = 0;  // of the newest sample
+};
+
+// Null and empty: nothing is known. Everything outlives the call.
+struct SceneInput {
+  const CompiledCell* cell = nullptr;
+  const CellPoses* poses = nullptr;  // of `cell`, at posture_time
+  const DisplayState* display = nullptr;
+  std::string_view active_robot;
+  std::span<const RobotCondition> robots;
+  const ProximityState* proximity = nullptr;
+  std::span<const RangeReading> ranges;
+  const ForceState* forces = nullptr;
+  std::span<const ForceArrow> arrows;  // rt_core/dynamics/arrows.hpp
+  Timestamp posture_time;
+  Timestamp now;
+};
+
+// Keeps traces and what does not change from one posture to the next. One thread; not real time.
+class SceneBuilder {
+ public:
+  static constexpr std::size_t kTracePoints = 4000;  // of a trace; the oldest go
+
+  void build(const SceneInput& input, Scene& scene);
+
+ private:
+  // The members are the implementer's.
+};
+
+}  // namespace cellmirror::scene
