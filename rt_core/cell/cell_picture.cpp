@@ -101,6 +101,7 @@ class Picture {
     if (node.kind() == NodeKind::camera)
       cell_->cameras.push_back({node.name, here, node.camera.focal_distance_m, node.camera.fovy_rad});
     if (node.kind() == NodeKind::sensor) cell_->sensors.push_back({node.name, here, node.sensor});
+    if (node.kind() == NodeKind::workframe) cell_->workframes.push_back(here);
     if (there(id)) {
       add_inertia(here, node.definition->inertia);
       if (node.content) add_inertia(here, node.content->inertia);

@@ -85,6 +85,7 @@ struct CompiledCell {
   std::array<std::int16_t, kMaxRobots> robot_of_slot{};  // into `robots`, -1: none
   std::vector<CompiledCamera> cameras;
   std::vector<CompiledSensor> sensors;
+  std::vector<std::int32_t> workframes;    // nodes; those of cameras and sensors are not among them
   std::vector<CompiledGeometry> geometry;  // what is visible, coarse geometry included
   // Of what is there: not hidden (DEACTIVATE), by itself or with what it is named within. A part that is shown coarsely
   // weighs what it weighs in detail. A node may have two: its own and that of its component's root.

@@ -1,0 +1,24 @@
+// The colours that mean something in the picture and in its legend: calm, and told apart by colour-blind people by
+// their lightness as well. sRGB.
+#pragma once
+
+#include "rt_core/ports/scene.hpp"
+
+namespace cellmirror::palette {
+
+inline constexpr Colour kNear{0.95F, 0.72F, 0.12F, 1.0F};
+inline constexpr Colour kTouching{0.80F, 0.22F, 0.04F, 1.0F};
+inline constexpr Colour kGhost{0.52F, 0.56F, 0.66F, 0.45F};
+inline constexpr Colour kRange{0.34F, 0.71F, 0.91F, 0.22F};  // cones of sensors
+inline constexpr Colour kTrace{0.00F, 0.45F, 0.70F, 1.0F};
+inline constexpr Colour kForce{0.00F, 0.50F, 0.38F, 1.0F};
+inline constexpr Colour kTorque{0.62F, 0.30F, 0.52F, 1.0F};
+inline constexpr Colour kPyramid{0.25F, 0.28F, 0.36F, 1.0F};
+inline constexpr Colour kSpark{1.00F, 0.93F, 0.70F, 1.0F};
+
+[[nodiscard]] constexpr Colour opaque(Colour colour) {
+  colour[3] = 1.0F;
+  return colour;
+}
+
+}  // namespace cellmirror::palette
