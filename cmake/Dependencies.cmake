@@ -17,3 +17,7 @@ find_package(LAPACK REQUIRED)
 find_package(fcl REQUIRED)     # rt_core/collision
 find_package(assimp REQUIRED)  # config: mesh files
 find_package(Qhull REQUIRED)   # rt_core/geometry: convex hulls
+# drivers/display. Of OSMesa and EGL only the headers: the libraries are opened when a picture is wanted.
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(LIBPNG REQUIRED IMPORTED_TARGET libpng)
+pkg_check_modules(OSMESA REQUIRED osmesa)
