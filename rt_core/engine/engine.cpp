@@ -49,6 +49,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   publish(for_contacts_);
   publish(for_forces_);
   publish(for_tcp_force_);
+  publish(for_pictures_);
   record_tick(context, commands, samples);
   watchdog_.beat();
 }

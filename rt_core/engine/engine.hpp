@@ -43,8 +43,9 @@ struct QueueStatus {
 
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
 // owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
-// collision_view(), ranging_view(), contact_view(), force_view() and tcp_force_view() to the workers of that name,
-// contact_inlet() to that of contacts; each inlet() to the one driver thread of its stream; the rest to any thread.
+// collision_view(), ranging_view(), contact_view(), force_view(), tcp_force_view() and picture_view() to the workers of
+// that name, contact_inlet() to that of contacts; each inlet() to the one driver thread of its stream; the rest to any
+// thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
@@ -71,6 +72,7 @@ class Engine final : public Cycle {
   [[nodiscard]] const TickState& contact_view() { return for_contacts_.read().value; }
   [[nodiscard]] const TickState& force_view() { return for_forces_.read().value; }
   [[nodiscard]] const TickState& tcp_force_view() { return for_tcp_force_.read().value; }
+  [[nodiscard]] const TickState& picture_view() { return for_pictures_.read().value; }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -113,6 +115,7 @@ class Engine final : public Cycle {
   Latest<TickState> for_contacts_;
   Latest<TickState> for_forces_;
   Latest<TickState> for_tcp_force_;
+  Latest<TickState> for_pictures_;
   HapticChannels haptics_;
   Couplings couplings_;
   Watchdog& watchdog_;

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rt_core/base/time.hpp"
@@ -33,6 +35,18 @@ struct EncodedImage {
   std::vector<std::uint8_t> bytes;
   Timestamp posture_time;      // of the tick that it shows
   std::uint64_t sequence = 0;  // of its stream, counts from 1
+};
+
+// Somebody to whom pictures are given, by one thread. Waits for nobody.
+class ImageOutput {
+ public:
+  virtual ~ImageOutput() = default;
+  // Whether anybody would see a picture now. Any thread.
+  [[nodiscard]] virtual bool watched() const = 0;
+  virtual void publish_image(const EncodedImage& picture) = 0;
+  // For the status, any thread: "sent", "dropped", ...
+  [[nodiscard]] virtual std::vector<std::pair<std::string, std::uint64_t>> counters() const = 0;
+  [[nodiscard]] virtual std::string name() const = 0;
 };
 
 }  // namespace cellmirror
