@@ -49,10 +49,11 @@ struct DrawRule {
 };
 
 struct CameraSetting {
-  std::string name;      // of its workframe
-  bool pyramid = false;  // CAM_VIEW_PYRAMID
-  bool online = false;   // CAM_ONLINE
-  std::string tracks;    // dotted path of the frame it looks at (CAM_TRACKING on); empty: none
+  std::string name;       // of its workframe
+  bool pyramid = false;   // CAM_VIEW_PYRAMID
+  bool online = false;    // CAM_ONLINE
+  bool mirrored = false;  // its workframe is moved by a robot that is online: it is shown as that robot holds it
+  std::string tracks;     // dotted path of the frame it looks at (CAM_TRACKING on); empty: none
 };
 
 // A view on its way (STVW with STEPS or TIME): the parameters go from `from` to `to` at once and evenly.
