@@ -97,6 +97,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     reader.dds,
                     reader.queues,
                     reader.web,
+                    reader.pictures,
                     std::move(collision),
                     std::move(reader.views),
                     std::move(reader.startup_script),

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "config/foot_switches.hpp"
+#include "config/picture_settings.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/real_time.hpp"
@@ -82,6 +83,7 @@ struct LoadedCell {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  PictureSettings pictures;
   collision::Settings collision;  // paths in rules are full paths
   std::vector<ViewSetting> views;
   std::string startup_script;                // name of a file in the home's scripts/, which exists; empty: none

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <numbers>
 
+#include "config/display_reader.hpp"
 #include "config/foot_switch_reader.hpp"
 #include "config/haptic_reader.hpp"
 #include "config/node_reader.hpp"
@@ -63,6 +64,7 @@ bool CellReader::read(std::string_view text) {
   read_dds_output(top);
   read_queues(top);
   read_web(top);
+  pictures = read_display(top);
   collision.read(top);
   read_startup(top);
   read_views(top);
@@ -136,6 +138,7 @@ void CellReader::read_dds_output(TableReader& top) {
   dds.diagnostics_topic = table->text("diagnostics_topic").value_or(dds.diagnostics_topic);
   dds.markers_topic = table->text("markers_topic").value_or(dds.markers_topic);
   dds.rate_hz = table->number("rate_hz", kOutputRate).value_or(dds.rate_hz);
+  read_dds_pictures(*table, dds.pictures);
   table->finish();
 }
 

@@ -37,6 +37,7 @@ class CellReader {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  PictureSettings pictures;
   CollisionReader collision;
   std::string startup_script;
   std::vector<ViewSetting> views;

@@ -12,7 +12,8 @@
 
 namespace cellmirror {
 
-inline constexpr int kLargestImageEdge = 4096;  // pixels
+inline constexpr int kSmallestImageEdge = 16;  // pixels
+inline constexpr int kLargestImageEdge = 4096;
 
 // Rows from the top, without gaps; red, green, blue, alpha (255: the pictures are opaque).
 struct Image {

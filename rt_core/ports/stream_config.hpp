@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -111,6 +112,17 @@ struct DdsStreamConfig {
 
 using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig>;
 
+// Pictures as sensor_msgs/CompressedImage; drawn only while somebody reads them.
+struct DdsPictureConfig {
+  std::string topic = "rt/cellmirror/picture/compressed";  // empty: not published
+  double rate_hz = 10;
+  std::optional<int> view;  // 0 to 6; without it and without a camera the display as SCRIPT has set it
+  std::string camera;
+  int width = 640;
+  int height = 480;
+  int quality = 80;  // of the JPEG, 1 to 100
+};
+
 // What the gateway publishes on DDS.
 struct DdsOutputConfig {
   bool enabled = false;
@@ -125,6 +137,7 @@ struct DdsOutputConfig {
   std::string diagnostics_topic = "rt/diagnostics";
   std::string markers_topic = "rt/cellmirror/markers";
   double rate_hz = 50.0;
+  DdsPictureConfig pictures = {};
 };
 
 // The System V queues of an instance, and the shared memory that it has beside those of haptic devices.
