@@ -128,6 +128,7 @@ class CdrWriter {
   void write_text(std::string_view text);
   void write_count(std::size_t count) { write(static_cast<std::uint32_t>(count)); }
   void write_doubles(std::span<const double> values);
+  void write_bytes(std::span<const std::uint8_t> values) { append(values.data(), values.size()); }
 
  private:
   static const std::byte* bytes_of(const void* value) { return static_cast<const std::byte*>(value); }

@@ -34,12 +34,13 @@ class CountingWriter {
     // At high rates there is always a sample on its way, so that one cannot tell a reader that stands still from one
     // that follows.
     bool counts_overwritten = true;
+    bool large = false;  // as EndpointConfig
   };
 
   [[nodiscard]] static Result<std::unique_ptr<CountingWriter>> make(const std::shared_ptr<Participant>& participant,
                                                                     const std::string& topic, std::string_view type,
                                                                     Options options) {
-    auto writer = BytesWriter::make(participant, {topic, type, true, options.depth});
+    auto writer = BytesWriter::make(participant, {topic, type, true, options.depth, options.large});
     if (!writer) return std::unexpected(writer.error());
     return std::unique_ptr<CountingWriter>(new CountingWriter(std::move(*writer), options));
   }

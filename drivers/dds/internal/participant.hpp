@@ -28,6 +28,7 @@ struct EndpointConfig {
   std::string_view type;
   bool reliable = false;
   int depth = 1;
+  bool large = false;  // a writer's samples are larger than a datagram: sent by a thread of the library's
 };
 
 [[nodiscard]] Result<void> check_domain(int domain);

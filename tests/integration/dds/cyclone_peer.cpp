@@ -88,6 +88,10 @@ dds_entity_t CyclonePeer::wrench_reader(const std::string& name) {
   return reader(geometry_msgs_msg_dds__WrenchStamped__desc, name);
 }
 
+dds_entity_t CyclonePeer::image_reader(const std::string& name) {
+  return reader(sensor_msgs_msg_dds__CompressedImage__desc, name);
+}
+
 dds_entity_t CyclonePeer::range_reader(const std::string& name, bool humble) {
   if (!humble) return reader(sensor_msgs_msg_dds__Range__desc, name);
   // Without type information, which tells the type's own name.
@@ -221,6 +225,16 @@ std::vector<PlainWrench> CyclonePeer::take_wrenches(dds_entity_t reader) {
     const auto& force = sample.wrench.force;
     const auto& torque = sample.wrench.torque;
     taken.push_back({sample.header.frame_id, {force.x, force.y, force.z}, {torque.x, torque.y, torque.z}});
+  });
+  return taken;
+}
+
+std::vector<PlainImage> CyclonePeer::take_images(dds_entity_t reader) {
+  std::vector<PlainImage> taken;
+  take_all<sensor_msgs_msg_dds__CompressedImage_>(reader, [&](const auto& sample) {
+    const std::uint8_t* first = sample.data._buffer;
+    taken.push_back(
+        {sample.header.stamp.sec, sample.header.frame_id, sample.format, {first, first + sample.data._length}});
   });
   return taken;
 }

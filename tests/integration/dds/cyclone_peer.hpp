@@ -44,6 +44,12 @@ struct PlainWrench {
   std::array<double, 3> torque{};
 };
 
+struct PlainImage {
+  std::int32_t sec = 0;
+  std::string frame_id, format;
+  std::vector<std::uint8_t> data;
+};
+
 struct PlainStatus {
   int level = -1;
   std::string name, message, hardware_id;
@@ -75,6 +81,7 @@ class CyclonePeer {
   // `humble`: with the type that this release has.
   [[nodiscard]] dds_entity_t range_reader(const std::string& topic, bool humble);
   [[nodiscard]] dds_entity_t wrench_reader(const std::string& topic);
+  [[nodiscard]] dds_entity_t image_reader(const std::string& topic);
   [[nodiscard]] dds_entity_t diagnostics_reader(const std::string& topic);
   [[nodiscard]] dds_entity_t marker_reader(const std::string& topic);
 
@@ -83,6 +90,7 @@ class CyclonePeer {
   static std::vector<PlainTransform> take_transforms(dds_entity_t reader);
   static std::vector<PlainRange> take_ranges(dds_entity_t reader, bool humble);
   static std::vector<PlainWrench> take_wrenches(dds_entity_t reader);
+  static std::vector<PlainImage> take_images(dds_entity_t reader);
   static std::vector<PlainStatus> take_diagnostics(dds_entity_t reader);
   static std::vector<PlainMarker> take_markers(dds_entity_t reader);
   static int matched_readers(dds_entity_t writer);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "drivers/dds/diagnostic_messages.hpp"
+#include "drivers/dds/image_message.hpp"
 #include "drivers/dds/marker_messages.hpp"
 #include "drivers/dds/range_message.hpp"
 #include "drivers/dds/wrench_message.hpp"
@@ -51,6 +52,21 @@ TEST(WrenchStampedCodec, WritesWhatTheStandardSays) {
                          0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xe0, 0x3f,             // 48: torque.x 0.5
                          0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,             // 56: torque.y 0
                          0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x10, 0x40,             // 64: torque.z 4
+                     }));
+}
+
+TEST(CompressedImageCodec, WritesWhatTheStandardSays) {
+  const std::vector<std::uint8_t> file{0xff, 0xd8, 0xff};
+  std::vector<std::byte> written;
+  encode(CompressedImage{.header = {.stamp = {1, 2}, .frame_id = "C"}, .format = "jpeg", .data = file}, written);
+  EXPECT_EQ(written, bytes({
+                         0x00, 0x01, 0x00, 0x00,                                // CDR_LE, no options
+                         0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00,        // 0: sec, nanosec
+                         0x02, 0x00, 0x00, 0x00, 'C',  0x00,                    // 8: frame_id
+                         0x00, 0x00,                                            // 14: padding
+                         0x05, 0x00, 0x00, 0x00, 'j',  'p',  'e',  'g',  0x00,  // 16: format
+                         0x00, 0x00, 0x00,                                      // 25: padding
+                         0x03, 0x00, 0x00, 0x00, 0xff, 0xd8, 0xff,              // 28: data
                      }));
 }
 

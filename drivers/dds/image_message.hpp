@@ -1,0 +1,25 @@
+// sensor_msgs/CompressedImage of ROS 2's common_interfaces, and its bytes. Pure; see ros2_messages.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "drivers/dds/ros2_messages.hpp"
+
+namespace cellmirror::dds {
+
+inline constexpr std::string_view kCompressedImageType = "sensor_msgs::msg::dds_::CompressedImage_";
+
+struct CompressedImage {
+  Header header = {};
+  std::string_view format = "jpeg";         // "jpeg" or "png"
+  std::span<const std::uint8_t> data = {};  // of a whole file
+};
+
+// Little endian, with encapsulation header. `out` is overwritten and keeps its capacity.
+void encode(const CompressedImage& message, std::vector<std::byte>& out);
+
+}  // namespace cellmirror::dds
