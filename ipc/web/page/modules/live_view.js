@@ -1,0 +1,181 @@
+// The picture of the cell: asks for pictures as large as there is room, draws them, says how old they are. What is
+// shown is a choice: {kind: "display"}, {kind: "view", id}, {kind: "camera", name} or {kind: "free", view}.
+import {byId, setText, setAttribute} from "./dom.js";
+import {age} from "./format.js";
+import {watch_gestures} from "./gestures.js";
+import {decode_picture} from "./picture_format.js";
+import * as math from "./view_math.js";
+
+const kStale_s = 2;
+const kMostPixels = 1280 * 960;
+const kRate_hz = 15;
+const kWishEvery_ms = 40;
+
+// As large as the area in true pixels, no larger than is worth drawing, both even.
+export function picture_size(width, height, density, most_pixels = kMostPixels) {
+  const wanted = [Math.max(64, width * density), Math.max(64, height * density)];
+  const scale = Math.min(1, Math.sqrt(most_pixels / (wanted[0] * wanted[1])));
+  return wanted.map((edge) => Math.max(64, Math.min(4096, 2 * Math.round((edge * scale) / 2))));
+}
+
+export function wish_of(choice, [width, height]) {
+  const wish = {do: "picture", width, height, rate_hz: kRate_hz, quality: 80};
+  if (choice.kind === "view") wish.view = choice.id;
+  if (choice.kind === "camera") wish.camera = choice.name;
+  if (choice.kind === "free") wish.free = choice.view;
+  return wish;
+}
+
+// Where a free view begins when the hand first moves what is shown.
+export function start_of_free_view(choice, display) {
+  const views = display?.views ?? [];
+  if (choice.kind === "free") return choice.view;
+  let found = null;
+  if (choice.kind === "view") found = views.find((view) => view.id === choice.id);
+  if (choice.kind === "camera") found = views.find((view) => view.camera === choice.name);
+  return math.sound_view(found ?? views.find((view) => view.id === 0) ?? views[0]);
+}
+
+export class LiveView {
+  // `changed(choice)` is called when a hand made the view free, or went back.
+  constructor(connection, {changed, picked}) {
+    this.connection_ = connection;
+    this.changed_ = changed;
+    this.picked_ = picked;
+    this.area_ = byId("view-area");
+    this.canvas_ = byId("view-canvas");
+    this.pen_ = this.canvas_.getContext("2d", {alpha: false});
+    this.choice_ = {kind: "display"};
+    this.before_ = this.choice_;
+    this.display_ = null;
+    this.shown_ = null;   // {sequence, age_s, at}
+    this.asked_at_ = 0;
+    this.sent_ = "";
+    this.size_ = [640, 480];
+    watch_gestures(this.canvas_, this.hand_());
+    new ResizeObserver(() => this.resized_()).observe(this.area_);
+    document.addEventListener("visibilitychange", () => this.ask_());
+    connection.on("opened", () => this.ask_(true));
+    connection.on("picture", (data) => this.draw_(data));
+    connection.on("refused", (message) => this.refused_(message));
+    connection.on("closed", () => (this.sent_ = ""));
+    setInterval(() => this.tell_age(), 250);
+  }
+
+  get choice() {
+    return this.choice_;
+  }
+
+  choose(choice) {
+    if (choice.kind !== "free") this.before_ = choice;
+    this.choice_ = choice;
+    this.problem_ = null;
+    this.ask_();
+    this.changed_(choice);
+  }
+
+  update(live) {
+    this.display_ = live.display ?? null;
+  }
+
+  move(change) {
+    const view = change(start_of_free_view(this.choice_, this.display_));
+    const was_free = this.choice_.kind === "free";
+    this.choice_ = {kind: "free", view};
+    if (!was_free) this.changed_(this.choice_);
+    this.ask_soon_();
+  }
+
+  hand_() {
+    return {
+      orbit: (turn, rise) => this.move((view) => math.orbit(view, turn, rise)),
+      pan: (x, y) => this.move((view) => math.pan(view, x, y)),
+      zoom: (factor) => this.move((view) => math.zoom(view, factor)),
+      home: () => this.choose(this.before_),
+      leave: () => this.picked_(null),
+      pick: (x, y) => this.pick_(x, y),
+    };
+  }
+
+  async pick_(x, y) {
+    if (!this.shown_) return;
+    const [px, py] = [x / this.canvas_.clientWidth, y / this.canvas_.clientHeight];
+    const answer = await this.connection_.ask({
+      do: "pick", x: Math.floor(px * this.canvas_.width), y: Math.floor(py * this.canvas_.height)});
+    this.picked_({x, y, path: answer.path ?? null, robot: answer.robot ?? "",
+      text: answer.is === "picked" ? "" : answer.text ?? "nothing came back"});
+  }
+
+  resized_() {
+    const [width, height] = [this.area_.clientWidth, this.area_.clientHeight];
+    if (width < 2 || height < 2) return;
+    this.size_ = picture_size(width, height, window.devicePixelRatio || 1);
+    this.ask_soon_();
+  }
+
+  // Not more often than the gateway draws: the newest wish is what counts.
+  ask_soon_() {
+    if (this.timer_) return;
+    const wait = Math.max(0, this.asked_at_ + kWishEvery_ms - performance.now());
+    this.timer_ = setTimeout(() => {
+      this.timer_ = null;
+      this.ask_();
+    }, wait);
+  }
+
+  ask_(anew = false) {
+    const wish = document.hidden ? {do: "no_picture"} : wish_of(this.choice_, this.size_);
+    const text = JSON.stringify(wish);
+    if (text === this.sent_ && !anew) return;
+    if (!this.connection_.send(wish)) return;
+    if (document.hidden || this.sent_ === "" || anew) this.waiting_since_ = performance.now();
+    this.sent_ = text;
+    this.asked_at_ = performance.now();
+  }
+
+  async draw_(data) {
+    const picture = decode_picture(data);
+    if (!picture) return;
+    const at = performance.now();
+    try {
+      const bitmap = await createImageBitmap(new Blob([picture.jpeg], {type: "image/jpeg"}));
+      performance.mark("cellmirror.picture");
+      if (this.canvas_.width !== bitmap.width || this.canvas_.height !== bitmap.height) {
+        this.canvas_.width = bitmap.width;
+        this.canvas_.height = bitmap.height;
+      }
+      this.pen_.drawImage(bitmap, 0, 0);
+      bitmap.close();
+      performance.clearMarks("cellmirror.picture");
+      this.shown_ = {sequence: picture.sequence, age_s: picture.age_s, at};
+      this.problem_ = null;
+      setAttribute(this.canvas_, "data-sequence", picture.sequence);
+    } catch {
+      this.problem_ = "a picture came that cannot be read";
+    }
+    this.connection_.send({do: "shown", sequence: picture.sequence});
+  }
+
+  refused_(message) {
+    this.problem_ = message.text ?? "the gateway refused";
+    this.tell_age();
+  }
+
+  // Says plainly what is not as it should be; a picture without a word beside it is a picture of now.
+  tell_age() {
+    const note = byId("view-note");
+    const now = performance.now();
+    const since = this.shown_ ? (now - this.shown_.at) / 1000 : null;
+    let text = "";
+    if (!this.connection_.open) text = this.shown_ ? `The gateway is gone. This picture is ${age(since + this.shown_.age_s)} old.` : "No connection to the gateway yet.";
+    else if (this.problem_) text = `No picture: ${this.problem_}`;
+    else if (!this.shown_) text = now - (this.waiting_since_ ?? now) > 1500 ? "No picture has come yet." : "";
+    else if (since > kStale_s) text = `This picture is ${age(since + this.shown_.age_s)} old: no newer one has come.`;
+    else if (this.shown_.age_s > kStale_s) text = `The posture shown is ${age(this.shown_.age_s)} old.`;
+    setText(note, text);
+    note.hidden = text === "";
+    this.area_.classList.toggle("stale", text !== "" && this.shown_ !== null);
+    const stamp = this.shown_ && text === "" ? `picture ${age(this.shown_.age_s)}` : "";
+    setText(byId("view-age"), stamp);
+  }
+}

@@ -1,0 +1,131 @@
+// Puts the page together: what comes from the gateway goes to the panels, what people do goes to the gateway.
+import {allow_bell} from "./bell.js";
+import {Charts} from "./charts.js";
+import {Connection} from "./connection.js";
+import {Console} from "./console.js";
+import {byId, setText} from "./dom.js";
+import {Findings} from "./findings.js";
+import {LiveView} from "./live_view.js";
+import {Messages} from "./messages.js";
+import {PickedLabel} from "./picked_label.js";
+import {Presence} from "./presence.js";
+import {Robots} from "./robots.js";
+import {System} from "./system.js";
+import {Tabs} from "./tabs.js";
+import {watch_theme} from "./theme.js";
+import {kept_token, take_token} from "./token.js";
+import {Tree} from "./tree.js";
+import {ViewChoice} from "./view_choice.js";
+
+take_token();
+window.addEventListener("hashchange", () => {
+  if (take_token()) connection.hello();
+});
+
+const live_address = new URL("live", window.location.href);
+live_address.protocol = live_address.protocol === "https:" ? "wss:" : "ws:";
+live_address.hash = "";
+const connection = new Connection(live_address.href, kept_token);
+
+const presence = new Presence(connection);
+const script = new Console(connection, {
+  may_command: () => presence.may_command, why_not: () => presence.why_not()});
+const command = (text) => script.run(text);
+
+const tabs = new Tabs(byId("side-tabs"), {opened: (id) => id === "tab-messages" && setText(byId("message-count"), "")});
+const show_node = (path) => {
+  tabs.open("tab-tree");
+  tree.show(path);
+};
+const tree = new Tree({command});
+const charts = new Charts();
+const robots = new Robots({select: (id) => charts.select(id), command});
+const findings = new Findings({show_node});
+const system = new System();
+const messages = new Messages({
+  unread: (n) => tabs.current !== "tab-messages" && setText(byId("message-count"), String(n))});
+const picked = new PickedLabel({show_robot: (id) => robots.highlight(id), show_node});
+const view = new LiveView(connection, {
+  changed: (choice) => {
+    picked.show(null);
+    choices.chosen(choice);
+  },
+  picked: (found) => picked.show(found),
+});
+const choices = new ViewChoice({choose: (choice) => view.choose(choice), current: () => view.choice, command});
+watch_theme(byId("theme-button"), () => charts.restyle());
+
+// One update a frame at most, with the newest; what was recorded is not left out.
+let newest = null;
+connection.on("live", (live) => {
+  const start = performance.now();
+  charts.record(live);
+  presence.live(live);
+  messages.update(live);
+  if (newest === null) requestAnimationFrame(draw);
+  newest = live;
+  measured("cellmirror.record", start);
+});
+
+function draw() {
+  const start = performance.now();
+  const live = newest;
+  newest = null;
+  robots.update(live);
+  findings.update(live, tabs.current === "tab-near");
+  system.update(live, tabs.current === "tab-system");
+  view.update(live);
+  choices.update(live);
+  charts.update();
+  const revision = live.tree_revision ?? live.revision;
+  if (revision !== known_revision) learn_tree(revision);
+  measured("cellmirror.update", start);
+}
+
+// Seen by whoever observes them (the developer tools, the browser test); not kept.
+function measured(name, start) {
+  performance.measure(name, {start});
+  performance.clearMeasures(name);
+}
+
+let known_revision = null;
+
+async function fetched(path) {
+  const answer = await fetch(path, {cache: "no-store"});
+  if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+  return answer.json();
+}
+
+async function learn_tree(revision) {
+  known_revision = revision;
+  try {
+    tree.set(await fetched("api/tree"));
+    script.know_names(await fetched("api/names"));
+  } catch {
+    setTimeout(() => known_revision === revision && (known_revision = null), 2000);
+  }
+}
+
+async function learn_commands() {
+  try {
+    script.know_commands((await fetched("api/commands")).commands ?? []);
+  } catch {
+    setTimeout(learn_commands, 2000);
+  }
+}
+
+connection.on("opened", () => {
+  known_revision = null;
+  learn_commands();
+});
+
+for (const kind of ["pointerdown", "keydown"]) window.addEventListener(kind, allow_bell, {once: true});
+window.addEventListener("keydown", (event) => {
+  const writing = /^(INPUT|TEXTAREA|SELECT)$/.test(event.target.tagName ?? "");
+  if (event.key === "/" && !writing && !event.ctrlKey) {
+    event.preventDefault();
+    byId("console-input").focus();
+  }
+});
+
+connection.start();

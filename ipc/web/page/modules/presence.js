@@ -1,0 +1,107 @@
+// Whether the gateway is there, who may command, and what to do where it is gone.
+import {byId, setText, setAttribute} from "./dom.js";
+import {age, clock_time} from "./format.js";
+import {keep_token} from "./token.js";
+
+const kQuiet_s = 2;
+
+export class Presence {
+  constructor(connection) {
+    this.connection_ = connection;
+    this.may_command = false;
+    this.read_only = false;
+    this.token_shown_ = false;
+    this.heard_ = null;
+    this.retry_at_ = null;
+    connection.on("opened", () => this.back_());
+    connection.on("closed", ({retry_s}) => this.gone_(retry_s));
+    connection.on("welcome", (message) => this.welcome_(message));
+    byId("gone-now").addEventListener("click", () => connection.start());
+    byId("token-form").addEventListener("submit", (event) => this.token_given_(event));
+    byId("token-button").addEventListener("click", () => this.open_dialog_());
+    byId("token-cancel").addEventListener("click", () => byId("token-dialog").close());
+    setInterval(() => this.tick_(), 250);
+  }
+
+  why_not() {
+    if (!this.connection_.open) return "the gateway is not there: nothing was sent";
+    if (this.read_only) return "this gateway is read-only: its page can look, not command (--read-only, or read_only in [web] of the cell file)";
+    return "this page may only look. To command, open the address that `cellmirror page` prints, or give its token (key button above)";
+  }
+
+  live(live) {
+    this.heard_ = performance.now();
+    setText(byId("cell-name"), live.cell ?? "");
+    document.title = live.cell ? `${live.cell} – cellmirror` : "cellmirror";
+  }
+
+  welcome_(message) {
+    this.may_command = message.may_command === true;
+    this.read_only = message.read_only === true;
+    if (this.version_ && message.version && message.version !== this.version_) byId("new-version").hidden = false;
+    this.version_ ??= message.version;
+    setText(byId("version"), message.version ? `cellmirror ${message.version}` : "");
+    document.documentElement.classList.toggle("looking-only", !this.may_command);
+    this.tell_right_();
+  }
+
+  tell_right_() {
+    const text = this.may_command ? "may command" : this.read_only ? "read-only" : "looking only";
+    setText(byId("right-text"), text);
+    setAttribute(byId("token-button"), "data-state", this.may_command ? "fresh" : "none");
+    byId("token-button").disabled = this.read_only;
+    setAttribute(byId("token-button"), "title", this.may_command ? "This page may command the gateway." : `In short: ${this.why_not()}`);
+  }
+
+  open_dialog_() {
+    setText(byId("token-note"), this.token_shown_ && !this.may_command ? "The gateway does not know the token that this page showed." : "");
+    byId("token-dialog").showModal();
+  }
+
+  token_given_(event) {
+    event.preventDefault();
+    // What is pasted may be the whole address.
+    const given = byId("token-input").value.trim().replace(/^.*#token=/, "");
+    keep_token(given);
+    this.token_shown_ = given !== "";
+    byId("token-input").value = "";
+    byId("token-dialog").close();
+    this.connection_.hello();
+  }
+
+  back_() {
+    this.retry_at_ = null;
+    byId("gone").hidden = true;
+    document.documentElement.classList.remove("gateway-gone");
+    this.tell_line_();
+  }
+
+  gone_(retry_s) {
+    this.retry_at_ = performance.now() + retry_s * 1000;
+    this.may_command = false;
+    if (!document.documentElement.classList.contains("gateway-gone")) {
+      setText(byId("gone-since"), this.heard_ === null ? "" : `What the page shows is as of ${clock_time()}.`);
+    }
+    document.documentElement.classList.add("gateway-gone");
+    byId("gone").hidden = false;
+    this.tick_();
+  }
+
+  tick_() {
+    if (this.retry_at_ !== null) {
+      const left = Math.max(0, Math.ceil((this.retry_at_ - performance.now()) / 1000));
+      setText(byId("gone-retry"), left > 0 ? `Trying again in ${left} s.` : "Trying again now.");
+    }
+    this.tell_line_();
+  }
+
+  tell_line_() {
+    const silent = this.heard_ === null ? null : (performance.now() - this.heard_) / 1000;
+    let [text, state] = ["live", "fresh"];
+    if (!this.connection_.open) [text, state] = [this.heard_ === null ? "connecting" : "gateway gone", "lost"];
+    else if (silent === null) [text, state] = ["connecting", "none"];
+    else if (silent > kQuiet_s) [text, state] = [`no news for ${age(silent)}`, "stale"];
+    setText(byId("line-text"), text);
+    setAttribute(byId("line-badge"), "data-state", state);
+  }
+}

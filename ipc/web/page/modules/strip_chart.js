@@ -1,0 +1,129 @@
+// One chart of values over time, by uPlot (vendor/). Colours come from the style sheet, so that light and dark fit.
+import {element, setText} from "./dom.js";
+import {number} from "./format.js";
+
+// Okabe and Ito's palette, told apart by colour-blind people; more series repeat it with dashes.
+const kColours = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8a8f00", "#7f7f7f"];
+const kHeight_px = 118;
+
+export function colour(i) {
+  return kColours[i % kColours.length];
+}
+
+function style_colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim() || "#888";
+}
+
+// Colours given by light-dark() are known only as those of an element.
+function resolved(name) {
+  const probe = element("span", {hidden: true});
+  probe.style.color = style_colour(name);
+  document.body.append(probe);
+  const found = getComputedStyle(probe).color;
+  probe.remove();
+  return found;
+}
+
+export class StripChart {
+  constructor(parent, {title, digits}) {
+    this.digits_ = digits;
+    this.title_ = element("span", {class: "title"}, title);
+    this.unit_ = element("span", {class: "unit"});
+    this.plot_area_ = element("div", {class: "plot"});
+    this.legend_ = element("div", {class: "legend"});
+    this.empty_ = element("p", {class: "empty"}, "nothing to show");
+    this.node = element("figure", {class: "chart", role: "img", "aria-label": title},
+      element("figcaption", {}, this.title_, this.unit_), this.plot_area_, this.empty_, this.legend_);
+    parent.append(this.node);
+    this.name_ = title;
+    this.labels_ = null;
+    this.plot_ = null;
+    new ResizeObserver(() => this.resize_()).observe(this.plot_area_);
+  }
+
+  // labels: one for each value column of `columns`; times in s. `span`: of the axis.
+  show(labels, unit, columns, span) {
+    const key = labels.join("\n") + unit;
+    setText(this.unit_, unit);
+    this.empty_.hidden = labels.length > 0;
+    this.plot_area_.hidden = labels.length === 0;
+    this.legend_.hidden = labels.length === 0;
+    if (labels.length === 0) return;
+    if (key !== this.labels_) {
+      this.labels_ = key;
+      this.make_(labels, columns);
+    }
+    const newest = columns[0].length ? columns[0][columns[0].length - 1] : 0;
+    this.plot_.batch(() => {
+      this.plot_.setData(columns, false);
+      this.plot_.setScale("x", {min: newest - span, max: newest});
+    });
+    this.tell_values_(columns);
+  }
+
+  restyle() {
+    this.labels_ = null;
+  }
+
+  make_(labels, columns) {
+    this.plot_?.destroy();
+    const text = resolved("--text-soft");
+    const grid = {stroke: resolved("--line-soft"), width: 1};
+    const axis = {stroke: text, grid, ticks: {show: false}, font: "11px system-ui, sans-serif", labelSize: 0};
+    const relative = (plot, splits) => splits.map((time) => {
+      const back = Math.round(plot.scales.x.max - time);
+      return back === 0 ? "now" : `\u2212${back} s`;
+    });
+    this.plot_ = new window.uPlot({
+      width: Math.max(120, this.plot_area_.clientWidth),
+      height: kHeight_px,
+      legend: {show: false},
+      cursor: {show: false},
+      scales: {x: {time: false}, y: {range: padded}},
+      padding: [6, 6, 0, 0],
+      axes: [
+        {...axis, size: 20, gap: 2, splits: (plot) => even_splits(plot.scales.x.min, plot.scales.x.max), values: relative},
+        {...axis, size: 44, gap: 3, space: 26},
+      ],
+      series: [{}, ...labels.map((label, i) => ({
+        label, stroke: colour(i), width: 1.5, points: {show: false}, dash: i < kColours.length ? undefined : [5, 3]}))],
+    }, columns, this.plot_area_);
+    this.values_ = labels.map(() => element("output", {}));
+    this.legend_.replaceChildren(...labels.map((label, i) => {
+      const swatch = element("i", {class: i < kColours.length ? "swatch" : "swatch dashed"});
+      swatch.style.color = colour(i);
+      return element("span", {class: "entry", title: label}, swatch, element("span", {class: "label"}, label), this.values_[i]);
+    }));
+  }
+
+  tell_values_(columns) {
+    const texts = this.values_.map((node, i) => {
+      const column = columns[i + 1];
+      const text = number(column.length ? column[column.length - 1] : null, this.digits_);
+      setText(node, text);
+      return text;
+    });
+    const now = Date.now();
+    if (now - (this.told_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
+    this.told_ = now;
+    this.node.setAttribute("aria-label", `${this.name_}: ${texts.slice(0, 8).join(", ")}`);
+  }
+
+  resize_() {
+    if (this.plot_ && this.plot_area_.clientWidth > 0) {
+      this.plot_.setSize({width: this.plot_area_.clientWidth, height: kHeight_px});
+    }
+  }
+}
+
+// Four even parts ending now: lines that stand still while the curves pass.
+function even_splits(from, to) {
+  return [0, 0.25, 0.5, 0.75, 1].map((part) => from + part * (to - from));
+}
+
+// A little room above and below; a value that stands still gets a scale of its own size.
+function padded(_plot, low, high) {
+  if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+  const room = Math.max((high - low) * 0.08, Math.abs(high) * 0.002, 0.05);
+  return [low - room, high + room];
+}

@@ -1,0 +1,40 @@
+// The token that lets a client command. `cellmirror page` prints an address that ends in #token=...; the part behind #
+// is never sent to a server. It is kept for this tab only, and taken out of the address bar so that nobody photographs it.
+
+const kKey = "cellmirror.token";
+
+export function token_in(fragment) {
+  const found = /(?:^#|&)token=([^&]*)/.exec(fragment ?? "");
+  if (!found) return null;
+  try {
+    return decodeURIComponent(found[1]);
+  } catch {
+    return null;
+  }
+}
+
+export function take_token(place = window.location, store = window.sessionStorage, history = window.history) {
+  const given = token_in(place.hash);
+  if (given !== null) {
+    keep_token(given, store);
+    history.replaceState(null, "", place.pathname + place.search);
+  }
+  return kept_token(store);
+}
+
+export function keep_token(token, store = window.sessionStorage) {
+  try {
+    if (token) store.setItem(kKey, token);
+    else store.removeItem(kKey);
+  } catch {
+    // Storage may be forbidden; then the token lasts as long as the page.
+  }
+}
+
+export function kept_token(store = window.sessionStorage) {
+  try {
+    return store.getItem(kKey);
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,103 @@
+// What the picture shows, and how it is drawn: the bar above it. Looking is everybody's; what changes the gateway's own
+// display (STDP, STVW, SET_MODE) goes as a SCRIPT command.
+import {byId, element, setText, setAttribute} from "./dom.js";
+import {as_command} from "./view_math.js";
+
+const kModeTexts = {
+  WFRM_display: "workframes", SMEAR: "trace of the TCP", BFRM: "hide back faces", CPU_BFRM: "hide back faces (processor)",
+  CAM_MAINVIEW: "camera fills the display", LGT_TWOSIDE: "light on both sides", TCP_DRAW: "frame of the TCP",
+  ZPF_DRAW: "frame of the zero point", FLDR: "floor", GEO_VIS_TEST: "leave out what is out of sight", SHAD: "shadows",
+  BEEP: "bell with messages", TEXTURES: "textures", ANTIALIAS: "smooth edges", LEGEND: "legend",
+};
+
+export function choice_of(value) {
+  if (value.startsWith("view:")) return {kind: "view", id: Number(value.slice(5))};
+  if (value.startsWith("camera:")) return {kind: "camera", name: value.slice(7)};
+  return {kind: "display"};
+}
+
+export function value_of(choice) {
+  if (choice.kind === "view") return `view:${choice.id}`;
+  if (choice.kind === "camera") return `camera:${choice.name}`;
+  return choice.kind;
+}
+
+export class ViewChoice {
+  constructor({choose, current, command}) {
+    this.choose_ = choose;
+    this.current_ = current;
+    this.command_ = command;
+    this.select_ = byId("view-choice");
+    this.cameras_ = byId("camera-choices");
+    this.known_cameras_ = "";
+    this.known_modes_ = "";
+    this.mode_boxes_ = new Map();
+    this.select_.addEventListener("change", () => {
+      if (this.select_.value !== "free") choose(choice_of(this.select_.value));
+    });
+    byId("view-home").addEventListener("click", () => choose({kind: "display"}));
+    byId("display-choice").addEventListener("change", (event) => command(`STDP ${event.target.value}`));
+    byId("view-full").addEventListener("click", () =>
+      command(`STDP ${this.display_?.display ?? 1} ${this.display_?.full_screen ? "FULL_OFF" : "FULL"}`));
+    byId("view-keep").addEventListener("click", () => this.keep_());
+    this.chosen(current());
+  }
+
+  // The free view becomes view N of the gateway, for everybody.
+  keep_() {
+    const choice = this.current_();
+    if (choice.kind === "free") this.command_(as_command(choice.view, byId("view-keep-id").value));
+  }
+
+  chosen(choice) {
+    const free = choice.kind === "free";
+    byId("free-choice").hidden = !free;
+    this.select_.value = value_of(choice);
+    byId("view-keep-group").hidden = !free;
+    byId("view-home").disabled = choice.kind === "display";
+  }
+
+  update(live) {
+    this.display_ = live.display ?? null;
+    const cameras = (live.cameras ?? []).map((camera) => camera.name ?? camera);
+    if (cameras.join("\n") !== this.known_cameras_) {
+      this.known_cameras_ = cameras.join("\n");
+      this.cameras_.replaceChildren(...cameras.map((name) => element("option", {value: `camera:${name}`}, name)));
+      this.cameras_.hidden = cameras.length === 0;
+      this.select_.value = value_of(this.current_());
+    }
+    if (!this.display_) return;
+    const select = byId("display-choice");
+    if (document.activeElement !== select) select.value = String(this.display_.display ?? 1);
+    setAttribute(byId("view-full"), "aria-pressed", String(this.display_.full_screen === true));
+    this.show_views_(this.display_.views ?? []);
+    this.show_modes_(this.display_.modes ?? {});
+  }
+
+  show_views_(views) {
+    for (const view of views) {
+      const option = this.select_.querySelector(`option[value="view:${Number(view.id)}"]`);
+      if (!option) continue;
+      const note = view.camera ? `, at ${view.camera}` : view.moving ? ", moving" : "";
+      setText(option, `View ${view.id}${note}`);
+    }
+  }
+
+  show_modes_(modes) {
+    const names = Object.keys(modes);
+    if (names.join("\n") !== this.known_modes_) {
+      this.known_modes_ = names.join("\n");
+      this.mode_boxes_.clear();
+      byId("mode-list").replaceChildren(...names.map((name) => this.mode_row_(name)));
+    }
+    for (const name of names) this.mode_boxes_.get(name).checked = modes[name] === true;
+  }
+
+  mode_row_(name) {
+    const box = element("input", {type: "checkbox"});
+    box.addEventListener("change", () => this.command_(`SET_MODE ${name} ${box.checked ? "on" : "off"}`));
+    this.mode_boxes_.set(name, box);
+    const known = Object.entries(kModeTexts).find(([key]) => key.toLowerCase() === name.toLowerCase());
+    return element("label", {class: "mode"}, box, element("span", {}, known?.[1] ?? ""), element("code", {}, name));
+  }
+}
