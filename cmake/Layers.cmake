@@ -35,7 +35,7 @@ set(CELLMIRROR_LAYERS
   "sim_devices/base: rt_core/base ipc/sysv"
   "sim_devices/haptic: sim_devices/haptic sim_devices/base rt_core/base rt_core/ports ipc/wire ipc/sysv config/command_line"
   "sim_devices/footswitch: sim_devices/footswitch sim_devices/base rt_core/base ipc/wire ipc/sysv config/command_line"
-  "sim_devices/camera: sim_devices/camera sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/sysv drivers/can config/command_line"
+  "sim_devices/camera: sim_devices/camera sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "sim_devices: sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "app/plot: rt_core/base"
   "app: *"
@@ -43,9 +43,9 @@ set(CELLMIRROR_LAYERS
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
-  rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model
-  rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control scripts/lang scripts/commands scripts/runner
-  sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices app/plot app tests)
+  rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/scene
+  rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web scripts/lang scripts/commands scripts/runner
+  sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

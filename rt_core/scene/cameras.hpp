@@ -2,10 +2,12 @@
 // right of its picture, y points down (docs/cell-files.md).
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "rt_core/base/pose.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/ports/display_state.hpp"
 
@@ -16,15 +18,17 @@ struct CameraNow {
   Pose X_WC = Pose::Identity();
   double focal_distance_m = 0;  // viewing distance; of a tracking camera the distance to what it tracks
   double fovy_rad = 0;
-  bool tracking = false;
-  double pan_rad = 0;   // of a tracking camera: how far it had to turn out of its workframe, about its y axis,
-  double tilt_rad = 0;  // then about its new x axis; 0 for others
+  bool tracking = false;  // CAM_TRACKING, and the frame is there
+  double pan_rad = 0;     // how far tracking turned it out of its mount (camera_mount.hpp), about its y axis,
+  double tilt_rad = 0;    // then about its new x axis; 0 for others
 };
 
 // A camera that tracks (CAM_TRACKING) is turned about its own position until its z axis meets the origin of the frame
-// it tracks; twist is kept. No camera of that name: none.
+// it tracks; but one whose head is mirrored stays as it is: its picture shows what the real one sees. `name`: of its
+// workframe, or the full path. No camera of that name: none.
 [[nodiscard]] std::optional<CameraNow> camera_now(const CompiledCell& cell, const CellPoses& poses,
                                                   const DisplayState& display, std::string_view name);
+// Of all cameras, in the order of the cell.
 [[nodiscard]] std::vector<CameraNow> cameras_now(const CompiledCell& cell, const CellPoses& poses,
                                                  const DisplayState& display);
 

@@ -9,6 +9,7 @@
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/ports/display_state.hpp"
 #include "rt_core/ports/scene.hpp"
+#include "rt_core/scene/cameras.hpp"
 
 namespace cellmirror::scene {
 
@@ -20,18 +21,24 @@ struct PaneInput {
   std::uint64_t updates = 0;  // of the picture so far, for sequences by STEPS
 };
 
-// A view where it is now: on its sequence, or at its camera (COVW), or as set.
+// A view where it is now: at its camera (COVW) if that is there, else on its sequence, else as set.
 [[nodiscard]] View view_now(const PaneInput& input, int id);
+// What a camera sees, as a view: twist included, so that a view may go on from there. A camera has no clipping planes:
+// they are those of `clipped_as`, the nearer one not farther than 50 mm.
+[[nodiscard]] View view_of_camera(const CameraNow& camera, const View& clipped_as);
+// The near plane is at least 1e-5 of the way to the far one: a depth buffer needs a distance above 0.
 [[nodiscard]] Eye eye_of(const View& view);
 [[nodiscard]] bool ended(const ViewSequence& sequence, Timestamp now, std::uint64_t updates);
 // At `part` 0 to 1 of the way: all parameters evenly.
 [[nodiscard]] View between(const View& from, const View& to, double part);
 
-// Of the current display; of CAM_MAINVIEW one pane with the current camera.
+// Of the current display: its views with their titles; the top view stands above the side view, so that x is the same
+// in both. FULL: its first view alone, without title. CAM_MAINVIEW: the current camera (the first where none was named)
+// with the clipping planes of the bird's eye view, whose number the pane carries; without any camera the display as is.
 [[nodiscard]] std::vector<Pane> panes_of_display(const PaneInput& input);
-// One pane with this view, 0 to 6.
+// One pane with this view, 0 to 6; without title.
 [[nodiscard]] std::vector<Pane> panes_of_view(const PaneInput& input, int id);
-// Refused where there is no such camera; names the nearest.
+// One pane, of no view, without title. Refused where there is no such camera; names the nearest.
 [[nodiscard]] Result<std::vector<Pane>> panes_of_camera(const PaneInput& input, std::string_view camera);
 
 }  // namespace cellmirror::scene

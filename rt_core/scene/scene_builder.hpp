@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/ports/display_state.hpp"
@@ -45,10 +45,18 @@ class SceneBuilder {
  public:
   static constexpr std::size_t kTracePoints = 4000;  // of a trace; the oldest go
 
+  SceneBuilder();
+  ~SceneBuilder();
+  SceneBuilder(const SceneBuilder&) = delete;
+  SceneBuilder& operator=(const SceneBuilder&) = delete;
+
+  // Replaces all of `scene` (the same object again and again saves memory traffic). cell, poses and display are needed,
+  // and the poses must be of this cell.
   void build(const SceneInput& input, Scene& scene);
 
  private:
-  // The members are the implementer's.
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace cellmirror::scene

@@ -1,0 +1,100 @@
+#include "rt_core/scene/pair_marks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "rt_core/ports/palette.hpp"
+#include "rt_core/scene/words.hpp"
+
+namespace cellmirror::scene {
+
+namespace {
+
+constexpr float kWidth = 2.5F;
+
+std::string age_words(const ProximityState& proximity, Timestamp now) {
+  if (!proximity.posture_time.known() || !now.known()) return {};
+  const double age = seconds(now - proximity.posture_time);
+  return age > PairMarks::kOldAfter ? fmt::format(" ({} ago)", age_text(age)) : std::string();
+}
+
+SceneLine line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Colour& colour, bool dashed) {
+  return {.from = from, .to = to, .rgba = colour, .width_px = kWidth, .dashed = dashed, .on_top = true};
+}
+
+}  // namespace
+
+void PairMarks::update(const CompiledCell& cell) {
+  node_count_ = cell.size();
+  mark_of_node_.assign(node_count_, Mark::none);
+  if (paths_ == cell.paths) return;
+  paths_ = cell.paths;
+  names_.reset();
+  node_of_path_.clear();
+  if (paths_ == nullptr) return;
+  for (std::size_t i = 0; i < paths_->size(); ++i) node_of_path_.emplace((*paths_)[i], static_cast<std::int32_t>(i));
+}
+
+void PairMarks::find_nodes(const BodyNames& names) {
+  if (names == names_) return;
+  names_ = names;
+  node_of_body_.clear();
+  if (names_ == nullptr) return;
+  for (const std::string& name : *names_) {
+    const auto at = node_of_path_.find(name);
+    node_of_body_.push_back(at == node_of_path_.end() ? -1 : at->second);
+  }
+}
+
+void PairMarks::mark(std::uint32_t body, Mark mark) {
+  if (body >= node_of_body_.size() || node_of_body_[body] < 0) return;
+  const auto node = static_cast<std::size_t>(node_of_body_[body]);
+  if (node < mark_of_node_.size()) mark_of_node_[node] = mark;
+}
+
+void PairMarks::draw(const ProximityState& proximity, Timestamp now, const Bodies& bodies, Scene& scene) {
+  if (proximity.touching.empty() && proximity.near.empty()) return;
+  find_nodes(proximity.names);
+  std::ranges::fill(mark_of_node_, Mark::none);
+  const std::string age = age_words(proximity, now);
+  draw_near(proximity, age, scene);
+  draw_touching(proximity, age, scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Mark mark = mark_of_node_[static_cast<std::size_t>(bodies.node(i))];
+    if (mark != Mark::none) scene.bodies[i].mark = mark;
+  }
+}
+
+void PairMarks::draw_near(const ProximityState& proximity, std::string_view age, Scene& scene) {
+  std::size_t drawn = 0;
+  for (const NearPair& pair : proximity.near) {
+    if (!pair.within_warning || !(pair.distance_m > 0.0)) continue;
+    if (drawn == kPairs) break;
+    mark(pair.a, Mark::near);
+    mark(pair.b, Mark::near);
+    scene.lines.push_back(line(pair.point_a_m, pair.point_b_m, palette::kNear, pair.doubtful));
+    if (drawn++ >= kLabels) continue;
+    scene.labels.push_back(
+        {0.5 * (pair.point_a_m + pair.point_b_m),
+         fmt::format("{}{}{}", pair.doubtful ? "at least " : "", distance_text(pair.distance_m), age), Mark::near});
+  }
+}
+
+void PairMarks::draw_touching(const ProximityState& proximity, std::string_view age, Scene& scene) {
+  std::size_t drawn = 0;
+  for (const TouchingPair& pair : proximity.touching) {
+    if (drawn == kPairs) break;
+    mark(pair.a, Mark::touching);
+    mark(pair.b, Mark::touching);
+    const Eigen::Vector3d half = std::max(0.5 * pair.depth_m, kContactHalfLength) * pair.normal;
+    scene.lines.push_back(line(pair.point_m - half, pair.point_m + half, palette::kTouching, pair.doubtful));
+    if (drawn++ >= kLabels) continue;
+    const std::string depth = pair.depth_m >= 0.0005 ? " " + distance_text(pair.depth_m) + " deep" : std::string();
+    scene.labels.push_back(
+        {pair.point_m, fmt::format("{}{}{}", pair.doubtful ? "may touch" : "touching", depth, age), Mark::touching});
+  }
+}
+
+}  // namespace cellmirror::scene

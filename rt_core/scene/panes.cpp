@@ -1,0 +1,106 @@
+#include "rt_core/scene/panes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "rt_core/base/text.hpp"
+#include "rt_core/scene/paths.hpp"
+
+namespace cellmirror::scene {
+
+namespace {
+
+constexpr int kBirdsEye = 6;
+
+// Manual 1.2.3, COVW.
+constexpr std::array<std::string_view, kViews> kTitles = {"perspective", "top",  "side",      "top",
+                                                          "side",        "side", "bird's eye"};
+
+// The first of them is the main view of the display.
+std::vector<int> views_of_display(int display) {
+  switch (display) {
+    case 2:
+      return {1, 2};
+    case 3:
+      return {3};
+    case 4:
+      return {4};
+    case 5:
+      return {5};
+    case 6:
+      return {kBirdsEye};
+    default:
+      return {0};
+  }
+}
+
+std::string title_of(const PaneInput& input, int id) {
+  const auto index = static_cast<std::size_t>(id);
+  const DisplayView& shown = input.display.views[index];
+  if (!shown.camera.empty() && camera_now(input.cell, input.poses, input.display, shown.camera))
+    return fmt::format("{} {}", id, last_name(shown.camera));
+  return fmt::format("{} {}", id, kTitles[index]);
+}
+
+Pane pane_of(const PaneInput& input, int id) {
+  Pane pane;
+  pane.view = id;
+  pane.eye = eye_of(view_now(input, id));
+  return pane;
+}
+
+std::optional<Pane> pane_of_current_camera(const PaneInput& input) {
+  if (input.cell.cameras.empty()) return std::nullopt;
+  auto camera = camera_now(input.cell, input.poses, input.display, input.display.current_camera);
+  if (!camera) camera = cameras_now(input.cell, input.poses, input.display).front();
+  Pane pane;
+  pane.view = kBirdsEye;
+  pane.eye = eye_of(view_of_camera(*camera, input.display.views[kBirdsEye].view));
+  if (!input.display.full_screen) pane.title = input.cell.cameras[camera->camera].name;
+  return pane;
+}
+
+}  // namespace
+
+std::vector<Pane> panes_of_display(const PaneInput& input) {
+  if (input.display.on(DisplayMode::camera_main_view)) {
+    if (auto pane = pane_of_current_camera(input)) return {*std::move(pane)};
+  }
+  std::vector<int> ids = views_of_display(input.display.display);
+  if (input.display.full_screen) ids.resize(1);
+  std::vector<Pane> panes;
+  const double height = 1.0 / static_cast<double>(ids.size());
+  for (const int id : ids) {
+    Pane pane = pane_of(input, id);
+    pane.top = height * static_cast<double>(panes.size());
+    pane.height = height;
+    if (!input.display.full_screen) pane.title = title_of(input, id);
+    panes.push_back(std::move(pane));
+  }
+  return panes;
+}
+
+std::vector<Pane> panes_of_view(const PaneInput& input, int id) {
+  return {pane_of(input, std::clamp(id, 0, static_cast<int>(kViews) - 1))};
+}
+
+Result<std::vector<Pane>> panes_of_camera(const PaneInput& input, std::string_view camera) {
+  const auto now = camera_now(input.cell, input.poses, input.display, camera);
+  if (!now) {
+    std::vector<std::string> names;
+    for (const CompiledCamera& known : input.cell.cameras) names.push_back(known.name);
+    return fail(fmt::format("there is no camera {}", printable(camera)),
+                names.empty() ? "the cell has no cameras" : did_you_mean(camera, names));
+  }
+  Pane pane;
+  pane.view = -1;
+  pane.eye = eye_of(view_of_camera(*now, input.display.views[0].view));
+  return std::vector<Pane>{std::move(pane)};
+}
+
+}  // namespace cellmirror::scene
