@@ -1,4 +1,5 @@
-// The monitor page: HTTP and WebSocket by civetweb. Protocol: docs/monitor-page.md.
+// The monitor page's server: HTTP and WebSocket. Protocol: docs/monitor-page.md. One thread does all input and output
+// and never waits for a client; what takes longer than a moment is done by two others.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +14,40 @@ namespace cellmirror::web {
 
 inline constexpr int kDefaultPort = 8420;
 inline constexpr std::size_t kMaxClients = 16;              // WebSockets at once
+inline constexpr std::size_t kMaxConnections = 64;          // with those of requests
 inline constexpr std::size_t kMaxMessageBytes = 16 * 1024;  // from a client
+inline constexpr double kCommandsPerSecond = 20;            // of a client; and twice as many at once
+inline constexpr std::size_t kMaxCommandsWaiting = 32;      // of a client, for their acknowledgement
+inline constexpr std::size_t kMaxBacklogBytes =
+    4 << 20;  // a picture and acknowledgements, to a client that does not read
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";
-  int port = kDefaultPort;           // 0: a free one
-  bool read_only = false;            // nobody may command
-  std::string token;                 // whoever may command knows it; empty: made anew
-  std::vector<std::string> origins;  // beside its own
+  std::string address = "127.0.0.1";  // numeric
+  int port = kDefaultPort;            // 0: a free one
+  bool read_only = false;             // nobody may command
+  std::string token;                  // whoever may command knows it; empty: made anew
+  std::vector<std::string> origins;   // beside its own
+  // What clients are told at the beginning.
+  std::string version;
+  std::string cell;
+  std::string instance;
 };
 
 struct ServerStatus {
-  std::uint64_t clients = 0;            // now
+  std::uint64_t clients = 0;            // WebSockets, now
+  std::uint64_t requests = 0;           // HTTP
   std::uint64_t pictures = 0;           // sent
   std::uint64_t pictures_left_out = 0;  // to clients that were not ready for the next one
   std::uint64_t refused = 0;            // requests: malformed, oversized, wrong token, wrong origin
+  std::uint64_t cut = 0;                // connections: too slow, or silent
   std::uint64_t commands = 0;
 };
 
 class Server {
  public:
-  // `backend` is not owned and outlives the server.
+  // `backend` is not owned and outlives the server. Refused where the port is in use, with a remedy.
   [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Backend& backend);
+  // Ends at once, whatever clients do.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -1,0 +1,30 @@
+// Answers to HTTP requests: status, headers, body. Pure.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ipc/web/http_request.hpp"
+#include "ipc/web/outgoing.hpp"
+#include "ipc/web/page_files.hpp"
+
+namespace cellmirror::web {
+
+struct Answer {
+  int status = 200;
+  std::string content_type = "text/plain; charset=utf-8";
+  Chunk body;
+  std::vector<std::pair<std::string_view, std::string>> headers;  // beside those that every answer has
+};
+
+[[nodiscard]] Answer text_answer(int status, std::string text);
+[[nodiscard]] Answer json_answer(std::string text);
+// 304 where the client has the file already; compressed where it takes that.
+[[nodiscard]] Answer file_answer(const PageFile& file, const HttpRequest& request);
+
+// The status line and all headers. The connection is closed behind every answer.
+[[nodiscard]] std::string head_of(const Answer& answer);
+
+}  // namespace cellmirror::web

@@ -1,0 +1,58 @@
+// What clients say over /live (docs/monitor-page.md). Pure: text in, values out.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "ipc/web/web_backend.hpp"
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror::web {
+
+inline constexpr int kSmallestPictureEdge = 16;  // pixels
+inline constexpr int kLargestPictureWidth = 1920;
+inline constexpr int kLargestPictureHeight = 1200;
+inline constexpr double kMostPicturesPerSecond = 60;
+inline constexpr std::size_t kMaxCommandBytes = 8000;
+
+struct HelloMessage {
+  std::string token;  // may be empty
+};
+struct PictureMessage {
+  PictureWish wish;
+};
+struct NoPictureMessage {};
+struct ShownMessage {
+  std::uint32_t sequence = 0;
+};
+struct CommandMessage {
+  std::int64_t id = 0;
+  std::string text;
+};
+struct PickMessage {
+  std::int64_t id = 0;
+  int x = 0;
+  int y = 0;
+};
+using ClientMessage =
+    std::variant<HelloMessage, PictureMessage, NoPictureMessage, ShownMessage, CommandMessage, PickMessage>;
+
+struct BadMessage {
+  std::int64_t id = 0;  // of the message, where it has one
+  std::string why;
+};
+
+// Never throws; bounded by the length of the text. Members that are not known are passed over, so that a newer page can
+// talk to an older gateway.
+[[nodiscard]] std::expected<ClientMessage, BadMessage> read_client_message(std::string_view text);
+
+// Refused where sizes, rate, quality or the free view are out of bounds, or more than one of view, camera and free
+// view is given.
+[[nodiscard]] Result<void> check_picture_wish(const PictureWish& wish);
+
+// "view=3&width=640&height=480" of /snapshot.png and /snapshot.jpg.
+[[nodiscard]] Result<PictureWish> read_picture_query(std::string_view query);
+
+}  // namespace cellmirror::web

@@ -1,0 +1,323 @@
+#include "ipc/web/connection.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <exception>
+#include <utility>
+
+#include "ipc/web/server_message.hpp"
+
+namespace cellmirror::web {
+
+namespace {
+
+constexpr Nanoseconds kHeadTime{5'000'000'000};     // for a whole request, however slowly it comes
+constexpr Nanoseconds kAnswerTime{60'000'000'000};  // of a command, or of a job
+constexpr Nanoseconds kDrainTime{1'000'000'000};
+constexpr Nanoseconds kSendTime{10'000'000'000};   // without any progress
+constexpr Nanoseconds kPingAfter{10'000'000'000};  // of silence
+constexpr Nanoseconds kSilence{30'000'000'000};
+constexpr Nanoseconds kCloseTime{2'000'000'000};
+constexpr std::size_t kMostDrained = 256 * 1024;
+constexpr std::size_t kReadBytes = 16 * 1024;
+
+// Nothing that one request asks for may end the gateway.
+Answer guarded(const Work& work) {
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    return text_answer(500, std::string("unexpected failure: ") + error.what());
+  }
+}
+
+}  // namespace
+
+Connection::Connection(Descriptor socket, std::uint64_t number, ServerContext& context, Timestamp now)
+    : socket_(std::move(socket)),
+      number_(number),
+      context_(context),
+      since_(now),
+      last_received_(now),
+      last_ping_(now),
+      now_(now) {}
+
+Connection::~Connection() {
+  if (session_) context_.counters.clients.fetch_sub(1, std::memory_order_relaxed);
+}
+
+short Connection::wanted_events() const {
+  const bool reads = stage_ != Stage::waiting && stage_ != Stage::answering && stage_ != Stage::over;
+  return static_cast<short>((reads ? POLLIN : 0) | (out_.empty() ? 0 : POLLOUT));
+}
+
+Timestamp Connection::deadline() const {
+  switch (stage_) {
+    case Stage::head:
+    case Stage::body:
+      return since_ + kHeadTime;
+    case Stage::waiting:
+      return since_ + kAnswerTime;
+    case Stage::answering:
+      return std::min(since_ + kAnswerTime, blocked_since_ ? *blocked_since_ + kSendTime : now_ + kSendTime);
+    case Stage::draining:
+      return since_ + kDrainTime;
+    case Stage::live: {
+      Timestamp next = last_received_ + kSilence;
+      next = std::min(next, std::max(last_received_, last_ping_) + kPingAfter);
+      if (blocked_since_) next = std::min(next, *blocked_since_ + kSendTime);
+      if (closing_) next = std::min(next, since_ + kCloseTime);
+      return next;
+    }
+    case Stage::over:
+      break;
+  }
+  return now_;
+}
+
+void Connection::cut() {
+  count(context_.counters.cut);
+  stage_ = Stage::over;
+}
+
+void Connection::check_time(Timestamp now) {
+  now_ = now;
+  if (over() || now < deadline()) return;
+  switch (stage_) {
+    case Stage::head:
+    case Stage::body:
+      if (in_.empty() && stage_ == Stage::head) {
+        stage_ = Stage::over;  // browsers open connections that they may need
+        return;
+      }
+      count(context_.counters.cut);
+      return answer(text_answer(408, "the request took too long"));
+    case Stage::waiting:
+      return answer(text_answer(504, "there is no answer yet; cellmirror status shows what goes on"));
+    case Stage::draining:
+      stage_ = Stage::over;
+      return;
+    case Stage::live:
+      break;
+    default:
+      return cut();
+  }
+  const bool stalled = blocked_since_ && now - *blocked_since_ >= kSendTime;
+  if (closing_ || stalled || now - last_received_ >= kSilence) return cut();
+  last_ping_ = now;
+  out_.push(frame(Opcode::ping, {}));
+  write_some(now);
+}
+
+void Connection::go_on(short events, Timestamp now) {
+  now_ = now;
+  if ((events & POLLIN) != 0) {
+    read_some(now);
+  } else if ((events & (POLLERR | POLLHUP | POLLNVAL)) != 0) {
+    stage_ = Stage::over;
+  }
+  if (!over() && !out_.empty()) write_some(now);
+}
+
+void Connection::read_some(Timestamp now) {
+  std::array<char, kReadBytes> buffer{};
+  const ssize_t got = ::recv(fd(), buffer.data(), buffer.size(), MSG_DONTWAIT);
+  if (got < 0) {
+    if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR) stage_ = Stage::over;
+    return;
+  }
+  if (got == 0) {
+    stage_ = Stage::over;
+    return;
+  }
+  last_received_ = now;
+  const std::string_view bytes(buffer.data(), static_cast<std::size_t>(got));
+  if (stage_ == Stage::live) {
+    frames_.push(bytes);
+    take_frames(now);
+  } else if (stage_ == Stage::draining) {
+    drained_ += bytes.size();
+    if (drained_ > kMostDrained) stage_ = Stage::over;
+  } else {
+    in_.append(bytes);
+    take_request(now);
+  }
+}
+
+void Connection::write_some(Timestamp now) {
+  const Outgoing::Progress progress = out_.write_some(fd());
+  if (progress == Outgoing::Progress::failed) {
+    stage_ = Stage::over;
+    return;
+  }
+  if (progress != Outgoing::Progress::finished) {
+    if (out_.progressed() || !blocked_since_) blocked_since_ = now;
+    return;
+  }
+  blocked_since_.reset();
+  if (stage_ == Stage::answering) {
+    ::shutdown(fd(), SHUT_WR);
+    stage_ = Stage::draining;
+    since_ = now;
+  } else if (stage_ == Stage::live && closing_) {
+    ::shutdown(fd(), SHUT_WR);
+  }
+}
+
+void Connection::take_request(Timestamp now) {
+  if (stage_ == Stage::head) {
+    ReadHead head = read_http_head(in_, kMaxMessageBytes);
+    if (head.refused) {
+      count(context_.counters.refused);
+      return answer(text_answer(head.refused->status, head.refused->why));
+    }
+    if (head.bytes == 0) return;
+    count(context_.counters.requests);
+    in_.erase(0, head.bytes);
+    request_ = std::move(head.request);
+    return begin(now);
+  }
+  if (stage_ == Stage::body && in_.size() >= request_.body_bytes) execute_body(now);
+}
+
+void Connection::begin(Timestamp now) {
+  head_only_ = request_.method == "HEAD";
+  Route found = route(request_, context_);
+  std::visit([&](auto& one) { do_route(one, now); }, found);
+}
+
+void Connection::do_route(Answer& answer_now, Timestamp /*now*/) { answer(answer_now); }
+
+void Connection::do_route(Work& work, Timestamp now) {
+  stage_ = Stage::waiting;
+  since_ = now;
+  const bool taken = context_.jobs.submit([inbox = context_.inbox, number = number_, work = std::move(work)] {
+    inbox->post(number, [answer = guarded(work)](Connection* client) { client->answer(answer); });
+  });
+  if (!taken) answer(text_answer(503, "too much is asked at once; try again"));
+}
+
+void Connection::do_route(ExecuteBody& /*execute*/, Timestamp now) {
+  stage_ = Stage::body;
+  if (in_.size() >= request_.body_bytes) return execute_body(now);
+  if (!request_.header_has("expect", "100-continue")) return;
+  out_.push(chunk_of_constant("HTTP/1.1 100 Continue\r\n\r\n"));
+  write_some(now);
+}
+
+void Connection::do_route(OpenWebSocket& open, Timestamp now) {
+  if (context_.counters.clients.load(std::memory_order_relaxed) >= kMaxClients) {
+    count(context_.counters.refused);
+    return answer(text_answer(503, "too many pages look at this gateway already"));
+  }
+  count(context_.counters.clients);
+  // A picture that waits in the kernel is an old one: room for about two.
+  const int bytes = 128 * 1024;
+  ::setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
+  stage_ = Stage::live;
+  session_.emplace(context_, number_);
+  out_.push("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: " +
+            open.accept + "\r\n\r\n");
+  session_->welcome(out_);
+  write_some(now);
+  if (!in_.empty() && !over()) {
+    frames_.push(std::exchange(in_, {}));
+    take_frames(now);
+  }
+}
+
+void Connection::execute_body(Timestamp now) {
+  const std::string text = in_.substr(0, request_.body_bytes);
+  if (text.size() > kMaxCommandBytes || text.find_first_not_of(" \t\r\n") == std::string::npos ||
+      text.find('\0') != std::string::npos) {
+    count(context_.counters.refused);
+    return answer(text_answer(400, "the body is no SCRIPT command"));
+  }
+  stage_ = Stage::waiting;
+  since_ = now;
+  count(context_.counters.commands);
+  context_.backend.execute(text, [inbox = context_.inbox, number = number_](const CommandReply& reply) {
+    inbox->post(number, [reply](Connection* client) { client->answer(json_answer(command_answer(reply))); });
+  });
+}
+
+void Connection::take_frames(Timestamp now) {
+  while (const auto message = frames_.next()) {
+    if (closing_ && message->opcode != Opcode::close) continue;
+    switch (message->opcode) {
+      case Opcode::text:
+        if (!session_->receive(message->payload, now, out_)) end(CloseCode::policy, "too much, or wrong tokens");
+        break;
+      case Opcode::ping:
+        out_.push(frame(Opcode::pong, message->payload));
+        break;
+      case Opcode::pong:
+        break;
+      case Opcode::close:
+        if (closing_) {
+          stage_ = Stage::over;
+          return;
+        }
+        end(CloseCode::normal, {});
+        break;
+      default:
+        end(CloseCode::unsupported, "only text is understood");
+        break;
+    }
+  }
+  if (frames_.error() && !closing_) {
+    count(context_.counters.refused);
+    end(*frames_.error(), "malformed or too long");
+  }
+  if (out_.pending() > kMaxBacklogBytes) return cut();
+  if (!over() && !out_.empty()) write_some(now);
+}
+
+void Connection::end(CloseCode code, std::string_view why) {
+  if (!live() || closing_) return;
+  closing_ = true;
+  since_ = now_;
+  out_.push(close_frame(code, why));
+  write_some(now_);
+}
+
+void Connection::answer(const Answer& answer) {
+  if (stage_ != Stage::head && stage_ != Stage::body && stage_ != Stage::waiting) return;
+  stage_ = Stage::answering;
+  since_ = now_;
+  out_.push(head_of(answer));
+  if (!head_only_) out_.push(answer.body);
+  write_some(now_);
+}
+
+void Connection::show_live(const Chunk& frame) {
+  if (!live() || closing_ || !out_.empty()) return;
+  out_.push(frame);
+  write_some(now_);
+}
+
+void Connection::send_picture(Timestamp now) {
+  now_ = now;
+  if (closing_) return;
+  session_->send_picture(now, out_);
+  if (!out_.empty()) write_some(now);
+}
+
+void Connection::command_answered(std::int64_t id, const CommandReply& reply) {
+  if (!live()) return;
+  session_->command_answered(id, reply, out_);
+  if (closing_) return;
+  if (out_.pending() > kMaxBacklogBytes) return cut();
+  write_some(now_);
+}
+
+void Connection::picked(std::int64_t id, const Result<std::optional<PickedObject>>& object) {
+  if (!live()) return;
+  session_->picked(id, object, out_);
+  if (!closing_) write_some(now_);
+}
+
+}  // namespace cellmirror::web

@@ -1,0 +1,48 @@
+// How much a client gets and may ask. Pure: time is handed in.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror::web {
+
+// A client has at most two pictures on the way: one that it draws and one that comes meanwhile.
+class PictureCredit {
+ public:
+  static constexpr std::uint32_t kMostUnderWay = 2;
+
+  [[nodiscard]] bool may_send() const { return sent_ - shown_ < kMostUnderWay; }
+  // Of the picture that is sent now; counts from 1 for each client.
+  std::uint32_t next() { return ++sent_; }
+  // All up to `sequence` were shown. What was never sent is passed over.
+  void shown(std::uint32_t sequence) {
+    if (sequence > shown_ && sequence <= sent_) shown_ = sequence;
+  }
+
+ private:
+  std::uint32_t sent_ = 0;
+  std::uint32_t shown_ = 0;
+};
+
+// Lets so many through a second, and a burst of twice as many.
+class RateLimit {
+ public:
+  explicit RateLimit(double per_second) : per_second_(per_second), left_(2.0 * per_second) {}
+
+  [[nodiscard]] bool allows(Timestamp now) {
+    if (last_.known()) left_ = std::min(2.0 * per_second_, left_ + per_second_ * std::max(0.0, seconds(now - last_)));
+    last_ = now;
+    if (left_ < 1.0) return false;
+    left_ -= 1.0;
+    return true;
+  }
+
+ private:
+  double per_second_;
+  double left_;
+  Timestamp last_;
+};
+
+}  // namespace cellmirror::web

@@ -1,0 +1,143 @@
+#include "ipc/web/live_session.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <utility>
+#include <variant>
+
+#include "ipc/web/connection.hpp"
+#include "ipc/web/server_message.hpp"
+
+namespace cellmirror::web {
+
+namespace {
+
+constexpr int kMostWrongTokens = 3;
+constexpr std::size_t kMostPicksWaiting = 4;
+
+// Nothing that one client asks for may end the gateway.
+Result<std::optional<PickedObject>> guarded_pick(Backend& backend, const PictureWish& wish,
+                                                 const PickMessage& message) {
+  try {
+    return backend.pick(wish, message.x, message.y);
+  } catch (const std::exception& error) {
+    return fail(std::string("unexpected failure: ") + error.what());
+  }
+}
+
+void send_text(Outgoing& out, std::string_view text) { out.push(frame(Opcode::text, text)); }
+
+}  // namespace
+
+void LiveSession::welcome(Outgoing& out) const {
+  const ServerOptions& options = context_.options;
+  send_text(out, welcome_message({options.version, options.cell, options.instance, may_command_, options.read_only}));
+}
+
+bool LiveSession::receive(std::string_view text, Timestamp now, Outgoing& out) {
+  if (!messages_.allows(now)) return false;
+  now_ = now;
+  const auto message = read_client_message(text);
+  if (!message) {
+    count(context_.counters.refused);
+    send_text(out, refused_message(message.error().id, message.error().why));
+    return true;
+  }
+  std::visit([&](const auto& one) { follow(one, out); }, *message);
+  return wrong_tokens_ < kMostWrongTokens;
+}
+
+void LiveSession::follow(const HelloMessage& message, Outgoing& out) {
+  const bool right = token_matches(message.token, context_.options.token);
+  may_command_ = right && !context_.options.read_only;
+  if (!right && !message.token.empty()) {
+    ++wrong_tokens_;
+    count(context_.counters.refused);
+    send_text(out, refused_message(0,
+                                   "the token is another gateway's or an older one; cellmirror page prints the "
+                                   "address with the token of the one that runs"));
+  }
+  welcome(out);
+}
+
+void LiveSession::follow(const PictureMessage& message, Outgoing& out) {
+  wish_ = message.wish;
+  if (stream_) {
+    stream_->change(wish_);
+    return;
+  }
+  auto stream = context_.backend.open_pictures(wish_);
+  if (!stream) {
+    send_text(out, refused_message(0, stream.error().text()));
+    return;
+  }
+  stream_ = std::move(*stream);
+  newest_ = 0;
+}
+
+void LiveSession::follow(const NoPictureMessage& /*message*/, Outgoing& /*out*/) { stream_.reset(); }
+
+void LiveSession::follow(const ShownMessage& message, Outgoing& /*out*/) { credit_.shown(message.sequence); }
+
+void LiveSession::follow(const CommandMessage& message, Outgoing& out) {
+  const auto refuse = [&](std::string_view why) {
+    count(context_.counters.refused);
+    send_text(out, reply_message(message.id, {false, std::string(why)}));
+  };
+  if (context_.options.read_only) return refuse("this page only shows: the gateway was started read-only");
+  if (!may_command_) {
+    return refuse("commands need the token; open the page by the address that this prints: cellmirror page");
+  }
+  if (!commands_.allows(now_)) return refuse("too many commands; wait a second");
+  if (commands_waiting_ >= kMaxCommandsWaiting)
+    return refuse(fmt::format("{} commands wait for their acknowledgement already", commands_waiting_));
+  ++commands_waiting_;
+  count(context_.counters.commands);
+  context_.backend.execute(
+      message.text, [inbox = context_.inbox, connection = connection_, id = message.id](const CommandReply& reply) {
+        inbox->post(connection, [id, reply](Connection* client) { client->command_answered(id, reply); });
+      });
+}
+
+void LiveSession::follow(const PickMessage& message, Outgoing& out) {
+  if (!stream_) return send_text(out, refused_message(message.id, "there is no picture to pick from"));
+  if (message.x >= wish_.width || message.y >= wish_.height)
+    return send_text(out, refused_message(message.id, "that pixel is outside of the picture"));
+  const auto pick = [&backend = context_.backend, inbox = context_.inbox, connection = connection_, wish = wish_,
+                     message] {
+    auto object = guarded_pick(backend, wish, message);
+    inbox->post(connection,
+                [id = message.id, object = std::move(object)](Connection* client) { client->picked(id, object); });
+  };
+  if (picks_waiting_ >= kMostPicksWaiting || !context_.jobs.submit(pick))
+    return send_text(out, refused_message(message.id, "too much is asked at once; try again"));
+  ++picks_waiting_;
+}
+
+void LiveSession::command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out) {
+  --commands_waiting_;
+  send_text(out, reply_message(id, reply));
+}
+
+void LiveSession::picked(std::int64_t id, const Result<std::optional<PickedObject>>& object, Outgoing& out) {
+  --picks_waiting_;
+  send_text(out, object ? picked_message(id, *object) : refused_message(id, object.error().text()));
+}
+
+bool LiveSession::ready_for_picture(const Outgoing& out) const { return stream_ && credit_.may_send() && out.empty(); }
+
+void LiveSession::send_picture(Timestamp now, Outgoing& out) {
+  const std::shared_ptr<const EncodedImage> picture = stream_->newest(newest_);
+  if (!picture) return;
+  if (newest_ > 0 && picture->sequence > newest_ + 1)
+    count(context_.counters.pictures_left_out, picture->sequence - newest_ - 1);
+  newest_ = picture->sequence;
+  const std::string_view bytes(reinterpret_cast<const char*>(picture->bytes.data()), picture->bytes.size());
+  out.push(frame_header(Opcode::binary, kPictureHeaderBytes + bytes.size()) +
+           picture_header(credit_.next(), *picture, now));
+  out.push(Chunk{picture, bytes});
+  count(context_.counters.pictures);
+}
+
+}  // namespace cellmirror::web

@@ -1,0 +1,57 @@
+// One client of /live: what it asked for, and what it gets. Belongs to the server's thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "ipc/web/client_message.hpp"
+#include "ipc/web/flow.hpp"
+#include "ipc/web/outgoing.hpp"
+#include "ipc/web/server_context.hpp"
+#include "ipc/web/websocket.hpp"
+
+namespace cellmirror::web {
+
+class LiveSession {
+ public:
+  // `connection`: its number, for what comes back from other threads.
+  LiveSession(ServerContext& context, std::uint64_t connection) : context_(context), connection_(connection) {}
+
+  void welcome(Outgoing& out) const;
+  // False: the client is to be cut.
+  [[nodiscard]] bool receive(std::string_view text, Timestamp now, Outgoing& out);
+  void command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out);
+  void picked(std::int64_t id, const Result<std::optional<PickedObject>>& object, Outgoing& out);
+
+  // Whether the client would be sent a picture now if there were one.
+  [[nodiscard]] bool ready_for_picture(const Outgoing& out) const;
+  void send_picture(Timestamp now, Outgoing& out);
+
+ private:
+  void follow(const HelloMessage& message, Outgoing& out);
+  void follow(const PictureMessage& message, Outgoing& out);
+  void follow(const NoPictureMessage& message, Outgoing& out);
+  void follow(const ShownMessage& message, Outgoing& out);
+  void follow(const CommandMessage& message, Outgoing& out);
+  void follow(const PickMessage& message, Outgoing& out);
+
+  ServerContext& context_;
+  std::uint64_t connection_;
+  Timestamp now_;  // of the message that is followed
+  bool may_command_ = false;
+  int wrong_tokens_ = 0;
+  RateLimit messages_{kMessagesPerSecond};
+  RateLimit commands_{kCommandsPerSecond};
+  std::size_t commands_waiting_ = 0;
+  std::size_t picks_waiting_ = 0;
+  std::unique_ptr<PictureStream> stream_;
+  PictureWish wish_;
+  PictureCredit credit_;
+  std::uint64_t newest_ = 0;  // sequence of the stream
+
+  static constexpr double kMessagesPerSecond = 500;  // no person and no page sends more
+};
+
+}  // namespace cellmirror::web

@@ -1,0 +1,72 @@
+#include "ipc/web/page_address.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "ipc/runtime/descriptor.hpp"
+#include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/home.hpp"
+
+namespace cellmirror::web {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLargestFile = 4096;
+
+}  // namespace
+
+std::string PageAddress::url() const {
+  // A server that listens everywhere is reached from here by loopback.
+  const std::string host = address == "0.0.0.0" ? "127.0.0.1" : address == "::" ? "::1" : address;
+  const bool six = host.find(':') != std::string::npos;
+  return fmt::format(fmt::runtime(six ? "http://[{}]:{}/" : "http://{}:{}/"), host, port);
+}
+
+std::string PageAddress::url_with_token() const { return read_only ? url() : url() + "#token=" + token; }
+
+Result<std::string> make_token() {
+  std::array<std::uint8_t, 16> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    return fail(fmt::format("no random numbers from the kernel: {}", system_error_text(errno)));
+  std::string out;
+  for (const std::uint8_t byte : bytes) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+Result<void> write_page_address(const std::filesystem::path& folder, const PageAddress& page) {
+  const auto file = folder / kPageAddressFile;
+  const json document = {
+      {"address", page.address}, {"port", page.port}, {"token", page.token}, {"read_only", page.read_only}};
+  const std::string text = document.dump() + "\n";
+  ::unlink(file.c_str());
+  const Descriptor out(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!out.valid() || ::write(out.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+    return fail(fmt::format("cannot write {}: {}", file.native(), system_error_text(errno)));
+  return {};
+}
+
+Result<PageAddress> read_page_address(const std::filesystem::path& folder) {
+  const auto file = folder / kPageAddressFile;
+  const auto text = read_text_file(file, kLargestFile);
+  if (!text) return fail("this gateway has no monitor page", "start it without --no-web");
+  const json document = json::parse(*text, nullptr, false);
+  const auto is = [&](const char* name, json::value_t type) {
+    return document.contains(name) && document.at(name).type() == type;
+  };
+  if (!document.is_object() || !is("address", json::value_t::string) || !is("port", json::value_t::number_unsigned) ||
+      !is("token", json::value_t::string) || !is("read_only", json::value_t::boolean))
+    return fail(fmt::format("{} cannot be read", file.native()), "restart that gateway with this version");
+  return PageAddress{document.at("address").get<std::string>(), document.at("port").get<int>(),
+                     document.at("token").get<std::string>(), document.at("read_only").get<bool>()};
+}
+
+}  // namespace cellmirror::web

@@ -1,0 +1,20 @@
+// The files of the page, part of the program (page/, embed_page.cmake).
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace cellmirror::web {
+
+struct PageFile {
+  std::string_view path;  // as asked for: "/" or "/page/modules/main.js"
+  std::string_view content_type;
+  std::string_view etag;  // with its quotes
+  std::string_view bytes;
+  std::string_view gzip;  // empty where it would not be smaller
+};
+
+[[nodiscard]] std::span<const PageFile> page_files();
+[[nodiscard]] const PageFile* find_page_file(std::string_view path);
+
+}  // namespace cellmirror::web

@@ -1,0 +1,102 @@
+#include "ipc/web/routes.hpp"
+
+#include <array>
+#include <utility>
+
+#include "ipc/web/client_message.hpp"
+#include "ipc/web/page_files.hpp"
+#include "ipc/web/server_message.hpp"
+#include "ipc/web/websocket.hpp"
+
+namespace cellmirror::web {
+
+namespace {
+
+Answer refused(ServerContext& context, int status, std::string text) {
+  count(context.counters.refused);
+  return text_answer(status, std::move(text));
+}
+
+std::optional<Answer> stranger(const HttpRequest& request, ServerContext& context) {
+  if (!context.access.host_allowed(*request.header("host")))
+    return refused(context, 421,
+                   "this server is not known by that name; ask for it by its address, or name the page's origin in "
+                   "[web] origins of the cell file");
+  if (!context.access.origin_allowed(request.header("origin")))
+    return refused(context, 403, "pages of that origin may not ask here; [web] origins of the cell file names others");
+  return std::nullopt;
+}
+
+std::optional<Route> document(const HttpRequest& request, ServerContext& context) {
+  using Make = std::string (Backend::*)();
+  constexpr std::array<std::pair<std::string_view, Make>, 5> kDocuments = {{{"/api/status", &Backend::status_json},
+                                                                            {"/api/tree", &Backend::tree_json},
+                                                                            {"/api/commands", &Backend::commands_json},
+                                                                            {"/api/names", &Backend::names_json},
+                                                                            {"/metrics", &Backend::metrics_text}}};
+  for (const auto& [path, make] : kDocuments) {
+    if (request.path != path) continue;
+    return Work([&backend = context.backend, make = make, metrics = path == "/metrics"] {
+      Answer answer = json_answer((backend.*make)());
+      if (metrics) answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
+      return answer;
+    });
+  }
+  return std::nullopt;
+}
+
+std::optional<Route> snapshot(const HttpRequest& request, ServerContext& context) {
+  const bool png = request.path == "/snapshot.png";
+  if (!png && request.path != "/snapshot.jpg") return std::nullopt;
+  const auto wish = read_picture_query(request.query);
+  if (!wish) return refused(context, 400, wish.error().text());
+  return Work([&backend = context.backend, wish = *wish, png] {
+    const auto picture = backend.picture(wish, png ? ImageFormat::png : ImageFormat::jpeg);
+    if (!picture) return text_answer(503, picture.error().text());
+    Answer answer;
+    answer.content_type = png ? "image/png" : "image/jpeg";
+    answer.body = chunk_of(std::string(picture->bytes.begin(), picture->bytes.end()));
+    return answer;
+  });
+}
+
+Route command(const HttpRequest& request, ServerContext& context) {
+  if (request.method != "POST") return refused(context, 405, "commands are sent with POST");
+  if (context.options.read_only) return refused(context, 403, "this gateway was started read-only");
+  if (!token_matches(bearer_token(request), context.options.token)) {
+    Answer answer = refused(context, 401,
+                            "commands need the header Authorization: Bearer TOKEN; cellmirror page --json "
+                            "prints the token");
+    answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+    return answer;
+  }
+  return ExecuteBody{};
+}
+
+Route live(const HttpRequest& request, ServerContext& context) {
+  auto accept = websocket_accept(request);
+  if (accept) return OpenWebSocket{std::move(*accept)};
+  Answer answer = refused(context, 426, "this address speaks WebSocket, version 13");
+  answer.headers.emplace_back("Upgrade", "websocket");
+  answer.headers.emplace_back("Sec-WebSocket-Version", "13");
+  return answer;
+}
+
+}  // namespace
+
+Route route(const HttpRequest& request, ServerContext& context) {
+  if (auto answer = stranger(request, context)) return std::move(*answer);
+  if (request.path == "/live") return live(request, context);
+  if (request.path == "/api/command") return command(request, context);
+  if (request.method != "GET" && request.method != "HEAD") {
+    Answer answer = refused(context, 405, "only GET is known here");
+    answer.headers.emplace_back("Allow", "GET, HEAD");
+    return answer;
+  }
+  if (const PageFile* file = find_page_file(request.path)) return file_answer(*file, request);
+  if (auto found = document(request, context)) return std::move(*found);
+  if (auto found = snapshot(request, context)) return std::move(*found);
+  return text_answer(404, "there is nothing of that name");
+}
+
+}  // namespace cellmirror::web

@@ -1,0 +1,27 @@
+// What an HTTP request asks for. Private to this folder.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "ipc/web/answer.hpp"
+#include "ipc/web/server_context.hpp"
+
+namespace cellmirror::web {
+
+// Done by another thread.
+using Work = std::function<Answer()>;
+// The body is a SCRIPT command.
+struct ExecuteBody {};
+// The connection becomes a WebSocket; its header Sec-WebSocket-Accept.
+struct OpenWebSocket {
+  std::string accept;
+};
+using Route = std::variant<Answer, Work, ExecuteBody, OpenWebSocket>;
+
+// Looks at the head alone; whoever may not ask is told so here, before any of the body is taken.
+[[nodiscard]] Route route(const HttpRequest& request, ServerContext& context);
+
+}  // namespace cellmirror::web

@@ -1,0 +1,40 @@
+// What the connections of one server share. Private to this folder.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "ipc/web/access.hpp"
+#include "ipc/web/inbox.hpp"
+#include "ipc/web/job_pool.hpp"
+#include "ipc/web/web_backend.hpp"
+#include "ipc/web/web_server.hpp"
+
+namespace cellmirror::web {
+
+// For status(), from any thread; relaxed, because they publish nothing but themselves.
+struct Counters {
+  std::atomic<std::uint64_t> clients{0};
+  std::atomic<std::uint64_t> requests{0};
+  std::atomic<std::uint64_t> pictures{0};
+  std::atomic<std::uint64_t> pictures_left_out{0};
+  std::atomic<std::uint64_t> refused{0};
+  std::atomic<std::uint64_t> cut{0};
+  std::atomic<std::uint64_t> commands{0};
+};
+
+inline void count(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) {
+  counter.fetch_add(by, std::memory_order_relaxed);
+}
+
+struct ServerContext {
+  ServerOptions options;  // with port and token as they are
+  AccessRules access;
+  Backend& backend;
+  JobPool& jobs;
+  std::shared_ptr<Inbox> inbox;
+  Counters& counters;
+};
+
+}  // namespace cellmirror::web

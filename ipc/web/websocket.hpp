@@ -1,0 +1,64 @@
+// WebSocket as RFC 6455 defines it, the server's side: opening and frames, without extensions. Pure: bytes in, messages
+// out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ipc/web/http_request.hpp"
+
+namespace cellmirror::web {
+
+enum class Opcode : std::uint8_t { continuation = 0, text = 1, binary = 2, close = 8, ping = 9, pong = 10 };
+
+// Status codes of a close frame (section 7.4.1).
+enum class CloseCode : std::uint16_t {
+  normal = 1000,
+  going_away = 1001,
+  protocol_error = 1002,
+  unsupported = 1003,
+  policy = 1008,
+  too_big = 1009,
+};
+
+// The header Sec-WebSocket-Accept for an opening; none where the request is no opening of version 13.
+[[nodiscard]] std::optional<std::string> websocket_accept(const HttpRequest& request);
+
+// The header of an unmasked frame, as servers send them; the payload follows it.
+[[nodiscard]] std::string frame_header(Opcode opcode, std::size_t payload_bytes);
+[[nodiscard]] std::string frame(Opcode opcode, std::string_view payload);
+[[nodiscard]] std::string close_frame(CloseCode code, std::string_view reason);
+
+struct WebSocketMessage {
+  Opcode opcode = Opcode::text;  // text, binary, close, ping or pong
+  std::string payload;
+};
+
+// Puts a client's frames together to messages. A message, with all its parts, has at most `most_bytes`: a frame that
+// says it is longer is refused by its header, before any of it is taken.
+class FrameReader {
+ public:
+  explicit FrameReader(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  // Bytes as they came. Nothing is taken any more after an error.
+  void push(std::string_view bytes);
+  // The next whole message; none: more bytes are needed, or there is an error.
+  [[nodiscard]] std::optional<WebSocketMessage> next();
+  [[nodiscard]] std::optional<CloseCode> error() const { return error_; }
+
+ private:
+  struct Header;
+  [[nodiscard]] std::optional<Header> read_header();
+  std::optional<WebSocketMessage> take(const Header& header);
+
+  std::size_t most_bytes_;
+  std::string bytes_;  // not yet taken
+  std::string parts_;  // of a message that is not complete
+  std::optional<Opcode> opcode_;
+  std::optional<CloseCode> error_;
+};
+
+}  // namespace cellmirror::web
