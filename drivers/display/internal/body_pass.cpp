@@ -1,0 +1,254 @@
+#include "drivers/display/internal/body_pass.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/display/internal/shaders.hpp"
+#include "rt_core/ports/palette.hpp"
+
+namespace cellmirror::display {
+
+namespace {
+
+constexpr double kFarthest = 1e5;  // m: where a body may stand
+constexpr float kSeeThrough = 0.35F;
+constexpr float kGhostAlpha = 0.40F;
+
+Colour mixed(const Colour& a, const Colour& b, float part) {
+  Colour colour = a;
+  for (std::size_t i = 0; i < 3; ++i) colour[i] += part * (b[i] - a[i]);
+  return colour;
+}
+
+Colour finite(Colour colour) {
+  for (float& value : colour) value = std::isfinite(value) ? std::clamp(value, 0.0F, 1.0F) : 1.0F;
+  return colour;
+}
+
+Colour shown_colour(const SceneBody& body) {
+  Colour colour = finite(body.rgba);
+  if (body.mode == DrawMode::transparent) colour[3] = std::min(colour[3], kSeeThrough);
+  switch (body.mark) {
+    case Mark::none:
+      break;
+    case Mark::near:
+      return mixed(colour, palette::kNear, 0.80F);
+    case Mark::touching:
+      return mixed(colour, palette::kTouching, 0.85F);
+    case Mark::ghost:
+      colour = mixed(colour, palette::kGhost, 0.75F);
+      colour[3] = std::min(colour[3], kGhostAlpha);
+      break;
+  }
+  return colour;
+}
+
+// The lines of a wireframe are thin: pale colours would be lost before the pale background.
+Colour line_colour(const Colour& colour) {
+  constexpr float kDarker = 0.55F;
+  return {colour[0] * kDarker, colour[1] * kDarker, colour[2] * kDarker, std::max(colour[3], 0.7F)};
+}
+
+bool backfaces_removed(const Scene& scene, const DrawnBody& body) {
+  // Of a wireframe OpenGL removes no faces, so its edges are chosen by computation in either mode.
+  const bool by_gl = scene.modes.test(static_cast<std::size_t>(DisplayMode::backface_removal));
+  const bool computed = scene.modes.test(static_cast<std::size_t>(DisplayMode::cpu_backface_removal));
+  return computed || (by_gl && body.mode == DrawMode::wireframe);
+}
+
+}  // namespace
+
+std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes) {
+  std::vector<DrawnBody> bodies;
+  bodies.reserve(scene.bodies.size());
+  for (const SceneBody& body : scene.bodies) {
+    const Eigen::Matrix4d& X_WG = body.X_WG.matrix();
+    if (!X_WG.allFinite() || X_WG.cwiseAbs().maxCoeff() > kFarthest) continue;
+    const ShapeUse use = meshes.shape_of(body);
+    if (use.mesh == nullptr) continue;
+    DrawnBody drawn;
+    drawn.mesh = use.mesh;
+    drawn.X_WM = X_WG * Eigen::Vector4d(use.scale.x(), use.scale.y(), use.scale.z(), 1).asDiagonal();
+    drawn.rgba = shown_colour(body);
+    if (drawn.rgba[3] <= 0) continue;
+    drawn.mode = body.mode;
+    drawn.mark = body.mark;
+    drawn.object = body.object;
+    drawn.casts_shadow = body.casts_shadow;
+    const BoundingSphere& bounds = use.mesh->bounds();
+    drawn.bounds_W.centre = (drawn.X_WM * bounds.centre.homogeneous()).head<3>();
+    drawn.bounds_W.radius = bounds.radius * use.scale.maxCoeff();
+    bodies.push_back(drawn);
+  }
+  return bodies;
+}
+
+BodyPass::BodyPass(const GlApi& gl) : gl_(gl), one_sided_(gl), two_sided_(gl), striped_(gl), plain_(gl), objects_(gl) {}
+
+Result<void> BodyPass::build() {
+  const auto made = [](Shading& shading, const Result<void>& built) -> Result<void> {
+    if (!built) return built;
+    const ShaderProgram& program = shading.program;
+    shading.uniforms = {program.uniform("clip_from_mesh"),
+                        program.uniform("world_from_normal"),
+                        program.uniform("rgb"),
+                        program.uniform("alpha"),
+                        program.uniform("to_eye"),
+                        program.uniform("object")};
+    return {};
+  };
+  const auto lit = [&](Shading& shading, std::initializer_list<std::string_view> defines) {
+    return made(shading, shading.program.build(shaders::kBodyVertex, shaders::kBodyFragment, defines));
+  };
+  Result<void> built = lit(one_sided_, {});
+  if (built) built = lit(two_sided_, {"TWO_SIDED"});
+  if (built) built = lit(striped_, {"TWO_SIDED", "STRIPES"});
+  if (built) built = lit(plain_, {"PLAIN"});
+  if (built) built = made(objects_, objects_.program.build(shaders::kBodyVertex, shaders::kObjectFragment, {"PLAIN"}));
+  return built;
+}
+
+BodyCounts BodyPass::examine(const Frame& frame, std::vector<DrawnBody>& bodies) {
+  const bool test = frame.scene.modes.test(static_cast<std::size_t>(DisplayMode::visibility_test));
+  BodyCounts counts;
+  for (DrawnBody& body : bodies) {
+    body.distance = frame.view.distance(body.bounds_W.centre);
+    body.visible = !test || frame.view.sees(body.bounds_W.centre, body.bounds_W.radius);
+    ++(body.visible ? counts.drawn : counts.left_out);
+  }
+  return counts;
+}
+
+void BodyPass::use(const Frame& frame, Shading& shading) {
+  if (used_ == &shading) return;
+  used_ = &shading;
+  shading.program.use();
+  const Eigen::Vector3f to_eye = frame.view.X_WE().linear().col(2).cast<float>();
+  gl_.Uniform3fv(shading.uniforms.to_eye, 1, to_eye.data());
+}
+
+void BodyPass::put(const Frame& frame, const DrawnBody& body) {
+  const Uniforms& uniforms = used_->uniforms;
+  const Eigen::Matrix4f clip_from_mesh = (frame.view.clip_from_world() * body.X_WM).cast<float>();
+  gl_.UniformMatrix4fv(uniforms.clip_from_mesh, 1, GL_FALSE, clip_from_mesh.data());
+  if (uniforms.world_from_normal >= 0) {
+    const Eigen::Matrix3f normals = body.X_WM.topLeftCorner<3, 3>().inverse().transpose().cast<float>();
+    gl_.UniformMatrix3fv(uniforms.world_from_normal, 1, GL_FALSE, normals.data());
+  }
+  if (used_ == &objects_) return gl_.Uniform1ui(uniforms.object, body.object);
+  const Colour colour = body.mode == DrawMode::wireframe ? line_colour(body.rgba) : body.rgba;
+  gl_.Uniform3fv(uniforms.rgb, 1, colour.data());
+  gl_.Uniform1f(uniforms.alpha, colour[3]);
+}
+
+void BodyPass::draw(const Frame& frame, const DrawnBody& body) {
+  put(frame, body);
+  const bool solid = used_ == &objects_ || body.mode != DrawMode::wireframe;
+  const DrawMode mode = solid && body.mode == DrawMode::wireframe ? DrawMode::gouraud : body.mode;
+  const auto buffers = [&]() -> const Buffers& {
+    if (backfaces_removed(frame.scene, body)) {
+      const Eigen::Vector4d eye = body.X_WM.inverse() * frame.view.eye();
+      return body.mesh->facing(mode, eye);
+    }
+    if (mode == DrawMode::wireframe) return body.mesh->wires();
+    return mode == DrawMode::flat ? body.mesh->flat() : body.mesh->smooth();
+  };
+  const Buffers& drawn = buffers();
+  gl_.BindVertexArray(drawn.array);
+  gl_.DrawElements(mode == DrawMode::wireframe ? GL_LINES : GL_TRIANGLES, drawn.count, GL_UNSIGNED_INT, nullptr);
+}
+
+BodyPass::Shading& BodyPass::shading_of(const Frame& frame, const DrawnBody& body) {
+  if (body.mode == DrawMode::wireframe) return plain_;
+  if (body.mark == Mark::touching) return striped_;
+  const bool two_sided = frame.scene.modes.test(static_cast<std::size_t>(DisplayMode::two_sided_light));
+  return two_sided || body.see_through() ? two_sided_ : one_sided_;
+}
+
+void BodyPass::draw_opaque(const Frame& frame, std::vector<DrawnBody>& bodies) {
+  // The nearest first: what they hide is then not shaded.
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [](const DrawnBody& a, const DrawnBody& b) { return a.distance < b.distance; });
+  const bool cull = frame.scene.modes.test(static_cast<std::size_t>(DisplayMode::backface_removal));
+  used_ = nullptr;
+  if (cull) gl_.Enable(GL_CULL_FACE);
+  for (const DrawnBody& body : bodies) {
+    if (!body.visible || body.see_through()) continue;
+    use(frame, shading_of(frame, body));
+    draw(frame, body);
+  }
+  gl_.Disable(GL_CULL_FACE);
+}
+
+// Only the surface that is nearest to the eye shows, so that a robot's ghost looks like one thing and not like its
+// parts.
+void BodyPass::draw_ghosts(const Frame& frame, std::span<const DrawnBody* const> ghosts) {
+  gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  for (const DrawnBody* body : ghosts) {
+    use(frame, plain_);
+    if (body->mode != DrawMode::wireframe) draw(frame, *body);
+  }
+  gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl_.DepthFunc(GL_LEQUAL);
+  for (const DrawnBody* body : ghosts) {
+    use(frame, shading_of(frame, *body));
+    draw(frame, *body);
+  }
+  gl_.DepthFunc(GL_LESS);
+}
+
+void BodyPass::draw_see_through(const Frame& frame, std::vector<DrawnBody>& bodies) {
+  std::vector<const DrawnBody*> ghosts;
+  std::vector<const DrawnBody*> others;
+  for (const DrawnBody& body : bodies) {
+    if (!body.visible || !body.see_through()) continue;
+    (body.mark == Mark::ghost ? ghosts : others).push_back(&body);
+  }
+  if (ghosts.empty() && others.empty()) return;
+  used_ = nullptr;
+  gl_.Enable(GL_BLEND);
+  draw_ghosts(frame, ghosts);
+  std::stable_sort(others.begin(), others.end(),
+                   [](const DrawnBody* a, const DrawnBody* b) { return a->distance > b->distance; });
+  const bool cull = frame.scene.modes.test(static_cast<std::size_t>(DisplayMode::backface_removal));
+  gl_.DepthMask(GL_FALSE);
+  gl_.Enable(GL_CULL_FACE);
+  for (const DrawnBody* body : others) {
+    use(frame, shading_of(frame, *body));
+    // The inside first, then what is before it.
+    if (!cull) {
+      gl_.CullFace(GL_FRONT);
+      draw(frame, *body);
+    }
+    gl_.CullFace(GL_BACK);
+    if (body->mode != DrawMode::wireframe || cull) draw(frame, *body);
+  }
+  gl_.Disable(GL_CULL_FACE);
+  gl_.DepthMask(GL_TRUE);
+  gl_.Disable(GL_BLEND);
+}
+
+void BodyPass::draw_objects(const Frame& frame, std::vector<DrawnBody>& bodies) {
+  used_ = nullptr;
+  if (frame.scene.modes.test(static_cast<std::size_t>(DisplayMode::backface_removal))) gl_.Enable(GL_CULL_FACE);
+  for (const DrawnBody& body : bodies) {
+    if (!body.visible || body.object == 0) continue;
+    use(frame, objects_);
+    draw(frame, body);
+  }
+  gl_.Disable(GL_CULL_FACE);
+}
+
+void BodyPass::draw_extra(const Frame& frame, const std::vector<DrawnBody>& bodies) {
+  used_ = nullptr;
+  for (const DrawnBody& body : bodies) {
+    use(frame, two_sided_);
+    put(frame, body);
+    const Buffers& buffers = body.mesh->smooth();
+    gl_.BindVertexArray(buffers.array);
+    gl_.DrawElements(GL_TRIANGLES, buffers.count, GL_UNSIGNED_INT, nullptr);
+  }
+}
+
+}  // namespace cellmirror::display

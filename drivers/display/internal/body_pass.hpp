@@ -1,0 +1,83 @@
+// Draws the bodies of a scene. Private to this folder.
+#pragma once
+
+#include <vector>
+
+#include "drivers/display/internal/frame.hpp"
+#include "drivers/display/internal/mesh_store.hpp"
+#include "drivers/display/internal/shader_program.hpp"
+
+namespace cellmirror::display {
+
+// A body, or a part of an arrow or of axes, as it is drawn.
+struct DrawnBody {
+  StoredMesh* mesh = nullptr;
+  Eigen::Matrix4d X_WM;  // with the scale of the mesh
+  Colour rgba{};         // sRGB, with its mark
+  DrawMode mode = DrawMode::gouraud;
+  Mark mark = Mark::none;
+  std::uint32_t object = 0;
+  bool casts_shadow = false;
+  double distance = 0;        // of its centre from the eye, m
+  bool visible = true;        // by the visibility test
+  BoundingSphere bounds_W{};  // of the whole
+  [[nodiscard]] bool see_through() const {
+    constexpr float kOpaque = 0.996F;
+    return rgba[3] < kOpaque;
+  }
+};
+
+// What can be drawn of the scene's bodies: finite, of sensible size, with triangles.
+[[nodiscard]] std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes);
+
+struct BodyCounts {
+  std::uint64_t drawn = 0;
+  std::uint64_t left_out = 0;
+};
+
+class BodyPass {
+ public:
+  explicit BodyPass(const GlApi& gl);
+  Result<void> build();
+
+  // Sets distance and visible of each body for this pane; counts.
+  static BodyCounts examine(const Frame& frame, std::vector<DrawnBody>& bodies);
+  // First solid bodies and wireframes, then, with what else is opaque drawn, those that are seen through.
+  void draw_opaque(const Frame& frame, std::vector<DrawnBody>& bodies);
+  void draw_see_through(const Frame& frame, std::vector<DrawnBody>& bodies);
+  // The number of each body's object.
+  void draw_objects(const Frame& frame, std::vector<DrawnBody>& bodies);
+  // Bodies that are no geometry of the cell: never culled, lit from both sides where see-through.
+  void draw_extra(const Frame& frame, const std::vector<DrawnBody>& bodies);
+
+ private:
+  struct Uniforms {
+    GLint clip_from_mesh = -1;
+    GLint world_from_normal = -1;
+    GLint rgb = -1;
+    GLint alpha = -1;
+    GLint to_eye = -1;
+    GLint object = -1;
+  };
+  struct Shading {
+    explicit Shading(const GlApi& gl) : program(gl) {}
+    ShaderProgram program;
+    Uniforms uniforms;
+  };
+
+  void use(const Frame& frame, Shading& shading);
+  void put(const Frame& frame, const DrawnBody& body);
+  void draw(const Frame& frame, const DrawnBody& body);
+  [[nodiscard]] Shading& shading_of(const Frame& frame, const DrawnBody& body);
+  void draw_ghosts(const Frame& frame, std::span<const DrawnBody* const> ghosts);
+
+  const GlApi& gl_;
+  Shading one_sided_;
+  Shading two_sided_;
+  Shading striped_;
+  Shading plain_;
+  Shading objects_;
+  Shading* used_ = nullptr;
+};
+
+}  // namespace cellmirror::display

@@ -1,0 +1,95 @@
+// Meshes in the memory of the graphics system: each is uploaded once and stays as long as somebody else holds it.
+// Private to this folder.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "drivers/display/internal/gl_api.hpp"
+#include "drivers/display/internal/surface.hpp"
+#include "rt_core/ports/scene.hpp"
+
+namespace cellmirror::display {
+
+// Vertices with the triangles over them.
+struct Buffers {
+  GLuint array = 0;  // vertex array object
+  GLuint vertices = 0;
+  GLuint indices = 0;
+  GLsizei count = 0;  // of indices
+};
+
+class StoredMesh {
+ public:
+  StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh);
+  ~StoredMesh();
+  StoredMesh(const StoredMesh&) = delete;
+  StoredMesh& operator=(const StoredMesh&) = delete;
+
+  [[nodiscard]] const Buffers& smooth() const { return smooth_; }
+  // Made when they are first asked for.
+  const Buffers& flat();
+  const Buffers& wires();
+  // Those of the triangles (or, of wires, of the edges) that face `eye`, a point in the mesh's frame, or, for w = 0,
+  // the direction to it. Valid until the next call.
+  const Buffers& facing(DrawMode mode, const Eigen::Vector4d& eye);
+
+  [[nodiscard]] const BoundingSphere& bounds() const { return bounds_; }
+  [[nodiscard]] bool unshared() const { return mesh_.use_count() == 1; }
+  std::uint64_t last_used = 0;  // number of the frame
+
+ private:
+  void upload(const Surface& surface, Buffers& buffers);
+  void select_facing(DrawMode mode, const Eigen::Vector4d& eye);
+
+  const GlApi& gl_;
+  std::shared_ptr<const geometry::TriangleMesh> mesh_;
+  BoundingSphere bounds_;
+  Buffers smooth_;
+  Buffers flat_;
+  Buffers wires_;
+  Buffers facing_;
+  std::vector<Corner> smooth_corners_;  // kept for facing()
+  std::vector<Eigen::Vector3f> normals_;
+  std::vector<FeatureEdge> edges_;
+  std::vector<bool> faces_;
+  std::vector<Corner> selected_;
+};
+
+// A body's mesh and how it is scaled. Null: the body cannot be drawn.
+struct ShapeUse {
+  StoredMesh* mesh = nullptr;
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+};
+
+enum class Solid : std::uint8_t { box, cylinder, sphere, cone, funnel };
+
+class MeshStore {
+ public:
+  explicit MeshStore(const GlApi& gl) : gl_(gl) {}
+
+  [[nodiscard]] ShapeUse shape_of(const SceneBody& body);
+  [[nodiscard]] StoredMesh& solid(Solid solid);
+
+  void begin_frame() { ++frame_; }
+  // Drops what nobody else holds any more, and what no frame has shown for a while.
+  void end_frame();
+  [[nodiscard]] std::size_t size() const { return meshes_.size() + capsules_.size(); }
+  [[nodiscard]] std::uint64_t uploads() const { return uploads_; }
+
+ private:
+  using Capsule = std::array<double, 2>;
+
+  [[nodiscard]] StoredMesh* stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh);
+
+  const GlApi& gl_;
+  std::map<const geometry::TriangleMesh*, std::unique_ptr<StoredMesh>> meshes_;
+  std::map<Capsule, std::unique_ptr<StoredMesh>> capsules_;
+  std::array<std::unique_ptr<StoredMesh>, 5> solids_;
+  std::uint64_t frame_ = 0;
+  std::uint64_t uploads_ = 0;
+};
+
+}  // namespace cellmirror::display

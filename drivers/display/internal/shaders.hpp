@@ -1,0 +1,91 @@
+// The shaders, GLSL 3.30. Attribute 0 is the position, 1 the normal. Private to this folder.
+#pragma once
+
+#include <string_view>
+
+namespace cellmirror::display::shaders {
+
+// Light is reckoned a vertex and in linear light, where sRGB is taken for a square: close enough, and cheap in
+// software. PLAIN: without light. TWO_SIDED: back faces are lit as if they were front faces.
+inline constexpr std::string_view kBodyVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 clip_from_mesh;
+uniform mat3 world_from_normal;
+uniform vec3 rgb;
+uniform float alpha;
+uniform vec3 to_eye;
+out vec4 front;
+#ifdef TWO_SIDED
+out vec4 back;
+#endif
+
+// Sky and ground, a key light from above that is also the one of the shadows, and a little light from the eye.
+vec3 light(vec3 n) {
+  vec3 around = mix(vec3(0.27, 0.26, 0.26), vec3(0.60, 0.64, 0.70), 0.5 * n.z + 0.5);
+  float key = max(dot(n, vec3(-0.3778, -0.4498, 0.8096)), 0.0);
+  float fill = max(dot(n, to_eye), 0.0);
+  return around + key * vec3(0.50, 0.48, 0.44) + fill * vec3(0.20, 0.20, 0.21);
+}
+
+void main() {
+  gl_Position = clip_from_mesh * vec4(position, 1.0);
+#ifdef PLAIN
+  front = vec4(rgb, alpha);
+#else
+  vec3 n = normalize(world_from_normal * normal);
+  vec3 linear = rgb * rgb;
+  front = vec4(sqrt(linear * light(n)), alpha);
+#ifdef TWO_SIDED
+  back = vec4(sqrt(linear * light(-n)), alpha);
+#endif
+#endif
+}
+)";
+
+// STRIPES: a second sign beside the colour.
+inline constexpr std::string_view kBodyFragment = R"(
+in vec4 front;
+#ifdef TWO_SIDED
+in vec4 back;
+#endif
+layout(location = 0) out vec4 colour;
+
+void main() {
+#ifdef TWO_SIDED
+  colour = gl_FrontFacing ? front : back;
+#else
+  colour = front;
+#endif
+#ifdef STRIPES
+  float across = fract((gl_FragCoord.x + gl_FragCoord.y) / 14.0);
+  colour.rgb = mix(colour.rgb, vec3(1.0, 0.93, 0.82), 0.45 * (1.0 - smoothstep(0.22, 0.30, abs(across - 0.5))));
+#endif
+}
+)";
+
+inline constexpr std::string_view kObjectFragment = R"(
+uniform uint object;
+layout(location = 0) out uint number;
+void main() { number = object; }
+)";
+
+// One triangle over the whole pane, paler at its top.
+inline constexpr std::string_view kBackgroundVertex = R"(
+out float down;
+void main() {
+  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  down = 0.5 * corner.y + 0.5;
+  gl_Position = vec4(corner, 0.0, 1.0);
+}
+)";
+
+inline constexpr std::string_view kBackgroundFragment = R"(
+in float down;
+uniform vec3 upper;
+uniform vec3 lower;
+layout(location = 0) out vec4 colour;
+void main() { colour = vec4(mix(upper, lower, down), 1.0); }
+)";
+
+}  // namespace cellmirror::display::shaders

@@ -1,0 +1,163 @@
+#include "drivers/display/renderer.hpp"
+
+#include "drivers/display/internal/background.hpp"
+#include "drivers/display/internal/body_pass.hpp"
+#include "drivers/display/internal/gl_api.hpp"
+#include "drivers/display/internal/gl_context.hpp"
+#include "drivers/display/internal/mesh_store.hpp"
+#include "drivers/display/internal/render_target.hpp"
+
+namespace cellmirror::display {
+
+namespace {
+
+constexpr int kSmallestEdge = 16;
+constexpr std::size_t kMostPanes = 16;
+
+Result<void> check_size(int width, int height) {
+  if (width >= kSmallestEdge && width <= kLargestImageEdge && height >= kSmallestEdge && height <= kLargestImageEdge)
+    return {};
+  return fail(
+      "a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels cannot be drawn",
+      "ask for " + std::to_string(kSmallestEdge) + " to " + std::to_string(kLargestImageEdge) + " pixels each way");
+}
+
+bool is_on(const Scene& scene, DisplayMode mode) { return scene.modes.test(static_cast<std::size_t>(mode)); }
+
+std::string text_of(const GlApi& gl, GLenum what) {
+  const GLubyte* const text = gl.GetString(what);
+  return text == nullptr ? "unknown" : reinterpret_cast<const char*>(text);
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(std::unique_ptr<GlContext> made, const GlApi& loaded)
+      : context(std::move(made)), gl(loaded), meshes(gl), target(gl), bodies(gl), background(gl) {}
+  ~Impl() { static_cast<void>(context->make_current()); }  // what is destroyed next frees its things in it
+
+  Result<void> prepare();
+  Result<void> begin(Pixels pixels, int width, int height);
+  Result<void> end(int width, int height);
+  void draw_pane(const Scene& scene, const ViewTransform& view, std::vector<DrawnBody>& drawn);
+  void clip_to(const PixelRect& pixels) const {
+    gl.Viewport(pixels.x, pixels.y, pixels.width, pixels.height);
+    gl.Scissor(pixels.x, pixels.y, pixels.width, pixels.height);
+  }
+
+  std::unique_ptr<GlContext> context;
+  GlApi gl;
+  std::string name;
+  MeshStore meshes;
+  RenderTarget target;
+  BodyPass bodies;
+  Background background;
+  RendererCounters counters;
+};
+
+Result<void> Renderer::Impl::prepare() {
+  name = std::string(context->backend()) + ": " + text_of(gl, GL_RENDERER) + ", OpenGL " + text_of(gl, GL_VERSION);
+  Result<void> built = bodies.build();
+  if (built) built = background.build();
+  return built;
+}
+
+Result<void> Renderer::Impl::begin(Pixels pixels, int width, int height) {
+  if (Result<void> size = check_size(width, height); !size) return size;
+  if (!context->make_current()) return fail("the graphics context is lost", "start again");
+  while (gl.GetError() != GL_NO_ERROR) {
+  }
+  if (Result<void> begun = target.begin(pixels, width, height); !begun) return begun;
+  gl.FrontFace(GL_CW);  // pictures are drawn upside down: see RenderTarget
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+  gl.DepthFunc(GL_LESS);
+  gl.DepthMask(GL_TRUE);
+  gl.Enable(GL_SCISSOR_TEST);
+  gl.Enable(GL_DEPTH_TEST);
+  meshes.begin_frame();
+  counters.bodies_drawn = 0;
+  counters.bodies_left_out = 0;
+  return {};
+}
+
+Result<void> Renderer::Impl::end(int width, int height) {
+  meshes.end_frame();
+  counters.meshes = meshes.size();
+  counters.uploads = meshes.uploads();
+  ++counters.frames;
+  if (gl.GetError() == GL_NO_ERROR) return {};
+  return fail("the graphics system ran out of memory with a picture of " + std::to_string(width) + "x" +
+                  std::to_string(height) + " pixels",
+              "ask for a smaller one");
+}
+
+void Renderer::Impl::draw_pane(const Scene& scene, const ViewTransform& view, std::vector<DrawnBody>& drawn) {
+  const Frame frame{scene, view};
+  const BodyCounts counts = BodyPass::examine(frame, drawn);
+  counters.bodies_drawn += counts.drawn;
+  counters.bodies_left_out += counts.left_out;
+  bodies.draw_opaque(frame, drawn);
+  bodies.draw_see_through(frame, drawn);
+}
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
+  auto context = make_context(options);
+  if (!context) return std::unexpected(context.error());
+  const auto gl = load_gl(**context);
+  if (!gl) return std::unexpected(gl.error());
+  auto impl = std::make_unique<Impl>(std::move(*context), *gl);
+  if (const Result<void> prepared = impl->prepare(); !prepared) return std::unexpected(prepared.error());
+  return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
+}
+
+std::string_view Renderer::name() const { return impl_->name; }
+RendererCounters Renderer::counters() const { return impl_->counters; }
+
+Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture) {
+  Impl& impl = *impl_;
+  const Pixels pixels = is_on(scene, DisplayMode::antialiasing) ? Pixels::smooth_colours : Pixels::colours;
+  if (Result<void> begun = impl.begin(pixels, width, height); !begun) return begun;
+  impl.gl.ClearColor(0.60F, 0.63F, 0.68F, 1);
+  impl.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
+  for (const Pane& pane : panes.first(std::min(panes.size(), kMostPanes))) {
+    const std::optional<PixelRect> rect = pixels_of(pane, width, height);
+    if (!rect) continue;
+    impl.clip_to(*rect);
+    impl.background.draw();
+    if (const auto view = ViewTransform::of(pane, width, height)) impl.draw_pane(scene, *view, drawn);
+  }
+  picture.width = width;
+  picture.height = height;
+  picture.rgba.resize(std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  impl.target.read_colours(picture.rgba.data());
+  return impl.end(width, height);
+}
+
+Result<void> Renderer::objects(const Scene& scene, std::span<const Pane> panes, int width, int height,
+                               std::vector<std::uint32_t>& objects) {
+  Impl& impl = *impl_;
+  if (Result<void> begun = impl.begin(Pixels::objects, width, height); !begun) return begun;
+  constexpr std::array<GLuint, 4> kNone{};
+  impl.gl.ClearBufferuiv(GL_COLOR, 0, kNone.data());
+  impl.gl.Clear(GL_DEPTH_BUFFER_BIT);
+  std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
+  for (const Pane& pane : panes.first(std::min(panes.size(), kMostPanes))) {
+    const auto view = ViewTransform::of(pane, width, height);
+    if (!view) continue;
+    impl.clip_to(view->pixels());
+    const Frame frame{scene, *view};
+    BodyPass::examine(frame, drawn);
+    impl.bodies.draw_objects(frame, drawn);
+  }
+  objects.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  impl.target.read_objects(objects.data());
+  return impl.end(width, height);
+}
+
+}  // namespace cellmirror::display
