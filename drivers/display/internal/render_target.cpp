@@ -63,6 +63,7 @@ Result<void> RenderTarget::begin(Pixels pixels, int width, int height) {
 
 void RenderTarget::read_colours(std::uint8_t* rgba) {
   GLuint from = frame_;
+  gl_.Disable(GL_SCISSOR_TEST);  // it holds for blits, too
   if (resolved_ != 0) {
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
