@@ -14,7 +14,8 @@ Nanoseconds period_of(double rate_hz) { return Nanoseconds(static_cast<std::int6
 void add(std::vector<PublishedOutput>& outputs, std::unique_ptr<RobotStateOutput> output, double rate_hz) {
   auto* findings = dynamic_cast<FindingsOutput*>(output.get());
   auto* forces = dynamic_cast<ForceOutput*>(output.get());
-  outputs.push_back({std::move(output), period_of(rate_hz), findings, forces});
+  auto* cameras = dynamic_cast<CameraOutput*>(output.get());
+  outputs.push_back({std::move(output), period_of(rate_hz), findings, forces, cameras});
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The thread that gives robot states, collisions and ranges to the outputs, each at its rate, in step with the tick.
+// The thread that gives robot states, collisions, ranges and cameras to the outputs, each at its rate, in step with the
+// tick.
 #pragma once
 
 #include <memory>
@@ -12,6 +13,7 @@
 #include "app/gateway/robot_states.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/camera_state.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
 
@@ -22,6 +24,7 @@ struct PublishedOutput {
   Nanoseconds period{0};
   FindingsOutput* findings = nullptr;  // the same object; null: it has no use for collisions and ranges
   ForceOutput* forces = nullptr;       // likewise
+  CameraOutput* cameras = nullptr;     // likewise
 };
 
 // Gives what is on the boards to one output. Results that were replaced in the meantime are left out, but none of their

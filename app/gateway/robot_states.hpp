@@ -20,6 +20,8 @@ class RobotStateBuilder {
   // After build(): the frames of the robots' chains for /tf, from "world" over the base and the joints to the TCP.
   // `wanted` says for each robot of the picture whether it is in.
   std::span<const FramePose> frames(const OwnerPicture& picture, const std::vector<bool>& wanted);
+  // Of all nodes, at the tick of the last build().
+  [[nodiscard]] const CellPoses& poses() const { return poses_; }
 
  private:
   std::vector<JointValues> positions_ = std::vector<JointValues>(kMaxRobots);

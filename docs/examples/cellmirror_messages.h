@@ -28,7 +28,7 @@
 #define CELLMIRROR_KIND_ROBOT 1u
 #define CELLMIRROR_KIND_RANGE 2u
 #define CELLMIRROR_KIND_RANGE_ARRAY 3u
-#define CELLMIRROR_KIND_CAMERA 4u /* reserved */
+#define CELLMIRROR_KIND_CAMERA 4u
 #define CELLMIRROR_KIND_PROXIMITY 5u
 #define CELLMIRROR_KIND_EVENT 6u
 
@@ -92,6 +92,17 @@
 #define CELLMIRROR_RANGE_ENTRY_OFFSET_FLAGS 104
 #define CELLMIRROR_RANGE_ENTRY_BYTES 112
 
+#define CELLMIRROR_CAMERA_OFFSET_ID 40
+#define CELLMIRROR_CAMERA_OFFSET_TRACKS 104
+#define CELLMIRROR_CAMERA_OFFSET_POSE 232
+#define CELLMIRROR_CAMERA_OFFSET_MOUNT 288
+#define CELLMIRROR_CAMERA_OFFSET_PAN 344
+#define CELLMIRROR_CAMERA_OFFSET_TILT 352
+#define CELLMIRROR_CAMERA_OFFSET_FOCAL_DISTANCE 360
+#define CELLMIRROR_CAMERA_OFFSET_FOVY 368
+#define CELLMIRROR_CAMERA_OFFSET_FLAGS 376
+#define CELLMIRROR_CAMERA_BYTES 384
+
 #define CELLMIRROR_PROXIMITY_OFFSET_CHECK 40
 #define CELLMIRROR_PROXIMITY_OFFSET_WARNING_DISTANCE 48
 #define CELLMIRROR_PROXIMITY_OFFSET_COMPUTED_AFTER_S 56
@@ -129,6 +140,10 @@
 #define CELLMIRROR_RANGE_SEEN 1u          /* something is in the cone */
 #define CELLMIRROR_RANGE_IN_BLIND_ZONE 2u /* so near that a real sensor could not tell */
 #define CELLMIRROR_RANGE_DOUBTFUL 4u      /* something nearer may be there */
+
+/* Flags of a camera. */
+#define CELLMIRROR_CAMERA_TRACKING 1u /* it is to look at the frame that is named */
+#define CELLMIRROR_CAMERA_MIRRORED 2u /* its head is mirrored: without the flag above there is nothing to follow */
 
 /* Flags of a pair. */
 #define CELLMIRROR_PAIR_TOUCHING 1u
@@ -230,6 +245,20 @@ struct cellmirror_range_array {
   struct cellmirror_range_entry ranges[CELLMIRROR_MAX_RANGES]; /* count of them are sent */
 };
 
+struct cellmirror_camera {
+  struct cellmirror_header header;
+  char id[CELLMIRROR_NAME_BYTES];
+  char tracks[CELLMIRROR_PATH_BYTES]; /* dotted path of the frame that it is to look at; empty: none */
+  struct cellmirror_pose pose;        /* where it is to look, in the world */
+  struct cellmirror_pose mount;       /* as it looks with its pan-tilt head at zero */
+  double pan;                         /* rad, about y of the mount */
+  double tilt;                        /* rad, then about the new x */
+  double focal_distance;              /* m */
+  double fovy;                        /* rad, vertical */
+  uint32_t flags;
+  uint32_t reserved;
+};
+
 struct cellmirror_pair {
   char a[CELLMIRROR_PATH_BYTES];
   char b[CELLMIRROR_PATH_BYTES];
@@ -284,6 +313,7 @@ CELLMIRROR_CHECK(sizeof(struct cellmirror_range) == CELLMIRROR_RANGE_BYTES);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_range_entry) == CELLMIRROR_RANGE_ENTRY_BYTES);
 CELLMIRROR_CHECK(offsetof(struct cellmirror_range_array, ranges) == CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_range_array) <= CELLMIRROR_MAX_MESSAGE_BYTES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_camera) == CELLMIRROR_CAMERA_BYTES);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_pair) == CELLMIRROR_PAIR_BYTES);
 CELLMIRROR_CHECK(offsetof(struct cellmirror_proximity, pairs) == CELLMIRROR_PROXIMITY_OFFSET_PAIRS);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_event) == CELLMIRROR_EVENT_BYTES);
@@ -328,6 +358,15 @@ static inline int cellmirror_read_range_array(const void* message, size_t bytes,
   for (i = 0; i < CELLMIRROR_MAX_RANGES; ++i) array->ranges[i].id[CELLMIRROR_NAME_BYTES - 1] = '\0';
   return array->count <= CELLMIRROR_MAX_RANGES &&
          bytes == CELLMIRROR_RANGE_ARRAY_OFFSET_RANGES + (size_t)array->count * CELLMIRROR_RANGE_ENTRY_BYTES;
+}
+
+static inline int cellmirror_read_camera(const void* message, size_t bytes, struct cellmirror_camera* camera) {
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_CAMERA, CELLMIRROR_CAMERA_BYTES)) return 0;
+  if (bytes != sizeof *camera) return 0;
+  memcpy(camera, message, bytes);
+  camera->id[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  camera->tracks[CELLMIRROR_PATH_BYTES - 1] = '\0';
+  return 1;
 }
 
 static inline int cellmirror_read_proximity(const void* message, size_t bytes, struct cellmirror_proximity* proximity) {

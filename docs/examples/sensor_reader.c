@@ -3,6 +3,7 @@
  *   sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
  *   sequence range sensor DISTANCE|nothing|blind|doubt [object]          SET_USSPAR active
  *   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind|doubt ...   SET_USSPAR sendmode 1
+ *   sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
  *   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
  *   sequence event NUMBER CHANGE a b DISTANCE
  *
@@ -74,6 +75,18 @@ static void print_range_array(const struct cellmirror_range_array* array) {
   printf("\n");
 }
 
+static void print_camera(const struct cellmirror_camera* camera) {
+  printf("%llu camera %s ", (unsigned long long)camera->header.sequence, camera->id);
+  if (camera->flags & CELLMIRROR_CAMERA_TRACKING) {
+    printf("tracks %s", camera->tracks);
+  } else {
+    printf("free");
+  }
+  printf(" %s pan %.6f tilt %.6f distance %.6f fovy %.6f\n",
+         camera->flags & CELLMIRROR_CAMERA_MIRRORED ? "mirrored" : "simulated", camera->pan, camera->tilt,
+         camera->focal_distance, camera->fovy);
+}
+
 static void print_proximity(const struct cellmirror_proximity* proximity) {
   printf("%llu proximity touching %u warning %u of %u pairs:", (unsigned long long)proximity->header.sequence,
          (unsigned)proximity->touching, (unsigned)proximity->within_warning, (unsigned)proximity->tested);
@@ -100,6 +113,7 @@ static int print_record(const void* message, size_t bytes) {
     struct cellmirror_robot robot;
     struct cellmirror_range range;
     struct cellmirror_range_array array;
+    struct cellmirror_camera camera;
     struct cellmirror_proximity proximity;
     struct cellmirror_event event;
   } record;
@@ -109,6 +123,8 @@ static int print_record(const void* message, size_t bytes) {
     print_range(&record.range);
   } else if (cellmirror_read_range_array(message, bytes, &record.array)) {
     print_range_array(&record.array);
+  } else if (cellmirror_read_camera(message, bytes, &record.camera)) {
+    print_camera(&record.camera);
   } else if (cellmirror_read_proximity(message, bytes, &record.proximity)) {
     print_proximity(&record.proximity);
   } else if (cellmirror_read_event(message, bytes, &record.event)) {

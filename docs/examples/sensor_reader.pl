@@ -3,6 +3,7 @@
 #   sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
 #   sequence range sensor DISTANCE|nothing|blind|doubt [object]          SET_USSPAR active
 #   sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind|doubt ...   SET_USSPAR sendmode 1
+#   sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
 #   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
 #   sequence event NUMBER CHANGE a b DISTANCE
 #
@@ -17,7 +18,7 @@ use constant { MESSAGE_TYPE => 5, MAX_MESSAGE => 8192, MSG_NOERROR => 010000 };
 # Places in a record: docs/messages.md
 use constant { PAYLOAD => 40, WORLD_TCP => 176, JOINTS => 232, JOINT_BYTES => 112, JOINT_POSITION => 72 };
 use constant { RANGE_BYTES => 296, RANGES => 48, RANGE_ENTRY_BYTES => 112 };
-use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320 };
+use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320, CAMERA_BYTES => 384 };
 
 my $usage = <<'END';
 usage: sensor_reader.pl [--count N] [--timeout SECONDS] [--key KEY]
@@ -83,6 +84,18 @@ sub ranges {
     return @words;
 }
 
+# Flags: 1 it tracks, 2 its head is mirrored.
+sub camera {
+    my ($record) = @_;
+    return if length($record) != CAMERA_BYTES;
+    # pose, mount, pan, tilt, focal distance, fovy, flags
+    my ($id, $tracks, @more) = unpack('Z64 Z128 d<18 L<', substr($record, PAYLOAD));
+    my $flags = $more[18];
+    my @words = ('camera', $id, ($flags & 1) ? ('tracks', $tracks) : 'free', ($flags & 2) ? 'mirrored' : 'simulated');
+    my @numbers = map { sprintf '%.6f', $_ } @more[14 .. 17];
+    return (@words, 'pan', $numbers[0], 'tilt', $numbers[1], 'distance', $numbers[2], 'fovy', $numbers[3]);
+}
+
 sub proximity {
     my ($record) = @_;
     return if length($record) < PAIRS;
@@ -106,7 +119,7 @@ sub event {
     return ('event', $event, $changes[$change] // 'unknown', $body_a, $body_b, sprintf('%.6f', $distance));
 }
 
-my %kinds = (1 => \&robot, 2 => \&range, 3 => \&ranges, 5 => \&proximity, 6 => \&event);
+my %kinds = (1 => \&robot, 2 => \&range, 3 => \&ranges, 4 => \&camera, 5 => \&proximity, 6 => \&event);
 for (my $printed = 0; $count == 0 || $printed < $count;) {
     my $message;
     alarm($timeout);

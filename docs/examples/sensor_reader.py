@@ -6,6 +6,7 @@
     sequence robot online|offline state joint=position ... tcp x y z     ROBOT <id> send_on
     sequence range sensor DISTANCE|nothing|blind|doubt [object]          SET_USSPAR active
     sequence ranges PART/PARTS sensor=DISTANCE|nothing|blind|doubt ...   SET_USSPAR sendmode 1
+    sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
     sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
     sequence event NUMBER CHANGE a b DISTANCE
 
@@ -28,11 +29,13 @@ JOINT = struct.Struct("<64sBB6x5d")
 RANGE = struct.Struct("<64s128s7dI4x")  # distance, range, blind zone, half angle, point; flags
 RANGES = struct.Struct("<4H")  # part, parts, count, total
 RANGE_ENTRY = struct.Struct("<64s5dI4x")  # distance, range, point; flags
+CAMERA = struct.Struct("<64s128s18dI4x")  # pose, mount, pan, tilt, focal distance, fovy; flags
 PROXIMITY = struct.Struct("<Q2d5IH2x")  # tested, touching, within warning, doubts, found; pairs
 PAIR = struct.Struct("<128s128s13d2Id")  # distance, depth, points, normal, closing speed, time to contact; flags; contact age
 EVENT = struct.Struct("<QB7xd128s128s")
 STATES = ("none", "fresh", "stale", "lost", "invalid")
 CHANGES = ("entered_warning", "touched", "parted", "left_warning")
+CAMERA_TRACKING, CAMERA_MIRRORED = 1, 2
 RANGE_SEEN, RANGE_IN_BLIND_ZONE, RANGE_DOUBTFUL, PAIR_TOUCHING = 1, 2, 4, 1
 
 
@@ -71,6 +74,15 @@ def ranges(payload):
     return ["ranges", f"{part}/{parts}"] + [f"{name(entry[0])}={reading(entry[1], entry[6])}" for entry in entries]
 
 
+def camera(payload):
+    camera_id, tracks, *numbers, flags = CAMERA.unpack(payload)
+    words = ["camera", name(camera_id)] + (["tracks", name(tracks)] if flags & CAMERA_TRACKING else ["free"])
+    words.append("mirrored" if flags & CAMERA_MIRRORED else "simulated")
+    for what, number in zip(("pan", "tilt", "distance", "fovy"), numbers[14:]):
+        words += [what, f"{number:.6f}"]
+    return words
+
+
 def proximity(payload):
     _, _, _, tested, touching, warning, _, _, _ = PROXIMITY.unpack_from(payload)
     words = f"proximity touching {touching} warning {warning} of {tested} pairs:".split()
@@ -84,7 +96,7 @@ def event(payload):
     return ["event", str(number), word(CHANGES, change), name(a), name(b), f"{distance:.6f}"]
 
 
-KINDS = {1: robot, 2: single_range, 3: ranges, 5: proximity, 6: event}
+KINDS = {1: robot, 2: single_range, 3: ranges, 4: camera, 5: proximity, 6: event}
 
 
 def record_line(record):

@@ -9,6 +9,7 @@
 
 #include "ipc/sysv/owned_queue.hpp"
 #include "ipc/sysv/proximity_pacing.hpp"
+#include "ipc/wire/camera_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
@@ -36,8 +37,13 @@ struct SentAndRefused {
 };
 
 // Nothing in the cone is a reading, too.
-bool is_finite(const RangeReading& reading) {
+bool has_finite_values(const RangeReading& reading) {
   return !reading.distance_m || (std::isfinite(*reading.distance_m) && reading.point_m.allFinite());
+}
+
+bool has_finite_values(const CameraState& camera) {
+  return camera.X_WC.matrix().allFinite() && camera.X_WM.matrix().allFinite() && std::isfinite(camera.pan_rad) &&
+         std::isfinite(camera.tilt_rad) && std::isfinite(camera.focal_distance_m) && std::isfinite(camera.fovy_rad);
 }
 
 }  // namespace
@@ -59,6 +65,7 @@ struct SensorQueueOutput::Impl {
   SentAndRefused ranges;
   SentAndRefused proximity;
   SentAndRefused events;
+  SentAndRefused cameras;
 
   template <class Record, class Encode>
   void send(Record record, Timestamp time, Encode encode, SentAndRefused& counters);
@@ -66,7 +73,9 @@ struct SensorQueueOutput::Impl {
   bool deliver(std::span<const std::byte> record, Timestamp time);
   bool make_room();
   bool repair(Timestamp time);
-  [[nodiscard]] std::array<const SentAndRefused*, 4> kinds() const { return {&robots, &ranges, &proximity, &events}; }
+  [[nodiscard]] std::array<const SentAndRefused*, 5> kinds() const {
+    return {&robots, &ranges, &proximity, &events, &cameras};
+  }
 };
 
 // Of the records only: what others put there with another type goes first where no record is left.
@@ -149,7 +158,8 @@ void SensorQueueOutput::publish(Timestamp time, std::span<const RobotState> robo
 void SensorQueueOutput::publish_ranges(std::span<const RangeReading> readings, RangeSendMode mode) {
   std::vector<RangeReading>& finite = impl_->finite;
   finite.clear();
-  std::copy_if(readings.begin(), readings.end(), std::back_inserter(finite), is_finite);
+  std::copy_if(readings.begin(), readings.end(), std::back_inserter(finite),
+               [](const RangeReading& reading) { return has_finite_values(reading); });
   if (finite.size() > kMostReadings) finite.resize(kMostReadings);
   impl_->ranges.refused.add(readings.size() - finite.size());
   if (mode == RangeSendMode::one_message_a_sensor) {
@@ -181,6 +191,16 @@ void SensorQueueOutput::publish_proximity(const ProximityState& state) {
   impl_->send(std::move(record), state.posture_time, encode_proximity_record, impl_->proximity);
 }
 
+void SensorQueueOutput::publish_cameras(Timestamp time, std::span<const CameraState> cameras) {
+  for (const CameraState& camera : cameras) {
+    if (has_finite_values(camera)) {
+      impl_->send(camera_record_of(camera, time), time, encode_camera_record, impl_->cameras);
+    } else {
+      impl_->cameras.refused.add();
+    }
+  }
+}
+
 std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters() const {
   std::uint64_t sent = 0;
   std::uint64_t refused = 0;
@@ -198,6 +218,8 @@ std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters()
           {"events_sent", impl_->events.sent.get()},
           {"events_refused", impl_->events.refused.get()},
           {"events_missing", impl_->events_missing.get()},
+          {"cameras_sent", impl_->cameras.sent.get()},
+          {"cameras_refused", impl_->cameras.refused.get()},
           {"recreated", impl_->queue->recreated()},
           {"discarded", impl_->queue->discarded()},
           {"waiting", impl_->queue->waiting()}};

@@ -1,5 +1,5 @@
 // What leaves over the SENSOR channel (manual 1.2.1: key 1990, type 5): robot parameters (ROBOT send_on), ultrasonic
-// ranges (SET_USSPAR), what touches and what is near.
+// ranges (SET_USSPAR), what touches and what is near, cameras that are online (CAM_ONLINE).
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/camera_state.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/ports/stream_config.hpp"
@@ -18,7 +19,7 @@ namespace cellmirror {
 // Counters: sent, dropped (old records taken out unread), refused (new ones that found no room at all, or values that
 // are not finite), of these sent and refused by kind (ranges_sent, ...), events_missing (gaps in the events that were
 // given to this output), recreated, discarded (left behind by an earlier process), waiting.
-class SensorQueueOutput final : public RobotStateOutput, public FindingsOutput {
+class SensorQueueOutput final : public RobotStateOutput, public FindingsOutput, public CameraOutput {
  public:
   // Fails where the queue cannot be had; see OwnedQueue::make.
   static Result<std::unique_ptr<SensorQueueOutput>> open(const QueueConfig& config, const std::string& instance);
@@ -30,6 +31,8 @@ class SensorQueueOutput final : public RobotStateOutput, public FindingsOutput {
   // A record for each event, then one for the state where that is due (ProximityPacing). The state of the same
   // computation again sends no event twice.
   void publish_proximity(const ProximityState& state) override;
+  // A record a camera. Those whose numbers are not finite are refused.
+  void publish_cameras(Timestamp time, std::span<const CameraState> cameras) override;
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override;
   [[nodiscard]] std::string name() const override;  // "sensor queue 0x7c6 (1990)"
 

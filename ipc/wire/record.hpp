@@ -17,7 +17,7 @@ inline constexpr std::uint16_t kRecordVersion = 1;
 inline constexpr std::size_t kRecordNameBytes = 64;   // a name with at least one NUL behind it
 inline constexpr std::size_t kRecordPathBytes = 128;  // a dotted path, likewise
 
-// A number that was given out keeps its meaning for ever. 4 is reserved for records that are not sent yet.
+// A number that was given out keeps its meaning for ever.
 enum class RecordKind : std::uint16_t {
   robot_parameters = 1,
   ultrasonic_range = 2,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -15,30 +14,9 @@ namespace {
 using namespace little_endian;
 using namespace robot_record_offset;
 
-PoseRecord pose_record(const Pose& X) {
-  Eigen::Quaterniond q(X.linear());
-  q.normalize();
-  // q and -q are the same rotation: one of them is sent, so that equal poses have equal bytes.
-  if (q.w() < 0) q.coeffs() = -q.coeffs();
-  const auto& p = X.translation();
-  return {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}};
-}
-
 double age_at(Timestamp time, Timestamp then) {
   if (!then.known()) return std::numeric_limits<double>::quiet_NaN();
   return std::max(0.0, seconds(time - then));  // what came during the tick is 0 old
-}
-
-void put_pose(std::span<std::byte> bytes, std::size_t offset, const PoseRecord& pose) {
-  put_point(bytes, offset + kPosePosition, pose.position);
-  for (std::size_t i = 0; i < 4; ++i) put(bytes, offset + kPoseQuaternion + 8 * i, pose.quaternion[i]);
-}
-
-PoseRecord get_pose(std::span<const std::byte> bytes, std::size_t offset) {
-  PoseRecord pose;
-  pose.position = get_point(bytes, offset + kPosePosition);
-  for (std::size_t i = 0; i < 4; ++i) pose.quaternion[i] = get<double>(bytes, offset + kPoseQuaternion + 8 * i);
-  return pose;
 }
 
 void put_joint(std::span<std::byte> joint, const JointRecord& record) {
@@ -113,8 +91,8 @@ RobotRecord robot_record_of(const RobotState& robot, Timestamp time) {
   record.online = robot.online;
   record.state = robot.state;
   record.sample_sequence = robot.sequence;
-  record.base_tcp = pose_record(robot.X_BT);
-  record.world_tcp = pose_record(robot.X_WT);
+  record.base_tcp = pose_record_of(robot.X_BT);
+  record.world_tcp = pose_record_of(robot.X_WT);
   record.joints.reserve(robot.joints.size());
   for (const RobotJointState& joint : robot.joints) {
     record.joints.push_back({joint.name, joint.kind, joint.state, joint.position, joint.velocity, joint.effort,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/wire/pose_fields.hpp"
 #include "ipc/wire/record.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/result.hpp"
@@ -27,10 +28,6 @@ inline constexpr std::size_t kSampleSequence = 112;  // u64
 inline constexpr std::size_t kBaseTcp = 120;         // pose
 inline constexpr std::size_t kWorldTcp = 176;        // pose
 inline constexpr std::size_t kJoints = 232;          // first joint
-// A pose.
-inline constexpr std::size_t kPosePosition = 0;     // f64[3]
-inline constexpr std::size_t kPoseQuaternion = 24;  // f64[4]
-inline constexpr std::size_t kPoseBytes = 56;
 // From the start of a joint.
 inline constexpr std::size_t kJointName = 0;         // char[64]
 inline constexpr std::size_t kJointKind = 64;        // u8
@@ -47,11 +44,6 @@ inline constexpr std::size_t kJointBytes = 112;
 inline constexpr std::size_t kMaxRobotRecordBytes =
     robot_record_offset::kJoints + kMaxJointsPerRobot * robot_record_offset::kJointBytes;
 static_assert(kMaxRobotRecordBytes <= kMaxRecordBytes, "a robot fits in one record");
-
-struct PoseRecord {
-  std::array<double, 3> position{};              // m
-  std::array<double, 4> quaternion{0, 0, 0, 1};  // x, y, z, w; w >= 0
-};
 
 struct JointRecord {
   std::string name;

@@ -62,17 +62,6 @@ Result<Cia402RobotsConfig> cia402_config(const CommonOptions& common, const Cia4
   return config;
 }
 
-Result<std::unique_ptr<CanChannel>> open_bus(const std::string& endpoint, const std::string& interface) {
-  if (endpoint.starts_with("log:")) return fail("a log cannot be sent to", "use socketcan: or udp:");
-  CanChannelConfig config;
-  config.endpoint = endpoint;
-  config.interface = interface;
-  auto channel = can::open_can_channel(config);
-  constexpr std::string_view kSocketCan = "socketcan:";
-  if (!channel || !endpoint.starts_with(kSocketCan)) return channel;
-  return with_error_frames(std::move(*channel), endpoint.substr(kSocketCan.size()));
-}
-
 Result<void> add_signals(const std::vector<std::string>& names, JointQuantity quantity, double units_per_rad,
                          std::vector<DbcSignalConfig>& signals) {
   for (std::size_t joint = 0; joint < names.size(); ++joint) {
@@ -92,6 +81,17 @@ Result<void> add_signals(const std::vector<std::string>& names, JointQuantity qu
 }
 
 }  // namespace
+
+Result<std::unique_ptr<CanChannel>> open_bus(const std::string& endpoint, const std::string& interface) {
+  if (endpoint.starts_with("log:")) return fail("a log cannot be sent to", "use socketcan: or udp:");
+  CanChannelConfig config;
+  config.endpoint = endpoint;
+  config.interface = interface;
+  auto channel = can::open_can_channel(config);
+  constexpr std::string_view kSocketCan = "socketcan:";
+  if (!channel || !endpoint.starts_with(kSocketCan)) return channel;
+  return with_error_frames(std::move(*channel), endpoint.substr(kSocketCan.size()));
+}
 
 Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text) {
   std::vector<std::uint8_t> nodes;

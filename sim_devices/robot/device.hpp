@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,6 +35,7 @@ struct DeviceStatus {
   double latest_s = 0;  // the largest delay of a period's start
   std::vector<std::uint64_t> samples_of_robot;
   std::vector<std::pair<std::string, std::uint64_t>> details;
+  std::vector<std::pair<std::string, double>> quantities;  // SI, with the unit in the name
   std::vector<FaultStatus> faults;
 };
 
@@ -51,6 +54,8 @@ class SimulatedDevice {
 
   // One sentence what was done, or why not.
   virtual Result<std::string> obey(const ControlCommand& command, Timestamp now) = 0;
+  // A line that only this kind of device understands; none: it is for obey().
+  virtual std::optional<Result<std::string>> obey_own(std::string_view /*line*/, Timestamp /*now*/) { return {}; }
   [[nodiscard]] virtual DeviceStatus status(Timestamp now) const = 0;
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/can_channel.hpp"
 #include "sim_devices/robot/device.hpp"
 
 namespace cellmirror::sim {
@@ -82,6 +83,9 @@ struct BuiltDevices {
                                                                 const Cia402Options& options);
 [[nodiscard]] std::expected<BuiltDevices, Refusal> build_dbc(const CommonOptions& common, const DbcOptions& options);
 [[nodiscard]] std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, const DdsOptions& options);
+
+// A bus to send on, error frames included; a log is refused. `interface` is for udp.
+[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_bus(const std::string& endpoint, const std::string& interface);
 
 // "1-6", "1,2,5", "1-3,7": 1..127, each once, in the order given.
 [[nodiscard]] Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text);

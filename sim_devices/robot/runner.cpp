@@ -33,6 +33,7 @@ nlohmann::ordered_json to_json(const DeviceStatus& status) {
   json["missed_periods"] = status.missed_periods;
   json["latest_start_s"] = status.latest_s;
   for (const auto& [name, value] : status.details) json[name] = value;
+  for (const auto& [name, value] : status.quantities) json[name] = value;
   json["faults"] = nlohmann::ordered_json::array();
   for (const FaultStatus& fault : status.faults) {
     json["faults"].push_back(
@@ -100,7 +101,7 @@ void Runner::run() {
 
 void Runner::work(Seat& seat) {
   if (!become_punctual(config_.priority)) {
-    fmt::print(stderr, "sim_robot: no SCHED_FIFO for this user; sending with ordinary priority\n");
+    fmt::print(stderr, "{}: no SCHED_FIFO for this user; sending with ordinary priority\n", config_.program);
   }
   constexpr Nanoseconds kLongestWait{20'000'000};  // so that commands and the end are seen
   while (!seat.stop) {
@@ -129,6 +130,11 @@ Result<std::string> Runner::obey(const ControlCommand& command) {
 }
 
 std::string Runner::answer(std::string_view line) {
+  for (const auto& seat : seats_) {
+    const std::lock_guard lock(seat->mutex);
+    const auto own = seat->device->obey_own(line, clock_.now());
+    if (own) return *own ? "ok: " + **own : "error: " + own->error().text();
+  }
   const auto command = parse_control_command(line);
   if (!command) return "error: " + command.error().text();
   if (std::holds_alternative<Quit>(*command)) {

@@ -13,7 +13,8 @@
 namespace cellmirror::sim {
 
 struct RunnerConfig {
-  std::string kind;               // "cia402", "dds", ... for the report
+  std::string kind;  // "cia402", "dds", ... for the report
+  std::string program = "sim_robot";
   std::optional<double> seconds;  // none: until quit, SIGINT or SIGTERM
   std::vector<FaultSpec> faults;  // windows count from the start
   std::string control_path;       // empty: standard input only

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 
+#include "ipc/wire/camera_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
@@ -34,6 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   round_trip(bytes, decode_robot_record, encode_robot_record);
   round_trip(bytes, decode_range_record, encode_range_record);
   round_trip(bytes, decode_range_array, encode_range_array);
+  round_trip(bytes, decode_camera_record, encode_camera_record);
   round_trip(bytes, decode_proximity_record, encode_proximity_record);
   round_trip(bytes, decode_event_record, encode_event_record);
   return 0;

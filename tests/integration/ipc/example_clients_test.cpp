@@ -120,10 +120,10 @@ TEST_P(ExampleClients, ReadsRecords) {
   EXPECT_EQ(lines, 5);
 }
 
-TEST_P(ExampleClients, ReadsWhatSensorsAndCollisionTestsFind) {
+TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsAndCamerasTell) {
   ChildProcess gateway(gateway_command("findings"));
   ASSERT_EQ(gateway.line(), "ready");
-  ChildProcess sut(read("7", "10"));
+  ChildProcess sut(read("9", "10"));
   EXPECT_EQ(sut.wait(), 0) << sut.errors();
   EXPECT_EQ(sut.output(),
             "1 range USS_1 0.250000 cell.box\n"
@@ -132,7 +132,10 @@ TEST_P(ExampleClients, ReadsWhatSensorsAndCollisionTestsFind) {
             "4 range USS_4 doubt\n"
             "5 ranges 1/1 USS_1=0.250000 USS_2=nothing USS_3=blind USS_4=doubt\n"
             "6 event 1 touched cell.A cell.B 0.000000\n"
-            "7 proximity touching 1 warning 2 of 45 pairs: cell.A|cell.B=touching cell.B|cell.C=0.012500\n");
+            "7 proximity touching 1 warning 2 of 45 pairs: cell.A|cell.B=touching cell.B|cell.C=0.012500\n"
+            "8 camera UMG_Kamera_1 tracks Gantry.J_2.Hand mirrored pan 0.250000 tilt -0.500000 distance 4.000000 "
+            "fovy 0.750000\n"
+            "9 camera CAMERA_5 free simulated pan 0.250000 tilt -0.500000 distance 4.000000 fovy 0.750000\n");
 }
 
 TEST_P(ExampleClients, ReaderEndsInTimeWithoutRecords) {

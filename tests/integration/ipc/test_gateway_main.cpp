@@ -1,5 +1,5 @@
 // A gateway without a cell: it answers commands and sends records of one robot that moves in steps, or, where it is
-// told to, one round of what sensors and collision tests find before it is ready.
+// told to, one round of what sensors, collision tests and cameras tell before it is ready.
 //   ipc_test_gateway SCRIPT_KEY SENSOR_KEY REPLY_KEY [RATE_HZ|findings]
 // Commands: "echo TEXT" is done with TEXT, "silent" is never answered, anything else is refused. Prints "ready" and
 // ends at SIGTERM.
@@ -46,6 +46,19 @@ RangeReading reading(const char* id, std::optional<double> distance, Timestamp t
   return made;
 }
 
+CameraState camera(const char* name, bool mirrored, const char* tracks) {
+  CameraState made;
+  made.name = name;
+  made.tracks = tracks;
+  made.tracking = !made.tracks.empty();
+  made.mirrored = mirrored;
+  made.pan_rad = 0.25;
+  made.tilt_rad = -0.5;
+  made.focal_distance_m = 4;
+  made.fovy_rad = 0.75;
+  return made;
+}
+
 void send_findings(SensorQueueOutput& output) {
   const Timestamp now = SystemClock().now();
   RangeReading readings[] = {reading("USS_1", 0.25, now), reading("USS_2", {}, now), reading("USS_3", 0.05, now),
@@ -65,6 +78,8 @@ void send_findings(SensorQueueOutput& output) {
   state.near.push_back({1, 2, 0.0125, zero, zero, true, false, {}, {}});
   state.events.push_back({1, ProximityChange::touched, "cell.A", "cell.B", 0, now});
   output.publish_proximity(state);
+  const CameraState cameras[] = {camera("UMG_Kamera_1", true, "Gantry.J_2.Hand"), camera("CAMERA_5", false, "")};
+  output.publish_cameras(now, cameras);
 }
 
 int refuse(const Error& error) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "docs/examples/cellmirror_messages.h"
+#include "ipc/wire/camera_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
@@ -19,6 +20,7 @@ namespace header = record_offset;
 namespace robot = robot_record_offset;
 namespace range = range_record_offset;
 namespace ranges = range_array_offset;
+namespace camera = camera_record_offset;
 namespace proximity = proximity_record_offset;
 namespace event = event_record_offset;
 
@@ -63,9 +65,9 @@ TEST(DocumentedLayout, OfARobot) {
 
 TEST(DocumentedLayout, OfAPose) {
   using Struct = cellmirror_pose;
-  expect_agreement("Pose", {{"position", "f64[3]", robot::kPosePosition, offsetof(Struct, position), 0},
-                            {"quaternion", "f64[4]", robot::kPoseQuaternion, offsetof(Struct, quaternion), 24}});
-  EXPECT_EQ(sizeof(Struct), robot::kPoseBytes);
+  expect_agreement("Pose", {{"position", "f64[3]", pose_offset::kPosition, offsetof(Struct, position), 0},
+                            {"quaternion", "f64[4]", pose_offset::kQuaternion, offsetof(Struct, quaternion), 24}});
+  EXPECT_EQ(sizeof(Struct), pose_offset::kBytes);
 }
 
 TEST(DocumentedLayout, OfAJoint) {
@@ -125,6 +127,23 @@ TEST(DocumentedLayout, OfARangeEntry) {
        {"flags", "u32", ranges::kEntryFlags, offsetof(Struct, flags), CELLMIRROR_RANGE_ENTRY_OFFSET_FLAGS},
        {"reserved", "u32", ranges::kEntryReserved, offsetof(Struct, reserved), ranges::kEntryReserved}});
   EXPECT_EQ(sizeof(Struct), ranges::kEntryBytes);
+}
+
+TEST(DocumentedLayout, OfACamera) {
+  using Struct = cellmirror_camera;
+  expect_agreement("Camera parameters (kind 4)",
+                   {{"id", "char[64]", camera::kId, offsetof(Struct, id), CELLMIRROR_CAMERA_OFFSET_ID},
+                    {"tracks", "char[128]", camera::kTracks, offsetof(Struct, tracks), CELLMIRROR_CAMERA_OFFSET_TRACKS},
+                    {"pose", "pose", camera::kPose, offsetof(Struct, pose), CELLMIRROR_CAMERA_OFFSET_POSE},
+                    {"mount", "pose", camera::kMount, offsetof(Struct, mount), CELLMIRROR_CAMERA_OFFSET_MOUNT},
+                    {"pan", "f64", camera::kPan, offsetof(Struct, pan), CELLMIRROR_CAMERA_OFFSET_PAN},
+                    {"tilt", "f64", camera::kTilt, offsetof(Struct, tilt), CELLMIRROR_CAMERA_OFFSET_TILT},
+                    {"focal_distance", "f64", camera::kFocalDistance, offsetof(Struct, focal_distance),
+                     CELLMIRROR_CAMERA_OFFSET_FOCAL_DISTANCE},
+                    {"fovy", "f64", camera::kFovy, offsetof(Struct, fovy), CELLMIRROR_CAMERA_OFFSET_FOVY},
+                    {"flags", "u32", camera::kFlags, offsetof(Struct, flags), CELLMIRROR_CAMERA_OFFSET_FLAGS},
+                    {"reserved", "u32", camera::kReserved, offsetof(Struct, reserved), camera::kReserved}});
+  EXPECT_EQ(sizeof(Struct), camera::kBytes);
 }
 
 TEST(DocumentedLayout, OfProximity) {
@@ -205,6 +224,8 @@ TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   EXPECT_EQ(CELLMIRROR_RANGE_SEEN, kRangeSeen);
   EXPECT_EQ(CELLMIRROR_RANGE_IN_BLIND_ZONE, kRangeInBlindZone);
   EXPECT_EQ(CELLMIRROR_RANGE_DOUBTFUL, kRangeDoubtful);
+  EXPECT_EQ(CELLMIRROR_CAMERA_TRACKING, kCameraTracking);
+  EXPECT_EQ(CELLMIRROR_CAMERA_MIRRORED, kCameraMirrored);
   EXPECT_EQ(CELLMIRROR_PAIR_TOUCHING, kPairTouching);
   EXPECT_EQ(CELLMIRROR_PAIR_WITHIN_WARNING, kPairWithinWarning);
   EXPECT_EQ(CELLMIRROR_PAIR_DOUBTFUL, kPairDoubtful);
