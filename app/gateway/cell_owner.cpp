@@ -31,25 +31,23 @@ CellOwner::CellOwner(Parts parts)
       reply_(std::move(parts.reply)),
       names_(cell_),
       fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
-      view_parameters_(extent_of(*cell_.compile(), cell_.start_positions())),
-      motion_(cell_, names_, view_parameters_, *fleet_),
+      display_({cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
+                std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }},
+               parts.views),
+      motion_(
+          cell_, names_, [this] { return display_.screen_axes(); }, *fleet_),
       couplings_(cell_, *fleet_, motion_),
       world_(cell_, *fleet_, motion_, [this] { hang_up_picture(); }),
       robots_(cell_, *fleet_, motion_, couplings_, names_),
-      programs_(motion_),
-      views_(cell_, view_parameters_, clock_),
+      programs_(motion_, display_),
       sensing_(cell_, std::move(parts.collision)),
       haptics_({cell_, *fleet_, parts.engine, clock_, parts.instance, std::move(parts.haptics)}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
-               [this](std::string_view text) { static_cast<void>(views_.show_message(text)); }}),
+               [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
       interaction_(names_, haptics_, forces_),
       diagnosis_(std::move(parts.save_flight_record)) {
-  for (const ViewSetting& view : parts.views) {
-    if (const auto set = view_parameters_.change(view.id, view.change); !set)
-      log_warning("cell", "[[view]] {}: {}", view.id, set.error().text());
-  }
   runner_ = std::make_unique<script::ScriptRunner>(
-      CommandHost{names_, world_, robots_, motion_, programs_, views_, sensing_, interaction_, diagnosis_}, home_,
+      CommandHost{names_, world_, robots_, motion_, programs_, display_, sensing_, interaction_, diagnosis_}, home_,
       clock_);
   switches_ = std::make_unique<SwitchDesk>(
       SwitchDesk::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
@@ -165,6 +163,12 @@ void CellOwner::loop(const std::stop_token& stop) {
   haptics_.shut_down();
 }
 
+bool CellOwner::is_online(std::size_t slot) const {
+  const RobotModel* robot = cell_.robot(slot);
+  const FleetRobot* fleet = robot == nullptr ? nullptr : fleet_->find(robot->id());
+  return fleet != nullptr && fleet->online;
+}
+
 void CellOwner::hang_up_picture() {
   auto picture = std::make_shared<OwnerPicture>();
   picture->cell = cell_.compile();
@@ -187,12 +191,10 @@ void CellOwner::hang_up_picture() {
   picture->script_errors = runner_->last_errors();
   picture->switches = switches_->picture();
   picture->couplings = couplings_.pictures();
-  const Timestamp now = clock_.now();
-  for (const ShownMessage& message : views_.messages()) {
-    if (now - message.time < CellViews::kMessageTime) picture->messages.push_back(message);
-  }
+  display_.follow();
+  picture->display = display_.state();
   board_.hang_up(std::move(picture));
-  last_picture_ = now;
+  last_picture_ = clock_.now();
 }
 
 }  // namespace cellmirror::app

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/gateway/coupling_desk.hpp"
+#include "app/gateway/display_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/force_desk.hpp"
 #include "app/gateway/haptic_desk.hpp"
@@ -24,7 +25,6 @@
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/fixed_text.hpp"
 #include "rt_core/base/home.hpp"
-#include "rt_core/cell/view.hpp"
 #include "rt_core/rt/fifo.hpp"
 #include "scripts/runner/script_runner.hpp"
 
@@ -58,6 +58,8 @@ class CellOwner {
     std::uint32_t memory_mode = 0600;
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
     std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
+    std::function<std::uint64_t()> picture_updates = {};  // so far; empty: counted by the clock
+    std::function<void()> bell = {};                      // with a message while BEEP is on
   };
 
   explicit CellOwner(Parts parts);
@@ -83,6 +85,7 @@ class CellOwner {
   bool execute_files();
   void execute(const QueuedCommand& queued);
   void hang_up_picture();
+  [[nodiscard]] bool is_online(std::size_t slot) const;
 
   Cell cell_;
   KismetHome home_;
@@ -91,13 +94,12 @@ class CellOwner {
   std::function<void(std::int64_t tag, const ScriptReply& reply)> reply_;
   CellNames names_;
   std::unique_ptr<Fleet> fleet_;
-  Views view_parameters_;
+  DisplayDesk display_;
   MotionDesk motion_;
   CouplingDesk couplings_;
   CellWorld world_;
   CellRobots robots_;
   CellPrograms programs_;
-  CellViews views_;
   CellSensing sensing_;
   HapticDesk haptics_;
   ForceDesk forces_;

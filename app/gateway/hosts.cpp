@@ -168,19 +168,4 @@ Result<void> CellPrograms::set_language(RobotLanguage language) {
   return {};
 }
 
-Result<void> CellViews::set_display(int display, bool full_screen) { return views_.set_display(display, full_screen); }
-
-Result<void> CellViews::set_view(int view, const ViewChange& change) { return views_.change(view, change); }
-
-Result<void> CellViews::set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) {
-  return cell_.set_camera(camera, focal_distance_m, fovy_rad);
-}
-
-Result<void> CellViews::show_message(std::string_view text) {
-  messages_.push_back({std::string(text), clock_.now()});
-  if (messages_.size() > kKeptMessages) messages_.pop_front();
-  log_warning("hot_message", "{}", text);
-  return {};
-}
-
 }  // namespace cellmirror::app

@@ -1,17 +1,16 @@
 // The gateway behind SCRIPT's narrow interfaces. All of it belongs to the thread that owns the cell.
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
 
 #include "app/gateway/coupling_desk.hpp"
+#include "app/gateway/display_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/motion_desk.hpp"
 #include "rt_core/cell/cell.hpp"
-#include "rt_core/cell/view.hpp"
 #include "scripts/commands/host.hpp"
 
 namespace cellmirror::app {
@@ -88,39 +87,16 @@ class CellRobots final : public RobotHost {
 
 class CellPrograms final : public ProgramHost {
  public:
-  explicit CellPrograms(const MotionDesk& motion) : motion_(motion) {}
+  CellPrograms(const MotionDesk& motion, const DisplayDesk& display) : motion_(motion), display_(display) {}
   Result<void> set_language(RobotLanguage language) override;
-  // There are no robot programs and view sequences yet.
-  [[nodiscard]] bool busy() const override { return motion_.moving(); }
+  // There are no robot programs yet.
+  [[nodiscard]] bool busy() const override { return motion_.moving() || display_.busy(); }
   [[nodiscard]] RobotLanguage language() const { return language_; }
 
  private:
   const MotionDesk& motion_;
+  const DisplayDesk& display_;
   RobotLanguage language_ = RobotLanguage::irdata;  // manual 1.2.1
-};
-
-struct ShownMessage {
-  std::string text;
-  Timestamp time;
-};
-
-class CellViews final : public ViewHost {
- public:
-  static constexpr std::size_t kKeptMessages = 8;
-  static constexpr Nanoseconds kMessageTime{5'000'000'000};  // "for about 5 seconds", manual 1.2.6
-
-  CellViews(Cell& cell, Views& views, const Clock& clock) : cell_(cell), views_(views), clock_(clock) {}
-  Result<void> set_display(int display, bool full_screen) override;
-  Result<void> set_view(int view, const ViewChange& change) override;
-  Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) override;
-  Result<void> show_message(std::string_view text) override;
-  [[nodiscard]] const std::deque<ShownMessage>& messages() const { return messages_; }
-
- private:
-  Cell& cell_;
-  Views& views_;
-  const Clock& clock_;
-  std::deque<ShownMessage> messages_;  // newest last
 };
 
 class CellDiagnosis final : public DiagnosisHost {

@@ -170,7 +170,7 @@ Result<Pose> MotionDesk::pose_target(const RobotModel& robot, Record& record, co
   const Pose X_ZT = from.X_ZT ? *from.X_ZT : record.kinematics.X_ZT(from.joints);
   Eigen::Matrix3d R_ZS = Eigen::Matrix3d::Identity();
   if (target.mode == TargetMode::screen_inc)
-    R_ZS = cell_.world_pose(robot.zero_point(), port_.positions()).linear().transpose() * screen_axes(views_.current());
+    R_ZS = cell_.world_pose(robot.zero_point(), port_.positions()).linear().transpose() * screen_axes_();
   return target_pose(target.mode, target.pose, X_ZT, R_ZS);
 }
 

@@ -2,17 +2,18 @@
 // commanded to. Belongs to the thread that owns the cell. docs/script.md, "Motion", says what the commands mean.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "app/gateway/coupled_robots.hpp"
 #include "app/gateway/motion_port.hpp"
 #include "app/gateway/pending_moves.hpp"
 #include "app/gateway/robot_kinematics.hpp"
 #include "rt_core/cell/cell.hpp"
-#include "rt_core/cell/view.hpp"
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/lang/names.hpp"
 
@@ -20,8 +21,10 @@ namespace cellmirror::app {
 
 class MotionDesk final : public MotionHost {
  public:
-  MotionDesk(const Cell& cell, const NameDirectory& names, const Views& views, MotionPort& port)
-      : cell_(cell), names_(names), views_(views), port_(port) {}
+  // `screen_axes`: R_WS of the current view as it is now, for SCREEN_INC.
+  MotionDesk(const Cell& cell, const NameDirectory& names, std::function<Eigen::Matrix3d()> screen_axes,
+             MotionPort& port)
+      : cell_(cell), names_(names), screen_axes_(std::move(screen_axes)), port_(port) {}
 
   // Null, as in the beginning: no robot follows another. They outlive the desk.
   void set_coupled(const CoupledRobots* coupled) { coupled_ = coupled; }
@@ -85,7 +88,7 @@ class MotionDesk final : public MotionHost {
 
   const Cell& cell_;
   const NameDirectory& names_;
-  const Views& views_;
+  std::function<Eigen::Matrix3d()> screen_axes_;
   MotionPort& port_;
   const CoupledRobots* coupled_ = nullptr;
   std::map<std::string, Record, std::less<>> records_;

@@ -17,6 +17,7 @@
 #include "app/gateway/tcp_force_memory.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/collision/settings.hpp"
+#include "rt_core/ports/display_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
@@ -48,7 +49,7 @@ struct OwnerPicture {
   script::ScriptCounters script;
   std::vector<script::RunStatus> runs;
   std::vector<std::string> script_errors;
-  std::vector<ShownMessage> messages;
+  std::shared_ptr<const DisplayState> display;  // the same object as long as nothing changes
   SwitchPicture switches;
   std::vector<CouplingPicture> couplings;
 };

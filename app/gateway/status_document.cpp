@@ -273,7 +273,7 @@ json queues_json(const StatusSources& sources) {
 
 json messages_json(const StatusSources& sources) {
   json out = json::array();
-  for (const ShownMessage& message : sources.picture.messages) {
+  for (const ShownText& message : sources.picture.display->messages) {
     out.push_back({{"text", message.text}, {"age_s", age_s(sources.now, message.time)}});
   }
   return out;

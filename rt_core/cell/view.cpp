@@ -8,27 +8,34 @@
 #include <numbers>
 #include <vector>
 
+#include "rt_core/base/contract.hpp"
+
 namespace cellmirror {
 
 namespace {
 
-constexpr double kFarthest = 10'000.0;  // m
-
-// Radius of a sphere about the shape's own frame. Of a mesh only the place is known here.
-double radius_of(const Geometry& geometry) {
+// How far a shape reaches from the origin of its frame G along the axes of the world, m.
+Eigen::Vector3d reach_of(const Geometry& geometry, const Eigen::Matrix3d& R_WG) {
+  const Eigen::Vector3d z = R_WG.col(2).cwiseAbs();
+  const double radius = geometry.size.x();
   switch (geometry.shape) {
     case Shape::box:
-      return 0.5 * geometry.size.norm();
+      return R_WG.cwiseAbs() * (0.5 * geometry.size);
     case Shape::cylinder:
-      return std::hypot(geometry.size.x(), 0.5 * geometry.size.y());
+      return radius * (1.0 - z.array().square()).max(0.0).sqrt().matrix() + 0.5 * geometry.size.y() * z;
     case Shape::sphere:
-      return geometry.size.x();
+      return Eigen::Vector3d::Constant(radius);
     case Shape::capsule:
-      return geometry.size.x() + 0.5 * geometry.size.y();
+      return Eigen::Vector3d::Constant(radius) + 0.5 * geometry.size.y() * z;
     case Shape::mesh:
-      return 0.0;
+      return Eigen::Vector3d::Zero();
   }
-  return 0.0;
+  return Eigen::Vector3d::Zero();
+}
+
+void include(const Eigen::Vector3d& p_W, Extent& extent) {
+  extent.low = extent.low.cwiseMin(p_W);
+  extent.high = extent.high.cwiseMax(p_W);
 }
 
 View whole(const Extent& extent, const Eigen::Vector3d& towards_viewer, bool orthogonal) {
@@ -66,34 +73,43 @@ Extent extent_of(const CompiledCell& cell, std::span<const JointValues> q) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Extent extent{Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
   for (const CompiledGeometry& part : cell.geometry) {
-    const Pose X_WG = poses.X_WN[static_cast<std::size_t>(part.node)] * part.geometry->X_NG;
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_of(*part.geometry));
-    extent.low = extent.low.cwiseMin(X_WG.translation() - reach);
-    extent.high = extent.high.cwiseMax(X_WG.translation() + reach);
+    const Geometry& geometry = *part.geometry;
+    if (!geometry.drawn) continue;
+    const Pose X_WG = poses.X_WN[static_cast<std::size_t>(part.node)] * geometry.X_NG;
+    const Eigen::Vector3d reach = reach_of(geometry, X_WG.linear());
+    include(X_WG.translation() - reach, extent);
+    include(X_WG.translation() + reach, extent);
+    if (geometry.shape != Shape::mesh || geometry.mesh == nullptr) continue;
+    for (const Eigen::Vector3d& vertex : geometry.mesh->vertices) include(X_WG * vertex, extent);
   }
-  return extent;
+  return extent.low.allFinite() ? extent : Extent{};
 }
 
-Views::Views(const Extent& extent) {
+std::array<View, kViews> views_of_extent(const Extent& extent) {
   const Eigen::Vector3d above = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d side = -Eigen::Vector3d::UnitY();
-  views_ = {whole(extent, {-0.5, -0.7, 0.4}, false),
-            whole(extent, above, true),
-            whole(extent, side, true),
-            whole(extent, above, true),
-            whole(extent, side, true),
-            whole(extent, side, false),
-            whole(extent, {-0.3, -0.4, 0.85}, false)};
+  return {whole(extent, {-0.5, -0.7, 0.4}, false),
+          whole(extent, above, true),
+          whole(extent, side, true),
+          whole(extent, above, true),
+          whole(extent, side, true),
+          whole(extent, side, false),
+          whole(extent, {-0.3, -0.4, 0.85}, false)};
 }
 
-Result<void> Views::set(int id, const View& view) {
-  if (id < 0 || id >= kViews) return fail(fmt::format("there is no view {}", id), "views are 0 to 6");
+Result<void> check_view_id(int id) {
+  if (id < 0 || id >= static_cast<int>(kViews)) return fail(fmt::format("there is no view {}", id), "views are 0 to 6");
+  return {};
+}
+
+Result<void> check_view(int id, const View& view) {
+  if (auto known = check_view_id(id); !known) return known;
   const auto near_enough = [](const Eigen::Vector3d& p) {
-    return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest;
+    return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthestView;
   };
   if (!near_enough(view.viewpoint) || !near_enough(view.lookpoint))
-    return fail(fmt::format("the viewpoint or lookpoint of view {} lies beyond {:g} m", id, kFarthest));
-  if ((view.viewpoint - view.lookpoint).norm() < 1e-6)
+    return fail(fmt::format("the viewpoint or lookpoint of view {} lies beyond {:g} m", id, kFarthestView));
+  if ((view.viewpoint - view.lookpoint).norm() < kNearestLookpoint)
     return fail(fmt::format("the viewpoint of view {} is its lookpoint", id), "give VP and LP apart from each other");
   if (!std::isfinite(view.twist)) return fail(fmt::format("the twist angle of view {} is no number", id));
   if (!(view.opening_angle > 0.0 && view.opening_angle < std::numbers::pi))
@@ -103,34 +119,24 @@ Result<void> Views::set(int id, const View& view) {
                             id, view.near_distance, view.far_distance),
                 "the front plane (FCP) is nearer than the back plane (BCP)");
   }
-  views_[static_cast<std::size_t>(id)] = view;
   return {};
 }
 
-Result<void> Views::change(int id, const ViewChange& change) {
-  if (id < 0 || id >= kViews) return fail(fmt::format("there is no view {}", id), "views are 0 to 6");
-  View changed = view(id);
-  changed.viewpoint = change.viewpoint.value_or(changed.viewpoint);
-  changed.lookpoint = change.lookpoint.value_or(changed.lookpoint);
-  changed.twist = change.twist.value_or(changed.twist);
-  changed.opening_angle = change.opening_angle.value_or(changed.opening_angle);
-  changed.near_distance = change.near_distance.value_or(changed.near_distance);
-  changed.far_distance = change.far_distance.value_or(changed.far_distance);
-  return set(id, changed);
-}
-
-Result<void> Views::set_display(int display, bool full_screen) {
-  if (display < 1 || display > kDisplays)
-    return fail(fmt::format("there is no display {}", display), "STDP takes 1 to 6");
-  display_ = display;
-  full_screen_ = full_screen;
-  return {};
+View changed_by(View view, const ViewChange& change) {
+  view.viewpoint = change.viewpoint.value_or(view.viewpoint);
+  view.lookpoint = change.lookpoint.value_or(view.lookpoint);
+  view.twist = change.twist.value_or(view.twist);
+  view.opening_angle = change.opening_angle.value_or(view.opening_angle);
+  view.near_distance = change.near_distance.value_or(view.near_distance);
+  view.far_distance = change.far_distance.value_or(view.far_distance);
+  return view;
 }
 
 // Manual 1.2.3, COVW: the views of each display.
-int Views::current_id() const {
+int first_view(int display) {
   constexpr std::array<int, kDisplays> kFirstView = {0, 1, 3, 4, 5, 6};
-  return kFirstView[static_cast<std::size_t>(display_ - 1)];
+  CELLMIRROR_EXPECTS(display >= 1 && display <= static_cast<int>(kDisplays));
+  return kFirstView[static_cast<std::size_t>(display - 1)];
 }
 
 }  // namespace cellmirror

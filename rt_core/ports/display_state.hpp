@@ -76,6 +76,7 @@ struct ShownText {
   std::string text;
   Timestamp time;
   std::uint64_t number = 0;  // counts from 1
+  bool bell = false;         // BEEP was on: it is to be heard where it is seen
 };
 
 struct DisplayState {

@@ -11,7 +11,7 @@ namespace {
 
 // The text may run over several lines of a SCRIPT file; it is shown on one.
 Outcome show_message(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.views.show_message(joined_lines(command.text(0))));
+  return Outcome::of(host.display.show_message(joined_lines(command.text(0))));
 }
 
 // A System V key is a 32-bit pattern; the command accepts the whole of it as a positive number.

@@ -1,4 +1,7 @@
 // Manual 1.2.1.
+#include <array>
+#include <optional>
+
 #include "rt_core/base/pose.hpp"
 #include "scripts/commands/registry.hpp"
 
@@ -65,7 +68,41 @@ Outcome set_sending(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome set_camera(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.views.set_camera(command.text(0), command.number(1), command.number(2)));
+  return Outcome::of(host.display.set_camera(command.text(0), command.number(1), command.number(2)));
+}
+
+// In the order of the table.
+DrawMode draw_mode(const ParsedCommand& command, std::size_t slot) {
+  constexpr std::array<DrawMode, 4> kModes = {DrawMode::wireframe, DrawMode::flat, DrawMode::gouraud,
+                                              DrawMode::transparent};
+  return kModes[command.choice(slot)];
+}
+
+Outcome set_frame_render(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.set_draw_mode(command.text(0), false, draw_mode(command, 1)));
+}
+Outcome set_abstract_render(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.set_draw_mode(command.text(0), true, draw_mode(command, 1)));
+}
+
+Outcome load_views(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.load_views(command.text(0)));
+}
+
+Outcome tag_drawlen(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.set_tag_length(command.number(0)));
+}
+
+// The first choice of all three switches is "on"; the parser has seen to it that a target stands with "on" alone.
+Outcome cam_tracking(const ParsedCommand& command, CommandHost& host) {
+  const std::optional<std::string_view> target = command.choice(1) == 0 ? std::optional(command.text(2)) : std::nullopt;
+  return Outcome::of(host.display.track(command.text(0), target));
+}
+Outcome cam_view_pyramid(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.show_pyramid(command.text(0), command.choice(1) == 0));
+}
+Outcome cam_online(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.set_camera_online(command.text(0), command.choice(1) == 0));
 }
 
 constexpr Registration kHandlers[] = {
@@ -80,21 +117,21 @@ constexpr Registration kHandlers[] = {
     {FormId::tf_load, not_available},
     {FormId::tf_run, not_available},
     {FormId::tf_delete, not_available},
-    {FormId::load_views, not_available},
+    {FormId::load_views, load_views},
     {FormId::exec_script, exec_script},
     {FormId::draw_scene, draw_scene},
     {FormId::connect, connect},
     {FormId::frame_to_wfrm, frame_to_workframe},
-    {FormId::set_frame_render, not_available},
+    {FormId::set_frame_render, set_frame_render},
     {FormId::set_frame_placement, set_placement},
-    {FormId::set_abstract_render, not_available},
+    {FormId::set_abstract_render, set_abstract_render},
     {FormId::robot_online, set_online},
     {FormId::robot_sending, set_sending},
     {FormId::set_campar, set_camera},
-    {FormId::tag_drawlen, not_available},
-    {FormId::cam_tracking, not_available},
-    {FormId::cam_view_pyramid, not_available},
-    {FormId::cam_online, not_available},
+    {FormId::tag_drawlen, tag_drawlen},
+    {FormId::cam_tracking, cam_tracking},
+    {FormId::cam_view_pyramid, cam_view_pyramid},
+    {FormId::cam_online, cam_online},
 };
 
 }  // namespace

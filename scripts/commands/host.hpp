@@ -12,7 +12,7 @@
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
-#include "rt_core/ports/view_change.hpp"
+#include "scripts/commands/display_host.hpp"
 #include "scripts/commands/interaction_host.hpp"
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/lang/names.hpp"
@@ -67,15 +67,6 @@ class ProgramHost {
   [[nodiscard]] virtual bool busy() const = 0;
 };
 
-class ViewHost {
- public:
-  virtual ~ViewHost() = default;
-  virtual Result<void> set_display(int display, bool full_screen) = 0;    // STDP, 1 to 6
-  virtual Result<void> set_view(int view, const ViewChange& change) = 0;  // STVW at once; views 0 to 6
-  virtual Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) = 0;
-  virtual Result<void> show_message(std::string_view text) = 0;  // hot_message
-};
-
 // What SET_COLLPAR says of pairs of bodies.
 enum class PairTreatment : std::uint8_t { ignore, test, derive };
 
@@ -105,7 +96,7 @@ struct CommandHost {
   RobotHost& robots;
   MotionHost& motion;
   ProgramHost& programs;
-  ViewHost& views;
+  DisplayHost& display;
   SensingHost& sensing;
   InteractionHost& interaction;
   DiagnosisHost& diagnosis;

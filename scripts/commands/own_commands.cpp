@@ -13,7 +13,12 @@ Outcome reset_haptic(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.interaction.reset_haptic(command.text(0)));
 }
 
+Outcome save_views(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.save_views(command.text(0)));
+}
+
 constexpr Registration kHandlers[] = {
+    {FormId::save_views, save_views},
     {FormId::save_flight, save_flight},
     {FormId::reset_haptic, reset_haptic},
 };

@@ -51,6 +51,11 @@ Outcome set_tool_center_point(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.robots.set_tool_center_point(offset(command)));
 }
 
+// The first choice is "on".
+Outcome set_arc(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.display.set_arc(command.choice(0) == 0));
+}
+
 constexpr Registration kHandlers[] = {
     {FormId::rob_cart_lin_vel, set_scalar<ScalarParameter::linear_velocity>},
     {FormId::rob_cart_lin_acc, set_scalar<ScalarParameter::linear_acceleration>},
@@ -74,7 +79,7 @@ constexpr Registration kHandlers[] = {
     {FormId::rob_tcp_def, set_tool_center_point},
     {FormId::rob_vel_profile, set_profile},
     {FormId::rob_inverse_class, set_inverse_class},
-    {FormId::arc, not_available},
+    {FormId::arc, set_arc},
 };
 
 }  // namespace

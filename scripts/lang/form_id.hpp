@@ -128,9 +128,10 @@ enum class FormId : std::uint8_t {
   set_collpar_warning,
   set_collpar_pair,
   reset_haptic,
+  save_views,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::reset_haptic) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::save_views) + 1;
 
 }  // namespace cellmirror::script

@@ -8,10 +8,9 @@ namespace {
 using namespace parts;
 
 constexpr std::string_view kSection = "1.2.3";
-constexpr std::string_view kPicture = "the synthetic view";
-constexpr std::string_view kViews = "views";
 
 constexpr Range kViewIds{0, 6};
+constexpr Range kSequenceTime{0, 86400};  // a day
 
 constexpr Choice kFull[] = {{"FULL", "full screen"}, {"FULL_OFF", "normal"}};
 constexpr Choice kModes[] = {
@@ -29,6 +28,7 @@ constexpr Choice kModes[] = {
     {"BEEP", "sound with messages"},
     {"TEXTURES", "textures"},
     {"ANTIALIAS", "antialiasing"},
+    {"LEGEND", "legend of marks and colours; ours"},
 };
 
 constexpr Parameter kDisplay[] = {integer("display_id", "display", {1, 6}),
@@ -42,7 +42,7 @@ constexpr Parameter kStvw[] = {
     optional_labelled("FCP", number("d", "distance of the front clipping plane", Unit::mm, kNotNegative)),
     optional_labelled("BCP", number("d", "distance of the back clipping plane", Unit::mm, kNotNegative)),
     optional_labelled("STEPS", integer("n", "number of steps", {1, 1e6}), 1, 1),
-    optional_labelled("TIME", number("s", "time", Unit::second, kNotNegative), 1, 1),
+    optional_labelled("TIME", number("s", "time", Unit::second, kSequenceTime), 1, 1),
 };
 constexpr Parameter kCovw[] = {integer("view_id", "view", kViewIds), camera()};
 constexpr Parameter kMode[] = {choice("mode", "mode", kModes), on_off()};
@@ -58,7 +58,7 @@ constexpr Form kForms[] = {
      .example = "STDP 1 FULL",
      .definition =
          "without FULL or FULL_OFF: FULL_OFF. Its first view is the current one, whose axes SCREEN_INC takes; "
-         "there is no picture yet"},
+         "FULL shows this one alone, without title and legend"},
     {.id = FormId::stvw,
      .name = "STVW",
      .syntax = "STVW <view_id> [VP x y z] [LP x y z] [TW twist] [VA angle] [FCP d] [BCP d] [STEPS n | TIME s]",
@@ -66,8 +66,10 @@ constexpr Form kForms[] = {
      .parameters = kStvw,
      .help = "sets parameters of a view, at once or as a sequence of n updates or s seconds",
      .example = "STVW 0 VP 519.7 -539 -850 LP 2183 9570 3391 TIME 15.0",
-     .definition = "the groups come in any order, each at most once; with neither STEPS nor TIME: at once; with one of "
-                   "them it is not available yet"},
+     .definition =
+         "the groups come in any order, each at most once; with neither STEPS nor TIME: at once. It begins where "
+         "the view is, also on its way or at a camera (COVW), from which it is taken; all parameters change "
+         "evenly. STEPS counts updates of the picture, TIME goes by the clock"},
     {.id = FormId::covw,
      .name = "COVW",
      .syntax = "COVW <view_id> <cam_id>",
@@ -75,35 +77,38 @@ constexpr Form kForms[] = {
      .parameters = kCovw,
      .help = "binds a view to a camera, which it then follows",
      .example = "COVW 0 UMG_Kamera_1",
-     .missing = kViews},
+     .definition =
+         "until STVW or LOAD_VIEWS sets the view, or the camera is deleted; the clipping planes stay the view's"},
     {.id = FormId::set_mode,
      .name = "SET_MODE",
      .syntax = "SET_MODE <mode> [on | off]",
      .section = kSection,
      .parameters = kMode,
      .help = "switches a mode of the display",
-     .missing = kPicture},
+     .example = "SET_MODE TCP_DRAW on",
+     .definition = "at the start FLDR, SHAD, TEXTURES, ANTIALIAS, GEO_VIS_TEST and LEGEND are on, the others off; "
+                   "LEGEND is ours. SHAD on without the floor and CAM_MAINVIEW on without a camera are refused"},
     {.id = FormId::bfrm,
      .name = "BFRM",
      .syntax = "BFRM [on | off]",
      .section = kSection,
      .parameters = kSwitch,
      .help = "switches backface removal",
-     .missing = kPicture},
+     .definition = "as SET_MODE BFRM"},
     {.id = FormId::fldr,
      .name = "FLDR",
      .syntax = "FLDR [on | off]",
      .section = kSection,
      .parameters = kSwitch,
      .help = "switches the floor",
-     .missing = kPicture},
+     .definition = "as SET_MODE FLDR; without it no shadows are seen"},
     {.id = FormId::shad,
      .name = "SHAD",
      .syntax = "SHAD [on | off]",
      .section = kSection,
      .parameters = kSwitch,
      .help = "switches shadows",
-     .missing = kPicture},
+     .definition = "as SET_MODE SHAD; on is refused without the floor"},
     {.id = FormId::wait,
      .name = "WAIT",
      .syntax = "WAIT",

@@ -130,7 +130,8 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kMessage,
      .help = "shows a text for about 5 s",
-     .definition = "the text is the rest of the command, UTF-8; in status and log while there is no display"},
+     .definition = "the text is the rest of the command, UTF-8; in every picture, at the page, in status and log. With "
+                   "SET_MODE BEEP a bell, too"},
 };
 
 }  // namespace

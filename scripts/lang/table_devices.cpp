@@ -8,8 +8,6 @@ namespace {
 using namespace parts;
 
 constexpr std::string_view kSection = "1.2.1";
-constexpr std::string_view kPicture = "the synthetic view";
-constexpr std::string_view kViews = "views";
 
 constexpr Choice kRenderModes[] = {{"2", "wireframe"}, {"3", "flat"}, {"4", "Gouraud"}, {"20", "transparent"}};
 constexpr Choice kSending[] = {{"send_on", "start"}, {"send_off", "stop"}};
@@ -74,8 +72,10 @@ constexpr std::string_view kToolIncNote =
     "a linear move from where the robot was last commanded to, in the axes of its TCP. The groups come in any order, "
     "each at most once, with or without commas between them";
 constexpr std::string_view kScreenIncNote =
-    "a linear move from where the robot was last commanded to; the rotation is about the TCP, in the axes of the view "
-    "that STDP chose. The groups come in any order, each at most once, with or without commas between them";
+    "a linear move from where the robot was last commanded to; the rotation is about the TCP, in the axes of the "
+    "current "
+    "view (the first of the display that STDP chose) as it stands at that moment, on its way or at its camera. The "
+    "groups come in any order, each at most once, with or without commas between them";
 
 constexpr Form kForms[] = {
     {.id = FormId::pos_rob_joint_abs,
@@ -150,7 +150,7 @@ constexpr Form kForms[] = {
      .parameters = kRender,
      .help = "sets the rendering mode of a frame's geometry",
      .example = "SET_FRAME Testlab_1.FL_Klein.Flansch_Typ1 RENDER 2",
-     .missing = kPicture,
+     .definition = "of geometries that several commands concern, the last command counts",
      .selector = Selector::by_second_word},
     {.id = FormId::set_frame_placement,
      .name = "SET_FRAME",
@@ -168,7 +168,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kRender,
      .help = "sets the rendering mode of a frame and of all detail levels below it",
-     .missing = kPicture},
+     .definition = "for everything below the frame by name, loaded now or later"},
     {.id = FormId::robot_online,
      .name = "ROBOT",
      .syntax = "ROBOT <Robot_id> [online | offline]",
@@ -230,8 +230,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kDrawLength,
      .help = "sets the length at which the axes of workframes are drawn; 250 mm by default",
-     .example = "TAG_DRAWLEN 50.0",
-     .missing = kPicture},
+     .example = "TAG_DRAWLEN 50.0"},
     {.id = FormId::cam_tracking,
      .name = "CAM_TRACKING",
      .syntax = "CAM_TRACKING <cam_id> [on | off] (<frame_id>)",
@@ -239,15 +238,15 @@ constexpr Form kForms[] = {
      .parameters = kTracking,
      .help = "keeps a camera looking at a frame; the frame is given with on, and only then",
      .example = "CAM_TRACKING UMG_Kamera_1 on Gantry.J_2.Hand",
-     .missing = kViews},
+     .definition = "the camera turns about its own place, pan about the y axis of its workframe, then tilt about its "
+                   "new x axis; twist is kept"},
     {.id = FormId::cam_view_pyramid,
      .name = "CAM_VIEW_PYRAMID",
      .syntax = "CAM_VIEW_PYRAMID <cam_id> [on | off]",
      .section = kSection,
      .parameters = kCameraSwitch,
      .help = "draws a camera's viewing pyramid, or not",
-     .example = "CAM_VIEW_PYRAMID UMG_Kamera_1 on",
-     .missing = kPicture},
+     .example = "CAM_VIEW_PYRAMID UMG_Kamera_1 on"},
     {.id = FormId::cam_online,
      .name = "CAM_ONLINE",
      .syntax = "CAM_ONLINE <cam_id> [on | off]",
@@ -255,7 +254,7 @@ constexpr Form kForms[] = {
      .parameters = kCameraSwitch,
      .help = "sends a camera's current parameters to the camera-control process, or not",
      .example = "CAM_ONLINE UMG_Kamera_1 on",
-     .missing = "camera control"},
+     .definition = "on the SENSOR channel (key 1990, type 5); docs/messages.md has the message"},
 };
 
 }  // namespace

@@ -9,7 +9,6 @@ using namespace parts;
 
 constexpr std::string_view kSection = "1.2.1";
 constexpr std::string_view kPrograms = "robot programs";
-constexpr std::string_view kViews = "views";
 
 constexpr Choice kLanguages[] = {
     {"irdata", "IRDATA, the default"}, {"srcl", "SRCL"}, {"jet_boom", "JET boom"}, {"jet_tarm", "JET telescopic arm"}};
@@ -147,7 +146,8 @@ constexpr Form kForms[] = {
      .parameters = kViewFile,
      .help = "sets the stored views of a file (default extension .vws) of the home's scripts folder",
      .example = "LOAD_VIEWS view1.vws",
-     .missing = kViews},
+     .definition = "the format is ours, docs/cell-files.md; a file with any error sets nothing; views that it does not "
+                   "name stay"},
     {.id = FormId::exec_script,
      .name = "EXEC_SCRIPT",
      .syntax = "EXEC_SCRIPT <script_file>",
@@ -164,6 +164,8 @@ constexpr Form kForms[] = {
      .section = kSection,
      .help = "recalculates the kinematics and renders the views",
      .example = "DRAW_SCENE",
+     .definition = "done when the picture thread has the result; it draws without being told, so this only waits until "
+                   "jumps of robots have arrived",
      .effect = LoopEffect::queued},
     {.id = FormId::connect,
      .name = "CONNECT",

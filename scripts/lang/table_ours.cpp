@@ -16,6 +16,7 @@ constexpr Choice kPositionings[] = {{"move", "POS_ROB moves the robot, the defau
 constexpr Choice kPaths[] = {{"PTP", "point to point"}, {"LIN", "the TCP on a straight line"}};
 constexpr Choice kPtpOnly[] = {{"PTP", "point to point"}};
 
+constexpr Parameter kViewFile[] = {file("view_filename", "view file")};
 constexpr Parameter kFlight[] = {file("file", "flight record")};
 constexpr Parameter kPositioning[] = {choice("move | jump", "positioning", kPositionings)};
 
@@ -179,6 +180,16 @@ constexpr Form kForms[] = {
      .example = "RESET_HAPTIC MANTEC_RM3",
      .definition = "forces fade in again; refused where the robot has no haptic device",
      .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::save_views,
+     .name = "SAVE_VIEWS",
+     .syntax = "SAVE_VIEWS <view_filename>",
+     .section = kSection,
+     .parameters = kViewFile,
+     .help = "writes the seven views, their cameras and the display into a file (.vws) of the home's scripts folder",
+     .example = "SAVE_VIEWS view1.vws",
+     .definition = "a plain file name without folders; a file of that name is replaced; a view on its way is saved as "
+                   "it will be",
      .origin = Origin::ours},
 };
 

@@ -178,7 +178,6 @@ constexpr Form kForms[] = {
      .parameters = kArc,
      .help = "draws a welding spark at the active robot's TCP, or not",
      .example = "ARC on",
-     .missing = "the synthetic view",
      .needs_active_robot = true},
 };
 

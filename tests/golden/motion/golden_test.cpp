@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/gateway/coupling_desk.hpp"
+#include "app/gateway/display_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/motion_desk.hpp"
@@ -58,26 +59,27 @@ std::vector<std::string> cases() {
 // The gateway's own hosts on the transfer cell; the tick is there but does not run.
 class Stage {
  public:
-  explicit Stage(LoadedCell loaded)
+  Stage(LoadedCell loaded, const KismetHome& home)
       : cell_(std::move(loaded.cell)),
-        views_(extent_of(*cell_.compile(), cell_.start_positions())),
         fleet_(cell_, engine_, {}, clock_, 0),
         port(fleet_, cell_),
         names_(cell_),
-        desk_(cell_, names_, views_, port),
+        home_(home),
+        display_({cell_, names_, home_, clock_, [this] { return port.positions(); }, {}, {}, {}}, {}),
+        desk_(
+            cell_, names_, [this] { return display_.screen_axes(); }, port),
         couplings_(cell_, fleet_, desk_),
         world_(cell_, fleet_, desk_, [] {}),
         robots_(cell_, fleet_, desk_, couplings_, names_),
-        programs_(desk_),
-        view_host_(cell_, views_, clock_),
+        programs_(desk_, display_),
         sensing_(cell_, {}),
         diagnosis_([](std::string_view) { return Result<void>(); }) {
     EXPECT_TRUE(fleet_.follow_cell());
   }
 
-  std::string run(const KismetHome& home, const std::string& name) {
-    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, view_host_, sensing_, quiet_, diagnosis_},
-                                home, clock_);
+  std::string run(const std::string& name) {
+    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, display_, sensing_, quiet_, diagnosis_},
+                                home_, clock_);
     std::string end = "still waiting\n";
     runner.on_run_ended([&](const script::RunReport& report) {
       end = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
@@ -97,7 +99,6 @@ class Stage {
  private:
   ManualClock clock_;
   Cell cell_;
-  Views views_;
   Watchdog watchdog_{std::chrono::seconds(1), {}};
   engine::Engine engine_{watchdog_};
   app::Fleet fleet_;
@@ -107,12 +108,13 @@ class Stage {
 
  private:
   app::CellNames names_;
+  const KismetHome& home_;
+  app::DisplayDesk display_;
   app::MotionDesk desk_;
   app::CouplingDesk couplings_;
   app::CellWorld world_;
   app::CellRobots robots_;
   app::CellPrograms programs_;
-  app::CellViews view_host_;
   app::CellSensing sensing_;
   cellmirror::testing::QuietHost quiet_;  // hands and feet: no motion here
   app::CellDiagnosis diagnosis_;
@@ -137,9 +139,9 @@ TEST_P(GoldenMotion, GivesTheExpectedMoves) {
   ASSERT_TRUE(loaded) << diagnostics.text();
   const auto home = KismetHome::open(golden_folder());
   ASSERT_TRUE(home) << home.error().text();
-  const auto stage = std::make_unique<Stage>(std::move(*loaded));  // the queues of the tick are large
+  const auto stage = std::make_unique<Stage>(std::move(*loaded), *home);  // the queues of the tick are large
   stage->port.held = GetParam().starts_with("held_");
-  const std::string trace = without_nearest(stage->run(*home, GetParam()));
+  const std::string trace = without_nearest(stage->run(GetParam()));
   const fs::path expected = golden_folder() / "expected" / (GetParam() + ".txt");
   if (std::getenv("CELLMIRROR_UPDATE_GOLDEN") != nullptr) std::ofstream(expected, std::ios::binary) << trace;
   EXPECT_EQ(trace, content(expected)) << expected;

@@ -1,6 +1,7 @@
 // A gateway for benchmarks and fuzzing: accepts everything, remembers only which robot is active.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -13,7 +14,7 @@ class QuietHost final : public WorldHost,
                         public RobotHost,
                         public MotionHost,
                         public ProgramHost,
-                        public ViewHost,
+                        public DisplayHost,
                         public SensingHost,
                         public InteractionHost,
                         public DiagnosisHost {
@@ -65,7 +66,24 @@ class QuietHost final : public WorldHost,
   Result<void> set_language(RobotLanguage /*language*/) override { return called(); }
   [[nodiscard]] bool busy() const override { return false; }
   Result<void> set_display(int /*display*/, bool /*full_screen*/) override { return called(); }
-  Result<void> set_view(int /*view*/, const ViewChange& /*change*/) override { return called(); }
+  Result<void> set_view(int /*view*/, const ViewChange& /*change*/, const ViewPace& /*pace*/) override {
+    return called();
+  }
+  Result<void> connect_view(int /*view*/, std::string_view /*camera*/) override { return called(); }
+  Result<void> load_views(std::string_view /*file*/) override { return called(); }
+  Result<void> save_views(std::string_view /*file*/) override { return called(); }
+  Result<void> set_mode(DisplayMode /*mode*/, bool /*on*/) override { return called(); }
+  Result<void> set_legend(bool /*on*/) override { return called(); }
+  Result<void> set_draw_mode(std::string_view /*node*/, bool /*branch*/, DrawMode /*mode*/) override {
+    return called();
+  }
+  Result<void> set_tag_length(double /*length_m*/) override { return called(); }
+  Result<void> track(std::string_view /*camera*/, std::optional<std::string_view> /*frame*/) override {
+    return called();
+  }
+  Result<void> show_pyramid(std::string_view /*camera*/, bool /*on*/) override { return called(); }
+  Result<void> set_camera_online(std::string_view /*camera*/, bool /*on*/) override { return called(); }
+  Result<void> set_arc(bool /*on*/) override { return called(); }
   Result<void> set_camera(std::string_view /*camera*/, double /*focal_distance_m*/, double /*fovy_rad*/) override {
     return called();
   }

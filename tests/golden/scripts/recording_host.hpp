@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "rt_core/base/pose.hpp"
@@ -21,7 +23,7 @@ class RecordingHost final : public WorldHost,
                             public RobotHost,
                             public MotionHost,
                             public ProgramHost,
-                            public ViewHost,
+                            public DisplayHost,
                             public SensingHost,
                             public InteractionHost,
                             public DiagnosisHost {
@@ -125,7 +127,7 @@ class RecordingHost final : public WorldHost,
   Result<void> set_display(int display, bool full_screen) override {
     return record("set_display {} {}", display, full_screen ? "FULL" : "FULL_OFF");
   }
-  Result<void> set_view(int view, const ViewChange& change) override {
+  Result<void> set_view(int view, const ViewChange& change, const ViewPace& pace) override {
     std::string text;
     const auto vector = [&](const char* name, const std::optional<Eigen::Vector3d>& v) {
       if (v) text += fmt::format(" {} {:.9g} {:.9g} {:.9g}", name, v->x(), v->y(), v->z());
@@ -139,8 +141,47 @@ class RecordingHost final : public WorldHost,
     number("opening_angle", change.opening_angle);
     number("near", change.near_distance);
     number("far", change.far_distance);
+    if (const auto* steps = std::get_if<InSteps>(&pace)) text += fmt::format(" in {} updates", steps->updates);
+    if (const auto* time = std::get_if<InTime>(&pace)) text += fmt::format(" in {:.9g} s", seconds(time->time));
     return record("set_view {}{}", view, text);
   }
+  Result<void> connect_view(int view, std::string_view camera) override {
+    return record("connect_view {} {}", view, camera);
+  }
+  Result<void> load_views(std::string_view file) override { return record("load_views {}", file); }
+  Result<void> save_views(std::string_view file) override { return record("save_views {}", file); }
+  Result<void> set_mode(DisplayMode mode, bool on) override {
+    constexpr std::array<std::string_view, kDisplayModes> kNames = {"workframes",
+                                                                    "smear",
+                                                                    "backface_removal",
+                                                                    "cpu_backface_removal",
+                                                                    "camera_main_view",
+                                                                    "two_sided_light",
+                                                                    "tcp_frame",
+                                                                    "zero_point",
+                                                                    "floor",
+                                                                    "visibility_test",
+                                                                    "shadows",
+                                                                    "bell",
+                                                                    "textures",
+                                                                    "antialiasing"};
+    return record("set_mode {} {}", kNames[static_cast<std::size_t>(mode)], on);
+  }
+  Result<void> set_legend(bool on) override { return record("set_legend {}", on); }
+  Result<void> set_draw_mode(std::string_view node, bool branch, DrawMode mode) override {
+    return record("set_draw_mode {}{} {}", node, branch ? " and below" : "", static_cast<int>(mode));
+  }
+  Result<void> set_tag_length(double length_m) override { return record("set_tag_length {:.9g}", length_m); }
+  Result<void> track(std::string_view camera, std::optional<std::string_view> frame) override {
+    return frame ? record("track {} {}", camera, *frame) : record("track {} nothing", camera);
+  }
+  Result<void> show_pyramid(std::string_view camera, bool on) override {
+    return record("show_pyramid {} {}", camera, on);
+  }
+  Result<void> set_camera_online(std::string_view camera, bool on) override {
+    return record("set_camera_online {} {}", camera, on);
+  }
+  Result<void> set_arc(bool on) override { return record("set_arc {}", on); }
   Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) override {
     return record("set_camera {} {:.9g} {:.9g}", camera, focal_distance_m, fovy_rad);
   }

@@ -39,44 +39,44 @@ TEST(ScreenAxes, TwistTurnsTheScreenAboutItsOwnZ) {
   expect_axes(view, {0, 1, 0}, {-1, 0, 0});
 }
 
-class ViewsTest : public ::testing::Test {
- protected:
-  Views sut_{Extent{{-2, -1, 0}, {4, 3, 2}}};
-};
-
-TEST_F(ViewsTest, EachViewLooksAtTheMiddleOfTheCellAndClipsNothingOfIt) {
+TEST(Views, EachLooksAtTheMiddleOfTheCellAndClipsNothingOfIt) {
+  const auto sut = views_of_extent({{-2, -1, 0}, {4, 3, 2}});
   const double radius = 0.5 * Eigen::Vector3d(6, 4, 2).norm();
-  for (int id = 0; id < Views::kViews; ++id) {
-    const View& view = sut_.view(id);
+  for (const View& view : sut) {
     EXPECT_LT((view.lookpoint - Eigen::Vector3d(1, 1, 1)).norm(), 1e-12);
     const double distance = (view.viewpoint - view.lookpoint).norm();
     EXPECT_LT(view.near_distance, distance - radius);
     EXPECT_GT(view.far_distance, distance + radius);
   }
-  EXPECT_TRUE(sut_.view(1).orthogonal);
-  EXPECT_FALSE(sut_.view(0).orthogonal);
+  EXPECT_TRUE(sut[1].orthogonal);
+  EXPECT_FALSE(sut[0].orthogonal);
 }
 
-TEST_F(ViewsTest, CurrentViewIsTheFirstOfTheDisplay) {
-  EXPECT_EQ(sut_.current_id(), 0);
+TEST(Views, TheFirstOfADisplayIsTheOneOfTheManual) {
   const int expected[] = {0, 1, 3, 4, 5, 6};
-  for (int display = 1; display <= Views::kDisplays; ++display) {
-    ASSERT_TRUE(sut_.set_display(display, true));
-    EXPECT_EQ(sut_.current_id(), expected[display - 1]);
-  }
-  EXPECT_TRUE(sut_.full_screen());
-  EXPECT_FALSE(sut_.set_display(0, false));
-  EXPECT_FALSE(sut_.set_display(7, false));
-  EXPECT_EQ(sut_.display(), 6);
+  for (int display = 1; display <= 6; ++display) EXPECT_EQ(first_view(display), expected[display - 1]);
 }
 
-TEST_F(ViewsTest, RefusesViewsThatShowNothingAndKeepsTheOld) {
-  const View before = sut_.view(2);
+TEST(Views, ChangeLeavesWhatItDoesNotName) {
+  View before;
+  before.twist = 0.25;
+  ViewChange change;
+  change.opening_angle = 0.5;
+  change.far_distance = 7.0;
+  const View sut = changed_by(before, change);
+  EXPECT_EQ(sut.viewpoint, before.viewpoint);
+  EXPECT_EQ(sut.twist, 0.25);
+  EXPECT_EQ(sut.opening_angle, 0.5);
+  EXPECT_EQ(sut.far_distance, 7.0);
+}
+
+TEST(Views, RefusesThoseThatShowNothing) {
+  const View good;
+  EXPECT_TRUE(check_view(2, good));
   const auto refused = [&](auto change) {
-    View view = before;
+    View view = good;
     change(view);
-    EXPECT_FALSE(sut_.set(2, view));
-    EXPECT_EQ(sut_.view(2).viewpoint, before.viewpoint);
+    EXPECT_FALSE(check_view(2, view));
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   refused([](View& view) { view.viewpoint = view.lookpoint; });
@@ -87,8 +87,8 @@ TEST_F(ViewsTest, RefusesViewsThatShowNothingAndKeepsTheOld) {
   refused([](View& view) { view.opening_angle = 3.2; });
   refused([](View& view) { view.near_distance = view.far_distance; });
   refused([](View& view) { view.near_distance = -1; });
-  EXPECT_FALSE(sut_.set(7, before));
-  EXPECT_FALSE(sut_.set(-1, before));
+  EXPECT_FALSE(check_view(7, good));
+  EXPECT_FALSE(check_view(-1, good));
 }
 
 }  // namespace

@@ -1,0 +1,124 @@
+// Of DisplayDesk, what concerns cameras, and what follows the cell.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "app/gateway/display_desk.hpp"
+#include "rt_core/scene/camera_mount.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+bool is_unique(const CompiledCell& cell, std::string_view name) {
+  return std::ranges::count(cell.cameras, name, &CompiledCamera::name) == 1;
+}
+
+}  // namespace
+
+Result<std::string> DisplayDesk::camera_name(std::string_view camera) const {
+  const auto node = parts_.cell.find(camera, PathKind::camera);
+  if (!node) return std::unexpected(node.error());
+  const std::string path = parts_.cell.path(*node);
+  const std::string bare = path.substr(path.rfind('.') + 1);
+  return is_unique(*parts_.cell.compile(), bare) ? bare : path;
+}
+
+Result<CameraSetting*> DisplayDesk::open_camera(std::string_view camera) {
+  follow_cell();
+  auto name = camera_name(camera);
+  if (!name) return std::unexpected(name.error());
+  const auto setting = std::ranges::find(state_.cameras, *name, &CameraSetting::name);
+  if (setting == state_.cameras.end()) return fail(fmt::format("there is no camera {}", *name));
+  state_.current_camera = *std::move(name);
+  changed();
+  return &*setting;
+}
+
+// A frame that is gone is tracked no more, a view of a camera that is gone stays where it was set, and a robot that is
+// gone has no arc. Draw rules stay: they count again when their component is loaded again.
+void DisplayDesk::follow_cell() {
+  if (parts_.cell.revision() == cell_revision_) return;
+  cell_revision_ = parts_.cell.revision();
+  const auto cell = parts_.cell.compile();
+  std::vector<CameraSetting> cameras;
+  for (const CompiledCamera& camera : cell->cameras) {
+    CameraSetting setting;
+    setting.name = is_unique(*cell, camera.name) ? camera.name : (*cell->paths)[static_cast<std::size_t>(camera.node)];
+    const auto old = std::ranges::find(state_.cameras, setting.name, &CameraSetting::name);
+    if (old != state_.cameras.end()) setting = *old;
+    if (!setting.tracks.empty() && !parts_.cell.knows(setting.tracks)) setting.tracks.clear();
+    cameras.push_back(std::move(setting));
+  }
+  const auto is_gone = [&](std::string_view camera) {
+    return !camera.empty() && std::ranges::find(cameras, camera, &CameraSetting::name) == cameras.end();
+  };
+  for (DisplayView& shown : state_.views) {
+    if (is_gone(shown.camera)) shown.camera.clear();
+  }
+  if (is_gone(state_.current_camera)) state_.current_camera.clear();
+  if (cameras.empty()) state_.modes.reset(static_cast<std::size_t>(DisplayMode::camera_main_view));
+  std::erase_if(state_.arcs, [&](const std::string& robot) { return parts_.cell.robot(robot) == nullptr; });
+  state_.cameras = std::move(cameras);
+  changed();
+}
+
+void DisplayDesk::follow_carriers() {
+  if (!parts_.is_online) return;
+  const auto cell = parts_.cell.compile();
+  for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
+    const auto slot = scene::carrier_slot(*cell, i);
+    const bool mirrored = slot && parts_.is_online(*slot);
+    if (state_.cameras[i].mirrored == mirrored) continue;
+    state_.cameras[i].mirrored = mirrored;
+    changed();
+  }
+}
+
+Result<void> DisplayDesk::connect_view(int id, std::string_view camera) {
+  if (auto known = check_view_id(id); !known) return known;
+  if (auto opened = open_camera(camera); !opened) return std::unexpected(opened.error());
+  view(id).camera = state_.current_camera;
+  view(id).sequence.reset();
+  return {};
+}
+
+Result<void> DisplayDesk::set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) {
+  if (auto set = parts_.cell.set_camera(camera, focal_distance_m, fovy_rad); !set) return set;
+  if (auto opened = open_camera(camera); !opened) return std::unexpected(opened.error());
+  return {};
+}
+
+Result<void> DisplayDesk::track(std::string_view camera, std::optional<std::string_view> frame) {
+  std::string target;
+  if (frame) {
+    const auto node = parts_.cell.find(*frame);
+    if (!node) return std::unexpected(node.error());
+    target = parts_.cell.path(*node);
+    const auto itself = parts_.cell.find(camera, PathKind::camera);
+    if (itself && *itself == *node) {
+      return fail(fmt::format("the camera {} cannot look at itself", camera), "give another frame to look at");
+    }
+  }
+  const auto setting = open_camera(camera);
+  if (!setting) return std::unexpected(setting.error());
+  (*setting)->tracks = std::move(target);
+  return {};
+}
+
+Result<void> DisplayDesk::show_pyramid(std::string_view camera, bool on) {
+  const auto setting = open_camera(camera);
+  if (!setting) return std::unexpected(setting.error());
+  (*setting)->pyramid = on;
+  return {};
+}
+
+Result<void> DisplayDesk::set_camera_online(std::string_view camera, bool on) {
+  const auto setting = open_camera(camera);
+  if (!setting) return std::unexpected(setting.error());
+  (*setting)->online = on;
+  return {};
+}
+
+}  // namespace cellmirror::app
