@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cerrno>
 #include <exception>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -38,15 +39,79 @@ bool may_ask(int socket) {
   return peer.uid == ::geteuid() || peer.uid == 0;
 }
 
+std::string answer_of(const ControlServer::Handler& handler, std::string_view request) {
+  try {
+    return handler(request);
+  } catch (const std::exception& error) {
+    log_error("ipc.control-request", "{}", error.what());
+    return control_error({fmt::format("the request failed: {}", error.what()), "this is a bug, please report it"});
+  }
+}
+
 }  // namespace
 
+// Outlives the server as long as somebody owes it an answer.
+class ControlReply::Desk {
+ public:
+  Desk() : wake_up_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+
+  void hand_in(std::uint64_t client, std::string text) {
+    {
+      const std::scoped_lock lock(mutex_);
+      answers_.emplace_back(client, std::move(text));
+    }
+    wake();
+  }
+  void wake() {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t woken = ::write(wake_up_.get(), &one, sizeof one);
+  }
+  std::vector<std::pair<std::uint64_t, std::string>> collect() {
+    std::uint64_t count = 0;
+    [[maybe_unused]] const ssize_t got = ::read(wake_up_.get(), &count, sizeof count);
+    std::vector<std::pair<std::uint64_t, std::string>> out;
+    const std::scoped_lock lock(mutex_);
+    out.swap(answers_);
+    return out;
+  }
+  [[nodiscard]] const Descriptor& wake_up() const { return wake_up_; }
+
+ private:
+  Descriptor wake_up_;
+  std::mutex mutex_;
+  std::vector<std::pair<std::uint64_t, std::string>> answers_;
+};
+
+ControlReply::ControlReply(std::shared_ptr<Desk> desk, std::uint64_t client)
+    : desk_(std::move(desk)), client_(client) {}
+
+ControlReply::ControlReply(ControlReply&& other) noexcept : desk_(std::move(other.desk_)), client_(other.client_) {}
+
+ControlReply::~ControlReply() {
+  if (desk_) (*this)(control_error({"the request was not answered", "ask again"}));
+}
+
+void ControlReply::operator()(std::string text) {
+  const auto desk = std::exchange(desk_, nullptr);
+  if (desk) desk->hand_in(client_, std::move(text));
+}
+
 struct ControlServer::Impl {
+  struct Client {
+    ControlConnection connection;
+    std::uint64_t number = 0;
+    bool asked = false;  // its request is being answered
+    Timestamp deadline;  // of the answer, where it has asked
+    [[nodiscard]] Timestamp until() const { return asked ? deadline : connection.deadline(); }
+  };
+
   std::filesystem::path path;
-  Handler handler;
+  LaterHandler handler;
   Nanoseconds client_timeout{0};
   Descriptor listener;
-  Descriptor wake_up;
-  std::vector<ControlConnection> connections;
+  std::shared_ptr<ControlReply::Desk> desk = std::make_shared<ControlReply::Desk>();
+  std::vector<Client> connections;
+  std::uint64_t clients = 0;  // so far
   std::thread thread;
   std::atomic<bool> stopping{false};
   std::atomic<std::uint64_t> answered{0};
@@ -57,9 +122,10 @@ struct ControlServer::Impl {
   void serve();
   void accept_one();
   // False: the connection is over.
-  bool go_on(ControlConnection& connection, short events);
-  bool respond(ControlConnection& connection, std::string text);
-  std::string handled(std::string_view request);
+  bool go_on(Client& client, short events);
+  bool respond(Client& client, std::string text);
+  void hand_over(Client& client);
+  void hand_out();
   [[nodiscard]] int poll_timeout_ms() const;
   void cut_off_late();
   void make_room();
@@ -69,11 +135,10 @@ Result<void> ControlServer::Impl::listen() {
   const auto address = unix_address(path);
   if (!address) return std::unexpected(address.error());
   listener = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  wake_up = Descriptor(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
   const auto failed = [&] {
     return fail(fmt::format("cannot listen at {}: {}", path.native(), system_error_text(errno)));
   };
-  if (!listener.valid() || !wake_up.valid()) return failed();
+  if (!listener.valid() || !desk->wake_up().valid()) return failed();
   ::unlink(path.c_str());
   if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) return failed();
   // The folder lets nobody else in; the mode is the second door.
@@ -87,10 +152,11 @@ void ControlServer::Impl::serve() {
   std::vector<pollfd> polled;
   while (!stopping.load(std::memory_order_acquire)) {
     polled.clear();
-    polled.push_back({wake_up.get(), POLLIN, 0});
+    polled.push_back({desk->wake_up().get(), POLLIN, 0});
     polled.push_back({listener.get(), POLLIN, 0});
-    for (const ControlConnection& connection : connections) {
-      polled.push_back({connection.fd(), static_cast<short>(connection.answering() ? POLLOUT : POLLIN), 0});
+    for (const Client& client : connections) {
+      const int events = client.asked ? 0 : client.connection.answering() ? POLLOUT : POLLIN;
+      polled.push_back({client.connection.fd(), static_cast<short>(events), 0});
     }
     if (::poll(polled.data(), polled.size(), poll_timeout_ms()) < 0 && errno != EINTR) return;
     // From behind, so that the places of the others stay.
@@ -100,6 +166,7 @@ void ControlServer::Impl::serve() {
         connections.pop_back();
       }
     }
+    hand_out();
     cut_off_late();
     if ((polled[1].revents & POLLIN) != 0) accept_one();
   }
@@ -116,15 +183,20 @@ void ControlServer::Impl::accept_one() {
   }
   if (connections.size() == kMaxClients) make_room();
   const bool allowed = may_ask(socket.get());
-  connections.emplace_back(std::move(socket), now() + client_timeout);
+  connections.push_back({ControlConnection(std::move(socket), now() + client_timeout), ++clients, false, {}});
   if (allowed) return;
   refused.fetch_add(1, std::memory_order_relaxed);
-  connections.back().answer(control_error({"only the gateway's user and root may ask", "run this as that user"}),
-                            now() + client_timeout);
+  connections.back().connection.answer(
+      control_error({"only the gateway's user and root may ask", "run this as that user"}), now() + client_timeout);
 }
 
-bool ControlServer::Impl::go_on(ControlConnection& connection, short events) {
+bool ControlServer::Impl::go_on(Client& client, short events) {
   if (events == 0) return true;
+  ControlConnection& connection = client.connection;
+  if (client.asked) {  // it has hung up
+    cut.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
   if (connection.answering()) {
     const Progress progress = connection.write_some();
     if (progress == Progress::finished) return false;
@@ -134,14 +206,12 @@ bool ControlServer::Impl::go_on(ControlConnection& connection, short events) {
   switch (connection.read_some()) {
     case Progress::waiting:
       return true;
-    case Progress::request_complete: {
-      std::string text = handled(connection.request());
-      answered.fetch_add(1, std::memory_order_relaxed);
-      return respond(connection, std::move(text));
-    }
+    case Progress::request_complete:
+      hand_over(client);
+      return true;
     case Progress::too_long:
       refused.fetch_add(1, std::memory_order_relaxed);
-      return respond(connection,
+      return respond(client,
                      control_error({fmt::format("the request is longer than {} bytes", kMaxControlRequestBytes), ""}));
     default:
       cut.fetch_add(1, std::memory_order_relaxed);
@@ -150,26 +220,41 @@ bool ControlServer::Impl::go_on(ControlConnection& connection, short events) {
 }
 
 // Most answers fit the socket's buffer and are gone at once.
-bool ControlServer::Impl::respond(ControlConnection& connection, std::string text) {
-  connection.answer(std::move(text), now() + client_timeout);
-  return connection.write_some() == Progress::waiting;
+bool ControlServer::Impl::respond(Client& client, std::string text) {
+  if (text.size() >= kMaxControlReplyBytes)
+    text = control_error({fmt::format("the answer is longer than {} bytes", kMaxControlReplyBytes), ""});
+  client.asked = false;
+  client.connection.answer(std::move(text), now() + client_timeout);
+  return client.connection.write_some() == Progress::waiting;
 }
 
-std::string ControlServer::Impl::handled(std::string_view request) {
+void ControlServer::Impl::hand_over(Client& client) {
+  client.asked = true;
+  client.deadline = now() + kLongestAnswer;
   try {
-    std::string text = handler(request);
-    if (text.size() < kMaxControlReplyBytes) return text;
-    return control_error({fmt::format("the answer is longer than {} bytes", kMaxControlReplyBytes), ""});
-  } catch (const std::exception& error) {
+    handler(client.connection.request(), ControlReply(desk, client.number));
+  } catch (const std::exception& error) {  // the reply that was let go has told the client
     log_error("ipc.control-request", "{}", error.what());
-    return control_error({fmt::format("the request failed: {}", error.what()), "this is a bug, please report it"});
+  }
+}
+
+// Of a client that was answered twice the first answer counts; one that has gone gets none.
+void ControlServer::Impl::hand_out() {
+  for (auto& [number, text] : desk->collect()) {
+    const auto found = std::ranges::find_if(
+        connections, [wanted = number](const Client& client) { return client.number == wanted && client.asked; });
+    if (found == connections.end()) continue;
+    answered.fetch_add(1, std::memory_order_relaxed);
+    if (respond(*found, std::move(text))) continue;
+    std::swap(*found, connections.back());
+    connections.pop_back();
   }
 }
 
 int ControlServer::Impl::poll_timeout_ms() const {
   if (connections.empty()) return -1;
-  Timestamp next = connections.front().deadline();
-  for (const ControlConnection& connection : connections) next = std::min(next, connection.deadline());
+  Timestamp next = connections.front().until();
+  for (const Client& client : connections) next = std::min(next, client.until());
   const std::int64_t left_ms = (next - now()).count() / 1'000'000 + 1;
   return static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 60'000));
 }
@@ -177,7 +262,7 @@ int ControlServer::Impl::poll_timeout_ms() const {
 void ControlServer::Impl::cut_off_late() {
   const Timestamp time = now();
   const auto late = std::remove_if(connections.begin(), connections.end(),
-                                   [&](const ControlConnection& c) { return c.deadline() <= time; });
+                                   [&](const Client& client) { return client.until() <= time; });
   cut.fetch_add(static_cast<std::uint64_t>(connections.end() - late), std::memory_order_relaxed);
   connections.erase(late, connections.end());
 }
@@ -185,12 +270,22 @@ void ControlServer::Impl::cut_off_late() {
 // Who has been there longest has had the most time: stalled clients cannot keep newcomers out.
 void ControlServer::Impl::make_room() {
   connections.erase(std::min_element(connections.begin(), connections.end(),
-                                     [](const auto& a, const auto& b) { return a.deadline() < b.deadline(); }));
+                                     [](const auto& a, const auto& b) { return a.until() < b.until(); }));
   cut.fetch_add(1, std::memory_order_relaxed);
 }
 
 Result<std::unique_ptr<ControlServer>> ControlServer::start(const std::filesystem::path& path, Handler handler,
                                                             Nanoseconds client_timeout) {
+  return start_later(
+      path,
+      [handler = std::move(handler)](std::string_view request, ControlReply reply) {
+        reply(answer_of(handler, request));
+      },
+      client_timeout);
+}
+
+Result<std::unique_ptr<ControlServer>> ControlServer::start_later(const std::filesystem::path& path,
+                                                                  LaterHandler handler, Nanoseconds client_timeout) {
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   impl->handler = std::move(handler);
@@ -210,8 +305,7 @@ ControlServer::ControlServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)
 
 ControlServer::~ControlServer() {
   impl_->stopping.store(true, std::memory_order_release);
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t woken = ::write(impl_->wake_up.get(), &one, sizeof one);
+  impl_->desk->wake();
   impl_->thread.join();
   ::unlink(impl_->path.c_str());
 }

@@ -18,6 +18,22 @@ namespace cellmirror {
 inline constexpr std::size_t kMaxControlRequestBytes = 65'536;
 inline constexpr std::size_t kMaxControlReplyBytes = std::size_t{16} * 1024 * 1024;
 
+// Somebody's question that is still to be answered: at once or later, once, by any thread, also when the server or the
+// client has gone meanwhile. Let go without an answer it is answered as failed.
+class ControlReply {
+ public:
+  class Desk;  // where answers are handed in
+  ControlReply(std::shared_ptr<Desk> desk, std::uint64_t client);
+  ~ControlReply();
+  ControlReply(ControlReply&& other) noexcept;
+  ControlReply& operator=(ControlReply&&) = delete;
+  void operator()(std::string text);
+
+ private:
+  std::shared_ptr<Desk> desk_;  // null: answered
+  std::uint64_t client_;
+};
+
 struct ControlServerStatus {
   std::uint64_t answered = 0;
   std::uint64_t refused = 0;  // other users, requests too long
@@ -33,11 +49,16 @@ class ControlServer {
   // Is given one request line without its line break and returns one JSON document. Called from the server's thread:
   // what takes long delays the other clients.
   using Handler = std::function<std::string(std::string_view request)>;
+  // The same for questions whose answers take their time.
+  using LaterHandler = std::function<void(std::string_view request, ControlReply reply)>;
+  static constexpr Nanoseconds kLongestAnswer{30'000'000'000};
 
   // Makes the socket (0600) at `path`, replacing one that was left behind: call it with the instance's claim held.
   [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const std::filesystem::path& path, Handler handler,
                                                                     Nanoseconds client_timeout = Nanoseconds{
                                                                         5'000'000'000});
+  [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start_later(
+      const std::filesystem::path& path, LaterHandler handler, Nanoseconds client_timeout = Nanoseconds{5'000'000'000});
   ~ControlServer();  // stops, cuts off who is there, removes the socket
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;

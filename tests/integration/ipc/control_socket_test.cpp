@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -225,6 +226,46 @@ TEST_F(ControlSocket, SlowHandlerEndsInATimeOutOfTheClient) {
   const auto refused = ask(R"({"request":"status"})", kShort);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().what.find("did not answer within 0.05 s"), std::string::npos) << refused.error().text();
+}
+
+// A picture takes its time: others are answered meanwhile.
+TEST_F(ControlSocket, LateAnswersHoldUpNobody) {
+  std::vector<ControlReply> owed;
+  std::mutex mutex;
+  auto server = ControlServer::start_later(path_, [&](std::string_view request, ControlReply reply) {
+    const auto parsed = parse_control_request(request);
+    if (parsed && parsed->request == "quick") return reply("{\"quick\": true}");
+    const std::scoped_lock lock(mutex);
+    owed.push_back(std::move(reply));
+  });
+  ASSERT_TRUE(server) << server.error().text();
+  Result<std::string> late = fail("not asked");
+  Result<std::string> forgotten = fail("not asked");
+  std::thread asks([&] { late = control_request_at(path_, "test", R"({"request":"late"})", kLong); });
+  const auto owes = [&](std::size_t wanted) {
+    for (;;) {
+      const std::scoped_lock lock(mutex);
+      if (owed.size() == wanted) return;
+    }
+  };
+  owes(1);
+  std::thread asks_too([&] { forgotten = control_request_at(path_, "test", R"({"request":"late"})", kLong); });
+  owes(2);
+  const auto quick = control_request_at(path_, "test", R"({"request":"quick"})", kLong);
+  ASSERT_TRUE(quick) << quick.error().text();
+  EXPECT_EQ(*quick, "{\"quick\": true}");
+  owed[0]("{\"late\": true}");
+  owed.pop_back();
+  asks.join();
+  asks_too.join();
+  ASSERT_TRUE(late) << late.error().text();
+  EXPECT_EQ(*late, "{\"late\": true}");
+  ASSERT_FALSE(forgotten) << "an answer that is never given is a refusal";
+  RawClient leaves(path_);
+  ASSERT_TRUE(leaves.send("{\"request\":\"late\"}\n"));
+  owes(2);
+  server->reset();
+  owed.back()("too late for anybody");
 }
 
 TEST_F(ControlSocket, TooLongAPathIsRefused) {
