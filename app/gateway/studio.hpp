@@ -1,38 +1,160 @@
 // Takes the pictures of the running cell, in a thread of its own that never holds up anything: for the monitor page,
-// for `cellmirror snapshot`, for DDS. Nobody looks: nothing is drawn.
+// for `cellmirror snapshot`, for DDS. Nobody looks: nothing is drawn. One drawing serves all who wish the same; what
+// has not changed is not drawn again, but once a second. docs/pictures.md.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
+#include "app/gateway/picture_streams.hpp"
+#include "app/gateway/picture_updates.hpp"
+#include "app/gateway/recycler.hpp"
+#include "app/gateway/scene_source.hpp"
+#include "app/gateway/wake_signal.hpp"
+#include "config/picture_settings.hpp"
+#include "drivers/display/image_codec.hpp"
 #include "drivers/display/renderer.hpp"
 #include "ipc/web/web_backend.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/image.hpp"
+#include "rt_core/rt/latency_histogram.hpp"
 
 namespace cellmirror::app {
 
-struct StudioSettings {
-  bool on = true;
-  double rate_hz = 20;  // of updates of the picture, at most
-  int width = 640;      // where nobody says otherwise
-  int height = 480;
-  display::RendererOptions renderer;
+// All that status tells of it, as of one moment.
+struct PictureReport {
+  bool on = false;
+  std::string renderer;  // its own name; empty: it was not needed yet
+  std::string problem;   // why there are no pictures; empty: there is nothing wrong
+  PictureSettings settings;
+  std::size_t streams = 0;
+  std::uint64_t updates = 0;
+  std::uint64_t drawn = 0;
+  std::uint64_t unchanged = 0;  // drawings that were left out because nothing had changed
+  std::uint64_t on_demand = 0;  // pictures and picks, of `drawn`
+  std::uint64_t failed = 0;
+  display::RendererCounters counters;
+  HistogramSnapshot scene;   // how long it took to join the scene,
+  HistogramSnapshot draw;    // to draw it,
+  HistogramSnapshot encode;  // to encode it
+  HistogramSnapshot age;     // of the posture shown, when the picture could be had
 };
 
-// How often the picture was updated: what STEPS of STVW counts. It goes on at the rate of the settings where nobody
-// looks.
-class PictureUpdates {
+class Studio {
  public:
-  [[nodiscard]] std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
-  void add() { count_.fetch_add(1, std::memory_order_relaxed); }
+  using RendererMaker = std::function<Result<std::unique_ptr<display::Renderer>>()>;
+  using PictureReply = std::function<void(Result<EncodedImage>)>;
+
+  // Pictures for somebody within the process, at his rate, as long as output->watched().
+  struct Output {
+    std::unique_ptr<ImageOutput> output;
+    web::PictureWish wish;
+  };
+  struct Options {
+    PictureSettings settings;
+    bool headless = false;  // no pictures at all
+    std::vector<Output> outputs;
+    RendererMaker make_renderer;  // empty: as the settings say
+  };
+  static constexpr std::size_t kMostJobs = 16;
+  static constexpr Nanoseconds kPatience{15'000'000'000};  // for one picture on demand
+
+  // What `boards` and `updates` refer to outlives the studio.
+  Studio(Options options, const SceneSource::Boards& boards, PictureUpdates& updates);
+  ~Studio();
+  Studio(const Studio&) = delete;
+  Studio& operator=(const Studio&) = delete;
+
+  // Any thread, as web::Backend. Does not wait.
+  Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish);
+  // Waits for the picture.
+  Result<EncodedImage> picture(const web::PictureWish& wish, ImageFormat format);
+  Result<std::optional<web::PickedObject>> pick(const web::PictureWish& wish, int x, int y);
+  // Does not wait: `reply` is called once, by the picture's thread, or at once where the wish is refused.
+  void ask_picture(const web::PictureWish& wish, ImageFormat format, PictureReply reply);
+
+  [[nodiscard]] PictureReport report() const;
+  // The names and counters of the outputs; they are there as long as the studio.
+  [[nodiscard]] std::vector<const ImageOutput*> outputs() const;
+  [[nodiscard]] const PictureSettings& settings() const { return options_.settings; }
 
  private:
-  std::atomic<std::uint64_t> count_{0};
+  using Job = std::function<void(bool given_up)>;
+
+  // What was drawn last for one kind of wish.
+  struct Shot {
+    web::PictureWish wish;
+    std::uint64_t fingerprint = 0;
+    Timestamp drawn;
+    Image image;
+    Timestamp posture_time;
+    std::vector<std::pair<int, std::shared_ptr<const EncodedImage>>> encoded;  // by quality
+    bool used = false;
+  };
+  // Somebody who gets a picture in this round.
+  struct Guest {
+    std::shared_ptr<Looker> looker;  // null: an output
+    Output* output = nullptr;
+    web::PictureWish wish;
+  };
+
+  [[nodiscard]] Result<void> refusal(const web::PictureWish& wish) const;
+  bool add_job(Job job);
+  void loop(const std::stop_token& stop);
+  void run_jobs();
+  void give_up_jobs();
+  void round(Timestamp now);
+  [[nodiscard]] std::vector<Guest> guests(Timestamp now);
+  void serve(const std::vector<Guest>& guests);
+  void give(const Guest& guest, Shot& shot);
+  Shot& shot_for(const web::PictureWish& wish);
+  // False where it could not be drawn.
+  bool bring_up_to_date(Shot& shot);
+  Result<std::shared_ptr<const EncodedImage>> encode(Shot& shot, int quality);
+
+  Result<EncodedImage> take(const web::PictureWish& wish, ImageFormat format);
+  Result<std::optional<web::PickedObject>> look_at(const web::PictureWish& wish, int x, int y);
+  // The newest scene, and the renderer; fails where there is none.
+  Result<std::vector<Pane>> prepare(const web::PictureWish& wish);
+  Result<void> need_renderer();
+  Result<void> draw(std::span<const Pane> panes, int width, int height, Image& image);
+  void note_problem(const Error& error);
+  void note_well();
+  void count(std::uint64_t PictureReport::* counter);
+
+  Options options_;
+  SceneSource::Boards boards_;
+  PictureUpdates& updates_;
+  PictureStreams streams_;
+
+  // The picture thread's own.
+  SceneSource source_;
+  std::unique_ptr<display::Renderer> renderer_;
+  Timestamp renderer_tried_;
+  display::ImageEncoder encoder_;
+  std::vector<Shot> shots_;
+  std::vector<Timestamp> output_due_;
+  std::uint64_t sequence_ = 0;
+  Recycler<EncodedImage> recycled_;
+
+  LatencyHistogram scene_time_;
+  LatencyHistogram draw_time_;
+  LatencyHistogram encode_time_;
+  LatencyHistogram age_;
+  mutable std::mutex mutex_;  // of what follows
+  std::deque<Job> jobs_;
+  bool ended_ = false;
+  PictureReport report_;
+
+  WakeSignal wake_;
+  std::jthread thread_;  // last: it uses everything above
 };
 
 }  // namespace cellmirror::app

@@ -1,0 +1,76 @@
+#include "app/gateway/picture_streams.hpp"
+
+#include <utility>
+
+#include "app/gateway/picture_wish.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+class Stream final : public web::PictureStream {
+ public:
+  explicit Stream(std::shared_ptr<Looker> looker) : looker_(std::move(looker)) {}
+  void change(const web::PictureWish& wish) override { looker_->change(wish); }
+  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t after) const override {
+    return looker_->newest(after);
+  }
+
+ private:
+  std::shared_ptr<Looker> looker_;
+};
+
+}  // namespace
+
+web::PictureWish Looker::wish() const {
+  const std::scoped_lock lock(mutex_);
+  return wish_;
+}
+
+void Looker::change(const web::PictureWish& wish) {
+  if (!check_wish(wish)) return;  // whoever speaks with the client has told it
+  asked_now();
+  const std::scoped_lock lock(mutex_);
+  if (!same_drawing(wish_, wish)) newest_.reset();
+  wish_ = wish;
+}
+
+std::shared_ptr<const EncodedImage> Looker::newest(std::uint64_t after) {
+  asked_now();
+  const std::scoped_lock lock(mutex_);
+  return newest_ && newest_->sequence > after ? newest_ : nullptr;
+}
+
+void Looker::show(std::shared_ptr<const EncodedImage> picture, const web::PictureWish& wish) {
+  shown = picture->sequence;
+  const std::scoped_lock lock(mutex_);
+  if (!same_drawing(wish_, wish)) return;
+  newest_.swap(picture);  // the one before is let go by the argument, without the lock
+}
+
+bool Looker::looks(Timestamp now) const {
+  return now - Timestamp{asked_ns_.load(std::memory_order_relaxed)} < kPatience;
+}
+
+std::unique_ptr<web::PictureStream> PictureStreams::open(const web::PictureWish& wish) {
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(lookers_, [](const auto& looker) { return looker.expired(); });
+  if (lookers_.size() >= kMost) return nullptr;
+  auto looker = std::make_shared<Looker>(wish, clock_);
+  lookers_.push_back(looker);
+  return std::make_unique<Stream>(std::move(looker));
+}
+
+std::vector<std::shared_ptr<Looker>> PictureStreams::all() const {
+  std::vector<std::shared_ptr<Looker>> out;
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(lookers_, [](const auto& looker) { return looker.expired(); });
+  for (const auto& looker : lookers_) {
+    if (auto there = looker.lock()) out.push_back(std::move(there));
+  }
+  return out;
+}
+
+std::size_t PictureStreams::size() const { return all().size(); }
+
+}  // namespace cellmirror::app

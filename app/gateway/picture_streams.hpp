@@ -1,0 +1,64 @@
+// Who looks at pictures continuously: one entry a client, with its newest picture. Newest wins, nobody waits.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "ipc/web/web_backend.hpp"
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror::app {
+
+// Shared by a client and the picture thread.
+class Looker {
+ public:
+  Looker(const web::PictureWish& wish, const Clock& clock) : clock_(clock), wish_(wish) { asked_now(); }
+
+  // Any thread.
+  [[nodiscard]] web::PictureWish wish() const;
+  void change(const web::PictureWish& wish);
+  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t after);
+
+  // The picture thread's.
+  // Not where it has changed its wish from `wish` meanwhile.
+  void show(std::shared_ptr<const EncodedImage> picture, const web::PictureWish& wish);
+  // Whether it has asked within kPatience: for a client that stands still nothing is drawn.
+  [[nodiscard]] bool looks(Timestamp now) const;
+  // The number of what was shown last, and when the next one is due by its rate.
+  std::uint64_t shown = 0;
+  Timestamp due;
+
+  static constexpr Nanoseconds kPatience{1'000'000'000};
+
+ private:
+  void asked_now() { asked_ns_.store(clock_.now().ns, std::memory_order_relaxed); }
+
+  const Clock& clock_;
+  std::atomic<std::int64_t> asked_ns_{0};  // relaxed: only tells about when
+  mutable std::mutex mutex_;               // of what follows
+  web::PictureWish wish_;
+  std::shared_ptr<const EncodedImage> newest_;
+};
+
+// All of them. Any thread. `clock` outlives the streams.
+class PictureStreams {
+ public:
+  static constexpr std::size_t kMost = 32;
+
+  explicit PictureStreams(const Clock& clock) : clock_(clock) {}
+
+  // Null where kMost are open.
+  [[nodiscard]] std::unique_ptr<web::PictureStream> open(const web::PictureWish& wish);
+  [[nodiscard]] std::vector<std::shared_ptr<Looker>> all() const;
+  [[nodiscard]] std::size_t size() const;
+
+ private:
+  const Clock& clock_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::weak_ptr<Looker>> lookers_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,81 @@
+#include "app/gateway/picture_wish.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "rt_core/base/text.hpp"
+#include "rt_core/ports/display_state.hpp"
+#include "rt_core/ports/image.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr double kFarthest = 1e4;  // m
+constexpr double kHighestRate = 60;
+
+bool good_place(const Eigen::Vector3d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest; }
+
+Result<void> check_free_view(const View& view) {
+  if (!good_place(view.viewpoint) || !good_place(view.lookpoint))
+    return fail("viewpoint or lookpoint is no place within 10 km");
+  if ((view.viewpoint - view.lookpoint).norm() < 1e-6)
+    return fail("the viewpoint is the lookpoint", "set them apart from each other");
+  if (!std::isfinite(view.twist)) return fail("the twist is no number");
+  if (!(view.opening_angle > 0 && view.opening_angle < std::numbers::pi))
+    return fail("the opening angle is not between 0 and pi");
+  if (!(view.near_distance >= 0 && view.far_distance > view.near_distance && view.far_distance <= 1e6))
+    return fail("the clipping planes leave nothing between them");
+  return {};
+}
+
+bool same_view(const View& a, const View& b) {
+  return a.viewpoint == b.viewpoint && a.lookpoint == b.lookpoint && a.twist == b.twist &&
+         a.opening_angle == b.opening_angle && a.near_distance == b.near_distance && a.far_distance == b.far_distance &&
+         a.orthogonal == b.orthogonal;
+}
+
+}  // namespace
+
+Result<void> check_wish(const web::PictureWish& wish) {
+  if ((wish.view ? 1 : 0) + (wish.camera ? 1 : 0) + (wish.free_view ? 1 : 0) > 1)
+    return fail("a picture is of a view, of a camera or of a free view", "name one of them");
+  if (wish.view && (*wish.view < 0 || *wish.view >= static_cast<int>(kViews)))
+    return fail(fmt::format("there is no view {}", *wish.view), "views are 0 to 6");
+  const auto good_edge = [](int edge) { return edge >= kSmallestImageEdge && edge <= kLargestImageEdge; };
+  if (!good_edge(wish.width) || !good_edge(wish.height)) {
+    return fail(fmt::format("a picture of {} x {} pixels", wish.width, wish.height),
+                fmt::format("edges are {} to {} pixels", kSmallestImageEdge, kLargestImageEdge));
+  }
+  if (!(wish.rate_hz > 0 && wish.rate_hz <= kHighestRate))
+    return fail(fmt::format("{} pictures a second", wish.rate_hz), "above 0 to 60");
+  if (wish.quality < 1 || wish.quality > 100)
+    return fail(fmt::format("a quality of {}", wish.quality), "1 to 100; 80 is good");
+  return wish.free_view ? check_free_view(*wish.free_view) : Result<void>();
+}
+
+Result<void> check_camera(const web::PictureWish& wish, const CompiledCell& cell) {
+  if (!wish.camera) return {};
+  std::vector<std::string> names;
+  for (const CompiledCamera& camera : cell.cameras) {
+    names.push_back(camera.name);
+    if (camera.name == *wish.camera || (*cell.paths)[static_cast<std::size_t>(camera.node)] == *wish.camera) return {};
+  }
+  std::string remedy = did_you_mean(*wish.camera, names);
+  if (remedy.empty())
+    remedy = names.empty() ? "the cell has no camera" : fmt::format("its cameras: {}", fmt::join(names, ", "));
+  return fail(fmt::format("there is no camera {}", printable(*wish.camera)), remedy);
+}
+
+bool same_drawing(const web::PictureWish& a, const web::PictureWish& b) {
+  if (a.view != b.view || a.camera != b.camera || a.width != b.width || a.height != b.height) return false;
+  if (a.free_view.has_value() != b.free_view.has_value()) return false;
+  return !a.free_view || same_view(*a.free_view, *b.free_view);
+}
+
+}  // namespace cellmirror::app

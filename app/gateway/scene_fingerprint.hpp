@@ -1,0 +1,15 @@
+// Tells whether a picture would look as the one before.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/ports/scene.hpp"
+
+namespace cellmirror::app {
+
+// A hash of all that the scene shows from these panes, its time left out: equal scenes have equal ones. Not for
+// safety: a collision would leave a picture unchanged for a second.
+[[nodiscard]] std::uint64_t fingerprint(const Scene& scene, std::span<const Pane> panes);
+
+}  // namespace cellmirror::app
