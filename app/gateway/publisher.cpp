@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rt_core/rt/scheduling.hpp"
+#include "rt_core/scene/camera_mount.hpp"
 
 namespace cellmirror::app {
 
@@ -112,6 +113,11 @@ Timestamp Publisher::publish_due(Timestamp now) {
       if (!sending_.empty()) outputs_[i].output->publish(state.time, sending_, frames);
       if (outputs_[i].forces != nullptr && forces) outputs_[i].forces->publish_forces(*forces);
       if (outputs_[i].findings != nullptr) findings_[i].publish_news(*outputs_[i].findings, picture->range_send_mode);
+      if (outputs_[i].cameras != nullptr && picture->display) {
+        const std::vector<CameraState> cameras =
+            scene::online_cameras(*picture->cell, builder_.poses(), *picture->display);
+        if (!cameras.empty()) outputs_[i].cameras->publish_cameras(state.time, cameras);
+      }
       due_[i] = due_[i] + outputs_[i].period;
       if (due_[i] < now) due_[i] = now + outputs_[i].period;  // it was late by more than a period
     }
