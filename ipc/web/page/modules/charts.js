@@ -119,8 +119,8 @@ export class Charts {
     const units = joints.map(joint_unit);
     const keys = joints.map((joint) => `${quantity.prefix}|${this.robot_}|${joint.name}`);
     const scales = units.map((unit) => (quantity.unit ? scaled(1, quantity.unit(unit)) : 1));
-    const unit_texts = new Set(units.map((unit) => (quantity.unit ? shown_unit(quantity.unit(unit)) : unit === "m" ? "N" : "Nm")));
-    this.show_(chart, joints.map((joint) => joint.name), [...unit_texts].join(", "), keys, scales);
+    const unit_texts = units.map((unit) => (quantity.unit ? shown_unit(quantity.unit(unit)) : unit === "m" ? "N" : "Nm"));
+    this.show_(chart, joints.map((joint) => joint.name), unit_texts, keys, scales);
   }
 
   // The pairs that are nearest now; a curve stays until a nearer one needs its place.
@@ -128,12 +128,12 @@ export class Charts {
     const near = this.history_.keys("near|").map((key) => ({key, value: this.history_.newest(key), seen: this.history_.last_seen(key)}));
     near.sort((a, b) => (a.value ?? Infinity) - (b.value ?? Infinity) || b.seen - a.seen || (a.key < b.key ? -1 : 1));
     const keys = near.slice(0, kMostCurves).map(({key}) => key).sort();
-    this.show_(chart, keys.map((key) => short_pair(key.slice(5))), "mm", keys, keys.map(() => 1000));
+    this.show_(chart, keys.map((key) => short_pair(key.slice(5))), keys.map(() => "mm"), keys, keys.map(() => 1000));
   }
 
   show_all_(chart, prefix, unit, scale) {
     const keys = this.history_.keys(prefix).filter((key) => prefix !== "tcp|" || this.ever_(key)).slice(0, 2 * kMostCurves);
-    this.show_(chart, keys.map((key) => key.slice(prefix.length)), unit, keys, keys.map(() => scale));
+    this.show_(chart, keys.map((key) => key.slice(prefix.length)), keys.map(() => unit), keys, keys.map(() => scale));
   }
 
   // Only robots at whose TCP something was ever known.
@@ -143,7 +143,7 @@ export class Charts {
     return this.known_.has(key);
   }
 
-  show_(chart, labels, unit, keys, scales) {
-    chart.show(labels, unit, this.history_.window(keys, this.span_, scales), this.span_);
+  show_(chart, labels, units, keys, scales) {
+    chart.show(labels, units, this.history_.window(keys, this.span_, scales), this.span_);
   }
 }

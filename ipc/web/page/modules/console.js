@@ -64,6 +64,7 @@ export class Console {
     const answer = element("span", {class: "answer waiting"}, "…");
     const entry = element("li", {}, element("time", {}, clock_time()), element("code", {}, text), answer);
     this.log_.append(entry);
+    byId("no-commands").hidden = true;
     while (this.log_.children.length > kMostEntries) this.log_.firstElementChild.remove();
     this.log_.scrollTop = this.log_.scrollHeight;
     return {entry, answer};
@@ -168,6 +169,6 @@ export class Console {
       return;
     }
     const syntax = help.parts.flatMap(({text, here}) => [element(here ? "b" : "span", {}, text), " "]);
-    line.replaceChildren(element("code", {}, ...syntax), help.help, help.note ? element("span", {class: "note"}, ` ${help.note}`) : "");
+    line.replaceChildren(element("code", {}, ...syntax), help.help, help.note ? element("span", {class: "note"}, help.note) : "");
   }
 }

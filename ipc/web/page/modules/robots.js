@@ -27,6 +27,7 @@ export class Robots {
     this.visibility_ = new Visibility(null);
     this.cards_ = new KeyedRows(this.list_, (robot) => this.make_card_(robot), (card, robot) => this.update_card_(card, robot));
     this.chosen_ = null;
+    this.narrow_ = window.matchMedia("(max-width: 759px)").matches;  // a phone shows the list first
   }
 
   update(live) {
@@ -63,7 +64,7 @@ export class Robots {
     card.stop.addEventListener("click", () => this.command_(`STOP_ROB ${robot.id}`));
     card.online.addEventListener("click", () => this.command_(`ROBOT ${robot.id} ${card.online.dataset.to}`));
     const tools = element("div", {class: "tools"}, card.charts, card.activate, card.stop, card.online);
-    card.node = element("details", {class: "robot", open: true, "data-robot": robot.id},
+    card.node = element("details", {class: "robot", open: !this.narrow_, "data-robot": robot.id},
       element("summary", {}, element("span", {class: "name"}, robot.id), card.flags, card.age, card.badge),
       card.note, card.joints, tools);
     card.node.classList.toggle("chosen", robot.id === this.chosen_);

@@ -4,7 +4,7 @@ import {number} from "./format.js";
 
 // Okabe and Ito's palette, told apart by colour-blind people; more series repeat it with dashes.
 const kColours = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8a8f00", "#7f7f7f"];
-const kHeight_px = 118;
+const kHeight_px = 100;
 
 export function colour(i) {
   return kColours[i % kColours.length];
@@ -29,7 +29,7 @@ export class StripChart {
     this.digits_ = digits;
     this.title_ = element("span", {class: "title"}, title);
     this.unit_ = element("span", {class: "unit"});
-    this.plot_area_ = element("div", {class: "plot"});
+    this.plot_area_ = element("div", {class: "plot", hidden: true});
     this.legend_ = element("div", {class: "legend"});
     this.empty_ = element("p", {class: "empty"}, "nothing to show");
     this.node = element("figure", {class: "chart", role: "img", "aria-label": title},
@@ -41,17 +41,19 @@ export class StripChart {
     new ResizeObserver(() => this.resize_()).observe(this.plot_area_);
   }
 
-  // labels: one for each value column of `columns`; times in s. `span`: of the axis.
-  show(labels, unit, columns, span) {
-    const key = labels.join("\n") + unit;
-    setText(this.unit_, unit);
+  // labels, units: one for each value column of `columns`; times in s. `span`: of the axis. A second unit has the scale
+  // on the right.
+  show(labels, units, columns, span) {
+    const key = `${labels.join("\n")}\n${units.join("\n")}`;
+    const kinds = [...new Set(units)];
+    setText(this.unit_, kinds.length > 1 ? `${kinds[0]}; right: ${kinds[1]}` : kinds[0] ?? "");
     this.empty_.hidden = labels.length > 0;
     this.plot_area_.hidden = labels.length === 0;
     this.legend_.hidden = labels.length === 0;
     if (labels.length === 0) return;
     if (key !== this.labels_) {
       this.labels_ = key;
-      this.make_(labels, columns);
+      this.make_(labels, units.map((unit) => (unit === kinds[0] ? "left" : "right")), columns);
     }
     const newest = columns[0].length ? columns[0][columns[0].length - 1] : 0;
     this.plot_.batch(() => {
@@ -65,10 +67,11 @@ export class StripChart {
     this.labels_ = null;
   }
 
-  make_(labels, columns) {
+  make_(labels, sides, columns) {
     this.plot_?.destroy();
     const text = resolved("--text-soft");
     const grid = {stroke: resolved("--line-soft"), width: 1};
+    const values = (_plot, splits) => splits.map((value) => number(value, decimals(splits)));
     const axis = {stroke: text, grid, ticks: {show: false}, font: "11px system-ui, sans-serif", labelSize: 0};
     const relative = (plot, splits) => splits.map((time) => {
       const back = Math.round(plot.scales.x.max - time);
@@ -79,14 +82,15 @@ export class StripChart {
       height: kHeight_px,
       legend: {show: false},
       cursor: {show: false},
-      scales: {x: {time: false}, y: {range: padded}},
-      padding: [6, 6, 0, 0],
+      scales: {x: {time: false}, left: {range: padded}, right: {range: padded}},
+      padding: [6, sides.includes("right") ? 0 : 14, 0, 0],
       axes: [
         {...axis, size: 20, gap: 2, splits: (plot) => even_splits(plot.scales.x.min, plot.scales.x.max), values: relative},
-        {...axis, size: 44, gap: 3, space: 26},
+        {...axis, values, scale: "left", size: 44, gap: 3, space: 24},
+        ...(sides.includes("right") ? [{...axis, values, scale: "right", side: 1, size: 44, gap: 3, space: 24, grid: {show: false}}] : []),
       ],
       series: [{}, ...labels.map((label, i) => ({
-        label, stroke: colour(i), width: 1.5, points: {show: false}, dash: i < kColours.length ? undefined : [5, 3]}))],
+        label, scale: sides[i], stroke: colour(i), width: 1.5, points: {show: false}, dash: i < kColours.length ? undefined : [5, 3]}))],
     }, columns, this.plot_area_);
     this.values_ = labels.map(() => element("output", {}));
     this.legend_.replaceChildren(...labels.map((label, i) => {
@@ -114,6 +118,12 @@ export class StripChart {
       this.plot_.setSize({width: this.plot_area_.clientWidth, height: kHeight_px});
     }
   }
+}
+
+// Digits after the point that tell neighbours on the axis apart.
+function decimals(splits) {
+  const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) : 1;
+  return Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 
 // Four even parts ending now: lines that stand still while the curves pass.

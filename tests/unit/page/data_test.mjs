@@ -1,0 +1,139 @@
+// Pictures, histories, the tree, tokens, numbers: what the page knows before it shows anything.
+import test from "node:test";
+import assert from "node:assert/strict";
+import {record} from "./modules/charts.js";
+import * as format from "./modules/format.js";
+import {History} from "./modules/history.js";
+import {picture_size, start_of_free_view, wish_of} from "./modules/live_view.js";
+import {decode_picture} from "./modules/picture_format.js";
+import {place_in_range, state_of} from "./modules/robots.js";
+import * as token from "./modules/token.js";
+import {TreeModel} from "./modules/tree_model.js";
+import {choice_of, value_of} from "./modules/view_choice.js";
+
+test("a picture is read as the protocol has it", () => {
+  // By hand from docs/monitor-page.md: CMP1, sequence 7, 640 x 480, 0, age 0.25 s, 0, then the JPEG.
+  const bytes = Uint8Array.from([0x43, 0x4d, 0x50, 0x31, 7, 0, 0, 0, 0x80, 2, 0xe0, 1, 0, 0, 0, 0,
+    0, 0, 0, 0, 0, 0, 0xd0, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xd8, 0xff]);
+  const picture = decode_picture(bytes.buffer);
+  assert.deepEqual([picture.sequence, picture.width, picture.height, picture.age_s], [7, 640, 480, 0.25]);
+  assert.deepEqual([...picture.jpeg], [0xff, 0xd8, 0xff]);
+});
+
+test("what is no picture is refused", () => {
+  assert.equal(decode_picture(new ArrayBuffer(32)), null);
+  assert.equal(decode_picture(new ArrayBuffer(64)), null);
+  assert.equal(decode_picture("text"), null);
+});
+
+test("pictures are as large as the room, within what is worth drawing", () => {
+  assert.deepEqual(picture_size(640, 480, 1), [640, 480]);
+  const [width, height] = picture_size(2000, 1000, 2);
+  assert.ok(width * height <= 1280 * 960 * 1.01);
+  assert.ok(Math.abs(width / height - 2) < 0.01);
+  assert.deepEqual(picture_size(1, 1, 1), [64, 64]);
+});
+
+test("a wish names what is to be seen, and nothing else", () => {
+  const wish = (choice) => wish_of(choice, [640, 480]);
+  assert.deepEqual([wish({kind: "display"}).view, wish({kind: "display"}).camera], [undefined, undefined]);
+  assert.equal(wish({kind: "view", id: 0}).view, 0);
+  assert.equal(wish({kind: "camera", name: "CAMERA_5"}).camera, "CAMERA_5");
+  assert.deepEqual(choice_of(value_of({kind: "camera", name: "a:b"})), {kind: "camera", name: "a:b"});
+});
+
+test("a free view begins where the picture is", () => {
+  const views = [0, 1, 2].map((id) => ({id, viewpoint_m: [id, -5, 1], lookpoint_m: [0, 0, 0], twist_rad: 0, opening_angle_rad: 0.5, camera: id === 2 ? "C" : ""}));
+  assert.equal(start_of_free_view({kind: "view", id: 1}, {views}).viewpoint_m[0], 1);
+  assert.equal(start_of_free_view({kind: "camera", name: "C"}, {views}).viewpoint_m[0], 2);
+  assert.equal(start_of_free_view({kind: "display"}, {views}).viewpoint_m[0], 0);
+  assert.ok(start_of_free_view({kind: "display"}, null).opening_angle_rad > 0);
+});
+
+test("a history keeps the newest and knows gaps", () => {
+  const sut = new History(5, 10);
+  for (let i = 0; i < 23; ++i) sut.add(i, (put) => i % 2 && put("odd", i));
+  const [times, odd] = sut.window(["odd"], 100);
+  assert.deepEqual(times, [18, 19, 20, 21, 22]);
+  assert.deepEqual(odd, [null, 19, null, 21, null]);
+  assert.deepEqual(sut.window(["odd"], 2, [10]), [[20, 21, 22], [null, 210, null]]);
+  assert.deepEqual(sut.window(["unknown"], 2)[1], [null, null, null]);
+});
+
+test("a history is bounded in series, and lets go of those that ended", () => {
+  const sut = new History(4, 3);
+  for (let i = 0; i < 40; ++i) sut.add(i, (put) => put(`series ${i}`, 1));
+  assert.ok(sut.keys("series").length <= 3);
+  sut.add(41, (put) => put("new", 5));
+  assert.equal(sut.newest("new"), 5);
+});
+
+test("everything that charts show is recorded", () => {
+  const sut = new History();
+  record(sut, {time_s: 1, loop: {latency_p99_us: 40, compute_p99_us: 9},
+    robots: [{id: "R", joints: [{name: "J_1", position: 0.5, velocity: -1}]}], near: [{a: "a", b: "b", distance_m: 0.2}],
+    ranges: [{id: "U", distance_m: null}], forces: [{robot: "R", tcp_force_n: [3, 4, 0], joints: [{name: "J_1", effort: 7}]}]});
+  assert.equal(sut.newest("q|R|J_1"), 0.5);
+  assert.equal(sut.newest("tcp|R"), 5);
+  assert.equal(sut.newest("e|R|J_1"), 7);
+  assert.equal(sut.newest("range|U"), null);
+  assert.ok(Math.abs(sut.newest("near|a – b") - 0.2) < 1e-6);
+});
+
+const nodes = [
+  {path: "A", name: "A", parent: null}, {path: "A.b", name: "b", parent: "A"}, {path: "A.b.c", name: "c", parent: "A.b"},
+  {path: "D", name: "D", parent: ""}, {path: "lost", name: "lost", parent: "nobody"},
+];
+
+test("the tree shows what is open", () => {
+  const sut = new TreeModel();
+  sut.set(nodes);
+  assert.deepEqual(sut.rows().map(({node}) => node.path), ["A", "D", "lost"]);
+  sut.reveal("A.b.c");
+  assert.deepEqual(sut.rows().map(({node, level}) => [node.path, level]), [["A", 1], ["A.b", 2], ["A.b.c", 3], ["D", 1], ["lost", 1]]);
+  assert.deepEqual(sut.rows("B.C").map(({node}) => node.path), ["A.b.c"]);
+});
+
+test("a ring of parents does not hang the page", () => {
+  const sut = new TreeModel();
+  sut.set([{path: "a", name: "a", parent: "b"}, {path: "b", name: "b", parent: "a"}, {path: "c", name: "c", parent: "c"}]);
+  sut.reveal("a");
+  assert.ok(sut.rows().length <= 3);
+});
+
+test("a token comes from the address and leaves it", () => {
+  const kept = new Map();
+  const store = {setItem: (key, value) => kept.set(key, value), getItem: (key) => kept.get(key) ?? null, removeItem: (key) => kept.delete(key)};
+  const history = {replaceState: (...given) => (history.given = given)};
+  assert.equal(token.take_token({hash: "#token=abc%20d", pathname: "/", search: ""}, store, history), "abc d");
+  assert.equal(history.given[2], "/");
+  assert.equal(token.kept_token(store), "abc d");
+  assert.equal(token.token_in("#tok=abc"), null);
+  assert.equal(token.token_in("#token=%"), null);
+});
+
+test("bars stand within their range", () => {
+  assert.equal(place_in_range(0, -1, 1), 0.5);
+  assert.equal(place_in_range(9, -1, 1), 1);
+  assert.equal(place_in_range(0, null, 1), null);
+  assert.equal(place_in_range(0, 1, 1), null);
+});
+
+test("a robot that is not mirrored has no doubtful data", () => {
+  assert.equal(state_of({mode: "simulated", state: "lost"}), "simulated");
+  assert.equal(state_of({mode: "mirrored", state: "stale"}), "stale");
+  assert.equal(state_of({mode: "mirrored"}), "none");
+});
+
+test("numbers are readable", () => {
+  assert.equal(format.number(-0.04, 1), "0.0");
+  assert.equal(format.number(-1.25, 1), "\u22121.3");
+  assert.equal(format.number(null, 1), "–");
+  assert.equal(format.joint_value(Math.PI, "rad"), "180.0");
+  assert.equal(format.joint_unit({kind: "prismatic"}), "m");
+  assert.equal(format.length(0.0031), "3.1 mm");
+  assert.equal(format.length(1.5), "1.500 m");
+  assert.equal(format.age(0.0042), "4 ms");
+  assert.equal(format.age(75), "1 min 15 s");
+  assert.equal(format.count(1234567), "1\u202f234\u202f567");
+});

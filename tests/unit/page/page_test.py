@@ -1,0 +1,77 @@
+"""Runs the tests of the page's modules with node's own test runner, and looks at what no module can see: sizes, policy.
+
+    python3 page_test.py [-v]"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[3]))
+PAGE = SOURCE / "ipc" / "web" / "page"
+MOST_BYTES = 300_000
+
+
+class Modules(unittest.TestCase):
+    def test_with_node(self):
+        node = shutil.which("node") or shutil.which("nodejs")
+        if not node:
+            self.skipTest("skipped: node is not installed")
+        with tempfile.TemporaryDirectory(prefix="cellmirror-page-") as folder:
+            place = pathlib.Path(folder)
+            shutil.copytree(PAGE / "modules", place / "modules")
+            (place / "package.json").write_text('{"type": "module"}')  # else node takes .js for its older kind
+            for test in pathlib.Path(__file__).parent.glob("*_test.mjs"):
+                shutil.copy(test, place)
+            done = subprocess.run([node, "--test", *sorted(str(test) for test in place.glob("*_test.mjs"))], cwd=place,
+                                  capture_output=True, text=True, timeout=100)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            passed = re.search(r"^(?:#|\u2139) pass (\d+)", done.stdout, re.M)
+            self.assertGreater(int(passed[1]) if passed else 0, 3, done.stdout)
+
+
+class Files(unittest.TestCase):
+    def files(self):
+        return [path for path in PAGE.rglob("*") if path.is_file()]
+
+    def test_all_together_are_small(self):
+        self.assertLess(sum(path.stat().st_size for path in self.files()), MOST_BYTES)
+
+    def test_what_the_page_names_is_there(self):
+        text = (PAGE / "index.html").read_text()
+        named = re.findall(r'(?:src|href)="page/([^"]+)"', text)
+        self.assertIn("modules/main.js", named)
+        for name in named:
+            self.assertTrue((PAGE / name).is_file(), name)
+        for module in (PAGE / "modules").glob("*.js"):
+            for name in re.findall(r'from "\./([^"]+)"', module.read_text()):
+                self.assertTrue((module.parent / name).is_file(), f"{module.name}: {name}")
+
+    def test_every_id_that_modules_ask_for_is_in_the_page_once(self):
+        ids = re.findall(r'\bid="([^"]+)"', (PAGE / "index.html").read_text())
+        self.assertEqual(len(ids), len(set(ids)))
+        for module in (PAGE / "modules").glob("*.js"):
+            for name in re.findall(r'byId\("([^"]+)"\)', module.read_text()):
+                self.assertIn(name, ids, module.name)
+
+    def test_nothing_is_inline_and_nothing_comes_from_elsewhere(self):
+        text = (PAGE / "index.html").read_text()
+        self.assertNotRegex(text, r"<style|\sstyle=|\son\w+=|<script(?![^>]*\ssrc=)")
+        for path in self.files():
+            if path.suffix in (".html", ".css", ".js") and "vendor" not in path.parts:
+                outside = re.findall(r"https?://(?!www\.w3\.org/2000/svg)[^\s\"'`)]+", path.read_text())
+                self.assertEqual(outside, [], path)
+
+    def test_what_is_vendored_has_its_licence(self):
+        self.assertIn("MIT", (PAGE / "vendor" / "uPlot.LICENSE.txt").read_text())
+
+
+if __name__ == "__main__":
+    result = unittest.main(argv=sys.argv, exit=False).result
+    if result.skipped and not result.failures and not result.errors and result.testsRun == len(result.skipped):
+        sys.exit(77)
+    sys.exit(not result.wasSuccessful())
