@@ -81,7 +81,7 @@ CameraState camera_state(const CompiledCell& cell, const CellPoses& poses, const
   CELLMIRROR_EXPECTS(camera < cell.cameras.size());
   const CompiledCamera& compiled = cell.cameras[camera];
   CameraState state;
-  state.name = compiled.name;
+  state.name = setting.name.empty() ? compiled.name : setting.name;  // its path where others have the same name
   state.X_WC = poses.X_WN[index(compiled.node)];
   state.X_WM = mount_pose(cell, poses, camera);
   state.focal_distance_m = compiled.focal_distance_m;
@@ -107,7 +107,10 @@ CameraState camera_state(const CompiledCell& cell, const CellPoses& poses, const
 std::vector<CameraState> online_cameras(const CompiledCell& cell, const CellPoses& poses, const DisplayState& display) {
   std::vector<CameraState> states;
   for (std::size_t camera = 0; camera < cell.cameras.size(); ++camera) {
-    const auto setting = std::ranges::find(display.cameras, cell.cameras[camera].name, &CameraSetting::name);
+    const CompiledCamera& compiled = cell.cameras[camera];
+    const auto setting = std::ranges::find_if(display.cameras, [&](const CameraSetting& known) {
+      return known.name == compiled.name || (cell.paths && known.name == (*cell.paths)[index(compiled.node)]);
+    });
     if (setting == display.cameras.end() || !setting->online) continue;
     states.push_back(camera_state(cell, poses, *setting, camera));
   }

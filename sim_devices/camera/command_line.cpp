@@ -171,15 +171,17 @@ void read_drives(const Texts& texts, Cia402RobotsConfig& drives, Problems& probl
 void read_faults(const Texts& texts, std::vector<HeadFaultSpec>& of_head, std::vector<FaultSpec>& of_drives,
                  Problems& problems) {
   for (const std::string& text : texts.faults) {
-    if (is_head_fault(text)) {
-      auto fault = parse_head_fault(text);
-      if (fault) of_head.push_back(std::move(*fault));
-      if (!fault) problems.add(fault.error().text());
-      continue;
+    auto of_motion = parse_head_fault(text);
+    auto of_bus = parse_fault(text);
+    if (of_motion) {
+      of_head.push_back(std::move(*of_motion));
+    } else if (of_bus) {
+      of_drives.push_back(std::move(*of_bus));
+    } else {
+      // The one that was meant, as far as that can be told.
+      const bool motion = is_head_fault(text) || of_motion.error().remedy.starts_with("did you mean");
+      problems.add(motion ? of_motion.error().text() : of_bus.error().text());
     }
-    auto fault = parse_fault(text);
-    if (fault) of_drives.push_back(std::move(*fault));
-    if (!fault) problems.add(fault.error().text());
   }
   if (of_head.size() > PanTiltHead::kMostFaults) problems.add("too many faults");
 }
