@@ -43,6 +43,8 @@ StoredView read_view(TableReader& table) {
   view.camera = table.text("camera").value_or("");
   if (table.has("camera") && view.camera.empty())
     table.error("camera", "the camera's name is empty", "leave the key out for a view of its own");
+  view.place = table.place();
+  view.camera_place = table.place("camera");
   check_pairs(table, view.change);
   table.finish();
   return view;
@@ -93,6 +95,8 @@ std::optional<ViewFile> parse_views(std::string_view text, const std::string& fi
   if (!good) return std::nullopt;
   return views;
 }
+
+std::string text_of(const Place& place) { return fmt::format("{}:{}:{}", place.file, place.line, place.column); }
 
 std::string views_text(const DisplayState& display) {
   std::string text = "# Views of cellmirror, for LOAD_VIEWS. Metres and radians, in the world.\nformat = 1\n\n";

@@ -25,6 +25,8 @@ struct StoredView {
   ViewChange change;
   std::optional<bool> orthogonal;
   std::string camera;  // COVW; empty: the view is its own
+  Place place;         // where it stands
+  Place camera_place;  // of the camera's name
 };
 
 struct StoredDisplay {
@@ -36,6 +38,9 @@ struct ViewFile {
   std::optional<StoredDisplay> display;
   std::vector<StoredView> views;  // each of another id
 };
+
+// "a.vws:3:5", as findings have it.
+[[nodiscard]] std::string text_of(const Place& place);
 
 // Nothing, and all findings with file:line:column, where anything is wrong. Any bytes are allowed as text.
 [[nodiscard]] std::optional<ViewFile> parse_views(std::string_view text, const std::string& file,

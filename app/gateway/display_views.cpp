@@ -20,10 +20,13 @@ Error first_finding(const Diagnostics& findings) {
     if (finding.severity != Severity::error) continue;
     const std::size_t more = findings.errors() - 1;
     const std::string rest = more == 0 ? "" : fmt::format(" (and {} more: `cellmirror check` shows all)", more);
-    const Place& at = finding.place;
-    return {fmt::format("{}:{}:{}: {}{}", at.file, at.line, at.column, finding.message, rest), finding.remedy};
+    return {fmt::format("{}: {}{}", text_of(finding.place), finding.message, rest), finding.remedy};
   }
   return {"the view file cannot be read", {}};
+}
+
+Result<void> at(const Place& place, const Error& error) {
+  return fail(fmt::format("{}: {}", text_of(place), error.what), error.remedy);
 }
 
 }  // namespace
@@ -43,16 +46,11 @@ Result<void> DisplayDesk::load_views(std::string_view file) {
     shown.view.orthogonal = row.orthogonal.value_or(shown.view.orthogonal);
     shown.sequence.reset();
     shown.camera.clear();
-    auto checked = check_view(row.id, shown.view);
-    if (checked && !row.camera.empty()) {
-      auto camera = camera_name(row.camera);
-      if (camera)
-        shown.camera = *std::move(camera);
-      else
-        checked = std::unexpected(camera.error());
-    }
-    if (!checked)
-      return fail(fmt::format("{}: {}", path->filename().string(), checked.error().what), checked.error().remedy);
+    if (const auto checked = check_view(row.id, shown.view); !checked) return at(row.place, checked.error());
+    if (row.camera.empty()) continue;
+    auto camera = camera_name(row.camera);
+    if (!camera) return at(row.camera_place, camera.error());
+    shown.camera = *std::move(camera);
   }
   state_.views = std::move(views);
   if (stored->display) {

@@ -14,6 +14,7 @@
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
 #include "config/command_line/command_line.hpp"
+#include "config/view_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/lang/reader.hpp"
 
@@ -52,14 +53,26 @@ void check_cell_file(const std::filesystem::path& path, Diagnostics& diagnostics
   }
 }
 
+// Cameras are looked up where a cell is given.
+void check_view_file(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
+  const auto views = read_views(path, path.string(), diagnostics);
+  if (!views || names == nullptr) return;
+  for (const StoredView& view : views->views) {
+    if (view.camera.empty() || names->knows(NameKind::camera, view.camera)) continue;
+    const Error why = names->explain(NameKind::camera, view.camera);
+    diagnostics.error(view.camera_place, why.what, why.remedy);
+  }
+}
+
 void check_one(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
   ProgressLine line("files loaded");
   if (path.extension() == ".spt") return check_script_file(path, names, diagnostics);
   if (path.extension() == ".toml") return check_cell_file(path, diagnostics, load_progress(line));
+  if (path.extension() == kViewExtension) return check_view_file(path, names, diagnostics);
   if (is_bus_file(path)) return check_bus_file(path, diagnostics);
   if (is_checkable(path)) return check_file(path, diagnostics, load_progress(line));
   diagnostics.error({path.string()}, "files of this kind cannot be checked",
-                    "known: .spt .toml .mpc .urdf .dbc .eds .dcf");
+                    "known: .spt .toml .mpc .urdf .vws .dbc .eds .dcf");
 }
 
 void print_json(const Diagnostics& diagnostics) {
@@ -103,8 +116,8 @@ int check(const CheckOptions& options) {
 void add_check(cli::Command program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
   cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
-  sub.option("files", options->files, ".spt .toml .mpc .urdf .dbc .eds .dcf").required();
-  sub.option("--cell", options->cell, "check the names in SCRIPT files against this cell");
+  sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .dbc .eds .dcf").required();
+  sub.option("--cell", options->cell, "check the names in SCRIPT and view files against this cell");
   sub.option("--language", options->language, "language of robot programs (not available yet)")
       .one_of({"irdata", "srcl", "jet_boom", "jet_tarm"});
   sub.flag("--json", options->json, "one JSON document: errors, warnings, diagnostics");

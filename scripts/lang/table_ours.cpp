@@ -187,7 +187,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kViewFile,
      .help = "writes the seven views, their cameras and the display into a file (.vws) of the home's scripts folder",
-     .example = "SAVE_VIEWS view1.vws",
+     .example = "SAVE_VIEWS my_views.vws",
      .definition = "a plain file name without folders; a file of that name is replaced; a view on its way is saved as "
                    "it will be",
      .origin = Origin::ours},

@@ -1,0 +1,12 @@
+// What `cellmirror status` prints about the picture.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace cellmirror::app {
+
+// Lines, each with its end; nothing where the document does not tell.
+[[nodiscard]] std::string display_table(const nlohmann::json& status);
+
+}  // namespace cellmirror::app
