@@ -2,10 +2,14 @@
 
 #include "drivers/display/internal/background.hpp"
 #include "drivers/display/internal/body_pass.hpp"
+#include "drivers/display/internal/floor_pass.hpp"
 #include "drivers/display/internal/gl_api.hpp"
 #include "drivers/display/internal/gl_context.hpp"
+#include "drivers/display/internal/marks.hpp"
 #include "drivers/display/internal/mesh_store.hpp"
 #include "drivers/display/internal/render_target.hpp"
+#include "drivers/display/internal/ribbon_pass.hpp"
+#include "drivers/display/internal/words.hpp"
 
 namespace cellmirror::display {
 
@@ -33,13 +37,22 @@ std::string text_of(const GlApi& gl, GLenum what) {
 
 struct Renderer::Impl {
   Impl(std::unique_ptr<GlContext> made, const GlApi& loaded)
-      : context(std::move(made)), gl(loaded), meshes(gl), target(gl), bodies(gl), background(gl) {}
+      : context(std::move(made)),
+        gl(loaded),
+        meshes(gl),
+        target(gl),
+        object_target(gl),
+        bodies(gl),
+        background(gl),
+        floor(gl),
+        ribbons(gl) {}
   ~Impl() { static_cast<void>(context->make_current()); }  // what is destroyed next frees its things in it
 
   Result<void> prepare();
-  Result<void> begin(Pixels pixels, int width, int height);
+  Result<void> begin(int width, int height);
   Result<void> end(int width, int height);
   void draw_pane(const Scene& scene, const ViewTransform& view, std::vector<DrawnBody>& drawn);
+  void draw_words(const Scene& scene, std::span<const Pane> panes, Image& picture);
   void clip_to(const PixelRect& pixels) const {
     gl.Viewport(pixels.x, pixels.y, pixels.width, pixels.height);
     gl.Scissor(pixels.x, pixels.y, pixels.width, pixels.height);
@@ -50,8 +63,13 @@ struct Renderer::Impl {
   std::string name;
   MeshStore meshes;
   RenderTarget target;
+  RenderTarget object_target;
   BodyPass bodies;
   Background background;
+  FloorPass floor;
+  RibbonPass ribbons;
+  Marks marks;
+  Words words;
   RendererCounters counters;
 };
 
@@ -59,21 +77,23 @@ Result<void> Renderer::Impl::prepare() {
   name = std::string(context->backend()) + ": " + text_of(gl, GL_RENDERER) + ", OpenGL " + text_of(gl, GL_VERSION);
   Result<void> built = bodies.build();
   if (built) built = background.build();
+  if (built) built = floor.build();
+  if (built) built = ribbons.build();
   return built;
 }
 
-Result<void> Renderer::Impl::begin(Pixels pixels, int width, int height) {
+Result<void> Renderer::Impl::begin(int width, int height) {
   if (Result<void> size = check_size(width, height); !size) return size;
   if (!context->make_current()) return fail("the graphics context is lost", "start again");
   while (gl.GetError() != GL_NO_ERROR) {
   }
-  if (Result<void> begun = target.begin(pixels, width, height); !begun) return begun;
   gl.FrontFace(GL_CW);  // pictures are drawn upside down: see RenderTarget
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
   gl.DepthFunc(GL_LESS);
   gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
   gl.Enable(GL_SCISSOR_TEST);
   gl.Enable(GL_DEPTH_TEST);
   meshes.begin_frame();
@@ -98,8 +118,29 @@ void Renderer::Impl::draw_pane(const Scene& scene, const ViewTransform& view, st
   const BodyCounts counts = BodyPass::examine(frame, drawn);
   counters.bodies_drawn += counts.drawn;
   counters.bodies_left_out += counts.left_out;
+  marks.gather(frame, meshes);
   bodies.draw_opaque(frame, drawn);
+  bodies.draw_extra(frame, marks.solids);
+  if (is_on(scene, DisplayMode::floor)) floor.draw(frame, ribbons);
   bodies.draw_see_through(frame, drawn);
+  gl.Enable(GL_BLEND);
+  gl.DepthMask(GL_FALSE);
+  bodies.draw_extra(frame, marks.see_through);
+  gl.DepthMask(GL_TRUE);
+  gl.Disable(GL_BLEND);
+  ribbons.draw(marks.hidden_by_bodies, false);
+  ribbons.draw(marks.on_top, true);
+}
+
+void Renderer::Impl::draw_words(const Scene& scene, std::span<const Pane> panes, Image& picture) {
+  for (const Pane& pane : panes) {
+    if (const auto view = ViewTransform::of(pane, picture.width, picture.height))
+      words.draw_pane({scene, *view}, picture);
+    words.draw_title(pane, picture.width, picture.height, picture);
+  }
+  draw_borders(panes, picture);
+  words.draw_legend(scene, picture);
+  words.draw_messages(scene, picture);
 }
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -120,12 +161,17 @@ RendererCounters Renderer::counters() const { return impl_->counters; }
 
 Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture) {
   Impl& impl = *impl_;
-  const Pixels pixels = is_on(scene, DisplayMode::antialiasing) ? Pixels::smooth_colours : Pixels::colours;
-  if (Result<void> begun = impl.begin(pixels, width, height); !begun) return begun;
-  impl.gl.ClearColor(0.60F, 0.63F, 0.68F, 1);
-  impl.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  if (Result<void> begun = impl.begin(width, height); !begun) return begun;
+  const std::span<const Pane> drawn_panes = panes.first(std::min(panes.size(), kMostPanes));
   std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
-  for (const Pane& pane : panes.first(std::min(panes.size(), kMostPanes))) {
+  if (is_on(scene, DisplayMode::floor)) {
+    if (Result<void> prepared = impl.floor.prepare(scene, drawn); !prepared) return prepared;
+  }
+  const Pixels pixels = is_on(scene, DisplayMode::antialiasing) ? Pixels::smooth_colours : Pixels::colours;
+  if (Result<void> begun = impl.target.begin(pixels, width, height); !begun) return begun;
+  impl.gl.ClearColor(0.80F, 0.82F, 0.85F, 1);
+  impl.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  for (const Pane& pane : drawn_panes) {
     const std::optional<PixelRect> rect = pixels_of(pane, width, height);
     if (!rect) continue;
     impl.clip_to(*rect);
@@ -136,13 +182,15 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
   picture.height = height;
   picture.rgba.resize(std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   impl.target.read_colours(picture.rgba.data());
+  impl.draw_words(scene, drawn_panes, picture);
   return impl.end(width, height);
 }
 
 Result<void> Renderer::objects(const Scene& scene, std::span<const Pane> panes, int width, int height,
                                std::vector<std::uint32_t>& objects) {
   Impl& impl = *impl_;
-  if (Result<void> begun = impl.begin(Pixels::objects, width, height); !begun) return begun;
+  if (Result<void> begun = impl.begin(width, height); !begun) return begun;
+  if (Result<void> begun = impl.object_target.begin(Pixels::objects, width, height); !begun) return begun;
   constexpr std::array<GLuint, 4> kNone{};
   impl.gl.ClearBufferuiv(GL_COLOR, 0, kNone.data());
   impl.gl.Clear(GL_DEPTH_BUFFER_BIT);
@@ -156,7 +204,7 @@ Result<void> Renderer::objects(const Scene& scene, std::span<const Pane> panes, 
     impl.bodies.draw_objects(frame, drawn);
   }
   objects.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  impl.target.read_objects(objects.data());
+  impl.object_target.read_objects(objects.data());
   return impl.end(width, height);
 }
 

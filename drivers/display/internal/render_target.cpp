@@ -56,6 +56,7 @@ Result<void> RenderTarget::begin(Pixels pixels, int width, int height) {
     }
   }
   gl_.BindFramebuffer(GL_FRAMEBUFFER, frame_);
+  gl_.Enable(GL_SCISSOR_TEST);
   gl_.Viewport(0, 0, width, height);
   gl_.Scissor(0, 0, width, height);
   return {};

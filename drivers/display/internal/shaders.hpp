@@ -88,4 +88,93 @@ layout(location = 0) out vec4 colour;
 void main() { colour = vec4(mix(upper, lower, down), 1.0); }
 )";
 
+// Ribbons: attribute 1 is the colour, 2 the shape (ribbons.hpp).
+inline constexpr std::string_view kRibbonVertex = R"(
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec4 rgba;
+layout(location = 2) in vec4 shape_in;
+out vec4 tint;
+out vec4 shape;
+void main() {
+  tint = rgba;
+  shape = shape_in;
+  gl_Position = vec4(place, 1.0);
+}
+)";
+
+inline constexpr std::string_view kRibbonFragment = R"(
+in vec4 tint;
+in vec4 shape;
+layout(location = 0) out vec4 colour;
+void main() {
+  float a;
+  if (shape.y < 0.0) {
+    a = max(0.0, 1.0 - dot(shape.xz, shape.xz));
+    a *= a;
+  } else {
+    a = clamp(shape.y + 0.5 - abs(shape.x), 0.0, 1.0);
+    if (shape.w > 0.0 && fract(shape.z / shape.w) > 0.58) a = 0.0;
+  }
+  colour = vec4(tint.rgb, tint.a * a);
+}
+)";
+
+// The floor lies at a height in W; its colour fades out to its edge.
+inline constexpr std::string_view kFloorVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in float alpha_in;
+uniform mat4 clip_from_world;
+uniform vec4 shadow_part;  // x, y of a corner in W, and 1 / its edges
+out float alpha;
+out vec2 shadow_at;
+out vec2 metres;
+void main() {
+  alpha = alpha_in;
+  shadow_at = (position.xy - shadow_part.xy) * shadow_part.zw;
+  metres = position.xy;
+  gl_Position = clip_from_world * vec4(position, 1.0);
+}
+)";
+
+inline constexpr std::string_view kFloorFragment = R"(
+in float alpha;
+in vec2 shadow_at;
+in vec2 metres;
+uniform vec3 rgb;
+uniform sampler2D shadow;
+uniform sampler2D tiles;
+layout(location = 0) out vec4 colour;
+void main() {
+  vec3 ground = rgb;
+#ifdef TEXTURED
+  ground *= texture(tiles, 0.5 * metres).r + 0.125;
+#endif
+#ifdef SHADOW
+  ground *= 1.0 - texture(shadow, shadow_at).r * vec3(0.80, 0.78, 0.74);
+#endif
+  colour = vec4(ground, alpha);
+}
+)";
+
+// Where bodies keep the light from the floor: in red what is low and casts sharp shadows, in green all.
+inline constexpr std::string_view kShadowVertex = R"(
+layout(location = 0) in vec3 position;
+uniform mat4 shadow_from_mesh;
+uniform vec4 height_of_mesh;
+out float height;
+void main() {
+  height = dot(height_of_mesh, vec4(position, 1.0));
+  gl_Position = shadow_from_mesh * vec4(position, 1.0);
+}
+)";
+
+inline constexpr std::string_view kShadowFragment = R"(
+in float height;
+layout(location = 0) out vec2 covered;
+void main() {
+  if (height < -0.005) discard;
+  covered = vec2(clamp(1.0 - height / 0.45, 0.0, 1.0), 1.0);
+}
+)";
+
 }  // namespace cellmirror::display::shaders

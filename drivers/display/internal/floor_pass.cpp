@@ -1,0 +1,205 @@
+#include "drivers/display/internal/floor_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "drivers/display/internal/shaders.hpp"
+
+namespace cellmirror::display {
+
+namespace {
+
+constexpr int kAround = 64;
+constexpr float kOpaque = 0.96F;
+
+bool is_on(const Scene& scene, DisplayMode mode) { return scene.modes.test(static_cast<std::size_t>(mode)); }
+
+// 1, 2 or 5 times a power of ten.
+double round_step(double length) {
+  const double ten = std::pow(10.0, std::floor(std::log10(length)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * ten >= length) return factor * ten;
+  }
+  return 10 * ten;
+}
+
+}  // namespace
+
+FloorPass::~FloorPass() {
+  if (array_ != 0) gl_.DeleteVertexArrays(1, &array_);
+  if (vertices_ != 0) gl_.DeleteBuffers(1, &vertices_);
+  if (indices_ != 0) gl_.DeleteBuffers(1, &indices_);
+  if (tiles_texture_ != 0) gl_.DeleteTextures(1, &tiles_texture_);
+}
+
+Result<void> FloorPass::build() {
+  using shaders::kFloorFragment;
+  using shaders::kFloorVertex;
+  Result<void> built = plain_.build(kFloorVertex, kFloorFragment);
+  if (built) built = shadow_.build(kFloorVertex, kFloorFragment, {"SHADOW"});
+  if (built) built = tiles_.build(kFloorVertex, kFloorFragment, {"TEXTURED"});
+  if (built) built = tiles_and_shadow_.build(kFloorVertex, kFloorFragment, {"TEXTURED", "SHADOW"});
+  if (built) built = shadow_map_.build();
+  if (!built) return built;
+  gl_.GenVertexArrays(1, &array_);
+  gl_.BindVertexArray(array_);
+  gl_.GenBuffers(1, &vertices_);
+  gl_.GenBuffers(1, &indices_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_);
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+  gl_.EnableVertexAttribArray(0);
+  gl_.EnableVertexAttribArray(1);
+  constexpr GLsizei kStride = 4 * sizeof(float);
+  gl_.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride, nullptr);
+  gl_.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, kStride, reinterpret_cast<const void*>(3 * sizeof(float)));
+  return {};
+}
+
+Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> bodies) {
+  static constexpr double kFarthest = 1e4;  // m
+  const auto bounded = [](const Eigen::Vector2d& p, double otherwise) {
+    return p.allFinite() ? Eigen::Vector2d(p.cwiseMax(-kFarthest).cwiseMin(kFarthest))
+                         : Eigen::Vector2d::Constant(otherwise);
+  };
+  const Eigen::Vector2d low = bounded(scene.floor_low, -1);
+  const Eigen::Vector2d high = bounded(scene.floor_high, 1);
+  centre_ = (low + high) / 2;
+  inner_ = std::max((high - low).norm() / 2, 0.5);
+  outer_ = 1.9 * inner_ + 1;
+  make_disc(scene);
+  if (is_on(scene, DisplayMode::textures) && tiles_texture_ == 0) make_tiles();
+  return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(scene, bodies) : Result<void>{};
+}
+
+void FloorPass::make_disc(const Scene& scene) {
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> indices;
+  const auto add = [&](double radius, int i, float alpha) {
+    const double angle = 2 * std::numbers::pi * i / kAround;
+    vertices.insert(vertices.end(), {static_cast<float>(centre_.x() + radius * std::cos(angle)),
+                                     static_cast<float>(centre_.y() + radius * std::sin(angle)),
+                                     static_cast<float>(scene.floor_z_m), alpha});
+  };
+  add(0, 0, kOpaque);
+  const double middle = inner_ + 0.4 * (outer_ - inner_);
+  for (int i = 0; i < kAround; ++i) {
+    add(inner_, i, kOpaque);
+    add(middle, i, kOpaque * 0.36F);
+    add(outer_, i, 0);
+  }
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    const std::uint32_t a = 1 + 3 * i;
+    const std::uint32_t b = 1 + 3 * ((i + 1) % kAround);
+    for (const std::uint32_t corner :
+         {0U, a, b, a, a + 1, b, b, a + 1, b + 1, a + 1, a + 2, b + 1, b + 1, a + 2, b + 2})
+      indices.push_back(corner);
+  }
+  gl_.BindVertexArray(array_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(float)), vertices.data(),
+                 GL_STREAM_DRAW);
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
+                 indices.data(), GL_STREAM_DRAW);
+  count_ = static_cast<GLsizei>(indices.size());
+}
+
+// Concrete slabs of half a metre, four of them: a mean of 0.875 of full light, slightly uneven, with dark joints.
+void FloorPass::make_tiles() {
+  constexpr int kEdge = 512;
+  constexpr int kSlab = kEdge / 4;
+  std::vector<std::uint8_t> bytes(std::size_t{kEdge} * kEdge);
+  std::uint32_t dice = 20251122U;
+  const auto roll = [&dice] {
+    dice = dice * 1664525U + 1013904223U;
+    return static_cast<int>(dice >> 24U);
+  };
+  std::array<int, 16> slabs{};
+  for (int& slab : slabs) slab = roll() % 15 - 7;
+  for (int y = 0; y < kEdge; ++y) {
+    for (int x = 0; x < kEdge; ++x) {
+      const int into_x = std::min(x % kSlab, kSlab - 1 - x % kSlab);
+      const int into_y = std::min(y % kSlab, kSlab - 1 - y % kSlab);
+      const int joint = std::min(into_x, into_y) < 1 ? -52 : std::min(into_x, into_y) < 2 ? -20 : 0;
+      const int value = 222 + slabs[static_cast<std::size_t>(4 * (y / kSlab) + x / kSlab)] + roll() % 13 - 6 + joint;
+      bytes[static_cast<std::size_t>(y * kEdge + x)] = static_cast<std::uint8_t>(value);
+    }
+  }
+  gl_.GenTextures(1, &tiles_texture_);
+  gl_.ActiveTexture(GL_TEXTURE1);
+  gl_.BindTexture(GL_TEXTURE_2D, tiles_texture_);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, kEdge, kEdge, 0, GL_RED, GL_UNSIGNED_BYTE, bytes.data());
+  gl_.GenerateMipmap(GL_TEXTURE_2D);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+void FloorPass::gather_grid(const Frame& frame) {
+  constexpr Colour kLine{0.56F, 0.59F, 0.64F, 0.75F};
+  constexpr int kPieces = 12;
+  grid_.clear();
+  const double step = std::max(round_step(inner_ / 8), 0.1);
+  const double z = frame.scene.floor_z_m;
+  const auto colour_at = [&](const Eigen::Vector2d& p, bool major) {
+    const double way = ((p - centre_).norm() - inner_ * 0.6) / (outer_ - inner_ * 0.6);
+    Colour colour = kLine;
+    colour[3] *= (major ? 1.0F : 0.5F) * static_cast<float>(1 - std::clamp(way, 0.0, 1.0));
+    return colour;
+  };
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto first = static_cast<long>(std::ceil((centre_[axis] - outer_) / step));
+    const auto last = static_cast<long>(std::floor((centre_[axis] + outer_) / step));
+    for (long i = first; i <= last; ++i) {
+      const double across = static_cast<double>(i) * step;
+      const double half =
+          std::sqrt(std::max(0.0, outer_ * outer_ - (across - centre_[axis]) * (across - centre_[axis])));
+      const auto point = [&](int piece) {
+        Eigen::Vector2d p;
+        p[axis] = across;
+        p[1 - axis] = centre_[1 - axis] + half * (2.0 * piece / kPieces - 1);
+        return p;
+      };
+      for (int piece = 0; piece < kPieces; ++piece) {
+        const Eigen::Vector2d a = point(piece);
+        const Eigen::Vector2d b = point(piece + 1);
+        grid_.line(frame.view, {a.x(), a.y(), z}, {b.x(), b.y(), z},
+                   {colour_at(a, i % 5 == 0), colour_at(b, i % 5 == 0), i % 5 == 0 ? 1.3F : 1.0F});
+      }
+    }
+  }
+}
+
+ShaderProgram& FloorPass::program_of(const Scene& scene) {
+  const bool shadow = is_on(scene, DisplayMode::shadows);
+  if (is_on(scene, DisplayMode::textures)) return shadow ? tiles_and_shadow_ : tiles_;
+  return shadow ? shadow_ : plain_;
+}
+
+void FloorPass::draw(const Frame& frame, RibbonPass& ribbon_pass) {
+  const Eigen::Vector4d eye = frame.view.eye();
+  if (!(eye.z() > eye.w() * frame.scene.floor_z_m)) return;
+  const ShaderProgram& program = program_of(frame.scene);
+  program.use();
+  const Eigen::Matrix4f clip_from_world = frame.view.clip_from_world().cast<float>();
+  constexpr std::array<float, 3> kGround = {0.875F, 0.885F, 0.895F};
+  gl_.UniformMatrix4fv(program.uniform("clip_from_world"), 1, GL_FALSE, clip_from_world.data());
+  gl_.Uniform4fv(program.uniform("shadow_part"), 1, shadow_map_.part().data());
+  gl_.Uniform3fv(program.uniform("rgb"), 1, kGround.data());
+  gl_.Uniform1i(program.uniform("shadow"), 0);
+  gl_.Uniform1i(program.uniform("tiles"), 1);
+  gl_.ActiveTexture(GL_TEXTURE0);
+  gl_.BindTexture(GL_TEXTURE_2D, shadow_map_.texture());
+  gl_.ActiveTexture(GL_TEXTURE1);
+  gl_.BindTexture(GL_TEXTURE_2D, tiles_texture_);
+  gl_.Enable(GL_BLEND);
+  gl_.Enable(GL_POLYGON_OFFSET_FILL);  // a plate that lies on the floor is above it
+  gl_.PolygonOffset(1, 2);
+  gl_.BindVertexArray(array_);
+  gl_.DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+  gl_.Disable(GL_POLYGON_OFFSET_FILL);
+  gl_.Disable(GL_BLEND);
+  gather_grid(frame);
+  ribbon_pass.draw(grid_, false);
+}
+
+}  // namespace cellmirror::display

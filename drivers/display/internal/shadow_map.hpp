@@ -1,0 +1,52 @@
+// The soft shadow of bodies on the floor: their outlines along the light, drawn from below and blurred; what is near
+// the floor less than what is high above it. Private to this folder.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "drivers/display/internal/body_pass.hpp"
+#include "drivers/display/internal/render_target.hpp"
+
+namespace cellmirror::display {
+
+// A byte a place, 255: dark.
+struct ShadowPicture {
+  static constexpr int kEdge = 384;
+  std::vector<std::uint8_t> bytes;
+};
+
+// Blurs `plane` (edge * edge) by a box of 2 * radius + 1, twice in each direction, which is nearly a Gaussian curve.
+void blur(std::vector<std::uint8_t>& plane, int edge, int radius);
+
+class ShadowMap {
+ public:
+  explicit ShadowMap(const GlApi& gl) : gl_(gl), program_(gl), target_(gl) {}
+  ~ShadowMap() {
+    if (texture_ != 0) gl_.DeleteTextures(1, &texture_);
+  }
+  ShadowMap(const ShadowMap&) = delete;
+  ShadowMap& operator=(const ShadowMap&) = delete;
+
+  Result<void> build();
+  // Binds its own target. Nothing is drawn where nothing has moved since the last call.
+  Result<void> update(const Scene& scene, std::span<const DrawnBody> bodies);
+  [[nodiscard]] GLuint texture() const { return texture_; }
+  // x, y of the lower corner, W, m; and 1 / its edges.
+  [[nodiscard]] const Eigen::Vector4f& part() const { return part_; }
+
+ private:
+  void draw(const Scene& scene, std::span<const DrawnBody* const> casting);
+  void soften_and_upload();
+
+  const GlApi& gl_;
+  ShaderProgram program_;
+  RenderTarget target_;
+  GLuint texture_ = 0;
+  Eigen::Vector4f part_ = Eigen::Vector4f::Zero();
+  double edge_m_ = 1;
+  std::vector<double> shown_;  // what the texture was made from
+  std::vector<std::uint8_t> covered_;
+};
+
+}  // namespace cellmirror::display
