@@ -5,7 +5,8 @@ import {joint_unit, norm, scaled, shown_unit} from "./format.js";
 import {History} from "./history.js";
 import {StripChart} from "./strip_chart.js";
 
-const kBudget_ms = 3;
+const kBudget_ms = 1.5;
+const kMostDrawn = 2;
 const kMostCurves = 6;
 
 const kQuantities = {
@@ -34,7 +35,15 @@ export function record(history, live) {
   });
 }
 
-const short_pair = (label) => label.split(" – ").map((path) => path.split(".").slice(-2).join(".")).join(" – ");
+const kShortPairs = new Map();
+
+function short_pair(label) {
+  if (kShortPairs.size > 1000) kShortPairs.clear();
+  if (!kShortPairs.has(label)) {
+    kShortPairs.set(label, label.split(" – ").map((path) => path.split(".").slice(-2).join(".")).join(" – "));
+  }
+  return kShortPairs.get(label);
+}
 
 export class Charts {
   constructor() {
@@ -85,10 +94,13 @@ export class Charts {
     this.offer_robots_();
     if (this.paused_) return;
     const end = performance.now() + kBudget_ms;
-    for (let drawn = 0; drawn < this.charts_.length; ++drawn) {
+    let drawn = 0;
+    for (let looked = 0; looked < this.charts_.length && drawn < kMostDrawn; ++looked) {
       const {chart, show} = this.charts_[this.turn_];
       this.turn_ = (this.turn_ + 1) % this.charts_.length;
-      if (this.visibility_.sees(chart.node)) show(chart);
+      if (!this.visibility_.sees(chart.node)) continue;
+      show(chart);
+      ++drawn;
       if (performance.now() > end) return;
     }
   }

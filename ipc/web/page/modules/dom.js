@@ -15,9 +15,14 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-// Writes only what changed: unchanged text costs no layout.
+const kText = Symbol("text");
+
+// Writes only what changed: unchanged text costs no layout. What was written is remembered, since reading it back from
+// the document costs more than all the rest; so nobody else may write into that node.
 export function setText(node, text) {
-  if (node.textContent !== text) node.textContent = text;
+  if (node[kText] === text) return;
+  node[kText] = text;
+  node.textContent = text;
 }
 
 export function setAttribute(node, name, value) {
@@ -58,9 +63,17 @@ export class KeyedRows {
     this.make_ = make;
     this.update_ = update;
     this.rows_ = new Map();
+    this.order_ = [];  // [{key, row}] as it stands in the document
   }
 
   show(items, key_of) {
+    const same = items.length === this.order_.length && items.every((item, i) => key_of(item) === this.order_[i].key);
+    if (same) items.forEach((item, i) => this.update_(this.order_[i].row, item));
+    else this.rearrange_(items, key_of);
+  }
+
+  rearrange_(items, key_of) {
+    this.order_ = [];
     const gone = new Set(this.rows_.keys());
     let before = this.parent_.firstElementChild;
     for (const item of items) {
@@ -74,6 +87,7 @@ export class KeyedRows {
       }
       if (row.node !== before) this.parent_.insertBefore(row.node, before);
       else before = before.nextElementSibling;
+      this.order_.push({key, row});
       this.update_(row, item);
     }
     for (const key of gone) {

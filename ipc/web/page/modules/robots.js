@@ -106,15 +106,18 @@ function make_joint(joint) {
 function update_joint(row, joint) {
   const unit = joint_unit(joint);
   setText(row.value, joint_value(joint.position, unit));
-  setAttribute(row.node, "data-state", joint.state ?? "none");
+  if (row.state !== joint.state) {
+    row.state = joint.state;
+    setAttribute(row.node, "data-state", joint.state ?? "none");
+  }
   const place = place_in_range(joint.position, joint.lower, joint.upper);
   const key = place === null ? -1 : Math.round(place * 1000);
   if (row.key === key) return;
   const first = row.key === undefined;
   row.key = key;
-  row.bar.classList.toggle("without", place === null);
-  row.bar.classList.toggle("near-end", place !== null && (place < 0.03 || place > 0.97));
-  if (place !== null) row.mark.style.setProperty("transform", `translateX(${(place * 100 - 100).toFixed(1)}%)`);
+  const look = place === null ? "bar without" : place < 0.03 || place > 0.97 ? "bar near-end" : "bar";
+  if (row.look !== look) row.bar.className = row.look = look;
+  if (place !== null) row.mark.style.transform = `translateX(${key / 10 - 100}%)`;
   if (first && place !== null) {
     const ends = [joint.lower, joint.upper].map((end) => number(scaled(end, unit), 1));
     setAttribute(row.bar, "title", `${ends[0]} to ${ends[1]} ${shown_unit(unit)}`);

@@ -1,0 +1,285 @@
+// What a person does with the page, in headless Chromium: node scenarios.mjs SCENARIO ADDRESS [ARGUMENT...]
+import assert from "node:assert/strict";
+import {once} from "node:events";
+import path from "node:path";
+import {createInterface} from "node:readline";
+import {pathToFileURL} from "node:url";
+
+const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT_CORE, "index.mjs")));
+const [scenario, address, ...rest] = process.argv.slice(2);
+const kPatience_ms = 20000;
+
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM, headless: true,
+  args: [...(process.getuid?.() === 0 ? ["--no-sandbox"] : []), "--disable-gpu", "--disable-dev-shm-usage"],
+});
+const problems = [];
+
+async function opened(options = {}, to = address) {
+  const context = await browser.newContext({viewport: {width: 1440, height: 900}, ...options});
+  const page = await context.newPage();
+  page.setDefaultTimeout(kPatience_ms);
+  page.on("pageerror", (error) => problems.push(`${error.message}\n${error.stack}`));
+  page.on("console", (message) => {
+    // A socket that cannot connect is what the page is made for.
+    if (message.type() === "error" && !/WebSocket|ERR_CONNECTION|Failed to load resource/.test(message.text())) problems.push(message.text());
+  });
+  await page.addInitScript(() => {
+    window.measured = [];
+    new PerformanceObserver((list) => window.measured.push(...list.getEntries()
+      .filter(({name}) => name.startsWith("cellmirror."))
+      .map(({name, startTime, duration}) => ({name, startTime, duration})))).observe({entryTypes: ["measure", "mark"]});
+  });
+  await page.goto(to);
+  return page;
+}
+
+const shot = (page, name, whole = false) => page.screenshot({path: path.join(process.env.ARTEFACTS, `${name}.png`), fullPage: whole});
+const text_of = (page, selector) => page.locator(selector).innerText();
+const live = (page) => page.waitForFunction(() => document.getElementById("line-text").textContent === "live");
+const picture = (page) => page.waitForFunction(() => document.getElementById("view-canvas").dataset.sequence);
+// A small print of the picture: means of 32 x 24 parts.
+const print_of = (page) => page.evaluate(() => {
+  const small = new OffscreenCanvas(32, 24).getContext("2d");
+  small.drawImage(document.getElementById("view-canvas"), 0, 0, 32, 24);
+  return Array.from(small.getImageData(0, 0, 32, 24).data);
+});
+const difference = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+
+async function newer_picture(page, count = 3) {
+  const before = Number(await page.getAttribute("#view-canvas", "data-sequence"));
+  await page.waitForFunction((least) => Number(document.getElementById("view-canvas").dataset.sequence) >= least, before + count);
+}
+
+async function run(page, command) {
+  await page.fill("#console-input", command);
+  await page.press("#console-input", "Escape");
+  await page.press("#console-input", "Enter");
+  const answer = page.locator("#console-log li").last().locator(".answer:not(.waiting)");
+  await answer.waitFor();
+  return answer.innerText();
+}
+
+let lines = null;
+async function outside(word) {
+  lines ??= createInterface({input: process.stdin});
+  const answered = once(lines, "line");
+  console.log(`> ${word}`);
+  return (await answered)[0];
+}
+
+const quantile = (values, part) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(part * values.length))];
+
+const scenarios = {
+  // The gateway's demo: arguments are a robot that moves, and a command that is refused.
+  async gateway() {
+    const [robot, refused] = rest;
+    const page = await opened();
+    await live(page);
+    await picture(page);
+    assert.equal(new URL(page.url()).hash, "", "the token stays in the address bar");
+    const value = page.locator(`[data-robot="${robot}"] .joint .value`).first();
+    const before = await value.innerText();
+    const picture_before = await print_of(page);
+    await page.waitForFunction(([id, text]) => document.querySelector(`[data-robot="${id}"] .joint .value`).textContent !== text, [robot, before]);
+    await newer_picture(page);
+    assert.ok(difference(picture_before, await print_of(page)) > 0, "the picture does not move");
+    await shot(page, "gateway-desk-light");
+
+    const still = await print_of(page);
+    await drag(page, 220, -60);
+    assert.equal(await page.inputValue("#view-choice"), "free");
+    await newer_picture(page, 4);
+    const turned = difference(still, await print_of(page));
+    assert.ok(turned > 1, `an orbit changed the picture by ${turned} only`);
+    await shot(page, "gateway-orbit");
+    await page.click("#view-home");
+
+    assert.match(await run(page, "hot_message The page is here"), /^done/);
+    await page.locator("#hot-message").waitFor();
+    const why = await run(page, refused);
+    assert.match(why, /^refused: .{10,}/);
+    console.log(`refusal: ${why}`);
+    await pick_something(page);
+    await page.click("#tab-tree");
+    await page.locator("#tree-list li").first().waitFor();
+    await shot(page, "gateway-console");
+
+    await outside("gone");
+    await page.locator("#gone").waitFor();
+    assert.match(await text_of(page, "#gone"), /cellmirror status/);
+    assert.match(await text_of(page, "#view-note"), /old/);
+    await shot(page, "gateway-gone");
+    await outside("back");
+    await page.locator("#gone").waitFor({state: "hidden", timeout: 40000});
+    await live(page);
+    await newer_picture(page, 2).catch(() => picture(page));
+    await shot(page, "gateway-back");
+    for (const [name, options] of kScreens.slice(1)) await screen(`gateway-${name}`, options);
+  },
+
+  // As large as the page has to bear: the argument is the limit in ms.
+  async performance() {
+    const page = await opened();
+    await live(page);
+    await picture(page);
+    await page.waitForTimeout(3000);
+    const meter = await page.context().newCDPSession(page);
+    // Time of the processor, not of the clock: the machine may be busy with something else.
+    await meter.send("Performance.enable", {timeDomain: "threadTicks"});
+    const script_s = async () => (await meter.send("Performance.getMetrics")).metrics.find(({name}) => name === "ScriptDuration").value;
+    await page.evaluate(() => { window.early = window.measured; window.measured = []; });
+    const before_s = await script_s();
+    await page.waitForTimeout(8000);
+    const used_s = await script_s() - before_s;
+    const measured = await page.evaluate(() => window.measured);
+    const first = await page.evaluate(() => window.early.find(({name}) => name === "cellmirror.picture").startTime);
+    const of = (name) => measured.filter((entry) => entry.name === name).map(({duration}) => duration);
+    const updates = of("cellmirror.update");
+    const records = of("cellmirror.record");
+    assert.ok(updates.length > 20, `only ${updates.length} updates in 8 s`);
+    const figures = (values) => [0.5, 0.95, 1].map((part) => quantile(values, part).toFixed(2)).join(" / ");
+    console.log(`updates ${updates.length}: p50 / p95 / max ${figures(updates)} ms; recording ${figures(records)} ms; first picture after ${first.toFixed(0)} ms`);
+    const each = (1000 * used_s) / updates.length;
+    console.log(`script in all, pictures too, by the processor's time: ${each.toFixed(2)} ms for each update`);
+    assert.ok(each < Number(rest[0]), `an update takes ${each} ms of script`);
+    await shot(page, "performance");
+  },
+
+  async screens() {
+    for (const [name, options] of kScreens) await screen(name, options);
+  },
+
+  // The page by keyboard alone, and the console's completion.
+  async keyboard() {
+    const page = await opened();
+    await live(page);
+    await picture(page);
+    await page.press("body", "/");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "console-input");
+    await page.keyboard.type("robo");
+    await page.keyboard.press("Tab");
+    await page.keyboard.type("ROBOT_2 off");
+    await page.keyboard.press("Tab");
+    assert.equal(await page.inputValue("#console-input"), "ROBOT ROBOT_2 offline ");
+    await page.keyboard.press("Enter");
+    await page.locator("#console-log .done").waitFor();
+    await page.keyboard.press("ArrowUp");
+    assert.equal(await page.inputValue("#console-input"), "ROBOT ROBOT_2 offline");
+    await page.focus("#view-canvas");
+    const before = await print_of(page);
+    for (const key of ["ArrowLeft", "ArrowLeft", "ArrowUp", "+", "Shift+ArrowRight"]) await page.keyboard.press(key);
+    await newer_picture(page, 4);
+    assert.ok(difference(before, await print_of(page)) > 0.5, "keys do not move the view");
+    await page.keyboard.press("Home");
+    assert.equal(await page.inputValue("#view-choice"), "display");
+    await page.focus("#tab-near");
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.getAttribute("#tab-tree", "aria-selected"), "true");
+    await page.locator("#tree-list li").first().focus();
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowDown");
+    assert.equal(await page.getAttribute("#tree-list li >> nth=1", "aria-selected"), "true");
+    await run(page, "hot_message ding");
+    await page.waitForFunction(() => Number(document.documentElement.dataset.rung) > 0);
+  },
+
+  // Fingers on a phone.
+  async touch() {
+    const page = await opened(kScreens.find(([name]) => name === "phone-light")[1]);
+    await live(page);
+    await picture(page);
+    const before = await print_of(page);
+    const box = await page.locator("#view-canvas").boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const fingers = await page.context().newCDPSession(page);
+    const touch = (type, ...points) => fingers.send("Input.dispatchTouchEvent", {
+      type, touchPoints: points.map(([px, py], id) => ({x: px, y: py, id}))});
+    await touch("touchStart", [x - 40, y], [x + 40, y]);
+    for (let i = 1; i <= 6; ++i) await touch("touchMove", [x - 40 - 8 * i, y], [x + 40 + 8 * i, y]);
+    await touch("touchEnd");
+    assert.equal(await page.inputValue("#view-choice"), "free");
+    await newer_picture(page, 4);
+    assert.ok(difference(before, await print_of(page)) > 0.5, "a pinch does not zoom");
+    await page.touchscreen.tap(box.x + box.width * 0.75, y);
+    await page.locator("#picked-path").waitFor();
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth + 1);
+    assert.ok(!wide, "the page is wider than the phone");
+  },
+
+  // Somebody without a token, and a wrong one.
+  async looking() {
+    for (const [token, name] of [["", "none"], ["#token=wrong", "wrong"]]) {
+      const page = await opened({}, address.replace(/#.*/, token));
+      await live(page);
+      await picture(page);
+      assert.match(await text_of(page, "#right-text"), /looking only|read-only/, name);
+      assert.match(await run(page, "hot_message no"), /^refused: .*(cellmirror page|read-only)/);
+      await page.context().close();
+    }
+  },
+};
+
+const kScreens = [
+  ["desk-light", {}],
+  ["desk-dark", {colorScheme: "dark"}],
+  ["wide-dark", {viewport: {width: 1920, height: 1080}, colorScheme: "dark"}],
+  ["tablet-light", {viewport: {width: 1000, height: 760}}],
+  ["phone-light", {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true, deviceScaleFactor: 2}],
+  ["phone-dark", {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true, deviceScaleFactor: 2, colorScheme: "dark"}],
+];
+
+async function screen(name, options) {
+  const page = await opened(options);
+  await live(page);
+  await picture(page);
+  await page.waitForTimeout(1200);
+  await shot(page, name);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth + 1);
+  assert.ok(!wide, `${name}: the page is wider than the screen`);
+  if (options.isMobile) {
+    await page.locator("#chart-panel").scrollIntoViewIfNeeded();
+    await page.waitForTimeout(600);
+    await shot(page, `${name}-charts`);
+    await page.locator("#console-panel").scrollIntoViewIfNeeded();
+    await shot(page, `${name}-console`);
+  }
+  await page.context().close();
+}
+
+async function drag(page, dx, dy) {
+  const box = await page.locator("#view-canvas").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + dx, y + dy, {steps: 12});
+  await page.mouse.up();
+}
+
+// Somewhere in the picture there is a thing.
+async function pick_something(page) {
+  const box = await page.locator("#view-canvas").boundingBox();
+  for (const [x, y] of [[0.5, 0.5], [0.4, 0.55], [0.6, 0.55], [0.3, 0.6], [0.7, 0.6], [0.5, 0.7], [0.5, 0.9]]) {
+    await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+    await page.locator("#picked").waitFor();
+    const path_of = await text_of(page, "#picked-path");
+    if (path_of !== "nothing is there") {
+      console.log(`picked: ${path_of}`);
+      return;
+    }
+  }
+  assert.fail("nothing could be picked");
+}
+
+try {
+  await scenarios[scenario]();
+  assert.deepEqual(problems, []);
+} catch (error) {
+  console.log(error.stack ?? error);
+  const page = browser.contexts().at(-1)?.pages().at(-1);
+  await page?.screenshot({path: path.join(process.env.ARTEFACTS, `failed-${scenario}.png`)}).catch(() => {});
+  process.exitCode = 1;
+} finally {
+  lines?.close();
+  await browser.close();
+}

@@ -1,0 +1,60 @@
+"""The monitor page in headless Chromium, against a stand-in that speaks its protocol: size, keys, fingers, rights."""
+
+import re
+import subprocess
+import sys
+import unittest
+
+import browser
+
+SUPPORT = browser.SOURCE / "tests" / "support"
+
+
+class StandIn:
+    def __init__(self, *arguments):
+        self.child = subprocess.Popen(["/usr/bin/python3", "-B", SUPPORT / "page_standin.py", *arguments], text=True,
+                                      stdout=subprocess.PIPE, stdin=subprocess.DEVNULL)
+        self.address = self.child.stdout.readline().strip()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.child.kill()
+        self.child.wait()
+        self.child.stdout.close()
+
+
+def setUpModule():
+    browser.chromium(), browser.node(), browser.playwright_core()
+
+
+class Page(unittest.TestCase):
+    def run_scenario(self, name, *arguments, standin=()):
+        with StandIn(*standin) as server:
+            return browser.Scenario(name, server.address, *arguments).run()
+
+    def test_an_update_with_200_joints_is_short(self):
+        output = self.run_scenario("performance", "8", standin=("--robots", "20", "--joints", "10"))
+        print("\n".join(re.findall(r"^(?:updates|script) .*$", output, re.M)), file=sys.stderr)
+
+    def test_it_fits_every_screen(self):
+        self.run_scenario("screens")
+        for name in ("desk-light", "desk-dark", "tablet-light", "phone-light", "phone-dark"):
+            self.assertGreater((browser.ARTEFACTS / f"{name}.png").stat().st_size, 10000)
+
+    def test_it_can_be_used_by_keyboard(self):
+        self.run_scenario("keyboard")
+
+    def test_it_can_be_used_by_touch(self):
+        self.run_scenario("touch")
+
+    def test_who_has_no_token_may_look(self):
+        self.run_scenario("looking")
+
+    def test_a_read_only_gateway_says_so(self):
+        self.run_scenario("looking", standin=("--read-only",))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
