@@ -14,6 +14,7 @@
 
 #include "config/foot_switches.hpp"
 #include "config/picture_settings.hpp"
+#include "config/web_settings.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/real_time.hpp"
@@ -62,12 +63,6 @@ struct QueueOverrides {
   std::optional<double> sensor_rate_hz;
 
   void apply_to(QueueConfig& queues) const;
-};
-
-// Reserved for the monitor page; read and checked, not used yet.
-struct WebSettings {
-  bool enabled = true;
-  int port = 8080;
 };
 
 struct LoadedCell {

@@ -11,6 +11,7 @@
 #include "config/haptic_reader.hpp"
 #include "config/node_reader.hpp"
 #include "config/stream_reader.hpp"
+#include "config/web_reader.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/ports/haptic_device.hpp"
@@ -63,7 +64,7 @@ bool CellReader::read(std::string_view text) {
   read_loop(top);
   read_dds_output(top);
   read_queues(top);
-  read_web(top);
+  web = read_web(top);
   pictures = read_display(top);
   collision.read(top);
   read_startup(top);
@@ -164,14 +165,6 @@ void CellReader::read_queues(TableReader& top) {
   queues.apply_to(all);
   if (all.script_key == all.sensor_key || all.script_key == all.reply_key || all.sensor_key == all.reply_key)
     table->error({}, "two queues have the same key", "the keys by default are 2351, 1990 and 2352");
-  table->finish();
-}
-
-void CellReader::read_web(TableReader& top) {
-  auto table = top.table("web");
-  if (!table) return;
-  web.enabled = table->boolean("enabled").value_or(true);
-  web.port = static_cast<int>(table->integer("port", 1, 65535).value_or(web.port));
   table->finish();
 }
 

@@ -47,7 +47,6 @@ class CellReader {
   void read_loop(TableReader& top);
   void read_dds_output(TableReader& top);
   void read_queues(TableReader& top);
-  void read_web(TableReader& top);
   void read_startup(TableReader& top);
   void read_views(TableReader& top);
 

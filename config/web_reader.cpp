@@ -1,0 +1,70 @@
+#include "config/web_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "config/stream_reader.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+constexpr std::size_t kMostOrigins = 16;
+
+bool is_loopback(std::string_view address) { return address.starts_with("127.") || address == "::1"; }
+
+// "http://host[:port]" or "https://host[:port]", nothing behind it.
+bool is_origin(std::string_view text) {
+  const std::size_t scheme = text.starts_with("http://") ? 7 : text.starts_with("https://") ? 8 : 0;
+  constexpr std::size_t kLongestHost = 255;
+  const std::string_view host = text.substr(scheme);
+  return scheme > 0 && !host.empty() && host.size() <= kLongestHost && std::ranges::all_of(host, [](char c) {
+           constexpr std::string_view kOthers = "-.:[]";
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  kOthers.find(c) != std::string_view::npos;
+         });
+}
+
+void read_address(TableReader& table, WebSettings& settings) {
+  const auto address = table.text("address");
+  const bool remote = table.boolean("allow_remote").value_or(false);
+  if (!address) return;
+  if (!is_address(*address)) {
+    table.error("address", fmt::format("\"{}\" is no numeric address", printable(*address)), "e.g. 127.0.0.1");
+    return;
+  }
+  settings.address = *address;
+  if (!is_loopback(*address) && !remote) {
+    table.error("address", fmt::format("the page at {} could be reached from other machines", printable(*address)),
+                "if that is meant, add allow_remote = true; what goes over the wire is not encrypted");
+  }
+}
+
+}  // namespace
+
+WebSettings read_web(TableReader& top) {
+  WebSettings settings;
+  auto table = top.table("web");
+  if (!table) return settings;
+  settings.enabled = table->boolean("enabled").value_or(true);
+  if (const auto port = table->integer("port", 1, 65535)) settings.port = static_cast<int>(*port);
+  read_address(*table, settings);
+  settings.read_only = table->boolean("read_only").value_or(false);
+  settings.origins = table->texts("origins").value_or(settings.origins);
+  if (settings.origins.size() > kMostOrigins) {
+    table->error("origins", fmt::format("there are {} origins, but at most {} may be named", settings.origins.size(),
+                                        kMostOrigins));
+  }
+  for (const std::string& origin : settings.origins) {
+    if (!is_origin(origin))
+      table->error("origins", fmt::format("\"{}\" is no origin", printable(origin)),
+                   "e.g. https://monitor.example.org");
+  }
+  table->finish();
+  return settings;
+}
+
+}  // namespace cellmirror
