@@ -64,7 +64,7 @@ def gantry(d):
     yield "gantry_post", loft([
         section(0.0, 0.125, power=8), section(0.025, 0.125, power=8), section(0.026, 0.09, power=8),
         section(3.674, 0.09, power=8), section(3.675, 0.125, power=8), section(3.70, 0.125, power=8)], 16, d, 1.5)
-    yield "gantry_bridge", girder(6.4, 0.06, 0.15, 0.018, 0.006, 6, d).along("y")
+    yield "gantry_bridge", girder(6.4, 0.06, 0.15, 0.018, 0.006, 6, d).across()
     yield "gantry_trolley", loft(rounded([
         section(-0.175, 0.43, 0.38, 10), section(-0.05, 0.45, 0.40, 10), section(-0.045, 0.43, 0.38, 10),
         section(0.05, 0.43, 0.38, 10), section(0.055, 0.45, 0.40, 10), section(0.175, 0.45, 0.40, 10)], 0.03, d, 2),

@@ -33,6 +33,11 @@ class Mesh:
         self.vertices = [turn(p) for p in self.vertices]
         return self
 
+    def across(self):
+        """Lays what was made along x along y instead; z stays."""
+        self.vertices = [(-p[1], p[0], p[2]) for p in self.vertices]
+        return self
+
     def volume(self):
         total = 0.0
         for a, b, c in (tuple(self.vertices[i] for i in t) for t in self.triangles):
