@@ -31,6 +31,7 @@ test("pictures are as large as the room, within what is worth drawing", () => {
   const [width, height] = picture_size(2000, 1000, 2);
   assert.ok(width * height <= 1280 * 960 * 1.01);
   assert.ok(Math.abs(width / height - 2) < 0.01);
+  assert.ok(picture_size(3000, 400, 2)[0] <= 1920);
   assert.deepEqual(picture_size(1, 1, 1), [64, 64]);
 });
 

@@ -7,6 +7,7 @@ import {StripChart} from "./strip_chart.js";
 
 const kBudget_ms = 1.5;
 const kMostDrawn = 2;
+const kGap_s = 2;
 const kMostCurves = 6;
 
 const kQuantities = {
@@ -73,7 +74,10 @@ export class Charts {
 
   record(live) {
     const time = live.time_s ?? 0;
-    if (time < (this.last_time_ ?? time)) this.history_.clear();  // another gateway, another clock
+    const passed = time - (this.last_time_ ?? -Infinity);
+    if (passed < -1) this.history_.clear();  // the clock was set back
+    else if (passed <= 0) return;
+    else if (passed > kGap_s) this.history_.add(time - 0.001, () => {});  // curves do not bridge what nobody saw
     this.last_time_ = time;
     record(this.history_, live);
     this.robots_ = live.robots ?? [];

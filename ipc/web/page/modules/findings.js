@@ -6,6 +6,7 @@ import {place_in_range} from "./robots.js";
 const kMostRows = 40;
 
 const pair_key = (pair) => `${pair.a}\n${pair.b}`;
+const warned_of = (pair, limit_m) => pair.within_warning ?? pair.distance_m <= (limit_m ?? 0);
 const last_part = (path) => String(path ?? "").split(".").slice(-2).join(".");
 
 function pair_row() {
@@ -37,7 +38,7 @@ export class Findings {
       show_ends(row, pair);
       setText(row.value, length(pair.distance_m));
       setText(row.more, Number.isFinite(pair.time_to_contact_s) ? `contact in ${age(pair.time_to_contact_s)}` : "");
-      row.node.classList.toggle("warning", pair.distance_m <= (this.warning_m_ ?? 0));
+      row.node.classList.toggle("warning", warned_of(pair, this.warning_m_));
     });
     this.ranges_ = new KeyedRows(byId("range-list"), range_row, update_range);
     this.forces_ = new KeyedRows(byId("force-list"), force_row, update_force);
@@ -47,7 +48,7 @@ export class Findings {
     const touching = live.touching ?? [];
     const near = live.near ?? [];
     this.warning_m_ = live.warning_distance_m;
-    this.tell_counts_(touching.length, near.length, live);
+    this.tell_counts_(live.touching_count ?? touching.length, near.length, live);
     if (!visible) return;
     this.touching_.show(touching.slice(0, kMostRows), pair_key);
     this.near_.show(near.slice(0, kMostRows), pair_key);
@@ -58,15 +59,15 @@ export class Findings {
     byId("range-part").hidden = (live.ranges ?? []).length === 0;
     byId("force-part").hidden = (live.forces ?? []).length === 0;
     const warning = Number.isFinite(this.warning_m_) ? `nearest first; warning below ${length(this.warning_m_)}` : "nearest first";
-    setText(byId("near-note"), near.length > kMostRows ? `${warning}; the first ${kMostRows} of ${near.length}` : warning);
+    setText(byId("near-note"), near.length > kMostRows ? `${warning}; the first ${kMostRows} of ${live.near_count ?? near.length}` : warning);
   }
 
   tell_counts_(touching, near, live) {
     const badge = byId("touching-badge");
     const unknown = !Array.isArray(live.touching);
-    setText(badge, unknown ? "collisions: –" : touching ? `${touching} touching` : "nothing touches");
+    setText(badge, unknown ? "collisions not known" : touching ? `${touching} touching` : "nothing touches");
     setAttribute(badge, "data-state", unknown ? "none" : touching ? "lost" : "fresh");
-    const warned = (live.near ?? []).filter((pair) => pair.distance_m <= (live.warning_distance_m ?? 0)).length;
+    const warned = (live.near ?? []).filter((pair) => warned_of(pair, live.warning_distance_m)).length;
     const near_badge = byId("near-badge");
     setText(near_badge, `${warned} near`);
     near_badge.hidden = unknown || warned === 0;

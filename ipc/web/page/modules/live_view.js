@@ -8,14 +8,15 @@ import * as math from "./view_math.js";
 
 const kStale_s = 2;
 const kMostPixels = 1280 * 960;
+const kMostEdges = [1920, 1200];  // of the gateway
 const kRate_hz = 15;
 const kWishEvery_ms = 40;
 
 // As large as the area in true pixels, no larger than is worth drawing, both even.
 export function picture_size(width, height, density, most_pixels = kMostPixels) {
   const wanted = [Math.max(64, width * density), Math.max(64, height * density)];
-  const scale = Math.min(1, Math.sqrt(most_pixels / (wanted[0] * wanted[1])));
-  return wanted.map((edge) => Math.max(64, Math.min(4096, 2 * Math.round((edge * scale) / 2))));
+  const scale = Math.min(1, Math.sqrt(most_pixels / (wanted[0] * wanted[1])), ...wanted.map((edge, i) => kMostEdges[i] / edge));
+  return wanted.map((edge) => Math.max(64, 2 * Math.floor((edge * scale) / 2)));
 }
 
 export function wish_of(choice, [width, height]) {
@@ -57,7 +58,7 @@ export class LiveView {
     document.addEventListener("visibilitychange", () => this.ask_());
     connection.on("opened", () => this.ask_(true));
     connection.on("picture", (data) => this.draw_(data));
-    connection.on("refused", (message) => this.refused_(message));
+    connection.on("refused", (message) => !/token/.test(message.text) && this.refused_(message));
     connection.on("closed", () => (this.sent_ = ""));
     setInterval(() => this.tell_age(), 250);
   }

@@ -6,6 +6,7 @@ import {Console} from "./console.js";
 import {byId, setText} from "./dom.js";
 import {Findings} from "./findings.js";
 import {LiveView} from "./live_view.js";
+import {watch_menus} from "./menus.js";
 import {Messages} from "./messages.js";
 import {PickedLabel} from "./picked_label.js";
 import {Presence} from "./presence.js";
@@ -53,6 +54,7 @@ const view = new LiveView(connection, {
   picked: (found) => picked.show(found),
 });
 const choices = new ViewChoice({choose: (choice) => view.choose(choice), current: () => view.choice, command});
+watch_menus();
 watch_theme(byId("theme-button"), () => charts.restyle());
 
 // One update a frame at most, with the newest; what was recorded is not left out.

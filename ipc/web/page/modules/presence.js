@@ -16,6 +16,7 @@ export class Presence {
     connection.on("opened", () => this.back_());
     connection.on("closed", ({retry_s}) => this.gone_(retry_s));
     connection.on("welcome", (message) => this.welcome_(message));
+    connection.on("refused", ({text}) => /token/.test(text) && this.token_refused_(text));
     byId("gone-now").addEventListener("click", () => connection.start());
     byId("token-form").addEventListener("submit", (event) => this.token_given_(event));
     byId("token-button").addEventListener("click", () => this.open_dialog_());
@@ -45,6 +46,13 @@ export class Presence {
     this.tell_right_();
   }
 
+  // Once told, the token is forgotten: the gateway hangs up on those who go on guessing.
+  token_refused_(text) {
+    keep_token("");
+    this.token_problem_ = text;
+    if (this.token_shown_) this.open_dialog_();
+  }
+
   tell_right_() {
     const text = this.may_command ? "may command" : this.read_only ? "read-only" : "looking only";
     setText(byId("right-text"), text);
@@ -54,8 +62,8 @@ export class Presence {
   }
 
   open_dialog_() {
-    setText(byId("token-note"), this.token_shown_ && !this.may_command ? "The gateway does not know the token that this page showed." : "");
-    byId("token-dialog").showModal();
+    setText(byId("token-note"), this.may_command ? "" : this.token_problem_ ?? "");
+    if (!byId("token-dialog").open) byId("token-dialog").showModal();
   }
 
   token_given_(event) {
@@ -64,6 +72,7 @@ export class Presence {
     const given = byId("token-input").value.trim().replace(/^.*#token=/, "");
     keep_token(given);
     this.token_shown_ = given !== "";
+    this.token_problem_ = null;
     byId("token-input").value = "";
     byId("token-dialog").close();
     this.connection_.hello();

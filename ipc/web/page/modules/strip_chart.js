@@ -4,7 +4,6 @@ import {number} from "./format.js";
 
 // Okabe and Ito's palette, told apart by colour-blind people; more series repeat it with dashes.
 const kColours = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8a8f00", "#7f7f7f"];
-const kHeight_px = 100;
 
 export function colour(i) {
   return kColours[i % kColours.length];
@@ -79,7 +78,7 @@ export class StripChart {
     });
     this.plot_ = new window.uPlot({
       width: Math.max(120, this.plot_area_.clientWidth),
-      height: kHeight_px,
+      height: this.plot_area_.clientHeight || 100,
       legend: {show: false},
       cursor: {show: false},
       scales: {x: {time: false}, left: {range: padded}, right: {range: padded}},
@@ -115,7 +114,7 @@ export class StripChart {
 
   resize_() {
     if (this.plot_ && this.plot_area_.clientWidth > 0) {
-      this.plot_.setSize({width: this.plot_area_.clientWidth, height: kHeight_px});
+      this.plot_.setSize({width: this.plot_area_.clientWidth, height: this.plot_area_.clientHeight});
     }
   }
 }
