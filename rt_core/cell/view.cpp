@@ -38,12 +38,25 @@ void include(const Eigen::Vector3d& p_W, Extent& extent) {
   extent.high = extent.high.cwiseMax(p_W);
 }
 
+// So far away that all corners are in a picture of 4 to 3, with some room beside them.
 View whole(const Extent& extent, const Eigen::Vector3d& towards_viewer, bool orthogonal) {
   constexpr double kOpeningAngle = 40.0 * std::numbers::pi / 180.0;
-  const double radius = std::max(0.5 * (extent.high - extent.low).norm(), 0.1);
-  const double distance = radius / std::sin(0.5 * kOpeningAngle);
+  constexpr double kAspect = 4.0 / 3.0;
+  constexpr double kRoom = 1.08;
+  const Eigen::Vector3d half_size = 0.5 * (extent.high - extent.low);
+  const double radius = std::max(half_size.norm(), 0.1);
   View view;
   view.lookpoint = 0.5 * (extent.low + extent.high);
+  view.viewpoint = view.lookpoint + towards_viewer.normalized();
+  const Eigen::Matrix3d R_WS = screen_axes(view);
+  double distance = radius;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d side((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+    const Eigen::Vector3d p_S = R_WS.transpose() * side.cwiseProduct(half_size);
+    const double aside = std::max(std::abs(p_S.y()), std::abs(p_S.x()) / kAspect) / std::tan(0.5 * kOpeningAngle);
+    distance = std::max(distance, orthogonal ? aside : p_S.z() + aside);
+  }
+  distance *= kRoom;
   view.viewpoint = view.lookpoint + distance * towards_viewer.normalized();
   view.opening_angle = kOpeningAngle;
   view.near_distance = 0.01 * distance;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -50,6 +52,22 @@ TEST(Views, EachLooksAtTheMiddleOfTheCellAndClipsNothingOfIt) {
   }
   EXPECT_TRUE(sut[1].orthogonal);
   EXPECT_FALSE(sut[0].orthogonal);
+}
+
+TEST(Views, TheCellFillsAPictureOfFourToThreeAndNothingIsOutsideOfIt) {
+  const Extent extent{{-2, -1, 0}, {4, 3, 2}};
+  for (const View& view : views_of_extent(extent)) {
+    const double distance = (view.viewpoint - view.lookpoint).norm();
+    double farthest = 0;  // 1: at an edge of the picture
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d p_W((corner & 1) != 0 ? 4 : -2, (corner & 2) != 0 ? 3 : -1, (corner & 4) != 0 ? 2 : 0);
+      const Eigen::Vector3d p_S = screen_axes(view).transpose() * (p_W - view.viewpoint);
+      const double half = (view.orthogonal ? distance : -p_S.z()) * std::tan(0.5 * view.opening_angle);
+      farthest = std::max({farthest, std::abs(p_S.y()) / half, std::abs(p_S.x()) / (4.0 / 3.0 * half)});
+    }
+    EXPECT_LT(farthest, 1.0);
+    EXPECT_GT(farthest, 0.85);
+  }
 }
 
 TEST(Views, TheFirstOfADisplayIsTheOneOfTheManual) {
