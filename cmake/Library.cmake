@@ -1,4 +1,7 @@
 cellmirror_precompiled(common)
+if(CELLMIRROR_UNOPTIMISED)
+  cellmirror_precompiled(unoptimised OPTIONS ${CELLMIRROR_UNOPTIMISED})
+endif()
 
 # cellmirror_library(SOURCES a.cpp b.cpp USES rt_core/base ... PRIVATE fmt::fmt ... PUBLIC Eigen3::Eigen
 #   [PRECOMPILED set])                                  the set of cmake/PrecompiledHeaders.cmake; else common
@@ -32,6 +35,9 @@ function(cellmirror_library)
     cellmirror_link_folders(${target} PUBLIC ${ARG_USES})
     if(NOT ARG_PRECOMPILED)
       set(ARG_PRECOMPILED common)
+      if(TARGET cellmirror_precompiled_unoptimised AND folder MATCHES ${CELLMIRROR_READS_AND_WRITES})
+        set(ARG_PRECOMPILED unoptimised)
+      endif()
     endif()
     cellmirror_use_precompiled(${target} ${ARG_PRECOMPILED})
   else()

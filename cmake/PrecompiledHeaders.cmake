@@ -10,9 +10,10 @@ endif()
 set(CELLMIRROR_COMMON_HEADERS <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <functional> <map>
   <memory> <optional> <span> <string> <string_view> <utility> <variant> <vector> <fmt/format.h> <Eigen/Geometry>)
 
-# cellmirror_precompiled(set HEADERS <a.h> ... LINK targets ...)
+# cellmirror_precompiled(set HEADERS <a.h> ... LINK targets ... OPTIONS ...): OPTIONS of the compiler hold for the headers and
+# for every target that uses the set.
 function(cellmirror_precompiled set)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;LINK;OPTIONS" ${ARGN})
   if(NOT CELLMIRROR_PRECOMPILE)
     return()
   endif()
@@ -20,6 +21,8 @@ function(cellmirror_precompiled set)
   file(GENERATE OUTPUT ${source} CONTENT "")
   add_library(cellmirror_precompiled_${set} OBJECT ${source})
   target_link_libraries(cellmirror_precompiled_${set} PRIVATE cellmirror_flags Threads::Threads fmt::fmt Eigen3::Eigen ${ARG_LINK})
+  target_compile_options(cellmirror_precompiled_${set} PRIVATE ${ARG_OPTIONS})
+  set_target_properties(cellmirror_precompiled_${set} PROPERTIES CELLMIRROR_OPTIONS "${ARG_OPTIONS}")
   target_precompile_headers(cellmirror_precompiled_${set} PRIVATE ${CELLMIRROR_COMMON_HEADERS} ${ARG_HEADERS})
 endfunction()
 
@@ -39,6 +42,8 @@ function(cellmirror_use_precompiled target set)
       set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
     endif()
   endforeach()
+  get_target_property(of_the_set cellmirror_precompiled_${set} CELLMIRROR_OPTIONS)
+  target_compile_options(${target} PRIVATE ${of_the_set})
   get_target_property(definitions fmt::fmt INTERFACE_COMPILE_DEFINITIONS)  # have to be those of the set
   target_compile_definitions(${target} PRIVATE ${definitions})
   # GCC 12 forgets with a precompiled header what code came from a system header, and warns of the standard library's, where

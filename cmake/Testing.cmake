@@ -2,9 +2,11 @@
 # ThreadSanitizer as well, as every stress test does. Integration and stress tests run alone, since they watch
 # the clock or share ports.
 #
-# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY] [PRECOMPILED none])  a GoogleTest program, one ctest entry.
+# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY | SANITIZED_ONLY] [PRECOMPILED none])  a GoogleTest program, one ctest entry.
 #   PRECOMPILED none: with sources in C (cmake/PrecompiledHeaders.cmake).
 #   RELEASE_ONLY: not built with sanitizers. For long comparisons of numbers whose code a fuzz target runs under them.
+#   SANITIZED_ONLY: in a release build made by tests_sanitized only (./check --quick), and labelled "sanitized"; a whole ./check
+#     runs it with sanitizers alone. For tests of what reads and writes, where neither time nor optimisation matters.
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
 #   CELLMIRROR_FUZZERS a libFuzzer program, else <name>_replay, which runs the corpus as an ordinary test.
 # cellmirror_benchmark(name SOURCES ... USES ... [LINK ...] [SMOKE])       with SMOKE, a short round of it is a test
@@ -18,7 +20,7 @@ if(CELLMIRROR_TESTS AND CELLMIRROR_BENCHMARKS)
 endif()
 
 # tests_<label>: builds the test programs of one label.
-foreach(label unit integration golden fuzz stress concurrency)
+foreach(label unit integration golden fuzz stress concurrency sanitized)
   add_custom_target(tests_${label})
 endforeach()
 
@@ -27,7 +29,7 @@ add_custom_target(benches)
 
 # What nearly every unit test includes is parsed once a build (PrecompiledHeaders.cmake).
 if(CELLMIRROR_TESTS)
-  cellmirror_precompiled(tests HEADERS <gtest/gtest.h> LINK GTest::gtest)
+  cellmirror_precompiled(tests HEADERS <gtest/gtest.h> LINK GTest::gtest OPTIONS ${CELLMIRROR_TEST_OPTIONS})
 endif()
 
 # cellmirror_describe_test(name): kind label, serial where needed, and what every test may rely on in its environment.
@@ -60,7 +62,7 @@ function(cellmirror_test name)
   if(NOT CELLMIRROR_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "RELEASE_ONLY" "TIMEOUT;PRECOMPILED" "SOURCES;USES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RELEASE_ONLY;SANITIZED_ONLY" "TIMEOUT;PRECOMPILED" "SOURCES;USES;LINK;LABELS" ${ARGN})
   if(ARG_RELEASE_ONLY AND CELLMIRROR_SANITIZE)
     return()
   endif()
@@ -70,6 +72,10 @@ function(cellmirror_test name)
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK}
     PRECOMPILED ${ARG_PRECOMPILED})
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
+  if(ARG_SANITIZED_ONLY AND NOT CELLMIRROR_SANITIZE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    list(APPEND ARG_LABELS sanitized)
+  endif()
   cellmirror_describe_test(${name} TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABELS})
 endfunction()
 
