@@ -47,7 +47,7 @@ export function forms_of(words, commands) {
   return fitting.length ? fitting : named;
 }
 
-// Best first: those that begin with what is written, then those that contain it.
+// Best first: those that begin with what is written, the shortest before all, then those that contain it.
 export function ranked(candidates, written, most) {
   const low = written.toLowerCase();
   const begin = [];
@@ -59,8 +59,8 @@ export function ranked(candidates, written, most) {
     const at = candidate.text.toLowerCase().indexOf(low);
     if (at === 0) begin.push(candidate);
     else if (at > 0) contain.push(candidate);
-    if (begin.length >= most) break;
   }
+  begin.sort((a, b) => a.text.length - b.text.length);
   return [...begin, ...contain].slice(0, most);
 }
 

@@ -59,7 +59,10 @@ export class LiveView {
     connection.on("opened", () => this.ask_(true));
     connection.on("picture", (data) => this.draw_(data));
     connection.on("refused", (message) => !/token/.test(message.text) && this.refused_(message));
-    connection.on("closed", () => (this.sent_ = ""));
+    connection.on("closed", () => {
+      this.sent_ = "";
+      this.tell_age();
+    });
     setInterval(() => this.tell_age(), 250);
   }
 

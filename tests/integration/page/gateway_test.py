@@ -1,0 +1,70 @@
+"""The monitor page of a running gateway in headless Chromium: sees a robot move, orbits, commands, sees a refusal
+explained, loses the gateway and gets it back."""
+
+import socket
+import unittest
+
+import browser
+import gateway as g
+
+ROBOT = "MANTEC_R3"  # CiA 402 over udp multicast in the transfer cell
+REFUSED = "ROBOT PUMA_763 online"
+
+
+def setUpModule():
+    browser.chromium(), browser.node(), browser.playwright_core()
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class PageGateway(g.Gateway):
+    """With its page and pictures, at a port that stays the same when it is started again."""
+
+    def __init__(self, scratch, port):
+        self.scratch = scratch
+        self.instance = scratch.instance
+        g.Process.__init__(self, [g.BIN / "cellmirror", "run", scratch.cell_file, "--port", str(port), "--instance", scratch.instance],
+                           scratch.environment)
+        self.wait_ready(60)
+
+
+class Page(unittest.TestCase):
+    def setUp(self):
+        self.scratch = g.Scratch()
+        self.port = free_port()
+        self.robot = g.sim_robot("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100",
+                                 "--motion", "sine:amplitude=0.5,period=3")
+        self.start()
+
+    def tearDown(self):
+        self.gateway.close()
+        self.robot.close()
+        self.scratch.remove()
+
+    def start(self):
+        self.gateway = PageGateway(self.scratch, self.port)
+        self.assertEqual(self.scratch.send(f"ROBOT {ROBOT} online").returncode, 0)
+
+    def outside(self, word):
+        if word == "gone":
+            self.assertEqual(self.gateway.stop(), 0, self.gateway.output())
+            self.gateway.close()
+        elif word == "back":
+            self.start()
+
+    def test_a_visit(self):
+        shown = self.scratch.cellmirror("page", "--instance", self.scratch.instance, instance=False)
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        address = next(word for word in shown.stdout.split() if word.startswith("http"))
+        output = browser.Scenario("gateway", address, ROBOT, REFUSED).run(self.outside)
+        self.assertIn("PUMA_762", output)  # the refusal names the nearest
+        for name in ("gateway-desk-light", "gateway-orbit", "gateway-console", "gateway-gone", "gateway-back"):
+            self.assertGreater((browser.ARTEFACTS / f"{name}.png").stat().st_size, 10000)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
