@@ -114,12 +114,12 @@ class Process:
 class Gateway(Process):
     """A running gateway on a scratch cell, ready to be asked when the constructor returns."""
 
-    def __init__(self, scratch, *arguments, instance=None, wait=True):
+    def __init__(self, scratch, *arguments, instance=None, wait=True, pictures=False):
         self.scratch = scratch
         self.instance = instance or scratch.instance
         super().__init__(
-            [BIN / "cellmirror", "run", scratch.cell_file, "--no-web", "--headless", "--instance", self.instance,
-             *arguments], scratch.environment)
+            [BIN / "cellmirror", "run", scratch.cell_file, "--no-web", *([] if pictures else ["--headless"]),
+             "--instance", self.instance, *arguments], scratch.environment)
         if wait:
             self.wait_ready()
 
