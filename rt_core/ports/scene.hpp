@@ -94,6 +94,14 @@ struct SceneLabel {
   Mark mark = Mark::none;
 };
 
+// The level top of a slab that the cell itself stands on: shadows fall on it as on the floor (SHAD, FLDR), which it
+// hides. A rectangle along the axes of the world.
+struct ShadowCatcher {
+  double z_m = 0;
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();
+};
+
 struct LegendEntry {
   Colour rgba{0, 0, 0, 1};
   std::string text;
@@ -117,6 +125,7 @@ struct Scene {
   double floor_z_m = 0;
   Eigen::Vector2d floor_low = Eigen::Vector2d(-1, -1);  // that the floor has to reach at least
   Eigen::Vector2d floor_high = Eigen::Vector2d(1, 1);
+  std::vector<ShadowCatcher> shadow_catchers;
 };
 
 // A part of the picture with an eye of its own. 0 to 1 of the picture, origin at its upper left corner.

@@ -22,6 +22,17 @@ SceneBody body_of(const CompiledGeometry& part, DrawMode mode) {
   return body;
 }
 
+// A box, lying along the axes of the world, at least eight times as wide as high, that is drawn solid.
+bool is_level_slab(const SceneBody& body) {
+  constexpr double kAlong = 1.0 - 1e-9;
+  constexpr double kWide = 8.0;
+  if (body.shape != Shape::box || !body.casts_shadow || body.mode == DrawMode::transparent) return false;
+  const Eigen::Matrix3d R = body.X_WG.linear().cwiseAbs();
+  if (!(R.colwise().maxCoeff().minCoeff() > kAlong)) return false;
+  const Eigen::Vector3d size_W = R * body.size;
+  return std::min(size_W.x(), size_W.y()) > kWide * size_W.z();
+}
+
 bool equal(const DrawRule& a, const DrawRule& b) {
   return a.branch == b.branch && a.mode == b.mode && a.path == b.path;
 }
@@ -63,6 +74,7 @@ bool Bodies::update(const CompiledCell& cell, const CellPoses& poses, std::span<
   reach_ = fixed_;
   for (std::size_t i = first_moving_; i < bodies_.size(); ++i) reach_.extend(moved(bodies_[i].X_WG, boxes_[i]));
   find_floor();
+  find_slabs();
   return true;
 }
 
@@ -73,6 +85,18 @@ void Bodies::find_floor() {
   const double low = stands.min().z();
   const bool far_above = low > reach_.sizes().norm();
   if (low < 0.0 || far_above) floor_z_ = low;
+}
+
+void Bodies::find_slabs() {
+  constexpr double kSameLevel = 0.01;  // m
+  slabs_.clear();
+  for (std::size_t i = 0; i < first_moving_; ++i) {
+    if (!is_level_slab(bodies_[i])) continue;
+    const Box box = moved(bodies_[i].X_WG, boxes_[i]);
+    if (box.min().z() > floor_z_ + kSameLevel) continue;
+    slabs_.push_back({box.max().z(), box.min().head<2>(), box.max().head<2>()});
+    bodies_[i].casts_shadow = false;
+  }
 }
 
 void Bodies::place(const CellPoses& poses, std::vector<SceneBody>& bodies) {

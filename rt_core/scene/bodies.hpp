@@ -29,6 +29,8 @@ class Bodies {
   [[nodiscard]] const Box& reach() const { return reach_; }
   // Below what stands still, and not above the world's floor unless the whole cell is far above it.
   [[nodiscard]] double floor_z() const { return floor_z_; }
+  // Slabs that stand still, level and lowest of all: they catch shadows and cast none.
+  [[nodiscard]] const std::vector<ShadowCatcher>& slabs() const { return slabs_; }
 
  private:
   struct Version {
@@ -38,6 +40,7 @@ class Bodies {
   };
   [[nodiscard]] bool same(const CompiledCell& cell, std::span<const DrawRule> rules) const;
   void find_floor();
+  void find_slabs();
 
   Version version_;
   std::vector<SceneBody> bodies_;  // in the order of the nodes: those that stand still come first
@@ -48,6 +51,7 @@ class Bodies {
   Box fixed_;
   Box reach_;
   double floor_z_ = 0;
+  std::vector<ShadowCatcher> slabs_;
   BoundsOfGeometry bounds_;
 };
 

@@ -59,6 +59,7 @@ void write_messages(const SceneInput& input, Scene& scene) {
 
 void lay_floor(const Bodies& bodies, Scene& scene) {
   scene.floor_z_m = bodies.floor_z();
+  scene.shadow_catchers = bodies.slabs();
   if (bodies.reach().isEmpty()) return;
   const Eigen::Vector2d margin = kFloorMargin * bodies.reach().sizes().head<2>();
   const auto on_grid = [](double value, auto round) { return kFloorGrid * round(value / kFloorGrid); };

@@ -203,6 +203,22 @@ TEST_F(BuilderTest, TheFloorLiesUnderWhatStandsAndReachesAsFarAsTheCell) {
   EXPECT_EQ(build().floor_high.y(), grown) << "and does not shrink again";
 }
 
+TEST_F(BuilderTest, ASlabUnderEverythingCatchesShadowsAndCastsNone) {
+  EXPECT_TRUE(build().shadow_catchers.empty());
+  auto slab = std::make_shared<Geometry>();
+  slab->shape = Shape::box;
+  slab->size = {3, 2, 0.1};
+  slab->X_NG.translation() << 0, 0, -0.85;
+  cell_.cell.geometry[0].geometry = slab;  // the table's
+  changed();
+  ASSERT_EQ(build().shadow_catchers.size(), 1U);
+  EXPECT_NEAR(scene_.floor_z_m, -0.4, 1e-12);
+  EXPECT_NEAR(scene_.shadow_catchers[0].z_m, -0.3, 1e-12);
+  EXPECT_LT((scene_.shadow_catchers[0].low - Eigen::Vector2d(0.5, -1)).norm(), 1e-12);
+  EXPECT_FALSE(scene_.bodies[cell_.body_of(SmallCell::table)].casts_shadow);
+  EXPECT_TRUE(scene_.bodies[cell_.body_of(SmallCell::arm)].casts_shadow);
+}
+
 TEST_F(BuilderTest, AnActiveSensorWithoutReadingShowsItsRange) {
   EXPECT_TRUE(build().cones.empty());
   cell_.cell.sensors[0].sensor.active = true;
