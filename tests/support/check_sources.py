@@ -47,7 +47,7 @@ def check_files() -> list[str]:
     errors = []
     for path in tracked_files():
         text = (ROOT / path).read_text(errors="replace")
-        data = path.is_relative_to("tests/data") or "corpus" in str(path)
+        data = path.is_relative_to("tests/data") or "corpus" in str(path) or path.suffix in (".png", ".jpg")
         if path.suffix in CODE:
             lines = text.count("\n")
             if lines > MAX_LINES:

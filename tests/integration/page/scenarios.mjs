@@ -180,7 +180,8 @@ const scenarios = {
     await page.keyboard.press("ArrowRight");
     await page.keyboard.press("ArrowDown");
     assert.equal(await page.getAttribute("#tree-list li >> nth=1", "aria-selected"), "true");
-    await run(page, "hot_message ding");
+    await run(page, "hot_message <b>ding</b>");
+    await page.waitForFunction(() => document.getElementById("hot-message").textContent === "<b>ding</b>");
     await page.waitForFunction(() => Number(document.documentElement.dataset.rung) > 0);
   },
 

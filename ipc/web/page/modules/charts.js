@@ -52,6 +52,7 @@ export class Charts {
     this.robot_ = null;
     this.paused_ = false;
     this.turn_ = 0;
+    this.nearest_ = [];
     const parent = byId("chart-list");
     this.charts_ = [
       {chart: new StripChart(parent, {title: "Joints", digits: 1}), show: (chart) => this.show_joints_(chart)},
@@ -139,11 +140,16 @@ export class Charts {
     this.show_(chart, joints.map((joint) => joint.name), unit_texts, keys, scales);
   }
 
-  // The pairs that are nearest now; a curve stays until a nearer one needs its place.
+  // The pairs that are nearest now.
   show_nearest_(chart) {
     const near = this.history_.keys("near|").map((key) => ({key, value: this.history_.newest(key), seen: this.history_.last_seen(key)}));
     near.sort((a, b) => (a.value ?? Infinity) - (b.value ?? Infinity) || b.seen - a.seen || (a.key < b.key ? -1 : 1));
-    const keys = near.slice(0, kMostCurves).map(({key}) => key).sort();
+    // One that was shown keeps its place while it is nearly among the nearest: curves must not come and go.
+    const nearly = new Set(near.slice(0, 2 * kMostCurves).filter(({value}) => value !== null).map(({key}) => key));
+    const kept = this.nearest_.filter((key) => nearly.has(key));
+    const others = near.map(({key}) => key).filter((key) => !kept.includes(key));
+    const keys = [...kept, ...others].slice(0, kMostCurves);
+    this.nearest_ = keys;
     this.show_(chart, keys.map((key) => short_pair(key.slice(5))), keys.map(() => "mm"), keys, keys.map(() => 1000));
   }
 

@@ -1,6 +1,8 @@
 // Names what was picked in the picture, beside the place.
 import {byId, setText} from "./dom.js";
 
+const kNothing_ms = 3000;
+
 export class PickedLabel {
   constructor({show_robot, show_node}) {
     this.node_ = byId("picked");
@@ -13,7 +15,9 @@ export class PickedLabel {
   show(found) {
     this.found_ = found;
     this.node_.hidden = found === null;
+    clearTimeout(this.timer_);
     if (!found) return;
+    if (!found.path) this.timer_ = setTimeout(() => this.show(null), kNothing_ms);
     setText(byId("picked-path"), found.path ?? (found.text || "nothing is there"));
     setText(byId("picked-robot"), found.robot ? `Robot ${found.robot}` : "");
     byId("picked-robot").hidden = !found.robot;
