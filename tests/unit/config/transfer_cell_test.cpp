@@ -229,7 +229,7 @@ TEST_F(TransferCell, theGantryCarriesItsArm) {
 }
 
 TEST_F(TransferCell, hasItsStreams) {
-  ASSERT_EQ(loaded.streams.size(), 2U);
+  ASSERT_EQ(loaded.streams.size(), 3U);
   const auto& can = std::get<Cia402StreamConfig>(loaded.streams[0].config);
   EXPECT_EQ(loaded.streams[0].robot, "MANTEC_R3");
   EXPECT_EQ(can.channel.endpoint, "udp:239.74.163.2:43113");
@@ -238,6 +238,9 @@ TEST_F(TransferCell, hasItsStreams) {
   EXPECT_DOUBLE_EQ(can.nodes[0].scale, 1e-5);
   const auto& dds = std::get<DdsStreamConfig>(loaded.streams[1].config);
   EXPECT_EQ(dds.joints[2].ros_name, "puma_762_joint_3");
+  const auto& head = std::get<Cia402StreamConfig>(loaded.streams[2].config);
+  EXPECT_EQ(loaded.streams[2].robot, "KAMERAKOPF_1");
+  EXPECT_EQ(head.nodes.size(), 2U);
   EXPECT_EQ(loaded.startup_script, "startup.spt");
 }
 
