@@ -7,8 +7,12 @@ die() {
   exit "${2:-1}"
 }
 
-# The lines of the given files without comments and empty ones.
-listed() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@"; }
+# The packages in the given files. A line "PACKAGE unless COMMAND" asks for it only where there is no such command yet.
+listed() {
+  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@" | while read -r package unless command; do
+    [ "$unless" = unless ] && command -v "$command" >/dev/null || printf '%s\n' "$package"
+  done
+}
 
 # Prints those of the given packages that are not installed.
 missing_packages() {

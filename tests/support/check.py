@@ -45,11 +45,28 @@ class EarlyBuild:
         self.process.communicate()  # the pipe ends with the last of the group: two ninjas in one folder would be one too many
 
 
+class LaterPackages:
+    """Installs what the tests run, but nothing of the release is built with, while the release is built."""
+
+    def __init__(self):
+        self.process = subprocess.Popen(["bash", "-uc", ". cmake/setup.sh; ensure_packages cmake/packages-later.txt"], cwd=ROOT,
+                                        stdin=subprocess.DEVNULL)
+
+    def wait(self) -> Report:
+        report = Report()
+        if self.process.wait() == 0:
+            report.notes.append("installed")
+        else:
+            report.fail("packages for the tests", "see above")
+        return report
+
+
 class Check:
     def __init__(self, options: argparse.Namespace):
         self.options = options
         self.total = Report()
         self.rows: list[tuple[str, float, str]] = []
+        self.packages = LaterPackages()
 
     def stage(self, name: str, action) -> bool:
         """Runs `action`, which gives a Report; False when something in it failed."""
@@ -87,7 +104,9 @@ class Check:
         elif self.options.quick or self.options.label == "unit":
             targets = ["all", "tests_sanitized"]
         if not self.build("release", "build", *targets, configure_arguments="-DCELLMIRROR_TESTS=ON" if without_tests else ""):
+            self.packages.wait()
             return
+        self.stage("packages", self.packages.wait)
         if self.options.label:
             self.tests("tests", "build", "-L", f"^({self.options.label})$")
         elif self.options.quick:
