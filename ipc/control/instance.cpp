@@ -84,7 +84,8 @@ Result<InstanceInfo> read_description(const std::filesystem::path& file) {
 }
 
 void remove_files(const std::filesystem::path& folder) {
-  for (const char* name : {"instance.json", "instance.json.new", "control.sock"}) ::unlink((folder / name).c_str());
+  for (const char* name : {"instance.json", "instance.json.new", "control.sock", "page.json"})
+    ::unlink((folder / name).c_str());
   ::rmdir(folder.c_str());
 }
 

@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -21,6 +23,28 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kLargestFile = 4096;
+constexpr std::size_t kTokenDigits = 32;
+
+Result<void> write_private(const std::filesystem::path& file, const std::string& text) {
+  ::unlink(file.c_str());
+  const Descriptor out(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!out.valid() || ::write(out.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+    return fail(fmt::format("cannot write {}: {}", file.native(), system_error_text(errno)));
+  return {};
+}
+
+// Empty where the file is not this user's own, or holds anything else.
+std::string read_token(const std::filesystem::path& file) {
+  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  struct stat facts{};
+  if (!in.valid() || ::fstat(in.get(), &facts) != 0 || !S_ISREG(facts.st_mode)) return {};
+  if (facts.st_uid != ::geteuid() || (facts.st_mode & 0077U) != 0) return {};
+  std::array<char, kTokenDigits + 1> bytes{};
+  const ssize_t got = ::read(in.get(), bytes.data(), bytes.size());
+  const std::string text(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  const bool good = text.size() == kTokenDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return good ? text : std::string();
+}
 
 }  // namespace
 
@@ -47,11 +71,17 @@ Result<void> write_page_address(const std::filesystem::path& folder, const PageA
   const json document = {
       {"address", page.address}, {"port", page.port}, {"token", page.token}, {"read_only", page.read_only}};
   const std::string text = document.dump() + "\n";
-  ::unlink(file.c_str());
-  const Descriptor out(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
-  if (!out.valid() || ::write(out.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    return fail(fmt::format("cannot write {}: {}", file.native(), system_error_text(errno)));
-  return {};
+  return write_private(file, text);
+}
+
+Result<std::string> kept_token(const std::filesystem::path& file) {
+  std::string token = read_token(file);
+  if (!token.empty()) return token;
+  auto made = make_token();
+  if (!made) return made;
+  // Where it cannot be kept, it holds as long as this gateway.
+  static_cast<void>(write_private(file, *made));
+  return made;
 }
 
 Result<PageAddress> read_page_address(const std::filesystem::path& folder) {

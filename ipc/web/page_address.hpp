@@ -27,6 +27,10 @@ struct PageAddress {
 // 128 random bits of the kernel, as 32 hexadecimal digits.
 [[nodiscard]] Result<std::string> make_token();
 
+// The token that `file` holds, so that a page that waits for its gateway to come back may still command; where there is
+// none, or others may read it, it is made anew. Its folder is there.
+[[nodiscard]] Result<std::string> kept_token(const std::filesystem::path& file);
+
 // Mode 0600.
 [[nodiscard]] Result<void> write_page_address(const std::filesystem::path& folder, const PageAddress& page);
 [[nodiscard]] Result<PageAddress> read_page_address(const std::filesystem::path& folder);

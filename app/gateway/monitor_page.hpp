@@ -1,0 +1,52 @@
+// The monitor page of a running gateway: its server, where it is reached, and what status tells of it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "app/gateway/web_backend.hpp"
+#include "config/web_settings.hpp"
+#include "ipc/web/page_address.hpp"
+#include "ipc/web/web_server.hpp"
+
+namespace cellmirror::app {
+
+// All that status tells of it, as of one moment.
+struct PageReport {
+  bool on = false;
+  std::string address;  // "http://127.0.0.1:8420/", without the token; empty: there is no page
+  std::string problem;  // why there is none although it is wanted; empty: nothing is wrong
+  bool read_only = false;
+  web::ServerStatus server;
+};
+
+class MonitorPage {
+ public:
+  struct Options {
+    bool wanted = true;
+    WebSettings settings;
+    std::optional<int> port;  // of the command line; goes before the cell file's
+    std::string cell;         // its name
+    std::string instance;
+    std::filesystem::path folder;  // of the instance: the address and the token are left there for its owner
+  };
+
+  // Where the page cannot be served a warning is logged, and the gateway goes on without.
+  MonitorPage(const Options& options, WebBackend::Parts backend);
+  ~MonitorPage();
+
+  // Any thread.
+  [[nodiscard]] PageReport report() const;
+
+ private:
+  void start(const Options& options);
+
+  PageReport state_;  // but for the counters; never changed after the start
+  std::unique_ptr<WebBackend> backend_;
+  std::unique_ptr<web::Server> server_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,24 @@
+// The tree of the cell and the names in it, for the monitor page (docs/monitor-page.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/gateway/picture.hpp"
+
+namespace cellmirror::app {
+
+[[nodiscard]] std::string tree_document(const OwnerPicture& picture, std::uint64_t tree_revision);
+
+// `home`: of the cell; its scripts/ and views are listed.
+[[nodiscard]] std::string names_document(const OwnerPicture& picture, const std::filesystem::path& home);
+
+// Names of the files in a folder and below that have this extension, sorted, without it where `bare`; a bounded number,
+// links are not followed.
+[[nodiscard]] std::vector<std::string> files_with(const std::filesystem::path& folder, std::string_view extension,
+                                                  bool bare);
+
+}  // namespace cellmirror::app

@@ -1,0 +1,55 @@
+// The gateway as the monitor page's server sees it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "app/gateway/cell_owner.hpp"
+#include "app/gateway/live_document.hpp"
+#include "app/gateway/page_commands.hpp"
+#include "app/gateway/picture.hpp"
+#include "app/gateway/studio.hpp"
+#include "ipc/web/web_backend.hpp"
+#include "ipc/web/web_server.hpp"
+
+namespace cellmirror::app {
+
+class WebBackend final : public web::Backend {
+ public:
+  // None of what is pointed to is owned; all of it outlives the backend.
+  struct Parts {
+    std::filesystem::path home;
+    const PictureBoard* board = nullptr;
+    CellOwner* owner = nullptr;
+    PageCommands* commands = nullptr;
+    Studio* studio = nullptr;                                                // null: no pictures
+    std::function<std::string()> status;                                     // as `cellmirror status --json`
+    std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
+    std::function<web::ServerStatus()> server_status;
+  };
+
+  explicit WebBackend(Parts parts) : parts_(std::move(parts)) {}
+
+  [[nodiscard]] std::string live_json() override;
+  [[nodiscard]] std::string status_json() override { return parts_.status(); }
+  [[nodiscard]] std::string tree_json() override;
+  [[nodiscard]] std::string commands_json() override;
+  [[nodiscard]] std::string names_json() override;
+  [[nodiscard]] std::string metrics_text() override;
+  void execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) override;
+  Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish) override;
+  Result<EncodedImage> picture(const web::PictureWish& wish, ImageFormat format) override;
+  Result<std::optional<web::PickedObject>> pick(const web::PictureWish& wish, int x, int y) override;
+
+ private:
+  Parts parts_;
+  TreeRevision tree_revision_;
+  std::mutex mutex_;  // of the window
+  LoopWindow window_;
+};
+
+}  // namespace cellmirror::app
