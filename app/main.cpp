@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
         "Mirrors a robot workcell in real time and takes SCRIPT commands.\n\n"
         "  cellmirror run config/cells/transfer_cell/cell.toml     start the gateway of a cell\n"
         "  cellmirror status --watch                               what it does now\n"
+        "  cellmirror page                                         where its monitor page is\n"
         "  cellmirror send 'POS_ROB PUMA_762 JOINT_INC 5'          command it\n"
         "  cellmirror doctor                                       what this machine allows",
         "cellmirror");
@@ -29,6 +30,8 @@ int main(int argc, char** argv) {
     add_ik(program, action);
     add_collide(program, action);
     add_range(program, action);
+    add_snapshot(program, action);
+    add_page(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();
   } catch (const std::exception& error) {

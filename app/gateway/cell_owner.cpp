@@ -84,16 +84,26 @@ void CellOwner::stop() {
   thread_.join();
 }
 
-void CellOwner::submit(const ScriptMessage& message) {
+bool CellOwner::put(const ScriptMessage& message) {
   QueuedCommand queued;
   queued.text.assign(message.text);
   queued.tag = message.tag;
   queued.sender_pid = message.sender_pid;
-  while (queue_.full() && !stopping_.stop_requested()) {
+  const std::scoped_lock lock(producers_);
+  return !queue_.full() && queue_.push(queued);
+}
+
+void CellOwner::submit(const ScriptMessage& message) {
+  while (!put(message) && !stopping_.stop_requested()) {
     room_.wait(std::chrono::milliseconds(10));
   }
-  queue_.push(queued);
   wake_.wake();
+}
+
+bool CellOwner::offer(const ScriptMessage& message) {
+  const bool taken = put(message);
+  wake_.wake();
+  return taken;
 }
 
 engine::QueueStatus CellOwner::command_queue() const {
@@ -101,8 +111,9 @@ engine::QueueStatus CellOwner::command_queue() const {
 }
 
 void CellOwner::execute(const QueuedCommand& queued) {
-  const std::string source =
-      queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid) : std::string("message");
+  const std::string source = queued.tag < 0          ? std::string("monitor page")
+                             : queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid)
+                                                     : std::string("message");
   if (queued.tag == 0) {
     // Nobody is answered, and nobody waits for a robot to arrive. What was refused stands in the status.
     [[maybe_unused]] const auto unanswered = runner_->execute_message(queued.text.view(), source);
@@ -172,6 +183,7 @@ bool CellOwner::is_online(std::size_t slot) const {
 void CellOwner::hang_up_picture() {
   auto picture = std::make_shared<OwnerPicture>();
   picture->cell = cell_.compile();
+  picture->levels = levels_.of(cell_, picture->cell);
   picture->collision = sensing_.collision();
   picture->range_send_mode = sensing_.send_mode();
   for (const CompiledRobot& compiled : picture->cell->robots) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -17,6 +18,7 @@
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/interaction.hpp"
 #include "app/gateway/motion_desk.hpp"
+#include "app/gateway/node_levels.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/sensing.hpp"
 #include "app/gateway/switch_desk.hpp"
@@ -77,10 +79,13 @@ class CellOwner {
 
   // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up.
   void submit(const ScriptMessage& message);
+  // From any other thread: false, at once, where the queue is full.
+  [[nodiscard]] bool offer(const ScriptMessage& message);
   [[nodiscard]] engine::QueueStatus command_queue() const;
 
  private:
   void loop(const std::stop_token& stop);
+  [[nodiscard]] bool put(const ScriptMessage& message);
   bool execute_messages();
   bool execute_files();
   void execute(const QueuedCommand& queued);
@@ -106,7 +111,9 @@ class CellOwner {
   CellInteraction interaction_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;
+  std::mutex producers_;  // of the queue, which takes one at a time
   Fifo<QueuedCommand, kCommandQueue> queue_;
+  NodeLevels levels_;
   WakeSignal wake_;
   std::unique_ptr<SwitchDesk> switches_;  // its thread wakes the owner's
   WakeSignal room_;                       // wakes the receiver's thread when the queue has room again

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -15,12 +16,16 @@
 #include "app/gateway/fault_monitor.hpp"
 #include "app/gateway/flight_file.hpp"
 #include "app/gateway/force_worker.hpp"
+#include "app/gateway/live_document.hpp"
+#include "app/gateway/monitor_page.hpp"
 #include "app/gateway/outputs.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/publisher.hpp"
 #include "app/gateway/ranging_worker.hpp"
 #include "app/gateway/status_document.hpp"
+#include "app/gateway/studio.hpp"
 #include "app/gateway/tcp_force_worker.hpp"
+#include "app/pictures/snapshot_request.hpp"
 #include "config/cell_file.hpp"
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
@@ -69,7 +74,9 @@ struct Gateway::Parts {
   Watchdog watchdog{kLoopStandsStillAfter, {}};
   std::unique_ptr<engine::Engine> engine;
   PictureBoard board;
+  PictureUpdates picture_updates;
   std::unique_ptr<ScriptMessageReceiver> messages;
+  PageCommands page_commands;
   std::unique_ptr<CellOwner> owner;
   std::unique_ptr<CyclicThread> loop;
   std::unique_ptr<CollisionWorker> collisions;
@@ -78,13 +85,18 @@ struct Gateway::Parts {
   std::unique_ptr<ForceWorker> forces;
   std::unique_ptr<TcpForceWorker> tcp_force;
   std::unique_ptr<Publisher> publisher;
+  std::unique_ptr<Studio> studio;
   std::unique_ptr<FaultMonitor> faults;
-  RobotStateBuilder status_builder;  // the control server's thread
+  std::mutex answering;  // of the engine's view for status and of what follows: several threads answer questions
+  RobotStateBuilder status_builder;
   std::unique_ptr<ControlServer> control;
+  std::unique_ptr<MonitorPage> page;
 
   ~Parts() {
     control.reset();
+    page.reset();
     faults.reset();
+    studio.reset();
     publisher.reset();
     forces.reset();
     tcp_force.reset();
@@ -105,12 +117,17 @@ struct Gateway::Parts {
   void start_sensing(const Eigen::Vector3d& gravity_W);
   Result<void> start_messages();
   Result<void> start_outputs(const DdsOutputConfig& dds);
+  Result<void> start_studio(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
   void start_fault_monitor();
   Result<void> start_control();
+  void start_page(const GatewayOptions& options, const WebSettings& settings);
 
   Result<std::string> write_flight_record(const std::string& file_name, const std::string& reason);
-  std::string answer(std::string_view request);
+  void answer(std::string_view request, ControlReply reply);
+  void answer_snapshot(const ControlRequest& request, ControlReply reply);
   std::string status();
+  [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const OwnerPicture& picture) const;
+  void look_at(const std::function<void(const LiveSources&)>& look);
 };
 
 Result<void> Gateway::Parts::prepare_machine() {
@@ -137,14 +154,17 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     if (!written) return std::unexpected(written.error());
     return {};
   };
-  const auto reply = [this](std::int64_t tag, const ScriptReply& text) { messages->reply(tag, text); };
+  const auto reply = [this](std::int64_t tag, const ScriptReply& text) {
+    if (PageCommands::owns(tag)) return page_commands.answer(tag, text);
+    messages->reply(tag, text);
+  };
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
-  owner = std::make_unique<CellOwner>(
-      CellOwner::Parts{std::move(loaded.cell), loaded.home, std::move(streams), std::move(loaded.haptics),
-                       std::move(loaded.views), std::move(loaded.collision), loaded.foot_switches, *engine, board,
-                       clock, stream_priority, instance->info().name, queues.tcp_force_key, queues.mode, save, reply});
+  owner = std::make_unique<CellOwner>(CellOwner::Parts{
+      std::move(loaded.cell), loaded.home, std::move(streams), std::move(loaded.haptics), std::move(loaded.views),
+      std::move(loaded.collision), loaded.foot_switches, *engine, board, clock, stream_priority, instance->info().name,
+      queues.tcp_force_key, queues.mode, save, reply, [this] { return picture_updates.count(); }, options.bell});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -189,6 +209,17 @@ Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
   return {};
 }
 
+// Makes no pictures yet: the renderer is made when somebody looks.
+Result<void> Gateway::Parts::start_studio(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds) {
+  auto outputs = make_picture_outputs(dds);
+  if (!outputs) return std::unexpected(outputs.error());
+  studio = std::make_unique<Studio>(
+      Studio::Options{settings, headless, std::move(*outputs), {}},
+      SceneSource::Boards{*engine, board, collisions->board(), ranging->board(), forces->board(), clock},
+      picture_updates);
+  return {};
+}
+
 void Gateway::Parts::start_fault_monitor() {
   faults = std::make_unique<FaultMonitor>(*loop, watchdog, clock, [this](const std::string& reason) {
     const auto wall_seconds = to_wall_clock_ns(clock.now()) / 1'000'000'000;
@@ -197,8 +228,9 @@ void Gateway::Parts::start_fault_monitor() {
 }
 
 Result<void> Gateway::Parts::start_control() {
-  auto server =
-      ControlServer::start(instance->control_socket(), [this](std::string_view request) { return answer(request); });
+  auto server = ControlServer::start_later(
+      instance->control_socket(),
+      [this](std::string_view request, ControlReply reply) { answer(request, std::move(reply)); });
   if (!server) return std::unexpected(server.error());
   control = std::move(*server);
   return {};
@@ -217,36 +249,101 @@ Result<std::string> Gateway::Parts::write_flight_record(const std::string& file_
   return path->string();
 }
 
-std::string Gateway::Parts::answer(std::string_view line) {
+void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
   const Result<ControlRequest> request = parse_control_request(line);
-  if (!request) return control_error(request.error());
-  if (request->request == "status") return status();
-  return control_error({fmt::format("the request {} is not known", request->request), "known: status"});
+  if (!request) return reply(control_error(request.error()));
+  if (request->request == "status") return reply(status());
+  if (request->request == "snapshot") return answer_snapshot(*request, std::move(reply));
+  reply(control_error({fmt::format("the request {} is not known", request->request), "known: status, snapshot"}));
+}
+
+void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply reply) {
+  const auto wanted = snapshot_request(request);
+  if (!wanted) return reply(control_error(wanted.error()));
+  const PictureSettings& settings = studio->settings();
+  // A function that is copied holds what can be moved only.
+  const auto later = std::make_shared<ControlReply>(std::move(reply));
+  studio->ask_picture(wish_of(*wanted, settings.width, settings.height), wanted->format,
+                      [this, later](const Result<EncodedImage>& picture) {
+                        if (!picture) return (*later)(control_error(picture.error()));
+                        (*later)(answer_text(*picture, seconds(clock.now() - picture->posture_time)));
+                      });
+}
+
+void Gateway::Parts::start_page(const GatewayOptions& options, const WebSettings& settings) {
+  WebBackend::Parts parts;
+  parts.home = home->root();
+  parts.board = &board;
+  parts.owner = owner.get();
+  parts.commands = &page_commands;
+  parts.studio = studio.get();
+  parts.status = [this] { return status(); };
+  parts.at = [this](const std::function<void(const LiveSources&)>& look) { look_at(look); };
+  page = std::make_unique<MonitorPage>(
+      MonitorPage::Options{options.web, settings, options.port, cell_name, options.instance, instance->folder()},
+      std::move(parts));
+}
+
+std::vector<engine::QueueStatus> Gateway::Parts::thread_queues(const OwnerPicture& picture) const {
+  std::vector<engine::QueueStatus> queues_now{engine->command_queue(), owner->command_queue()};
+  for (const RobotPicture& robot : picture.robots) {
+    if (!robot.stream) continue;
+    queues_now.push_back(engine->sample_queue(robot.slot));
+    queues_now.back().name = "samples " + robot.id;
+  }
+  return queues_now;
+}
+
+void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look) {
+  const std::shared_ptr<const OwnerPicture> picture = board.look();
+  const std::vector<engine::QueueStatus> queues_now = thread_queues(*picture);
+  const std::scoped_lock lock(answering);
+  const engine::TickState& tick = engine->status_view();
+  const std::span<const RobotState> robots = status_builder.build(*picture, tick);
+  const Timestamp now = clock.now();
+  look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *picture, tick,
+        robots, status_builder.poses(), picture_updates.count(), collisions->board().look(), ranging->board().look(),
+        forces->board().look(), queues_now});
 }
 
 std::string Gateway::Parts::status() {
   const std::shared_ptr<const OwnerPicture> picture = board.look();
+  const std::scoped_lock lock(answering);
   const engine::TickState& tick = engine->status_view();
-  std::vector<engine::QueueStatus> thread_queues{engine->command_queue(), owner->command_queue()};
-  for (const RobotPicture& robot : picture->robots) {
-    if (!robot.stream) continue;
-    thread_queues.push_back(engine->sample_queue(robot.slot));
-    thread_queues.back().name = "samples " + robot.id;
-  }
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
   for (const PublishedOutput& output : publisher->outputs())
     outputs.emplace_back(output.output->name(), output.output->counters());
+  for (const ImageOutput* output : studio->outputs()) outputs.emplace_back(output->name(), output->counters());
   const FaultStatus fault_status = faults->status();
   const ScriptMessageStatus message_status = messages->status();
   const CollisionReport collision_report = collisions->report();
   const RangeReport range_report = ranging->report();
   const ContactReport contact_report = contacts->report();
   const ForceReport force_report = forces->report();
+  const PictureReport picture_report = studio->report();
+  const PageReport page_report = page ? page->report() : PageReport{};
   const Timestamp now = clock.now();
-  return status_document({instance->info().name, cell_name, home->root().string(), seconds(now - started),
-                          loop_settings.rate_hz, now, *loop, memory, fault_status, *picture, tick,
-                          status_builder.build(*picture, tick), message_status, collision_report, range_report,
-                          contact_report, force_report, std::move(thread_queues), std::move(outputs)});
+  return status_document({instance->info().name,
+                          cell_name,
+                          home->root().string(),
+                          seconds(now - started),
+                          loop_settings.rate_hz,
+                          now,
+                          *loop,
+                          memory,
+                          fault_status,
+                          *picture,
+                          tick,
+                          status_builder.build(*picture, tick),
+                          message_status,
+                          collision_report,
+                          range_report,
+                          contact_report,
+                          force_report,
+                          picture_report,
+                          page_report,
+                          thread_queues(*picture),
+                          std::move(outputs)});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -264,6 +361,8 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   loaded->queues.apply_to(parts->queues);
   parts->engine = std::make_unique<engine::Engine>(parts->watchdog);
   const DdsOutputConfig dds = loaded->dds;
+  const PictureSettings pictures = loaded->pictures;
+  const WebSettings web = loaded->web;
   const Eigen::Vector3d gravity_W = loaded->gravity_m_s2;
   Result<void> step = check_instance_name(options.instance);
   if (step) step = parts->prepare_machine();
@@ -273,9 +372,11 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->start_loop();
   if (step) parts->start_sensing(gravity_W);
   if (step) step = parts->start_outputs(dds);
+  if (step) step = parts->start_studio(pictures, options.headless, dds);
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
+  parts->start_page(options, web);
   // Last: the startup script finds everything running.
   parts->owner->start();
   return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));
@@ -283,10 +384,12 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
 
 std::string Gateway::greeting() const {
   const Parts& parts = *parts_;
+  const std::string address = parts.page->report().address;
+  const std::string page = address.empty() ? std::string() : fmt::format("; monitor page {}", address);
   return fmt::format(
-      "cell {} with {} robots runs at {:.0f} Hz ({}); instance {}, SCRIPT messages on key {}; Ctrl-C ends it",
+      "cell {} with {} robots runs at {:.0f} Hz ({}); instance {}, SCRIPT messages on key {}{}; Ctrl-C ends it",
       parts.cell_name, parts.board.look()->robots.size(), parts.loop_settings.rate_hz,
-      parts.loop->scheduling().scheduler, parts.instance->info().name, parts.queues.script_key);
+      parts.loop->scheduling().scheduler, parts.instance->info().name, parts.queues.script_key, page);
 }
 
 }  // namespace cellmirror::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +18,11 @@ struct GatewayOptions {
   std::optional<std::string> startup_script;  // instead of the cell file's own
   std::optional<double> rate_hz;              // instead of the cell file's own
   std::string instance = "default";
-  LoadProgress progress;  // told while the cell is loaded; may be empty
+  bool headless = false;       // no pictures
+  bool web = true;             // the monitor page
+  std::optional<int> port;     // of the monitor page, instead of the cell file's; 0: a free one
+  std::function<void()> bell;  // rings with messages while BEEP is on (SET_MODE); may be empty
+  LoadProgress progress;       // told while the cell is loaded; may be empty
 };
 
 class Gateway {

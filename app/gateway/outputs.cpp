@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "drivers/dds/dds_output.hpp"
+#include "drivers/dds/image_output.hpp"
 #include "ipc/sysv/sensor_queue_output.hpp"
 
 namespace cellmirror::app {
@@ -30,6 +31,22 @@ Result<std::vector<PublishedOutput>> make_outputs(const QueueConfig& queues, con
   auto published = dds::make_dds_output(config);
   if (!published) return std::unexpected(published.error());
   add(outputs, std::move(*published), config.rate_hz);
+  return outputs;
+}
+
+Result<std::vector<Studio::Output>> make_picture_outputs(const DdsOutputConfig& config) {
+  std::vector<Studio::Output> outputs;
+  if (!config.enabled || config.pictures.topic.empty()) return outputs;
+  auto output = dds::make_image_output(config);
+  if (!output) return std::unexpected(output.error());
+  web::PictureWish wish;
+  wish.view = config.pictures.view;
+  if (!config.pictures.camera.empty()) wish.camera = config.pictures.camera;
+  wish.width = config.pictures.width;
+  wish.height = config.pictures.height;
+  wish.rate_hz = config.pictures.rate_hz;
+  wish.quality = config.pictures.quality;
+  outputs.push_back({std::move(*output), std::move(wish)});
   return outputs;
 }
 

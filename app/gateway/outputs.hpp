@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/gateway/publisher.hpp"
+#include "app/gateway/studio.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
@@ -12,5 +13,8 @@ namespace cellmirror::app {
 
 Result<std::vector<PublishedOutput>> make_outputs(const QueueConfig& queues, const DdsOutputConfig& dds,
                                                   const std::string& instance);
+
+// Pictures on DDS, where the cell file wants them.
+Result<std::vector<Studio::Output>> make_picture_outputs(const DdsOutputConfig& dds);
 
 }  // namespace cellmirror::app

@@ -13,6 +13,7 @@
 #include "app/gateway/force_settings.hpp"
 #include "app/gateway/haptic_desk.hpp"
 #include "app/gateway/hosts.hpp"
+#include "app/gateway/node_levels.hpp"
 #include "app/gateway/switch_desk.hpp"
 #include "app/gateway/tcp_force_memory.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
@@ -38,6 +39,7 @@ struct RobotPicture {
 
 struct OwnerPicture {
   std::shared_ptr<const CompiledCell> cell;
+  std::shared_ptr<const LevelList> levels;               // by node of `cell`
   std::shared_ptr<const collision::Settings> collision;  // the same object as long as nothing changes
   RangeSendMode range_send_mode = RangeSendMode::one_message_a_sensor;
   std::vector<RobotPicture> robots;  // in the order of the slots

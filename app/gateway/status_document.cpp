@@ -11,8 +11,11 @@
 
 #include "app/gateway/status_collisions.hpp"
 #include "app/gateway/status_couplings.hpp"
+#include "app/gateway/status_display.hpp"
 #include "app/gateway/status_forces.hpp"
 #include "app/gateway/status_haptics.hpp"
+#include "app/gateway/status_page.hpp"
+#include "app/gateway/status_pictures.hpp"
 #include "app/gateway/status_ranges.hpp"
 #include "app/gateway/status_switches.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
@@ -304,10 +307,13 @@ std::string status_document(const StatusSources& sources) {
                          {"queues", queues_json(sources)},
                          {"messages", messages_json(sources)},
                          {"cameras", cameras_json(cell)},
+                         {"display", display_json(*sources.picture.display, sources.now)},
                          {"collisions", collisions_json(sources.collisions, sources.now)},
                          {"ranges", ranges_json(sources.ranges, sources.picture, sources.now)},
                          {"haptics", haptics_json(sources.picture, sources.tick, sources.contacts, sources.now)},
                          {"forces", forces_json(sources.forces, sources.picture.forces, sources.now)},
+                         {"pictures", pictures_json(sources.pictures)},
+                         {"page", page_json(sources.page)},
                          {"foot_switches", switches_json(sources.picture.switches, sources.now)},
                          {"couplings", couplings_json(sources.picture.couplings, sources.tick)},
                          {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};

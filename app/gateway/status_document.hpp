@@ -9,8 +9,10 @@
 #include "app/gateway/contact_worker.hpp"
 #include "app/gateway/fault_monitor.hpp"
 #include "app/gateway/force_worker.hpp"
+#include "app/gateway/monitor_page.hpp"
 #include "app/gateway/picture.hpp"
 #include "app/gateway/ranging_worker.hpp"
+#include "app/gateway/studio.hpp"
 #include "ipc/control/control_server.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/engine/engine.hpp"
@@ -39,6 +41,8 @@ struct StatusSources {
   const RangeReport& ranges;
   const ContactReport& contacts;
   const ForceReport& forces;
+  const PictureReport& pictures;
+  const PageReport& page;
   std::vector<engine::QueueStatus> queues;  // of the threads
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
 };

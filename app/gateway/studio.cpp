@@ -9,6 +9,7 @@
 #include "app/gateway/picked_object.hpp"
 #include "app/gateway/picture_wish.hpp"
 #include "app/gateway/scene_fingerprint.hpp"
+#include "app/pictures/renderer_options.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
@@ -21,23 +22,6 @@ constexpr Nanoseconds kRendererAgain{10'000'000'000};  // a renderer that could 
 constexpr Nanoseconds kFreshEnough{5'000'000};         // a scene serves several drawings of one round for so long
 
 Nanoseconds period_of(double rate_hz) { return Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)); }
-
-display::RendererOptions renderer_options(const PictureSettings& settings) {
-  display::RendererOptions options;
-  options.threads = settings.threads;
-  switch (settings.renderer) {
-    case PictureRenderer::automatic:
-      options.backend = display::Backend::automatic;
-      break;
-    case PictureRenderer::osmesa:
-      options.backend = display::Backend::osmesa;
-      break;
-    case PictureRenderer::egl:
-      options.backend = display::Backend::egl;
-      break;
-  }
-  return options;
-}
 
 template <class T>
 Result<T> wait_for(std::future<Result<T>> answer) {

@@ -1,8 +1,11 @@
 // cellmirror run CELL.toml: the gateway until it is told to end.
+#include <unistd.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -16,13 +19,15 @@ namespace cellmirror::app {
 
 namespace {
 
+constexpr int kNoPort = -1;  // not given
+
 struct RunOptions {
   GatewayOptions gateway;
   std::string cell;
   std::string script;
   double rate_hz = 0;
   double seconds = 0;  // 0: until a signal
-  int port = 0;
+  int port = kNoPort;
   bool no_web = false;
   bool headless = false;
   bool verbose = false;
@@ -55,14 +60,26 @@ void wait_for_end(const sigset_t& set, double seconds) {
   }
 }
 
+// Empty where nobody could hear it. One byte by itself, so that it tears no line of the log.
+std::function<void()> terminal_bell() {
+  for (const int terminal : {STDERR_FILENO, STDOUT_FILENO}) {
+    if (isatty(terminal) == 0) continue;
+    return [terminal] { [[maybe_unused]] const ssize_t written = ::write(terminal, "\a", 1); };
+  }
+  return {};
+}
+
 int run(const RunOptions& options) {
   set_log_level(options.verbose ? LogLevel::info : LogLevel::warning);
-  if (options.port != 0) return refuse("the monitor page is not available yet; leave out --port");
   const sigset_t signals = block_end_signals();
   GatewayOptions gateway_options = options.gateway;
+  gateway_options.headless = options.headless;
+  gateway_options.web = !options.no_web;
+  if (options.port != kNoPort) gateway_options.port = options.port;
   gateway_options.cell_file = options.cell;
   if (!options.script.empty()) gateway_options.startup_script = options.script;
   if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
+  gateway_options.bell = terminal_bell();
   std::optional<ProgressLine> line("files loaded");
   gateway_options.progress = load_progress(*line);
   auto gateway = Gateway::start(gateway_options);
@@ -83,7 +100,7 @@ void add_run(cli::Command program, Action& action) {
   sub.option("--script", options->script, "startup SCRIPT, instead of the cell file's own");
   sub.option("--for", options->seconds, "end after so many seconds").positive();
   sub.option("--rate", options->rate_hz, "periods of the loop a second, 100 to 4000").between(100.0, 4000.0);
-  auto port = sub.option("--port", options->port, "port of the monitor page (not available yet)").between(1, 65535);
+  auto port = sub.option("--port", options->port, "port of the monitor page; 0: a free one").between(0, 65535);
   sub.flag("--no-web", options->no_web, "without the monitor page").excludes(port);
   sub.flag("--headless", options->headless, "without pictures");
   sub.option("--instance", options->gateway.instance, "name of this gateway where several run beside each other");

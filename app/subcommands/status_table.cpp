@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "app/subcommands/status_table_display.hpp"
 #include "app/subcommands/status_table_forces.hpp"
 #include "app/subcommands/status_table_haptics.hpp"
+#include "app/subcommands/status_table_pictures.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 #include "app/subcommands/status_table_switches.hpp"
 #include "rt_core/base/units.hpp"
@@ -33,6 +35,8 @@ class TableWriter {
     out_ += forces_table(status);
     out_ += haptics_table(status);
     out_ += switches_table(status);
+    out_ += display_table(status);
+    out_ += pictures_table(status);
     write_script(status);
     write_queues(status.at("queues"));
     return std::move(out_);

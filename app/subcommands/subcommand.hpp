@@ -27,6 +27,8 @@ void add_fk(cli::Command program, Action& action);
 void add_ik(cli::Command program, Action& action);
 void add_collide(cli::Command program, Action& action);
 void add_range(cli::Command program, Action& action);
+void add_snapshot(cli::Command program, Action& action);
+void add_page(cli::Command program, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.
 int refuse(const std::string& what);

@@ -1,0 +1,33 @@
+#include "app/gateway/status_pictures.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "app/gateway/status_collisions.hpp"
+
+namespace cellmirror::app {
+
+nlohmann::json pictures_json(const PictureReport& report) {
+  using nlohmann::json;
+  constexpr Nanoseconds kMillisecond{1'000'000};
+  return {{"on", report.on},
+          {"renderer", report.renderer.empty() ? json(nullptr) : json(report.renderer)},
+          {"problem", report.problem},
+          {"rate_hz", report.settings.rate_hz},
+          {"size", {report.settings.width, report.settings.height}},
+          {"streams", report.streams},
+          {"updates", report.updates},
+          {"drawn", report.drawn},
+          {"unchanged", report.unchanged},
+          {"on_demand", report.on_demand},
+          {"failed", report.failed},
+          {"bodies_drawn", report.counters.bodies_drawn},
+          {"bodies_left_out", report.counters.bodies_left_out},
+          {"meshes", report.counters.meshes},
+          {"mesh_uploads", report.counters.uploads},
+          {"scene_ms", percentiles_json(report.scene, kMillisecond)},
+          {"draw_ms", percentiles_json(report.draw, kMillisecond)},
+          {"encode_ms", percentiles_json(report.encode, kMillisecond)},
+          {"posture_age_ms", percentiles_json(report.age, kMillisecond)}};
+}
+
+}  // namespace cellmirror::app
