@@ -63,6 +63,8 @@ Result<void> DisplayDesk::load_views(std::string_view file) {
 
 // Nothing but view files is ever replaced: a name with another extension is refused.
 Result<void> DisplayDesk::save_views(std::string_view file) {
+  if (file.starts_with('.') && file.find('/') == std::string_view::npos)
+    return fail(fmt::format("{} is no name for a view file", printable(file)), "give a name that begins with a letter");
   const std::filesystem::path name(file);
   const std::string extension = name.extension().string();
   if (!extension.empty() && extension != kViewExtension)

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <numbers>
 
-#include "app/gateway/hosts.hpp"
 #include "rt_core/base/log.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
 
@@ -18,6 +17,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Nanoseconds kSecond{1'000'000'000};
+
+class ActiveRobot final : public NameDirectory {
+ public:
+  std::string active;
+
+  [[nodiscard]] bool knows(NameKind /*kind*/, std::string_view /*name*/) const override { return false; }
+  [[nodiscard]] Error explain(NameKind /*kind*/, std::string_view /*name*/) const override { return {}; }
+  [[nodiscard]] std::span<const JointKind> joints(std::string_view /*robot*/) const override { return {}; }
+  [[nodiscard]] std::vector<std::string> joint_names(std::string_view /*robot*/) const override { return {}; }
+  [[nodiscard]] std::string_view active_robot() const override { return active; }
+  [[nodiscard]] std::vector<std::string> all(NameKind /*kind*/) const override { return {}; }
+};
 
 class DisplayDeskTest : public ::testing::Test {
  protected:
@@ -43,10 +54,9 @@ class DisplayDeskTest : public ::testing::Test {
         files, diagnostics);
     ASSERT_TRUE(cell_) << diagnostics.text();
     q_ = cell_->start_positions();
-    names_.emplace(*cell_);
-    sut_.emplace(DisplayDesk::Parts{*cell_, *names_, *home_, clock_,
-                                    [this] { return std::span<const JointValues>(q_); }, [this] { return updates_; },
-                                    [this] { ++rings_; }, [this](std::size_t) { return robot_online_; }},
+    sut_.emplace(DisplayDesk::Parts{*cell_, names_, *home_, clock_, [this] { return std::span<const JointValues>(q_); },
+                                    [this] { return updates_; }, [this] { ++rings_; },
+                                    [this](std::size_t) { return robot_online_; }},
                  settings_);
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -70,7 +80,7 @@ class DisplayDeskTest : public ::testing::Test {
   std::optional<KismetHome> home_;
   std::optional<Cell> cell_;
   std::vector<JointValues> q_;
-  std::optional<CellNames> names_;
+  ActiveRobot names_;
   std::vector<ViewSetting> settings_;
   ManualClock clock_;
   std::uint64_t updates_ = 100;
@@ -198,7 +208,7 @@ TEST_F(DisplayDeskTest, LetsGoOfCamerasFramesAndRobotsThatAreGone) {
   ASSERT_TRUE(sut_->connect_view(0, "Left.EYE"));
   ASSERT_TRUE(sut_->track("CAM", "Arm.TIP"));
   EXPECT_EQ(camera("CAM").tracks, "Arm.LIFT.TURN.BEND.TIP");
-  names_->set_active("ARM");
+  names_.active = "ARM";
   ASSERT_TRUE(sut_->set_arc(true));
   EXPECT_EQ(sut_->state()->arcs, std::vector<std::string>{"ARM"});
   ASSERT_TRUE(cell_->delete_node("Left"));
@@ -278,7 +288,7 @@ TEST_F(DisplayDeskTest, MessagesAreShownForFiveSecondsAndRingWhereBeepIsOn) {
 
 TEST_F(DisplayDeskTest, ArcIsOfTheActiveRobot) {
   EXPECT_NE(refusal(sut_->set_arc(true)).find("ROBACT"), std::string::npos);
-  names_->set_active("ARM");
+  names_.active = "ARM";
   ASSERT_TRUE(sut_->set_arc(true));
   ASSERT_TRUE(sut_->set_arc(true));
   EXPECT_EQ(sut_->state()->arcs.size(), 1U);
@@ -322,7 +332,7 @@ TEST_F(DisplayDeskTest, AViewFileWithAnyErrorSetsNothing) {
 
 TEST_F(DisplayDeskTest, SavesViewFilesAndNothingElse) {
   write("startup.spt", "DRAW_SCENE");
-  for (const char* name : {"startup.spt", "../a.vws", "/tmp/a.vws", "a/b.vws", ".."})
+  for (const char* name : {"startup.spt", "../a.vws", "/tmp/a.vws", "a/b.vws", "..", ".vws"})
     EXPECT_NE(refusal(sut_->save_views(name)), "done") << name;
   std::ifstream in(folder_ / "scripts" / "startup.spt");
   std::string text;
