@@ -79,7 +79,8 @@ export class ViewChoice {
       const option = this.select_.querySelector(`option[value="view:${Number(view.id)}"]`);
       if (!option) continue;
       const note = view.camera ? `, at ${view.camera}` : view.moving ? ", moving" : "";
-      setText(option, `View ${view.id}${note}`);
+      option.dataset.title ??= option.textContent;
+      setText(option, option.dataset.title + note);
     }
   }
 
