@@ -170,6 +170,7 @@ HapticRead read_haptic_sample(std::span<const std::byte> memory, std::uint64_t& 
 
   const auto word = [&](std::size_t offset) CELL_RT { return words[(offset - at::kDeviceSequence) / 8]; };
   sample.sequence = word(at::kDeviceSequence);
+  sample.writes = lock / 2;
   sample.time = time_of(word(at::kDeviceTime));
   sample.writer = first_of(word(at::kDeviceProcess));
   sample.buttons = first_of(word(at::kButtons));

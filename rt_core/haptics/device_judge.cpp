@@ -53,16 +53,24 @@ bool DeviceJudge::old(Timestamp now, const JudgeSettings& settings) const CELL_R
   return distance(now, last_.time) > settings.stale_after || now - received_ > settings.stale_after;
 }
 
+// Two processes that write in exact step show one of them in every tick; but more was written than this one counts.
+bool DeviceJudge::others_wrote(const HapticSample& sample) const CELL_RT {
+  if (sample.writer != writer_ || sample.sequence <= count_ || sample.writes <= writes_ || writes_ == 0) return false;
+  return sample.writes - writes_ > sample.sequence - count_;
+}
+
 Verdict DeviceJudge::judge_new(const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT {
   const bool another_writer = writer_known_ && sample.writer != writer_;
   const bool backwards = writer_known_ && !another_writer && sample.sequence < count_;
   const bool standing_still = writer_known_ && !another_writer && sample.sequence == count_;
+  const bool in_step = writer_known_ && others_wrote(sample);
   const std::uint64_t before = count_;
+  writes_ = sample.writes;
   writer_ = sample.writer;
   count_ = sample.sequence;
   const bool first = !writer_known_;
   writer_known_ = true;
-  if (another_writer || backwards) {
+  if (another_writer || backwards || in_step) {
     forget_place();
     // Nobody drives the instrument yet, or it is a device that was started anew after it had been missed.
     if (seen_ && !old(now, settings)) return {.fault = HapticFault::two_writers};

@@ -45,6 +45,7 @@ class DeviceJudge {
 
  private:
   Verdict judge_new(const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT;
+  [[nodiscard]] bool others_wrote(const HapticSample& sample) const CELL_RT;
   [[nodiscard]] bool old(Timestamp now, const JudgeSettings& settings) const CELL_RT;
   void take(const HapticSample& sample, Timestamp now) CELL_RT;
 
@@ -56,6 +57,7 @@ class DeviceJudge {
   Timestamp place_time_;
   Timestamp received_;        // when the count last went on
   std::uint64_t count_ = 0;   // last sequence, of good samples and of bad ones
+  std::uint64_t writes_ = 0;  // likewise
   std::uint32_t writer_ = 0;  // likewise
   bool writer_known_ = false;
   std::uint64_t samples_ = 0;

@@ -19,6 +19,7 @@ inline constexpr std::size_t kMaxHapticAxes = 7;
 // says how D stands in the world. SI.
 struct HapticSample {
   std::uint64_t sequence = 0;  // counted by the device's process, from 1
+  std::uint64_t writes = 0;    // how often anybody has written into what carries the samples; 0: it does not tell
   Timestamp time;              // of the measurement, CLOCK_MONOTONIC of this machine
   std::uint32_t writer = 0;    // process id of the device's process
   bool valid = false;          // the device itself says that its values are good

@@ -105,6 +105,14 @@ std::vector<Fault> faults() {
        [](PressedRig& rig) { broken_sample(rig, [](HapticSample& sample) { sample.writer = 78; }); }},
       {"count goes back", HapticFault::two_writers,
        [](PressedRig& rig) { broken_sample(rig, [](HapticSample& sample) { sample.sequence -= 3; }); }},
+      {"second writer in exact step", HapticFault::two_writers,
+       [](PressedRig& rig) {
+         for (const std::uint64_t writes : {10, 12}) {
+           rig.port.sample.writes = writes;
+           rig.tick(kPressed);
+         }
+         rig.port.sample.writes = 0;
+       }},
       {"torn", HapticFault::torn, [](PressedRig& rig) { ticks(rig, 5, HapticRead::torn); }},
       {"late", HapticFault::late_tick,
        [](PressedRig& rig) {
@@ -179,6 +187,18 @@ TEST(Guards, RefuseAResetWhileTheCauseLasts) {
   PressedRig silent;
   for (int i = 0; i < 100; ++i) silent.tick();
   EXPECT_FALSE(silent.sut.reset());
+}
+
+TEST(Guards, LetADeviceWriteAsOftenAsItCounts) {
+  PressedRig rig;
+  rig.port.sample.writes = 1000;  // of an earlier process too
+  for (int i = 0; i < 100; ++i) {
+    const std::uint64_t more = i % 3 == 0 ? 2 : 0;  // written between two ticks
+    rig.port.sample.writes += 1 + more;
+    rig.port.sample.sequence += more;
+    rig.tick(kPressed);
+    ASSERT_EQ(rig.state().fault, HapticFault::none);
+  }
 }
 
 TEST(Guards, TakeStaleForVanishedOnceItIsKnownBetter) {

@@ -95,6 +95,7 @@ TEST(HapticBlock, ReadsASampleOfAnotherProgram) {
   ASSERT_EQ(read_haptic_sample(block.memory(), last, sut), HapticRead::fresh);
   EXPECT_EQ(last, 2u);
   EXPECT_EQ(sut.sequence, 5u);
+  EXPECT_EQ(sut.writes, 1u);
   EXPECT_EQ(sut.time.ns, 1'000'000'000);
   EXPECT_EQ(sut.writer, 12345u);
   EXPECT_TRUE(sut.valid);
