@@ -51,7 +51,10 @@ AccessRules::AccessRules(std::string address, int port, std::vector<std::string>
 
 bool AccessRules::host_allowed(std::string_view host) const {
   const auto named = [&](const std::string& origin) { return equal_ignoring_case(host_of(origin), host); };
-  if (std::ranges::any_of(origins_, named)) return true;
+  return std::ranges::any_of(origins_, named) || is_own_host(host);
+}
+
+bool AccessRules::is_own_host(std::string_view host) const {
   // Port 80 is left out by clients.
   if (host.ends_with(port_)) {
     host.remove_suffix(port_.size());
@@ -68,7 +71,7 @@ bool AccessRules::origin_allowed(const std::string* origin) const {
   const auto same = [&](const std::string& allowed) { return equal_ignoring_case(allowed, *origin); };
   if (std::ranges::any_of(origins_, same)) return true;
   constexpr std::string_view kScheme = "http://";
-  return origin->starts_with(kScheme) && host_allowed(std::string_view(*origin).substr(kScheme.size()));
+  return origin->starts_with(kScheme) && is_own_host(std::string_view(*origin).substr(kScheme.size()));
 }
 
 bool token_matches(std::string_view given, std::string_view token) {

@@ -23,6 +23,8 @@ class AccessRules {
   [[nodiscard]] bool origin_allowed(const std::string* origin) const;
 
  private:
+  [[nodiscard]] bool is_own_host(std::string_view host) const;
+
   bool loopback_;
   std::string port_;  // ":8420"
   std::vector<std::string> origins_;

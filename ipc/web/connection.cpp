@@ -15,12 +15,7 @@ namespace cellmirror::web {
 
 namespace {
 
-constexpr Nanoseconds kHeadTime{5'000'000'000};     // for a whole request, however slowly it comes
-constexpr Nanoseconds kAnswerTime{60'000'000'000};  // of a command, or of a job
 constexpr Nanoseconds kDrainTime{1'000'000'000};
-constexpr Nanoseconds kSendTime{10'000'000'000};   // without any progress
-constexpr Nanoseconds kPingAfter{10'000'000'000};  // of silence
-constexpr Nanoseconds kSilence{30'000'000'000};
 constexpr Nanoseconds kCloseTime{2'000'000'000};
 constexpr std::size_t kMostDrained = 256 * 1024;
 constexpr std::size_t kReadBytes = 16 * 1024;
@@ -58,17 +53,18 @@ Timestamp Connection::deadline() const {
   switch (stage_) {
     case Stage::head:
     case Stage::body:
-      return since_ + kHeadTime;
+      return since_ + patience().request;
     case Stage::waiting:
-      return since_ + kAnswerTime;
+      return since_ + patience().answer;
     case Stage::answering:
-      return std::min(since_ + kAnswerTime, blocked_since_ ? *blocked_since_ + kSendTime : now_ + kSendTime);
+      return std::min(since_ + patience().answer,
+                      blocked_since_ ? *blocked_since_ + patience().sending : now_ + patience().sending);
     case Stage::draining:
       return since_ + kDrainTime;
     case Stage::live: {
-      Timestamp next = last_received_ + kSilence;
-      next = std::min(next, std::max(last_received_, last_ping_) + kPingAfter);
-      if (blocked_since_) next = std::min(next, *blocked_since_ + kSendTime);
+      Timestamp next = last_received_ + patience().silence;
+      next = std::min(next, std::max(last_received_, last_ping_) + patience().ping);
+      if (blocked_since_) next = std::min(next, *blocked_since_ + patience().sending);
       if (closing_) next = std::min(next, since_ + kCloseTime);
       return next;
     }
@@ -105,8 +101,8 @@ void Connection::check_time(Timestamp now) {
     default:
       return cut();
   }
-  const bool stalled = blocked_since_ && now - *blocked_since_ >= kSendTime;
-  if (closing_ || stalled || now - last_received_ >= kSilence) return cut();
+  const bool stalled = blocked_since_ && now - *blocked_since_ >= patience().sending;
+  if (closing_ || stalled || now - last_received_ >= patience().silence) return cut();
   last_ping_ = now;
   out_.push(frame(Opcode::ping, {}));
   write_some(now);

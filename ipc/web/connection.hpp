@@ -64,6 +64,7 @@ class Connection {
   void execute_body(Timestamp now);
   void take_frames(Timestamp now);
   void cut();
+  [[nodiscard]] const Patience& patience() const { return context_.options.patience; }
 
   Descriptor socket_;
   std::uint64_t number_;

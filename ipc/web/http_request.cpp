@@ -74,7 +74,7 @@ std::optional<RefusedRequest> read_target(std::string_view target, HttpRequest& 
 std::optional<RefusedRequest> read_request_line(std::string_view line, HttpRequest& request) {
   const std::string_view method = take_until(line, " ");
   const std::string_view target = take_until(line, " ");
-  if (!is_token(method)) return RefusedRequest{400, "this is no HTTP request"};
+  if (!is_token(method) || target.empty()) return RefusedRequest{400, "this is no HTTP request"};
   request.method = method;
   if (line != "HTTP/1.1" && line != "HTTP/1.0") return RefusedRequest{505, "only HTTP/1.1 is spoken here"};
   return read_target(target, request);

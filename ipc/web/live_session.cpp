@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 #include <variant>
@@ -76,9 +77,22 @@ void LiveSession::follow(const PictureMessage& message, Outgoing& out) {
   newest_ = 0;
 }
 
-void LiveSession::follow(const NoPictureMessage& /*message*/, Outgoing& /*out*/) { stream_.reset(); }
+void LiveSession::follow(const NoPictureMessage& /*message*/, Outgoing& /*out*/) {
+  count_left_out(now_);
+  stream_.reset();
+}
 
-void LiveSession::follow(const ShownMessage& message, Outgoing& /*out*/) { credit_.shown(message.sequence); }
+void LiveSession::follow(const ShownMessage& message, Outgoing& /*out*/) {
+  credit_.shown(message.sequence);
+  if (credit_.may_send()) count_left_out(now_);
+}
+
+void LiveSession::count_left_out(Timestamp now) {
+  if (!no_credit_since_) return;
+  const double periods = seconds(now - *no_credit_since_) * wish_.rate_hz;
+  count(context_.counters.pictures_left_out, static_cast<std::uint64_t>(std::max(0.0, periods)));
+  no_credit_since_.reset();
+}
 
 void LiveSession::follow(const CommandMessage& message, Outgoing& out) {
   const auto refuse = [&](std::string_view why) {
@@ -130,14 +144,13 @@ bool LiveSession::ready_for_picture(const Outgoing& out) const { return stream_ 
 void LiveSession::send_picture(Timestamp now, Outgoing& out) {
   const std::shared_ptr<const EncodedImage> picture = stream_->newest(newest_);
   if (!picture) return;
-  if (newest_ > 0 && picture->sequence > newest_ + 1)
-    count(context_.counters.pictures_left_out, picture->sequence - newest_ - 1);
   newest_ = picture->sequence;
   const std::string_view bytes(reinterpret_cast<const char*>(picture->bytes.data()), picture->bytes.size());
   out.push(frame_header(Opcode::binary, kPictureHeaderBytes + bytes.size()) +
            picture_header(credit_.next(), *picture, now));
   out.push(Chunk{picture, bytes});
   count(context_.counters.pictures);
+  if (!credit_.may_send()) no_credit_since_ = now;
 }
 
 }  // namespace cellmirror::web

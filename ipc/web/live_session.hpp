@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "ipc/web/client_message.hpp"
@@ -30,6 +31,8 @@ class LiveSession {
   void send_picture(Timestamp now, Outgoing& out);
 
  private:
+  // Pictures that would have come while the client was not ready for them.
+  void count_left_out(Timestamp now);
   void follow(const HelloMessage& message, Outgoing& out);
   void follow(const PictureMessage& message, Outgoing& out);
   void follow(const NoPictureMessage& message, Outgoing& out);
@@ -50,6 +53,7 @@ class LiveSession {
   PictureWish wish_;
   PictureCredit credit_;
   std::uint64_t newest_ = 0;  // sequence of the stream
+  std::optional<Timestamp> no_credit_since_;
 
   static constexpr double kMessagesPerSecond = 500;  // no person and no page sends more
 };

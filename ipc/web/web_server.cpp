@@ -34,7 +34,7 @@ constexpr Nanoseconds kPicturePeriod{5'000'000};  // how often it is looked for 
 constexpr Nanoseconds kLongestWait{1'000'000'000};
 constexpr Nanoseconds kNoDescriptorWait{100'000'000};
 constexpr std::size_t kWorkers = 2;
-constexpr int kBacklog = 32;
+constexpr int kBacklog = 128;
 
 Timestamp clock_now() { return SystemClock().now(); }
 

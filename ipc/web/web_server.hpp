@@ -9,6 +9,7 @@
 
 #include "ipc/web/web_backend.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 
 namespace cellmirror::web {
 
@@ -21,6 +22,15 @@ inline constexpr std::size_t kMaxCommandsWaiting = 32;      // of a client, for 
 inline constexpr std::size_t kMaxBacklogBytes =
     4 << 20;  // a picture and acknowledgements, to a client that does not read
 
+// How long clients may take.
+struct Patience {
+  Nanoseconds request{5'000'000'000};   // for a whole request, however slowly it comes
+  Nanoseconds answer{60'000'000'000};   // of a command or another thread
+  Nanoseconds sending{10'000'000'000};  // without any progress
+  Nanoseconds ping{10'000'000'000};     // silence before a WebSocket is asked whether it is there
+  Nanoseconds silence{30'000'000'000};  // before it is cut
+};
+
 struct ServerOptions {
   std::string address = "127.0.0.1";  // numeric
   int port = kDefaultPort;            // 0: a free one
@@ -31,6 +41,7 @@ struct ServerOptions {
   std::string version;
   std::string cell;
   std::string instance;
+  Patience patience;
 };
 
 struct ServerStatus {

@@ -1,0 +1,278 @@
+// Clients that are malformed, oversized, slow, strange or not allowed, over real sockets.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ipc/web/web_server.hpp"
+#include "tests/integration/web/raw_client.hpp"
+#include "tests/integration/web/stub_backend.hpp"
+
+namespace cellmirror::web {
+namespace {
+
+using namespace std::string_literals;
+
+constexpr const char* kToken = "0123456789abcdef0123456789abcdef";
+
+class HostileClients : public testing::Test {
+ protected:
+  void start(bool read_only = false) {
+    ServerOptions options;
+    options.port = 0;
+    options.token = kToken;
+    options.read_only = read_only;
+    options.patience.request = Nanoseconds(700'000'000);
+    options.patience.sending = Nanoseconds(1'000'000'000);
+    options.patience.ping = Nanoseconds(400'000'000);
+    options.patience.silence = Nanoseconds(2'500'000'000);
+    auto started = Server::start(options, backend);
+    ASSERT_TRUE(started) << started.error().text();
+    sut = std::move(*started);
+  }
+  void SetUp() override { start(); }
+
+  [[nodiscard]] std::string host() const { return "Host: 127.0.0.1:" + std::to_string(sut->port()) + "\r\n"; }
+  // The whole answer to a request.
+  [[nodiscard]] std::string ask(const std::string& request) const {
+    RawClient client(sut->port());
+    client.send(request);
+    return client.read_to_end().value_or("no end of the connection");
+  }
+  [[nodiscard]] std::string get(const std::string& path) const {
+    return ask("GET " + path + " HTTP/1.1\r\n" + host() + "\r\n");
+  }
+  [[nodiscard]] bool works() const { return get("/api/status").find("\"version\"") != std::string::npos; }
+
+  StubBackend backend;
+  std::unique_ptr<Server> sut;
+};
+
+bool starts(const std::string& answer, int status) {
+  return answer.starts_with("HTTP/1.1 " + std::to_string(status) + " ");
+}
+
+TEST_F(HostileClients, AreAnsweredWithAStatusAndNothingElseHappens) {
+  const auto post = [&](const std::string& headers, const std::string& body) {
+    return ask("POST /api/command HTTP/1.1\r\n" + host() + headers + "Content-Length: " + std::to_string(body.size()) +
+               "\r\n\r\n" + body);
+  };
+  const std::string bearer = "Authorization: Bearer "s + kToken + "\r\n";
+  EXPECT_TRUE(starts(ask("nonsense\r\n\r\n"), 400));
+  EXPECT_TRUE(starts(ask("\x16\x03\x01\x02\x00\x01"s), 400)) << "TLS";
+  EXPECT_TRUE(starts(get("/../../etc/passwd"), 400));
+  EXPECT_TRUE(starts(get("/page/%2e%2e/%2e%2e/etc/passwd"), 400));
+  EXPECT_TRUE(starts(get("/page/index.html"), 404));
+  EXPECT_TRUE(starts(get("/" + std::string(4000, 'a')), 414));
+  EXPECT_TRUE(starts(ask("GET / HTTP/1.1\r\n" + host() + "X: " + std::string(20'000, 'a') + "\r\n\r\n"), 431));
+  EXPECT_TRUE(starts(ask("DELETE / HTTP/1.1\r\n" + host() + "\r\n"), 405));
+  EXPECT_TRUE(starts(get("/snapshot.png?view=12"), 400));
+  EXPECT_TRUE(starts(get("/api/command"), 405));
+  EXPECT_TRUE(starts(post("", "ROBACT A"), 401));
+  EXPECT_TRUE(starts(post("Authorization: Bearer 0123456789abcdef0123456789abcdee\r\n", "ROBACT A"), 401));
+  EXPECT_TRUE(starts(post(bearer, std::string(40'000, 'a')), 413));
+  EXPECT_TRUE(starts(post(bearer, "  "), 400));
+  EXPECT_TRUE(starts(get("/live"), 426));
+  EXPECT_TRUE(backend.commands.empty());
+  EXPECT_TRUE(works());
+  EXPECT_GE(sut->status().refused, 10u);
+}
+
+TEST_F(HostileClients, OfOtherNamesAndOriginsAreRefused) {
+  const auto with = [&](const std::string& headers) { return ask("GET /api/status HTTP/1.1\r\n" + headers + "\r\n"); };
+  EXPECT_TRUE(starts(with("Host: evil.example.org:" + std::to_string(sut->port()) + "\r\n"), 421)) << "DNS rebinding";
+  EXPECT_TRUE(starts(with(host() + "Origin: http://evil.example.org\r\n"), 403));
+  EXPECT_TRUE(starts(with(host() + "Origin: null\r\n"), 403));
+  RawClient client(sut->port());
+  EXPECT_TRUE(starts(client.open_live(sut->port(), "Origin: http://evil.example.org\r\n"), 403));
+}
+
+TEST_F(HostileClients, ThatAreSlowAreCut) {
+  const auto begin = std::chrono::steady_clock::now();
+  RawClient slow(sut->port());
+  bool open = true;
+  for (int i = 0; i < 100 && open; ++i) {  // a byte now and then: the whole request has a time
+    open = slow.send(i == 0 ? "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " : "a");
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    open = open && sut->status().cut == 0;
+  }
+  EXPECT_EQ(sut->status().cut, 1u);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4));
+}
+
+TEST_F(HostileClients, InGreatNumberLeaveRoomForOthers) {
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (std::size_t i = 0; i < 2 * kMaxConnections; ++i) idle.push_back(std::make_unique<RawClient>(sut->port()));
+  EXPECT_TRUE(works()) << "the oldest that asks for nothing makes room";
+}
+
+TEST_F(HostileClients, MayNotOpenMoreWebSocketsThanThereAre) {
+  std::vector<std::unique_ptr<RawClient>> live;
+  for (std::size_t i = 0; i < kMaxClients; ++i) {
+    live.push_back(std::make_unique<RawClient>(sut->port()));
+    ASSERT_TRUE(starts(live.back()->open_live(sut->port()), 101)) << i;
+  }
+  RawClient one_more(sut->port());
+  EXPECT_TRUE(starts(one_more.open_live(sut->port()), 503));
+  EXPECT_TRUE(works());
+}
+
+TEST_F(HostileClients, AreToldWhichMessageWasWrong) {
+  RawClient client(sut->port());
+  ASSERT_TRUE(starts(client.open_live(sut->port()), 101));
+  EXPECT_FALSE(client.read_until("\"is\":\"welcome\"").empty());
+  client.say("{");
+  EXPECT_FALSE(client.read_until("\"is\":\"refused\"").empty());
+  client.say(R"({"do": "command", "id": 5, "text": "ROBACT A"})");
+  EXPECT_FALSE(client.read_until("cellmirror page").empty()) << "no token yet; it says how to get it";
+  client.say(R"({"do": "hello", "token": "wrong"})");
+  EXPECT_FALSE(client.read_until("\"is\":\"refused\"").empty());
+  client.say("{\"do\": \"hello\", \"token\": \""s + kToken + "\"}");
+  EXPECT_FALSE(client.read_until("\"may_command\":true").empty());
+  client.say(R"({"do": "command", "id": 6, "text": "BAD"})");
+  EXPECT_FALSE(client.read_until("there is no such command").empty());
+  client.say(R"({"do": "pick", "id": 7, "x": 1, "y": 1})");
+  EXPECT_FALSE(client.read_until("no picture").empty());
+  EXPECT_EQ(backend.commands, std::vector<std::string>{"BAD"});
+}
+
+TEST_F(HostileClients, WithWrongTokensOrFramesAreCut) {
+  RawClient guesser(sut->port());
+  guesser.open_live(sut->port());
+  for (int i = 0; i < 3; ++i) guesser.say(R"({"do": "hello", "token": "guess"})");
+  EXPECT_TRUE(guesser.read_to_end(5)) << "three wrong tokens";
+  // Not masked; far too long; a reserved bit.
+  for (const std::string& frame : {"\x81\x05Hello"s, "\x81\xFF\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF"s, "\xC1\x80mask"s}) {
+    RawClient client(sut->port());
+    client.open_live(sut->port());
+    client.send(frame);
+    EXPECT_TRUE(client.read_to_end(5)) << "a frame that is refused ends the connection";
+  }
+  EXPECT_TRUE(works());
+}
+
+TEST_F(HostileClients, MayNotFlood) {
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  client.say("{\"do\": \"hello\", \"token\": \""s + kToken + "\"}");
+  for (int i = 0; i < 100; ++i) client.say(R"({"do": "command", "id": 1, "text": "A"})");
+  EXPECT_FALSE(client.read_until("too many commands").empty());
+  const std::scoped_lock lock(backend.mutex);
+  EXPECT_LT(backend.commands.size(), 60u) << "a burst of 40 and what comes meanwhile";
+}
+
+TEST_F(HostileClients, ThatDoNotAcknowledgeGetTwoPictures) {
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  client.say(R"({"do": "picture", "rate_hz": 60})");
+  EXPECT_FALSE(client.read_until("CMP1").empty());
+  EXPECT_FALSE(client.read_until("CMP1").empty());
+  EXPECT_TRUE(client.read_until("CMP1", 0.5).empty()) << "not acknowledged";
+  EXPECT_EQ(sut->status().pictures, 2u);
+  client.say(R"({"do": "shown", "sequence": 1})");
+  EXPECT_FALSE(client.read_until("CMP1").empty());
+  EXPECT_GE(sut->status().pictures_left_out, 10u) << "in half a second at 60 a second";
+}
+
+TEST_F(HostileClients, ThatVanishLeaveNothingBehind) {
+  {
+    RawClient client(sut->port());
+    client.open_live(sut->port());
+    client.say("{\"do\": \"hello\", \"token\": \""s + kToken + "\"}");
+    client.say(R"({"do": "picture"})");
+    client.say(R"({"do": "command", "id": 1, "text": "LATER"})");
+    client.read_until("CMP1");
+  }
+  for (int i = 0; i < 100 && sut->status().clients > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(sut->status().clients, 0u);
+  EXPECT_EQ(backend.open_streams, 0);
+  for (const auto& reply : backend.held) reply({true, "to nobody"});
+  EXPECT_TRUE(works());
+  sut.reset();
+  for (const auto& reply : backend.held) reply({true, "after the end of the server"});
+}
+
+TEST_F(HostileClients, AreNoReasonToEndWhereTheGatewayFails) {
+  backend.status_throws = true;
+  EXPECT_TRUE(starts(get("/api/status"), 500));
+  backend.status_throws = false;
+  EXPECT_TRUE(works());
+}
+
+TEST_F(HostileClients, CannotCommandAPageThatOnlyShows) {
+  sut.reset();
+  start(true);
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  client.say("{\"do\": \"hello\", \"token\": \""s + kToken + "\"}");
+  EXPECT_FALSE(client.read_until("\"read_only\":true").empty());
+  client.say(R"({"do": "command", "id": 6, "text": "A"})");
+  EXPECT_FALSE(client.read_until("read-only").empty());
+  EXPECT_TRUE(backend.commands.empty());
+}
+
+TEST_F(HostileClients, CannotHoldUpTheEnd) {
+  RawClient stalled(sut->port(), 4096);
+  stalled.open_live(sut->port());
+  stalled.say(R"({"do": "picture"})");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const auto begin = std::chrono::steady_clock::now();
+  sut.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+TEST(ServerStart, NamesTheRemedyWhereThePortIsTaken) {
+  StubBackend backend;
+  ServerOptions options;
+  options.port = 0;
+  const auto first = Server::start(options, backend);
+  ASSERT_TRUE(first);
+  options.port = (*first)->port();
+  const auto second = Server::start(options, backend);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().text().find("--port"), std::string::npos) << second.error().text();
+}
+
+// Resident memory of this process in kB.
+long resident_kb() {
+  std::ifstream file("/proc/self/statm");
+  long pages = 0;
+  file >> pages >> pages;
+  return pages * 4;
+}
+
+// Reads and acknowledges pictures for a while; how many it got.
+int look(int port, std::chrono::milliseconds time) {
+  RawClient client(port);
+  client.open_live(port);
+  client.say(R"({"do": "picture", "rate_hz": 60})");
+  const auto end = std::chrono::steady_clock::now() + time;
+  int pictures = 0;
+  while (std::chrono::steady_clock::now() < end && !client.read_until("CMP1", 2).empty()) {
+    ++pictures;
+    client.say("{\"do\": \"shown\", \"sequence\": " + std::to_string(pictures) + "}");
+  }
+  return pictures;
+}
+
+TEST_F(HostileClients, OneOfEightThatStallsIsCutAndTheOthersGetTheirPictures) {
+  constexpr std::chrono::milliseconds kTime{3000};
+  RawClient stalled(sut->port(), 4096);
+  stalled.open_live(sut->port());
+  stalled.say(R"({"do": "picture", "rate_hz": 60})");
+  const long before = resident_kb();
+  std::vector<int> pictures(7);
+  std::vector<std::thread> clients;
+  for (int& count : pictures) clients.emplace_back([&] { count = look(sut->port(), kTime); });
+  for (std::thread& client : clients) client.join();
+  EXPECT_GE(*std::ranges::min_element(pictures), 30) << "at least 10 a second";
+  EXPECT_GE(sut->status().cut, 1u) << "the stalled one, after a second without progress";
+  EXPECT_LT(resident_kb() - before, 32 * 1024);
+}
+
+}  // namespace
+}  // namespace cellmirror::web
