@@ -15,8 +15,10 @@
 
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "ipc/control/instance.hpp"
 #include "ipc/sysv/limits.hpp"
 #include "ipc/sysv/shared_memory_limits.hpp"
+#include "ipc/web/web_server.hpp"
 #include "rt_core/rt/memory_lock.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
@@ -80,6 +82,17 @@ Finding receive_buffer_finding() {
           "sysctl -w net.core.rmem_max=" + std::to_string(kWanted) + " (matters for thousands of samples a second)"};
 }
 
+// Where a gateway without a name of its own serves its monitor page.
+Finding page_finding() {
+  const std::string name = "monitor page";
+  if (web::port_is_free("127.0.0.1", web::kDefaultPort))
+    return {name, "port " + std::to_string(web::kDefaultPort) + " is free", true, {}};
+  const std::string in_use = "port " + std::to_string(web::kDefaultPort) + " is in use";
+  const auto gateway = find_instance(kDefaultInstance);
+  if (gateway) return {name, in_use + " while a gateway runs", true, {}};
+  return {name, in_use + " by another program", false, "cellmirror run ... --port N, or [web] port in the cell file"};
+}
+
 std::vector<Finding> examine() {
   std::vector<Finding> findings = {scheduling_finding(), memory_finding(),    idle_finding(),
                                    can_finding(),        interface_finding(), receive_buffer_finding()};
@@ -88,6 +101,7 @@ std::vector<Finding> examine() {
       findings.push_back({finding.name, finding.value, finding.ok, finding.remedy});
     }
   };
+  findings.push_back(page_finding());
   add(ipc_findings(read_sysv_limits(), read_remove_ipc()));
   add(shared_memory_findings(read_shared_memory_limits(), read_left_segments(::geteuid())));
   findings.push_back({"GL renderer", "not available yet", true, {}});

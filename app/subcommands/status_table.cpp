@@ -37,6 +37,7 @@ class TableWriter {
     out_ += switches_table(status);
     out_ += display_table(status);
     out_ += pictures_table(status);
+    write_page(status);
     write_script(status);
     write_queues(status.at("queues"));
     return std::move(out_);
@@ -46,6 +47,16 @@ class TableWriter {
   template <class... Args>
   void line(fmt::format_string<Args...> format, Args&&... args) {
     out_ += fmt::format(format, std::forward<Args>(args)...) + "\n";
+  }
+
+  void write_page(const json& status) {
+    if (!status.contains("page")) return;  // an older gateway
+    const json& page = status.at("page");
+    if (!page.at("on").get<bool>()) return;
+    if (page.at("address").is_null()) return line("{}", page.at("problem").get<std::string>());
+    line("page      {}  {} clients, {} pictures sent, {} refused{}", page.at("address").get<std::string>(),
+         page.at("clients").get<std::uint64_t>(), page.at("pictures").get<std::uint64_t>(),
+         page.at("refused").get<std::uint64_t>(), page.at("read_only").get<bool>() ? ", read-only" : "");
   }
 
   [[nodiscard]] std::string state(const std::string& word) const {

@@ -97,6 +97,8 @@ std::uint64_t read_counter(const std::atomic<std::uint64_t>& counter) {
 
 }  // namespace
 
+bool port_is_free(const std::string& address, int port) { return listen_at(address, port).has_value(); }
+
 struct Server::Impl {
   Descriptor listener;
   Counters counters;

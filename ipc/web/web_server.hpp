@@ -54,6 +54,9 @@ struct ServerStatus {
   std::uint64_t commands = 0;
 };
 
+// Whether a server could listen there now.
+[[nodiscard]] bool port_is_free(const std::string& address, int port);
+
 class Server {
  public:
   // `backend` is not owned and outlives the server. Refused where the port is in use, with a remedy.
