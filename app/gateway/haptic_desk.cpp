@@ -263,8 +263,9 @@ void HapticDesk::follow_process(Device& device, const HapticState& state) {
   const bool came = state.samples != device.samples_seen;
   device.samples_seen = state.samples;
   bool gone = device.gone && !came;
+  bool ended = false;
   if (state.device_writer != 0) {
-    const bool ended = device.process.has_ended(state.device_writer);
+    ended = device.process.has_ended(state.device_writer);
     gone = gone || (!came && (ended || device.users.attached <= 1));
   }
   if (gone == device.gone) return;
@@ -273,8 +274,8 @@ void HapticDesk::follow_process(Device& device, const HapticState& state) {
   command.device_gone = gone;
   if (auto sent = fleet_.send(command); !sent) log_error("haptic.loop", "{}", sent.error().text());
   if (gone) {
-    log_warning("haptic.device", "the process {} of the haptic device of {} has ended", state.device_writer,
-                device.config.robot);
+    log_warning("haptic.device", "the process {} of the haptic device of {} {}", state.device_writer,
+                device.config.robot, ended ? "has ended" : "is no longer attached to its memory");
   } else {
     log_info("haptic.device", "the haptic device of {} is back", device.config.robot);
   }

@@ -55,7 +55,7 @@ const char* explanation(HapticFault fault) {
     case HapticFault::stale:
       return "the device gave no new sample in time";
     case HapticFault::vanished:
-      return "the device's process has ended";
+      return "the device's process has ended or has let go of the memory";
     case HapticFault::not_finite:
       return "a value of the device was no number, or its quaternion no rotation";
     case HapticFault::invalid:
