@@ -121,6 +121,7 @@ void Renderer::Impl::draw_pane(const Scene& scene, const ViewTransform& view, st
   marks.gather(frame, meshes);
   bodies.draw_opaque(frame, drawn);
   bodies.draw_extra(frame, marks.solids);
+  background.draw();
   if (is_on(scene, DisplayMode::floor)) floor.draw(frame, ribbons);
   bodies.draw_see_through(frame, drawn);
   gl.Enable(GL_BLEND);
@@ -175,8 +176,10 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
     const std::optional<PixelRect> rect = pixels_of(pane, width, height);
     if (!rect) continue;
     impl.clip_to(*rect);
-    impl.background.draw();
-    if (const auto view = ViewTransform::of(pane, width, height)) impl.draw_pane(scene, *view, drawn);
+    if (const auto view = ViewTransform::of(pane, width, height))
+      impl.draw_pane(scene, *view, drawn);
+    else
+      impl.background.draw();
   }
   picture.width = width;
   picture.height = height;

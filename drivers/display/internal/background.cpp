@@ -21,9 +21,11 @@ Result<void> Background::build() {
 void Background::draw() {
   program_.use();
   gl_.BindVertexArray(array_);
-  gl_.Disable(GL_DEPTH_TEST);
+  gl_.DepthMask(GL_FALSE);
+  gl_.DepthFunc(GL_LEQUAL);
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthFunc(GL_LESS);
+  gl_.DepthMask(GL_TRUE);
 }
 
 }  // namespace cellmirror::display

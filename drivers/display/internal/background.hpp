@@ -15,7 +15,8 @@ class Background {
   Background& operator=(const Background&) = delete;
 
   Result<void> build();
-  void draw();  // over the viewport; leaves depth alone
+  // Where nothing has been drawn in the viewport yet: after what is opaque, so that little has to be filled.
+  void draw();
 
  private:
   const GlApi& gl_;

@@ -24,12 +24,13 @@ struct Egl {
   decltype(eglCreateContext)* create_context = nullptr;
   decltype(eglDestroyContext)* destroy_context = nullptr;
   decltype(eglMakeCurrent)* make_current = nullptr;
+  decltype(eglGetCurrentContext)* current_context = nullptr;
   decltype(eglQueryString)* query_string = nullptr;
   bool complete = library.find(find, "eglGetProcAddress") && library.find(initialize, "eglInitialize") &&
                   library.find(bind_api, "eglBindAPI") && library.find(choose_config, "eglChooseConfig") &&
                   library.find(create_context, "eglCreateContext") &&
                   library.find(destroy_context, "eglDestroyContext") && library.find(make_current, "eglMakeCurrent") &&
-                  library.find(query_string, "eglQueryString");
+                  library.find(current_context, "eglGetCurrentContext") && library.find(query_string, "eglQueryString");
 };
 
 const Egl& egl() {
@@ -89,6 +90,7 @@ class EglContext final : public GlContext {
 
  private:
   bool bind() override { return egl().make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE; }
+  [[nodiscard]] bool bound() const override { return egl().current_context() == context_; }
   void release() override { egl().make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
 
   EGLDisplay display_;

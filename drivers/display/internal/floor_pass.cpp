@@ -24,6 +24,25 @@ double round_step(double length) {
   return 10 * ten;
 }
 
+bool sensible(const ShadowCatcher& catcher) {
+  constexpr double kLargest = 1e4;  // m
+  return std::isfinite(catcher.z_m) && std::abs(catcher.z_m) < kLargest && catcher.low.allFinite() &&
+         catcher.high.allFinite() && (catcher.low.array() < catcher.high.array()).all() &&
+         catcher.low.cwiseAbs().maxCoeff() < kLargest && catcher.high.cwiseAbs().maxCoeff() < kLargest;
+}
+
+// There is one picture of the shadow: it belongs to the level on which most of the cell stands.
+double level_of_shadows(const Scene& scene) {
+  double level = scene.floor_z_m;
+  double largest = 0;
+  for (const ShadowCatcher& catcher : scene.shadow_catchers) {
+    if (!sensible(catcher) || !((catcher.high - catcher.low).prod() > largest)) continue;
+    largest = (catcher.high - catcher.low).prod();
+    level = catcher.z_m;
+  }
+  return level;
+}
+
 }  // namespace
 
 FloorPass::~FloorPass() {
@@ -40,6 +59,7 @@ Result<void> FloorPass::build() {
   if (built) built = shadow_.build(kFloorVertex, kFloorFragment, {"SHADOW"});
   if (built) built = tiles_.build(kFloorVertex, kFloorFragment, {"TEXTURED"});
   if (built) built = tiles_and_shadow_.build(kFloorVertex, kFloorFragment, {"TEXTURED", "SHADOW"});
+  if (built) built = shadow_alone_.build(kFloorVertex, kFloorFragment, {"SHADOW", "ALONE"});
   if (built) built = shadow_map_.build();
   if (!built) return built;
   gl_.GenVertexArrays(1, &array_);
@@ -67,9 +87,9 @@ Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> b
   centre_ = (low + high) / 2;
   inner_ = std::max((high - low).norm() / 2, 0.5);
   outer_ = 1.9 * inner_ + 1;
-  make_disc(scene);
   if (is_on(scene, DisplayMode::textures) && tiles_texture_ == 0) make_tiles();
-  return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(scene, bodies) : Result<void>{};
+  shadow_level_ = level_of_shadows(scene);
+  return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(shadow_level_, bodies) : Result<void>{};
 }
 
 void FloorPass::make_disc(const Scene& scene) {
@@ -95,6 +115,10 @@ void FloorPass::make_disc(const Scene& scene) {
          {0U, a, b, a, a + 1, b, b, a + 1, b + 1, a + 1, a + 2, b + 1, b + 1, a + 2, b + 2})
       indices.push_back(corner);
   }
+  upload(vertices, indices);
+}
+
+void FloorPass::upload(const std::vector<float>& vertices, const std::vector<std::uint32_t>& indices) {
   gl_.BindVertexArray(array_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, vertices_);
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(float)), vertices.data(),
@@ -175,15 +199,13 @@ ShaderProgram& FloorPass::program_of(const Scene& scene) {
   return shadow ? shadow_ : plain_;
 }
 
-void FloorPass::draw(const Frame& frame, RibbonPass& ribbon_pass) {
-  const Eigen::Vector4d eye = frame.view.eye();
-  if (!(eye.z() > eye.w() * frame.scene.floor_z_m)) return;
-  const ShaderProgram& program = program_of(frame.scene);
+void FloorPass::put(const Frame& frame, const ShaderProgram& program, double z_m) {
   program.use();
   const Eigen::Matrix4f clip_from_world = frame.view.clip_from_world().cast<float>();
+  const Eigen::Vector4f part = shadow_map_.part_at(z_m);
   constexpr std::array<float, 3> kGround = {0.875F, 0.885F, 0.895F};
   gl_.UniformMatrix4fv(program.uniform("clip_from_world"), 1, GL_FALSE, clip_from_world.data());
-  gl_.Uniform4fv(program.uniform("shadow_part"), 1, shadow_map_.part().data());
+  gl_.Uniform4fv(program.uniform("shadow_part"), 1, part.data());
   gl_.Uniform3fv(program.uniform("rgb"), 1, kGround.data());
   gl_.Uniform1i(program.uniform("shadow"), 0);
   gl_.Uniform1i(program.uniform("tiles"), 1);
@@ -192,9 +214,46 @@ void FloorPass::draw(const Frame& frame, RibbonPass& ribbon_pass) {
   gl_.ActiveTexture(GL_TEXTURE1);
   gl_.BindTexture(GL_TEXTURE_2D, tiles_texture_);
   gl_.Enable(GL_BLEND);
-  gl_.Enable(GL_POLYGON_OFFSET_FILL);  // a plate that lies on the floor is above it
-  gl_.PolygonOffset(1, 2);
+  gl_.Enable(GL_POLYGON_OFFSET_FILL);
   gl_.BindVertexArray(array_);
+}
+
+void FloorPass::draw_catchers(const Frame& frame) {
+  constexpr double kSameLevel = 0.05;  // m
+  constexpr double kAbove = 0.0005;    // m
+  constexpr std::size_t kMost = 64;
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> indices;
+  for (const ShadowCatcher& catcher : frame.scene.shadow_catchers) {
+    if (!sensible(catcher) || std::abs(catcher.z_m - shadow_level_) > kSameLevel || vertices.size() >= 16 * kMost)
+      continue;
+    const auto first = static_cast<std::uint32_t>(vertices.size() / 4);
+    for (const double y : {catcher.low.y(), catcher.high.y()}) {
+      for (const double x : {catcher.low.x(), catcher.high.x()})
+        vertices.insert(vertices.end(),
+                        {static_cast<float>(x), static_cast<float>(y), static_cast<float>(catcher.z_m + kAbove), 1.0F});
+    }
+    for (const std::uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U}) indices.push_back(first + corner);
+  }
+  const Eigen::Vector4d eye = frame.view.eye();
+  if (indices.empty() || !(eye.z() > eye.w() * shadow_level_)) return;
+  put(frame, shadow_alone_, shadow_level_);
+  upload(vertices, indices);
+  gl_.DepthMask(GL_FALSE);
+  gl_.PolygonOffset(-1, -2);
+  gl_.DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+  gl_.DepthMask(GL_TRUE);
+  gl_.Disable(GL_POLYGON_OFFSET_FILL);
+  gl_.Disable(GL_BLEND);
+}
+
+void FloorPass::draw(const Frame& frame, RibbonPass& ribbon_pass) {
+  if (is_on(frame.scene, DisplayMode::shadows)) draw_catchers(frame);
+  const Eigen::Vector4d eye = frame.view.eye();
+  if (!(eye.z() > eye.w() * frame.scene.floor_z_m)) return;
+  make_disc(frame.scene);
+  put(frame, program_of(frame.scene), frame.scene.floor_z_m);
+  gl_.PolygonOffset(1, 2);  // a plate that lies on the floor is above it
   gl_.DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
   gl_.Disable(GL_BLEND);

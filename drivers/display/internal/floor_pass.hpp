@@ -11,7 +11,7 @@ namespace cellmirror::display {
 class FloorPass {
  public:
   explicit FloorPass(const GlApi& gl)
-      : gl_(gl), shadow_map_(gl), plain_(gl), shadow_(gl), tiles_(gl), tiles_and_shadow_(gl) {}
+      : gl_(gl), shadow_map_(gl), plain_(gl), shadow_(gl), tiles_(gl), tiles_and_shadow_(gl), shadow_alone_(gl) {}
   ~FloorPass();
   FloorPass(const FloorPass&) = delete;
   FloorPass& operator=(const FloorPass&) = delete;
@@ -24,6 +24,10 @@ class FloorPass {
 
  private:
   void make_disc(const Scene& scene);
+  void upload(const std::vector<float>& vertices, const std::vector<std::uint32_t>& indices);
+  void put(const Frame& frame, const ShaderProgram& program, double z_m);
+  // The shadow alone, on what the cell stands on.
+  void draw_catchers(const Frame& frame);
   void make_tiles();
   void gather_grid(const Frame& frame);
   [[nodiscard]] ShaderProgram& program_of(const Scene& scene);
@@ -34,14 +38,16 @@ class FloorPass {
   ShaderProgram shadow_;
   ShaderProgram tiles_;
   ShaderProgram tiles_and_shadow_;
+  ShaderProgram shadow_alone_;
   GLuint array_ = 0;
   GLuint vertices_ = 0;
   GLuint indices_ = 0;
   GLsizei count_ = 0;
   GLuint tiles_texture_ = 0;
   Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();
-  double inner_ = 1;  // m: radius up to which the floor is opaque
-  double outer_ = 2;  // m: where it has faded out
+  double shadow_level_ = 0;  // m, W
+  double inner_ = 1;         // m: radius up to which the floor is opaque
+  double outer_ = 2;         // m: where it has faded out
   Ribbons grid_;
 };
 

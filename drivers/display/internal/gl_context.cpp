@@ -23,8 +23,8 @@ void limit_threads(int threads) {
 }  // namespace
 
 bool GlContext::make_current() {
-  if (current == this) return true;
-  if (current != nullptr) current->release();
+  if (current == this && bound()) return true;
+  if (current != nullptr && current != this) current->release();
   current = nullptr;
   if (!bind()) return false;
   current = this;

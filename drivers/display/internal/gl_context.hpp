@@ -28,6 +28,8 @@ class GlContext {
 
  protected:
   virtual bool bind() = 0;
+  // What the library itself says: another part of the program may use it, too.
+  [[nodiscard]] virtual bool bound() const = 0;
   virtual void release() = 0;  // the thread has no current context of this library afterwards
   void forget();               // for destructors of derived classes, before they destroy what is bound
 };

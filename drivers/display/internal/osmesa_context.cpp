@@ -17,9 +17,11 @@ struct OsMesa {
   decltype(OSMesaCreateContextAttribs)* create = nullptr;
   decltype(OSMesaDestroyContext)* destroy = nullptr;
   decltype(OSMesaMakeCurrent)* make_current = nullptr;
+  decltype(OSMesaGetCurrentContext)* current = nullptr;
   decltype(OSMesaGetProcAddress)* find = nullptr;
   bool complete = library.find(create, "OSMesaCreateContextAttribs") && library.find(destroy, "OSMesaDestroyContext") &&
-                  library.find(make_current, "OSMesaMakeCurrent") && library.find(find, "OSMesaGetProcAddress");
+                  library.find(make_current, "OSMesaMakeCurrent") && library.find(current, "OSMesaGetCurrentContext") &&
+                  library.find(find, "OSMesaGetProcAddress");
 };
 
 const OsMesa& osmesa() {
@@ -45,6 +47,7 @@ class OsMesaContext final : public GlContext {
   bool bind() override {
     return osmesa().make_current(context_, buffer_.data(), GL_UNSIGNED_BYTE, kEdge, kEdge) == GL_TRUE;
   }
+  [[nodiscard]] bool bound() const override { return osmesa().current() == context_; }
   void release() override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
 
   static constexpr int kEdge = 16;

@@ -59,7 +59,7 @@ void main() {
 #endif
 #ifdef STRIPES
   float across = fract((gl_FragCoord.x + gl_FragCoord.y) / 14.0);
-  colour.rgb = mix(colour.rgb, vec3(1.0, 0.93, 0.82), 0.45 * (1.0 - smoothstep(0.22, 0.30, abs(across - 0.5))));
+  colour.rgb = mix(colour.rgb, vec3(0.24, 0.04, 0.02), 0.55 * (1.0 - smoothstep(0.22, 0.30, abs(across - 0.5))));
 #endif
 }
 )";
@@ -76,7 +76,7 @@ out float down;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   down = 0.5 * corner.y + 0.5;
-  gl_Position = vec4(corner, 0.0, 1.0);
+  gl_Position = vec4(corner, 1.0, 1.0);
 }
 )";
 
@@ -119,7 +119,7 @@ void main() {
 }
 )";
 
-// The floor lies at a height in W; its colour fades out to its edge.
+// The floor lies at a height in W; its colour fades out to its edge. ALONE: nothing but the shadow.
 inline constexpr std::string_view kFloorVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in float alpha_in;
@@ -149,7 +149,11 @@ void main() {
 #ifdef TEXTURED
   ground *= texture(tiles, 0.5 * metres).r + 0.125;
 #endif
-#ifdef SHADOW
+#ifdef ALONE  // darkens what is there
+  float dark = texture(shadow, shadow_at).r * 0.72;
+  colour = vec4(0.03, 0.04, 0.06, dark);
+  return;
+#elif defined(SHADOW)
   ground *= 1.0 - texture(shadow, shadow_at).r * vec3(0.80, 0.78, 0.74);
 #endif
   colour = vec4(ground, alpha);

@@ -20,14 +20,14 @@ bool casts(const DrawnBody& body) {
 
 // Along the light: from a point of the world to its shadow on the plane z = 0 below `floor_z`; keeps the height above
 // it in z.
-Eigen::Matrix4d shadow_projection(double floor_z) {
+Eigen::Matrix4d shadow_projection(double level) {
   const Eigen::Vector3d light = towards_light();
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix(0, 2) = -light.x() / light.z();
   matrix(1, 2) = -light.y() / light.z();
-  matrix(0, 3) = floor_z * light.x() / light.z();
-  matrix(1, 3) = floor_z * light.y() / light.z();
-  matrix(2, 3) = -floor_z;
+  matrix(0, 3) = level * light.x() / light.z();
+  matrix(1, 3) = level * light.y() / light.z();
+  matrix(2, 3) = -level;
   return matrix;
 }
 
@@ -83,9 +83,9 @@ void blur(std::vector<std::uint8_t>& plane, int edge, int radius) {
 
 Result<void> ShadowMap::build() { return program_.build(shaders::kShadowVertex, shaders::kShadowFragment); }
 
-Result<void> ShadowMap::update(const Scene& scene, std::span<const DrawnBody> bodies) {
+Result<void> ShadowMap::update(double z_m, std::span<const DrawnBody> bodies) {
   std::vector<const DrawnBody*> casting;
-  std::vector<double> wanted = {scene.floor_z_m};
+  std::vector<double> wanted = {z_m};
   for (const DrawnBody& body : bodies) {
     if (!casts(body)) continue;
     casting.push_back(&body);
@@ -94,16 +94,23 @@ Result<void> ShadowMap::update(const Scene& scene, std::span<const DrawnBody> bo
   }
   if (wanted == shown_ && texture_ != 0) return {};
   if (Result<void> begun = target_.begin(Pixels::coverage, kEdge, kEdge); !begun) return begun;
-  draw(scene, casting);
+  level_ = z_m;
+  draw(casting);
   soften_and_upload();
   shown_ = std::move(wanted);
   return {};
 }
 
-void ShadowMap::draw(const Scene& scene, std::span<const DrawnBody* const> casting) {
+Eigen::Vector4f ShadowMap::part_at(double z_m) const {
+  // Higher up, the shadow meets the level earlier on its way along the light.
+  const Eigen::Vector3d along = towards_light() * ((z_m - level_) / towards_light().z());
+  return part_ + Eigen::Vector4f(static_cast<float>(along.x()), static_cast<float>(along.y()), 0, 0);
+}
+
+void ShadowMap::draw(std::span<const DrawnBody* const> casting) {
   gl_.ClearColor(0, 0, 0, 0);
   gl_.Clear(GL_COLOR_BUFFER_BIT);
-  const Eigen::Matrix4d projection = shadow_projection(scene.floor_z_m);
+  const Eigen::Matrix4d projection = shadow_projection(level_);
   const Square region = casting.empty() ? Square{} : region_of(projection, casting);
   edge_m_ = region.edge;
   const auto scale = static_cast<float>(1 / region.edge);

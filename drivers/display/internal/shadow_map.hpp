@@ -29,14 +29,15 @@ class ShadowMap {
   ShadowMap& operator=(const ShadowMap&) = delete;
 
   Result<void> build();
-  // Binds its own target. Nothing is drawn where nothing has moved since the last call.
-  Result<void> update(const Scene& scene, std::span<const DrawnBody> bodies);
+  // Of what is above the level `z_m` (W). Binds its own target. Nothing is drawn where nothing has moved since the last
+  // call.
+  Result<void> update(double z_m, std::span<const DrawnBody> bodies);
   [[nodiscard]] GLuint texture() const { return texture_; }
-  // x, y of the lower corner, W, m; and 1 / its edges.
-  [[nodiscard]] const Eigen::Vector4f& part() const { return part_; }
+  // x, y of the lower corner, W, m; and 1 / its edges: as the shadow falls on a level at `z_m`.
+  [[nodiscard]] Eigen::Vector4f part_at(double z_m) const;
 
  private:
-  void draw(const Scene& scene, std::span<const DrawnBody* const> casting);
+  void draw(std::span<const DrawnBody* const> casting);
   void soften_and_upload();
 
   const GlApi& gl_;
@@ -44,6 +45,7 @@ class ShadowMap {
   RenderTarget target_;
   GLuint texture_ = 0;
   Eigen::Vector4f part_ = Eigen::Vector4f::Zero();
+  double level_ = 0;  // m, W
   double edge_m_ = 1;
   std::vector<double> shown_;  // what the texture was made from
   std::vector<std::uint8_t> covered_;

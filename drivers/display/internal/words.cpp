@@ -40,7 +40,7 @@ void Words::want(const Frame& frame, const Eigen::Vector3d& at, const std::strin
   if (text.empty() || wanted_.size() >= kMostConsidered || !at.allFinite()) return;
   const Eigen::Vector4d clip = frame.view.clip(at);
   if (!clip.allFinite() || !(clip.w() > 0) || std::abs(clip.x()) > clip.w() || std::abs(clip.y()) > clip.w() ||
-      clip.z() < -clip.w())
+      std::abs(clip.z()) > clip.w())
     return;
   wanted_.push_back({&text, look, frame.view.pixel(clip), frame.view.distance(at)});
 }

@@ -1,0 +1,106 @@
+// display_bench [ROUNDS]: the renderer against a bare OSMesa program that draws the same buffers in the same run, by
+// turns, with and without anti-aliasing: 100,000 triangles, Gouraud, 1280x720. Tells medians and the ratio of rates.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+#include "drivers/display/image_codec.hpp"
+#include "drivers/display/internal/surface.hpp"
+#include "drivers/display/internal/view_transform.hpp"
+#include "drivers/display/renderer.hpp"
+#include "tests/bench/display/bare_program.hpp"
+#include "tests/unit/display/test_scenes.hpp"
+
+namespace cellmirror::display {
+namespace {
+
+constexpr int kWidth = 1280;
+constexpr int kHeight = 720;
+
+double milliseconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+bench::BareMesh same_buffers(const geometry::TriangleMesh& mesh) {
+  const Surface surface = smooth_surface(mesh);
+  bench::BareMesh bare;
+  for (const Vertex& vertex : surface.vertices) {
+    for (const Eigen::Vector3f& part : {vertex.position, vertex.normal})
+      bare.vertices.insert(bare.vertices.end(), part.data(), part.data() + 3);
+  }
+  bare.corners = surface.corners;
+  return bare;
+}
+
+bool compare(Renderer& renderer, int rounds, bool smooth) {
+  const auto mesh = torus(1, 0.42, 500, 100);  // 100,000 triangles
+  Scene scene;
+  add_mesh(scene, mesh, Pose::Identity());
+  if (smooth) scene.modes.set(static_cast<std::size_t>(DisplayMode::antialiasing));
+  const std::vector<Pane> panes = {pane_looking_at({0.6, -2.6, 2.1}, {0, 0, 0}, 0.8)};
+  const auto bare = bench::BareProgram::make(same_buffers(*mesh), kWidth, kHeight, smooth ? 4 : 0);
+  const auto view = ViewTransform::of(panes[0], kWidth, kHeight);
+  if (bare == nullptr || !view) return false;
+  const Eigen::Matrix4f matrix = view->clip_from_world().cast<float>();
+  Image picture;
+  std::vector<std::uint8_t> pixels;
+  std::vector<double> ours;
+  std::vector<double> theirs;
+  for (int i = 0; i < rounds + 3; ++i) {
+    const double a = milliseconds([&] { static_cast<void>(renderer.draw(scene, panes, kWidth, kHeight, picture)); });
+    const double b = milliseconds([&] { bare->draw(matrix.data(), pixels); });
+    if (i < 3) continue;  // shaders are compiled
+    ours.push_back(a);
+    theirs.push_back(b);
+  }
+  std::printf("%-22s %8.2f ms %8.2f ms   rate %.2f of the bare program's\n",
+              smooth ? "4x anti-aliasing" : "no anti-aliasing", median(ours), median(theirs),
+              median(theirs) / median(ours));
+  return true;
+}
+
+void time_gallery(Renderer& renderer, int rounds, int width, int height) {
+  const Scene scene = gallery_scene();
+  const std::vector<Pane> panes = {gallery_pane()};
+  ImageEncoder encoder;
+  Image picture;
+  std::vector<std::uint8_t> bytes;
+  std::vector<double> drawing;
+  std::vector<double> picking;
+  std::vector<double> jpeg;
+  std::vector<std::uint32_t> numbers;
+  for (int i = 0; i < rounds; ++i) {
+    drawing.push_back(milliseconds([&] { static_cast<void>(renderer.draw(scene, panes, width, height, picture)); }));
+    picking.push_back(milliseconds([&] { static_cast<void>(renderer.objects(scene, panes, width, height, numbers)); }));
+    jpeg.push_back(milliseconds([&] { static_cast<void>(encoder.encode(picture, {}, bytes)); }));
+  }
+  std::printf("gallery %4dx%-4d       %8.2f ms, objects %.2f ms, JPEG %.2f ms (%zu bytes)\n", width, height,
+              median(drawing), median(picking), median(jpeg), bytes.size());
+}
+
+int run(int rounds) {
+  const auto renderer = Renderer::create({.backend = Backend::osmesa});
+  if (!renderer) {
+    std::fprintf(stderr, "%s\n", renderer.error().text().c_str());
+    return 1;
+  }
+  std::printf("%s\n%-22s %11s %11s\n", std::string((*renderer)->name()).c_str(), "", "renderer", "bare OSMesa");
+  const bool done = compare(**renderer, rounds, false) && compare(**renderer, rounds, true);
+  time_gallery(**renderer, rounds, 640, 480);
+  time_gallery(**renderer, rounds, kWidth, kHeight);
+  return done ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace cellmirror::display
+
+int main(int argc, char** argv) { return cellmirror::display::run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 60); }
