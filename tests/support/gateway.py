@@ -114,11 +114,12 @@ class Process:
 class Gateway(Process):
     """A running gateway on a scratch cell, ready to be asked when the constructor returns."""
 
-    def __init__(self, scratch, *arguments, instance=None, wait=True, pictures=False):
+    def __init__(self, scratch, *arguments, instance=None, wait=True, pictures=False, page=False):
         self.scratch = scratch
         self.instance = instance or scratch.instance
         super().__init__(
-            [BIN / "cellmirror", "run", scratch.cell_file, "--no-web", *([] if pictures else ["--headless"]),
+            [BIN / "cellmirror", "run", scratch.cell_file, *(["--port", "0"] if page else ["--no-web"]),
+             *([] if pictures else ["--headless"]),
              "--instance", self.instance, *arguments], scratch.environment)
         if wait:
             self.wait_ready()

@@ -1,0 +1,156 @@
+"""The monitor page of a running gateway, without a browser: address, token, documents, metrics, commands, /live."""
+
+import json
+import re
+import socket
+import stat
+import unittest
+
+import gateway as g
+from page_client import Live, Page
+
+SAMPLE = re.compile(r'^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="(\\.|[^"\\\n])*",?)*\})? '
+                    r'(NaN|[+-]Inf|[-+]?[0-9.]+([eE][-+]?[0-9]+)?)$')
+
+
+def page_of(scratch):
+    done = scratch.cellmirror("page", "--json", "--instance", scratch.instance)
+    assert done.returncode == 0, done.stderr
+    return Page(json.loads(done.stdout))
+
+
+class GatewayPage(unittest.TestCase):
+    def setUp(self):
+        self.scratch = g.Scratch()
+        self.gateway = g.Gateway(self.scratch, page=True)
+        self.page = page_of(self.scratch)
+
+    def tearDown(self):
+        self.gateway.close()
+        self.scratch.remove()
+
+    def test_the_address_is_told_to_all_and_the_token_to_its_owner(self):
+        self.assertIn(self.page.address, self.gateway.output())
+        self.assertNotIn(self.page.token, self.gateway.output())
+        status = self.scratch.status()["page"]
+        self.assertEqual(status["address"], self.page.address)
+        self.assertNotIn(self.page.token, json.dumps(status))
+        shown = self.scratch.cellmirror("page", "--instance", self.scratch.instance).stdout.strip()
+        self.assertEqual(shown, f"{self.page.address}#token={self.page.token}")
+        file = self.scratch.runtime / self.scratch.instance / "page.json"
+        self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+
+    def test_the_token_outlives_a_restart_and_the_address_does_not(self):
+        self.gateway.stop()
+        gone = self.scratch.cellmirror("page", "--instance", self.scratch.instance)
+        self.assertEqual(gone.returncode, 1)
+        self.assertIn("cellmirror run", gone.stderr)
+        self.gateway.close()
+        self.gateway = g.Gateway(self.scratch, page=True)
+        self.assertEqual(page_of(self.scratch).token, self.page.token)
+
+    def test_documents_are_what_they_say(self):
+        status, headers, body = self.page.ask("/")
+        self.assertEqual(status, 200)
+        self.assertIn(b"<html", body)
+        self.assertIn("default-src 'none'", headers["Content-Security-Policy"])
+        tree = self.page.json("/api/tree")
+        paths = [node["path"] for node in tree["nodes"]]
+        self.assertEqual(paths, sorted(paths))
+        self.assertTrue(any(node["has_detail"] for node in tree["nodes"]))
+        self.assertTrue(all(node["parent"] in paths for node in tree["nodes"] if node["parent"] is not None))
+        names = self.page.json("/api/names")
+        self.assertIn("MANTEC_R3", names["robots"])
+        self.assertIn("startup.spt", names["scripts"])
+        self.assertEqual(self.page.json("/api/status")["instance"], self.scratch.instance)
+        self.assertIn("POS_ROB", [command["name"] for command in self.page.json("/api/commands")["commands"]])
+
+    def test_metrics_are_in_the_text_format(self):
+        status, headers, body = self.page.ask("/metrics")
+        self.assertEqual(status, 200)
+        self.assertTrue(headers["Content-Type"].startswith("text/plain; version=0.0.4"))
+        families, seen = {}, set()
+        for line in body.decode().splitlines():
+            if line.startswith("# TYPE "):
+                _, _, name, kind = line.split(" ")
+                self.assertNotIn(name, families, "a family stands in one place")
+                self.assertIn(kind, ("counter", "gauge", "summary"))
+                families[name] = kind
+            elif not line.startswith("# HELP "):
+                self.assertRegex(line, SAMPLE)
+                series = line.rsplit(" ", 1)[0]
+                self.assertNotIn(series, seen)
+                seen.add(series)
+                name = series.split("{")[0]
+                owner = name if name in families else re.sub("_(sum|count)$", "", name)
+                self.assertEqual(owner, list(families)[-1], "samples stand behind their family")
+                self.assertTrue(families[owner] != "counter" or name.endswith("_total"))
+        self.assertIn("cellmirror_loop_ticks_total", families)
+        self.assertIn('cellmirror_robot_mirrored{robot="MANTEC_R3"}', seen)
+
+    def test_commands_need_the_token_and_are_acknowledged(self):
+        self.assertEqual(self.page.command("ROBACT MANTEC_R3"), (200, '{"done":true}'))
+        self.assertTrue(self.scratch.robot("MANTEC_R3")["active"])
+        status, body = self.page.command("ROBACT MANTEC_R33")
+        self.assertEqual(status, 200)
+        self.assertFalse(json.loads(body)["done"])
+        self.assertIn("MANTEC_R3", json.loads(body)["text"])
+        self.assertEqual(self.page.command("ROBACT MANTEC_R3", "0" * 32)[0], 401)
+        refused = json.loads(self.page.command("@7 ROBACT MANTEC_R3")[1])
+        self.assertFalse(refused["done"])
+
+    def test_live_shows_and_commands(self):
+        live = Live(self.page)
+        self.addCleanup(live.close)
+        welcome = live.until_is("welcome")
+        self.assertFalse(welcome["may_command"])
+        live.say(do="hello", token=self.page.token)
+        self.assertTrue(live.until_is("welcome")["may_command"])
+        live.say(do="command", id=1, text="hot_message  look here")
+        self.assertTrue(live.until_is("reply", id=1)["done"])
+        seen = live.until(lambda m: isinstance(m, dict) and m["is"] == "live" and m["messages"])
+        self.assertIn("look here", seen["messages"][-1]["text"])
+        for key in ("time_s", "uptime_s", "revision", "tree_revision", "loop", "robots", "touching", "near", "ranges", "forces",
+                    "queues", "display", "cameras", "bell", "warning_distance_m"):
+            self.assertIn(key, seen)
+        robot = next(robot for robot in seen["robots"] if robot["id"] == "MANTEC_R3")
+        self.assertEqual(robot["mode"], "simulated")
+        self.assertEqual(set(robot["joints"][0]),
+                         {"name", "kind", "unit", "position", "velocity", "state", "lower", "upper"})
+        self.assertEqual(len(seen["display"]["views"]), 7)
+        before = seen["tree_revision"]
+        live.say(do="command", id=2, text="SET_FRAME nowhere PLACEMENT 0 0 0 0 0 0")
+        self.assertFalse(live.until_is("reply", id=2)["done"])
+        self.assertEqual(live.until_is("live")["tree_revision"], before)
+        live.say(do="picture")
+        self.assertIn("--headless", live.until_is("refused")["text"])
+
+    def test_a_port_in_use_is_told_and_everything_else_goes_on(self):
+        other = g.Scratch()
+        self.addCleanup(other.remove)
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = taken.getsockname()[1]
+            command = [g.BIN / "cellmirror", "run", other.cell_file, "--headless", "--instance", other.instance, "--port", str(port)]
+            gateway = g.Process(command, other.environment)
+            self.addCleanup(gateway.close)
+            self.assertTrue(g.eventually(lambda: "Ctrl-C ends it" in gateway.output(), 20), gateway.output())
+            self.assertIn("--port", gateway.output())
+            self.assertIn("port", other.status()["page"]["problem"])
+            self.assertEqual(other.cellmirror("page", "--instance", other.instance).returncode, 1)
+            self.assertEqual(gateway.stop(), 0)
+
+    def test_without_the_page_there_is_none(self):
+        other = g.Scratch()
+        self.addCleanup(other.remove)
+        gateway = g.Gateway(other)
+        self.addCleanup(gateway.close)
+        self.assertFalse(other.status()["page"]["on"])
+        done = other.cellmirror("page", "--instance", other.instance)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--no-web", done.stderr)
+
+
+if __name__ == "__main__":
+    g.main()
