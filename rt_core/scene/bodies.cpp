@@ -88,7 +88,7 @@ void Bodies::find_floor() {
 }
 
 void Bodies::find_slabs() {
-  constexpr double kSameLevel = 0.01;  // m
+  constexpr double kSameLevel = 0.002;  // m
   slabs_.clear();
   for (std::size_t i = 0; i < first_moving_; ++i) {
     if (!is_level_slab(bodies_[i])) continue;

@@ -51,7 +51,9 @@ void draw_pyramids(const SceneInput& input, Scene& scene) {
     // A mirrored head may not have turned there yet.
     if (const auto target = camera->tracking ? node_at(cell, setting.tracks) : std::nullopt)
       draw_line(apex, input.poses->X_WN[static_cast<std::size_t>(*target)].translation(), true, scene);
-    scene.labels.push_back({apex, cell.cameras[camera->camera].name, Mark::none});
+    // Its workframe carries the name already.
+    if (!input.display->on(DisplayMode::workframes))
+      scene.labels.push_back({apex, cell.cameras[camera->camera].name, Mark::none});
   }
 }
 
