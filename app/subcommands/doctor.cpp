@@ -15,6 +15,7 @@
 
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "drivers/display/renderer.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/sysv/limits.hpp"
 #include "ipc/sysv/shared_memory_limits.hpp"
@@ -93,6 +94,13 @@ Finding page_finding() {
   return {name, in_use + " by another program", false, "cellmirror run ... --port N, or [web] port in the cell file"};
 }
 
+// OSMesa draws the pictures; EGL takes its place where it is missing (drivers/display).
+Finding renderer_finding(const char* name, display::Backend backend) {
+  const auto renderer = display::Renderer::create({.backend = backend});
+  if (renderer) return {name, std::string((*renderer)->name()), true, {}};
+  return {name, renderer.error().what, false, renderer.error().remedy};
+}
+
 std::vector<Finding> examine() {
   std::vector<Finding> findings = {scheduling_finding(), memory_finding(),    idle_finding(),
                                    can_finding(),        interface_finding(), receive_buffer_finding()};
@@ -104,7 +112,8 @@ std::vector<Finding> examine() {
   findings.push_back(page_finding());
   add(ipc_findings(read_sysv_limits(), read_remove_ipc()));
   add(shared_memory_findings(read_shared_memory_limits(), read_left_segments(::geteuid())));
-  findings.push_back({"GL renderer", "not available yet", true, {}});
+  findings.push_back(renderer_finding("GL renderer", display::Backend::osmesa));
+  findings.push_back(renderer_finding("GL renderer, instead", display::Backend::egl));
   return findings;
 }
 
