@@ -1,9 +1,12 @@
 #include "rt_core/scene/force_arrows.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "rt_core/ports/palette.hpp"
+#include "rt_core/scene/words.hpp"
 
 namespace cellmirror::scene {
 
@@ -36,6 +39,20 @@ double ArrowScale::update(double largest, double longest_m) {
   const double needed = largest / longest_m;
   if (needed > per_metre_ || needed < kShortestPart * per_metre_) per_metre_ = round_up(needed);
   return per_metre_;
+}
+
+void label_overloads(const ForceState& forces, Scene& scene) {
+  for (const RobotForces& robot : forces.robots) {
+    for (const JointForce& joint : robot.joints) {
+      if (!joint.beyond_limit || !joint.X_WJ.translation().allFinite()) continue;
+      const std::string_view unit = joint.kind == JointKind::prismatic ? "N" : "Nm";
+      const double effort = std::round(joint.effort * 10.0) / 10.0;
+      scene.labels.push_back({joint.X_WJ.translation(),
+                              fmt::format("{} {}: {}, beyond its {}", robot.id, joint.name, quantity_text(effort, unit),
+                                          quantity_text(joint.max_effort, unit)),
+                              Mark::near});
+    }
+  }
 }
 
 void ForceArrows::draw(std::span<const ForceArrow> arrows, double longest_m, Scene& scene) {

@@ -21,6 +21,9 @@ class ArrowScale {
   double per_metre_ = 0;
 };
 
+// A label at each joint whose drive gives more than it may.
+void label_overloads(const ForceState& forces, Scene& scene);
+
 class ForceArrows {
  public:
   void draw(std::span<const ForceArrow> arrows, double longest_m, Scene& scene);

@@ -14,7 +14,7 @@ namespace {
 
 bool any_marked(const Scene& scene, Mark mark) {
   const auto has = [mark](const auto& thing) { return thing.mark == mark; };
-  return std::ranges::any_of(scene.bodies, has) || std::ranges::any_of(scene.labels, has);
+  return std::ranges::any_of(scene.bodies, has);
 }
 
 std::string warning_text(const SceneInput& input) {

@@ -106,6 +106,7 @@ void SceneBuilder::build(const SceneInput& input, Scene& scene) {
   parts.traces.draw(input, scene);
   draw_cones(input, scene);
   parts.arrows.draw(input.arrows, longest_arrow(parts.bodies), scene);
+  if (input.forces != nullptr) label_overloads(*input.forces, scene);
   draw_pyramids(input, scene);
   draw_sparks(input, scene);
   write_messages(input, scene);

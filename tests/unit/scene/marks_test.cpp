@@ -181,6 +181,23 @@ TEST_F(MarksTest, ArrowsAreAsLongAsTheLegendSays) {
   EXPECT_TRUE(legend_has("torque, 100 mm = " + quantity_text(0.1 * nm_per_metre, "Nm")));
 }
 
+TEST_F(MarksTest, AJointBeyondItsLimitIsLabelled) {
+  ForceState forces;
+  RobotForces& robot = forces.robots.emplace_back();
+  robot.id = "ARM";
+  JointForce& joint = robot.joints.emplace_back();
+  joint.name = "J_1";
+  joint.effort = 123.456;
+  joint.max_effort = 100;
+  input_.forces = &forces;
+  EXPECT_TRUE(build().labels.empty());
+  joint.beyond_limit = true;
+  joint.X_WJ.translation() << 1, 2, 3;
+  ASSERT_EQ(build().labels.size(), 1U);
+  EXPECT_EQ(scene_.labels[0].text, "ARM J_1: 123.5 Nm, beyond its 100 Nm");
+  EXPECT_EQ(scene_.labels[0].at, Eigen::Vector3d(1, 2, 3));
+}
+
 TEST(ArrowScale, IsARoundNumberAndDoesNotFlutter) {
   ArrowScale sut;
   EXPECT_EQ(sut.update(0, 0.5), 0);
