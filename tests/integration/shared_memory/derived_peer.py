@@ -1,5 +1,6 @@
 """derived_peer.c in Python, by way of docs/examples/cellmirror_memory.py (first argument: that folder)."""
 
+import os
 import sys
 import time
 
@@ -18,7 +19,7 @@ def is_derived(values):
     )
 
 
-def read_all(memory, last):
+def read_all(memory, last, many):
     whole = retried = inconsistent = sequence = 0
     end = time.monotonic() + 60
     print("ready", flush=True)
@@ -29,7 +30,10 @@ def read_all(memory, last):
             continue
         values = cellmirror.FORCE.unpack(copy)
         if values[25] != 0:
-            whole += values[25] > sequence
+            if values[25] == sequence:
+                os.sched_yield()
+            elif (whole := whole + 1) == many:
+                print("enough", flush=True)
             inconsistent += values[25] < sequence or not is_derived(values)
             sequence = values[25]
     print(f"whole {whole} retried {retried} inconsistent {inconsistent} last {sequence}")
@@ -41,6 +45,6 @@ def write_all(memory, last):
         cellmirror.write_sample(memory, i, i, (value,) * 3, (value,) * 4, i & 0xFFFFFFFF, value, (value,) * 7)
 
 
-_, _, what, key, last = sys.argv
+_, _, what, key, last, *many = sys.argv
 memory = cellmirror.Memory(int(key, 0), cellmirror.HAPTIC_BYTES, read_only=what == "read")
-(read_all if what == "read" else write_all)(memory, int(last))
+(read_all if what == "read" else write_all)(memory, int(last), *map(int, many))
