@@ -50,18 +50,60 @@ std::size_t step_over(std::string_view text, std::size_t at) {
   return text.size();
 }
 
+// Whether a quote begins a text for the parser. It does not within what it holds for a number or date, which it reads
+// up to the next blank or ',', ']', '}', '#': 33["a" and 10='a' are one.
+class WordBefore {
+ public:
+  [[nodiscard]] bool lets_text_begin() const {
+    return is_empty_ || only_brackets_ || (ends_with_dot_ && !equals_on_line_);
+  }
+  void add(char c) {
+    const bool is_word = c == '=' && equals_on_line_ && !is_empty_ && !begins_with_letter_;
+    if (c == '\n') equals_on_line_ = false;
+    if (c == '=') equals_on_line_ = true;
+    constexpr std::string_view kEnds = " \t\r\n,]}#=";
+    if (kEnds.find(c) != std::string_view::npos && !is_word) {
+      *this = after_end(equals_on_line_);
+      return;
+    }
+    const bool is_bracket = c == '[' || c == '{';
+    if (only_brackets_ && !is_bracket)
+      begins_with_letter_ = c == '_' || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    is_empty_ = false;
+    only_brackets_ = only_brackets_ && is_bracket;
+    ends_with_dot_ = c == '.';
+  }
+
+ private:
+  static WordBefore after_end(bool equals_on_line) {
+    WordBefore word;
+    word.equals_on_line_ = equals_on_line;
+    return word;
+  }
+
+  bool is_empty_ = true;
+  bool only_brackets_ = true;
+  bool begins_with_letter_ = false;
+  bool ends_with_dot_ = false;
+  bool equals_on_line_ = false;
+};
+
 // Outside of texts and comments TOML is ASCII. toml++ 3.3 holds some other characters for impossible, with undefined
 // behaviour, so that they must not reach it there.
 std::optional<Place> place_of_stray_character(std::string_view text, const std::string& file) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  WordBefore word;
   while (at < text.size()) {
     if (static_cast<unsigned char>(text[at]) >= 0x80) {
       const std::string_view before = text.substr(0, at);
       const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
       return Place{file, static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(at - line_start) + 1};
     }
-    at = step_over(text, at);
+    const char c = text[at];
+    const bool is_quote = c == '"' || c == '\'';
+    at = is_quote && !word.lets_text_begin() ? at + 1 : step_over(text, at);
+    word.add(c);
   }
   return std::nullopt;
 }

@@ -103,6 +103,20 @@ TEST(ViewFile, RefusesTextThatIsNoneWithThePlace) {
   }
 }
 
+// The parser reads quotes within a number as part of it, and holds some characters for impossible there.
+TEST(ViewFile, TakesOtherCharactersThanAsciiInTextsOnly) {
+  for (const std::string text :
+       {"format = 10!x='\xEF\xB3\xBF'", "format = 1\ntwist=33[\"\xC4\xA4\"]", "format = 3.\"\xC4\xA4\""}) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(parse(text, diagnostics)) << text;
+    EXPECT_NE(diagnostics.text().find("outside of ASCII"), std::string::npos) << diagnostics.text();
+  }
+  Diagnostics diagnostics;
+  const auto sut = parse("format = 1\nview=[{id=0,camera='\xC3\x9C'},{id=1,camera = \"\xC3\x9C\"}]", diagnostics);
+  ASSERT_TRUE(sut) << diagnostics.text();
+  EXPECT_EQ(sut->views[0].camera, "\xC3\x9C");
+}
+
 TEST(ViewFile, WritesWhatItReadsAgainExactly) {
   DisplayState display;
   display.display = 5;
