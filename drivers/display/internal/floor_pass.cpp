@@ -85,11 +85,11 @@ Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> b
   const Eigen::Vector2d low = bounded(scene.floor_low, -1);
   const Eigen::Vector2d high = bounded(scene.floor_high, 1);
   centre_ = (low + high) / 2;
-  inner_ = std::max((high - low).norm() / 2, 0.5);
-  outer_ = 1.9 * inner_ + 1;
+  inner_ = std::max((high - low).norm() / 2, 0.05);
+  outer_ = 1.9 * inner_ + std::min(inner_, 1.0);
   if (is_on(scene, DisplayMode::textures) && tiles_texture_ == 0) make_tiles();
   shadow_level_ = level_of_shadows(scene);
-  return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(shadow_level_, bodies) : Result<void>{};
+  return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(shadow_level_, 2 * inner_, bodies) : Result<void>{};
 }
 
 void FloorPass::make_disc(const Scene& scene) {
@@ -162,7 +162,7 @@ void FloorPass::gather_grid(const Frame& frame) {
   constexpr Colour kLine{0.56F, 0.59F, 0.64F, 0.75F};
   constexpr int kPieces = 12;
   grid_.clear();
-  const double step = std::max(round_step(inner_ / 8), 0.1);
+  const double step = round_step(inner_ / 8);
   const double z = frame.scene.floor_z_m;
   const auto colour_at = [&](const Eigen::Vector2d& p, bool major) {
     const double way = ((p - centre_).norm() - inner_ * 0.6) / (outer_ - inner_ * 0.6);

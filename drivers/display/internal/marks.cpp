@@ -123,7 +123,7 @@ void Marks::add_arrow(const Frame& frame, MeshStore& meshes, const SceneArrow& a
   if (!sensible(arrow.from) || !sensible(arrow.along) || !(length > 1e-4)) return;
   const Eigen::Vector3d direction = arrow.along / length;
   const double pixel = frame.view.metres_per_pixel(frame.view.distance(arrow.from));
-  const double shaft = std::max(std::clamp(0.018 * length, 0.003, 0.02), 1.3 * pixel);
+  const double shaft = std::max(std::min(0.018 * length, 0.02), 1.3 * pixel);
   const double head = std::min(7 * shaft, 0.45 * length);
   const double heads = arrow.torque ? 1.75 * head : head;
   DrawnBody body = solid_along(meshes.solid(Solid::cylinder), arrow.from + direction * (length - heads) / 2, direction,
@@ -141,8 +141,8 @@ void Marks::add_spark(const Frame& frame, const SceneSpark& spark) {
   const double distance = frame.view.distance(spark.at);
   if (!(distance > 0)) return;
   const double pixel = frame.view.metres_per_pixel(distance);
-  constexpr double kReach = 0.09;  // m
-  const double reach = std::max(kReach, 10 * pixel);
+  const double extent = (frame.scene.floor_high - frame.scene.floor_low).norm();
+  const double reach = std::max(std::min(0.09, 0.02 * (std::isfinite(extent) ? extent : 1.0)), 10 * pixel);
   std::uint32_t dice = spark.phase * 2654435761U + 12345U;
   const auto roll = [&dice] {  // 0 to 1; the same for the same phase, so that pictures can be compared
     dice = dice * 1664525U + 1013904223U;

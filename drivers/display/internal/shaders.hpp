@@ -174,10 +174,11 @@ void main() {
 
 inline constexpr std::string_view kShadowFragment = R"(
 in float height;
+uniform float low;
 layout(location = 0) out vec2 covered;
 void main() {
   if (height < -0.005) discard;
-  covered = vec2(clamp(1.0 - height / 0.45, 0.0, 1.0), 1.0);
+  covered = vec2(clamp(1.0 - height / low, 0.0, 1.0), 1.0);
 }
 )";
 

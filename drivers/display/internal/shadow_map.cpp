@@ -11,8 +11,10 @@ namespace cellmirror::display {
 namespace {
 
 constexpr int kEdge = ShadowPicture::kEdge;
-constexpr double kSharp = 0.02;  // m: how far the edges of shadows reach, of what is near the floor
-constexpr double kSoft = 0.13;   // and of what is not
+// How far the edges of shadows reach: of what is near the floor, and of what is not. Small cells have small shadows.
+double sharp_edge(double extent_m) { return std::min(0.02, 0.0025 * extent_m); }
+double soft_edge(double extent_m) { return std::min(0.13, 0.015 * extent_m); }
+double low_height(double extent_m) { return std::min(0.45, 0.06 * extent_m); }  // above it nothing is near the floor
 
 bool casts(const DrawnBody& body) {
   return body.casts_shadow && !body.see_through() && body.mode != DrawMode::wireframe;
@@ -36,17 +38,17 @@ struct Square {
   double edge = 1;
 };
 
-Square region_of(const Eigen::Matrix4d& projection, std::span<const DrawnBody* const> casting) {
+Square region_of(const Eigen::Matrix4d& projection, double margin, std::span<const DrawnBody* const> casting) {
   constexpr double kLargest = 60;  // m: beyond, shadows get too coarse to be of use
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d high = -low;
   for (const DrawnBody* body : casting) {
     const Eigen::Vector2d at = (projection * body->bounds_W.centre.homogeneous()).head<2>();
-    const double reach = 1.25 * body->bounds_W.radius + 3 * kSoft;
+    const double reach = 1.25 * body->bounds_W.radius + margin;
     low = low.cwiseMin(at - Eigen::Vector2d::Constant(reach));
     high = high.cwiseMax(at + Eigen::Vector2d::Constant(reach));
   }
-  const double edge = std::clamp((high - low).maxCoeff(), 0.5, kLargest);
+  const double edge = std::clamp((high - low).maxCoeff(), 0.05, kLargest);
   // In steps, so that the picture of the shadow does not swim while a robot moves.
   const double step = edge / 16;
   const Eigen::Vector2d centre = (low + high) / 2;
@@ -83,9 +85,9 @@ void blur(std::vector<std::uint8_t>& plane, int edge, int radius) {
 
 Result<void> ShadowMap::build() { return program_.build(shaders::kShadowVertex, shaders::kShadowFragment); }
 
-Result<void> ShadowMap::update(double z_m, std::span<const DrawnBody> bodies) {
+Result<void> ShadowMap::update(double z_m, double extent_m, std::span<const DrawnBody> bodies) {
   std::vector<const DrawnBody*> casting;
-  std::vector<double> wanted = {z_m};
+  std::vector<double> wanted = {z_m, extent_m};
   for (const DrawnBody& body : bodies) {
     if (!casts(body)) continue;
     casting.push_back(&body);
@@ -95,6 +97,7 @@ Result<void> ShadowMap::update(double z_m, std::span<const DrawnBody> bodies) {
   if (wanted == shown_ && texture_ != 0) return {};
   if (Result<void> begun = target_.begin(Pixels::coverage, kEdge, kEdge); !begun) return begun;
   level_ = z_m;
+  extent_ = std::clamp(extent_m, 0.1, 1000.0);
   draw(casting);
   soften_and_upload();
   shown_ = std::move(wanted);
@@ -111,7 +114,7 @@ void ShadowMap::draw(std::span<const DrawnBody* const> casting) {
   gl_.ClearColor(0, 0, 0, 0);
   gl_.Clear(GL_COLOR_BUFFER_BIT);
   const Eigen::Matrix4d projection = shadow_projection(level_);
-  const Square region = casting.empty() ? Square{} : region_of(projection, casting);
+  const Square region = casting.empty() ? Square{} : region_of(projection, 3 * soft_edge(extent_), casting);
   edge_m_ = region.edge;
   const auto scale = static_cast<float>(1 / region.edge);
   part_ = {static_cast<float>(region.low.x()), static_cast<float>(region.low.y()), scale, scale};
@@ -124,6 +127,7 @@ void ShadowMap::draw(std::span<const DrawnBody* const> casting) {
   gl_.Disable(GL_DEPTH_TEST);
   gl_.Enable(GL_BLEND);
   gl_.BlendEquation(GL_MAX);
+  gl_.Uniform1f(program_.uniform("low"), static_cast<float>(low_height(extent_)));
   const GLint matrix_at = program_.uniform("shadow_from_mesh");
   const GLint height_at = program_.uniform("height_of_mesh");
   for (const DrawnBody* body : casting) {
@@ -152,8 +156,8 @@ void ShadowMap::soften_and_upload() {
     soft[i] = covered_[2 * i + 1];
   }
   const auto pixels = [&](double metres) { return static_cast<int>(std::lround(metres * kEdge / edge_m_)); };
-  blur(sharp, kEdge, pixels(kSharp));
-  blur(soft, kEdge, pixels(kSoft));
+  blur(sharp, kEdge, pixels(sharp_edge(extent_)));
+  blur(soft, kEdge, pixels(soft_edge(extent_)));
   for (std::size_t i = 0; i < kPlaces; ++i) {
     const int left = (255 - 150 * sharp[i] / 255) * (255 - 115 * soft[i] / 255) / 255;
     sharp[i] = static_cast<std::uint8_t>(255 - left);

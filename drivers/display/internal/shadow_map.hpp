@@ -29,9 +29,9 @@ class ShadowMap {
   ShadowMap& operator=(const ShadowMap&) = delete;
 
   Result<void> build();
-  // Of what is above the level `z_m` (W). Binds its own target. Nothing is drawn where nothing has moved since the last
-  // call.
-  Result<void> update(double z_m, std::span<const DrawnBody> bodies);
+  // Of what is above the level `z_m` (W); `extent_m`, the size of the cell, says how soft. Binds its own target.
+  // Nothing is drawn where nothing has moved since the last call.
+  Result<void> update(double z_m, double extent_m, std::span<const DrawnBody> bodies);
   [[nodiscard]] GLuint texture() const { return texture_; }
   // x, y of the lower corner, W, m; and 1 / its edges: as the shadow falls on a level at `z_m`.
   [[nodiscard]] Eigen::Vector4f part_at(double z_m) const;
@@ -45,7 +45,8 @@ class ShadowMap {
   RenderTarget target_;
   GLuint texture_ = 0;
   Eigen::Vector4f part_ = Eigen::Vector4f::Zero();
-  double level_ = 0;  // m, W
+  double level_ = 0;   // m, W
+  double extent_ = 1;  // m
   double edge_m_ = 1;
   std::vector<double> shown_;  // what the texture was made from
   std::vector<std::uint8_t> covered_;
