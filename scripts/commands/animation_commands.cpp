@@ -54,9 +54,6 @@ template <DisplayMode mode>
 Outcome switch_mode(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.display.set_mode(mode, command.choice(0) == 0));
 }
-constexpr Handler set_bfrm = switch_mode<DisplayMode::backface_removal>;
-constexpr Handler set_fldr = switch_mode<DisplayMode::floor>;
-constexpr Handler set_shad = switch_mode<DisplayMode::shadows>;
 
 Outcome wait(const ParsedCommand& /*command*/, CommandHost& /*host*/) {
   Outcome outcome;
@@ -65,8 +62,14 @@ Outcome wait(const ParsedCommand& /*command*/, CommandHost& /*host*/) {
 }
 
 constexpr Registration kHandlers[] = {
-    {FormId::stdp, set_display}, {FormId::stvw, set_view}, {FormId::covw, connect_view}, {FormId::set_mode, set_mode},
-    {FormId::bfrm, set_bfrm},    {FormId::fldr, set_fldr}, {FormId::shad, set_shad},     {FormId::wait, wait},
+    {FormId::stdp, set_display},
+    {FormId::stvw, set_view},
+    {FormId::covw, connect_view},
+    {FormId::set_mode, set_mode},
+    {FormId::bfrm, switch_mode<DisplayMode::backface_removal>},
+    {FormId::fldr, switch_mode<DisplayMode::floor>},
+    {FormId::shad, switch_mode<DisplayMode::shadows>},
+    {FormId::wait, wait},
 };
 
 }  // namespace
