@@ -23,7 +23,7 @@ class Bodies {
 
   // By body.
   [[nodiscard]] std::int32_t node(std::size_t body) const { return nodes_[body]; }
-  [[nodiscard]] const Box& box_G(std::size_t body) const { return boxes_[body]; }
+  [[nodiscard]] const Box& bounds(std::size_t body) const { return boxes_[body]; }
 
   // Of all that was drawn since update() was true: what moves only widens it.
   [[nodiscard]] const Box& reach() const { return reach_; }

@@ -23,7 +23,7 @@ Eigen::Vector3d place_of_label(const CompiledRobot& robot, const Bodies& bodies,
   Box box;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (parts.part_of(bodies.node(i)) == static_cast<int>(robot.slot))
-      box.extend(moved(scene.bodies[i].X_WG, bodies.box_G(i)));
+      box.extend(moved(scene.bodies[i].X_WG, bodies.bounds(i)));
   }
   if (box.isEmpty()) return Eigen::Vector3d::Zero();
   return {box.center().x(), box.center().y(), box.max().z() + kAbove};
