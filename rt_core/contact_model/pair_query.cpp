@@ -78,10 +78,12 @@ QueryResult PairQuery::ask(const Piece& instrument, const Piece& obstacle, doubl
   crowded_ = overlapped_ = perhaps_inside_ = false;
   certain_ = true;
   nearest_ = std::numeric_limits<double>::infinity();
-  if (instrument.mesh()) {
-    obstacle.mesh() ? mesh_near_mesh(instrument, obstacle) : mesh_near_primitive(instrument, obstacle);
+  if (instrument.mesh() && obstacle.mesh()) {
+    mesh_near_mesh(instrument, obstacle);
+  } else if (instrument.mesh() || obstacle.mesh()) {
+    mesh_near_primitive(instrument, obstacle);
   } else {
-    obstacle.mesh() ? primitive_near_mesh(instrument, obstacle) : primitive_near_primitive(instrument, obstacle);
+    primitive_near_primitive(instrument, obstacle);
   }
   if (crowded_) return QueryResult::crowded;
   if (!overlapped_) overlapped_ = one_in_the_other(instrument, obstacle);
@@ -99,39 +101,27 @@ void PairQuery::primitive_near_primitive(const Piece& instrument, const Piece& o
   consider(instrument, obstacle, {found.points.p_a, found.points.p_b});
 }
 
-void PairQuery::primitive_near_mesh(const Piece& instrument, const Piece& obstacle) {
-  const geometry::MeshTree& tree = *obstacle.solid->tree;
-  const Pose X_MP = X_OW_ * instrument.X_WG;
-  const double limit = reach_ + instrument.skin;
-  geometry::BoxWalk walk(tree.wide(), X_MP, instrument.core.half, 0.0);
-  walk.set_limit(limit);
-  ConvexCore triangle;
-  triangle.kind = CoreKind::triangle;
-  std::uint32_t i = 0;
-  while (!crowded_ && !overlapped_ && walk.next(i)) {
-    triangle.corners = tree.triangles()[i];
-    const ConvexDistance found = convex_distance(triangle, Pose::Identity(), instrument.core, X_MP, limit);
-    if (!(found.points.distance < limit)) continue;
-    certain_ = certain_ && found.certain;
-    consider(instrument, obstacle, {obstacle.X_WG * found.points.p_b, obstacle.X_WG * found.points.p_a, kNone, i});
-  }
-}
-
 void PairQuery::mesh_near_primitive(const Piece& instrument, const Piece& obstacle) {
-  const geometry::MeshTree& tree = *instrument.solid->tree;
-  const Pose X_MP = X_IW_ * obstacle.X_WG;
-  const double limit = reach_ + obstacle.skin;
-  geometry::BoxWalk walk(tree.wide(), X_MP, obstacle.core.half, 0.0);
+  const bool by_instrument = instrument.mesh();
+  const Piece& mesh = by_instrument ? instrument : obstacle;
+  const Piece& primitive = by_instrument ? obstacle : instrument;
+  const geometry::MeshTree& tree = *mesh.solid->tree;
+  const Pose X_MP = (by_instrument ? X_IW_ : X_OW_) * primitive.X_WG;
+  const double limit = reach_ + primitive.skin;
+  geometry::BoxWalk walk(tree.wide(), X_MP, primitive.core.half, 0.0);
   walk.set_limit(limit);
   ConvexCore triangle;
   triangle.kind = CoreKind::triangle;
   std::uint32_t i = 0;
   while (!crowded_ && !overlapped_ && walk.next(i)) {
     triangle.corners = tree.triangles()[i];
-    const ConvexDistance found = convex_distance(triangle, Pose::Identity(), obstacle.core, X_MP, limit);
+    const ConvexDistance found = convex_distance(triangle, Pose::Identity(), primitive.core, X_MP, limit);
     if (!(found.points.distance < limit)) continue;
     certain_ = certain_ && found.certain;
-    consider(instrument, obstacle, {instrument.X_WG * found.points.p_a, instrument.X_WG * found.points.p_b, i, kNone});
+    const Vector3d on_mesh = mesh.X_WG * found.points.p_a;
+    const Vector3d on_primitive = mesh.X_WG * found.points.p_b;
+    consider(instrument, obstacle,
+             by_instrument ? Touch{on_mesh, on_primitive, i, kNone} : Touch{on_primitive, on_mesh, kNone, i});
   }
 }
 

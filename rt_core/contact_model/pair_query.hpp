@@ -58,8 +58,7 @@ class PairQuery {
   };
 
   void primitive_near_primitive(const Piece& instrument, const Piece& obstacle);
-  void primitive_near_mesh(const Piece& instrument, const Piece& obstacle);
-  void mesh_near_primitive(const Piece& instrument, const Piece& obstacle);
+  void mesh_near_primitive(const Piece& instrument, const Piece& obstacle);  // whichever of them is the mesh
   void mesh_near_mesh(const Piece& instrument, const Piece& obstacle);
   void consider(const Piece& instrument, const Piece& obstacle, const Touch& touch);
   [[nodiscard]] ObstaclePlace look_at_obstacle(const Piece& obstacle, const Touch& touch, const Eigen::Vector3d& d,
