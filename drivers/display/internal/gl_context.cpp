@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "drivers/display/internal/leaks_of_others.hpp"
+
 namespace cellmirror::display {
 
 namespace {
@@ -38,6 +40,7 @@ void GlContext::forget() {
 }
 
 Result<std::unique_ptr<GlContext>> make_context(const RendererOptions& options) {
+  tolerate_leaks_of_others();
   limit_threads(options.threads);
   std::string tried;
   std::string remedies;
