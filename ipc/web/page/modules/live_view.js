@@ -11,6 +11,7 @@ const kMostPixels = 1280 * 960;
 const kMostEdges = [1920, 1200];  // of the gateway
 const kRate_hz = 15;
 const kWishEvery_ms = 40;
+const kAskAgain_ms = 5000;
 const kMainViews = {1: 0, 2: 1, 3: 3, 4: 4, 5: 5, 6: 6};  // of the displays of STDP, docs/script-reference.md
 
 // As large as the area in true pixels, no larger than is worth drawing, both even.
@@ -65,7 +66,11 @@ export class LiveView {
       this.sent_ = "";
       this.tell_age();
     });
-    setInterval(() => this.tell_age(), 250);
+    setInterval(() => {
+      this.tell_age();
+      // Where there were too many pictures there may be room now.
+      if (this.problem_ && performance.now() - this.asked_at_ > kAskAgain_ms) this.ask_(true);
+    }, 250);
   }
 
   get choice() {
@@ -174,7 +179,7 @@ export class LiveView {
     const since = this.shown_ ? (now - this.shown_.at) / 1000 : null;
     let text = "";
     if (!this.connection_.open) text = this.shown_ ? `The gateway is gone. This picture is ${age(since + this.shown_.age_s)} old.` : "No connection to the gateway yet.";
-    else if (this.problem_) text = `No picture: ${this.problem_}`;
+    else if (this.problem_) text = `No new picture: ${this.problem_}`;
     else if (!this.shown_) text = now - (this.waiting_since_ ?? now) > 1500 ? "No picture has come yet." : "";
     else if (since > kStale_s) text = `This picture is ${age(since + this.shown_.age_s)} old: no newer one has come.`;
     else if (this.shown_.age_s > kStale_s) text = `The posture shown is ${age(this.shown_.age_s)} old.`;
