@@ -96,6 +96,12 @@ test("the tree shows what is open", () => {
   assert.deepEqual(sut.rows("B.C").map(({node}) => node.path), ["A.b.c"]);
 });
 
+test("the world, which has no name, is no row", () => {
+  const sut = new TreeModel();
+  sut.set([{path: "", name: "", parent: null}, {path: "A", name: "A", parent: ""}]);
+  assert.deepEqual(sut.rows().map(({node}) => node.path), ["A"]);
+});
+
 test("a ring of parents does not hang the page", () => {
   const sut = new TreeModel();
   sut.set([{path: "a", name: "a", parent: "b"}, {path: "b", name: "b", parent: "a"}, {path: "c", name: "c", parent: "c"}]);

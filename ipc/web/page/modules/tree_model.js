@@ -7,7 +7,8 @@ export class TreeModel {
   }
 
   // nodes: {path, name, parent, kind, shown, has_detail}; `parent` is a path, or null or "" at the top.
-  set(nodes) {
+  set(all) {
+    const nodes = all.filter((node) => node.path !== "");  // the world itself has no name and no switch
     this.nodes_ = new Map(nodes.map((node) => [node.path, node]));
     this.children_ = new Map();
     for (const node of nodes) {
