@@ -90,7 +90,8 @@ def _unfiltered(raw, height, stride, step):
 
 def read_png(path):
     """Of 8 bits a colour, RGB or RGBA, not interlaced."""
-    data = open(path, "rb").read()
+    with open(path, "rb") as file:
+        data = file.read()
     if data[:8] != b"\x89PNG\r\n\x1a\n":
         raise ValueError("no PNG")
     at, packed, head = 8, b"", None

@@ -78,7 +78,7 @@ class Cameras(unittest.TestCase):
 
     def head(self, *more):
         process = g.Process([g.BIN / "sim_camera_head", "--camera", CAMERA, "--key", self.key, "--channel", CHANNEL,
-                             "--nodes", "21,22", "--pan-range", "-1.6,1.6", "--tilt-range", "-1.4,0.8",
+                             "--nodes", "21,22", "--pan-range", "-1.6,1.6", "--tilt-range", "-1.4,0.45",
                              "--start", "0,-0.6292", "--control", self.scratch.root / "head.sock", "--no-input", *more])
         self.processes.append(process)
         return process
