@@ -18,6 +18,7 @@ struct CameraNow {
   Pose X_WC = Pose::Identity();
   double focal_distance_m = 0;  // viewing distance; of a tracking camera the distance to what it tracks
   double fovy_rad = 0;
+  double housing_m = 0;   // how far its own housing reaches before it: a picture begins behind that
   bool tracking = false;  // CAM_TRACKING, and the frame is there
   double pan_rad = 0;     // how far tracking turned it out of its mount (camera_mount.hpp), about its y axis,
   double tilt_rad = 0;    // then about its new x axis; 0 for others

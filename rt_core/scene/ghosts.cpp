@@ -8,7 +8,7 @@ namespace cellmirror::scene {
 
 namespace {
 
-constexpr double kAbove = 0.12;  // m
+constexpr double kAbove = 0.06;  // of the robot's diagonal
 
 bool is_ghost(const RobotCondition& robot) { return robot.mirrored && robot.state != DataState::fresh; }
 
@@ -26,7 +26,7 @@ Eigen::Vector3d place_of_label(const CompiledRobot& robot, const Bodies& bodies,
       box.extend(moved(scene.bodies[i].X_WG, bodies.bounds(i)));
   }
   if (box.isEmpty()) return Eigen::Vector3d::Zero();
-  return {box.center().x(), box.center().y(), box.max().z() + kAbove};
+  return {box.center().x(), box.center().y(), box.max().z() + kAbove * box.sizes().norm()};
 }
 
 }  // namespace

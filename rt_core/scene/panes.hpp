@@ -24,7 +24,8 @@ struct PaneInput {
 // A view where it is now: at its camera (COVW) if that is there, else on its sequence, else as set.
 [[nodiscard]] View view_now(const PaneInput& input, int id);
 // What a camera sees, as a view: twist included, so that a view may go on from there. A camera has no clipping planes:
-// they are those of `clipped_as`, the nearer one not farther than 50 mm.
+// they are those of `clipped_as`, the nearer one not farther than 50 mm, or than
+// its own housing needs.
 [[nodiscard]] View view_of_camera(const CameraNow& camera, const View& clipped_as);
 // The near plane is at least 1e-5 of the way to the far one: a depth buffer needs a distance above 0.
 [[nodiscard]] Eye eye_of(const View& view);

@@ -15,6 +15,8 @@ constexpr double kOnTheSpot = 1e-9;      // m
 constexpr double kNearestPart = 1e-5;    // of the far distance: a depth buffer tells no more apart
 constexpr double kCameraNearest = 0.05;  // m: what is in front of a camera is not cut away by a view made for the cell
 
+constexpr double kBeforeHousing = 1.02;
+
 double part_of(const ViewSequence& sequence, Timestamp now, std::uint64_t updates) {
   if (sequence.duration.count() > 0) return seconds(now - sequence.begin) / seconds(sequence.duration);
   if (sequence.steps == 0) return 1.0;
@@ -53,7 +55,7 @@ View view_of_camera(const CameraNow& camera, const View& clipped_as) {
   const Eigen::Matrix3d R_WS = screen_axes(view);
   const Eigen::Vector3d x_S = R_WS.transpose() * camera.X_WC.linear().col(0);
   view.twist = std::atan2(x_S.y(), x_S.x());
-  view.near_distance = std::min(clipped_as.near_distance, kCameraNearest);
+  view.near_distance = std::max(std::min(clipped_as.near_distance, kCameraNearest), kBeforeHousing * camera.housing_m);
   return view;
 }
 

@@ -96,6 +96,21 @@ TEST_F(Panes, OneViewFillsThePicture) {
   EXPECT_TRUE(sut[0].title.empty());
 }
 
+TEST_F(Panes, APictureOfACameraBeginsBehindItsOwnHousing) {
+  const auto add = [&](std::int32_t node, double z, double length) {
+    auto geometry = std::make_shared<Geometry>();
+    geometry->shape = Shape::box;
+    geometry->size = {0.08, 0.08, length};
+    geometry->X_NG.translation().z() = z;
+    cell_.cell.geometry.push_back({node, geometry});
+  };
+  EXPECT_LE((*panes_of_camera(input(), "CAM"))[0].eye.near_distance, 0.05) << "the table is no housing";
+  add(SmallCell::camera, 0, 0.12);           // to 60 mm
+  add(SmallCell::table, 1.0 + 0.085, 0.05);  // what it is fixed to: from 60 to 110 mm
+  add(SmallCell::camera, 0.5, 0.1);          // beyond a gap
+  EXPECT_NEAR((*panes_of_camera(input(), "CAM"))[0].eye.near_distance, 1.02 * 0.11, 1e-12);
+}
+
 class Tracking : public Panes {
  protected:
   Tracking() {
