@@ -1,0 +1,225 @@
+"""Pictures of the running gateway and of cell files: `cellmirror snapshot`, films, who is refused, what goes on without."""
+
+import base64
+import json
+import pathlib
+import re
+import shutil
+import socket
+import struct
+import threading
+import time
+import unittest
+
+import gateway as g
+
+
+def png_size(path):
+    data = pathlib.Path(path).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", data[:8]
+    return struct.unpack(">II", data[16:24])
+
+
+def jpeg_size(data):
+    """Of the frame header (ISO 10918-1, B.2.2)."""
+    assert data[:2] == b"\xff\xd8", data[:2]
+    at = 2
+    while at < len(data):
+        marker, length = data[at + 1], struct.unpack(">H", data[at + 2:at + 4])[0]
+        if marker in (0xC0, 0xC1, 0xC2):
+            height, width = struct.unpack(">HH", data[at + 5:at + 9])
+            return width, height
+        at += 2 + length
+    raise AssertionError("no frame header")
+
+
+def require_renderer(scratch):
+    done = scratch.cellmirror("snapshot", "--cell", str(scratch.cell_file), "--size", "16x16", "-o",
+                              str(scratch.root / "probe.png"), timeout=60)
+    if done.returncode != 0 and "renderer" in done.stderr.lower():
+        raise unittest.SkipTest(f"skipped: {done.stderr.strip()}")
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+
+
+class Pictures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = g.Scratch()
+        require_renderer(cls.scratch)
+        cls.gateway = g.Gateway(cls.scratch, pictures=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        status = cls.gateway.stop()
+        cls.gateway.close()
+        cls.scratch.remove()
+        assert status == 0, f"the gateway ended with {status}"
+
+    def snapshot(self, *arguments, expect=0):
+        done = self.scratch.cellmirror("snapshot", "--instance", self.scratch.instance, *map(str, arguments), timeout=60)
+        self.assertEqual(done.returncode, expect, done.stderr)
+        return done
+
+    def send(self, command):
+        done = self.scratch.send(command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def path(self, name):
+        return self.scratch.root / name
+
+    def test_picture_has_the_wanted_size_and_format(self):
+        self.snapshot("--size", "320x200", "-o", self.path("a.png"))
+        self.assertEqual(png_size(self.path("a.png")), (320, 200))
+        self.snapshot("--view", 3, "--size", "200x320", "-o", self.path("a.jpg"))
+        self.assertEqual(jpeg_size(self.path("a.jpg").read_bytes()), (200, 320))
+        told = json.loads(self.snapshot("--json", "-o", self.path("b.jpeg")).stdout)
+        self.assertEqual((told["width"], told["height"], told["format"]), (640, 480, "jpeg"))
+        self.assertLess(told["posture_age_s"], 5)
+        self.assertEqual(told["bytes"], self.path("b.jpeg").stat().st_size)
+
+    def test_camera_sees_something_else_than_the_display(self):
+        self.snapshot("--camera", "CAMERA_5", "--size", "160x120", "-o", self.path("c.png"))
+        self.snapshot("--view", 0, "--size", "160x120", "-o", self.path("d.png"))
+        self.assertNotEqual(self.path("c.png").read_bytes(), self.path("d.png").read_bytes())
+
+    def test_robot_that_moves_is_seen_at_its_new_place(self):
+        self.send("ROBACT MANTEC_R3")
+        self.send("rob_positioning jump")
+        self.snapshot("--view", 0, "-o", self.path("before.png"))
+        self.send("POS_ROB MANTEC_R3 JOINT_INC 40 20 10")
+        self.snapshot("--view", 0, "-o", self.path("after.png"))
+        self.assertNotEqual(self.path("before.png").read_bytes(), self.path("after.png").read_bytes())
+
+    def test_unknown_camera_is_refused_with_the_nearest(self):
+        done = self.snapshot("--camera", "CAMERA_6", "-o", self.path("x.png"), expect=1)
+        self.assertIn("CAMERA_5", done.stderr)
+        self.assertFalse(self.path("x.png").exists())
+
+    def test_wrong_usage_is_told(self):
+        for arguments in ([], ["-o", "a.gif"], ["-o", "a.png", "--size", "12"], ["-o", "a.png", "--size", "8x8"],
+                          ["-o", "a.png", "--view", "7"], ["-o", "a.png", "--view", "1", "--camera", "CAMERA_5"],
+                          ["--film", "f", "--cell", "c.toml"], ["-o", "a.png", "--quality", "0"]):
+            done = self.scratch.cellmirror("snapshot", *arguments)
+            self.assertEqual(done.returncode, 2, f"{arguments}: {done.stderr}")
+
+    def test_folder_that_is_not_there_is_told(self):
+        done = self.snapshot("-o", self.path("no") / "where.png", expect=1)
+        self.assertIn("cannot be written", done.stderr)
+
+    def test_hostile_requests_are_refused(self):
+        def ask(text):
+            client = socket.socket(socket.AF_UNIX)
+            client.connect(str(next(self.scratch.runtime.glob(f"**/{self.scratch.instance}/control.sock"))))
+            client.sendall(text.encode() + b"\n")
+            out = b""
+            while chunk := client.recv(65536):
+                out += chunk
+            client.close()
+            return json.loads(out)
+
+        for members in ('"width": 1e9', '"width": -5', '"width": "x"', '"view": 9', '"view": 0.5', '"camera": ""',
+                        '"format": "gif"', '"quality": 1000', '"size": 3', '"height": 99999999999999999999',
+                        '"view": 0, "camera": "CAMERA_5"'):
+            answer = ask('{"request": "snapshot", %s}' % members)
+            self.assertIn("error", answer, members)
+        answer = ask('{"request": "snapshot", "width": 64, "height": 48, "format": "jpeg"}')
+        self.assertEqual(jpeg_size(base64.b64decode(answer["data"])), (64, 48))
+
+    def test_status_answers_while_a_large_picture_is_drawn(self):
+        large = threading.Thread(target=lambda: self.snapshot("--size", "2048x1536", "-o", self.path("large.jpg")))
+        large.start()
+        time.sleep(0.2)
+        meanwhile = 0
+        while large.is_alive():
+            self.scratch.status()
+            meanwhile += large.is_alive()
+        large.join()
+        self.assertGreater(meanwhile, 0)
+        self.assertEqual(jpeg_size(self.path("large.jpg").read_bytes()), (2048, 1536))
+
+    def test_status_tells_of_the_pictures(self):
+        self.snapshot("--size", "64x64", "-o", self.path("s.png"))
+        pictures = self.scratch.status()["pictures"]
+        self.assertTrue(pictures["on"])
+        self.assertRegex(pictures["renderer"], r"OSMesa|EGL")
+        self.assertEqual(pictures["problem"], "")
+        self.assertGreaterEqual(pictures["on_demand"], 1)
+        self.assertEqual(pictures["streams"], 0)
+        self.assertGreater(pictures["draw_ms"]["p50"], 0)
+        self.assertIn(pictures["renderer"], self.scratch.cellmirror("status").stdout)
+
+    def test_updates_go_on_where_nobody_looks_and_nothing_is_drawn(self):
+        before = self.scratch.status()["pictures"]
+        after = g.eventually(lambda: (lambda p: p if p["updates"] > before["updates"] + 5 else None)(
+            self.scratch.status()["pictures"]))
+        self.assertIsNotNone(after)
+        self.assertEqual(after["drawn"], before["drawn"])
+
+    def test_film_is_a_folder_of_frames_or_one_file(self):
+        self.snapshot("--film", self.path("frames"), "--seconds", 1, "--rate", 5, "--size", "160x120")
+        frames = sorted(self.path("frames").glob("*.jpg"))
+        self.assertEqual(len(frames), 5)
+        self.assertEqual(jpeg_size(frames[0].read_bytes()), (160, 120))
+        told = json.loads(self.snapshot("--film", self.path("film.mjpeg"), "--seconds", 1, "--rate", 5, "--size",
+                                        "160x120", "--json").stdout)
+        self.assertEqual(told["frames"], 5)
+        self.assertEqual(len(re.findall(b"\xff\xd8\xff", self.path("film.mjpeg").read_bytes())), 5)
+
+    def test_mp4_is_made_by_ffmpeg_or_its_absence_is_told(self):
+        film = self.path("film.mp4")
+        done = self.snapshot("--film", film, "--seconds", 1, "--rate", 5, "--size", "161x121")
+        if shutil.which("ffmpeg") is None:
+            self.assertIn("ffmpeg", done.stderr)
+            self.assertEqual(len(list(self.path("film.mp4.frames").glob("*.jpg"))), 5)
+        else:
+            self.assertEqual(film.read_bytes()[4:8], b"ftyp")
+
+
+class WithoutPictures(unittest.TestCase):
+    def run_with(self, display, *arguments, pictures=True):
+        scratch = g.Scratch()
+        text = scratch.cell_file.read_text()
+        scratch.cell_file.write_text(text + display)
+        gateway = g.Gateway(scratch, *arguments, pictures=pictures)
+        self.addCleanup(scratch.remove)
+        self.addCleanup(gateway.close)
+        done = scratch.cellmirror("snapshot", "--instance", scratch.instance, "-o", str(scratch.root / "x.png"))
+        return scratch, done
+
+    def test_headless_refuses_and_says_so(self):
+        scratch, done = self.run_with("", pictures=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--headless", done.stderr)
+        self.assertFalse(scratch.status()["pictures"]["on"])
+
+    def test_switched_off_in_the_cell_file(self):
+        _, done = self.run_with("\n[display]\non = false\n")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("[display]", done.stderr)
+
+    def test_nobody_to_ask(self):
+        scratch = g.Scratch()
+        self.addCleanup(scratch.remove)
+        done = scratch.cellmirror("snapshot", "--instance", "nobody", "-o", str(scratch.root / "x.png"))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no gateway", done.stderr)
+
+
+class OfCellFiles(unittest.TestCase):
+    def test_every_demo_cell_has_a_picture(self):
+        for cell in ("transfer_cell", "trainer", "can_cell", "ros2_cell"):
+            scratch = g.Scratch(cell, startup=True)
+            self.addCleanup(scratch.remove)
+            require_renderer(scratch)
+            picture = scratch.root / "cell.png"
+            done = scratch.cellmirror("snapshot", "--cell", str(scratch.cell_file), "--view", "0", "--size", "400x300",
+                                      "-o", str(picture), "--json", timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(png_size(picture), (400, 300))
+            self.assertGreater(picture.stat().st_size, 5_000, "a picture of nothing")
+            self.assertTrue(json.loads(done.stdout)["renderer"])
+
+
+if __name__ == "__main__":
+    g.main()
