@@ -174,6 +174,16 @@ TEST_F(ViewsInPictures, AViewAtATrackingCameraHasItsTargetInTheMiddle) {
   EXPECT_LE((pixel_of(place("Mantec_2.J_1")) - Eigen::Vector2i(kWidth / 2, kHeight / 2)).norm(), 1.0);
 }
 
+TEST_F(ViewsInPictures, NoCameraSeesItsOwnHousing) {
+  for (const CompiledCamera& camera : cell_->cameras) {
+    state_.views[0].camera = camera.name;
+    const auto above = static_cast<std::size_t>(cell_->parent[static_cast<std::size_t>(camera.node)]);
+    EXPECT_GT(mask("").count, 2000U) << camera.name;
+    if (above == 0) continue;  // fixed to the world
+    EXPECT_EQ(mask((*cell_->paths)[above]).count, 0U) << camera.name;
+  }
+}
+
 TEST_F(ViewsInPictures, TheCamerasMainViewFillsTheDisplay) {
   state_.display = 2;
   const Image before = picture();
