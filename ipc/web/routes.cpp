@@ -36,8 +36,8 @@ std::optional<Route> document(const HttpRequest& request, ServerContext& context
                                                                             {"/metrics", &Backend::metrics_text}}};
   for (const auto& [path, make] : kDocuments) {
     if (request.path != path) continue;
-    return Work([&backend = context.backend, make = make, metrics = path == "/metrics"] {
-      Answer answer = json_answer((backend.*make)());
+    return Work([&backend = context.backend, one = make, metrics = path == "/metrics"] {
+      Answer answer = json_answer((backend.*one)());
       if (metrics) answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
       return answer;
     });
