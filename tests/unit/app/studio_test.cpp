@@ -1,0 +1,108 @@
+// The picture thread where there is nothing to draw with: everything else goes on.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "app/gateway/studio.hpp"
+#include "rt_core/rt/watchdog.hpp"
+
+namespace cellmirror::app {
+namespace {
+
+class StudioTest : public testing::Test {
+ protected:
+  Studio::Options broken() {
+    Studio::Options options;
+    options.settings.rate_hz = 60;
+    options.make_renderer = [this]() -> Result<std::unique_ptr<display::Renderer>> {
+      ++tries_;
+      return fail("no renderer: libOSMesa.so.8 is not there", "apt-get install libosmesa6");
+    };
+    return options;
+  }
+  static bool eventually(const std::function<bool()>& condition) {
+    for (int i = 0; i < 2000; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+
+  SystemClock clock_;
+  Watchdog watchdog_{std::chrono::seconds(10), {}};
+  engine::Engine engine_{watchdog_};
+  PictureBoard pictures_;
+  ProximityBoard proximity_;
+  RangeBoard ranges_;
+  ForceBoard forces_;
+  PictureUpdates updates_;
+  SceneSource::Boards boards_{engine_, pictures_, proximity_, ranges_, forces_, clock_};
+  std::atomic<int> tries_{0};
+};
+
+TEST_F(StudioTest, BrokenRendererIsToldAndNotTriedAllTheTime) {
+  Studio sut(broken(), boards_, updates_);
+  for (int i = 0; i < 3; ++i) {
+    const auto picture = sut.picture({}, ImageFormat::png);
+    ASSERT_FALSE(picture);
+    EXPECT_NE(picture.error().text().find("libosmesa6"), std::string::npos) << picture.error().text();
+  }
+  const auto picked = sut.pick({}, 1, 1);
+  EXPECT_FALSE(picked);
+  EXPECT_EQ(tries_, 1);
+  EXPECT_NE(sut.report().problem.find("libOSMesa"), std::string::npos);
+  EXPECT_TRUE(sut.report().renderer.empty());
+}
+
+TEST_F(StudioTest, UpdatesGoOnWithoutRendererAndWithoutPictures) {
+  Studio::Options off;
+  off.headless = true;
+  off.settings.rate_hz = 60;
+  Studio sut(std::move(off), boards_, updates_);
+  EXPECT_TRUE(eventually([&] { return updates_.count() > 3; }));
+  EXPECT_FALSE(sut.report().on);
+  const auto stream = sut.open_pictures({});
+  ASSERT_FALSE(stream);
+  EXPECT_NE(stream.error().text().find("--headless"), std::string::npos);
+}
+
+TEST_F(StudioTest, NobodyLooksNothingIsTried) {
+  Studio sut(broken(), boards_, updates_);
+  EXPECT_TRUE(eventually([&] { return updates_.count() > 5; }));
+  EXPECT_EQ(tries_, 0);
+  const auto stream = sut.open_pictures({});
+  ASSERT_TRUE(stream) << stream.error().text();
+  EXPECT_TRUE(eventually([&] { return tries_ == 1; }));
+  EXPECT_EQ((*stream)->newest(0), nullptr);
+  EXPECT_EQ(sut.report().streams, 1U);
+}
+
+TEST_F(StudioTest, WishesThatNobodyCanFulfilAreRefusedAtOnce) {
+  Studio sut(broken(), boards_, updates_);
+  web::PictureWish wish;
+  wish.view = 9;
+  EXPECT_FALSE(sut.open_pictures(wish));
+  EXPECT_FALSE(sut.picture(wish, ImageFormat::jpeg));
+  EXPECT_FALSE(sut.pick({}, 640, 0));
+  EXPECT_FALSE(sut.pick({}, -1, 0));
+  EXPECT_EQ(tries_, 0);
+}
+
+// Whoever waits for a picture when the gateway ends is told so.
+TEST_F(StudioTest, EndAnswersEverybody) {
+  std::atomic<int> answers{0};
+  {
+    Studio sut(broken(), boards_, updates_);
+    for (int i = 0; i < 40; ++i)
+      sut.ask_picture({}, ImageFormat::jpeg, [&](const Result<EncodedImage>& picture) {
+        EXPECT_FALSE(picture);
+        ++answers;
+      });
+  }
+  EXPECT_EQ(answers, 40);
+}
+
+}  // namespace
+}  // namespace cellmirror::app
