@@ -96,6 +96,36 @@ TEST_F(CellFile, readsViewsAndTellsWhatIsWrongWithThem) {
   EXPECT_FALSE(load("[[view]]\nid = 1\nviewpoint_mm = [1, 2, 3]\n"));
 }
 
+TEST_F(CellFile, readsHowPicturesAreTaken) {
+  auto sut = load("");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_TRUE(sut->pictures.on);
+  EXPECT_EQ(sut->pictures.rate_hz, 20.0);
+  EXPECT_EQ(sut->pictures.width, 640);
+  sut = load(
+      "[display]\non = false\nrate_hz = 5\nsize = [320, 200]\nrenderer = \"egl\"\nthreads = 0\n[dds_output]\n"
+      "picture_topic = \"rt/p\"\npicture_rate_hz = 2\npicture_camera = \"C\"\npicture_size = [16, 4096]\n"
+      "picture_quality = 100\n");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_FALSE(sut->pictures.on);
+  EXPECT_EQ(sut->pictures.rate_hz, 5.0);
+  EXPECT_EQ(sut->pictures.width, 320);
+  EXPECT_EQ(sut->pictures.height, 200);
+  EXPECT_EQ(sut->pictures.renderer, PictureRenderer::egl);
+  EXPECT_EQ(sut->pictures.threads, 0);
+  EXPECT_EQ(sut->dds.pictures.topic, "rt/p");
+  EXPECT_EQ(sut->dds.pictures.rate_hz, 2.0);
+  EXPECT_EQ(sut->dds.pictures.camera, "C");
+  EXPECT_EQ(sut->dds.pictures.height, 4096);
+  EXPECT_EQ(sut->dds.pictures.quality, 100);
+  for (const char* wrong : {"rate_hz = 0", "rate_hz = 61", "size = [640]", "size = [15, 480]", "size = [640, 4097]",
+                            "size = [640.5, 480]", "renderer = \"gl\"", "threads = -1", "colour = 1"}) {
+    EXPECT_FALSE(load("[display]\n" + std::string(wrong) + "\n")) << wrong;
+  }
+  EXPECT_FALSE(load("[dds_output]\npicture_view = 7\n"));
+  EXPECT_FALSE(load("[dds_output]\npicture_view = 1\npicture_camera = \"C\"\n"));
+}
+
 TEST_F(CellFile, readsItsSettings) {
   home.write("scripts/start.spt", "# nothing\n");
   const auto sut = load(R"(
