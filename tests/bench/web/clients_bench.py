@@ -56,7 +56,7 @@ def measure(scratch, seconds, page=None, pictures=False):
             stalled = Live(where, 4096)
             if pictures:
                 stalled.say(do="picture")
-        time.sleep(5)  # everybody is there, pictures are drawn
+        time.sleep(40 if page else 5)  # buffers have the size they need
         before = resident_mb(gateway.child.pid)
         begin, counted = time.monotonic(), [list(count) for count in counts]
         time.sleep(seconds)
