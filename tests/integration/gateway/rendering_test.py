@@ -76,7 +76,7 @@ class Rendering(unittest.TestCase):
             kept[:] = [self.picture(*options)]
             return p.difference(before, kept[0], threshold) >= at_least
 
-        self.assertTrue(g.eventually(differs, 5, 0.1), f"{commands[-1]} changes nothing")
+        self.assertTrue(g.eventually(differs, 15, 0.1), f"{commands[-1]} changes nothing")
         return kept[0]
 
     def back(self, *commands, options=(), to, at_most=0.001):
@@ -88,7 +88,7 @@ class Rendering(unittest.TestCase):
             last[:] = [p.difference(to, self.picture(*options))]
             return last[0] <= at_most
 
-        self.assertTrue(g.eventually(same, 5, 0.1), f"after {commands[-1]} {last[0]:.4f} of the picture differ")
+        self.assertTrue(g.eventually(same, 15, 0.1), f"after {commands[-1]} {last[0]:.4f} of the picture differ")
 
     def test_nothing_moves_so_no_pixel_changes(self):
         first = self.picture("--view", "0")
@@ -139,12 +139,12 @@ class Rendering(unittest.TestCase):
         view, far = ("--view", "0"), "STVW 0 VP -4600 -6000 3500 LP 4000 0 900"
         start = self.picture(*view)
         end = self.after(far, options=view, before=start, at_least=0.1)
-        for pace in ("TIME 3", "STEPS 60"):
+        for pace in ("TIME 6", "STEPS 120"):
             self.back(ARM, options=view, to=start)
             self.send(f"{far} {pace}")
             between = self.after(options=view, before=start, at_least=0.05, *("DRAW_SCENE",))
             self.assertGreater(p.difference(between, end), 0.02, pace)
-            self.assertTrue(g.eventually(lambda: p.difference(end, self.picture(*view)) < 0.001, 15, 0.1), pace)
+            self.assertTrue(g.eventually(lambda: p.difference(end, self.picture(*view)) < 0.001, 30, 0.1), pace)
 
     def test_a_script_waits_for_a_view_sequence(self):
         (self.scratch.home / "scripts" / "way.spt").write_text(
@@ -338,8 +338,8 @@ class Rendering(unittest.TestCase):
         left, top, right, bottom = p.changed_box(plain, shown)
         self.assertLess((right - left) * (bottom - top), 0.5)
         begin = time.monotonic()
-        self.assertTrue(g.eventually(lambda: p.difference(plain, self.picture()) < 0.001, 12, 0.2))
-        self.assertLess(time.monotonic() - begin, 8)
+        self.assertTrue(g.eventually(lambda: p.difference(plain, self.picture()) < 0.001, 30, 0.2))
+        self.assertLess(time.monotonic() - begin, 15)
 
 
 if __name__ == "__main__":
