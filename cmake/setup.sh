@@ -7,9 +7,12 @@ die() {
   exit "${2:-1}"
 }
 
+# The lines of the given files that say something.
+lines_of() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@"; }
+
 # The packages in the given files. A line "PACKAGE unless COMMAND" asks for it only where there is no such command yet.
 listed() {
-  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@" | while read -r package unless command; do
+  lines_of "$@" | while read -r package unless command; do
     [ "$unless" = unless ] && command -v "$command" >/dev/null || printf '%s\n' "$package"
   done
 }
