@@ -30,6 +30,9 @@ add_custom_target(benches)
 # What nearly every unit test includes is parsed once a build (PrecompiledHeaders.cmake).
 if(CELLMIRROR_TESTS)
   cellmirror_precompiled(tests HEADERS <gtest/gtest.h> LINK GTest::gtest OPTIONS ${CELLMIRROR_TEST_OPTIONS})
+  if(CELLMIRROR_SANITIZE)
+    cellmirror_precompiled(tests_computing HEADERS <gtest/gtest.h> LINK GTest::gtest OPTIONS ${CELLMIRROR_COMPUTING_TEST_OPTIONS})
+  endif()
 endif()
 
 # cellmirror_describe_test(name): kind label, serial where needed, and what every test may rely on in its environment.
@@ -68,6 +71,10 @@ function(cellmirror_test name)
   endif()
   if(NOT ARG_PRECOMPILED)
     set(ARG_PRECOMPILED tests)
+    get_filename_component(subject ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+    if(CELLMIRROR_SANITIZE AND subject MATCHES "${CELLMIRROR_COMPUTING_TESTS}")
+      set(ARG_PRECOMPILED tests_computing)
+    endif()
   endif()
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK}
     PRECOMPILED ${ARG_PRECOMPILED})

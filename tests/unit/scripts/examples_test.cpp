@@ -229,6 +229,7 @@ const Example kExamples[] = {
     {"MOVE_ROB MANTEC_RM3 LIN SCREEN_INC Y 1", FormId::move_rob_screen_inc, {"MANTEC_RM3"}, {1, 0, 0.001, 0, 0, 0, 0}},
     {"MOVE_ROB MANTEC_RM3 PTP START", FormId::move_rob_start, {"MANTEC_RM3"}, {0}},
     {"MOVE_ROB MANTEC_RM3 PTP REFERENCE", FormId::move_rob_reference, {"MANTEC_RM3"}, {0}},
+    {"SAVE_VIEWS view1.vws", FormId::save_views, {"view1.vws"}, {}},
 };
 
 class ManualExample : public ::testing::TestWithParam<Example> {};

@@ -122,7 +122,7 @@ TEST_F(ScriptRunnerTest, CalledScriptRunsBeforeItsCallerGoesOn) {
 }
 
 TEST_F(ScriptRunnerTest, RefusedCommandDoesNotStopTheScript) {
-  write("a.spt", "DRAW_SCENE;\nROBACT nobody;\nSHAD on;\nDRAW_SCENE;");
+  write("a.spt", "DRAW_SCENE;\nROBACT nobody;\nVV_RELOAD_LUTS;\nDRAW_SCENE;");
   ASSERT_TRUE(sut_->start_file("a"));
   run_all();
   EXPECT_EQ(gateway_.calls, (Calls{"draw_scene", "draw_scene"}));
@@ -391,7 +391,7 @@ TEST_F(ScriptRunnerTest, CountersBalance) {
   write("b.spt", "EXEC_SCRIPT a; hot_message b;");
   ASSERT_TRUE(sut_->start_file("a"));
   run_all();
-  EXPECT_FALSE(sut_->execute_message("SHAD on"));
+  EXPECT_FALSE(sut_->execute_message("VV_RELOAD_LUTS"));
   const ScriptCounters& counters = sut_->counters();
   EXPECT_EQ(counters.file.received, 7U);
   EXPECT_EQ(counters.file.done + counters.file.refused, counters.file.received);
