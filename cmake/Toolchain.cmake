@@ -32,7 +32,9 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # The sloppiness is what ccache's manual asks for where headers are precompiled.
+  # Used where it is installed, but not among the packages of ./run and ./check: a first build, which finds nothing in the
+  # cache, takes a third longer with it (10.9 s of processor time for eight sources instead of 7.9). The sloppiness is what
+  # ccache's manual asks for where headers are precompiled.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
