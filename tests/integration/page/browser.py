@@ -10,7 +10,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", HERE.parents[2]))
 BUILD = pathlib.Path(os.environ.get("CELLMIRROR_BIN_DIR", SOURCE / "build" / "bin")).parent
 ARTEFACTS = BUILD / "page-artefacts"
-PLAYWRIGHT = "playwright-core@^1.50"
+PLAYWRIGHT = "playwright-core@~1.58.0"  # runs with Debian 12's node 18, which newer ones refuse
 
 
 def chromium():
