@@ -77,7 +77,7 @@ bool nearest_on_plane(const ConeShape& cone, const Vector3d& normal, double d, V
   // The direction within the cone that is nearest to the normal.
   const double across = std::sqrt(normal.x() * normal.x() + normal.y() * normal.y());
   if (!(across > 0.0)) return false;  // the plane is behind
-  const Vector3d u(cone.sine * normal.x() / across, cone.sine * normal.y() / across, cone.cosine);
+  const Vector3d u(cone.sine * (normal.x() / across), cone.sine * (normal.y() / across), cone.cosine);
   const double towards = cone.sine * across + cone.cosine * normal.z();
   if (!(towards > 0.0)) return false;
   q = d / towards * u;

@@ -28,7 +28,8 @@ Vector3d nearest_direction(const ConeShape& cone, const Vector3d& v) {
   if (length > 0.0 && v.z() >= cone.cosine * length) return v / length;
   const double across = std::hypot(v.x(), v.y());
   if (!(across > 0.0)) return {cone.sine, 0.0, cone.cosine};
-  return {cone.sine * v.x() / across, cone.sine * v.y() / across, cone.cosine};
+  // Divided first: a product of numbers that are nearly too small has lost its digits.
+  return {cone.sine * (v.x() / across), cone.sine * (v.y() / across), cone.cosine};
 }
 
 // Points on the beams with u . c == along: a circle of directions about c, of which as few are tried as show whether
