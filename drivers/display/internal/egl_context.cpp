@@ -34,8 +34,8 @@ struct Egl {
 };
 
 const Egl& egl() {
-  static const Egl kLibrary;
-  return kLibrary;
+  static const Egl library;
+  return library;
 }
 
 template <class Function>

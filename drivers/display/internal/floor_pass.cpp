@@ -139,14 +139,16 @@ void FloorPass::make_tiles() {
     return static_cast<int>(dice >> 24U);
   };
   std::array<int, 16> slabs{};
-  for (int& slab : slabs) slab = roll() % 15 - 7;
+  for (int& brightness : slabs) brightness = roll() % 15 - 7;
   for (int y = 0; y < kEdge; ++y) {
     for (int x = 0; x < kEdge; ++x) {
       const int into_x = std::min(x % kSlab, kSlab - 1 - x % kSlab);
       const int into_y = std::min(y % kSlab, kSlab - 1 - y % kSlab);
       const int joint = std::min(into_x, into_y) < 1 ? -52 : std::min(into_x, into_y) < 2 ? -20 : 0;
-      const int value = 222 + slabs[static_cast<std::size_t>(4 * (y / kSlab) + x / kSlab)] + roll() % 13 - 6 + joint;
-      bytes[static_cast<std::size_t>(y * kEdge + x)] = static_cast<std::uint8_t>(value);
+      const int slab = 4 * (y / kSlab) + x / kSlab;
+      const int value = 222 + slabs[static_cast<std::size_t>(slab)] + roll() % 13 - 6 + joint;
+      const int at = y * kEdge + x;
+      bytes[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(value);
     }
   }
   gl_.GenTextures(1, &tiles_texture_);

@@ -25,8 +25,8 @@ struct OsMesa {
 };
 
 const OsMesa& osmesa() {
-  static const OsMesa kLibrary;
-  return kLibrary;
+  static const OsMesa library;
+  return library;
 }
 
 class OsMesaContext final : public GlContext {
