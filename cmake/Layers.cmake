@@ -32,6 +32,13 @@ set(CELLMIRROR_LAYERS
   "scripts/lang: rt_core/base rt_core/ports"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
+  "scripts/programs/program: rt_core/base rt_core/ports"
+  "scripts/programs/irdata: rt_core/base rt_core/ports scripts/programs/program"
+  "scripts/programs/srcl: rt_core/base rt_core/ports scripts/programs/program"
+  "scripts/programs/jet: rt_core/base rt_core/ports scripts/programs/program"
+  "scripts/programs/crcl: rt_core/base rt_core/ports scripts/programs/program"
+  "scripts/programs/languages: rt_core/base rt_core/ports scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl"
+  "scripts/programs/controller: rt_core/base rt_core/ports scripts/lang scripts/commands scripts/programs/program"
   "sim_devices/base: rt_core/base ipc/sysv"
   "sim_devices/haptic: sim_devices/haptic sim_devices/base rt_core/base rt_core/ports ipc/wire ipc/sysv config/command_line"
   "sim_devices/footswitch: sim_devices/footswitch sim_devices/base rt_core/base ipc/wire ipc/sysv config/command_line"
@@ -45,6 +52,7 @@ set(CELLMIRROR_LAYERS
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/scene
   rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web scripts/lang scripts/commands scripts/runner
+  scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/languages scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)

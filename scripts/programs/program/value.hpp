@@ -1,0 +1,35 @@
+// Values of robot programs.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+#include "rt_core/base/pose.hpp"
+#include "rt_core/ports/robot_parameters.hpp"
+
+namespace cellmirror::program {
+
+// In what units joint values are written. Which joints turn and which slide is the robot's affair, so that a program
+// knows its joint values in SI only when the machine gives a command.
+enum class JointUnits : std::uint8_t {
+  si,         // rad and m
+  degree_mm,  // degrees and mm, as in SCRIPT
+};
+
+// The first `count` joints of a robot.
+struct JointPosition {
+  JointValues values{};
+  std::uint8_t count = 0;
+  JointUnits units = JointUnits::degree_mm;
+};
+
+enum class ValueType : std::uint8_t { boolean, integer, real, pose, joints };
+[[nodiscard]] std::string_view name_of(ValueType type);
+
+// In the order of ValueType. Reals have the unit that their use says (mm or m are the language's affair: poses are in
+// metres always).
+using Value = std::variant<bool, std::int64_t, double, Pose, JointPosition>;
+[[nodiscard]] inline ValueType type_of(const Value& value) { return static_cast<ValueType>(value.index()); }
+
+}  // namespace cellmirror::program
