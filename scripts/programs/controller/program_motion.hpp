@@ -37,7 +37,7 @@ class ProgramMotion {
   [[nodiscard]] virtual bool room(std::string_view robot) const = 0;
   // Puts a move behind those before. `begin`: the instant at which it should have begun (that of the end of what it
   // waited for), when that is over already: it begins as far on as the time that has passed since, so that the time it
-  // takes to notice does not add up; never: now. Returns its ticket, ascending. Refused where the target cannot be
+  // takes to notice does not add up; never: behind the one before. Returns its ticket, ascending from 1. Refused where the target cannot be
   // reached, the way leads beyond limits, ...
   virtual Result<std::uint32_t> move(std::string_view robot, const MoveCommand& command, Timestamp begin) = 0;
   virtual Result<std::uint32_t> delay(std::string_view robot, double seconds, Timestamp begin) = 0;
@@ -45,7 +45,10 @@ class ProgramMotion {
   [[nodiscard]] virtual MotionProgress progress(std::string_view robot) const = 0;
   // 0: brakes on its path and waits there; 1: goes on. Within the robot's accelerations.
   virtual Result<void> set_pace(std::string_view robot, double pace) = 0;
-  // Brakes and forgets what waits.
+  // Moves with tickets beyond this one do not begin: the robot stands at the end of it, also where it is a fly move.
+  // 0: all may begin. For steps.
+  virtual Result<void> hold_behind(std::string_view robot, std::uint32_t ticket) = 0;
+  // Brakes and forgets what waits. At pace 0 too: what runs ends where the robot stands.
   virtual Result<void> stop(std::string_view robot) = 0;
 
   [[nodiscard]] virtual std::span<const JointKind> joint_kinds(std::string_view robot) const = 0;
