@@ -14,7 +14,7 @@ namespace cellmirror::program {
 
 enum class PathKind : std::uint8_t {
   joints,    // point to point
-  linear,    // the TCP on a straight line
+  linear,    // the TCP on a straight line to a pose, or to where joint values put it
   circular,  // the TCP on the arc through a via point
 };
 
@@ -22,8 +22,8 @@ enum class TargetKind : std::uint8_t {
   joints_absolute,  // rad or m; joints beyond the count stay
   joints_relative,
   pose_absolute,  // X_ZT: the TCP in the robot's ZP frame
-  pose_relative,  // translation and rotation in the axes of the program's zero point, from where the move before ends
-  tool_relative,  // in the axes of the TCP
+  pose_relative,  // from where the move before ends: translation and rotation in the axes of the ZP frame
+  tool_relative,  // from where the move before ends: X_TT', in the axes of the TCP
 };
 
 struct Target {
@@ -49,7 +49,7 @@ struct MotionSettings {
 struct MoveCommand {
   PathKind path = PathKind::joints;
   Target target;
-  std::optional<Target> via;  // circular: a pose, of the kind of the target
+  std::optional<Target> via;  // circular: of the kind of the target
   bool fly = false;           // the next move may begin before this one has ended
   MotionSettings settings;
 };
@@ -67,9 +67,8 @@ struct OutputCommand {
 };
 // Until the condition of the statement holds (Machine::holds()).
 struct WaitCommand {
-  std::string condition;  // for people: "input 3 is on"
-  std::optional<double>
-      timeout_s;  // then the program goes on, or fails: the machine's affair (Machine::resume_after_wait())
+  std::string condition;            // for people: "input 3 is on"
+  std::optional<double> timeout_s;  // then the program goes on, or fails: Machine::time_out()
 };
 struct AcquireCommand {
   std::string semaphore;

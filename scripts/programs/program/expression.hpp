@@ -3,7 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
+
+#include "rt_core/base/result.hpp"
+#include "scripts/programs/program/value.hpp"
 
 namespace cellmirror::program {
 
@@ -15,7 +19,7 @@ enum class Operator : std::uint8_t {
   constant,  // of Program::constants
   variable,  // of Program::variables
   // world; the machine waits for the robot to stand before it looks
-  current_joints,    // JointPosition, SI
+  current_joints,    // JointPosition; `payload`: its JointUnits
   current_position,  // X_UT: the TCP in the program's zero point
   digital_input,     // (number) boolean
   analogue_input,    // (number) real
@@ -24,16 +28,15 @@ enum class Operator : std::uint8_t {
   // (a): lists count from the lower bound of the variable, `payload`
   element,  // (index) of the list `payload`
   // arithmetic; integers stay integers, an integer beside a real becomes one; overflow, division by 0 and results that
-  // are not
-  // finite are errors where they occur
+  // are not finite are errors where they occur
   negate,
   add,
   subtract,
   multiply,
   divide,          // always a real
-  integer_divide,  // rounds towards 0
-  modulo,          // sign of the dividend
-  power,
+  integer_divide,  // of integers; rounds towards 0
+  modulo,          // of integers; sign of the dividend
+  power,           // always a real
   absolute,
   square_root,
   sine,  // angles in radians: languages that write degrees multiply
@@ -44,17 +47,17 @@ enum class Operator : std::uint8_t {
   arc_tangent,  // (y, x)
   minimum,
   maximum,
-  round,     // to the nearest integer, halves away from 0
+  round,     // to the nearest integer, halves away from 0; an integer
   truncate,  // to an integer
   to_real,
-  // comparisons; reals compare exactly
+  // comparisons of numbers; reals compare exactly; equal and not_equal take booleans too
   equal,
   not_equal,
   less,
   less_equal,
   greater,
   greater_equal,
-  // booleans, and integers bit by bit
+  // booleans, and integers bit by bit; both operands are evaluated always
   logical_and,
   logical_or,
   logical_xor,
@@ -69,6 +72,22 @@ enum class Operator : std::uint8_t {
 };
 [[nodiscard]] std::string_view name_of(Operator which);
 
+// How many operands it takes; make_joints: 1 .. kMaxJointsPerRobot.
+struct Arity {
+  std::uint8_t least = 0;
+  std::uint8_t most = 0;
+};
+[[nodiscard]] Arity arity_of(Operator which);
+// Whether the value depends on the robot or on what is connected to it.
+[[nodiscard]] bool looks_at_world(Operator which);
+// The type of the result for operands of these types. Refused: types that it does not take. Not for constant, variable
+// and element, whose types are those of what they name.
+[[nodiscard]] Result<ValueType> result_type(Operator which, std::span<const ValueType> operands);
+// The result of all that looks neither at variables nor at the world. Refused: overflow, division by 0, not finite, a
+// component that is not there.
+[[nodiscard]] Result<Value> apply(Operator which, std::span<const Value> operands, std::uint32_t payload);
+
+// The operands of a node stand before it in the array.
 struct ExpressionNode {
   Operator which = Operator::constant;
   std::uint8_t operands = 0;

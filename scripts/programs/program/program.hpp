@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,9 @@ inline constexpr std::size_t kMostListElements = 100'000;  // of all lists toget
 inline constexpr std::size_t kMostCalls = 64;              // of subprograms within each other
 inline constexpr std::size_t kMostExpressionDepth = 64;    // nodes above each other: evaluation is recursive
 inline constexpr std::size_t kMostPorts = 1024;            // inputs, outputs: numbers 1 ..
+inline constexpr std::size_t kMostVariables = 100'000;
+inline constexpr std::size_t kMostSemaphores = 1024;  // of one program
+inline constexpr double kLongestTime_s = 1e6;         // of a delay or a timeout
 
 using StatementId = std::uint32_t;
 using VariableId = std::uint32_t;
@@ -48,7 +52,8 @@ struct MoveStatement {
   PathKind path = PathKind::joints;
   TargetKind kind = TargetKind::joints_absolute;
   bool fly = false;
-  ExpressionId target = kNoExpression;  // joints or a pose; a pose is in the program's zero point
+  // Joints or a pose, by the kind; a pose is in the program's zero point (pose_relative: in its axes).
+  ExpressionId target = kNoExpression;
   ExpressionId via = kNoExpression;
 };
 struct AssignStatement {
@@ -127,7 +132,8 @@ class Program {
   std::string name;      // as the header says, or the file's name
   std::string language;  // "irdata", ...
   std::string file;      // for diagnostics
-  // Check points only: a list of moves with settings before them, which may be run backward as well.
+  // May be run backward as well: only moves to absolute targets, settings of motion, delays, outputs, SCRIPT commands
+  // and pauses; moves and settings with constants.
   bool reversible = false;
   std::vector<Statement> statements;
   std::vector<StatementPlace> places;  // one a statement
@@ -138,7 +144,7 @@ class Program {
   std::vector<std::string> texts;
   std::vector<SemaphoreDeclaration> semaphores;
 
-  // What does not fit a robot with these joints: constants with more joints than it has. For TF_LOAD and check --robot.
+  // What does not fit a robot with these joints: moves to more joints than it has. For TF_LOAD and check --robot.
   void check_for(std::span<const JointKind> joints, Diagnostics& diagnostics) const;
   [[nodiscard]] Place place(StatementId statement) const;
   // "N40", "check point P3", or "line 12".

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <variant>
 
 #include "rt_core/base/pose.hpp"
+#include "rt_core/base/result.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
+#include "rt_core/ports/robot_state.hpp"
 
 namespace cellmirror::program {
 
@@ -31,5 +34,13 @@ enum class ValueType : std::uint8_t { boolean, integer, real, pose, joints };
 // metres always).
 using Value = std::variant<bool, std::int64_t, double, Pose, JointPosition>;
 [[nodiscard]] inline ValueType type_of(const Value& value) { return static_cast<ValueType>(value.index()); }
+// false, 0, 0.0, the identity, no joints.
+[[nodiscard]] Value default_value(ValueType type);
+
+// rad and m, by the kinds of the robot's joints. Refused: more values than the robot has joints.
+[[nodiscard]] Result<JointValues> joint_values_si(const JointPosition& position, std::span<const JointKind> kinds);
+// The first kinds.size() of `values` (rad or m) in these units.
+[[nodiscard]] JointPosition joint_position(const JointValues& values, std::span<const JointKind> kinds,
+                                           JointUnits units);
 
 }  // namespace cellmirror::program
