@@ -1,0 +1,340 @@
+#include "scripts/programs/srcl/parser.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "rt_core/base/text.hpp"
+#include "scripts/programs/program/program_check.hpp"
+#include "scripts/programs/srcl/keywords.hpp"
+
+namespace cellmirror::program::srcl {
+
+namespace {
+
+// "shelf/fetch.src": "fetch".
+std::string stem(std::string_view file) {
+  const std::size_t folder = file.find_last_of('/');
+  if (folder != std::string_view::npos) file.remove_prefix(folder + 1);
+  return std::string(file.substr(0, file.find_last_of('.')));
+}
+
+}  // namespace
+
+Parser::Parser(std::string_view text, const ParseContext& context)
+    : lexer_(text),
+      faults_(context.file),
+      emitter_(program_),
+      expressions_(lexer_, emitter_, names_, faults_),
+      blocks_(emitter_, faults_) {
+  program_.name = stem(context.file);
+  program_.language = "srcl";
+  program_.file = context.file;
+}
+
+std::shared_ptr<const Program> Parser::run(Diagnostics& diagnostics) {
+  while (lexer_.token().kind != TokenKind::end_of_text) {
+    read_line();
+    if (program_.statements.size() > kMostStatements) {
+      faults_.add(lexer_.token(), fmt::format("the program has more than {} statements", kMostStatements),
+                  "divide it into several programs");
+      break;
+    }
+  }
+  blocks_.finish();
+  faults_.hand_over(diagnostics);
+  if (faults_.count() > 0) return nullptr;
+  Diagnostics last;  // bounds that only the whole program shows
+  check_program(program_, last);
+  diagnostics.take(last);
+  return last.ok() ? std::make_shared<const Program>(std::move(program_)) : nullptr;
+}
+
+void Parser::read_line() {
+  const bool readable = read_statement();
+  if (readable && !lexer_.at_end_of_line()) {
+    faults_.add(lexer_.token(), fmt::format("{} is too much here", shown(lexer_.token())),
+                "end the line before it; one statement stands in a line");
+  }
+  while (!lexer_.at_end_of_line()) lexer_.advance();
+  flush_scripts();
+  if (lexer_.token().kind == TokenKind::end_of_line) lexer_.advance();
+}
+
+// Up to the end of the line, if all is well.
+bool Parser::read_statement() {
+  while (!lexer_.at_end_of_line()) {
+    const Token first = lexer_.token();
+    lexer_.advance();
+    if (first.kind == TokenKind::keyword) return statement(first);
+    if (first.kind != TokenKind::name) {
+      faults_.add(first, fmt::format("no statement begins with {}", shown(first)),
+                  "begin it with a word of the language or the name of a variable; comments begin with ';'");
+      return false;
+    }
+    const Sign sign = lexer_.token().sign;
+    if (sign != Sign::colon) {
+      if (sign == Sign::equal || sign == Sign::open || sign == Sign::dot) return assign(first);
+      return unknown_statement(first);
+    }
+    lexer_.advance();
+    statement_seen_ = true;
+    if (belongs_to_routine(first)) blocks_.label(first);
+  }
+  return true;
+}
+
+bool Parser::statement(const Token& at) {
+  switch (at.keyword) {
+    case Keyword::program:
+    case Keyword::integer:
+    case Keyword::real:
+    case Keyword::boolean:
+    case Keyword::pose:
+    case Keyword::joints:
+    case Keyword::constant:
+    case Keyword::list:
+    case Keyword::semaphore:
+      return declaration(at);
+    case Keyword::subprogram:
+      return subprogram(at);
+    case Keyword::subprogram_end:
+      blocks_.end_subprogram(at);
+      return true;
+    default:
+      break;
+  }
+  statement_seen_ = true;
+  if (!belongs_to_routine(at)) return false;
+  switch (at.keyword) {
+    case Keyword::ptp:
+      return move(PathKind::joints, at);
+    case Keyword::linear:
+      return move(PathKind::linear, at);
+    case Keyword::circular:
+      return move(PathKind::circular, at);
+    case Keyword::joint_velocity:
+    case Keyword::joint_acceleration:
+    case Keyword::path_velocity:
+    case Keyword::path_acceleration:
+    case Keyword::turn_velocity:
+    case Keyword::turn_acceleration:
+    case Keyword::fly_distance:
+    case Keyword::fly_angle:
+    case Keyword::fly_speed:
+    case Keyword::tool:
+    case Keyword::zero_point:
+      return setting(at);
+    case Keyword::jump:
+      return jump(at);
+    case Keyword::if_begin:
+      return begin_if(at);
+    case Keyword::else_if:
+      return else_branch(at, true);
+    case Keyword::otherwise:
+      return else_branch(at, false);
+    case Keyword::if_end:
+      end_if(at);
+      return true;
+    case Keyword::while_begin:
+      return begin_while(at);
+    case Keyword::while_end:
+      return end_loop(Keyword::while_begin, at);
+    case Keyword::count_begin:
+      return begin_count(at);
+    case Keyword::count_end:
+      return end_loop(Keyword::count_begin, at);
+    case Keyword::repeat_begin:
+    case Keyword::loop_begin:
+      blocks_.open(at.keyword, at);
+      return true;
+    case Keyword::until:
+      return end_repeat(at);
+    case Keyword::loop_end:
+      return end_loop(Keyword::loop_begin, at);
+    case Keyword::leave:
+      return leave_loop(at, false);
+    case Keyword::next_round:
+      return leave_loop(at, true);
+    case Keyword::call:
+      return call(at);
+    case Keyword::return_back:
+      emitter_.add(ReturnStatement{}, at);
+      return true;
+    case Keyword::halt:
+      emitter_.add(PauseStatement{}, at);
+      return true;
+    case Keyword::end:
+      emitter_.add(EndStatement{}, at);
+      return true;
+    case Keyword::wait:
+      return wait(at);
+    case Keyword::acquire:
+      return semaphore(at, true);
+    case Keyword::release:
+      return semaphore(at, false);
+    case Keyword::digital_output:
+      return output(at, false);
+    case Keyword::analogue_output:
+      return output(at, true);
+    default:
+      faults_.add(at, fmt::format("no statement begins with {}", shown(at)),
+                  "begin it with another word; names must differ from the words of the language");
+      return false;
+  }
+}
+
+bool Parser::declaration(const Token& at) {
+  if (blocks_.innermost() != nullptr || blocks_.has_subprograms()) {
+    faults_.add(at, fmt::format("{} cannot stand in a block or behind a subprogram", shown(at)),
+                "declare it in the main program, outside of blocks");
+  }
+  switch (at.keyword) {
+    case Keyword::program:
+      return program_name(at);
+    case Keyword::constant:
+      return declare_constants();
+    case Keyword::list:
+      return declare_list();
+    case Keyword::semaphore:
+      return declare_semaphore();
+    case Keyword::integer:
+      return declare_variables(ValueType::integer);
+    case Keyword::real:
+      return declare_variables(ValueType::real);
+    case Keyword::boolean:
+      return declare_variables(ValueType::boolean);
+    case Keyword::pose:
+      return declare_variables(ValueType::pose);
+    default:
+      return declare_variables(ValueType::joints);
+  }
+}
+
+// What stands behind a subprogram and in none is never executed.
+bool Parser::belongs_to_routine(const Token& at) {
+  if (!blocks_.has_subprograms() || blocks_.in_subprogram()) return true;
+  if (!told_stray_) {
+    told_stray_ = true;
+    faults_.add(at, "statements behind a subprogram belong to none",
+                "put them before the first UPRO, or into a subprogram");
+  }
+  return false;
+}
+
+bool Parser::unknown_statement(const Token& name) {
+  std::string remedy = faults_.proposal(name.text, statement_words(), {});
+  if (remedy.empty()) {
+    remedy = names_.find(name.text) != nullptr ? "write '=' behind the name of a variable"
+                                               : "begin with a word of the language, or 'NAME =' or 'NAME:'";
+  }
+  faults_.add(name, fmt::format("no statement begins with {}", shown(name)), std::move(remedy));
+  recover_block(name);
+  return false;
+}
+
+// A misspelt word that begins or ends a block is taken for it, so that its counterpart is not wrong as well.
+void Parser::recover_block(const Token& name) {
+  if (faults_.count() > Diagnostics::kKept) return;
+  const std::vector<std::string> words = nearest(name.text, statement_words(), 1);
+  if (words.empty()) return;
+  switch (const Keyword meant = find_keyword(words.front())) {
+    case Keyword::if_begin:
+    case Keyword::while_begin:
+    case Keyword::count_begin:
+    case Keyword::repeat_begin:
+    case Keyword::loop_begin:
+      blocks_.open(meant, name);
+      return;
+    case Keyword::if_end:
+      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::if_begin, name) != nullptr) blocks_.close();
+      return;
+    case Keyword::while_end:
+      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::while_begin, name) != nullptr)
+        blocks_.close();
+      return;
+    case Keyword::count_end:
+      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::count_begin, name) != nullptr)
+        blocks_.close();
+      return;
+    case Keyword::loop_end:
+      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::loop_begin, name) != nullptr)
+        blocks_.close();
+      return;
+    case Keyword::subprogram_end:
+      if (blocks_.in_subprogram()) blocks_.end_subprogram(name);
+      return;
+    default:
+      return;
+  }
+}
+
+bool Parser::assign(const Token& name) {
+  statement_seen_ = true;
+  if (!belongs_to_routine(name)) return false;
+  const Declared* const declared = expressions_.find(name);
+  if (declared == nullptr) {
+    recover_block(name);
+    return false;
+  }
+  if (declared->kind == Declared::Kind::constant || declared->kind == Declared::Kind::semaphore) {
+    const bool constant = declared->kind == Declared::Kind::constant;
+    faults_.add(name, fmt::format("{} is {} and cannot be set", shown(name), constant ? "constant" : "a semaphore"),
+                constant ? fmt::format("declare it without FEST in line {}", declared->line)
+                         : "write BELEGE or FREI before it");
+    return false;
+  }
+  ExpressionId index = kNoExpression;
+  if (declared->kind == Declared::Kind::list) {
+    const std::optional<Operand> read = expressions_.read_index(*declared);
+    if (!read) return false;
+    if (read->known()) index = emitter_.expression(*read);
+  }
+  std::uint32_t component = kNone;
+  double factor = 1;
+  if (lexer_.token().sign == Sign::dot) {
+    const std::optional<Component> read = expressions_.read_component(declared->type);
+    if (!read) return false;
+    component = read->index;
+    factor = read->si_factor;
+  }
+  if (!expressions_.expect(Sign::equal, "=")) return false;
+  std::optional<Operand> value = expressions_.read(component == kNone ? declared->type : ValueType::real,
+                                                   fmt::format("the value of {}", name.text));
+  if (value && factor != 1) value = emitter_.real(*value, factor);
+  return store(name, *declared, index, component, value);
+}
+
+bool Parser::store(const Token& name, const Declared& declared, ExpressionId index, std::uint32_t component,
+                   std::optional<Operand> value) {
+  if (!value) return false;
+  if (!value->known()) return true;
+  AssignStatement assignment;
+  assignment.variable = declared.variable;
+  assignment.index = index;
+  assignment.component = component;
+  assignment.value = emitter_.expression(*value);
+  emitter_.add(assignment, name);
+  return true;
+}
+
+void Parser::flush_scripts() {
+  if (lexer_.scripts().empty()) return;
+  for (const ScriptComment& comment : lexer_.scripts()) {
+    Token at;
+    at.line = comment.line;
+    at.column = comment.column;
+    std::string_view command = comment.text;
+    if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
+    statement_seen_ = true;
+    if (command.empty()) {
+      faults_.add(at, "the comment begins with % but holds no SCRIPT command", "write the command, or delete the %");
+    } else if (belongs_to_routine(at)) {
+      emitter_.add(ScriptStatement{emitter_.text(command)}, at);
+    }
+  }
+  lexer_.scripts().clear();
+}
+
+}  // namespace cellmirror::program::srcl
