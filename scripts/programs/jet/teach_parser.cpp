@@ -335,7 +335,7 @@ bool TeachParser::named_values(TeachWords& words, const PointName& point) {
     for (std::size_t i = 0; i < joint_count_; ++i)
       if (!given[i]) missing += fmt::format("{}J{}", missing.empty() ? "" : ", ", i + 1);
     if (!missing.empty()) {
-      words.error(*point, fmt::format("the first check point does not say where {} stands", missing));
+      words.error(*point, fmt::format("the first check point leaves out {}", missing), "it names every joint");
       return false;
     }
   }
@@ -361,7 +361,7 @@ bool TeachParser::named_value(TeachWords& words, JointsGiven& given) {
   }
   const std::size_t count = joint_count_ == 0 ? given.size() : joint_count_;
   if (*number < 1 || static_cast<std::size_t>(*number) > count) {
-    words.error(word, fmt::format("there is no joint {} of {}", printable(joint), count));
+    words.error(word, fmt::format("{} is none of the {} joints", printable(joint), count));
     return false;
   }
   const auto index = static_cast<std::size_t>(*number - 1);
@@ -375,7 +375,8 @@ bool TeachParser::named_value(TeachWords& words, JointsGiven& given) {
   if (!value || *value < -kGreatestTeachValue || *value > kGreatestTeachValue) {
     words.error({text, word.column + static_cast<int>(sign) + 1},
                 value ? fmt::format("{} is not within {} .. {}", text, -kGreatestTeachValue, kGreatestTeachValue)
-                      : fmt::format("{} is no number", text.empty() ? "nothing" : printable(text)));
+                : text.empty() ? fmt::format("{} has no value", printable(joint))
+                               : fmt::format("{} is no number", printable(text)));
     return false;
   }
   target_.values[index] = *value;

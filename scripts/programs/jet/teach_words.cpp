@@ -125,7 +125,10 @@ void TeachWords::tolerance(std::optional<TeachTolerance>& tolerance) {
     tolerance.reset();
     return;
   }
-  if (!expect("MM, DEG or PERCENT", fmt::format("TOLERANCE {} MM", *value))) return;
+  const std::string example = fmt::format("TOLERANCE {} MM", *value);
+  if (!expect("MM, DEG or PERCENT", example)) return;
+  if (peek_is("SPEED") || peek_is("ACCELERATION") || peek_is("TOLERANCE"))
+    return error(peek(), "MM, DEG or PERCENT is missing", "for example " + example);
   const TeachWord& unit = take();
   TeachTolerance read;
   if (equal_ignoring_case(unit.text, "MM")) {
