@@ -37,8 +37,8 @@ class ProgramMotion {
   [[nodiscard]] virtual bool room(std::string_view robot) const = 0;
   // Puts a move behind those before. `begin`: the instant at which it should have begun (that of the end of what it
   // waited for), when that is over already: it begins as far on as the time that has passed since, so that the time it
-  // takes to notice does not add up; never: behind the one before. Returns its ticket, ascending from 1. Refused where the target cannot be
-  // reached, the way leads beyond limits, ...
+  // takes to notice does not add up; never: behind the one before. Returns its ticket, ascending from 1. Refused where
+  // the target cannot be reached, the way leads beyond limits, ...
   virtual Result<std::uint32_t> move(std::string_view robot, const MoveCommand& command, Timestamp begin) = 0;
   virtual Result<std::uint32_t> delay(std::string_view robot, double seconds, Timestamp begin) = 0;
   virtual Result<void> set_tool(std::string_view robot, const std::optional<Pose>& X_PT) = 0;

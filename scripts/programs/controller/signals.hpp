@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 #include "scripts/programs/program/program.hpp"
 
 namespace cellmirror::program {
@@ -19,9 +20,10 @@ struct SignalBoard {
   std::vector<bool> digital_outputs = std::vector<bool>(kMostPorts + 1);
   std::vector<double> analogue_inputs = std::vector<double>(kMostPorts + 1);
   std::vector<double> analogue_outputs = std::vector<double>(kMostPorts + 1);
+  Timestamp changed;  // the newest instant at which any of them was set
 };
 
-// Counting semaphores, known by name to all programs. Who waits first is served first.
+// Counting semaphores, known by name to all programs.
 class Semaphores {
  public:
   static constexpr std::size_t kMost = 1024;
@@ -31,12 +33,26 @@ class Semaphores {
   Result<void> declare(std::string_view name, std::uint32_t initial);
   // One that was never declared begins with 0.
   [[nodiscard]] bool try_acquire(std::string_view name);
-  Result<void> release(std::string_view name);  // refused: beyond kMostCount
-  [[nodiscard]] const std::map<std::string, std::uint32_t, std::less<>>& counts() const { return counts_; }
+  // Refused: beyond kMostCount, or kMost.
+  Result<void> release(std::string_view name, Timestamp when);
+  // When it was released last; never: not yet.
+  [[nodiscard]] Timestamp released(std::string_view name) const;
+  // As it was declared; 0 where it was not. Unknown ones are passed over.
+  void reset(std::string_view name);
+  void forget(std::string_view name);
+  // As counts are now.
+  [[nodiscard]] std::map<std::string, std::uint32_t> counts() const;
 
  private:
-  std::map<std::string, std::uint32_t, std::less<>> counts_;
-  std::map<std::string, std::uint32_t, std::less<>> initial_;
+  struct Semaphore {
+    std::uint32_t count = 0;
+    std::uint32_t initial = 0;
+    bool declared = false;
+    Timestamp released;
+  };
+  Result<Semaphore*> open(std::string_view name);
+
+  std::map<std::string, Semaphore, std::less<>> semaphores_;
 };
 
 }  // namespace cellmirror::program

@@ -1,0 +1,76 @@
+// When the controllers report a deadlock.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "scripts/programs/controller/controllers.hpp"
+#include "scripts/programs/controller/deadlock_finder.hpp"
+#include "scripts/programs/controller/virtual_controller.hpp"
+
+namespace cellmirror::program {
+
+namespace {
+
+void append_parties(const VirtualController& controller, std::vector<Party>& parties) {
+  std::size_t behind = Party::kNobody;
+  if (const ProgramRun* run = controller.run(); run != nullptr) {
+    behind = parties.size();
+    // Held or not: a semaphore is what it needs before all else.
+    parties.push_back(
+        {controller.robot(), &run->loaded(), run->step_name(), std::string(run->semaphore()), Party::kNobody});
+  }
+  for (const VirtualController::Queued& queued : controller.queue()) {
+    parties.push_back({controller.robot(), queued.program.get(), {}, {}, behind});
+  }
+}
+
+}  // namespace
+
+void Controllers::look_for_deadlock() {
+  const bool waiting = std::any_of(robots_.begin(), robots_.end(), [](const auto& robot) {
+    return robot.second->run() != nullptr && !robot.second->run()->semaphore().empty();
+  });
+  std::optional<Deadlock> found;
+  if (waiting) {
+    std::vector<Party> parties;
+    for (const auto& [robot, controller] : robots_) append_parties(*controller, parties);
+    found = find_deadlock(parties);
+  }
+  const bool alone = found && std::any_of(found->waiting.begin(), found->waiting.end(),
+                                          [](const Deadlock::Waiting& one) { return one.releasers.empty(); });
+  if (!alone) alone_since_ = {};
+  if (alone && !alone_since_.known()) alone_since_ = context_.clock.now();
+  if (alone && context_.clock.now() - alone_since_ < kGrace) return;
+  if (!found) {
+    deadlock_.reset();
+    return;
+  }
+  for (Deadlock::Waiting& one : found->waiting) one.not_started = could_release(one.semaphore);
+  if (deadlock_ != found) report(std::move(*found));
+}
+
+std::vector<std::string> Controllers::could_release(std::string_view semaphore) const {
+  std::vector<std::string> names;
+  for (const auto& [robot, controller] : robots_) {
+    for (const auto& [name, program] : controller->programs()) {
+      if (!controller->occupied(*program) && program->releases(semaphore)) {
+        names.push_back(fmt::format("{} {}", robot, name));
+      }
+    }
+  }
+  return names;
+}
+
+void Controllers::report(Deadlock found) {
+  deadlock_ = std::move(found);
+  ++context_.failures;
+  context_.last_failure = deadlock_->text();
+  const Deadlock::Waiting& first = deadlock_->waiting.front();
+  if (context_.event) {
+    context_.event(
+        {ProgramEvent::Kind::deadlock, context_.clock.now(), first.robot, first.program, context_.last_failure, 0, 0});
+  }
+}
+
+}  // namespace cellmirror::program

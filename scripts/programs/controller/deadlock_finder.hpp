@@ -1,0 +1,29 @@
+// Who waits for whom. Private to the folder.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "scripts/programs/controller/loaded_program.hpp"
+#include "scripts/programs/controller/program_status.hpp"
+
+namespace cellmirror::program {
+
+// A program that runs, or is queued.
+struct Party {
+  static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+  std::string robot;
+  const LoadedProgram* program = nullptr;
+  std::string step;
+  std::string semaphore;         // it waits for this one; empty: it does not wait for any
+  std::size_t behind = kNobody;  // queued behind this party
+};
+
+// The programs that wait for semaphores that only programs among them, or queued behind one of them, release.
+// None: no deadlock.
+[[nodiscard]] std::optional<Deadlock> find_deadlock(std::span<const Party> parties);
+
+}  // namespace cellmirror::program

@@ -1,0 +1,144 @@
+// Hold, resume, step.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scripts/programs/controller/program_run.hpp"
+
+namespace cellmirror::program {
+
+Result<void> ProgramRun::hold() {
+  if (held_ && !request_) {
+    return fail(fmt::format("{} of {} is held already", loaded_->name, robot_), "TF_RESUME or TF_STEP goes on");
+  }
+  request_.reset();
+  if (!held_) hold_here();
+  return {};
+}
+
+void ProgramRun::hold_here() {
+  stepping_ = false;
+  step_ticket_ = 0;
+  held_ = true;
+  disturbed_ = true;
+  held_since_ = context_.clock.now();
+  if (auto slowed = context_.motion.set_pace(robot_, 0); !slowed) {
+    fail_now(slowed.error().text());
+    return;
+  }
+  tell(ProgramEvent::Kind::held, held_since_);
+}
+
+Result<void> ProgramRun::resume() {
+  if (stepping_) hold_here();
+  if (!held_) return fail(fmt::format("{} of {} is not held", loaded_->name, robot_), "TF_HOLD holds it");
+  if (machine_.direction() != direction_) {
+    if (auto turned = turn(direction_); !turned) return turned;
+  }
+  request_ = Request{false, request_ && request_->stopping};
+  if (!forget_ahead_) go();
+  return {};
+}
+
+Result<void> ProgramRun::step(Direction direction) {
+  if (!held_) return fail(fmt::format("{} of {} is not held", loaded_->name, robot_), "TF_HOLD holds it");
+  if (request_) return fail(fmt::format("{} of {} is about to go on", loaded_->name, robot_), "wait until it is held");
+  if (direction == Direction::backward && !loaded_->program->reversible) {
+    return fail(fmt::format("{} cannot go backward: only programs of check points can", loaded_->name),
+                "use jet_boom or jet_tarm files, or step FORWARD");
+  }
+  if (machine_.direction() != direction) {
+    if (auto turned = turn(direction); !turned) return turned;
+  }
+  request_ = Request{true, false};
+  return {};
+}
+
+std::optional<ProgramRun::Between> ProgramRun::between() const {
+  if (turned_at_) return turned_at_;
+  const auto ahead = std::find_if(moving_.begin(), moving_.end(), [](const Moving& moving) { return moving.move; });
+  if (ahead != moving_.end()) return Between{ahead->statement, machine_.direction()};
+  if (at_) return Between{*at_, {}};
+  return {};
+}
+
+// The machine is turned at once; the robot goes the other way when it stands.
+Result<void> ProgramRun::turn(Direction direction) {
+  const auto here = between();
+  if (!here) return fail(fmt::format("{} of {} has not moved yet", loaded_->name, robot_), "step FORWARD");
+  if (auto turned = machine_.set_direction(direction); !turned) return turned;
+  turned_at_ = here;
+  forget_ahead_ = true;
+  pending_.reset();
+  closing_.reset();
+  deferred_.clear();
+  activities_.clear();
+  waiting_.reset();
+  semaphore_.clear();
+  lent_ = false;
+  phase_ = Phase::running;
+  return {};
+}
+
+// What lies behind the robot in the direction in which it goes now. The machine is ahead of the robot by the moves that
+// wait in the tick, so that it passes them once more when it is turned.
+bool ProgramRun::dropped(const CanonicalCommand& command) const {
+  if (!turned_at_) return false;
+  const bool forward = machine_.direction() == Direction::forward;
+  if (command.statement == turned_at_->statement) return turned_at_->toward != machine_.direction();
+  return forward ? command.statement < turned_at_->statement : command.statement > turned_at_->statement;
+}
+
+bool ProgramRun::settle() {
+  const MotionProgress progress = context_.motion.progress(robot_);
+  if (!request_->stopping) {
+    if (progress.moving && progress.pace > 0) return false;
+    if (!forget_ahead_) {
+      go();
+      return true;
+    }
+    if (auto stopped = context_.motion.stop(robot_); !stopped) {
+      fail_now(stopped.error().text());
+      return true;
+    }
+    // It has braked beyond the end of the move that ran when it was turned.
+    if (first_move_ahead() != 0) turned_at_->statement = moving_.front().statement;
+    moving_.clear();
+    request_->stopping = true;
+    return true;
+  }
+  if (progress.moving) return false;
+  forget_ahead_ = false;
+  go();
+  return true;
+}
+
+void ProgramRun::go() {
+  const bool step = request_ && request_->step;
+  request_.reset();
+  const Timestamp now = context_.clock.now();
+  const Nanoseconds held = now - held_since_;
+  held_time_ += held;
+  if (phase_ == Phase::delayed) until_ = until_ + held;
+  if (phase_ == Phase::condition && deadline_.known()) deadline_ = deadline_ + held;
+  resumed_ = now;
+  if (phase_ != Phase::semaphore) due_ = std::max(due_, now);  // a waiting one keeps its turn
+  stepping_ = step;
+  step_ticket_ = step ? first_move_ahead() : 0;
+  held_ = false;
+  tell(ProgramEvent::Kind::resumed, now);
+  if (auto gated = context_.motion.hold_behind(robot_, step_ticket_); !gated) {
+    fail_now(gated.error().text());
+    return;
+  }
+  if (auto paced = context_.motion.set_pace(robot_, 1); !paced) fail_now(paced.error().text());
+}
+
+std::uint32_t ProgramRun::first_move_ahead() const {
+  const auto ahead = std::find_if(moving_.begin(), moving_.end(), [](const Moving& moving) { return moving.move; });
+  return ahead == moving_.end() ? 0 : ahead->ticket;
+}
+
+bool ProgramRun::step_is_over() const { return step_ticket_ != 0 && finished_ >= step_ticket_; }
+
+}  // namespace cellmirror::program
