@@ -41,8 +41,13 @@ struct MotionSettings {
   std::optional<double> linear_acceleration;      // m/s2; stay the upper bounds
   std::optional<double> rotational_velocity;      // rad/s
   std::optional<double> rotational_acceleration;  // rad/s2
-  std::optional<FlyType> fly_type;                // with the parameter
-  double fly_parameter = 0;                       // fraction, m or rad, by type
+  // Shares of the robot's own values, (0, 1]; never together with the value itself.
+  std::optional<double> linear_velocity_share;
+  std::optional<double> linear_acceleration_share;
+  std::optional<double> rotational_velocity_share;
+  std::optional<double> rotational_acceleration_share;
+  std::optional<FlyType> fly_type;  // with the parameter
+  double fly_parameter = 0;         // fraction, m or rad, by type
   bool operator==(const MotionSettings&) const = default;
 };
 

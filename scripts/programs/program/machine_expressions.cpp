@@ -41,8 +41,7 @@ Result<Value> Machine::element(const ExpressionNode& node, const Value& index) c
 
 Result<Value> Machine::look(const ProgramWorld& world, const ExpressionNode& node, const Value* operand) const {
   if (node.which == Operator::current_joints) {
-    const bool si = node.payload == static_cast<std::uint32_t>(JointUnits::si);
-    return joint_position(world.joints(), joints_, si ? JointUnits::si : JointUnits::degree_mm);
+    return joint_position(world.joints(), joints_, joint_units(node.payload));
   }
   if (node.which == Operator::current_position) {
     const auto X_ZT = world.position();

@@ -198,6 +198,10 @@ Result<void> Machine::apply_setting(Setting setting, std::optional<double> value
     settings_.fly_type = value ? std::optional(type) : std::nullopt;
     settings_.fly_parameter = value.value_or(0);
   };
+  const auto set_either = [&](Setting absolute, std::optional<double>& itself, std::optional<double>& share) {
+    itself = setting == absolute ? value : std::nullopt;
+    share = setting == absolute ? std::nullopt : value;
+  };
   switch (setting) {
     case Setting::joint_velocity:
       settings_.joint_velocity = value;
@@ -206,16 +210,21 @@ Result<void> Machine::apply_setting(Setting setting, std::optional<double> value
       settings_.joint_acceleration = value;
       break;
     case Setting::linear_velocity:
-      settings_.linear_velocity = value;
+    case Setting::linear_velocity_share:
+      set_either(Setting::linear_velocity, settings_.linear_velocity, settings_.linear_velocity_share);
       break;
     case Setting::linear_acceleration:
-      settings_.linear_acceleration = value;
+    case Setting::linear_acceleration_share:
+      set_either(Setting::linear_acceleration, settings_.linear_acceleration, settings_.linear_acceleration_share);
       break;
     case Setting::rotational_velocity:
-      settings_.rotational_velocity = value;
+    case Setting::rotational_velocity_share:
+      set_either(Setting::rotational_velocity, settings_.rotational_velocity, settings_.rotational_velocity_share);
       break;
     case Setting::rotational_acceleration:
-      settings_.rotational_acceleration = value;
+    case Setting::rotational_acceleration_share:
+      set_either(Setting::rotational_acceleration, settings_.rotational_acceleration,
+                 settings_.rotational_acceleration_share);
       break;
     case Setting::fly_speed_fraction:
       set_fly(FlyType::speed_fraction);

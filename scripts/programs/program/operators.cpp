@@ -200,7 +200,7 @@ Result<Value> make_pose(std::span<const Value> operands) {
 
 Result<Value> make_joints(std::span<const Value> operands, std::uint32_t payload) {
   JointPosition position;
-  position.units = payload == static_cast<std::uint32_t>(JointUnits::si) ? JointUnits::si : JointUnits::degree_mm;
+  position.units = joint_units(payload);
   if (operands.size() > position.values.size()) return wrong_types(Operator::make_joints);
   for (const Value& operand : operands) {
     const auto number = as_real(operand);

@@ -41,6 +41,10 @@ enum class Setting : std::uint8_t {
   linear_acceleration,
   rotational_velocity,
   rotational_acceleration,
+  linear_velocity_share,  // takes the place of linear_velocity, and the other way round; so do these three
+  linear_acceleration_share,
+  rotational_velocity_share,
+  rotational_acceleration_share,
   fly_speed_fraction,  // the three set type and parameter
   fly_distance,        // m
   fly_angle,           // rad

@@ -131,7 +131,9 @@ struct Checker {
 }  // namespace
 
 std::string_view name_of(Setting setting) {
-  constexpr std::array<std::string_view, 11> kNames = {"the joint velocity",      "the joint acceleration",
+  constexpr std::array<std::string_view, 15> kNames = {"the joint velocity",      "the joint acceleration",
+                                                       "the linear velocity",     "the linear acceleration",
+                                                       "the rotational velocity", "the rotational acceleration",
                                                        "the linear velocity",     "the linear acceleration",
                                                        "the rotational velocity", "the rotational acceleration",
                                                        "the fly-by speed",        "the fly-by distance",
@@ -142,7 +144,7 @@ std::string_view name_of(Setting setting) {
 
 Result<void> check_setting(Setting setting, double value) {
   const bool share = setting == Setting::joint_velocity || setting == Setting::joint_acceleration ||
-                     setting == Setting::fly_speed_fraction;
+                     (setting >= Setting::linear_velocity_share && setting <= Setting::fly_speed_fraction);
   const bool may_be_zero =
       setting == Setting::fly_speed_fraction || setting == Setting::fly_distance || setting == Setting::fly_angle;
   const bool large_enough = may_be_zero ? value >= 0 : value > 0;

@@ -60,6 +60,10 @@ std::string settings_text(const MotionSettings& settings) {
   add("linear_acceleration", settings.linear_acceleration);
   add("rotational_velocity", settings.rotational_velocity);
   add("rotational_acceleration", settings.rotational_acceleration);
+  add("linear_velocity_share", settings.linear_velocity_share);
+  add("linear_acceleration_share", settings.linear_acceleration_share);
+  add("rotational_velocity_share", settings.rotational_velocity_share);
+  add("rotational_acceleration_share", settings.rotational_acceleration_share);
   if (settings.fly_type) {
     constexpr std::array<std::string_view, 3> kNames = {"fly_speed_fraction", "fly_distance", "fly_angle"};
     add(kNames.at(static_cast<std::size_t>(*settings.fly_type)), settings.fly_parameter);

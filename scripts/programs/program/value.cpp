@@ -8,6 +8,28 @@
 
 namespace cellmirror::program {
 
+namespace {
+
+// What a value becomes SI with.
+struct Factors {
+  double turning = 1;
+  double sliding = 1;
+};
+
+Factors factors_of(JointUnits units) {
+  constexpr double kMPerInch = 0.0254;
+  constexpr std::array<Factors, 6> kFactors = {
+      {{1, 1}, {kRadPerDeg, kMPerMm}, {kRadPerDeg, 1}, {kRadPerDeg, kMPerInch}, {1, kMPerMm}, {1, kMPerInch}}};
+  return kFactors.at(static_cast<std::size_t>(units));
+}
+
+}  // namespace
+
+JointUnits joint_units(std::uint32_t payload) {
+  const bool known = payload <= static_cast<std::uint32_t>(JointUnits::radian_inch);
+  return known ? static_cast<JointUnits>(payload) : JointUnits::si;
+}
+
 std::string_view name_of(ValueType type) {
   constexpr std::array<std::string_view, 5> kNames = {"a boolean", "an integer", "a real", "a pose", "joint values"};
   return kNames.at(static_cast<std::size_t>(type));
@@ -34,10 +56,10 @@ Result<JointValues> joint_values_si(const JointPosition& position, std::span<con
     return fail(fmt::format("{} joint values for a robot with {} joints", position.count, kinds.size()));
   }
   JointValues values{};
+  const Factors factors = factors_of(position.units);
   for (std::size_t joint = 0; joint < position.count; ++joint) {
-    const double value = position.values[joint];
-    const double factor = kinds[joint] == JointKind::prismatic ? kMPerMm : kRadPerDeg;
-    values[joint] = position.units == JointUnits::si ? value : value * factor;
+    const double factor = kinds[joint] == JointKind::prismatic ? factors.sliding : factors.turning;
+    values[joint] = position.values[joint] * factor;
   }
   return values;
 }
@@ -45,10 +67,9 @@ Result<JointValues> joint_values_si(const JointPosition& position, std::span<con
 JointPosition joint_position(const JointValues& values, std::span<const JointKind> kinds, JointUnits units) {
   JointPosition position;
   position.units = units;
+  const Factors factors = factors_of(units);
   for (std::size_t joint = 0; joint < kinds.size() && joint < kMaxJointsPerRobot; ++joint) {
-    const double value = values[joint];
-    const double in_degree_mm = kinds[joint] == JointKind::prismatic ? mm_from_m(value) : deg_from_rad(value);
-    position.values[joint] = units == JointUnits::si ? value : in_degree_mm;
+    position.values[joint] = values[joint] / (kinds[joint] == JointKind::prismatic ? factors.sliding : factors.turning);
     ++position.count;
   }
   return position;

@@ -18,7 +18,13 @@ namespace cellmirror::program {
 enum class JointUnits : std::uint8_t {
   si,         // rad and m
   degree_mm,  // degrees and mm, as in SCRIPT
+  degree_m,
+  degree_inch,
+  radian_mm,
+  radian_inch,
 };
+// Of an operator's payload.
+[[nodiscard]] JointUnits joint_units(std::uint32_t payload);
 
 // The first `count` joints of a robot.
 struct JointPosition {
