@@ -73,15 +73,20 @@ Result<std::uint64_t> Fleet::patiently(const std::function<std::uint64_t()>& giv
       return id;
     }
     if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
-    std::this_thread::sleep_for(kTickPoll);
+    wait_for_tick();
   }
+}
+
+void Fleet::wait_for_tick() const {
+  if (let_tick_pass_) return let_tick_pass_();
+  std::this_thread::sleep_for(kTickPoll);
 }
 
 Result<void> Fleet::settle() {
   const Timestamp give_up = clock_.now() + kTickPatience;
   while (engine_.owner_view().commands_done < last_command_) {
     if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
-    std::this_thread::sleep_for(kTickPoll);
+    wait_for_tick();
   }
   return {};
 }
@@ -145,6 +150,7 @@ Result<void> Fleet::set_online(std::string_view id, bool online) {
 }
 
 Result<void> Fleet::make_stream(FleetRobot& robot) {
+  if (let_tick_pass_) return fail(fmt::format("off line there is no controller that {} could follow", robot.id));
   const auto config = streams_.find(robot.id);
   if (config == streams_.end()) {
     robot.stream = device_streams_ ? device_streams_(robot.id) : nullptr;
@@ -211,6 +217,12 @@ motion::MotionState Fleet::motion(std::string_view id) {
   return robot == nullptr ? motion::MotionState() : engine_.owner_view().robots[robot->slot].motion;
 }
 
+bool Fleet::knows_position(std::string_view id) {
+  const FleetRobot* robot = find(id);
+  if (robot == nullptr) return false;
+  return !robot->online || engine_.owner_view().robots[robot->slot].state == DataState::fresh;
+}
+
 std::span<const JointValues> Fleet::positions() {
   const engine::TickState& view = engine_.owner_view();
   for (const auto& [id, robot] : robots_) {
@@ -240,11 +252,28 @@ Result<void> Fleet::add_move(std::string_view id, const motion::Move& move) {
   const auto sent = patiently([&] { return engine_.send_move(robot.slot, move); });
   if (!sent) return std::unexpected(sent.error());
   robot.newest_move = move.id;
+  if (move_given_) move_given_(id, move);
   return {};
 }
 
 Result<void> Fleet::stop_motion(std::string_view id) {
   const auto sent = send(command_for(id, engine::CommandKind::stop_motion));
+  if (!sent) return std::unexpected(sent.error());
+  return {};
+}
+
+Result<void> Fleet::set_pace(std::string_view id, double pace) {
+  engine::Command command = command_for(id, engine::CommandKind::set_pace);
+  command.pace = pace;
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  return {};
+}
+
+Result<void> Fleet::hold_behind(std::string_view id, std::uint32_t move) {
+  engine::Command command = command_for(id, engine::CommandKind::hold_behind);
+  command.last_move = move;
+  const auto sent = send(command);
   if (!sent) return std::unexpected(sent.error());
   return {};
 }

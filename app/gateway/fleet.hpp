@@ -45,6 +45,14 @@ class Fleet final : public MotionPort {
   Fleet(const Fleet&) = delete;
   Fleet& operator=(const Fleet&) = delete;
 
+  // Off line: whoever waits for the tick lets one pass with this, and streams are refused.
+  void set_off_line(std::function<void()> let_tick_pass) { let_tick_pass_ = std::move(let_tick_pass); }
+
+  // Told of every move that is given to the tick.
+  void on_move(std::function<void(std::string_view robot, const motion::Move& move)> callback) {
+    move_given_ = std::move(callback);
+  }
+
   // Adds robots that came with a component to the tick, and removes those that were deleted. After every change of the
   // tree.
   Result<void> follow_cell();
@@ -52,6 +60,8 @@ class Fleet final : public MotionPort {
   Result<void> update_limits(const RobotModel& robot);
 
   [[nodiscard]] const FleetRobot* find(std::string_view id) const;
+  // Whether positions() tells where the robot really is: of a mirrored one only while its values are fresh.
+  [[nodiscard]] bool knows_position(std::string_view id);
   [[nodiscard]] const std::map<std::string, FleetRobot, std::less<>>& robots() const { return robots_; }
 
   Result<void> set_online(std::string_view id, bool online);
@@ -65,6 +75,8 @@ class Fleet final : public MotionPort {
   Result<void> set_chain(std::string_view id, std::shared_ptr<const kinematics::Chain> chain) override;
   Result<void> add_move(std::string_view id, const motion::Move& move) override;
   Result<void> stop_motion(std::string_view id) override;
+  Result<void> set_pace(std::string_view id, double pace) override;
+  Result<void> hold_behind(std::string_view id, std::uint32_t move) override;
 
   // For robots without a stream in the cell file: what they follow when they go online; gives null for robots that have
   // nothing of the kind. Empty: none has.
@@ -79,6 +91,8 @@ class Fleet final : public MotionPort {
   Result<void> settle();
 
  private:
+  // A moment, for the tick to take commands.
+  void wait_for_tick() const;
   // Asks `give` for the id of a command again while the tick's queue is full.
   Result<std::uint64_t> patiently(const std::function<std::uint64_t()>& give);
   Result<void> add(const RobotModel& robot);
@@ -95,6 +109,8 @@ class Fleet final : public MotionPort {
   std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_streams_;
   const Clock& clock_;
   int stream_priority_;
+  std::function<void()> let_tick_pass_;  // empty: the tick has its own thread
+  std::function<void(std::string_view robot, const motion::Move& move)> move_given_;
   std::map<std::string, FleetRobot, std::less<>> robots_;
   std::vector<JointValues> positions_;
   std::uint64_t last_command_ = 0;

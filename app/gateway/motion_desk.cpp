@@ -31,22 +31,20 @@ bool is_whole_pose(const kinematics::Task& task) {
          task.orientation_required;
 }
 
-// The commanded pose: the next increment starts from it, so that a stream of them does not gather the tolerance of the
-// inverse kinematics. Where the task leaves something open, from where the TCP really is.
+}  // namespace
+
 std::optional<Pose> commanded_pose(const kinematics::Task& task, const Pose& X_ZG) {
   return is_whole_pose(task) ? std::optional(X_ZG) : std::nullopt;
 }
 
-}  // namespace
-
-Result<MotionDesk::Record*> MotionDesk::open(const RobotModel* robot, std::string_view id) {
+Result<MotionRecord*> MotionDesk::open(const RobotModel* robot, std::string_view id) {
   if (auto checked = port_.check_simulated(id); !checked) return std::unexpected(checked.error());
-  Record& record = records_.try_emplace(robot->id(), robot->id()).first->second;
+  MotionRecord& record = records_.try_emplace(robot->id(), robot->id()).first->second;
   follow(*robot, record);
   return &record;
 }
 
-void MotionDesk::follow(const RobotModel& robot, Record& record) {
+void MotionDesk::follow(const RobotModel& robot, MotionRecord& record) {
   if (!record.pending.in_flight()) return;
   if (record.pending.follow(port_.motion(robot.id()))) record.goal.reset();
 }
@@ -132,11 +130,16 @@ Result<void> MotionDesk::set_positioning(Positioning positioning) {
   return {};
 }
 
-MotionDesk::Goal MotionDesk::goal_of(const RobotModel& robot, const Record& record) {
-  Goal goal = record.goal.value_or(Goal{port_.positions()[robot.slot()], {}, {}});
+unsigned MotionDesk::coupled_joints(std::string_view robot) const {
+  return coupled_ == nullptr ? 0U : coupled_->coupled_joints(robot);
+}
+
+MotionGoal MotionDesk::goal_of(const RobotModel& robot, const MotionRecord& record,
+                               const std::shared_ptr<const kinematics::Chain>& chain) {
+  MotionGoal goal = record.goal.value_or(MotionGoal{port_.positions()[robot.slot()], {}, {}});
   // Another tool: the TCP is elsewhere than it was commanded to.
-  if (goal.chain != record.kinematics.chain()) goal.X_ZT.reset();
-  const unsigned coupled = coupled_ == nullptr ? 0U : coupled_->coupled_joints(robot.id());
+  if (goal.chain != chain) goal.X_ZT.reset();
+  const unsigned coupled = coupled_joints(robot.id());
   if (coupled == 0) return goal;
   const JointValues& stands = port_.positions()[robot.slot()];
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
@@ -147,7 +150,7 @@ MotionDesk::Goal MotionDesk::goal_of(const RobotModel& robot, const Record& reco
 }
 
 Result<JointValues> MotionDesk::joint_target(const RobotModel& robot, const MotionTarget& target,
-                                             const Goal& from) const {
+                                             const MotionGoal& from) const {
   switch (target.mode) {
     case TargetMode::joint_abs:
       return robot.positions_to(target.joints, from.joints);
@@ -160,8 +163,8 @@ Result<JointValues> MotionDesk::joint_target(const RobotModel& robot, const Moti
   }
 }
 
-Result<Pose> MotionDesk::pose_target(const RobotModel& robot, Record& record, const MotionTarget& target,
-                                     const Goal& from) {
+Result<Pose> MotionDesk::pose_target(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
+                                     const MotionGoal& from) {
   if (is_joint_target(target.mode)) {
     const auto joints = joint_target(robot, target, from);
     if (!joints) return std::unexpected(joints.error());
@@ -175,13 +178,13 @@ Result<Pose> MotionDesk::pose_target(const RobotModel& robot, Record& record, co
 }
 
 // Where the joints end when no path is asked for.
-Result<MotionDesk::Goal> MotionDesk::point(const RobotModel& robot, Record& record, const MotionTarget& target,
-                                           const Goal& from) {
+Result<MotionGoal> MotionDesk::point(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
+                                     const MotionGoal& from) {
   if (is_joint_target(target.mode)) {
     auto joints = joint_target(robot, target, from);
     if (!joints) return std::unexpected(joints.error());
     if (auto checked = check_limits(robot, *joints); !checked) return std::unexpected(checked.error());
-    return Goal{*joints, {}, record.kinematics.chain()};
+    return MotionGoal{*joints, {}, record.kinematics.chain()};
   }
   const auto X_ZG = pose_target(robot, record, target, from);
   if (!X_ZG) return std::unexpected(X_ZG.error());
@@ -192,21 +195,21 @@ Result<MotionDesk::Goal> MotionDesk::point(const RobotModel& robot, Record& reco
     const Pose X_ZN = answer->solutions.empty() ? *X_ZG : record.kinematics.X_ZT(answer->solutions.front().q);
     return std::unexpected(unreachable(robot, *answer, X_ZN));
   }
-  return Goal{answer->solutions.front().q, commanded_pose(task, *X_ZG), record.kinematics.chain()};
+  return MotionGoal{answer->solutions.front().q, commanded_pose(task, *X_ZG), record.kinematics.chain()};
 }
 
-Result<MotionDesk::Planned> MotionDesk::plan(const RobotModel& robot, Record& record, MovePath path,
-                                             const MotionTarget& target, motion::Start start) {
+Result<PlannedMove> MotionDesk::plan(const RobotModel& robot, MotionRecord& record, MovePath path,
+                                     const MotionTarget& target, motion::Start start) {
   if (auto updated = record.kinematics.update(cell_, robot); !updated) return std::unexpected(updated.error());
   const kinematics::Chain& chain = *record.kinematics.chain();
-  const Goal from = goal_of(robot, record);
+  const MotionGoal from = goal_of(robot, record, record.kinematics.chain());
   if (path == MovePath::joints) {
     auto goal = point(robot, record, target, from);
     if (!goal) return std::unexpected(goal.error());
     if (auto free = check_coupled(robot, from.joints, goal->joints); !free) return std::unexpected(free.error());
     auto move = motion::plan_joint_move(chain, robot.parameters(), goal->joints);
     if (!move) return std::unexpected(move.error());
-    return Planned{*move, std::move(*goal)};
+    return PlannedMove{*move, std::move(*goal)};
   }
   if (auto free = check_uncoupled(robot); !free) return std::unexpected(free.error());
   const auto X_ZG = pose_target(robot, record, target, from);
@@ -217,13 +220,13 @@ Result<MotionDesk::Planned> MotionDesk::plan(const RobotModel& robot, Record& re
   auto plan = motion::plan_linear_move(chain, robot.parameters(), first, *X_ZG);
   if (!plan) return std::unexpected(line_refused(robot, std::move(plan.error())));
   const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
-  return Planned{plan->move, {plan->end, commanded_pose(task, *X_ZG), record.kinematics.chain()}};
+  return PlannedMove{plan->move, {plan->end, commanded_pose(task, *X_ZG), record.kinematics.chain()}};
 }
 
-Result<void> MotionDesk::send(const RobotModel& robot, Record& record, Planned planned, motion::Start start) {
-  if (record.chain_of_tick != record.kinematics.chain()) {
-    if (auto set = port_.set_chain(robot.id(), record.kinematics.chain()); !set) return set;
-    record.chain_of_tick = record.kinematics.chain();
+Result<void> MotionDesk::send(const RobotModel& robot, MotionRecord& record, PlannedMove planned, motion::Start start) {
+  if (planned.goal.chain && record.chain_of_tick != planned.goal.chain) {
+    if (auto set = port_.set_chain(robot.id(), planned.goal.chain); !set) return set;
+    record.chain_of_tick = planned.goal.chain;
   }
   planned.move.start = start;
   planned.move.id = record.pending.next_id();
@@ -233,15 +236,15 @@ Result<void> MotionDesk::send(const RobotModel& robot, Record& record, Planned p
   } else {
     record.pending.queued_next();
   }
-  record.goal = std::move(planned.goal);
+  if (planned.goal.chain) record.goal = std::move(planned.goal);
   return {};
 }
 
-Result<void> MotionDesk::jump(const RobotModel& robot, Record& record, const MotionTarget& target) {
+Result<void> MotionDesk::jump(const RobotModel& robot, MotionRecord& record, const MotionTarget& target) {
   if (!is_joint_target(target.mode)) {
     if (auto updated = record.kinematics.update(cell_, robot); !updated) return updated;
   }
-  const Goal from = goal_of(robot, record);
+  const MotionGoal from = goal_of(robot, record, record.kinematics.chain());
   auto goal = point(robot, record, target, from);
   if (!goal) return std::unexpected(goal.error());
   if (auto free = check_coupled(robot, from.joints, goal->joints); !free) return free;
@@ -253,7 +256,7 @@ Result<void> MotionDesk::jump(const RobotModel& robot, Record& record, const Mot
 
 Result<void> MotionDesk::check_coupled(const RobotModel& robot, const JointValues& from, JointValues& goal) const {
   constexpr double kSame = 1e-6;  // rad or m: as a command's text may round it
-  const unsigned coupled = coupled_ == nullptr ? 0U : coupled_->coupled_joints(robot.id());
+  const unsigned coupled = coupled_joints(robot.id());
   for (std::size_t i = 0; coupled != 0 && i < robot.joint_count(); ++i) {
     if ((coupled >> i & 1U) == 0) continue;
     if (std::abs(goal[i] - from[i]) > kSame) {
@@ -267,10 +270,17 @@ Result<void> MotionDesk::check_coupled(const RobotModel& robot, const JointValue
 }
 
 Result<void> MotionDesk::check_uncoupled(const RobotModel& robot) const {
-  if (coupled_ == nullptr || coupled_->coupled_joints(robot.id()) == 0) return {};
+  if (coupled_joints(robot.id()) == 0) return {};
   return fail(fmt::format("joints of {} follow {}, so its TCP cannot keep to a line; nothing was moved", robot.id(),
                           coupled_->master_of(robot.id())),
               "move the master, or free the joints with MASTER_SLAVE off");
+}
+
+Result<void> MotionDesk::check_free(const RobotModel& robot) const {
+  if (coupled_joints(robot.id()) == 0) return {};
+  return fail(
+      fmt::format("joints of {} follow {}, so no program can move it", robot.id(), coupled_->master_of(robot.id())),
+      "free them with MASTER_SLAVE off");
 }
 
 // The tick refuses a posture as a whole, so a joint that was not commanded but stands beyond its limit (the limit was

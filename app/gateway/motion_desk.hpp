@@ -11,8 +11,7 @@
 
 #include "app/gateway/coupled_robots.hpp"
 #include "app/gateway/motion_port.hpp"
-#include "app/gateway/pending_moves.hpp"
-#include "app/gateway/robot_kinematics.hpp"
+#include "app/gateway/motion_record.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/lang/names.hpp"
@@ -49,41 +48,33 @@ class MotionDesk final : public MotionHost {
   [[nodiscard]] std::optional<JointValues> target(std::string_view robot) const;
   [[nodiscard]] Positioning positioning(std::string_view robot) const;
 
- private:
-  // Where a robot was last commanded to.
-  struct Goal {
-    JointValues joints{};
-    std::optional<Pose> X_ZT;  // as it was commanded, where the task is the whole pose
-    std::shared_ptr<const kinematics::Chain> chain;
-  };
-  struct Record {
-    explicit Record(const std::string& id) : pending(id) {}
-    PendingMoves pending;
-    RobotKinematics kinematics;
-    std::optional<Goal> goal;  // none: where the robot stands
-    Positioning positioning = Positioning::moving;
-    std::shared_ptr<const kinematics::Chain> chain_of_tick;
-  };
-  struct Planned {
-    motion::Move move;
-    Goal goal;
-  };
+  // For the moves of programs, which are planned elsewhere (program_motion.hpp).
+  // What is known of a robot, as far as the tick has shown. Refused: unknown, online.
+  Result<MotionRecord*> open(const RobotModel* robot, std::string_view id);
+  // Where the newest move ends, or the robot stands, for plans with `chain`.
+  [[nodiscard]] MotionGoal goal_of(const RobotModel& robot, const MotionRecord& record,
+                                   const std::shared_ptr<const kinematics::Chain>& chain);
+  // Gives the move to the tick, with the next id. `goal.chain` null (a delay): the goal stays.
+  Result<void> send(const RobotModel& robot, MotionRecord& record, PlannedMove planned, motion::Start start);
+  // Refused: joints of it follow a master.
+  [[nodiscard]] Result<void> check_free(const RobotModel& robot) const;
 
-  // Refused: unknown, online.
-  Result<Record*> open(const RobotModel* robot, std::string_view id);
-  void follow(const RobotModel& robot, Record& record);
-  [[nodiscard]] Goal goal_of(const RobotModel& robot, const Record& record);
+ private:
+  void follow(const RobotModel& robot, MotionRecord& record);
   // The chain of `record` must be up to date.
-  Result<JointValues> joint_target(const RobotModel& robot, const MotionTarget& target, const Goal& from) const;
-  Result<Pose> pose_target(const RobotModel& robot, Record& record, const MotionTarget& target, const Goal& from);
-  Result<Goal> point(const RobotModel& robot, Record& record, const MotionTarget& target, const Goal& from);
-  Result<Planned> plan(const RobotModel& robot, Record& record, MovePath path, const MotionTarget& target,
-                       motion::Start start);
-  Result<void> send(const RobotModel& robot, Record& record, Planned planned, motion::Start start);
-  Result<void> jump(const RobotModel& robot, Record& record, const MotionTarget& target);
+  Result<JointValues> joint_target(const RobotModel& robot, const MotionTarget& target, const MotionGoal& from) const;
+  Result<Pose> pose_target(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
+                           const MotionGoal& from);
+  Result<MotionGoal> point(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
+                           const MotionGoal& from);
+  Result<PlannedMove> plan(const RobotModel& robot, MotionRecord& record, MovePath path, const MotionTarget& target,
+                           motion::Start start);
+  Result<void> jump(const RobotModel& robot, MotionRecord& record, const MotionTarget& target);
   // Coupled joints stay with their master: refused where the goal has them elsewhere, or a path would move them.
   [[nodiscard]] Result<void> check_coupled(const RobotModel& robot, const JointValues& from, JointValues& goal) const;
   [[nodiscard]] Result<void> check_uncoupled(const RobotModel& robot) const;
+  // The joints (bits) of the robot that follow a master.
+  [[nodiscard]] unsigned coupled_joints(std::string_view robot) const;
   [[nodiscard]] Result<void> check_limits(const RobotModel& robot, const JointValues& joints) const;
 
   const Cell& cell_;
@@ -91,7 +82,7 @@ class MotionDesk final : public MotionHost {
   std::function<Eigen::Matrix3d()> screen_axes_;
   MotionPort& port_;
   const CoupledRobots* coupled_ = nullptr;
-  std::map<std::string, Record, std::less<>> records_;
+  std::map<std::string, MotionRecord, std::less<>> records_;
 };
 
 }  // namespace cellmirror::app

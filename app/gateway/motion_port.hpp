@@ -2,6 +2,7 @@
 // owns the cell.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -30,6 +31,10 @@ class MotionPort {
   virtual Result<void> set_chain(std::string_view robot, std::shared_ptr<const kinematics::Chain> chain) = 0;
   virtual Result<void> add_move(std::string_view robot, const motion::Move& move) = 0;
   virtual Result<void> stop_motion(std::string_view robot) = 0;
+  // motion::MoveExecutor::set_pace().
+  virtual Result<void> set_pace(std::string_view robot, double pace) = 0;
+  // motion::MoveExecutor::hold_behind().
+  virtual Result<void> hold_behind(std::string_view robot, std::uint32_t move) = 0;
 };
 
 }  // namespace cellmirror::app

@@ -30,6 +30,8 @@ class PendingMoves {
   [[nodiscard]] bool in_flight() const { return ended_ < sent_; }
   // Moves that were given and have not ended, as far as follow() has seen.
   [[nodiscard]] std::size_t count() const { return sent_ - ended_; }
+  // The newest move that has ended or was given up.
+  [[nodiscard]] std::uint32_t ended() const { return ended_; }
 
   // Ends what the tick says has ended. True where the newest move of all has just ended otherwise than by arriving: the
   // robot stands elsewhere than it was commanded to.

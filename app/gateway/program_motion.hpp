@@ -32,7 +32,8 @@ class CellProgramMotion final : public program::ProgramMotion {
   Result<void> set_tool(std::string_view robot, const std::optional<Pose>& X_PT) override;
   [[nodiscard]] program::MotionProgress progress(std::string_view robot) const override;
   Result<void> set_pace(std::string_view robot, double pace) override;
-  // Ends a hold as well.
+  Result<void> hold_behind(std::string_view robot, std::uint32_t ticket) override;
+  // Ends both kinds of hold as well.
   Result<void> stop(std::string_view robot) override;
 
   // Unknown robots have none.

@@ -48,10 +48,20 @@ Result<kinematics::Chain> with_all_joints(const RobotChain& moving, const RobotM
 
 }  // namespace
 
+void RobotKinematics::set_tool(const std::optional<Pose>& X_PT) {
+  if (X_PT_.has_value() == X_PT.has_value() && (!X_PT || X_PT->matrix() == X_PT_->matrix())) return;
+  X_PT_ = X_PT;
+  revision_ = 0;
+}
+
 Result<void> RobotKinematics::update(const Cell& cell, const RobotModel& robot) {
   if (revision_ == cell.revision()) return {};
   auto moving = robot_chain(cell, robot.id());
   if (!moving) return std::unexpected(moving.error());
+  if (X_PT_) {
+    const Pose X_LP = moving->chain.X_LT() * robot.parameters().X_PT.inverse();
+    moving->chain = moving->chain.with_tip(X_LP * *X_PT_);
+  }
   auto whole = with_all_joints(*moving, robot);
   if (!whole) return std::unexpected(whole.error());
   revision_ = cell.revision();

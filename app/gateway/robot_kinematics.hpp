@@ -18,6 +18,8 @@ namespace cellmirror::app {
 
 class RobotKinematics {
  public:
+  // Instead of the robot's own tool centre point (rob_tcp_def); none: that again. From the next update() on.
+  void set_tool(const std::optional<Pose>& X_PT);
   // Brings it up to date with the cell. Refused: see robot_chain().
   Result<void> update(const Cell& cell, const RobotModel& robot);
 
@@ -33,6 +35,7 @@ class RobotKinematics {
                                                          const JointValues& present);
 
  private:
+  std::optional<Pose> X_PT_;
   std::uint64_t revision_ = 0;  // of the cell, for which the rest holds; 0: none
   std::optional<RobotChain> moving_;
   std::shared_ptr<const kinematics::Chain> whole_;

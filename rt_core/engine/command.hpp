@@ -22,6 +22,8 @@ enum class CommandKind : std::uint8_t {
   set_chain,      // slot, chain; only while the robot is simulated
   add_move,       // slot; only while the robot is simulated. Its move travels beside it: Engine::send_move()
   stop_motion,    // slot; only while the robot is simulated
+  set_pace,       // slot, pace; only while the robot is simulated
+  hold_behind,    // slot, last_move; only while the robot is simulated
   couple,         // slot = the slave, master, joint_count, coupled, values = greatest velocities; its moves are braked
   uncouple,       // slot = the slave
   open_haptic,    // channel, instrument, device; one that is open is closed before
@@ -43,6 +45,8 @@ struct Command {
   JointValues lower{};
   JointValues upper{};
   CoupledJoints coupled{};
+  double pace = 1;              // of set_pace: motion::MoveExecutor::set_pace()
+  std::uint32_t last_move = 0;  // of hold_behind: motion::MoveExecutor::hold_behind()
   // Of set_chain: for the linear moves that are added from then on. The sender owns it and keeps it until commands_done
   // has passed a later set_chain, set_mode to mirrored or remove_robot of this slot and, after a set_chain, every move
   // that was sent before it has ended (MotionState::finished in the same state). Its variables are the robot's joints.

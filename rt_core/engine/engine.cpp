@@ -23,7 +23,8 @@ double passed_time(const CycleContext& context) CELL_RT {
 
 }  // namespace
 
-Engine::Engine(Watchdog& watchdog) : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog) {
+Engine::Engine(Watchdog& watchdog, Readers readers)
+    : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog), readers_(readers) {
   for (std::size_t i = 0; i < kMoveCommands; ++i) free_moves_.push(static_cast<std::uint16_t>(i));
   inlets_.reserve(kMaxRobots);
   for (std::size_t i = 0; i < kMaxRobots; ++i) inlets_.push_back(std::make_unique<Inlet>());
@@ -42,14 +43,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   }
   follow_masters(context, dt);
   publish(for_owner_);
-  publish(for_publisher_);
-  publish(for_status_);
-  publish(for_collision_);
-  publish(for_ranging_);
-  publish(for_contacts_);
-  publish(for_forces_);
-  publish(for_tcp_force_);
-  publish(for_pictures_);
+  if (readers_ == Readers::all) publish_to_workers();
   record_tick(context, commands, samples);
   watchdog_.beat();
 }
@@ -101,8 +95,10 @@ void Engine::follow_masters(const CycleContext& context, double dt) CELL_RT {
 }
 
 void Engine::move_robots(const CycleContext& context, double dt) CELL_RT {
+  // The slot of the period rather than when the thread woke up in it: the times of moves are whole periods apart.
+  const Timestamp now = context.scheduled.known() ? context.scheduled : context.now;
   for (std::size_t i = 0; i < kMaxRobots; ++i) {
-    if (!slots_[i].used() || !slots_[i].move(dt)) continue;
+    if (!slots_[i].used() || !slots_[i].move(dt, now)) continue;
     record_robot(FlightEvent::setpoint, i, context.now, slots_[i].state().motion.running);
   }
 }
@@ -135,6 +131,17 @@ int Engine::step_haptics(const CycleContext& context) CELL_RT {
     record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
   }
   return taken;
+}
+
+void Engine::publish_to_workers() CELL_RT {
+  publish(for_publisher_);
+  publish(for_status_);
+  publish(for_collision_);
+  publish(for_ranging_);
+  publish(for_contacts_);
+  publish(for_forces_);
+  publish(for_tcp_force_);
+  publish(for_pictures_);
 }
 
 void Engine::publish(Latest<TickState>& edge) CELL_RT {

@@ -41,6 +41,12 @@ struct QueueStatus {
   std::uint64_t dropped = 0;
 };
 
+// Who is there to look at what the tick publishes.
+enum class Readers : std::uint8_t {
+  all,
+  owner,  // off line: publishing to the others as well would take longer than all the rest of the tick
+};
+
 // Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
 // owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
 // collision_view(), ranging_view(), contact_view(), force_view(), tcp_force_view() and picture_view() to the workers of
@@ -49,7 +55,7 @@ struct QueueStatus {
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
-  explicit Engine(Watchdog& watchdog);
+  explicit Engine(Watchdog& watchdog, Readers readers = Readers::all);
 
   void run(const CycleContext& context) CELL_RT override;
 
@@ -95,6 +101,7 @@ class Engine final : public Cycle {
   void move_robots(const CycleContext& context, double dt) CELL_RT;
   void follow_masters(const CycleContext& context, double dt) CELL_RT;
   void publish(Latest<TickState>& edge) CELL_RT;
+  void publish_to_workers() CELL_RT;
   void record_tick(const CycleContext& context, int commands, int samples) CELL_RT;
   void record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT;
 
@@ -119,6 +126,7 @@ class Engine final : public Cycle {
   HapticChannels haptics_;
   Couplings couplings_;
   Watchdog& watchdog_;
+  Readers readers_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;
 };

@@ -43,6 +43,14 @@ bool RobotSlot::apply(const Command& command) CELL_RT {
       if (!simulated()) return false;
       executor_.stop();
       return true;
+    case CommandKind::set_pace:
+      if (!simulated()) return false;
+      executor_.set_pace(command.pace);
+      return true;
+    case CommandKind::hold_behind:
+      if (!simulated()) return false;
+      executor_.hold_behind(command.last_move);
+      return true;
     case CommandKind::open_haptic:
     case CommandKind::close_haptic:
     case CommandKind::reset_haptic:
@@ -117,7 +125,7 @@ bool RobotSlot::set_chain(const kinematics::Chain* chain) CELL_RT {
 
 bool RobotSlot::add_move(const motion::Move& move) CELL_RT { return simulated() && executor_.add(move); }
 
-bool RobotSlot::move(double dt) CELL_RT {
+bool RobotSlot::move(double dt, Timestamp now) CELL_RT {
   if (!simulated()) return false;
   const std::size_t n = state_.joint_count;
   JointValues present{};
@@ -131,7 +139,7 @@ bool RobotSlot::move(double dt) CELL_RT {
   }
   JointValues next = present;
   JointValues velocity{};
-  const bool moved = executor_.step(dt, {std::span(lower).first(n), std::span(upper).first(n)},
+  const bool moved = executor_.step(dt, now, {std::span(lower).first(n), std::span(upper).first(n)},
                                     std::span(next).first(n), std::span(velocity).first(n));
   if (moved) {
     for (std::size_t i = 0; i < n; ++i) {

@@ -18,8 +18,8 @@ class RobotSlot {
   // good value and becomes invalid.
   void take(const JointSample& sample) CELL_RT;
   bool add_move(const motion::Move& move) CELL_RT;
-  // Moves a simulated robot on by `dt` seconds. True where it moved.
-  bool move(double dt) CELL_RT;
+  // Moves a simulated robot on by `dt` seconds, to the instant `now`. True where it moved.
+  bool move(double dt, Timestamp now) CELL_RT;
   // The joints (bits) that follow a master from now on; 0: none. What moves is braked, or ends
   // at once where joints become free. Joints that follow are moved by
   // follow() alone: moves and positions leave them as they are.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "rt_core/base/real_time.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/motion/linear.hpp"
 #include "rt_core/motion/move.hpp"
@@ -31,6 +32,10 @@ struct MotionState {
   std::uint32_t finished = 0;       // the newest id that ended, however
   std::uint32_t finished_from = 0;  // the oldest of those that ended together with `finished`
   Outcome outcome = Outcome::none;  // of finished_from .. finished
+  // When they ended, exactly: moves end between ticks. What the move began late and could not make up for is deducted,
+  // so that the times of a program's moves add up.
+  Timestamp finished_time;
+  double pace = 1;  // how fast time goes on its path, by set_pace(): 0 is held and at rest
 };
 
 // All its memory is inside (some 30 kB): put it on the heap as part of its owner.
@@ -46,15 +51,23 @@ class MoveExecutor {
   // False where the queue is full or the move is not sound; its id ends as blocked, when everything before it has
   // ended.
   bool add(const Move& move) CELL_RT;
+  // How fast time goes on the path, 0..1: 0 brakes on the path and stays there, as long as no other pace comes; what
+  // waits does not begin, and a delay does not go on. The pace changes as fast as the accelerations of the move allow.
+  // A move that takes the place of others, stop() and abort() end it: the pace is 1 again. Values beyond are brought to
+  // the nearest one.
+  void set_pace(double pace) CELL_RT;
+  // Moves with ids beyond this one wait, as long as no other one is named: the robot stands at the end of it, also
+  // where it has a fly point. 0: none waits. Ends like a pace.
+  void hold_behind(std::uint32_t id) CELL_RT { gate_ = id; }
   // Brakes on the own path; everything that runs or waits ends as stopped when the robot stands.
   void stop() CELL_RT { halt(Outcome::stopped); }
   // At once, without braking; everything that runs or waits ends.
   void abort(Outcome outcome) CELL_RT;
 
-  // `dt` seconds (not negative) on: from the posture `q` [rad or m] to the next, whose velocities are put into `qd`.
-  // `q` is what the step before left, or where the robot was put meanwhile. False, and q and qd untouched, where the
-  // robot stands.
-  bool step(double dt, const JointRange& range, std::span<double> q, std::span<double> qd) CELL_RT;
+  // `dt` seconds (not negative) on, to the instant `now`: from the posture `q` [rad or m] to the next, whose velocities
+  // are put into `qd`. `q` is what the step before left, or where the robot was put meanwhile. False, and q and qd
+  // untouched, where the robot stands.
+  bool step(double dt, Timestamp now, const JointRange& range, std::span<double> q, std::span<double> qd) CELL_RT;
 
   [[nodiscard]] const MotionState& state() const CELL_RT { return state_; }
   // How fast each joint may be in this step: max_velocity of the move, or the speed from which it brakes.
@@ -65,7 +78,7 @@ class MoveExecutor {
     Move move;
     const kinematics::Chain* chain = nullptr;
   };
-  enum class Activity : std::uint8_t { standing, joints, linear, delay };
+  enum class Activity : std::uint8_t { standing, joints, path, delay };
 
   [[nodiscard]] const Queued& front() const CELL_RT { return queue_[first_]; }
   bool push(const Move& move) CELL_RT;
@@ -73,17 +86,25 @@ class MoveExecutor {
   void supersede(const Move& move) CELL_RT;
   void halt(Outcome outcome) CELL_RT;
   [[nodiscard]] bool blends(const Move& move) const CELL_RT;
-  [[nodiscard]] bool flies() const CELL_RT;
-  void fly() CELL_RT;
-  bool start_linear(std::span<const double> q) CELL_RT;
+  [[nodiscard]] bool flies(const JointRange& range, std::span<const double> q) const CELL_RT;
+  void fly(const JointRange& range, std::span<const double> q) CELL_RT;
+  bool start_path(std::span<const double> q) CELL_RT;
+  bool start_joints(const JointRange& range, std::span<const double> q) CELL_RT;
   void start_front(const JointRange& range, std::span<const double> q) CELL_RT;
+  [[nodiscard]] double lag_of(const Move& move) const CELL_RT;
+  void go_on_with_pace(double dt) CELL_RT;
+  void end_holds() CELL_RT;
+  [[nodiscard]] bool may_begin(const Move& move) const CELL_RT { return gate_ == 0 || move.id <= gate_; }
   void brake(const JointRange& range, std::span<const double> q) CELL_RT;
   void brake_off_line(const JointRange& range, std::span<const double> q) CELL_RT;
   bool advance(double dt, const JointRange& range, std::span<double> q) CELL_RT;
-  bool advance_linear(double dt, const JointRange& range, std::span<double> q) CELL_RT;
+  bool advance_path(double dt, const JointRange& range, std::span<double> q) CELL_RT;
   void arrive() CELL_RT;
-  void end_through(std::uint32_t id, Outcome outcome) CELL_RT;
+  // `overrun`: how long before now_, s.
+  void end_through(std::uint32_t id, Outcome outcome, double overrun = 0) CELL_RT;
+  [[nodiscard]] double overrun() const CELL_RT;
   void come_to_rest() CELL_RT;
+  void rest() CELL_RT;
 
   std::size_t joints_ = 0;
   const kinematics::Chain* chain_ = nullptr;
@@ -98,6 +119,15 @@ class MoveExecutor {
   PtpMotion ptp_;
   LinearMotion linear_;
   double delay_left_ = 0;
+  double pace_ = 1;  // of the path, as it is
+  double wanted_pace_ = 1;
+  std::uint32_t gate_ = 0;  // hold_behind(); 0: none
+  Timestamp now_;           // of the step under way, or of the last one
+  double dt_ = 0;           // s
+  double late_ = 0;         // by which the move that runs began late and which it does not make up for, s
+  // By which the front of the queue is late because the move before ended within the last step, s.
+  static constexpr double kNoLag = -1;
+  double lag_ = kNoLag;
   JointValues qd_{};
   JointValues fastest_{};
   std::array<Queued, kMoveQueue> queue_{};

@@ -37,7 +37,7 @@ double share_allowed(std::span<const double> from, std::span<const double> to, s
 
 // How much of the velocity `twist` leads along `way`, in 1/s: the projection, where velocities count in shares of what
 // the move allows.
-double speed_along(const Straight& way, const kinematics::Twist& twist, const Move& move) CELL_RT {
+double speed_along(const Way& way, const kinematics::Twist& twist, const Move& move) CELL_RT {
   const kinematics::Twist along = way.twist();
   const double linear = 1 / (move.linear_velocity * move.linear_velocity);
   const double rotational = 1 / (move.rotational_velocity * move.rotational_velocity);
@@ -63,22 +63,26 @@ void LinearMotion::take_limits(const Move& move, bool superposed) CELL_RT {
       superposed ? std::max(rotational_velocity_, move.rotational_velocity) : move.rotational_velocity;
 }
 
-void LinearMotion::start(const Move& move, const kinematics::Chain& chain, std::span<const double> q) CELL_RT {
+double LinearMotion::start(const Move& move, const kinematics::Chain& chain, std::span<const double> q,
+                           double lag) CELL_RT {
   chain_ = &chain;
   move_ = move;
   std::ranges::copy(q, posture_.begin());
   const Pose X_BS = kinematics::forward(chain, q);
+  Way way = Way::between(move, X_BS, move.X_BG);
+  const double gained = way.catch_up(lag, move.profile);
   path_.clear(X_BS);
-  path_.add(Straight::between(move, X_BS, move.X_BG));
+  path_.add(way);
   take_limits(move, false);
   pace_ = 1;
   older_ended_ = false;
+  return gained;
 }
 
 void LinearMotion::append(const Move& move) CELL_RT {
   take_limits(move, true);
   move_ = move;
-  path_.add(Straight::between(move, path_.end(), move.X_BG));
+  path_.add(Way::between(move, path_.end(), move.X_BG));
 }
 
 double LinearMotion::stopping_time(const kinematics::Twist& twist) const CELL_RT {
@@ -86,32 +90,29 @@ double LinearMotion::stopping_time(const kinematics::Twist& twist) const CELL_RT
                   twist.tail<3>().norm() / move_.rotational_acceleration);
 }
 
-void LinearMotion::brake() CELL_RT {
+void LinearMotion::brake(double pace) CELL_RT {
   // As fast as it really is; from here on time goes on at full pace.
-  const double pace = std::exchange(pace_, 1.0);
-  const kinematics::Twist twist = pace * path_.twist(0);
-  double duration = stopping_time(twist);
+  pace *= std::exchange(pace_, 1.0);
   if (path_.count() == 1) {
-    // A sine brakes late: in the middle of its braking it takes more than its acceleration to stop before the end.
-    const Straight& way = path_.newest();
-    const Profile::State share = way.share.at(way.t);
-    const double speed = pace * share.velocity;
-    if (speed > 0) duration = std::min(duration, 2 * std::max(1 - share.position, 0.0) / speed);
+    path_.brake(pace);
+    return;
   }
+  const kinematics::Twist twist = pace * path_.twist(0);
+  const double duration = stopping_time(twist);
   if (duration > kShortest) {
-    path_.replace(Straight::to_rest(twist, duration));
+    path_.replace(Way::to_rest(twist, duration));
   } else {
     path_.clear(path_.pose(0));
   }
 }
 
-void LinearMotion::blend(const Move& move) CELL_RT {
-  const kinematics::Twist twist = std::exchange(pace_, 1.0) * path_.twist(0);
+void LinearMotion::blend(const Move& move, double pace) CELL_RT {
+  const kinematics::Twist twist = pace * std::exchange(pace_, 1.0) * path_.twist(0);
   const Pose X_BN = path_.pose(0);
-  Straight way = Straight::between(move, X_BN, move.X_BG);
+  Way way = Way::between(move, X_BN, move.X_BG);
   double speed = speed_along(way, twist, move);
-  way = Straight::between(move, X_BN, move.X_BG, speed);
-  Straight rest;
+  way = Way::between(move, X_BN, move.X_BG, speed);
+  Way rest;
   double duration = 0;
   // The way begins where the rest of the velocity stops, and what that rest is depends on the direction of the way: a
   // contraction by a half at least, since `speed` is bounded.
@@ -120,8 +121,8 @@ void LinearMotion::blend(const Move& move) CELL_RT {
     duration = stopping_time(left);
     if (duration <= kShortest) break;
     speed = std::min(speed, 1 / duration);
-    rest = Straight::to_rest(left, duration);
-    way = Straight::between(move, rest.moved(X_BN, 1), move.X_BG, speed);
+    rest = Way::to_rest(left, duration);
+    way = Way::between(move, rest.moved(X_BN, 1), move.X_BG, speed);
   }
   take_limits(move, true);
   move_ = move;
@@ -131,12 +132,13 @@ void LinearMotion::blend(const Move& move) CELL_RT {
 }
 
 bool LinearMotion::fits(const Move& move, const kinematics::Chain* chain) const CELL_RT {
-  return move.kind == MoveKind::linear && chain == chain_ && same_task(move.task, move_.task);
+  const bool of_tcp = move.kind == MoveKind::linear || move.kind == MoveKind::circular;
+  return of_tcp && chain == chain_ && same_task(move.task, move_.task);
 }
 
 bool LinearMotion::at_fly_point() const CELL_RT {
   if (path_.count() != 1 || move_.fly_parameter <= 0) return false;
-  const Straight& way = path_.newest();
+  const Way& way = path_.newest();
   const Profile::State share = way.share.at(way.t);
   const double left = 1 - share.position;
   switch (move_.fly_type) {
@@ -151,16 +153,16 @@ bool LinearMotion::at_fly_point() const CELL_RT {
 }
 
 // Two moves in one direction would add up to more than either may have.
-double LinearMotion::pace_of_tool(double dt) const CELL_RT {
+double LinearMotion::pace_of_tool(double dt, double pace) const CELL_RT {
   if (path_.count() < 2) return 1;
-  const kinematics::Twist now = path_.twist(0);
-  const kinematics::Twist then = path_.twist(dt);
+  const kinematics::Twist now = pace * path_.twist(0);
+  const kinematics::Twist then = pace * path_.twist(pace * dt);
   const double linear = std::max(now.head<3>().norm(), then.head<3>().norm());
   const double rotational = std::max(now.tail<3>().norm(), then.tail<3>().norm());
-  double pace = 1;
-  if (linear > linear_velocity_) pace = linear_velocity_ / linear;
-  if (rotational > rotational_velocity_) pace = std::min(pace, rotational_velocity_ / rotational);
-  return pace;
+  double slowed = 1;
+  if (linear > linear_velocity_) slowed = linear_velocity_ / linear;
+  if (rotational > rotational_velocity_) slowed = std::min(slowed, rotational_velocity_ / rotational);
+  return slowed;
 }
 
 bool LinearMotion::find_posture(double later, JointValues& posture) const CELL_RT {
@@ -186,14 +188,16 @@ void LinearMotion::put(const JointValues& posture, bool last, double dt, std::sp
   }
 }
 
-LinearMotion::Progress LinearMotion::advance(double dt, std::span<double> q, std::span<double> qd) CELL_RT {
+LinearMotion::Progress LinearMotion::advance(double dt, double asked_pace, std::span<double> q,
+                                             std::span<double> qd) CELL_RT {
   older_ended_ = false;
   if (!(dt > 0)) return Progress::under_way;
-  double pace = std::min({pace_ + dt / kRecovery, 1.0, pace_of_tool(dt)});
+  double pace = std::min({pace_ + dt / kRecovery, 1.0, pace_of_tool(dt, asked_pace)});
   JointValues posture;
   int without_posture = 0;
   for (int i = 0; i < kTries && pace >= kSlowestPace; ++i) {
-    if (!find_posture(pace * dt, posture)) {
+    const double step = pace * asked_pace * dt;
+    if (!find_posture(step, posture)) {
       if (++without_posture == kTriesWithoutPosture) return Progress::blocked;
       pace *= kShorterTry;
       continue;
@@ -203,11 +207,12 @@ LinearMotion::Progress LinearMotion::advance(double dt, std::span<double> q, std
       pace *= kShrink * share;
       continue;
     }
-    const bool last = path_.ended(pace * dt);
+    const bool last = path_.ended(step);
     put(posture, last, dt, q, qd);
     posture_ = posture;
     pace_ = pace;
-    older_ended_ = path_.advance(pace * dt);
+    older_ended_ = path_.advance(step);
+    overrun_ = last ? path_.overrun() / (pace * asked_pace) : 0;
     if (older_ended_) take_limits(move_, false);
     return last ? Progress::arrived : Progress::under_way;
   }

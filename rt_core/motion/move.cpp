@@ -14,10 +14,10 @@ bool sound_joints(const Move& move, std::size_t joints) CELL_RT {
   for (std::size_t i = 0; i < joints; ++i) {
     if (!std::isfinite(move.target[i]) || !positive(move.velocity[i]) || !positive(move.acceleration[i])) return false;
   }
-  return true;
+  return not_negative(move.fly_parameter);
 }
 
-bool sound_line(const Move& move, std::size_t joints) CELL_RT {
+bool sound_path(const Move& move, std::size_t joints) CELL_RT {
   constexpr double kRotationSlack = 1e-6;
   for (std::size_t i = 0; i < joints; ++i) {
     if (!not_negative(move.min_velocity[i]) || !not_negative(move.acceleration[i])) return false;
@@ -36,7 +36,8 @@ bool is_sound(const Move& move, std::size_t joints) CELL_RT {
     if (!positive(move.max_velocity[i])) return false;
   }
   if (move.kind == MoveKind::joints) return sound_joints(move, joints);
-  return move.kind == MoveKind::linear && sound_line(move, joints);
+  if (move.kind == MoveKind::circular && !move.p_BV.allFinite()) return false;
+  return (move.kind == MoveKind::linear || move.kind == MoveKind::circular) && sound_path(move, joints);
 }
 
 }  // namespace cellmirror::motion

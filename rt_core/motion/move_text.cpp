@@ -48,21 +48,29 @@ std::string task_text(const kinematics::Task& task) {
                      task.secondary == kinematics::Secondary::even_bend ? "/even_bend" : "");
 }
 
+std::string fly_text(const Move& move) {
+  constexpr std::array<std::string_view, 3> kFly = {"speed", "distance", "angle"};
+  return fmt::format(" fly {} {}", kFly[static_cast<std::size_t>(move.fly_type)], number(move.fly_parameter));
+}
+
 std::string joints_text(const Move& move, std::size_t n) {
-  return fmt::format("joints {} {} target [{}] velocity [{}] acceleration [{}] max [{}]",
+  return fmt::format("joints {} {} target [{}] velocity [{}] acceleration [{}]{} max [{}]",
                      move.ptp_mode == PtpMode::synchronous ? "sync" : "async",
                      move.profile == VelocityProfile::sine ? "sine" : "ramp", list(std::span(move.target).first(n)),
                      list(std::span(move.velocity).first(n)), list(std::span(move.acceleration).first(n)),
+                     move.fly_parameter > 0 ? fly_text(move) : std::string(),
                      list(std::span(move.max_velocity).first(n)));
 }
 
-std::string linear_text(const Move& move, std::size_t n) {
-  constexpr std::array<std::string_view, 3> kFly = {"speed", "distance", "angle"};
-  return fmt::format("linear {} to [{}] task {} linear {} {} rotational {} {} fly {} {} max [{}] min [{}]",
-                     move.profile == VelocityProfile::sine ? "sine" : "ramp", pose_text(move.X_BG),
+std::string path_text(const Move& move, std::size_t n) {
+  const std::string via = move.kind == MoveKind::circular
+                              ? fmt::format(" via [{}]", list(std::array{move.p_BV.x(), move.p_BV.y(), move.p_BV.z()}))
+                              : std::string();
+  return fmt::format("{} {}{} to [{}] task {} linear {} {} rotational {} {}{} max [{}] min [{}]",
+                     move.kind == MoveKind::circular ? "circular" : "linear",
+                     move.profile == VelocityProfile::sine ? "sine" : "ramp", via, pose_text(move.X_BG),
                      task_text(move.task), number(move.linear_velocity), number(move.linear_acceleration),
-                     number(move.rotational_velocity), number(move.rotational_acceleration),
-                     kFly[static_cast<std::size_t>(move.fly_type)], number(move.fly_parameter),
+                     number(move.rotational_velocity), number(move.rotational_acceleration), fly_text(move),
                      list(std::span(move.max_velocity).first(n)), list(std::span(move.min_velocity).first(n)));
 }
 
@@ -74,7 +82,8 @@ std::string move_text(const Move& move, std::size_t joints) {
     case MoveKind::joints:
       return head + joints_text(move, joints);
     case MoveKind::linear:
-      return head + linear_text(move, joints);
+    case MoveKind::circular:
+      return head + path_text(move, joints);
     case MoveKind::delay:
       return head + "delay " + number(move.delay_s);
   }

@@ -14,10 +14,7 @@ namespace cellmirror::motion {
 
 namespace {
 
-constexpr double kSlack = 1e-9;               // rad or m; what the conversion of units costs
-constexpr double kDefaultTurning = 1.0;       // rad/s
-constexpr double kDefaultSliding = 0.1;       // m/s
-constexpr double kDefaultRampSeconds = 0.25;  // of a joint without an acceleration, at its velocity
+constexpr double kSlack = 1e-9;  // rad or m; what the conversion of units costs
 
 // The smaller one of those that are set.
 double smaller(double active, double most, double otherwise) {

@@ -145,6 +145,15 @@ double Profile::velocity_for(double duration, double position, double velocity, 
   return std::min(2 * c / (b + root), limits.velocity);
 }
 
+double Profile::acceleration_for(double duration, double way, double velocity) CELL_RT {
+  const double length = std::abs(way);
+  if (!(length > 0)) return 0;
+  const double ramp = duration - length / velocity;
+  if (!(ramp > 0)) return std::numeric_limits<double>::infinity();
+  // With a cruise, T = L / v + v / a; without one, T = 2 sqrt(L / a).
+  return velocity * duration <= 2 * length ? velocity / ramp : 4 * length / (duration * duration);
+}
+
 Profile::State Profile::at(double t) const CELL_RT {
   State state{target_, 0, 0, true};
   if (t >= duration_) return state;

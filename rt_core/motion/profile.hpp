@@ -56,6 +56,10 @@ class Profile {
   [[nodiscard]] static double velocity_for(double duration, double position, double velocity, double target,
                                            const AxisLimits& limits, VelocityProfile shape) CELL_RT;
 
+  // The acceleration with which an axis that stands covers `way` within `duration` at this cruising speed at most.
+  // Infinite where the speed alone does not allow it.
+  [[nodiscard]] static double acceleration_for(double duration, double way, double velocity) CELL_RT;
+
   [[nodiscard]] double duration() const CELL_RT { return duration_; }  // s
   [[nodiscard]] double target() const CELL_RT { return target_; }
 

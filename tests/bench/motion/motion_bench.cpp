@@ -68,7 +68,7 @@ void one_step(benchmark::State& state, const kinematics::Chain& chain, const Joi
   JointValues qd{};
   for (auto _ : state) {
     if (executor->state().waiting == 0) executor->add(shuttle.next());
-    executor->step(kTick, {chain.lower(), chain.upper()}, std::span(q).first(n), std::span(qd).first(n));
+    executor->step(kTick, Timestamp{1}, {chain.lower(), chain.upper()}, std::span(q).first(n), std::span(qd).first(n));
     benchmark::DoNotOptimize(q);
   }
 }

@@ -54,6 +54,14 @@ class RecordingPort final : public app::MotionPort {
     trace += fmt::format("{}: stop\n", robot);
     return {};
   }
+  Result<void> set_pace(std::string_view robot, double pace) override {
+    trace += fmt::format("{}: pace {:.6f}\n", robot, pace);
+    return {};
+  }
+  Result<void> hold_behind(std::string_view robot, std::uint32_t move) override {
+    trace += fmt::format("{}: hold behind {}\n", robot, move);
+    return {};
+  }
 
  private:
   // Inverse kinematics promises 1e-5.

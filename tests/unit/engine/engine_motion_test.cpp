@@ -314,5 +314,35 @@ TEST_F(EngineMotionTest, TickWithMovingRobotsLeavesTheHeapAlone) {
   EXPECT_EQ(guard.frees(), 0U);
 }
 
+TEST_F(EngineMotionTest, PaceHoldsARobotOnItsWayAndTellsSo) {
+  ASSERT_NE(sut_->send_move(kSlot, to(0.9, 0.2, 1)), 0U);
+  for (int i = 0; i < 600; ++i) tick();
+  Command pace = command_of(CommandKind::set_pace);
+  pace.pace = 0;
+  ASSERT_NE(sut_->send(pace), 0U);
+  for (int i = 0; i < 300; ++i) tick();
+  const RobotTickState held = sut_->owner_view().robots[kSlot];
+  EXPECT_EQ(held.motion.pace, 0);
+  EXPECT_TRUE(held.motion.moving);
+  EXPECT_EQ(held.joints[0].velocity, 0);
+  for (int i = 0; i < 100; ++i) tick();
+  EXPECT_EQ(sut_->owner_view().robots[kSlot].joints[0].position, held.joints[0].position);
+  pace.pace = 1;
+  ASSERT_NE(sut_->send(pace), 0U);
+  for (int i = 0; i < 3000; ++i) tick();
+  const RobotTickState& there = sut_->owner_view().robots[kSlot];
+  EXPECT_NEAR(there.joints[0].position, 0.9, 1e-12);
+  EXPECT_EQ(there.motion.finished, 1U);
+  EXPECT_EQ(sut_->owner_view().commands_refused, 0U);
+}
+
+TEST_F(EngineMotionTest, MovesEndBetweenTicksByTheSlotsOfTheirPeriods) {
+  ASSERT_NE(sut_->send_move(kSlot, to(0.6, 0.2, 1)), 0U);
+  const Timestamp begun = now_;  // the first tick leads from here to the next one
+  for (int i = 0; i < 3000; ++i) tick();
+  // 0.5 rad at 0.5 rad/s and 2 rad/s2
+  EXPECT_NEAR(seconds(sut_->owner_view().robots[kSlot].motion.finished_time - begun), 1.25, 1e-8);
+}
+
 }  // namespace
 }  // namespace cellmirror::engine

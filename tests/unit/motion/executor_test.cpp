@@ -313,16 +313,24 @@ TEST(MoveExecutor, LeavesTheHeapAlone) {
     moves.push_back(*ride.line_to(ride.q(), to, i % 4 == 3 ? Start::supersede : Start::queue));
     moves.push_back(i % 4 == 2 ? ride.joints_to(puma_posture(), Start::queue) : ride.pause(0.01));
   }
+  moves.push_back(*ride.arc_to(ride.q(), ride.X_BT().translation() + Eigen::Vector3d(0.05, -0.05, 0), to));
   JointValues q = ride.q();
   JointValues qd{};
   const JointRange range{ride.chain().lower(), ride.chain().upper()};
   const AllocationGuard guard;
   for (const Move& move : moves) {
     ride.sut().add(move);
-    for (int i = 0; i < 100; ++i) ride.sut().step(1e-3, range, std::span(q).first(6), std::span(qd).first(6));
+    for (int i = 0; i < 100; ++i)
+      ride.sut().step(1e-3, ride.time(), range, std::span(q).first(6), std::span(qd).first(6));
+  }
+  for (const double pace : {0.0, 0.5, 1.0}) {
+    ride.sut().set_pace(pace);
+    for (int i = 0; i < 100; ++i)
+      ride.sut().step(1e-3, ride.time(), range, std::span(q).first(6), std::span(qd).first(6));
   }
   ride.sut().stop();
-  for (int i = 0; i < 1000; ++i) ride.sut().step(1e-3, range, std::span(q).first(6), std::span(qd).first(6));
+  for (int i = 0; i < 1000; ++i)
+    ride.sut().step(1e-3, ride.time(), range, std::span(q).first(6), std::span(qd).first(6));
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_EQ(guard.frees(), 0U);
 }

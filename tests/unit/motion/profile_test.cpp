@@ -156,6 +156,18 @@ TEST_P(ProfileOfShape, ALowerCruiseTakesAsLongAsItIsToldTo) {
   EXPECT_GT(stretched, 2500);
 }
 
+TEST_P(ProfileOfShape, AccelerationForATimeTakesThatTime) {
+  for (const double way : {-0.01, 0.05, 2.0}) {
+    for (const double acceleration : {0.5, 4.0}) {
+      const AxisLimits limits{.velocity = 0.8, .acceleration = acceleration};
+      const double duration = Profile::to_target(0, 0, way, limits, GetParam()).duration();
+      EXPECT_NEAR(Profile::acceleration_for(duration, way, 0.8), acceleration, 1e-9 * acceleration);
+    }
+  }
+  EXPECT_TRUE(std::isinf(Profile::acceleration_for(1.0, 1.0, 0.8)));
+  EXPECT_EQ(Profile::acceleration_for(1.0, 0.0, 0.8), 0.0);
+}
+
 TEST(Profile, BothShapesTakeTheSameTimeAndMeetAtTheEndsOfTheirRamps) {
   const Profile ramp = Profile::to_target(0, 0, 2.0, {1.0, 3.0}, VelocityProfile::ramp);
   const Profile sine = Profile::to_target(0, 0, 2.0, {1.0, 3.0}, VelocityProfile::sine);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 
+#include "rt_core/base/time.hpp"
 #include "rt_core/kinematics/forward.hpp"
 #include "rt_core/motion/executor.hpp"
 #include "rt_core/motion/planner.hpp"
@@ -41,6 +42,13 @@ class Ride {
   [[nodiscard]] const MotionState& state() const { return sut_->state(); }
   [[nodiscard]] MoveExecutor& sut() { return *sut_; }
   [[nodiscard]] double now() const { return now_; }
+  [[nodiscard]] Timestamp time() const { return time_of(now_); }
+  // Of the clock of the ride, which does not begin with "never".
+  [[nodiscard]] static Timestamp time_of(double seconds) {
+    return Timestamp{1'000'000'000 + std::llround(seconds * 1e9)};
+  }
+  // When the newest move ended, s.
+  [[nodiscard]] double finished() const { return seconds(state().finished_time - time_of(0)); }
 
   // A move by the planner's parameters; not tried out before.
   [[nodiscard]] Move joints_to(const JointValues& target, Start start = Start::supersede) {
@@ -61,6 +69,14 @@ class Ride {
     move.delay_s = seconds;
     return stamped(move, Start::queue);
   }
+  [[nodiscard]] Result<Move> arc_to(const JointValues& from, const Eigen::Vector3d& p_BV, const Pose& X_BG,
+                                    Start start = Start::queue) {
+    auto plan = plan_circular_move(chain_, parameters, from, p_BV, X_BG);
+    if (!plan) return std::unexpected(plan.error());
+    end_of_plan = plan->end;
+    duration_of_plan = plan->duration_s;
+    return stamped(plan->move, start);
+  }
   Move stamped(Move move, Start start) {
     move.start = start;
     move.id = ++ids_;
@@ -70,9 +86,9 @@ class Ride {
   // One tick. Checks ranges and velocities.
   bool tick(double dt = kTick) {
     const JointValues before = q_;
-    const bool moved =
-        sut_->step(dt, {chain_.lower(), chain_.upper()}, std::span(q_).first(joints()), std::span(qd_).first(joints()));
     now_ += dt;
+    const bool moved = sut_->step(dt, time(), {chain_.lower(), chain_.upper()}, std::span(q_).first(joints()),
+                                  std::span(qd_).first(joints()));
     if (!moved) qd_.fill(0);
     for (std::size_t i = 0; i < joints(); ++i) {
       EXPECT_GE(q_[i], chain_.lower()[i] - 1e-9) << "joint " << i << " at " << now_;

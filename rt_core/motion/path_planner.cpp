@@ -38,8 +38,7 @@ std::string joint_text(const kinematics::Chain& chain, std::size_t i) {
 // Follows the way; `share` is how far it got.
 class Trial {
  public:
-  Trial(const kinematics::Chain& chain, const Move& move, const Straight& way, const Pose& X_BS,
-        const JointValues& from)
+  Trial(const kinematics::Chain& chain, const Move& move, const Way& way, const Pose& X_BS, const JointValues& from)
       : chain_(chain), move_(move), way_(way), X_BS_(X_BS), q_(from) {}
 
   // Why it cannot go on; empty where it reached the end.
@@ -87,13 +86,13 @@ class Trial {
 
   const kinematics::Chain& chain_;
   const Move& move_;
-  const Straight& way_;
+  const Way& way_;
   const Pose& X_BS_;
   JointValues q_;
   double share_ = 0;
 };
 
-std::string progress_text(const Straight& way, double share) {
+std::string progress_text(const Way& way, double share) {
   if (way.length > 1e-9)
     return fmt::format("{:.1f} of {:.1f} mm", mm_from_m(share * way.length), mm_from_m(way.length));
   return fmt::format("{:.1f} of {:.1f} deg", deg_from_rad(share * way.angle), deg_from_rad(way.angle));
@@ -104,7 +103,8 @@ double scaled(double value, double scale, double otherwise) {
   return std::isfinite(wanted) && wanted > 0 ? wanted : otherwise;
 }
 
-Move linear_move(const kinematics::Chain& chain, const RobotParameters& parameters, const Pose& X_BG) {
+// A straight line by the parameters.
+Move path_move(const kinematics::Chain& chain, const RobotParameters& parameters, const Pose& X_BG) {
   const RobotParameters defaults;
   Move move;
   move.kind = MoveKind::linear;
@@ -124,29 +124,54 @@ Move linear_move(const kinematics::Chain& chain, const RobotParameters& paramete
   return move;
 }
 
-}  // namespace
-
-Result<LinearPlan> plan_linear_move(const kinematics::Chain& chain, const RobotParameters& parameters,
-                                    const JointValues& from, const Pose& X_BG) {
-  if (!kinematics::is_pose(X_BG)) return fail("the target of the linear move is not a pose of finite numbers");
-  LinearPlan plan;
-  plan.move = linear_move(chain, parameters, X_BG);
+Result<PathPlan> try_out(const kinematics::Chain& chain, const Move& move, const JointValues& from) {
   for (std::size_t i = 0; i < chain.variable_count(); ++i) {
     if (from[i] >= chain.lower()[i] - kAtLimit && from[i] <= chain.upper()[i] + kAtLimit) continue;
-    return fail(joint_text(chain, i) + " stands beyond its range (or nowhere); a linear move cannot start from there",
+    return fail(fmt::format("{} stands beyond its range (or nowhere); a {} move cannot start from there",
+                            joint_text(chain, i), move.kind == MoveKind::circular ? "circular" : "linear"),
                 "bring it back with POS_ROB JOINT_ABS");
   }
+  PathPlan plan;
+  plan.move = move;
   const Pose X_BS = kinematics::forward(chain, std::span(from).first(chain.variable_count()));
-  const Straight way = Straight::between(plan.move, X_BS, X_BG);
+  const Way way = Way::between(move, X_BS, move.X_BG);
   Trial trial(chain, plan.move, way, X_BS, from);
   if (const std::string why = trial.run(); !why.empty()) {
     return fail(
-        fmt::format("the straight line can be followed for {} only: {}", progress_text(way, trial.share()), why),
+        fmt::format("the {} can be followed for {} only: {}", move.kind == MoveKind::circular ? "arc" : "straight line",
+                    progress_text(way, trial.share()), why),
         "a joint (PTP) move to the same target may do");
   }
   plan.end = trial.posture();
   plan.duration_s = way.share.duration();
   return plan;
+}
+
+}  // namespace
+
+Result<PathPlan> plan_linear_move(const kinematics::Chain& chain, const RobotParameters& parameters,
+                                  const JointValues& from, const Pose& X_BG) {
+  if (!kinematics::is_pose(X_BG)) return fail("the target of the linear move is not a pose of finite numbers");
+  return try_out(chain, path_move(chain, parameters, X_BG), from);
+}
+
+Result<PathPlan> plan_circular_move(const kinematics::Chain& chain, const RobotParameters& parameters,
+                                    const JointValues& from, const Eigen::Vector3d& p_BV, const Pose& X_BG) {
+  if (!kinematics::is_pose(X_BG) || !p_BV.allFinite())
+    return fail("the points of the circular move are not poses of finite numbers");
+  Move move = path_move(chain, parameters, X_BG);
+  move.kind = MoveKind::circular;
+  move.p_BV = p_BV;
+  if (move.task.position_axes != 0b111)
+    return fail("rob_inverse_class leaves a part of the position open, so the TCP can follow no arc",
+                "choose one that names the whole position, such as ALIGN_FRAME");
+  const Pose X_BS = kinematics::forward(chain, std::span(from).first(chain.variable_count()));
+  if (!Arc::through(X_BS.translation(), p_BV, X_BG.translation())) {
+    return fail(
+        "there is no arc through the start, the via point and the target: two of them coincide, or all lie on one line",
+        "choose three points apart from each other; a full circle takes two arcs, a straight way a linear move");
+  }
+  return try_out(chain, move, from);
 }
 
 }  // namespace cellmirror::motion
