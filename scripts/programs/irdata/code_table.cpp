@@ -41,7 +41,8 @@ std::optional<CodeTable::Row> read_code_line(std::string_view line, const Place&
   if (!operation) {
     Place there = place;
     there.column = std::max(cut.name_column, 1);
-    diagnostics.error(there, fmt::format("'{}' is no operation", printable(cut.name)), nearest_operation(cut.name));
+    diagnostics.error(there, fmt::format("'{}' is no operation", printable(cut.name)),
+                      cut.name.empty() ? "write its symbolic name behind a tab" : nearest_operation(cut.name));
     return std::nullopt;
   }
   return CodeTable::Row{static_cast<std::uint32_t>(*code), *operation, static_cast<std::uint32_t>(place.line)};

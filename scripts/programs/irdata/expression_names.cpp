@@ -62,6 +62,7 @@ Term ExpressionReader::symbol(std::string_view name, std::uint32_t column) {
   if (symbol->kind == Symbol::Kind::constant) {
     const Value& value = symbols_.constants[symbol->detail];
     if (const auto* integer = std::get_if<std::int64_t>(&value)) return integer_literal(*integer, column);
+    if (const auto* real = std::get_if<double>(&value)) return real_literal(*real, column);
     return terms_.value(value, column);
   }
   if (header_) {

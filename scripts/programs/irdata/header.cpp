@@ -119,6 +119,7 @@ void Translator::declare_list() {
   } else if (word != Word::real) {
     findings_.error(column, fmt::format("'{}' is no type", printable(text, 30)),
                     "write BOOLEAN, INTEGER, REAL, POSE or JOINTS");
+    list.good = false;
     cursor_.skip_parameter(parameter_begin_);
   }
   end_parameter();
@@ -134,11 +135,13 @@ void Translator::read_list_bounds(List& list) {
   const Term last = checked(constant_parameter("the last index"), "the last index", ValueType::integer);
   const auto from = terms_.constant_number(first);
   const auto to = terms_.constant_number(last);
+  list.good = list.good && from && to;
   if (!from || !to) return;
   const auto greatest = static_cast<double>(kGreatestIndex);
   if (*from < -greatest || *to > greatest || *to < *from || *to - *from >= static_cast<double>(kMostListElements)) {
     findings_.error(first.column, fmt::format("indices cannot go from {} to {}", *from, *to),
                     fmt::format("the last is not below the first, and {} elements are the most", kMostListElements));
+    list.good = false;
     return;
   }
   list.first = static_cast<std::int64_t>(*from);
@@ -160,6 +163,10 @@ void Translator::read_data() {
     return;
   }
   List& list = lists_[symbol->detail];
+  if (!list.good) {
+    cursor_.go_to(cursor_.line().size());
+    return;
+  }
   const std::size_t room = list.last ? static_cast<std::size_t>(*list.last - list.first + 1) : kMostListElements;
   bool full = false;
   do {
@@ -214,9 +221,10 @@ void Translator::end_header() {
     const std::size_t count = list.last ? static_cast<std::size_t>(*list.last - list.first + 1) : list.values.size();
     Symbol unknown;
     Symbol* symbol = symbols_.add(list.name, unknown).first;
-    if (count == 0) {
-      findings_.error_at(list.line, list.column, fmt::format("list '{}' has no elements", list.name),
-                         "add DATA, or a first and a last index");
+    if (count == 0 || !list.good) {
+      if (list.good)
+        findings_.error_at(list.line, list.column, fmt::format("list '{}' has no elements", list.name),
+                           "add DATA, or a first and a last index");
       *symbol = unknown;
       continue;
     }

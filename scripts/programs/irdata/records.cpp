@@ -105,10 +105,8 @@ void Translator::read_number() {
   if ((cursor_.peek() == 'N' || cursor_.peek() == 'n') && is_digit(cursor_.peek_behind())) cursor_.skip();
   const std::size_t begin = cursor_.at();
   std::uint64_t value = 0;
-  while (is_digit(cursor_.peek()) && cursor_.at() - begin < 18) {
-    value = value * 10 + static_cast<std::uint64_t>(cursor_.peek() - '0');
-    cursor_.skip();
-  }
+  for (; is_digit(cursor_.peek()); cursor_.skip())
+    if (value <= kGreatestRecord) value = value * 10 + static_cast<std::uint64_t>(cursor_.peek() - '0');
   if (cursor_.at() == begin) {
     findings_.error(column_, "the record has no number", "begin it with a number and a comma; comments begin with ';'");
     return;
@@ -128,6 +126,12 @@ void Translator::read_number() {
   if (!cursor_.take(','))
     findings_.error(cursor_.column(), "a ',' is missing behind the number of the record",
                     "write number, operation, parameters");
+}
+
+std::string Translator::remedy_for(std::string_view name) {
+  std::string near;
+  if (findings_.may_suggest()) near = nearest_operation(name);
+  return near.empty() ? "see docs/languages/irdata.md for the operations there are" : near;
 }
 
 bool Translator::read_operation() {
@@ -161,8 +165,7 @@ bool Translator::read_operation() {
     findings_.error(operation_column_, "the operation is missing",
                     "write its symbolic name or its code behind the number");
   else
-    findings_.error(operation_column_, fmt::format("'{}' is no operation", printable(name, 40)),
-                    findings_.may_suggest() ? nearest_operation(name) : std::string());
+    findings_.error(operation_column_, fmt::format("'{}' is no operation", printable(name, 40)), remedy_for(name));
   return false;
 }
 

@@ -1,6 +1,7 @@
 #include "scripts/programs/irdata/terms.hpp"
 
 #include <array>
+#include <limits>
 
 #include "rt_core/base/contract.hpp"
 
@@ -72,6 +73,7 @@ Term Terms::value(Value value, std::uint32_t column) {
 Term Terms::variable(VariableId id, std::uint32_t column) {
   Term term;
   term.column = column;
+  if (id == kNone) return term;  // there were too many, which has been reported
   const auto made = builder_.variable(id);
   if (!made) {
     findings_.error(column, made.error().what, made.error().remedy);
@@ -84,9 +86,11 @@ Term Terms::variable(VariableId id, std::uint32_t column) {
 }
 
 Term Terms::negated(const Term& term) {
-  if (!term.literal) return apply(Operator::negate, term.column, {term});
+  // The least integer has no negative: an error when it is executed.
+  if (!term.literal || term.integer == std::numeric_limits<std::int64_t>::min())
+    return apply(Operator::negate, term.column, {term});
   Term out = term;
-  out.integer = -term.integer;  // literals are not negative
+  out.integer = -term.integer;
   out.real = -term.real;
   return out;
 }

@@ -63,11 +63,13 @@ class Translator {
     std::int64_t first = 1;
     std::optional<std::int64_t> last;
     std::vector<Value> values;
+    bool good = true;  // else it has been reported
   };
 
   // records.cpp: the frame of a record
   void read_number();
   bool read_operation();
+  std::string remedy_for(std::string_view name);  // of an operation that there is not
   bool section_allows();
   bool leave_wrong_section();
   void execute_record();
