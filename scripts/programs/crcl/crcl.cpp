@@ -1,0 +1,60 @@
+#include "scripts/programs/crcl/crcl.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "rt_core/base/text.hpp"
+#include "scripts/programs/crcl/command_reader.hpp"
+#include "scripts/programs/crcl/xml_reader.hpp"
+#include "scripts/programs/program/program_builder.hpp"
+
+namespace cellmirror::program {
+namespace {
+
+std::string name_of_file(const std::string& file) {
+  const std::size_t slash = file.rfind('/');
+  const std::string name = slash == std::string::npos ? file : file.substr(slash + 1);
+  return name.substr(0, name.rfind('.'));
+}
+
+std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& context, Diagnostics& diagnostics) {
+  if (text.size() > kLargestProgramText) {
+    diagnostics.error({.file = context.file}, fmt::format("the program has {} bytes", text.size()),
+                      fmt::format("at most {} are read: split it", kLargestProgramText));
+    return nullptr;
+  }
+  Diagnostics found;
+  ProgramBuilder builder(name_of_file(context.file), "crcl", context.file);
+  crcl::CommandReader reader(builder, context.file, found);
+  crcl::XmlNode program;
+  const crcl::XmlVisitor visitor = {
+      .root =
+          [&](const crcl::XmlNode& root) {
+            program = root;
+            if (root.name == "CRCLProgram") return true;
+            found.error({.file = context.file, .line = static_cast<int>(root.line)},
+                        fmt::format("<{}> is no CRCL program", printable(root.name)), "it begins with <CRCLProgram>");
+            return false;
+          },
+      .element = [&](const crcl::XmlTree& element) { reader.read(element); },
+  };
+  crcl::read_xml(text, context.file, visitor, found);
+  reader.finish(program);
+  auto made = builder.build(found);
+  diagnostics.take(found);
+  return made;
+}
+
+}  // namespace
+
+const Language& crcl_language() {
+  static const Language kCrcl = {.name = "crcl",
+                                 .summary = "CRCL, the canonical robot command language of NIST (XML)",
+                                 .extensions = {".crcl", ".xml"},
+                                 .codes_file = {},
+                                 .parse = &parse};
+  return kCrcl;
+}
+
+}  // namespace cellmirror::program

@@ -1,0 +1,128 @@
+#include "scripts/programs/crcl/xml_reader.hpp"
+
+#include <expat.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace cellmirror::crcl {
+namespace {
+
+std::string_view without_prefix(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, const XmlVisitor& visitor, Diagnostics& diagnostics)
+      : file_(file), visitor_(visitor), diagnostics_(diagnostics) {}
+
+  void read(std::string_view text) {
+    const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
+                                                                              &XML_ParserFree);
+    if (parser == nullptr) {
+      diagnostics_.error({.file = file_}, "no memory for the XML parser");
+      return;
+    }
+    parser_ = parser.get();
+    XML_SetUserData(parser_, this);
+    XML_SetElementHandler(parser_, &Reader::on_start, &Reader::on_end);
+    XML_SetCharacterDataHandler(parser_, &Reader::on_text);
+    XML_SetStartDoctypeDeclHandler(parser_, &Reader::on_doctype);
+    parse(text);
+  }
+
+ private:
+  // In pieces: expat counts bytes with an int.
+  void parse(std::string_view text) {
+    constexpr std::size_t kPiece = std::size_t{1} << 20;
+    do {
+      const std::size_t size = std::min(text.size(), kPiece);
+      const bool last = size == text.size();
+      if (XML_Parse(parser_, text.data(), static_cast<int>(size), last ? 1 : 0) == XML_STATUS_ERROR) {
+        if (!stopped_) fail(XML_ErrorString(XML_GetErrorCode(parser_)));
+        return;
+      }
+      text.remove_prefix(size);
+    } while (!text.empty() && !stopped_);
+  }
+
+  [[nodiscard]] std::uint32_t line() const { return static_cast<std::uint32_t>(XML_GetCurrentLineNumber(parser_)); }
+  [[nodiscard]] std::uint32_t column() const {
+    return static_cast<std::uint32_t>(XML_GetCurrentColumnNumber(parser_)) + 1;
+  }
+
+  void fail(std::string_view what) {
+    diagnostics_.error({.file = file_, .line = static_cast<int>(line()), .column = static_cast<int>(column())},
+                       fmt::format("this is no XML that can be read: {}", what));
+    stop();
+  }
+  void stop() {
+    if (!std::exchange(stopped_, true)) XML_StopParser(parser_, XML_FALSE);
+  }
+
+  static void on_start(void* self, const XML_Char* name, const XML_Char** attributes) {
+    static_cast<Reader*>(self)->start(name, attributes);
+  }
+  static void on_end(void* self, const XML_Char* /*name*/) { static_cast<Reader*>(self)->end(); }
+  static void on_text(void* self, const XML_Char* text, int size) {
+    static_cast<Reader*>(self)->text({text, static_cast<std::size_t>(size)});
+  }
+  static void on_doctype(void* self, const XML_Char* /*name*/, const XML_Char* /*system*/, const XML_Char* /*id*/,
+                         int /*internal*/) {
+    static_cast<Reader*>(self)->fail("a document type declaration");
+  }
+
+  void start(std::string_view name, const XML_Char** attributes) {
+    if (stopped_) return;
+    if (++depth_ > kMostDepth) return fail(fmt::format("more than {} elements within each other", kMostDepth));
+    std::string_view type;
+    for (; attributes[0] != nullptr; attributes += 2) {
+      if (without_prefix(attributes[0]) == "type") type = without_prefix(attributes[1]);
+    }
+    if (depth_ == 1) {
+      XmlNode root;
+      root.name = without_prefix(name);
+      root.line = line();
+      root.column = column();
+      if (!visitor_.root(root)) stop();
+      return;
+    }
+    if (depth_ == 2) tree_.clear();
+    if (tree_.size() >= kMostNodes) return fail(fmt::format("an element with more than {} in it", kMostNodes));
+    tree_.open(without_prefix(name), type, line(), column());
+  }
+  void end() {
+    if (stopped_) return;
+    --depth_;
+    if (depth_ == 0) return;
+    tree_.close();
+    if (depth_ == 1) visitor_.element(tree_);
+  }
+  void text(std::string_view text) {
+    if (stopped_ || depth_ < 2) return;
+    if (tree_.text_of_open_node() + text.size() > kLongestText) {
+      return fail(fmt::format("an element with more than {} bytes of text", kLongestText));
+    }
+    tree_.add_text(text);
+  }
+
+  const std::string& file_;
+  const XmlVisitor& visitor_;
+  Diagnostics& diagnostics_;
+  XML_Parser parser_ = nullptr;
+  XmlTree tree_;
+  int depth_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+void read_xml(std::string_view text, const std::string& file, const XmlVisitor& visitor, Diagnostics& diagnostics) {
+  Reader(file, visitor, diagnostics).read(text);
+}
+
+}  // namespace cellmirror::crcl
