@@ -127,6 +127,10 @@ std::optional<Operand> ExpressionReader::named() {
   operand.type = declared->type;
   switch (declared->kind) {
     case Declared::Kind::variable:
+      if (lexer_.token().sign == Sign::open) {
+        tell_no_list(name);
+        return std::nullopt;
+      }
       return emitter_.node(Operator::variable, declared->type, {}, declared->variable);
     case Declared::Kind::constant:
       return declared->value;
@@ -142,8 +146,17 @@ std::optional<Operand> ExpressionReader::named() {
   return operand;
 }
 
+void ExpressionReader::tell_no_list(const Token& name) {
+  faults_.add(lexer_.token(), fmt::format("{} is no list", shown(name)), "delete the index, or declare it with LISTE");
+}
+
 std::optional<Operand> ExpressionReader::read_index(const Declared& list) {
-  if (!expect(Sign::open, "(")) return std::nullopt;
+  if (lexer_.token().sign != Sign::open) {
+    faults_.add(lexer_.token(), fmt::format("the index of a list is missing before {}", shown(lexer_.token())),
+                fmt::format("write an index from {} to {}, as in ({})", list.first, list.last, list.first));
+    return std::nullopt;
+  }
+  lexer_.advance();
   const Token at = lexer_.token();
   std::optional<Operand> index = read(ValueType::integer, "the index");
   if (!index || !expect(Sign::close, ")")) return std::nullopt;
@@ -229,7 +242,8 @@ std::optional<std::size_t> ExpressionReader::arguments(std::span<Operand> to, st
   }
   if (!expect(Sign::close, ")")) return std::nullopt;
   if (count < least) {
-    faults_.add(function, fmt::format("{} takes {} values, but has {}", shown(function), least, count));
+    faults_.add(function, fmt::format("{} takes {} values, but has {}", shown(function), least, count),
+                "write the ones that are missing");
     for (Operand& operand : to) operand = Operand{};
   }
   return count;

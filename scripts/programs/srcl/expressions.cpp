@@ -105,9 +105,31 @@ const Declared* ExpressionReader::find(const Token& name) {
   return nullptr;
 }
 
+namespace {
+
+// What to do with a value of a type that does not fit.
+std::string_view remedy_for(ValueType type) {
+  switch (type) {
+    case ValueType::boolean:
+      return "decide with WENN instead, or write another value";
+    case ValueType::integer:
+      return "compare it, as in I > 0, or write another value";
+    case ValueType::real:
+      return "write RUNDE(...) or GANZTEIL(...) around it, or compare it, as in X > 0";
+    case ValueType::pose:
+      return "use a component of it, as in P.X";
+    case ValueType::joints:
+      return "use a component of it, as in S.A1";
+  }
+  return {};
+}
+
+}  // namespace
+
 Operand ExpressionReader::wrong_type(const Token& at, std::string_view what, std::string_view needs,
                                      const Operand& operand) {
-  faults_.add(at, fmt::format("{} takes {}, but this is {}", what, needs, word_of(operand.type)));
+  faults_.add(at, fmt::format("{} takes {}, but this is {}", what, needs, word_of(operand.type)),
+              std::string(remedy_for(operand.type)));
   return Operand{};
 }
 

@@ -39,6 +39,8 @@ class ExpressionReader {
   std::optional<Operand> read_port();
   // "(index)" of a list.
   std::optional<Operand> read_index(const Declared& list);
+  // An index stands behind what has none.
+  void tell_no_list(const Token& name);
   // ".X"; the token is the point.
   std::optional<Component> read_component(ValueType type);
   // Of a name that is declared; else the fault is told.

@@ -17,7 +17,8 @@ void Faults::add(std::uint32_t line, std::uint32_t column, std::string message, 
 std::string Faults::proposal(std::string_view wrong, const std::vector<std::string>& candidates,
                              std::string_view otherwise) {
   std::string text;
-  if (may_propose(candidates.size())) {
+  // To a single letter everything short is near.
+  if (wrong.size() > 1 && may_propose(candidates.size())) {
     proposals_left_ -= candidates.size();
     text = did_you_mean(wrong, candidates);
   }

@@ -53,6 +53,11 @@ bool Parser::else_branch(const Token& at, bool with_condition) {
   if (block->skip != kNone) emitter_.set_target(block->skip, emitter_.here());
   block->skip = kNone;
   blocks_.begin_branch();
+  if (!with_condition && lexer_.token().keyword == Keyword::if_begin) {
+    faults_.add(lexer_.token(), "WENN stands behind SONST in a line", "write SONSTWENN, in one word");
+    lexer_.advance();
+    with_condition = true;
+  }
   if (!with_condition) {
     block->has_otherwise = true;
     return true;

@@ -290,6 +290,9 @@ bool Parser::assign(const Token& name) {
     const std::optional<Operand> read = expressions_.read_index(*declared);
     if (!read) return false;
     if (read->known()) index = emitter_.expression(*read);
+  } else if (lexer_.token().sign == Sign::open) {
+    expressions_.tell_no_list(name);
+    return false;
   }
   std::uint32_t component = kNone;
   double factor = 1;
@@ -327,7 +330,6 @@ void Parser::flush_scripts() {
     at.column = comment.column;
     std::string_view command = comment.text;
     if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
-    statement_seen_ = true;
     if (command.empty()) {
       faults_.add(at, "the comment begins with % but holds no SCRIPT command", "write the command, or delete the %");
     } else if (belongs_to_routine(at)) {
