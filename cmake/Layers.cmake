@@ -29,7 +29,7 @@ set(CELLMIRROR_LAYERS
   "ipc/sysv: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
   "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
   "ipc/web: rt_core/base rt_core/rt rt_core/ports ipc/runtime"
-  "scripts/lang: rt_core/base rt_core/ports"
+  "scripts/lang: rt_core/base rt_core/ports scripts/programs/program scripts/programs/languages"
   "scripts/commands: rt_core/base rt_core/ports scripts/lang"
   "scripts/runner: rt_core/base rt_core/ports scripts/lang scripts/commands"
   "scripts/programs/program: rt_core/base rt_core/ports"
@@ -51,8 +51,9 @@ set(CELLMIRROR_LAYERS
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/scene
-  rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web scripts/lang scripts/commands scripts/runner
-  scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/languages scripts/programs/controller
+  rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web
+  scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/languages
+  scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot app tests)
 
 function(cellmirror_allowed_folders folder result)

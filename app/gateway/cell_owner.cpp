@@ -37,9 +37,11 @@ CellOwner::CellOwner(Parts parts)
       motion_(
           cell_, names_, [this] { return display_.screen_axes(); }, *fleet_),
       couplings_(cell_, *fleet_, motion_),
-      world_(cell_, *fleet_, motion_, [this] { hang_up_picture(); }),
-      robots_(cell_, *fleet_, motion_, couplings_, names_),
-      programs_(motion_, display_),
+      program_motion_(cell_, motion_, *fleet_),
+      programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_, std::move(parts.program_event)}),
+      guarded_motion_(motion_, programs_),
+      world_(cell_, *fleet_, motion_, programs_, [this] { hang_up_picture(); }),
+      robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
       sensing_(cell_, std::move(parts.collision)),
       haptics_({cell_, *fleet_, parts.engine, clock_, parts.instance, std::move(parts.haptics)}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
@@ -47,13 +49,19 @@ CellOwner::CellOwner(Parts parts)
       interaction_(names_, haptics_, forces_),
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
-      CommandHost{names_, world_, robots_, motion_, programs_, display_, sensing_, interaction_, diagnosis_}, home_,
-      clock_);
+      CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
+      home_, clock_);
+  programs_.set_runner(*runner_);
   switches_ = std::make_unique<SwitchDesk>(
       SwitchDesk::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
       *runner_, home_, clock_);
   interaction_.set_desks(*switches_, couplings_);
   motion_.set_coupled(&couplings_);
+  if (parts.refused) runner_->on_refused(std::move(parts.refused));
+  fleet_->on_move(std::move(parts.move_given));
+  if (!parts.let_tick_pass) return;
+  fleet_->set_off_line(std::move(parts.let_tick_pass));
+  interaction_.set_off_line();
 }
 
 CellOwner::~CellOwner() { stop(); }
@@ -147,29 +155,38 @@ bool CellOwner::execute_files() {
   return any;
 }
 
+bool CellOwner::turn() {
+  motion_.follow();
+  couplings_.follow();
+  haptics_.follow();
+  forces_.follow();
+  // Not a reason to come back at once: a program that computes without end would keep this thread from ever waiting.
+  changed_ = programs_.follow() || changed_;
+  // Files first: what a foot switch begins does not wait behind a flood of messages.
+  bool busy = execute_files();
+  busy = execute_messages() || busy;
+  changed_ = changed_ || busy;
+  const bool due = clock_.now() - last_picture_ > kPicturePeriod;
+  if (changed_ && (due || !busy)) {
+    hang_up_picture();
+    changed_ = false;
+  }
+  return busy;
+}
+
+bool CellOwner::quiet() const {
+  return runner_->idle() && !motion_.moving() && !switches_->busy() && !programs_.needs_turns();
+}
+
 void CellOwner::loop(const std::stop_token& stop) {
   set_thread_name("cell");
-  bool changed = true;
+  changed_ = true;
   while (!stop.stop_requested()) {
-    motion_.follow();
-    couplings_.follow();
-    haptics_.follow();
-    forces_.follow();
-    // Files first: what a foot switch begins does not wait behind a flood of messages.
-    bool busy = execute_files();
-    busy = execute_messages() || busy;
-    changed = changed || busy;
-    const bool due = clock_.now() - last_picture_ > kPicturePeriod;
-    if (changed && (due || !busy)) {
-      hang_up_picture();
-      changed = false;
-    }
-    if (!busy) {
-      const bool quiet = runner_->idle() && !motion_.moving() && !switches_->busy();
-      wake_.wait(!quiet ? kMovingWait : haptics_.any_online() ? kHapticWait : kIdleWait);
-      changed = changed || clock_.now() - last_picture_ > kPicturePeriod;
-    }
+    if (turn()) continue;
+    wake_.wait(!quiet() ? kMovingWait : haptics_.any_online() ? kHapticWait : kIdleWait);
+    changed_ = changed_ || clock_.now() - last_picture_ > kPicturePeriod;
   }
+  programs_.shut_down();
   runner_->stop_all();
   haptics_.shut_down();
 }
@@ -201,6 +218,7 @@ void CellOwner::hang_up_picture() {
   picture->script = runner_->counters();
   picture->runs = runner_->runs();
   picture->script_errors = runner_->last_errors();
+  picture->programs = programs_.picture();
   picture->switches = switches_->picture();
   picture->couplings = couplings_.pictures();
   display_.follow();

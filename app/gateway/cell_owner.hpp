@@ -1,4 +1,5 @@
-// The thread that owns the cell: it executes SCRIPT from messages and files, and nobody else changes the model.
+// The owner of the cell: it executes SCRIPT from messages and files, and nobody else changes the model. In the gateway
+// it has a thread; the off-line simulation gives it turns between ticks.
 #pragma once
 
 #include <functional>
@@ -14,12 +15,15 @@
 #include "app/gateway/display_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/force_desk.hpp"
+#include "app/gateway/guarded_motion.hpp"
 #include "app/gateway/haptic_desk.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/interaction.hpp"
 #include "app/gateway/motion_desk.hpp"
 #include "app/gateway/node_levels.hpp"
 #include "app/gateway/picture.hpp"
+#include "app/gateway/program_desk.hpp"
+#include "app/gateway/program_motion.hpp"
 #include "app/gateway/sensing.hpp"
 #include "app/gateway/switch_desk.hpp"
 #include "app/gateway/wake_signal.hpp"
@@ -62,6 +66,12 @@ class CellOwner {
     std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
     std::function<std::uint64_t()> picture_updates = {};  // so far; empty: counted by the clock
     std::function<void()> bell = {};                      // with a message while BEEP is on
+    // Off line nothing runs beside the owner: where it waits for the tick it lets one pass with this. Robots cannot be
+    // mirrored then, and shared memories are not made. Empty: the gateway, where the tick has its own thread.
+    std::function<void()> let_tick_pass = {};
+    std::function<void(const Diagnostics& findings)> refused = {};  // with each command of a file that is refused
+    std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};  // to the tick
+    std::function<void(const program::ProgramEvent&)> program_event = {};
   };
 
   explicit CellOwner(Parts parts);
@@ -77,11 +87,19 @@ class CellOwner {
   // Ends the thread.
   void stop();
 
+  // Instead of start(), for whoever has no thread for it: all that can be done now, bounded. True where there may be
+  // more to do at once; else it has to come back after the next tick.
+  bool turn();
+  // No script, no move, no robot program and no script of a foot switch is under way.
+  [[nodiscard]] bool quiet() const;
+
   // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up.
   void submit(const ScriptMessage& message);
   // From any other thread: false, at once, where the queue is full.
   [[nodiscard]] bool offer(const ScriptMessage& message);
   [[nodiscard]] engine::QueueStatus command_queue() const;
+  // For whoever gives turns.
+  [[nodiscard]] const ProgramDesk& programs() const { return programs_; }
 
  private:
   void loop(const std::stop_token& stop);
@@ -102,9 +120,11 @@ class CellOwner {
   DisplayDesk display_;
   MotionDesk motion_;
   CouplingDesk couplings_;
+  CellProgramMotion program_motion_;
+  ProgramDesk programs_;
+  GuardedMotion guarded_motion_;
   CellWorld world_;
   CellRobots robots_;
-  CellPrograms programs_;
   CellSensing sensing_;
   HapticDesk haptics_;
   ForceDesk forces_;
@@ -118,6 +138,7 @@ class CellOwner {
   std::unique_ptr<SwitchDesk> switches_;  // its thread wakes the owner's
   WakeSignal room_;                       // wakes the receiver's thread when the queue has room again
   Timestamp last_picture_;
+  bool changed_ = true;        // since the last picture
   std::stop_source stopping_;  // apart from the thread, so that submit() may ask before the thread is there
   std::thread thread_;
 };

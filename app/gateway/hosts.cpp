@@ -56,6 +56,7 @@ std::vector<std::string> CellNames::all(NameKind kind) const {
 
 Result<void> CellWorld::followed(Result<void> changed) {
   if (!changed) return changed;
+  programs_.follow_cell();
   motion_.follow_cell();
   return fleet_.follow_cell();
 }
@@ -102,8 +103,10 @@ Result<void> CellRobots::set_online(std::string_view robot, bool online) {
                 "free it first with MASTER_SLAVE off");
   }
   auto set = fleet_.set_online(robot, online);
-  if (set && changes)
-    motion_.give_up(robot, {fmt::format("the robot {} went {}", robot, online ? "online" : "offline"), {}});
+  if (!set || !changes) return set;
+  const Error why{fmt::format("the robot {} went {}", robot, online ? "online" : "offline"), {}};
+  programs_.give_up(robot, why);
+  motion_.give_up(robot, why);
   return set;
 }
 
@@ -161,11 +164,6 @@ Result<void> CellRobots::set_point_of_reference(const Pose& X_FP) {
 Result<void> CellRobots::set_tool_center_point(const Pose& X_PT) {
   auto robot = active();
   return robot ? (*robot)->set_tool_center_point(X_PT) : std::unexpected(robot.error());
-}
-
-Result<void> CellPrograms::set_language(RobotLanguage language) {
-  language_ = language;
-  return {};
 }
 
 }  // namespace cellmirror::app

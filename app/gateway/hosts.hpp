@@ -10,6 +10,7 @@
 #include "app/gateway/display_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/motion_desk.hpp"
+#include "app/gateway/program_desk.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "scripts/commands/host.hpp"
 
@@ -35,8 +36,8 @@ class CellNames final : public NameDirectory {
 class CellWorld final : public WorldHost {
  public:
   // `draw` publishes the picture of the cell.
-  CellWorld(Cell& cell, Fleet& fleet, MotionDesk& motion, std::function<void()> draw)
-      : cell_(cell), fleet_(fleet), motion_(motion), draw_(std::move(draw)) {}
+  CellWorld(Cell& cell, Fleet& fleet, MotionDesk& motion, ProgramDesk& programs, std::function<void()> draw)
+      : cell_(cell), fleet_(fleet), motion_(motion), programs_(programs), draw_(std::move(draw)) {}
   Result<void> activate(std::string_view node) override;
   Result<void> deactivate(std::string_view node) override;
   Result<void> delete_node(std::string_view node) override;
@@ -56,13 +57,15 @@ class CellWorld final : public WorldHost {
   Cell& cell_;
   Fleet& fleet_;
   MotionDesk& motion_;
+  ProgramDesk& programs_;
   std::function<void()> draw_;
 };
 
 class CellRobots final : public RobotHost {
  public:
-  CellRobots(Cell& cell, Fleet& fleet, MotionDesk& motion, CouplingDesk& couplings, CellNames& names)
-      : cell_(cell), fleet_(fleet), motion_(motion), couplings_(couplings), names_(names) {}
+  CellRobots(Cell& cell, Fleet& fleet, MotionDesk& motion, CouplingDesk& couplings, ProgramDesk& programs,
+             CellNames& names)
+      : cell_(cell), fleet_(fleet), motion_(motion), couplings_(couplings), programs_(programs), names_(names) {}
   Result<void> set_active_robot(std::string_view robot) override;
   Result<void> set_online(std::string_view robot, bool online) override;
   Result<void> set_sending(std::string_view robot, bool sending) override { return fleet_.set_sending(robot, sending); }
@@ -82,21 +85,8 @@ class CellRobots final : public RobotHost {
   Fleet& fleet_;
   MotionDesk& motion_;
   CouplingDesk& couplings_;
+  ProgramDesk& programs_;
   CellNames& names_;
-};
-
-class CellPrograms final : public ProgramHost {
- public:
-  CellPrograms(const MotionDesk& motion, const DisplayDesk& display) : motion_(motion), display_(display) {}
-  Result<void> set_language(RobotLanguage language) override;
-  // There are no robot programs yet.
-  [[nodiscard]] bool busy() const override { return motion_.moving() || display_.busy(); }
-  [[nodiscard]] RobotLanguage language() const { return language_; }
-
- private:
-  const MotionDesk& motion_;
-  const DisplayDesk& display_;
-  RobotLanguage language_ = RobotLanguage::irdata;  // manual 1.2.1
 };
 
 class CellDiagnosis final : public DiagnosisHost {

@@ -21,6 +21,10 @@ class CellInteraction final : public InteractionHost {
     couplings_ = &couplings;
   }
 
+  // Memories that other processes attach to are not made, and nobody is listened to: what asks for them is taken and
+  // has no effect.
+  void set_off_line() { off_line_ = true; }
+
   Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
   Result<void> reset_haptic(std::string_view robot) override;
   Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
@@ -38,6 +42,7 @@ class CellInteraction final : public InteractionHost {
   ForceDesk& forces_;
   SwitchDesk* switches_ = nullptr;
   CouplingDesk* couplings_ = nullptr;
+  bool off_line_ = false;
 };
 
 }  // namespace cellmirror::app

@@ -12,6 +12,7 @@ namespace cellmirror::app {
 namespace {
 
 constexpr std::size_t kMostPairs = 50;  // touching, and near: keeps the document small
+constexpr std::size_t kMostPrograms = 50;
 
 std::string_view word(DataState state) {
   constexpr std::array<std::string_view, 5> kWords = {"none", "fresh", "stale", "lost", "invalid"};
@@ -169,6 +170,27 @@ void add_queues(JsonBuilder& out, std::span<const engine::QueueStatus> queues) {
   out.end_array();
 }
 
+void add_programs(JsonBuilder& out, const ProgramsPicture& programs) {
+  out.key("programs").begin_array();
+  const std::size_t count = std::min(programs.programs.size(), kMostPrograms);
+  for (std::size_t i = 0; i < count; ++i) {
+    const program::ProgramStatus& status = programs.programs[i];
+    out.begin_object()
+        .member("robot", status.robot)
+        .member("program", status.name)
+        .member("state", program::name_of(status.state))
+        .member("waits_for", status.waits_for)
+        .member("step", status.step)
+        .member("direction", status.direction == program::Direction::backward ? "backward" : "forward")
+        .member("elapsed_s", status.elapsed_s)
+        .member("expected_s", status.expected_s)
+        .member("runs", status.runs)
+        .member("error", status.error)
+        .end_object();
+  }
+  out.end_array().member("deadlock", programs.deadlock ? programs.deadlock->text() : std::string());
+}
+
 void add_messages(JsonBuilder& out, const DisplayState& display, Timestamp now) {
   out.key("messages").begin_array();
   for (const ShownText& message : display.messages) {
@@ -269,6 +291,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   add_proximity(out, sources.proximity.get());
   add_ranges(out, sources.ranges.get());
   add_forces(out, sources.forces.get());
+  add_programs(out, sources.picture.programs);
   add_queues(out, sources.queues);
   add_messages(out, *sources.picture.display, sources.now);
   add_display(out, sources);

@@ -14,6 +14,7 @@
 #include "app/gateway/haptic_desk.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/node_levels.hpp"
+#include "app/gateway/program_picture.hpp"
 #include "app/gateway/switch_desk.hpp"
 #include "app/gateway/tcp_force_memory.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
@@ -47,11 +48,12 @@ struct OwnerPicture {
   ForceSettings forces;
   std::shared_ptr<TcpForceMemory> tcp_force;  // null: not made yet
   std::string active_robot;
-  RobotLanguage language = RobotLanguage::irdata;
+  std::string language;  // of robot programs that are loaded now
   script::ScriptCounters script;
   std::vector<script::RunStatus> runs;
   std::vector<std::string> script_errors;
   std::shared_ptr<const DisplayState> display;  // the same object as long as nothing changes
+  ProgramsPicture programs;
   SwitchPicture switches;
   std::vector<CouplingPicture> couplings;
 };

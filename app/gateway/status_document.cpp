@@ -16,6 +16,7 @@
 #include "app/gateway/status_haptics.hpp"
 #include "app/gateway/status_page.hpp"
 #include "app/gateway/status_pictures.hpp"
+#include "app/gateway/status_programs.hpp"
 #include "app/gateway/status_ranges.hpp"
 #include "app/gateway/status_switches.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
@@ -40,20 +41,6 @@ const char* word(DataState state) {
       return "invalid";
   }
   return "none";
-}
-
-const char* word(RobotLanguage language) {
-  switch (language) {
-    case RobotLanguage::irdata:
-      return "irdata";
-    case RobotLanguage::srcl:
-      return "srcl";
-    case RobotLanguage::jet_boom:
-      return "jet_boom";
-    case RobotLanguage::jet_tarm:
-      return "jet_tarm";
-  }
-  return "irdata";
 }
 
 const char* word(InverseClass inverse_class) {
@@ -243,7 +230,7 @@ json script_json(const StatusSources& sources) {
           {"refused", all.refused + messages.malformed},
           {"running", sources.picture.runs.size()},
           {"runs", std::move(runs)},
-          {"language", word(sources.picture.language)},
+          {"language", sources.picture.language},
           {"last_errors", sources.picture.script_errors},
           {"last_malformed", messages.last_errors}};
 }
@@ -314,6 +301,7 @@ std::string status_document(const StatusSources& sources) {
                          {"forces", forces_json(sources.forces, sources.picture.forces, sources.now)},
                          {"pictures", pictures_json(sources.pictures)},
                          {"page", page_json(sources.page)},
+                         {"programs", programs_json(sources.picture.programs)},
                          {"foot_switches", switches_json(sources.picture.switches, sources.now)},
                          {"couplings", couplings_json(sources.picture.couplings, sources.tick)},
                          {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};

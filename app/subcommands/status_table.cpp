@@ -10,6 +10,7 @@
 #include "app/subcommands/status_table_forces.hpp"
 #include "app/subcommands/status_table_haptics.hpp"
 #include "app/subcommands/status_table_pictures.hpp"
+#include "app/subcommands/status_table_programs.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 #include "app/subcommands/status_table_switches.hpp"
 #include "rt_core/base/units.hpp"
@@ -31,6 +32,7 @@ class TableWriter {
     write_loop(status.at("loop"));
     for (const json& robot : status.at("robots")) write_robot(robot);
     out_ += couplings_table(status);
+    out_ += programs_table(status);
     out_ += sensing_table(status);
     out_ += forces_table(status);
     out_ += haptics_table(status);

@@ -17,7 +17,7 @@ Handlers collect_handlers() {
   Handlers handlers{};
   for (const auto section : {general_handlers(), robot_parameter_handlers(), animation_handlers(), dynamics_handlers(),
                              elastodynamic_handlers(), channel_handlers(), volume_handlers(), motion_handlers(),
-                             sensing_handlers(), own_handlers()}) {
+                             program_handlers(), sensing_handlers(), own_handlers()}) {
     for (const Registration& registration : section) {
       Handler& place = handlers[static_cast<std::size_t>(registration.id)];
       CELLMIRROR_EXPECTS(place == nullptr);

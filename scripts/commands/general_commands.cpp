@@ -29,7 +29,7 @@ Outcome level_up(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome robot_language(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.set_language(static_cast<RobotLanguage>(command.choice(0))));
+  return Outcome::of(host.programs.set_language(command.text(0)));
 }
 
 Outcome robact(const ParsedCommand& command, CommandHost& host) {
@@ -114,9 +114,6 @@ constexpr Registration kHandlers[] = {
     {FormId::level_up, level_up},
     {FormId::robot_language, robot_language},
     {FormId::robact, robact},
-    {FormId::tf_load, not_available},
-    {FormId::tf_run, not_available},
-    {FormId::tf_delete, not_available},
     {FormId::load_views, load_views},
     {FormId::exec_script, exec_script},
     {FormId::draw_scene, draw_scene},

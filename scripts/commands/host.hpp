@@ -15,6 +15,7 @@
 #include "scripts/commands/display_host.hpp"
 #include "scripts/commands/interaction_host.hpp"
 #include "scripts/commands/motion_host.hpp"
+#include "scripts/commands/program_host.hpp"
 #include "scripts/lang/names.hpp"
 
 namespace cellmirror {
@@ -55,16 +56,6 @@ class RobotHost {
   virtual Result<void> set_inverse_class(InverseClass inverse_class) = 0;
   virtual Result<void> set_point_of_reference(const Pose& X_FP) = 0;
   virtual Result<void> set_tool_center_point(const Pose& X_PT) = 0;
-};
-
-enum class RobotLanguage : std::uint8_t { irdata, srcl, jet_boom, jet_tarm };
-
-class ProgramHost {
- public:
-  virtual ~ProgramHost() = default;
-  virtual Result<void> set_language(RobotLanguage language) = 0;
-  // True while a robot moves, or a robot program or a view sequence runs: what WAIT waits for.
-  [[nodiscard]] virtual bool busy() const = 0;
 };
 
 // What SET_COLLPAR says of pairs of bodies.

@@ -25,6 +25,7 @@ std::span<const Registration> elastodynamic_handlers();
 std::span<const Registration> channel_handlers();
 std::span<const Registration> volume_handlers();
 std::span<const Registration> motion_handlers();
+std::span<const Registration> program_handlers();
 std::span<const Registration> sensing_handlers();
 std::span<const Registration> own_handlers();
 

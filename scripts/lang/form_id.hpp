@@ -129,9 +129,18 @@ enum class FormId : std::uint8_t {
   set_collpar_pair,
   reset_haptic,
   save_views,
+  tf_back,
+  tf_hold,
+  tf_resume,
+  tf_step,
+  tf_stop,
+  tf_wait,
+  tf_record,
+  set_input,
+  set_analog_input,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::save_views) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::set_analog_input) + 1;
 
 }  // namespace cellmirror::script

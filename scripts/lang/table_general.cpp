@@ -1,5 +1,10 @@
 // Manual 1.2.1: general commands, but for those that concern one robot, camera or sensor.
+#include <algorithm>
+#include <array>
+#include <vector>
+
 #include "scripts/lang/table_parts.hpp"
+#include "scripts/programs/languages/languages.hpp"
 
 namespace cellmirror::script {
 
@@ -8,10 +13,7 @@ namespace {
 using namespace parts;
 
 constexpr std::string_view kSection = "1.2.1";
-constexpr std::string_view kPrograms = "robot programs";
 
-constexpr Choice kLanguages[] = {
-    {"irdata", "IRDATA, the default"}, {"srcl", "SRCL"}, {"jet_boom", "JET boom"}, {"jet_tarm", "JET telescopic arm"}};
 constexpr Choice kExecWait[] = {{"exec_wait", "queue behind the robot's running program"}};
 
 constexpr Parameter kComment[] = {{.name = "text", .meaning = "comment", .kind = ParameterKind::text}};
@@ -22,7 +24,6 @@ constexpr Parameter kUnloadedFrame[] = {{.name = "frame_node",
                                          .kind = ParameterKind::name,
                                          .name_kind = NameKind::frame_node,
                                          .checked_by_host = true}};
-constexpr Parameter kLanguage[] = {choice("language", "robot language", kLanguages)};
 constexpr Parameter kRobot[] = {robot()};
 constexpr Parameter kProgramOfRobot[] = {file("teach_filename", "robot program"), robot()};
 constexpr Parameter kRun[] = {file("teach_filename", "robot program"), robot(),
@@ -101,9 +102,11 @@ constexpr Form kForms[] = {
      .name = "ROBOT_LANGUAGE",
      .syntax = "ROBOT_LANGUAGE <language>",
      .section = kSection,
-     .parameters = kLanguage,
+     .parameters = {},  // general_forms()
      .help = "sets the language in which robot programs loaded after it are parsed",
-     .example = "ROBOT_LANGUAGE jet_tarm"},
+     .example = "ROBOT_LANGUAGE jet_tarm",
+     .definition = "the manual's four are dialects of ours, docs/robot-programs.md; those behind them are not the "
+                   "manual's"},
     {.id = FormId::robact,
      .name = "ROBACT",
      .syntax = "ROBACT <Robot_id>",
@@ -118,8 +121,9 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "reads and checks a robot program for a robot without starting it",
      .example = "TF_LOAD r3demo mantec_R3",
-     .missing = kPrograms,
-     .definition = "a name already loaded is replaced unless it runs"},
+     .definition = "looked for in the home's programs folder, then in scripts, with and without the extensions of the "
+                   "current language; a program with any error is not loaded; a name already loaded is replaced unless "
+                   "it runs or is queued"},
     {.id = FormId::tf_run,
      .name = "TF_RUN",
      .syntax = "TF_RUN <teach_filename> <Robot_id> [exec_wait]",
@@ -127,8 +131,9 @@ constexpr Form kForms[] = {
      .parameters = kRun,
      .help = "starts a loaded robot program beside the others, or behind the robot's running one",
      .example = "TF_RUN hs2 ZELLENKRAN exec_wait",
-     .missing = kPrograms,
-     .definition = "refused for a program that is not loaded for that robot",
+     .definition = "refused for a program that is not loaded for that robot, or runs or is queued already, and beside "
+                   "another program of the robot without exec_wait; done when the program has its place; WAIT and "
+                   "TF_WAIT wait for its end",
      .effect = LoopEffect::queued},
     {.id = FormId::tf_delete,
      .name = "TF_DELETE",
@@ -137,8 +142,7 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "removes a robot program from a robot's virtual controller",
      .example = "TF_DELETE ird_getschr MANTEC_RM3",
-     .missing = kPrograms,
-     .definition = "refused while the program runs"},
+     .definition = "refused while the program runs or is queued"},
     {.id = FormId::load_views,
      .name = "LOAD_VIEWS",
      .syntax = "LOAD_VIEWS <view_filename>",
@@ -189,6 +193,20 @@ constexpr Form kForms[] = {
 
 }  // namespace
 
-std::span<const Form> general_forms() { return kForms; }
+// The languages are those that are registered, so that a new one is registered in one place.
+std::span<const Form> general_forms() {
+  static const std::vector<Choice> choices = [] {
+    std::vector<Choice> all;
+    for (const program::Language& language : program::languages()) all.push_back({language.name, language.summary});
+    return all;
+  }();
+  static const std::array<Parameter, 1> language = {choice("language", "robot language", choices)};
+  static const auto forms = [] {
+    auto all = std::to_array(kForms);
+    std::ranges::find(all, FormId::robot_language, &Form::id)->parameters = language;
+    return all;
+  }();
+  return forms;
+}
 
 }  // namespace cellmirror::script

@@ -57,6 +57,22 @@ constexpr Parameter kCollisionPair[] = {word("pair"), frame("node_a", "first fra
                                         frame("node_b", "second frame or joint"),
                                         choice("ignore | test | derive", "treatment", kPairTreatments)};
 
+constexpr Range kPortNumber{1.0, 1024.0, false, false};
+constexpr Choice kStepDirections[] = {{"FORWARD", "as the program goes"},
+                                      {"BACKWARD", "back to the check point before"}};
+constexpr Choice kRecordSteps[] = {{"START", "begins a recording"},
+                                   {"POINT", "a check point where the robot is now"},
+                                   {"STOP", "ends it and writes the file"}};
+constexpr Parameter kProgramRobot[] = {robot()};
+constexpr Parameter kProgramOfRobot[] = {file("teach_filename", "robot program"), robot()};
+constexpr Parameter kStep[] = {robot(), optional(choice("direction", "direction", kStepDirections), "FORWARD")};
+constexpr Parameter kRecord[] = {file("teach_filename", "robot program"), robot(),
+                                 choice("START | POINT | STOP", "what to do", kRecordSteps),
+                                 optional(identifier("point", "name of the check point"))};
+constexpr Parameter kDigitalInput[] = {robot(), integer("number", "digital input", kPortNumber), on_off()};
+constexpr Parameter kAnalogueInput[] = {robot(), integer("number", "analogue input", kPortNumber),
+                                        number("value", "value", Unit::none)};
+
 constexpr std::string_view kQueued =
     "begins when the robot has done what was commanded before; the command is done when the move waits its turn (at "
     "most "
@@ -190,6 +206,97 @@ constexpr Form kForms[] = {
      .example = "SAVE_VIEWS my_views.vws",
      .definition = "a plain file name without folders; a file of that name is replaced; a view on its way is saved as "
                    "it will be",
+     .origin = Origin::ours},
+    {.id = FormId::tf_back,
+     .name = "TF_BACK",
+     .syntax = "TF_BACK <teach_filename> <Robot_id>",
+     .section = kSection,
+     .parameters = kProgramOfRobot,
+     .help = "runs a loaded robot program backward, from its last check point to its first",
+     .example = "TF_BACK boom_inspect BOOM_1",
+     .definition = "for programs of check points (jet_boom, jet_tarm); its comments and outputs are passed over; "
+                   "refused as TF_RUN is",
+     .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::tf_hold,
+     .name = "TF_HOLD",
+     .syntax = "TF_HOLD <Robot_id>",
+     .section = kSection,
+     .parameters = kProgramRobot,
+     .help = "holds the robot program that runs: the robot brakes on its path and waits there",
+     .example = "TF_HOLD MANTEC_RM3",
+     .definition = "within the robot's accelerations; the time that a program waits for goes on",
+     .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::tf_resume,
+     .name = "TF_RESUME",
+     .syntax = "TF_RESUME <Robot_id>",
+     .section = kSection,
+     .parameters = kProgramRobot,
+     .help = "lets a held robot program go on, on the path where it was held",
+     .example = "TF_RESUME MANTEC_RM3",
+     .definition = "also behind the PAUSE of a program and behind TF_STEP",
+     .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::tf_step,
+     .name = "TF_STEP",
+     .syntax = "TF_STEP <Robot_id> [FORWARD | BACKWARD]",
+     .section = kSection,
+     .parameters = kStep,
+     .help = "lets a held robot program do one move, and holds it again",
+     .example = "TF_STEP MANTEC_RM3 FORWARD",
+     .definition = "or what stands between two moves; BACKWARD for programs of check points only",
+     .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::tf_stop,
+     .name = "TF_STOP",
+     .syntax = "TF_STOP <Robot_id>",
+     .section = kSection,
+     .parameters = kProgramRobot,
+     .help = "ends the robot program that runs and forgets those that are queued behind it; the robot brakes",
+     .example = "TF_STOP MANTEC_RM3",
+     .definition = "works at once, also on endless loops; STOP_ROB does the same where a program moves the robot",
+     .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::tf_wait,
+     .name = "TF_WAIT",
+     .syntax = "TF_WAIT <Robot_id>",
+     .section = kSection,
+     .parameters = kProgramRobot,
+     .help = "waits until the robot's programs have ended",
+     .example = "TF_WAIT MANTEC_RM3",
+     .definition = "suspends the SCRIPT file that contains it; a message is answered then; refused with what failed; "
+                   "robot programs themselves cannot wait so",
+     .effect = LoopEffect::blocking,
+     .origin = Origin::ours},
+    {.id = FormId::tf_record,
+     .name = "TF_RECORD",
+     .syntax = "TF_RECORD <teach_filename> <Robot_id> [START | POINT | STOP] [point]",
+     .section = kSection,
+     .parameters = kRecord,
+     .help = "records a teach file (jet_boom, jet_tarm) from what a robot does",
+     .example = "TF_RECORD taught PUMA_762 START",
+     .definition = "check points are where the robot rests and where POINT is commanded; STOP writes the file into the "
+                   "home's programs folder; the language is that of ROBOT_LANGUAGE if it is one of the two, else "
+                   "jet_boom",
+     .origin = Origin::ours},
+    {.id = FormId::set_input,
+     .name = "SET_INPUT",
+     .syntax = "SET_INPUT <Robot_id> <number> [on | off]",
+     .section = kSection,
+     .parameters = kDigitalInput,
+     .help = "sets a digital input of a robot's virtual controller",
+     .example = "SET_INPUT MANTEC_RM3 3 on",
+     .definition = "all are off in the beginning",
+     .origin = Origin::ours},
+    {.id = FormId::set_analog_input,
+     .name = "SET_ANALOG_INPUT",
+     .syntax = "SET_ANALOG_INPUT <Robot_id> <number> <value>",
+     .section = kSection,
+     .parameters = kAnalogueInput,
+     .help = "sets an analogue input of a robot's virtual controller",
+     .example = "SET_ANALOG_INPUT MANTEC_RM3 1 4.75",
+     .definition = "all are 0 in the beginning; the unit is the program's affair",
      .origin = Origin::ours},
 };
 

@@ -27,53 +27,83 @@ Error as_error(const Diagnostics& findings) {
   return error;
 }
 
+bool waits_for_programs(FormId id) { return id == FormId::wait || id == FormId::tf_wait; }
+
 }  // namespace
 
 Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
   ActivityHandle activity;
-  auto result = begin_message(text, source, activity);
+  auto result = begin_message(command_, CommandSource::message, text, source, activity);
   if (result) return *std::move(result);
   const Result<std::string> begun;
-  count_message(begun, {});
+  count_message(CommandSource::message, begun, {});
   return begun;
 }
 
 void ScriptRunner::execute_message(std::string_view text, std::string_view source, Answer answer) {
   ActivityHandle activity;
-  if (const auto result = begin_message(text, source, activity)) {
+  if (const auto result = begin_message(command_, CommandSource::message, text, source, activity)) {
     answer(*result);
     return;
   }
   const Place place{std::string(source), command_.begin().line, command_.begin().column};
-  waiting_messages_.push_back({std::move(activity), place, std::move(answer)});
+  waiting_messages_.push_back({CommandSource::message, std::move(activity), place, std::move(answer)});
 }
 
-std::optional<Result<std::string>> ScriptRunner::begin_message(std::string_view text, std::string_view source,
+Result<ActivityHandle> ScriptRunner::execute_program_command(std::string_view text, std::string_view source) {
+  ActivityHandle activity;
+  if (auto result = begin_message(program_command_, CommandSource::program, text, source, activity)) {
+    if (!*result) return std::unexpected(std::move(result->error()));
+    return ActivityHandle();
+  }
+  const Place place{std::string(source), program_command_.begin().line, program_command_.begin().column};
+  waiting_messages_.push_back({CommandSource::program, activity, place, [](const Result<std::string>&) {}});
+  return activity;
+}
+
+SourceCounters& ScriptRunner::counters_of(CommandSource from) {
+  switch (from) {
+    case CommandSource::file:
+      return counters_.file;
+    case CommandSource::message:
+      return counters_.message;
+    case CommandSource::program:
+      return counters_.program;
+  }
+  return counters_.message;
+}
+
+std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& command, CommandSource from,
+                                                               std::string_view text, std::string_view source,
                                                                ActivityHandle& activity) {
-  ++counters_.message.received;
+  ++counters_of(from).received;
   CommandReader reader(text, source, TextKind::message);
   Diagnostics findings;
-  const CommandReader::Step step = reader.next(&host_.names, command_, findings);
+  const CommandReader::Step step = reader.next(&host_.names, command, findings);
   if (step == CommandReader::Step::error) {
     for (const Diagnostic& finding : findings.all()) remember(finding);
-    ++counters_.message.refused;
+    ++counters_of(from).refused;
     return std::unexpected(as_error(findings));
   }
   Result<std::string> result;
-  if (step == CommandReader::Step::command) {
-    Outcome outcome = execute(command_, host_);
+  if (step == CommandReader::Step::command && from == CommandSource::program && waits_for_programs(command.id())) {
+    result = fail(fmt::format("{}: a robot program cannot wait for programs, it is one itself", command.form().name),
+                  "let programs wait for each other with semaphores");
+  } else if (step == CommandReader::Step::command) {
+    Outcome outcome = execute(command, host_);
     if (outcome.kind == Outcome::Kind::pending) {
       activity = std::move(outcome.activity);
       return std::nullopt;
     }
     result = accept_message(outcome);
   }
-  count_message(result, {std::string(source), command_.begin().line, command_.begin().column});
+  count_message(from, result, {std::string(source), command.begin().line, command.begin().column});
   return result;
 }
 
-void ScriptRunner::count_message(const Result<std::string>& result, const Place& place) {
-  ++(result ? counters_.message.done : counters_.message.refused);
+void ScriptRunner::count_message(CommandSource from, const Result<std::string>& result, const Place& place) {
+  SourceCounters& counters = counters_of(from);
+  ++(result ? counters.done : counters.refused);
   if (!result) remember({Severity::error, place, result.error().what, result.error().remedy});
 }
 
@@ -106,7 +136,7 @@ std::size_t ScriptRunner::answer_messages() {
     }
     Result<std::string> result;
     if (activity.state() == Activity::State::refused) result = std::unexpected(activity.error());
-    count_message(result, waiting_messages_[i].place);
+    count_message(waiting_messages_[i].from, result, waiting_messages_[i].place);
     waiting_messages_[i].answer(result);
     waiting_messages_.erase(waiting_messages_.begin() + static_cast<std::ptrdiff_t>(i));
     ++answered;
@@ -117,7 +147,7 @@ std::size_t ScriptRunner::answer_messages() {
 void ScriptRunner::refuse_waiting_messages() {
   const Result<std::string> result = fail("the gateway ends");
   for (const WaitingMessage& waiting : waiting_messages_) {
-    count_message(result, waiting.place);
+    count_message(waiting.from, result, waiting.place);
     waiting.answer(result);
   }
   waiting_messages_.clear();

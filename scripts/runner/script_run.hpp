@@ -46,7 +46,9 @@ class ScriptRun {
 
   std::vector<std::unique_ptr<ScriptFile>> stack;  // the innermost last
   bool waiting = false;                            // in WAIT
-  ActivityHandle activity;                         // not null: of the last command, which is done when this has ended
+  Place wait_place;
+  std::uint64_t failures = 0;  // ProgramHost::failures() when the run began, or its newest WAIT ended
+  ActivityHandle activity;     // not null: of the last command, which is done when this has ended
   Place activity_place;
   Timestamp first_command;
   RunReport report;

@@ -79,6 +79,7 @@ Result<std::uint64_t> ScriptRunner::start(const fs::path& path, Diagnostics* fin
   if (!file) return std::unexpected(std::move(file.error()));
   ++counters_.scripts_started;
   runs_.push_back(std::make_unique<ScriptRun>(++last_id_, std::move(*file)));
+  runs_.back()->failures = host_.programs.failures();
   return last_id_;
 }
 
@@ -136,11 +137,25 @@ std::size_t ScriptRunner::step(std::size_t budget) {
   return static_cast<std::size_t>(counters_.file.received - received_before) + ended_activities_;
 }
 
-bool ScriptRunner::may_go_on(ScriptRun& run) {
-  if (run.waiting) {
-    if (host_.programs.busy()) return false;
-    run.waiting = false;
+bool ScriptRunner::end_wait(ScriptRun& run) {
+  if (host_.programs.busy()) return false;
+  run.waiting = false;
+  ++ended_activities_;
+  const Result<void> verdict = host_.programs.verdict(run.failures);
+  run.failures = host_.programs.failures();
+  if (verdict) {
+    ++run.report.counters.done;
+    ++counters_.file.done;
+    return true;
   }
+  Diagnostics findings;
+  findings.error(run.wait_place, verdict.error().what, verdict.error().remedy);
+  refuse(run, findings);
+  return true;
+}
+
+bool ScriptRunner::may_go_on(ScriptRun& run) {
+  if (run.waiting && !end_wait(run)) return false;
   if (!run.activity) return true;
   if (run.activity->state() == Activity::State::running) return false;
   const ActivityHandle ended = std::move(run.activity);
@@ -185,7 +200,11 @@ void ScriptRunner::execute_command(ScriptRun& run) {
   const Position place = command_.begin();
   Outcome outcome = execute(command_, host_);
   Diagnostics findings;
-  if (outcome.kind == Outcome::Kind::wait) run.waiting = true;
+  if (outcome.kind == Outcome::Kind::wait) {
+    run.waiting = true;
+    run.wait_place = {file.name(), place.line, place.column};
+    return;
+  }
   if (outcome.kind == Outcome::Kind::call_script) {
     // The file may be gone from the stack's top afterwards: the name is copied.
     const std::string caller = file.name();
@@ -241,6 +260,7 @@ void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
   ++counters_.file.refused;
   run.report.diagnostics.take(findings);
   for (const Diagnostic& diagnostic : findings.all()) remember(diagnostic);
+  if (refused_) refused_(findings);
 }
 
 void ScriptRunner::note_first_command(ScriptRun& run) {

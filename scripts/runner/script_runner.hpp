@@ -27,7 +27,7 @@ namespace cellmirror::script {
 class ScriptFile;
 class ScriptRun;
 
-enum class CommandSource : std::uint8_t { file, message };
+enum class CommandSource : std::uint8_t { file, message, program };
 
 // received = done + refused, but for a command that is being executed.
 struct SourceCounters {
@@ -39,12 +39,14 @@ struct SourceCounters {
 struct ScriptCounters {
   SourceCounters file;
   SourceCounters message;
+  SourceCounters program;  // comments of robot programs
   std::uint64_t scripts_started = 0;
   std::uint64_t scripts_ended = 0;
   std::uint64_t scripts_refused = 0;  // missing, unreadable, with syntax errors, recursive, ...
 
   [[nodiscard]] SourceCounters all() const {
-    return {file.received + message.received, file.done + message.done, file.refused + message.refused};
+    return {file.received + message.received + program.received, file.done + message.done + program.done,
+            file.refused + message.refused + program.refused};
   }
 };
 
@@ -100,6 +102,11 @@ class ScriptRunner {
   using Answer = std::function<void(const Result<std::string>& result)>;
   void execute_message(std::string_view text, std::string_view source, Answer answer);
 
+  // A command from inside a robot program, executed now as a message is; `source` names program and line in errors.
+  // WAIT and TF_WAIT are refused: the program would wait for itself. The activity is that of what the command began;
+  // null: it is done.
+  Result<ActivityHandle> execute_program_command(std::string_view text, std::string_view source);
+
   // Answers the messages whose activity has ended. Then executes up to `budget` commands of the files, in turn; fewer
   // where they are refused (each counts 16) or load files (each 256 bytes count 1). Returns how many commands began or
   // ended. 0: every run waits, or there is none.
@@ -122,21 +129,26 @@ class ScriptRunner {
   [[nodiscard]] std::vector<std::string> last_errors() const { return {last_errors_.begin(), last_errors_.end()}; }
   // Called when a run ends.
   void on_run_ended(std::function<void(const RunReport&)> callback) { run_ended_ = std::move(callback); }
+  // Called when a command of a file is refused.
+  void on_refused(std::function<void(const Diagnostics&)> callback) { refused_ = std::move(callback); }
 
  private:
   Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
   Result<std::unique_ptr<ScriptFile>> load(const std::filesystem::path& path, Diagnostics& findings);
   void step_run(ScriptRun& run, std::size_t until);
+  // Ends a WAIT that need not wait any longer. False: it waits on.
+  bool end_wait(ScriptRun& run);
   // False while the run waits; ends the command it waited for.
   bool may_go_on(ScriptRun& run);
   void execute_command(ScriptRun& run);
   Result<void> call(ScriptRun& run, std::string_view name, Diagnostics& findings);
   void refuse(ScriptRun& run, const Diagnostics& findings);
   // The answer; none where `activity` was set: it comes when that ends.
-  std::optional<Result<std::string>> begin_message(std::string_view text, std::string_view source,
-                                                   ActivityHandle& activity);
+  std::optional<Result<std::string>> begin_message(ParsedCommand& command, CommandSource from, std::string_view text,
+                                                   std::string_view source, ActivityHandle& activity);
   Result<std::string> accept_message(const Outcome& outcome);
-  void count_message(const Result<std::string>& result, const Place& place);
+  void count_message(CommandSource from, const Result<std::string>& result, const Place& place);
+  [[nodiscard]] SourceCounters& counters_of(CommandSource from);
   std::size_t answer_messages();
   void refuse_waiting_messages();
   void end_run(std::size_t index, bool stopped);
@@ -146,8 +158,10 @@ class ScriptRunner {
   CommandHost host_;
   const KismetHome& home_;
   const Clock& clock_;
-  // A message that is answered when its activity has ended. At most one a robot runs, so they stay few.
+  // A message that is answered when its activity has ended, or a command of a robot program. At most one a robot runs,
+  // and of TF_WAIT one a sender, so they stay few.
   struct WaitingMessage {
+    CommandSource from;
     ActivityHandle activity;
     Place place;
     Answer answer;
@@ -163,7 +177,9 @@ class ScriptRunner {
   ScriptCounters counters_;
   std::deque<std::string> last_errors_;
   std::function<void(const RunReport&)> run_ended_;
-  ParsedCommand command_;  // reused
+  std::function<void(const Diagnostics&)> refused_;
+  ParsedCommand command_;          // reused
+  ParsedCommand program_command_;  // likewise: a command of a file may let a program go on, which executes its own
 };
 
 }  // namespace cellmirror::script

@@ -63,7 +63,32 @@ class QuietHost final : public WorldHost,
   Result<void> set_inverse_class(InverseClass /*inverse_class*/) override { return called(); }
   Result<void> set_point_of_reference(const Pose& /*X_FP*/) override { return called(); }
   Result<void> set_tool_center_point(const Pose& /*X_PT*/) override { return called(); }
-  Result<void> set_language(RobotLanguage /*language*/) override { return called(); }
+  Result<void> set_language(std::string_view /*language*/) override { return called(); }
+  Result<void> load_program(std::string_view /*program*/, std::string_view /*robot*/) override { return called(); }
+  Result<void> run_program(std::string_view /*program*/, std::string_view /*robot*/, ProgramBegin /*begin*/) override {
+    return called();
+  }
+  Result<void> delete_program(std::string_view /*program*/, std::string_view /*robot*/) override { return called(); }
+  Result<void> hold_program(std::string_view /*robot*/) override { return called(); }
+  Result<void> resume_program(std::string_view /*robot*/) override { return called(); }
+  Result<void> step_program(std::string_view /*robot*/, bool /*backward*/) override { return called(); }
+  Result<void> stop_programs(std::string_view /*robot*/) override { return called(); }
+  Result<ActivityHandle> await_programs(std::string_view /*robot*/) override {
+    ++calls;
+    return ActivityHandle();
+  }
+  Result<void> record_program(std::string_view /*program*/, std::string_view /*robot*/, RecordStep /*step*/,
+                              std::string_view /*point*/) override {
+    return called();
+  }
+  Result<void> set_digital_input(std::string_view /*robot*/, std::size_t /*number*/, bool /*on*/) override {
+    return called();
+  }
+  Result<void> set_analogue_input(std::string_view /*robot*/, std::size_t /*number*/, double /*value*/) override {
+    return called();
+  }
+  [[nodiscard]] std::uint64_t failures() const override { return 0; }
+  [[nodiscard]] Result<void> verdict(std::uint64_t /*since*/) const override { return {}; }
   [[nodiscard]] bool busy() const override { return false; }
   Result<void> set_display(int /*display*/, bool /*full_screen*/) override { return called(); }
   Result<void> set_view(int /*view*/, const ViewChange& /*change*/, const ViewPace& /*pace*/) override {

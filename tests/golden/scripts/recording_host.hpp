@@ -30,8 +30,9 @@ class RecordingHost final : public WorldHost,
  public:
   std::vector<std::string> calls;
   FakeNames names;
-  std::string refused_call;     // the first word of calls that are refused
-  mutable int busy_checks = 0;  // how many more times busy() answers true
+  std::string refused_call;         // the first word of calls that are refused
+  mutable int busy_checks = 0;      // how many more times busy() answers true
+  std::vector<std::string> failed;  // robot programs: why
   // What POS_ROB begins; null: the robot stands there at once.
   std::shared_ptr<Activity> activity;
 
@@ -118,11 +119,43 @@ class RecordingHost final : public WorldHost,
     return record("set_tool_center_point {}", pose_text(X_PT));
   }
 
-  Result<void> set_language(RobotLanguage language) override {
-    constexpr std::array<std::string_view, 4> kNames = {"irdata", "srcl", "jet_boom", "jet_tarm"};
-    return record("set_language {}", kNames[static_cast<std::size_t>(language)]);
+  Result<void> set_language(std::string_view language) override { return record("set_language {}", language); }
+  Result<void> load_program(std::string_view program, std::string_view robot) override {
+    return record("load_program {} {}", program, robot);
+  }
+  Result<void> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override {
+    constexpr std::array<std::string_view, 3> kNames = {"now", "exec_wait", "backward"};
+    return record("run_program {} {} {}", program, robot, kNames[static_cast<std::size_t>(begin)]);
+  }
+  Result<void> delete_program(std::string_view program, std::string_view robot) override {
+    return record("delete_program {} {}", program, robot);
+  }
+  Result<void> hold_program(std::string_view robot) override { return record("hold_program {}", robot); }
+  Result<void> resume_program(std::string_view robot) override { return record("resume_program {}", robot); }
+  Result<void> step_program(std::string_view robot, bool backward) override {
+    return record("step_program {} {}", robot, backward ? "backward" : "forward");
+  }
+  Result<void> stop_programs(std::string_view robot) override { return record("stop_programs {}", robot); }
+  Result<ActivityHandle> await_programs(std::string_view robot) override {
+    if (auto recorded = record("await_programs {}", robot); !recorded) return std::unexpected(recorded.error());
+    return activity;
+  }
+  Result<void> record_program(std::string_view program, std::string_view robot, RecordStep step,
+                              std::string_view point) override {
+    constexpr std::array<std::string_view, 3> kNames = {"start", "point", "stop"};
+    return record("record_program {} {} {} [{}]", program, robot, kNames[static_cast<std::size_t>(step)], point);
+  }
+  Result<void> set_digital_input(std::string_view robot, std::size_t number, bool on) override {
+    return record("set_digital_input {} {} {}", robot, number, on);
+  }
+  Result<void> set_analogue_input(std::string_view robot, std::size_t number, double value) override {
+    return record("set_analogue_input {} {} {:.9g}", robot, number, value);
   }
   [[nodiscard]] bool busy() const override { return busy_checks > 0 && busy_checks-- > 0; }
+  [[nodiscard]] std::uint64_t failures() const override { return failed.size(); }
+  [[nodiscard]] Result<void> verdict(std::uint64_t since) const override {
+    return since < failed.size() ? Result<void>(fail(failed.back())) : Result<void>();
+  }
 
   Result<void> set_display(int display, bool full_screen) override {
     return record("set_display {} {}", display, full_screen ? "FULL" : "FULL_OFF");

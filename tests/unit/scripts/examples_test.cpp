@@ -230,6 +230,16 @@ const Example kExamples[] = {
     {"MOVE_ROB MANTEC_RM3 PTP START", FormId::move_rob_start, {"MANTEC_RM3"}, {0}},
     {"MOVE_ROB MANTEC_RM3 PTP REFERENCE", FormId::move_rob_reference, {"MANTEC_RM3"}, {0}},
     {"SAVE_VIEWS view1.vws", FormId::save_views, {"view1.vws"}, {}},
+    {"TF_BACK boom_inspect PUMA_762", FormId::tf_back, {"boom_inspect", "PUMA_762"}, {}},
+    {"TF_HOLD MANTEC_RM3", FormId::tf_hold, {"MANTEC_RM3"}, {}},
+    {"TF_RESUME MANTEC_RM3", FormId::tf_resume, {"MANTEC_RM3"}, {}},
+    {"TF_STEP MANTEC_RM3", FormId::tf_step, {"MANTEC_RM3"}, {}},
+    {"TF_STEP MANTEC_RM3 BACKWARD", FormId::tf_step, {"MANTEC_RM3"}, {1}},
+    {"TF_STOP MANTEC_RM3", FormId::tf_stop, {"MANTEC_RM3"}, {}},
+    {"TF_WAIT MANTEC_RM3", FormId::tf_wait, {"MANTEC_RM3"}, {}},
+    {"TF_RECORD taught PUMA_762 START", FormId::tf_record, {"taught", "PUMA_762"}, {0}},
+    {"SET_INPUT MANTEC_RM3 3 on", FormId::set_input, {"MANTEC_RM3"}, {3, 0}},
+    {"SET_ANALOG_INPUT MANTEC_RM3 1 4.75", FormId::set_analog_input, {"MANTEC_RM3"}, {1, 4.75}},
 };
 
 class ManualExample : public ::testing::TestWithParam<Example> {};

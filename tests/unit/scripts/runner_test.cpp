@@ -175,6 +175,85 @@ TEST_F(ScriptRunnerTest, WaitSuspendsOnlyItsOwnScript) {
   EXPECT_TRUE(sut_->idle());
 }
 
+TEST_F(ScriptRunnerTest, WaitIsRefusedAtItsPlaceWithTheProgramThatFailedSinceTheScriptBeganAndTheScriptGoesOn) {
+  gateway_.failed = {"an older failure"};
+  write("a.spt", "TF_RUN demo PUMA_762;\n  WAIT;\nhot_message on; WAIT;");
+  gateway_.busy_checks = 1 << 30;
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  gateway_.failed.emplace_back("programs/demo.ird:3:1: error: out of reach");
+  gateway_.busy_checks = 0;
+  run_all();
+  EXPECT_TRUE(sut_->idle());
+  ASSERT_EQ(reports_.size(), 1U);
+  ASSERT_EQ(reports_[0].diagnostics.all().size(), 1U) << reports_[0].diagnostics.text();
+  EXPECT_EQ(reports_[0].diagnostics.all()[0].text(),
+            "scripts/a.spt:2:3: error: programs/demo.ird:3:1: error: out of reach");
+  EXPECT_EQ(gateway_.calls.back(), "show_message [on]");
+  EXPECT_EQ(reports_[0].counters.done, 3U);  // the second WAIT too: nothing failed since the first
+}
+
+TEST_F(ScriptRunnerTest, CommandsOfRobotProgramsAreExecutedAtOnceAndCountedApart) {
+  const auto done = sut_->execute_program_command("hot_message half way", "program demo of PUMA_762, line 12");
+  ASSERT_TRUE(done);
+  EXPECT_EQ(*done, nullptr);
+  EXPECT_EQ(gateway_.calls.back(), "show_message [half way]");
+  const auto refused = sut_->execute_program_command("hot_massage x", "program demo of PUMA_762, line 13");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(sut_->counters().program.received, 2U);
+  EXPECT_EQ(sut_->counters().program.done, 1U);
+  EXPECT_EQ(sut_->counters().program.refused, 1U);
+  EXPECT_EQ(sut_->counters().all().received, 2U);
+  EXPECT_EQ(sut_->counters().message.received, 0U);
+  EXPECT_NE(sut_->last_errors().back().find("program demo of PUMA_762, line 13"), std::string::npos);
+}
+
+TEST_F(ScriptRunnerTest, ACommandOfARobotProgramThatGoesOnIsCountedWhenItHasEnded) {
+  gateway_.activity = std::make_shared<Activity>();
+  const auto begun = sut_->execute_program_command("POS_ROB PUMA_762 JOINT_ABS 1", "program demo");
+  ASSERT_TRUE(begun);
+  ASSERT_EQ(*begun, gateway_.activity);
+  EXPECT_EQ(sut_->counters().program.done, 0U);
+  gateway_.activity->finish();
+  run_all();
+  EXPECT_EQ(sut_->counters().program.done, 1U);
+}
+
+TEST_F(ScriptRunnerTest, ARobotProgramCannotWaitForPrograms) {
+  for (const char* command : {"WAIT", "TF_WAIT PUMA_762"}) {
+    const auto sut = sut_->execute_program_command(command, "program demo");
+    ASSERT_FALSE(sut) << command;
+    EXPECT_NE(sut.error().what.find("cannot wait for programs"), std::string::npos) << sut.error().what;
+  }
+  EXPECT_TRUE(gateway_.calls.empty());
+}
+
+TEST_F(ScriptRunnerTest, AScriptThatAProgramCallsRunsBesideIt) {
+  write("a.spt", "hot_message from the program;");
+  ASSERT_TRUE(sut_->execute_program_command("EXEC_SCRIPT a", "program demo"));
+  EXPECT_FALSE(sut_->idle());
+  run_all();
+  EXPECT_EQ(gateway_.calls.back(), "show_message [from the program]");
+}
+
+TEST_F(ScriptRunnerTest, TfWaitSuspendsAFileAndKeepsAMessageWithoutItsAnswer) {
+  write("a.spt", "TF_WAIT PUMA_762; hot_message ended;");
+  gateway_.activity = std::make_shared<Activity>();
+  ASSERT_TRUE(sut_->start_file("a"));
+  std::optional<Result<std::string>> answer;
+  sut_->execute_message("TF_WAIT PUMA_762", "message", [&](const Result<std::string>& result) { answer = result; });
+  run_all();
+  EXPECT_FALSE(sut_->idle());
+  EXPECT_FALSE(answer);
+  gateway_.activity->refuse({"the program failed", {}});
+  run_all();
+  EXPECT_TRUE(sut_->idle());
+  ASSERT_TRUE(answer && !*answer);
+  EXPECT_EQ(answer->error().what, "the program failed");
+  ASSERT_EQ(reports_.size(), 1U);
+  EXPECT_EQ(reports_[0].counters.refused, 1U);
+}
+
 TEST_F(ScriptRunnerTest, FileWaitsForWhatItsCommandBeganAndMessagesGoOn) {
   write("a.spt", "POS_ROB PUMA_762 JOINT_ABS 1; hot_message there;");
   gateway_.activity = std::make_shared<Activity>();

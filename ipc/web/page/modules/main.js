@@ -10,6 +10,7 @@ import {watch_menus} from "./menus.js";
 import {Messages} from "./messages.js";
 import {PickedLabel} from "./picked_label.js";
 import {Presence} from "./presence.js";
+import {Programs} from "./programs.js";
 import {Robots} from "./robots.js";
 import {System} from "./system.js";
 import {Tabs} from "./tabs.js";
@@ -42,6 +43,7 @@ const tree = new Tree({command});
 const charts = new Charts();
 const robots = new Robots({select: (id) => charts.select(id), command});
 const findings = new Findings({show_node});
+const programs = new Programs({command});
 const system = new System();
 const messages = new Messages({
   unread: (n) => tabs.current !== "tab-messages" && setText(byId("message-count"), String(n))});
@@ -75,6 +77,7 @@ function draw() {
   newest = null;
   robots.update(live);
   findings.update(live, tabs.current === "tab-near");
+  programs.update(live, tabs.current === "tab-programs");
   system.update(live, tabs.current === "tab-system");
   view.update(live);
   choices.update(live);

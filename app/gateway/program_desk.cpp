@@ -1,0 +1,253 @@
+#include "app/gateway/program_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "app/gateway/program_files.hpp"
+#include "rt_core/base/contract.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
+#include "scripts/programs/languages/languages.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::string_view kProgramLog = "programs";
+constexpr std::size_t kLoggedFindings = 20;  // of one program
+
+bool goes_on(program::ProgramState state) {
+  switch (state) {
+    case program::ProgramState::queued:
+    case program::ProgramState::delayed:
+    case program::ProgramState::running:
+    case program::ProgramState::waiting:
+    case program::ProgramState::held:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool has_the_robot(program::ProgramState state) { return goes_on(state) && state != program::ProgramState::queued; }
+
+}  // namespace
+
+ProgramDesk::ProgramDesk(Parts parts)
+    : parts_(std::move(parts)),
+      controllers_(parts_.moves, *this, parts_.clock),
+      recordings_(parts_.cell, parts_.home, parts_.fleet, parts_.clock) {
+  controllers_.on_event([this](const program::ProgramEvent& event) { note(event); });
+}
+
+Result<void> ProgramDesk::check_robot(std::string_view robot) const {
+  if (parts_.cell.robot(robot) != nullptr) return {};
+  return std::unexpected(parts_.cell.explain_robot(robot));
+}
+
+Result<void> ProgramDesk::set_language(std::string_view language) {
+  const auto found = program::find_language(language);
+  if (!found) return std::unexpected(found.error());
+  language_ = (*found)->name;
+  return {};
+}
+
+Result<void> ProgramDesk::load_program(std::string_view program, std::string_view robot) {
+  if (auto checked = check_robot(robot); !checked) return checked;
+  const auto language = program::find_language(language_);
+  if (!language) return std::unexpected(language.error());
+  Diagnostics findings;
+  auto read = read_program(parts_.home, **language, program, findings);
+  const std::size_t logged = std::min(findings.all().size(), kLoggedFindings);
+  for (std::size_t i = 0; i < logged; ++i) log_text(LogLevel::warning, kProgramLog, findings.all()[i].text());
+  if (!read) return std::unexpected(std::move(read.error()));
+  return controllers_.load(robot, program, std::move(*read));
+}
+
+Result<void> ProgramDesk::run_program(std::string_view program, std::string_view robot, ProgramBegin begin) {
+  if (auto checked = check_robot(robot); !checked) return checked;
+  const bool idle = moving_program(robot).empty();
+  const auto when =
+      begin == ProgramBegin::exec_wait ? program::Controllers::Begin::exec_wait : program::Controllers::Begin::now;
+  const auto direction = begin == ProgramBegin::backward ? program::Direction::backward : program::Direction::forward;
+  if (auto begun = controllers_.run(robot, program, when, direction); !begun) return begun;
+  if (idle) failed_of_robot_.erase(std::string(robot));
+  return {};
+}
+
+Result<void> ProgramDesk::delete_program(std::string_view program, std::string_view robot) {
+  return controllers_.remove(robot, program);
+}
+Result<void> ProgramDesk::hold_program(std::string_view robot) { return controllers_.hold(robot); }
+Result<void> ProgramDesk::resume_program(std::string_view robot) { return controllers_.resume(robot); }
+Result<void> ProgramDesk::step_program(std::string_view robot, bool backward) {
+  return controllers_.step(robot, backward ? program::Direction::backward : program::Direction::forward);
+}
+Result<void> ProgramDesk::stop_programs(std::string_view robot) { return controllers_.stop(robot); }
+
+Result<ActivityHandle> ProgramDesk::await_programs(std::string_view robot) {
+  if (auto checked = check_robot(robot); !checked) return std::unexpected(checked.error());
+  if (awaiting_.size() == kMostAwaiting) {
+    return fail(fmt::format("{} wait for robot programs already", kMostAwaiting), "wait until some of them have ended");
+  }
+  awaiting_.push_back({std::string(robot), std::make_shared<Activity>()});
+  ActivityHandle activity = awaiting_.back().activity;
+  answer_awaiting();
+  if (activity->state() == Activity::State::refused) return std::unexpected(activity->error());
+  return activity->state() == Activity::State::done ? ActivityHandle() : activity;
+}
+
+Result<void> ProgramDesk::record_program(std::string_view program, std::string_view robot, RecordStep step,
+                                         std::string_view point) {
+  switch (step) {
+    case RecordStep::start:
+      return recordings_.start(program, robot, language_);
+    case RecordStep::point:
+      return recordings_.point(program, robot, point);
+    case RecordStep::stop:
+      return recordings_.stop(program, robot);
+  }
+  return {};
+}
+
+Result<void> ProgramDesk::set_digital_input(std::string_view robot, std::size_t number, bool on) {
+  if (auto checked = check_robot(robot); !checked) return checked;
+  return controllers_.set_digital_input(robot, number, on);
+}
+
+Result<void> ProgramDesk::set_analogue_input(std::string_view robot, std::size_t number, double value) {
+  if (auto checked = check_robot(robot); !checked) return checked;
+  return controllers_.set_analogue_input(robot, number, value);
+}
+
+// Programs in a deadlock wait for ever: WAIT shall tell so and not wait with them.
+bool ProgramDesk::busy() const {
+  return parts_.motion.moving() || parts_.display.busy() || (controllers_.busy() && !controllers_.deadlock());
+}
+
+Result<void> ProgramDesk::verdict(std::uint64_t since) const {
+  if (const auto& deadlock = controllers_.deadlock())
+    return fail(deadlock->text(), "TF_STOP ends programs that wait, and lets the others go on");
+  if (since >= failures_) return {};
+  const std::uint64_t count = failures_ - since;
+  if (count == 1) return fail(failed_.back());
+  std::string all;
+  const std::size_t shown = std::min<std::size_t>(count, failed_.size());
+  for (std::size_t i = failed_.size() - shown; i < failed_.size(); ++i) all += (all.empty() ? "" : " | ") + failed_[i];
+  return fail(fmt::format("{} robot programs failed: {}", count, all));
+}
+
+Result<ActivityHandle> ProgramDesk::execute(std::string_view text, std::string_view source) {
+  CELLMIRROR_EXPECTS(runner_ != nullptr);
+  return runner_->execute_program_command(text, source);
+}
+
+bool ProgramDesk::follow() {
+  recordings_.follow();
+  const bool any = controllers_.follow();
+  if (!awaiting_.empty()) answer_awaiting();
+  return any;
+}
+
+void ProgramDesk::follow_cell() {
+  recordings_.follow_cell();
+  std::vector<std::string> gone;
+  for (const program::ProgramStatus& status : controllers_.status()) {
+    if (parts_.cell.robot(status.robot) == nullptr && (gone.empty() || gone.back() != status.robot))
+      gone.push_back(status.robot);
+  }
+  for (const std::string& robot : gone)
+    controllers_.give_up(robot, {fmt::format("the robot {} was deleted", robot), {}}, true);
+}
+
+void ProgramDesk::shut_down() {
+  controllers_.stop_all();
+  for (const Awaiting& waiting : awaiting_) waiting.activity->refuse({"the gateway ends", {}});
+  awaiting_.clear();
+}
+
+void ProgramDesk::note(const program::ProgramEvent& event) {
+  using Kind = program::ProgramEvent::Kind;
+  if (event.kind == Kind::failed || event.kind == Kind::deadlock) {
+    log_warning(kProgramLog, "{}", event.text);
+    ++failures_;
+    failed_.push_back(event.text);
+    if (failed_.size() > kKeptFailures) failed_.pop_front();
+  }
+  if (event.kind == Kind::failed) failed_of_robot_[event.robot] = event.text;
+  if (event.kind == Kind::started || event.kind == Kind::ended || event.kind == Kind::stopped) {
+    log_info(kProgramLog, "{} of {} {}", event.program, event.robot,
+             event.kind == Kind::started ? "started"
+             : event.kind == Kind::ended ? "ended"
+                                         : "was stopped");
+  }
+  if (parts_.event) parts_.event(event);
+}
+
+void ProgramDesk::answer_awaiting() {
+  std::map<std::string, bool, std::less<>> busy_robots;
+  for (const program::ProgramStatus& status : controllers_.status()) busy_robots[status.robot] |= goes_on(status.state);
+  const auto& deadlock = controllers_.deadlock();
+  std::erase_if(awaiting_, [&](const Awaiting& waiting) {
+    const auto stuck = [&](const program::Deadlock::Waiting& program) { return program.robot == waiting.robot; };
+    if (deadlock && std::ranges::any_of(deadlock->waiting, stuck)) {
+      waiting.activity->refuse({deadlock->text(), "TF_STOP ends programs that wait, and lets the others go on"});
+      return true;
+    }
+    const auto busy_robot = busy_robots.find(waiting.robot);
+    if (busy_robot != busy_robots.end() && busy_robot->second) return false;
+    const auto failed = failed_of_robot_.find(waiting.robot);
+    if (failed == failed_of_robot_.end()) {
+      waiting.activity->finish();
+    } else {
+      waiting.activity->refuse({failed->second, {}});
+    }
+    return true;
+  });
+}
+
+std::string ProgramDesk::moving_program(std::string_view robot) const {
+  if (!controllers_.moves(robot)) return {};
+  for (const program::ProgramStatus& status : controllers_.status()) {
+    if (status.robot == robot && has_the_robot(status.state)) return status.name;
+  }
+  return {};
+}
+
+SignalPicture ProgramDesk::signals_of(const RobotModel& robot) const {
+  SignalPicture picture;
+  picture.robot = robot.id();
+  const program::SignalBoard* board = controllers_.signals(robot.id());
+  if (board == nullptr) return picture;
+  for (std::size_t number = 1; number <= program::kMostPorts; ++number) {
+    if (board->digital_inputs[number]) picture.inputs_on.push_back(number);
+    if (board->digital_outputs[number]) picture.outputs_on.push_back(number);
+    if (board->analogue_inputs[number] != 0)
+      picture.analogue_inputs.emplace_back(number, board->analogue_inputs[number]);
+    if (board->analogue_outputs[number] != 0)
+      picture.analogue_outputs.emplace_back(number, board->analogue_outputs[number]);
+  }
+  return picture;
+}
+
+ProgramsPicture ProgramDesk::picture() const {
+  ProgramsPicture picture;
+  picture.programs = controllers_.status();
+  picture.deadlock = controllers_.deadlock();
+  for (const auto& [name, count] : controllers_.semaphores().counts()) picture.semaphores.emplace_back(name, count);
+  for (const std::string& id : parts_.cell.robot_ids()) {
+    SignalPicture signals = signals_of(*parts_.cell.robot(id));
+    if (!signals.inputs_on.empty() || !signals.outputs_on.empty() || !signals.analogue_inputs.empty() ||
+        !signals.analogue_outputs.empty()) {
+      picture.signals.push_back(std::move(signals));
+    }
+  }
+  picture.recordings = recordings_.pictures();
+  picture.failures = failures_;
+  if (!failed_.empty()) picture.last_failure = failed_.back();
+  return picture;
+}
+
+}  // namespace cellmirror::app

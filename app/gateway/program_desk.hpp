@@ -1,0 +1,111 @@
+// Robot programs of the running cell: what SCRIPT asks for them, and what they ask of SCRIPT. Owns the virtual
+// controllers. Belongs to the thread that owns the cell. docs/robot-programs.md.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/gateway/display_desk.hpp"
+#include "app/gateway/fleet.hpp"
+#include "app/gateway/motion_desk.hpp"
+#include "app/gateway/program_picture.hpp"
+#include "app/gateway/program_recordings.hpp"
+#include "rt_core/base/home.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "scripts/commands/program_host.hpp"
+#include "scripts/programs/controller/controllers.hpp"
+#include "scripts/programs/controller/program_motion.hpp"
+#include "scripts/runner/script_runner.hpp"
+
+namespace cellmirror::app {
+
+class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
+ public:
+  static constexpr std::size_t kMostAwaiting = 256;  // TF_WAIT at a time
+  static constexpr std::size_t kKeptFailures = 16;
+
+  // What is referred to outlives the desk.
+  struct Parts {
+    const Cell& cell;
+    const KismetHome& home;
+    Fleet& fleet;
+    const MotionDesk& motion;
+    const DisplayDesk& display;
+    program::ProgramMotion& moves;
+    const Clock& clock;
+    std::function<void(const program::ProgramEvent&)> event = {};  // told of all that happens
+  };
+  explicit ProgramDesk(Parts parts);
+  // Before the first program runs; it outlives the desk's last follow().
+  void set_runner(script::ScriptRunner& runner) { runner_ = &runner; }
+
+  Result<void> set_language(std::string_view language) override;
+  Result<void> load_program(std::string_view program, std::string_view robot) override;
+  Result<void> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override;
+  Result<void> delete_program(std::string_view program, std::string_view robot) override;
+  Result<void> hold_program(std::string_view robot) override;
+  Result<void> resume_program(std::string_view robot) override;
+  Result<void> step_program(std::string_view robot, bool backward) override;
+  Result<void> stop_programs(std::string_view robot) override;
+  Result<ActivityHandle> await_programs(std::string_view robot) override;
+  Result<void> record_program(std::string_view program, std::string_view robot, RecordStep step,
+                              std::string_view point) override;
+  Result<void> set_digital_input(std::string_view robot, std::size_t number, bool on) override;
+  Result<void> set_analogue_input(std::string_view robot, std::size_t number, double value) override;
+  [[nodiscard]] bool busy() const override;
+  [[nodiscard]] std::uint64_t failures() const override { return failures_; }
+  [[nodiscard]] Result<void> verdict(std::uint64_t since) const override;
+
+  // For the virtual controllers: one command of a program.
+  Result<ActivityHandle> execute(std::string_view text, std::string_view source) override;
+
+  // Lets programs go on. Often; between the commands of SCRIPT, never within one. True where anything did.
+  bool follow();
+  // A program or a recording needs follow() soon.
+  [[nodiscard]] bool needs_turns() const { return controllers_.busy() || recordings_.busy(); }
+  // After every change of the tree: the programs of robots that are gone end and are forgotten.
+  void follow_cell();
+  // The robot takes no motion commands any more: what it runs fails with this reason.
+  void give_up(std::string_view robot, const Error& why) { controllers_.give_up(robot, why, false); }
+  // All programs end; whoever waits is refused.
+  void shut_down();
+
+  // The program that moves the robot now; empty: none.
+  [[nodiscard]] std::string moving_program(std::string_view robot) const;
+  [[nodiscard]] const program::Controllers& controllers() const { return controllers_; }
+  [[nodiscard]] const std::string& language() const { return language_; }
+  [[nodiscard]] ProgramsPicture picture() const;
+
+ private:
+  struct Awaiting {
+    std::string robot;
+    std::shared_ptr<Activity> activity;
+  };
+
+  void note(const program::ProgramEvent& event);
+  void answer_awaiting();
+  [[nodiscard]] SignalPicture signals_of(const RobotModel& robot) const;
+  // Refused: the cell has no such robot.
+  [[nodiscard]] Result<void> check_robot(std::string_view robot) const;
+
+  Parts parts_;
+  script::ScriptRunner* runner_ = nullptr;
+  program::Controllers controllers_;
+  ProgramRecordings recordings_;
+  std::string language_ = "irdata";  // manual 1.2.1
+  std::uint64_t failures_ = 0;
+  std::deque<std::string> failed_;  // why, the newest last
+  // By robot: what failed since its programs were last begun.
+  std::map<std::string, std::string, std::less<>> failed_of_robot_;
+  std::vector<Awaiting> awaiting_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,76 @@
+// Robot programs: those of manual 1.2.1, and our own commands.
+#include "scripts/commands/registry.hpp"
+
+namespace cellmirror::script {
+
+namespace {
+
+Outcome load(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.load_program(command.text(0), command.text(1)));
+}
+
+// A third slot is exec_wait.
+Outcome run(const ParsedCommand& command, CommandHost& host) {
+  const ProgramBegin begin = command.given(2) ? ProgramBegin::exec_wait : ProgramBegin::now;
+  return Outcome::of(host.programs.run_program(command.text(0), command.text(1), begin));
+}
+
+Outcome run_backward(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.run_program(command.text(0), command.text(1), ProgramBegin::backward));
+}
+
+Outcome delete_program(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.delete_program(command.text(0), command.text(1)));
+}
+
+Outcome hold(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.hold_program(command.text(0)));
+}
+Outcome resume(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.resume_program(command.text(0)));
+}
+Outcome step(const ParsedCommand& command, CommandHost& host) {
+  const bool backward = command.given(1) && command.choice(1) == 1;
+  return Outcome::of(host.programs.step_program(command.text(0), backward));
+}
+Outcome stop(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.programs.stop_programs(command.text(0)));
+}
+
+Outcome await(const ParsedCommand& command, CommandHost& host) {
+  auto begun = host.programs.await_programs(command.text(0));
+  if (!begun) return Outcome::refused(std::move(begun.error()));
+  return *begun ? Outcome::pending(std::move(*begun)) : Outcome::done();
+}
+
+Outcome record(const ParsedCommand& command, CommandHost& host) {
+  const auto what = static_cast<RecordStep>(command.choice(2));
+  const std::string_view point = command.given(3) ? command.text(3) : std::string_view();
+  if (!point.empty() && what != RecordStep::point) {
+    return Outcome::refused({"TF_RECORD: a name stands with POINT only", "e.g. TF_RECORD taught PUMA_762 POINT grip"});
+  }
+  return Outcome::of(host.programs.record_program(command.text(0), command.text(1), what, point));
+}
+
+// The first choice is "on".
+Outcome set_input(const ParsedCommand& command, CommandHost& host) {
+  const auto number = static_cast<std::size_t>(command.integer(1));
+  return Outcome::of(host.programs.set_digital_input(command.text(0), number, command.choice(2) == 0));
+}
+Outcome set_analogue_input(const ParsedCommand& command, CommandHost& host) {
+  const auto number = static_cast<std::size_t>(command.integer(1));
+  return Outcome::of(host.programs.set_analogue_input(command.text(0), number, command.number(2)));
+}
+
+constexpr Registration kHandlers[] = {
+    {FormId::tf_load, load},         {FormId::tf_run, run},          {FormId::tf_delete, delete_program},
+    {FormId::tf_back, run_backward}, {FormId::tf_hold, hold},        {FormId::tf_resume, resume},
+    {FormId::tf_step, step},         {FormId::tf_stop, stop},        {FormId::tf_wait, await},
+    {FormId::tf_record, record},     {FormId::set_input, set_input}, {FormId::set_analog_input, set_analogue_input},
+};
+
+}  // namespace
+
+std::span<const Registration> program_handlers() { return kHandlers; }
+
+}  // namespace cellmirror::script
