@@ -151,7 +151,9 @@ CommandReader::Joints CommandReader::read_joints(const Fields& fields, const Xml
     fields.only(*one, {"JointNumber", "JointPosition", "JointDetails"});
     const auto number = fields.positive_integer(*one, "JointNumber");
     const auto position = fields.number(*one, "JointPosition");
-    if (fields.required(*one, "JointDetails") != nullptr && !std::exchange(told_joint_speeds_, true)) {
+    const XmlNode* details = fields.required(*one, "JointDetails");
+    const bool any = details != nullptr && fields.tree().first(*details) != nullptr;
+    if (any && !std::exchange(told_joint_speeds_, true)) {
       fields.warning(*one, "speeds and forces of single joints have no effect: the robot's own hold",
                      "SetTransSpeed with a fraction slows all joints down");
     }

@@ -117,6 +117,8 @@ void CommandReader::message(const Fields& fields, const XmlNode& node) {
   if (text_node == nullptr) return;
   std::string text = text_node->text;
   std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  const auto both_blank = [](char a, char b) { return a == ' ' && b == ' '; };
+  text.erase(std::unique(text.begin(), text.end(), both_blank), text.end());
   const bool script = text.starts_with('%');
   if (!script) std::replace(text.begin(), text.end(), ';', ',');  // would end the command
   std::string_view command = trimmed(script ? std::string_view(text).substr(1) : std::string_view(text));

@@ -57,7 +57,7 @@ class Reader {
 
   void fail(std::string_view what) {
     diagnostics_.error({.file = file_, .line = static_cast<int>(line()), .column = static_cast<int>(column())},
-                       fmt::format("this is no XML that can be read: {}", what));
+                       fmt::format("the XML cannot be read: {}", what));
     stop();
   }
   void stop() {
