@@ -6,35 +6,16 @@
 #include <vector>
 
 #include "rt_core/base/text.hpp"
-#ifdef CELLMIRROR_HAS_IRDATA
-#include "scripts/programs/irdata/irdata.hpp"
-#endif
-#ifdef CELLMIRROR_HAS_SRCL
-#include "scripts/programs/srcl/srcl.hpp"
-#endif
-#ifdef CELLMIRROR_HAS_JET
-#include "scripts/programs/jet/jet.hpp"
-#endif
-#ifdef CELLMIRROR_HAS_CRCL
 #include "scripts/programs/crcl/crcl.hpp"
-#endif
+#include "scripts/programs/irdata/irdata.hpp"
+#include "scripts/programs/jet/jet.hpp"
+#include "scripts/programs/srcl/srcl.hpp"
 
 namespace cellmirror::program {
 
 std::span<const Language> languages() {
   static const std::vector<Language> kLanguages = {
-#ifdef CELLMIRROR_HAS_IRDATA
-      irdata_language(),
-#endif
-#ifdef CELLMIRROR_HAS_SRCL
-      srcl_language(),
-#endif
-#ifdef CELLMIRROR_HAS_JET
-      jet_boom_language(), jet_tarm_language(),
-#endif
-#ifdef CELLMIRROR_HAS_CRCL
-      crcl_language(),
-#endif
+      irdata_language(), srcl_language(), jet_boom_language(), jet_tarm_language(), crcl_language(),
   };
   return kLanguages;
 }

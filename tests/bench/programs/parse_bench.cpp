@@ -41,8 +41,12 @@ std::string srcl_program() {
 
 std::string jet_program(std::string_view header) {
   std::string text = fmt::format("{} 1\nNAME long\nJOINTS 6\nSPEED 60\nTOLERANCE 20 MM\n", header);
+  const bool named = header == "JET_TARM";  // its values carry the joint's number
   for (std::int64_t n = 0; n < kRecords; ++n) {
-    text += fmt::format("POINT P{} {} 8.5 -4 150 0.25 {} SPEED {}\n", n, n % 90, n % 45, 10 + n % 90);
+    const std::int64_t speed = 10 + n % 90;
+    text += named
+                ? fmt::format("POINT P{} J1={} J2=8.5 J3=-4 J4=150 J5=0.25 J6={} SPEED {}\n", n, n % 90, n % 45, speed)
+                : fmt::format("POINT P{} {} 8.5 -4 150 0.25 {} SPEED {}\n", n, n % 90, n % 45, speed);
   }
   return text + "END\n";
 }
