@@ -19,6 +19,7 @@ nlohmann::json pictures_json(const PictureReport& report) {
           {"drawn", report.drawn},
           {"unchanged", report.unchanged},
           {"on_demand", report.on_demand},
+          {"in_haste", report.in_haste},
           {"failed", report.failed},
           {"bodies_drawn", report.counters.bodies_drawn},
           {"bodies_left_out", report.counters.bodies_left_out},

@@ -184,6 +184,24 @@ std::vector<Studio::Guest> Studio::guests(Timestamp now) {
   return out;
 }
 
+double Studio::wished_hz(Timestamp now) const {
+  std::vector<web::PictureWish> wishes;
+  for (const auto& looker : streams_.all()) {
+    if (looker->looks(now)) wishes.push_back(looker->wish());
+  }
+  for (const Output& output : options_.outputs) {
+    if (output.output->watched()) wishes.push_back(output.wish);
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < wishes.size(); ++i) {
+    const auto before = std::span(wishes).first(i);
+    const bool shared =
+        std::ranges::any_of(before, [&](const web::PictureWish& other) { return same_drawing(other, wishes[i]); });
+    if (!shared) sum += std::min(wishes[i].rate_hz, options_.settings.rate_hz);
+  }
+  return sum;
+}
+
 void Studio::round(Timestamp now) {
   if (!report_.on) return;
   const std::vector<Guest> wanted = guests(now);
@@ -192,6 +210,7 @@ void Studio::round(Timestamp now) {
     return;
   }
   if (!need_renderer()) return;
+  effort_.begin_round(wished_hz(now));
   serve(wanted);
 }
 
@@ -233,9 +252,13 @@ bool Studio::bring_up_to_date(Shot& shot) {
   const Timestamp now = boards_.clock.now();
   if (shot.drawn.known() && shot.fingerprint == print && now - shot.drawn < kAnew) {
     count(&PictureReport::unchanged);
+    effort_.unchanged();
     return true;
   }
-  if (const auto drawn = draw(*panes, shot.wish.width, shot.wish.height, shot.image); !drawn) return false;
+  const bool smooth = effort_.antialiasing();
+  if (const auto drawn = draw(*panes, shot.wish.width, shot.wish.height, shot.image, smooth); !drawn) return false;
+  effort_.drew(boards_.clock.now() - now);
+  if (!smooth) count(&PictureReport::in_haste);
   shot.fingerprint = print;
   shot.drawn = now;
   shot.posture_time = source_.scene().posture_time;
@@ -276,7 +299,8 @@ Result<EncodedImage> Studio::take(const web::PictureWish& wish, ImageFormat form
   const auto panes = prepare(wish);
   if (!panes) return std::unexpected(panes.error());
   Image image;
-  if (const auto drawn = draw(*panes, wish.width, wish.height, image); !drawn) return std::unexpected(drawn.error());
+  if (const auto drawn = draw(*panes, wish.width, wish.height, image, true); !drawn)
+    return std::unexpected(drawn.error());
   EncodedImage picture;
   const Timestamp start = boards_.clock.now();
   const auto encoded = encoder_.encode(image, {.format = format, .jpeg_quality = wish.quality}, picture.bytes);
@@ -335,9 +359,9 @@ Result<void> Studio::need_renderer() {
   return {};
 }
 
-Result<void> Studio::draw(std::span<const Pane> panes, int width, int height, Image& image) {
+Result<void> Studio::draw(std::span<const Pane> panes, int width, int height, Image& image, bool smooth) {
   const Timestamp start = boards_.clock.now();
-  auto drawn = renderer_->draw(source_.scene(), panes, width, height, image);
+  auto drawn = renderer_->draw(source_.scene(), panes, width, height, image, smooth);
   if (!drawn) {
     note_problem(drawn.error());
     log_error("pictures.draw", "{}", drawn.error().text());

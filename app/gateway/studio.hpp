@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/gateway/picture_effort.hpp"
 #include "app/gateway/picture_streams.hpp"
 #include "app/gateway/picture_updates.hpp"
 #include "app/gateway/recycler.hpp"
@@ -39,6 +40,7 @@ struct PictureReport {
   std::uint64_t drawn = 0;
   std::uint64_t unchanged = 0;  // drawings that were left out because nothing had changed
   std::uint64_t on_demand = 0;  // pictures and picks, of `drawn`
+  std::uint64_t in_haste = 0;   // without anti-aliasing, of `drawn`: there was no time for it
   std::uint64_t failed = 0;
   display::RendererCounters counters;
   HistogramSnapshot scene;   // how long it took to join the scene,
@@ -112,6 +114,8 @@ class Studio {
   void give_up_jobs();
   void round(Timestamp now);
   [[nodiscard]] std::vector<Guest> guests(Timestamp now);
+  // Different pictures a second that are wished for.
+  [[nodiscard]] double wished_hz(Timestamp now) const;
   void serve(const std::vector<Guest>& guests);
   void give(const Guest& guest, Shot& shot);
   Shot& shot_for(const web::PictureWish& wish);
@@ -124,7 +128,7 @@ class Studio {
   // The newest scene, and the renderer; fails where there is none.
   Result<std::vector<Pane>> prepare(const web::PictureWish& wish);
   Result<void> need_renderer();
-  Result<void> draw(std::span<const Pane> panes, int width, int height, Image& image);
+  Result<void> draw(std::span<const Pane> panes, int width, int height, Image& image, bool smooth);
   void note_problem(const Error& error);
   void note_well();
   void count(std::uint64_t PictureReport::* counter);
@@ -139,6 +143,7 @@ class Studio {
   std::unique_ptr<display::Renderer> renderer_;
   Timestamp renderer_tried_;
   display::ImageEncoder encoder_;
+  PictureEffort effort_;
   std::vector<Shot> shots_;
   std::vector<Timestamp> output_due_;
   std::uint64_t sequence_ = 0;

@@ -160,7 +160,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
 std::string_view Renderer::name() const { return impl_->name; }
 RendererCounters Renderer::counters() const { return impl_->counters; }
 
-Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture) {
+Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture,
+                            bool smooth) {
   Impl& impl = *impl_;
   if (Result<void> begun = impl.begin(width, height); !begun) return begun;
   const std::span<const Pane> drawn_panes = panes.first(std::min(panes.size(), kMostPanes));
@@ -168,7 +169,7 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
   if (is_on(scene, DisplayMode::floor)) {
     if (Result<void> prepared = impl.floor.prepare(scene, drawn); !prepared) return prepared;
   }
-  const Pixels pixels = is_on(scene, DisplayMode::antialiasing) ? Pixels::smooth_colours : Pixels::colours;
+  const Pixels pixels = smooth && is_on(scene, DisplayMode::antialiasing) ? Pixels::smooth_colours : Pixels::colours;
   if (Result<void> begun = impl.target.begin(pixels, width, height); !begun) return begun;
   impl.gl.ClearColor(0.80F, 0.82F, 0.85F, 1);
   impl.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

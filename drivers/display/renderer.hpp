@@ -42,7 +42,9 @@ class Renderer {
   [[nodiscard]] std::string_view name() const;
 
   // Fails for sizes outside of 16..kLargestImageEdge and where memory does not suffice. What is not finite is left out.
-  Result<void> draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture);
+  // `smooth`: with anti-aliasing where the scene's modes have it; false: without, where there is no time for it.
+  Result<void> draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture,
+                    bool smooth = true);
   // The object under each pixel, rows from the top; 0: none. Without anti-aliasing, overlays, floor.
   Result<void> objects(const Scene& scene, std::span<const Pane> panes, int width, int height,
                        std::vector<std::uint32_t>& objects);

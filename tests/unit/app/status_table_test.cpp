@@ -46,6 +46,31 @@ TEST(StatusTable, ShowsWhatIsStaleLateRefusedAndDropped) {
   EXPECT_THAT(*table, HasSubstr("sensor 4"));
 }
 
+TEST(StatusTable, ShowsRobotProgramsWithWhatTheyWaitForTheirTimesSignalsAndADeadlock) {
+  std::string text(kDocument);
+  text.insert(text.rfind('}'), R"(,"programs":{"loaded":[
+    {"robot":"PUMA","program":"fetch","language":"srcl","file":"programs/fetch.src","state":"waiting","waits_for":"semaphore TABLE",
+     "step":"line 12","line":12,"statements":20,"reversible":false,"direction":"forward","elapsed_s":12.34,"expected_s":45.67,
+     "runs":2,"error":""},
+    {"robot":"PUMA","program":"far","language":"irdata","file":"programs/far.ird","state":"failed","waits_for":"","step":"N40",
+     "line":4,"statements":5,"reversible":false,"direction":"backward","elapsed_s":1.5,"expected_s":null,"runs":1,
+     "error":"programs/far.ird:4:1: error: out of reach"}],
+    "deadlock":{"text":"deadlock: PUMA fetch waits","waiting":[]},"semaphores":{"TABLE":0},
+    "signals":[{"robot":"PUMA","inputs_on":[3,7],"outputs_on":[],"analogue_inputs":[],"analogue_outputs":[{"number":1,"value":2.5}]}],
+    "recordings":[{"robot":"PUMA","program":"taught","language":"jet_boom","points":4}],"failures":1,"last_failure":"x"})");
+  const auto table = status_table(text, false);
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_THAT(*table, HasSubstr("programs  2 loaded, 1 failures"));
+  EXPECT_THAT(*table, HasSubstr("fetch of PUMA  srcl waiting for semaphore TABLE, at line 12  12.3 of 45.7 s"));
+  EXPECT_THAT(*table, HasSubstr("far of PUMA  irdata failed, backward, at N40  1.5 s"));
+  EXPECT_THAT(*table, HasSubstr("programs/far.ird:4:1: error: out of reach"));
+  EXPECT_THAT(*table, HasSubstr("recording taught of PUMA, 4 check points"));
+  EXPECT_THAT(*table, HasSubstr("signals of PUMA:  inputs on 3 7  analogue outputs 1=2.5"));
+  EXPECT_THAT(*table, HasSubstr("semaphores TABLE=0"));
+  EXPECT_THAT(*table, HasSubstr("deadlock: PUMA fetch waits"));
+  EXPECT_THAT(*status_table(kDocument, false), Not(HasSubstr("programs")));
+}
+
 TEST(StatusTable, ColoursOnlyWhereItIsAskedFor) {
   EXPECT_THAT(*status_table(kDocument, true), HasSubstr("\x1b[33mstale"));
   EXPECT_THAT(*status_table(kDocument, false), testing::Not(HasSubstr("\x1b")));

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "rt_core/ports/haptic_state.hpp"
-#include "rt_core/rt/allocation_guard.hpp"
 
 namespace cellmirror {
 namespace {
@@ -315,26 +314,6 @@ TEST(HapticBlock, EndsWithoutForceAndWithoutGateway) {
   EXPECT_EQ(sut.sequence, example_output().sequence + 1);
   EXPECT_EQ(sut.phase, static_cast<std::uint32_t>(HapticPhase::closed));
   EXPECT_EQ(lock_of(block, at::kDeviceLock), 2u) << "the device's section is the device's";
-}
-
-TEST(HapticBlock, ReadingAndWritingTakesNoHeap) {
-  Block block;
-  prepare_haptic_block(block.memory(), 4, 1);
-  HapticSample sample;
-  HapticOutput output = example_output();
-  std::uint64_t last = 0;
-  if (!AllocationGuard::armed()) GTEST_SKIP() << "skipped: the sanitizer's heap is not counted";
-  const AllocationGuard guard;
-  write_haptic_sample(block.memory(), sample);
-  const HapticRead read = read_haptic_sample(block.memory(), last, sample);
-  restore_haptic_header(block.memory(), 5, 1);
-  write_haptic_output(block.memory(), output);
-  const bool felt = read_haptic_output(block.memory(), output);
-  end_haptic_block(block.memory());
-  const std::uint64_t allocations = guard.allocations();
-  EXPECT_EQ(allocations, 0u);
-  EXPECT_EQ(read, HapticRead::fresh);
-  EXPECT_TRUE(felt);
 }
 
 }  // namespace
