@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/text.hpp"
 #include "scripts/programs/jet/teach_lines.hpp"
+#include "scripts/programs/jet/teach_names.hpp"
 #include "scripts/programs/jet/teach_program.hpp"
 #include "scripts/programs/jet/teach_words.hpp"
 
@@ -81,9 +82,9 @@ class TeachParser {
   bool ended_ = false;
   bool any_point_ = false;
   bool told_of_joints_ = false;
-  int joints_line_ = 0;                               // 0: JOINTS has not been read
-  std::size_t joint_count_ = 0;                       // 0: not known, because of a fault
-  std::unordered_map<std::string_view, int> points_;  // names, with their lines
+  int joints_line_ = 0;          // 0: JOINTS has not been read
+  std::size_t joint_count_ = 0;  // 0: not known, because of a fault
+  TeachNames points_;
 };
 
 // In the order of how often they occur.
@@ -107,6 +108,7 @@ std::shared_ptr<const Program> TeachParser::parse() {
                        "divide it into several programs and run them with exec_wait");
     return nullptr;
   }
+  program_.reserve(static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n')));
   while (read_line(lines_.next())) {
   }
   finish();
@@ -283,8 +285,8 @@ void TeachParser::point(TeachWords& words) {
 }
 
 void TeachParser::new_point_name(const TeachWord& word) {
-  const auto [known, added] = points_.emplace(word.text, lines_.number());
-  if (!added) error(word.column, fmt::format("check point {} stands in line {} already", word.text, known->second));
+  const int known = points_.note(word.text, lines_.number());
+  if (known != 0) error(word.column, fmt::format("check point {} stands in line {} already", word.text, known));
 }
 
 bool is_setting(const TeachWords& words) {

@@ -1,6 +1,7 @@
 // Makes a program of check points and of what stands between them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,8 @@ class TeachProgram {
   TeachProgram(TeachDialect dialect, std::string_view file);
 
   void rename(std::string_view name) { builder_.rename(std::string(name)); }
+  // For a file of so many lines; a hint.
+  void reserve(std::size_t lines) { builder_.reserve(std::min(lines, kMostReserved)); }
   // Where the following statements stand in the file.
   void at(int line, int column);
   Result<void> point(std::string_view name, const JointPosition& target, const TeachSettings& settings);
@@ -42,6 +45,7 @@ class TeachProgram {
   std::shared_ptr<const Program> build(Diagnostics& diagnostics) { return builder_.build(diagnostics); }
 
  private:
+  static constexpr std::size_t kMostReserved = 250'000;
   static constexpr std::size_t kMostOfALine = 4;  // a check point with three settings
 
   Result<void> set(Setting setting, const std::optional<double>& value, std::optional<double>& in_force);

@@ -25,16 +25,17 @@ void TeachWords::expect_end() {
   skip_rest();
 }
 
-bool TeachWords::expect(std::string_view what, std::string_view example) {
-  if (!at_end()) return true;
+void TeachWords::missing(std::string_view what, std::string_view example) {
   const TeachWord& last = words_.back();
   diagnostics_.error(place(last.column + static_cast<int>(last.text.size())), fmt::format("{} is missing", what),
                      fmt::format("for example {}", example));
-  return false;
 }
 
 std::optional<TeachWord> TeachWords::name(std::string_view what) {
-  if (!expect(fmt::format("the name of the {}", what), "P1")) return std::nullopt;
+  if (at_end()) {
+    missing(fmt::format("the name of the {}", what), "P1");
+    return std::nullopt;
+  }
   if (peek().text.find('=') != std::string_view::npos) {  // a value: the name was forgotten
     error(peek(), fmt::format("the name of the {} is missing", what), "for example P1");
     return std::nullopt;
@@ -47,7 +48,10 @@ std::optional<TeachWord> TeachWords::name(std::string_view what) {
 }
 
 std::optional<double> TeachWords::number(std::string_view what, double least, double most) {
-  if (!expect(fmt::format("the number of {}", what), fmt::format("{} 12.5", what))) return std::nullopt;
+  if (at_end()) {
+    missing(fmt::format("the number of {}", what), fmt::format("{} 12.5", what));
+    return std::nullopt;
+  }
   const TeachWord& word = take();
   const std::optional<double> value = parse_number(word.text);
   if (!value) {
@@ -61,7 +65,10 @@ std::optional<double> TeachWords::number(std::string_view what, double least, do
 }
 
 std::optional<long long> TeachWords::integer(std::string_view what, long long least, long long most) {
-  if (!expect(fmt::format("the number of {}", what), fmt::format("{} {}", what, least))) return std::nullopt;
+  if (at_end()) {
+    missing(fmt::format("the number of {}", what), fmt::format("{} {}", what, least));
+    return std::nullopt;
+  }
   const TeachWord& word = take();
   const std::optional<long long> value = parse_integer(word.text);
   if (!value) {
@@ -75,7 +82,10 @@ std::optional<long long> TeachWords::integer(std::string_view what, long long le
 }
 
 std::optional<bool> TeachWords::on_or_off(std::string_view what) {
-  if (!expect("ON or OFF", fmt::format("{} 1 ON", what))) return std::nullopt;
+  if (at_end()) {
+    missing("ON or OFF", fmt::format("{} 1 ON", what));
+    return std::nullopt;
+  }
   const TeachWord& word = take();
   if (equal_ignoring_case(word.text, "ON")) return true;
   if (equal_ignoring_case(word.text, "OFF")) return false;
@@ -126,7 +136,7 @@ void TeachWords::tolerance(std::optional<TeachTolerance>& tolerance) {
     return;
   }
   const std::string example = fmt::format("TOLERANCE {} MM", *value);
-  if (!expect("MM, DEG or PERCENT", example)) return;
+  if (at_end()) return missing("MM, DEG or PERCENT", example);
   if (peek_is("SPEED") || peek_is("ACCELERATION") || peek_is("TOLERANCE"))
     return error(peek(), "MM, DEG or PERCENT is missing", "for example " + example);
   const TeachWord& unit = take();

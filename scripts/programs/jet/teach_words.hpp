@@ -41,7 +41,7 @@ class TeachWords {
  private:
   void share(std::string_view what, std::optional<double>& share);
   void tolerance(std::optional<TeachTolerance>& tolerance);
-  bool expect(std::string_view what, std::string_view example);
+  void missing(std::string_view what, std::string_view example);  // behind the last word
 
   std::span<const TeachWord> words_;
   std::size_t next_ = 0;

@@ -1,0 +1,36 @@
+// The names of the check points of a file, with the lines in which they stand. Files have a hundred thousand of them: a
+// table without a node each.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace cellmirror::program {
+
+class TeachNames {
+ public:
+  // The line in which the name stands already; 0: it is new, and is noted with this one. `name` is used until the last
+  // call.
+  int note(std::string_view name, int line);
+
+ private:
+  struct Slot {
+    std::uint32_t hash = 0;
+    std::uint32_t entry = 0;  // index + 1; 0: free
+  };
+  struct Entry {
+    std::string_view name;
+    int line = 0;
+  };
+
+  void grow();
+  // Where the name stands, or where it belongs.
+  [[nodiscard]] Slot& find(std::uint32_t hash, std::string_view name);
+
+  std::vector<Slot> slots_;  // a power of two, at most half of them taken
+  std::vector<Entry> entries_;
+};
+
+}  // namespace cellmirror::program
