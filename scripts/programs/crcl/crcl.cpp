@@ -26,6 +26,8 @@ std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& 
   }
   Diagnostics found;
   ProgramBuilder builder(name_of_file(context.file), "crcl", context.file);
+  constexpr std::size_t kShortMove = 250;  // bytes
+  builder.reserve(text.size() / kShortMove);
   crcl::CommandReader reader(builder, context.file, found);
   crcl::XmlNode program;
   const crcl::XmlVisitor visitor = {

@@ -28,6 +28,16 @@ ProgramBuilder::ProgramBuilder(std::string name, std::string_view language, std:
   program_->file = std::move(file);
 }
 
+void ProgramBuilder::reserve(std::size_t statements) {
+  const std::size_t count = std::min(statements, kMostStatements);
+  program_->statements.reserve(count);
+  program_->places.reserve(count);
+  program_->expressions.reserve(count);
+  program_->constants.reserve(count);
+  types_.reserve(count);
+  depths_.reserve(count);
+}
+
 void ProgramBuilder::push_node(const ExpressionNode& node, ValueType type, std::uint8_t depth) {
   program_->expressions.push_back(node);
   types_.push_back(type);

@@ -26,6 +26,8 @@ class ProgramBuilder {
   // `name`, `file`: as in Program. `language` is that of the registry.
   ProgramBuilder(std::string name, std::string_view language, std::string file);
 
+  // About how many statements come, where that is known: saves time with long programs.
+  void reserve(std::size_t statements);
   void rename(std::string name) { program_->name = std::move(name); }  // the header of the text has the name
 
   // ---- Expressions. An id belongs to the operation or statement that it is given to and is used once: what is
