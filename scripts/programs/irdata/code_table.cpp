@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "rt_core/base/text.hpp"
 
@@ -66,7 +67,7 @@ CodeTable CodeTable::read(std::string_view text, const std::string& file, Diagno
     if (const std::optional<Row> row = read_code_line(line, {file, number, 1}, diagnostics))
       table.rows_.push_back(*row);
   }
-  std::ranges::stable_sort(table.rows_, {}, &Row::code);
+  std::ranges::sort(table.rows_, {}, [](const Row& row) { return std::pair(row.code, row.line); });
   for (std::size_t i = 1; i < table.rows_.size(); ++i) {
     const Row& before = table.rows_[i - 1];
     const Row& row = table.rows_[i];

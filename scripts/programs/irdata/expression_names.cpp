@@ -128,7 +128,7 @@ std::optional<std::size_t> ExpressionReader::arguments(std::string_view function
   }
   bool more = !cursor_->take(')');
   while (more) {
-    const Term argument = binary(1);
+    const Term argument = value();
     if (failed_) break;
     if (arguments_.size() - begin < most + 1) arguments_.push_back(argument);
     more = cursor_->take(',');

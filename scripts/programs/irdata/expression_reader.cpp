@@ -15,7 +15,28 @@ Term ExpressionReader::read(Cursor& cursor) {
   failed_ = false;
   depth_ = 0;
   arguments_.clear();
-  cursor.skip_blank();
+  return value();
+}
+
+// Most values are a number alone: those need no look at operators.
+Term ExpressionReader::value() {
+  cursor_->skip_blank();
+  const std::size_t begin = cursor_->at();
+  const std::uint32_t column = cursor_->column();
+  const bool negative = cursor_->peek() == '-';
+  if (negative) cursor_->skip();
+  if (is_digit(cursor_->peek())) {
+    Term term = number();
+    if (failed_) return term;
+    cursor_->skip_blank();
+    const char next = cursor_->peek();
+    if (next == ',' || next == ')' || cursor_->at_end()) {
+      if (negative) term = terms_.negated(term);
+      term.column = column;
+      return term;
+    }
+  }
+  cursor_->go_to(begin);
   return binary(1);
 }
 

@@ -46,6 +46,7 @@ class ExpressionReader {
     std::size_t length = 0;  // in the text
   };
   Term syntax_error(std::uint32_t column, std::string message, std::string remedy = {});
+  Term value();
   Term binary(int lowest);
   Term combine(const BinaryOperator& with, std::uint32_t column, const Term& left, const Term& right);
   [[nodiscard]] std::optional<BinaryOperator> peek_operator();

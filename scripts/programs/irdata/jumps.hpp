@@ -25,6 +25,8 @@ class Jumps {
  public:
   Jumps(ProgramBuilder& builder, Findings& findings) : builder_(builder), findings_(findings) {}
 
+  // So many records follow.
+  void reserve(std::size_t records) { records_.reserve(records); }
   // A block begins within another one (0: none); its number.
   std::uint32_t new_block(std::uint32_t within);
   // A record with a number greater than all before.

@@ -20,6 +20,12 @@ Translator::Translator(const ParseContext& context, const CodeTable& codes, Diag
   reader_.in_header(true);
 }
 
+void Translator::expect_lines(std::size_t lines) {
+  const std::size_t records = std::min(lines, kMostStatements);
+  builder_.reserve(records);
+  jumps_.reserve(records);
+}
+
 void Translator::read_line(std::string_view text) {
   findings_.at_line(++line_);
   if (text.size() > kLongestLine) {

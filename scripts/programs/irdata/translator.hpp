@@ -32,6 +32,8 @@ class Translator {
   // `codes` and the text whose lines follow must outlive this.
   Translator(const ParseContext& context, const CodeTable& codes, Diagnostics& diagnostics);
 
+  // So many lines follow: room is made for them at once.
+  void expect_lines(std::size_t lines);
   // The next line, without its end.
   void read_line(std::string_view text);
   // Too many records: the rest of the text is not worth reading.
