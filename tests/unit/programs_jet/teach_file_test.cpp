@@ -7,9 +7,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scripts/programs/jet/jet.hpp"
 #include "scripts/programs/jet/teach_lines.hpp"
+#include "scripts/programs/jet/teach_names.hpp"
 
 namespace cellmirror::program {
 namespace {
@@ -97,6 +99,15 @@ TEST(TeachNames, BeginWithALetter) {
   for (const std::string& wrong : {std::string(), std::string("1P"), std::string("_a"), std::string("a b"),
                                    std::string("ä"), std::string("a="), std::string(64, 'x')})
     EXPECT_FALSE(is_teach_name(wrong)) << wrong;
+}
+
+TEST(TeachNamesTest, KnowTheLineOfEachName) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 5'000; ++i) names.push_back(fmt::format("P{}", i));
+  TeachNames sut;
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(sut.note(names[i], static_cast<int>(i) + 1), 0);
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(sut.note(names[i], 9'999), static_cast<int>(i) + 1);
+  EXPECT_EQ(sut.note("p1", 7), 0) << "case counts";
 }
 
 TEST(TeachLinesTest, GiveWordsWithTheirColumns) {
