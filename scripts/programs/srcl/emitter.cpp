@@ -57,7 +57,7 @@ StatementId Emitter::add(Statement statement, std::uint32_t line, std::uint32_t 
     place.label = text(label_);
     label_.clear();
   }
-  program_.statements.push_back(std::move(statement));
+  program_.statements.push_back(statement);
   program_.places.push_back(place);
   return here() - 1;
 }

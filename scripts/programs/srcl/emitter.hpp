@@ -22,7 +22,7 @@ class Emitter {
   // The statement that add() will write next.
   [[nodiscard]] StatementId here() const { return static_cast<StatementId>(program_.statements.size()); }
   StatementId add(Statement statement, std::uint32_t line, std::uint32_t column);
-  StatementId add(Statement statement, const Token& at) { return add(std::move(statement), at.line, at.column); }
+  StatementId add(Statement statement, const Token& at) { return add(statement, at.line, at.column); }
   // What people call the next statement.
   void name_next(std::string label) { label_ = std::move(label); }
   // Of a jump, branch or call that was written with no target yet.

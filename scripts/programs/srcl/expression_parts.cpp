@@ -263,7 +263,11 @@ std::optional<Operand> ExpressionReader::function() {
   if (!arguments(operands, row->operands, name)) return std::nullopt;
   if (!std::ranges::all_of(operands, &Operand::known)) return Operand{};
   if (row->result == FunctionType::pose) {
-    if (!operands[0].is(ValueType::pose)) return wrong_type(name, shown(name), "a value of LAGE", operands[0]);
+    if (!operands[0].is(ValueType::pose)) {
+      faults_.add(name, fmt::format("{} takes a value of LAGE, but this is {}", shown(name), word_of(operands[0].type)),
+                  "write a pose");
+      return Operand{};
+    }
     return combine(row->which, ValueType::pose, operands, name);
   }
   for (const Operand& operand : operands) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -26,12 +27,14 @@ std::string Faults::proposal(std::string_view wrong, const std::vector<std::stri
 }
 
 void Faults::hand_over(Diagnostics& diagnostics) const {
-  std::vector<Diagnostic> sorted = found_.all();
-  const auto position = [](const Diagnostic& d) { return std::tuple(d.place.line, d.place.column); };
-  std::ranges::stable_sort(sorted, {}, position);
-  for (Diagnostic& diagnostic : sorted) diagnostics.add(std::move(diagnostic));
+  const std::vector<Diagnostic>& found = found_.all();
+  std::vector<std::size_t> order(found.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {},
+                    [&found](std::size_t i) { return std::tuple(found[i].place.line, found[i].place.column, i); });
+  for (const std::size_t i : order) diagnostics.add(found[i]);
   // Those that were only counted: they are only counted there, too.
-  for (std::size_t i = sorted.size(); i < found_.errors(); ++i) diagnostics.error({}, {});
+  for (std::size_t i = found.size(); i < found_.errors(); ++i) diagnostics.error({}, {});
 }
 
 std::string shown(const Token& token) {
