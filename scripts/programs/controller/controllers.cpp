@@ -243,8 +243,9 @@ bool Controllers::serve_semaphores() {
     ProgramRun* run = controller->run();
     if (run != nullptr && !run->wanted_semaphore().empty()) waiting.push_back(run);
   }
-  std::stable_sort(waiting.begin(), waiting.end(),
-                   [](const ProgramRun* a, const ProgramRun* b) { return a->due() < b->due(); });
+  std::sort(waiting.begin(), waiting.end(), [](const ProgramRun* a, const ProgramRun* b) {
+    return std::pair(a->due(), std::string_view(a->robot())) < std::pair(b->due(), std::string_view(b->robot()));
+  });
   bool any = false;
   for (ProgramRun* run : waiting) {
     const std::string semaphore(run->wanted_semaphore());

@@ -60,7 +60,7 @@ class ProgramRun final : private ProgramWorld {
   enum class End : std::uint8_t { none, ended, stopped, failed };
   [[nodiscard]] End end() const { return end_; }
   [[nodiscard]] Timestamp end_time() const { return due_; }  // of a run that has ended
-  [[nodiscard]] bool held() const { return held_; }
+  [[nodiscard]] const std::string& robot() const { return robot_; }
   [[nodiscard]] LoadedProgram& loaded() const { return *loaded_; }
   [[nodiscard]] const std::shared_ptr<LoadedProgram>& loaded_pointer() const { return loaded_; }
   [[nodiscard]] ProgramState state() const;
