@@ -18,9 +18,8 @@ namespace {
 constexpr std::string_view kProgramLog = "programs";
 constexpr std::size_t kLoggedFindings = 20;  // of one program
 
-bool goes_on(program::ProgramState state) {
+bool has_the_robot(program::ProgramState state) {
   switch (state) {
-    case program::ProgramState::queued:
     case program::ProgramState::delayed:
     case program::ProgramState::running:
     case program::ProgramState::waiting:
@@ -30,8 +29,6 @@ bool goes_on(program::ProgramState state) {
       return false;
   }
 }
-
-bool has_the_robot(program::ProgramState state) { return goes_on(state) && state != program::ProgramState::queued; }
 
 }  // namespace
 
@@ -68,7 +65,7 @@ Result<void> ProgramDesk::load_program(std::string_view program, std::string_vie
 
 Result<void> ProgramDesk::run_program(std::string_view program, std::string_view robot, ProgramBegin begin) {
   if (auto checked = check_robot(robot); !checked) return checked;
-  const bool idle = moving_program(robot).empty();
+  const bool idle = !controllers_.busy(robot);
   const auto when =
       begin == ProgramBegin::exec_wait ? program::Controllers::Begin::exec_wait : program::Controllers::Begin::now;
   const auto direction = begin == ProgramBegin::backward ? program::Direction::backward : program::Direction::forward;
@@ -187,8 +184,6 @@ void ProgramDesk::note(const program::ProgramEvent& event) {
 }
 
 void ProgramDesk::answer_awaiting() {
-  std::map<std::string, bool, std::less<>> busy_robots;
-  for (const program::ProgramStatus& status : controllers_.status()) busy_robots[status.robot] |= goes_on(status.state);
   const auto& deadlock = controllers_.deadlock();
   std::erase_if(awaiting_, [&](const Awaiting& waiting) {
     const auto stuck = [&](const program::Deadlock::Waiting& program) { return program.robot == waiting.robot; };
@@ -196,8 +191,7 @@ void ProgramDesk::answer_awaiting() {
       waiting.activity->refuse({deadlock->text(), "TF_STOP ends programs that wait, and lets the others go on"});
       return true;
     }
-    const auto busy_robot = busy_robots.find(waiting.robot);
-    if (busy_robot != busy_robots.end() && busy_robot->second) return false;
+    if (controllers_.busy(waiting.robot)) return false;
     const auto failed = failed_of_robot_.find(waiting.robot);
     if (failed == failed_of_robot_.end()) {
       waiting.activity->finish();

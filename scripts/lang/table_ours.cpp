@@ -213,7 +213,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kProgramOfRobot,
      .help = "runs a loaded robot program backward, from its last check point to its first",
-     .example = "TF_BACK boom_inspect BOOM_1",
+     .example = "TF_BACK r3_taught mantec_R3",
      .definition = "for programs of check points (jet_boom, jet_tarm); its comments and outputs are passed over; "
                    "refused as TF_RUN is",
      .effect = LoopEffect::queued,
@@ -225,7 +225,7 @@ constexpr Form kForms[] = {
      .parameters = kProgramRobot,
      .help = "holds the robot program that runs: the robot brakes on its path and waits there",
      .example = "TF_HOLD MANTEC_RM3",
-     .definition = "within the robot's accelerations; the time that a program waits for goes on",
+     .definition = "within the robot's accelerations; nothing of the program is carried out meanwhile, and no time limit runs",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_resume,

@@ -18,6 +18,8 @@
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/motion_desk.hpp"
+#include "app/gateway/program_desk.hpp"
+#include "app/gateway/program_motion.hpp"
 #include "app/gateway/sensing.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/home.hpp"
@@ -69,9 +71,10 @@ class Stage {
         desk_(
             cell_, names_, [this] { return display_.screen_axes(); }, port),
         couplings_(cell_, fleet_, desk_),
-        world_(cell_, fleet_, desk_, [] {}),
-        robots_(cell_, fleet_, desk_, couplings_, names_),
-        programs_(desk_, display_),
+        program_motion_(cell_, desk_, port),
+        programs_({cell_, home_, fleet_, desk_, display_, program_motion_, clock_}),
+        world_(cell_, fleet_, desk_, programs_, [] {}),
+        robots_(cell_, fleet_, desk_, couplings_, programs_, names_),
         sensing_(cell_, {}),
         diagnosis_([](std::string_view) { return Result<void>(); }) {
     EXPECT_TRUE(fleet_.follow_cell());
@@ -112,9 +115,10 @@ class Stage {
   app::DisplayDesk display_;
   app::MotionDesk desk_;
   app::CouplingDesk couplings_;
+  app::CellProgramMotion program_motion_;
+  app::ProgramDesk programs_;
   app::CellWorld world_;
   app::CellRobots robots_;
-  app::CellPrograms programs_;
   app::CellSensing sensing_;
   cellmirror::testing::QuietHost quiet_;  // hands and feet: no motion here
   app::CellDiagnosis diagnosis_;

@@ -6,6 +6,7 @@ import * as format from "./modules/format.js";
 import {History} from "./modules/history.js";
 import {picture_size, start_of_free_view, wish_of} from "./modules/live_view.js";
 import {decode_picture} from "./modules/picture_format.js";
+import {state_text, time_text} from "./modules/programs.js";
 import {place_in_range, state_of} from "./modules/robots.js";
 import * as token from "./modules/token.js";
 import {TreeModel} from "./modules/tree_model.js";
@@ -18,6 +19,14 @@ test("a picture is read as the protocol has it", () => {
   const picture = decode_picture(bytes.buffer);
   assert.deepEqual([picture.sequence, picture.width, picture.height, picture.age_s], [7, 640, 480, 0.25]);
   assert.deepEqual([...picture.jpeg], [0xff, 0xd8, 0xff]);
+});
+
+test("robot programs are told by state, what they wait for, and time", () => {
+  assert.equal(state_text({state: "waiting", waits_for: "semaphore TABLE", direction: "forward"}), "waiting for semaphore TABLE");
+  assert.equal(state_text({state: "running", waits_for: "", direction: "backward"}), "running, backward");
+  assert.equal(time_text({runs: 0, elapsed_s: 0, expected_s: null}), "");
+  assert.equal(time_text({runs: 1, elapsed_s: 12.34, expected_s: null}), "12.3 s");
+  assert.equal(time_text({runs: 2, elapsed_s: 2, expected_s: 45.6}), "2.0 s of 45.6 s");
 });
 
 test("what is no picture is refused", () => {
