@@ -13,7 +13,7 @@ using program::ExpressionId;
 using program::Setting;
 
 CommandReader::Handler CommandReader::handler_of(std::string_view type) {
-  static const std::unordered_map<std::string_view, Handler> kHandlers = {
+  static const std::unordered_map<std::string_view, Handler> handlers = {
       {"ActuateJointsType", &CommandReader::actuate_joints},
       {"CloseToolChangerType", &CommandReader::tool_changer},
       {"ConfigureJointReportsType", &CommandReader::no_effect},
@@ -42,8 +42,8 @@ CommandReader::Handler CommandReader::handler_of(std::string_view type) {
       {"SetTransSpeedType", &CommandReader::set_limit},
       {"StopMotionType", &CommandReader::stop_motion},
   };
-  const auto found = kHandlers.find(type);
-  return found == kHandlers.end() ? nullptr : found->second;
+  const auto found = handlers.find(type);
+  return found == handlers.end() ? nullptr : found->second;
 }
 
 void CommandReader::read(const XmlTree& tree) {

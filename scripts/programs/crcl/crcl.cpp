@@ -51,12 +51,12 @@ std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& 
 }  // namespace
 
 const Language& crcl_language() {
-  static const Language kCrcl = {.name = "crcl",
-                                 .summary = "CRCL, the canonical robot command language of NIST (XML)",
-                                 .extensions = {".crcl", ".xml"},
-                                 .codes_file = {},
-                                 .parse = &parse};
-  return kCrcl;
+  static const Language crcl_entry = {.name = "crcl",
+                                      .summary = "CRCL, the canonical robot command language of NIST (XML)",
+                                      .extensions = {".crcl", ".xml"},
+                                      .codes_file = {},
+                                      .parse = &parse};
+  return crcl_entry;
 }
 
 }  // namespace cellmirror::program

@@ -11,7 +11,7 @@ namespace cellmirror::crcl {
 using program::Setting;
 
 const std::array<LimitName, kLimits>& limit_names() {
-  static const std::array<LimitName, kLimits> kNames = {{
+  static const std::array<LimitName, kLimits> names = {{
       {Limit::linear_velocity, "TransSpeed", "TransSpeedAbsoluteType", "TransSpeedRelativeType",
        Setting::linear_velocity, Setting::linear_velocity_share, Setting::joint_velocity, false},
       {Limit::linear_acceleration, "TransAccel", "TransAccelAbsoluteType", "TransAccelRelativeType",
@@ -21,7 +21,7 @@ const std::array<LimitName, kLimits>& limit_names() {
       {Limit::rotational_acceleration, "RotAccel", "RotAccelAbsoluteType", "RotAccelRelativeType",
        Setting::rotational_acceleration, Setting::rotational_acceleration_share, std::nullopt, true},
   }};
-  return kNames;
+  return names;
 }
 
 std::optional<LimitValue> read_limit(const Fields& fields, const XmlNode& node, const LimitName& name,

@@ -14,10 +14,10 @@
 namespace cellmirror::program {
 
 std::span<const Language> languages() {
-  static const std::vector<Language> kLanguages = {
+  static const std::vector<Language> all = {
       irdata_language(), srcl_language(), jet_boom_language(), jet_tarm_language(), crcl_language(),
   };
-  return kLanguages;
+  return all;
 }
 
 Result<const Language*> find_language(std::string_view name) {
