@@ -250,8 +250,8 @@ TEST(Move, LineWithoutAChainIsRefused) {
   EXPECT_EQ(ride.state().outcome, Outcome::blocked);
 }
 
-// Random moves of both kinds, superseded, queued and stopped at random: Ride checks ranges and velocities in every
-// tick. Then a last move that arrives exactly.
+// Random moves of all kinds, superseded, queued, late, held and stopped at random: Ride checks ranges and velocities in
+// every tick. Then a last move that arrives exactly.
 class RandomMoves : public testing::TestWithParam<int> {};
 
 TEST_P(RandomMoves, KeepRangesAndVelocitiesInEveryTickAndArrive) {
@@ -274,23 +274,37 @@ TEST_P(RandomMoves, KeepRangesAndVelocitiesInEveryTickAndArrive) {
     p.fly_type = static_cast<FlyType>(random() % 3);
     p.fly_parameter = uniform(0, 0.3);
     const Start start = random() % 2 == 0 ? Start::supersede : Start::queue;
+    const auto give = [&](Move move) {
+      if (random() % 3 == 0) move.begin = Ride::time_of(ride.now() - uniform(-0.01, 0.1));
+      move.follows_on = random() % 2 == 0;
+      move.fly_parameter = p.fly_parameter;
+      move.fly_type = p.fly_type;
+      ASSERT_TRUE(ride.sut().add(move));
+    };
     if (random() % 2 == 0) {
-      ASSERT_TRUE(ride.sut().add(ride.joints_to(random_posture(ride.chain(), random), start)));
+      give(ride.joints_to(random_posture(ride.chain(), random), start));
     } else {
       Pose to = ride.X_BT();
       to.translation() += Eigen::Vector3d(uniform(-0.2, 0.2), uniform(-0.2, 0.2), uniform(-0.2, 0.2));
       to.linear() = Eigen::AngleAxisd(uniform(-1, 1), Eigen::Vector3d(uniform(-1, 1), uniform(-1, 1), 1).normalized()) *
                     to.linear();
-      if (const auto move = ride.line_to(ride.q(), to, start)) {
-        ASSERT_TRUE(ride.sut().add(*move));
+      const Eigen::Vector3d via =
+          ride.X_BT().translation() + Eigen::Vector3d(uniform(-0.2, 0.2), uniform(-0.2, 0.2), 0);
+      const auto move = random() % 3 == 0 ? ride.arc_to(ride.q(), via, to, start) : ride.line_to(ride.q(), to, start);
+      if (move) {
+        give(*move);
         ++lines;
       }
     }
+    if (random() % 4 == 0) ride.sut().set_pace(random() % 2 == 0 ? 1 : uniform(-0.3, 1));
+    if (random() % 8 == 0) ride.sut().hold_behind(random() % 2 == 0 ? 0 : ride.state().running);
     if (random() % 10 == 0) ride.sut().stop();
     const double ticks = uniform(0, 800);
     for (int i = 0; i < ticks; ++i) ride.tick(random() % 50 == 0 ? 0.01 : Ride::kTick);
     ASSERT_FALSE(testing::Test::HasFailure()) << "round " << round;
   }
+  ride.sut().set_pace(1);
+  ride.sut().hold_behind(0);
   ride.run();
   const JointValues target = random_posture(ride.chain(), random);
   ASSERT_TRUE(ride.sut().add(ride.joints_to(target)));
