@@ -6,6 +6,62 @@
 
 namespace cellmirror::program::srcl {
 
+std::optional<bool> Parser::block_statement(const Token& at) {
+  switch (at.keyword) {
+    case Keyword::if_begin:
+      return begin_if(at);
+    case Keyword::else_if:
+      return else_branch(at, true);
+    case Keyword::otherwise:
+      return else_branch(at, false);
+    case Keyword::if_end:
+      end_if(at);
+      return true;
+    case Keyword::while_begin:
+      return begin_while(at);
+    case Keyword::while_end:
+      return end_loop(Keyword::while_begin, at);
+    case Keyword::count_begin:
+      return begin_count(at);
+    case Keyword::count_end:
+      return end_loop(Keyword::count_begin, at);
+    case Keyword::repeat_begin:
+    case Keyword::loop_begin:
+      blocks_.open(at.keyword, at);
+      return true;
+    case Keyword::until:
+      return end_repeat(at);
+    case Keyword::loop_end:
+      return end_loop(Keyword::loop_begin, at);
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<bool> Parser::flow_statement(const Token& at) {
+  switch (at.keyword) {
+    case Keyword::jump:
+      return jump(at);
+    case Keyword::leave:
+      return leave_loop(at, false);
+    case Keyword::next_round:
+      return leave_loop(at, true);
+    case Keyword::call:
+      return call(at);
+    case Keyword::return_back:
+      emitter_.add(ReturnStatement{}, at);
+      return true;
+    case Keyword::halt:
+      emitter_.add(PauseStatement{}, at);
+      return true;
+    case Keyword::end:
+      emitter_.add(EndStatement{}, at);
+      return true;
+    default:
+      return std::nullopt;
+  }
+}
+
 std::optional<Token> Parser::read_name(std::string_view what) {
   const Token token = lexer_.token();
   if (token.kind == TokenKind::name) {

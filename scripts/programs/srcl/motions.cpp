@@ -47,6 +47,31 @@ bool in_range(const SettingRow& row, double value) {
 
 }  // namespace
 
+std::optional<bool> Parser::motion_statement(const Token& at) {
+  switch (at.keyword) {
+    case Keyword::ptp:
+      return move(PathKind::joints, at);
+    case Keyword::linear:
+      return move(PathKind::linear, at);
+    case Keyword::circular:
+      return move(PathKind::circular, at);
+    case Keyword::joint_velocity:
+    case Keyword::joint_acceleration:
+    case Keyword::path_velocity:
+    case Keyword::path_acceleration:
+    case Keyword::turn_velocity:
+    case Keyword::turn_acceleration:
+    case Keyword::fly_distance:
+    case Keyword::fly_angle:
+    case Keyword::fly_speed:
+    case Keyword::tool:
+    case Keyword::zero_point:
+      return setting(at);
+    default:
+      return std::nullopt;
+  }
+}
+
 std::optional<Operand> Parser::read_target(TargetKind pose_kind, TargetKind joints_kind, TargetKind& kind) {
   const Token at = lexer_.token();
   const std::optional<Operand> target = expressions_.read();

@@ -107,82 +107,13 @@ bool Parser::statement(const Token& at) {
   }
   statement_seen_ = true;
   if (!belongs_to_routine(at)) return false;
-  switch (at.keyword) {
-    case Keyword::ptp:
-      return move(PathKind::joints, at);
-    case Keyword::linear:
-      return move(PathKind::linear, at);
-    case Keyword::circular:
-      return move(PathKind::circular, at);
-    case Keyword::joint_velocity:
-    case Keyword::joint_acceleration:
-    case Keyword::path_velocity:
-    case Keyword::path_acceleration:
-    case Keyword::turn_velocity:
-    case Keyword::turn_acceleration:
-    case Keyword::fly_distance:
-    case Keyword::fly_angle:
-    case Keyword::fly_speed:
-    case Keyword::tool:
-    case Keyword::zero_point:
-      return setting(at);
-    case Keyword::jump:
-      return jump(at);
-    case Keyword::if_begin:
-      return begin_if(at);
-    case Keyword::else_if:
-      return else_branch(at, true);
-    case Keyword::otherwise:
-      return else_branch(at, false);
-    case Keyword::if_end:
-      end_if(at);
-      return true;
-    case Keyword::while_begin:
-      return begin_while(at);
-    case Keyword::while_end:
-      return end_loop(Keyword::while_begin, at);
-    case Keyword::count_begin:
-      return begin_count(at);
-    case Keyword::count_end:
-      return end_loop(Keyword::count_begin, at);
-    case Keyword::repeat_begin:
-    case Keyword::loop_begin:
-      blocks_.open(at.keyword, at);
-      return true;
-    case Keyword::until:
-      return end_repeat(at);
-    case Keyword::loop_end:
-      return end_loop(Keyword::loop_begin, at);
-    case Keyword::leave:
-      return leave_loop(at, false);
-    case Keyword::next_round:
-      return leave_loop(at, true);
-    case Keyword::call:
-      return call(at);
-    case Keyword::return_back:
-      emitter_.add(ReturnStatement{}, at);
-      return true;
-    case Keyword::halt:
-      emitter_.add(PauseStatement{}, at);
-      return true;
-    case Keyword::end:
-      emitter_.add(EndStatement{}, at);
-      return true;
-    case Keyword::wait:
-      return wait(at);
-    case Keyword::acquire:
-      return semaphore(at, true);
-    case Keyword::release:
-      return semaphore(at, false);
-    case Keyword::digital_output:
-      return output(at, false);
-    case Keyword::analogue_output:
-      return output(at, true);
-    default:
-      faults_.add(at, fmt::format("no statement begins with {}", shown(at)),
-                  "begin it with another word; names must differ from the words of the language");
-      return false;
-  }
+  if (const std::optional<bool> readable = motion_statement(at)) return *readable;
+  if (const std::optional<bool> readable = block_statement(at)) return *readable;
+  if (const std::optional<bool> readable = flow_statement(at)) return *readable;
+  if (const std::optional<bool> readable = signal_statement(at)) return *readable;
+  faults_.add(at, fmt::format("no statement begins with {}", shown(at)),
+              "begin it with another word; names must differ from the words of the language");
+  return false;
 }
 
 bool Parser::declaration(const Token& at) {
@@ -248,19 +179,16 @@ void Parser::recover_block(const Token& name) {
       blocks_.open(meant, name);
       return;
     case Keyword::if_end:
-      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::if_begin, name) != nullptr) blocks_.close();
+      close_misspelt(Keyword::if_begin, name);
       return;
     case Keyword::while_end:
-      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::while_begin, name) != nullptr)
-        blocks_.close();
+      close_misspelt(Keyword::while_begin, name);
       return;
     case Keyword::count_end:
-      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::count_begin, name) != nullptr)
-        blocks_.close();
+      close_misspelt(Keyword::count_begin, name);
       return;
     case Keyword::loop_end:
-      if (blocks_.innermost() != nullptr && blocks_.find_to_close(Keyword::loop_begin, name) != nullptr)
-        blocks_.close();
+      close_misspelt(Keyword::loop_begin, name);
       return;
     case Keyword::subprogram_end:
       if (blocks_.in_subprogram()) blocks_.end_subprogram(name);
@@ -268,6 +196,10 @@ void Parser::recover_block(const Token& name) {
     default:
       return;
   }
+}
+
+void Parser::close_misspelt(Keyword begin, const Token& name) {
+  if (blocks_.innermost() != nullptr && blocks_.find_to_close(begin, name) != nullptr) blocks_.close();
 }
 
 bool Parser::assign(const Token& name) {

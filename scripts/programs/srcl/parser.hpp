@@ -32,6 +32,7 @@ class Parser {
   bool declaration(const Token& at);
   bool unknown_statement(const Token& name);
   void recover_block(const Token& name);
+  void close_misspelt(Keyword begin, const Token& name);
   bool assign(const Token& name);
   bool store(const Token& name, const Declared& declared, ExpressionId index, std::uint32_t component,
              std::optional<Operand> value);
@@ -50,12 +51,15 @@ class Parser {
   bool read_list_values(Variable& variable, std::size_t size);
   Value take_value(const Operand& constant, std::size_t constants_before);
 
-  // motions.cpp
+  // motions.cpp. As the next three: none where it is another statement.
+  std::optional<bool> motion_statement(const Token& at);
   bool move(PathKind path, const Token& at);
   std::optional<Operand> read_target(TargetKind pose_kind, TargetKind joints_kind, TargetKind& kind);
   bool setting(const Token& at);
 
   // flow.cpp
+  std::optional<bool> block_statement(const Token& at);
+  std::optional<bool> flow_statement(const Token& at);
   bool begin_if(const Token& at);
   bool else_branch(const Token& at, bool with_condition);
   bool begin_while(const Token& at);
@@ -71,6 +75,7 @@ class Parser {
   void end_if(const Token& at);
 
   // signals.cpp
+  std::optional<bool> signal_statement(const Token& at);
   bool wait(const Token& at);
   bool wait_for(const Token& at);
   bool wait_limit(WaitStatement& statement, const Token& at, std::optional<Token>& jump_to);

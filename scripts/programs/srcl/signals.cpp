@@ -8,6 +8,23 @@
 
 namespace cellmirror::program::srcl {
 
+std::optional<bool> Parser::signal_statement(const Token& at) {
+  switch (at.keyword) {
+    case Keyword::wait:
+      return wait(at);
+    case Keyword::acquire:
+      return semaphore(at, true);
+    case Keyword::release:
+      return semaphore(at, false);
+    case Keyword::digital_output:
+      return output(at, false);
+    case Keyword::analogue_output:
+      return output(at, true);
+    default:
+      return std::nullopt;
+  }
+}
+
 void Parser::check_time(const Token& at, const Operand& seconds) {
   if (!seconds.constant() || (seconds.real >= 0 && seconds.real <= kLongestTime_s)) return;
   faults_.add(at, fmt::format("a program cannot wait for {} s", seconds.real),
