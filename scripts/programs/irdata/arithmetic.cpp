@@ -32,11 +32,11 @@ Operator operator_of(Operation operation) {
       return Operator::maximum;
     case Operation::atan2:
       return Operator::arc_tangent;
-    case Operation::and_:
+    case Operation::logical_and:
       return Operator::logical_and;
-    case Operation::or_:
+    case Operation::logical_or:
       return Operator::logical_or;
-    case Operation::xor_:
+    case Operation::logical_xor:
       return Operator::logical_xor;
     case Operation::compose:
       return Operator::compose;
@@ -60,7 +60,7 @@ Operator operator_of(Operation operation) {
       return Operator::round;
     case Operation::trunc:
       return Operator::truncate;
-    case Operation::not_:
+    case Operation::logical_not:
       return Operator::logical_not;
     default:
       return Operator::inverse;

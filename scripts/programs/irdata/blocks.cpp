@@ -7,14 +7,14 @@ namespace cellmirror::program::irdata {
 
 void Translator::block_record() {
   switch (operation_) {
-    case Operation::if_:
+    case Operation::if_begin:
       return begin_if();
     case Operation::else_if:
-    case Operation::else_:
+    case Operation::else_part:
       return continue_if();
     case Operation::end_if:
       return end_if();
-    case Operation::while_:
+    case Operation::while_begin:
       return begin_while();
     case Operation::end_while:
     case Operation::until:
@@ -23,7 +23,7 @@ void Translator::block_record() {
     case Operation::repeat:
       builder_.bind(open_block(Operation::repeat).begin);
       return;
-    case Operation::for_:
+    case Operation::for_begin:
       return begin_for();
     case Operation::end_for:
       return end_for();
@@ -90,7 +90,7 @@ void Translator::branch(const Term& condition, ProgramBuilder::Label otherwise) 
 
 void Translator::begin_if() {
   const Term condition = typed_parameter("a condition", ValueType::boolean);
-  Block& block = open_block(Operation::if_);
+  Block& block = open_block(Operation::if_begin);
   block.next = builder_.new_label();
   block.open_next = true;
   branch(condition, block.next);
@@ -98,7 +98,7 @@ void Translator::begin_if() {
 
 // ELSE_IF and ELSE.
 void Translator::continue_if() {
-  Block* block = innermost(Operation::if_);
+  Block* block = innermost(Operation::if_begin);
   if (block != nullptr && block->is_else)
     findings_.error(operation_column_,
                     fmt::format("{} stands behind ELSE (IF of line {})", row_of(operation_).name, block->line),
@@ -109,7 +109,7 @@ void Translator::continue_if() {
     block->open_next = false;
     block->id = block_ = jumps_.new_block(block->outside);  // no jumps from one part into another
   }
-  if (operation_ == Operation::else_) {
+  if (operation_ == Operation::else_part) {
     if (block != nullptr) block->is_else = true;
     return;
   }
@@ -121,18 +121,18 @@ void Translator::continue_if() {
 }
 
 void Translator::end_if() {
-  if (innermost(Operation::if_) != nullptr) close_block();
+  if (innermost(Operation::if_begin) != nullptr) close_block();
 }
 
 void Translator::begin_while() {
-  Block& block = open_block(Operation::while_);
+  Block& block = open_block(Operation::while_begin);
   builder_.bind(block.begin);
   branch(typed_parameter("a condition", ValueType::boolean), block.end);
 }
 
 // END_WHILE, UNTIL, END_LOOP.
 void Translator::end_loop() {
-  const Operation kind = operation_ == Operation::end_while ? Operation::while_
+  const Operation kind = operation_ == Operation::end_while ? Operation::while_begin
                          : operation_ == Operation::until   ? Operation::repeat
                                                             : Operation::loop;
   const Block* block = innermost(kind);
@@ -161,7 +161,7 @@ void Translator::begin_for() {
     if (value) step = std::get<std::int64_t>(*value);
     if (step == 0) findings_.error(term.column, "the step is 0", "write a positive or a negative one");
   }
-  Block& block = open_block(Operation::for_);
+  Block& block = open_block(Operation::for_begin);
   if (!good || !first.known || !last.known) {
     builder_.bind(block.begin);
     return;
@@ -182,7 +182,7 @@ void Translator::begin_for() {
 }
 
 void Translator::end_for() {
-  const Block* block = innermost(Operation::for_);
+  const Block* block = innermost(Operation::for_begin);
   if (block == nullptr) return;
   if (block->counter != kNone)
     assign_hidden(block->counter, terms_.apply(Operator::add, operation_column_,
@@ -213,7 +213,7 @@ void Translator::begin_loop() {
 
 void Translator::exit_loop() {
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block)
-    if (block->kind != Operation::if_) return builder_.jump(block->end);
+    if (block->kind != Operation::if_begin) return builder_.jump(block->end);
   findings_.error(operation_column_, "EXIT_LOOP stands outside of a loop",
                   "use it between LOOP, WHILE, REPEAT or FOR and their ends");
 }

@@ -12,10 +12,10 @@ namespace cellmirror::program::irdata {
 Term ExpressionReader::word(Word which, std::string_view text, std::uint32_t column) {
   switch (which) {
     case Word::on:
-    case Word::true_:
+    case Word::true_word:
       return terms_.value(true, column);
     case Word::off:
-    case Word::false_:
+    case Word::false_word:
       return terms_.value(false, column);
     case Word::pi:
       return real_literal(std::numbers::pi, column);

@@ -100,9 +100,9 @@ std::optional<ExpressionReader::BinaryOperator> ExpressionReader::peek_operator(
   const std::string_view text = cursor_->name();
   cursor_->go_to(begin);
   const std::optional<Word> word = find_word(text);
-  if (word == Word::or_) return BinaryOperator{Operator::logical_or, 1, text.size()};
-  if (word == Word::xor_) return BinaryOperator{Operator::logical_xor, 1, text.size()};
-  if (word == Word::and_) return BinaryOperator{Operator::logical_and, 2, text.size()};
+  if (word == Word::logical_or) return BinaryOperator{Operator::logical_or, 1, text.size()};
+  if (word == Word::logical_xor) return BinaryOperator{Operator::logical_xor, 1, text.size()};
+  if (word == Word::logical_and) return BinaryOperator{Operator::logical_and, 2, text.size()};
   if (word == Word::div) return BinaryOperator{Operator::integer_divide, 6, text.size()};
   if (word == Word::mod) return BinaryOperator{Operator::modulo, 6, text.size()};
   return std::nullopt;
@@ -121,7 +121,7 @@ Term ExpressionReader::unary() {
     term.column = column;
   } else if (cursor_->take('+')) {
     term = unary();
-  } else if (is_letter(cursor_->peek()) && find_word(cursor_->name()) == Word::not_) {
+  } else if (is_letter(cursor_->peek()) && find_word(cursor_->name()) == Word::logical_not) {
     const Term operand = binary(4);
     term = terms_.apply(Operator::logical_not, column, {operand});
   } else {

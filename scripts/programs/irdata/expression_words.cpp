@@ -43,8 +43,8 @@ constexpr std::array<std::string_view, 6> kPoseComponents = {"X", "Y", "Z", "ROL
 }  // namespace
 
 std::optional<Word> find_word(std::string_view text) {
-  static const WordTable kTable{kWordTexts};
-  const std::size_t index = kTable.find(text);
+  static const WordTable table{kWordTexts};
+  const std::size_t index = table.find(text);
   if (index == WordTable::kNone) return std::nullopt;
   return static_cast<Word>(index);
 }

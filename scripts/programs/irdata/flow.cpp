@@ -21,7 +21,7 @@ void Translator::flow_record() {
     case Operation::call:
     case Operation::subprogram:
     case Operation::end_subprogram:
-    case Operation::return_:
+    case Operation::return_back:
       return subprogram_record();
     case Operation::pause:
       return add(PauseStatement{}, operation_column_);
@@ -98,7 +98,7 @@ void Translator::subprogram_record() {
       if (!name.empty()) jumps_.define_subprogram(name, subprogram_spot_);
       return;
     }
-    case Operation::return_:
+    case Operation::return_back:
       if (section_ == Section::subprogram) return add(ReturnStatement{}, column);
       findings_.error(column, "RETURN stands outside of a subprogram", "end the program with STOP");
       return;

@@ -15,11 +15,11 @@ namespace {
 constexpr std::string_view kCodesFile = "irdata_codes.tsv";
 
 const irdata::CodeTable& own_codes() {
-  static const irdata::CodeTable kTable = [] {
+  static const irdata::CodeTable table = [] {
     Diagnostics none;  // a test reads the table; what were wrong with it would leave codes out
     return irdata::CodeTable::read(irdata::built_in_codes(), std::string(kCodesFile), none);
   }();
-  return kTable;
+  return table;
 }
 
 std::shared_ptr<const Program> read_program(std::string_view text, const ParseContext& context,
@@ -60,9 +60,9 @@ std::shared_ptr<const Program> parse_irdata(std::string_view text, const ParseCo
 }  // namespace
 
 const Language& irdata_language() {
-  static const Language kLanguage{
+  static const Language language{
       "irdata", "numbered records in the manner of VDI 2863 (our dialect)", {".ird"}, kCodesFile, &parse_irdata};
-  return kLanguage;
+  return language;
 }
 
 }  // namespace cellmirror::program

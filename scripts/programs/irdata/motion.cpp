@@ -72,7 +72,7 @@ Term Translator::scaled_setting(std::string_view what, double greatest, double f
 void Translator::setting_record() {
   if (operation_ == Operation::fly) return fly_record();
   SetStatement set;
-  const bool back = word_parameter(Word::default_);
+  const bool back = word_parameter(Word::default_word);
   Term value;
   const std::uint32_t column = operation_column_;
   constexpr double kGreatest = 1e9;
@@ -118,11 +118,11 @@ void Translator::setting_record() {
 void Translator::fly_record() {
   SetStatement set;
   set.setting = Setting::fly_distance;
-  if (word_parameter(Word::default_)) return add(set, operation_column_);
-  constexpr double kGreatest_mm = 1e9;
+  if (word_parameter(Word::default_word)) return add(set, operation_column_);
+  constexpr double kGreatestDistance = 1e9;
   Term value;
   if (word_parameter(Word::distance)) {
-    value = scaled_setting("a fly distance", kGreatest_mm, kMPerMm);
+    value = scaled_setting("a fly distance", kGreatestDistance, kMPerMm);
   } else if (word_parameter(Word::speed)) {
     set.setting = Setting::fly_speed_fraction;
     value = scaled_setting("a fly speed in percent", 100, 0.01);

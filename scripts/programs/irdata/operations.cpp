@@ -50,15 +50,15 @@ constexpr std::array<OperationRow, kOperations> kRows = {{
     {Operation::jump, flow, "JUMP", "label or record number"},
     {Operation::jump_if, flow, "JUMP_IF", "condition, label or record number"},
     {Operation::jump_on, flow, "JUMP_ON", "integer, label for 1, label for 2, ..."},
-    {Operation::if_, flow, "IF", "condition"},
+    {Operation::if_begin, flow, "IF", "condition"},
     {Operation::else_if, flow, "ELSE_IF", "condition"},
-    {Operation::else_, flow, "ELSE", ""},
+    {Operation::else_part, flow, "ELSE", ""},
     {Operation::end_if, flow, "END_IF", ""},
-    {Operation::while_, flow, "WHILE", "condition"},
+    {Operation::while_begin, flow, "WHILE", "condition"},
     {Operation::end_while, flow, "END_WHILE", ""},
     {Operation::repeat, flow, "REPEAT", ""},
     {Operation::until, flow, "UNTIL", "condition"},
-    {Operation::for_, flow, "FOR", "integer variable, first, last [, step]"},
+    {Operation::for_begin, flow, "FOR", "integer variable, first, last [, step]"},
     {Operation::end_for, flow, "END_FOR", ""},
     {Operation::loop, flow, "LOOP", "[how often]"},
     {Operation::end_loop, flow, "END_LOOP", ""},
@@ -66,7 +66,7 @@ constexpr std::array<OperationRow, kOperations> kRows = {{
     {Operation::call, flow, "CALL", "name of a subprogram"},
     {Operation::subprogram, flow, "SUBPROGRAM", "name"},
     {Operation::end_subprogram, flow, "END_SUBPROGRAM", ""},
-    {Operation::return_, flow, "RETURN", ""},
+    {Operation::return_back, flow, "RETURN", ""},
     {Operation::pause, flow, "PAUSE", ""},
     {Operation::stop, flow, "STOP", ""},
     {Operation::end, flow, "END", ""},
@@ -83,9 +83,9 @@ constexpr std::array<OperationRow, kOperations> kRows = {{
     {Operation::min, arithmetic, "MIN", "result, a, b"},
     {Operation::max, arithmetic, "MAX", "result, a, b"},
     {Operation::atan2, arithmetic, "ATAN2", "result, y, x"},
-    {Operation::and_, arithmetic, "AND", "result, a, b"},
-    {Operation::or_, arithmetic, "OR", "result, a, b"},
-    {Operation::xor_, arithmetic, "XOR", "result, a, b"},
+    {Operation::logical_and, arithmetic, "AND", "result, a, b"},
+    {Operation::logical_or, arithmetic, "OR", "result, a, b"},
+    {Operation::logical_xor, arithmetic, "XOR", "result, a, b"},
     {Operation::compose, arithmetic, "COMPOSE", "result, pose, pose in the axes of the first"},
     {Operation::neg, arithmetic, "NEG", "result, a"},
     {Operation::abs, arithmetic, "ABS", "result, a"},
@@ -97,7 +97,7 @@ constexpr std::array<OperationRow, kOperations> kRows = {{
     {Operation::acos, arithmetic, "ACOS", "result, a"},
     {Operation::round, arithmetic, "ROUND", "result, a"},
     {Operation::trunc, arithmetic, "TRUNC", "result, a"},
-    {Operation::not_, arithmetic, "NOT", "result, a"},
+    {Operation::logical_not, arithmetic, "NOT", "result, a"},
     {Operation::invert, arithmetic, "INVERT", "result, pose"},
     {Operation::shift, arithmetic, "SHIFT", "pose variable, x, y, z"},
     {Operation::get_pose, arithmetic, "GET_POSE", "pose variable"},
@@ -136,8 +136,8 @@ std::span<const OperationRow> operations() { return kRows; }
 const OperationRow& row_of(Operation operation) { return kRows[static_cast<std::size_t>(operation)]; }
 
 std::optional<Operation> find_operation(std::string_view name) {
-  static const WordTable kTable{kOperationNames};
-  const std::size_t index = kTable.find(name);
+  static const WordTable table{kOperationNames};
+  const std::size_t index = table.find(name);
   if (index == WordTable::kNone) return std::nullopt;
   return static_cast<Operation>(index);
 }
@@ -151,8 +151,8 @@ std::string form_of(Operation operation) {
 }
 
 std::string nearest_operation(std::string_view wrong) {
-  static const std::vector<std::string> kNames(kOperationNames.begin(), kOperationNames.end());
-  return did_you_mean(wrong, kNames);
+  static const std::vector<std::string> names(kOperationNames.begin(), kOperationNames.end());
+  return did_you_mean(wrong, names);
 }
 
 }  // namespace cellmirror::program::irdata

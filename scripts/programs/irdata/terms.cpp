@@ -61,7 +61,7 @@ Term Terms::apply(Operator which, std::uint32_t column, std::span<const Term> op
   return term;
 }
 
-Term Terms::value(Value value, std::uint32_t column) {
+Term Terms::value(const Value& value, std::uint32_t column) {
   Term term;
   term.known = true;
   term.column = column;

@@ -43,7 +43,7 @@ class Terms {
   Term apply(Operator which, std::uint32_t column, std::initializer_list<Term> operands, std::uint32_t payload = 0) {
     return apply(which, column, std::span<const Term>(operands.begin(), operands.size()), payload);
   }
-  Term value(Value value, std::uint32_t column);
+  Term value(const Value& value, std::uint32_t column);
   Term variable(VariableId id, std::uint32_t column);
   Term negated(const Term& term);
   Term as_real(const Term& number);

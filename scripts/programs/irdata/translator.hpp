@@ -44,7 +44,7 @@ class Translator {
   enum class Section : std::uint8_t { before, header, main, behind_end, subprogram };
 
   struct Block {
-    Operation kind = Operation::if_;
+    Operation kind = Operation::if_begin;
     std::uint32_t line = 0;
     std::uint32_t column = 0;
     std::uint32_t id = 0;         // for Jumps
