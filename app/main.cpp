@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
     add_range(program, action);
     add_snapshot(program, action);
     add_page(program, action);
+    add_simulate(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();
   } catch (const std::exception& error) {

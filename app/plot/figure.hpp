@@ -36,6 +36,18 @@ struct Mark {
   std::string label;
 };
 
+// From `begin` to `end` on the x axis, in a row of its panel; as high as the part of the row from `top` to `bottom`
+// (0..1).
+struct Bar {
+  std::size_t row = 0;
+  double begin = 0;
+  double end = 0;
+  std::size_t colour = 0;  // as the lines of a panel are coloured, by number
+  std::string label;       // shown where it fits into the bar
+  double top = 0.1;
+  double bottom = 0.9;
+};
+
 struct Panel {
   std::string title;
   Axis x;
@@ -43,6 +55,10 @@ struct Panel {
   std::vector<Histogram> histograms;
   std::vector<Line> lines;
   std::vector<Mark> marks;
+  // A panel with rows shows bars over x instead of values over y: the names of the rows from above to below, and the
+  // bars.
+  std::vector<std::string> rows = {};
+  std::vector<Bar> bars = {};
 };
 
 struct Figure {

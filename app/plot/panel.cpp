@@ -45,6 +45,7 @@ class PanelDrawing {
     draw_grid();
     canvas_.clip(plot_);
     for (const auto& bars : bars_) draw_bars(bars);
+    for (const Bar& bar : panel_.bars) draw_bar(bar);
     for (std::size_t i = 0; i < panel_.lines.size(); ++i) draw_line(panel_.lines[i], i);
     canvas_.unclip();
     draw_marks();
@@ -67,7 +68,9 @@ class PanelDrawing {
 
   [[nodiscard]] Rectangle inner(const Rectangle& area) {
     constexpr double kLeft = 92, kRight = 26, kTop = 44, kBottom = 68;
-    return {area.x + kLeft, area.y + kTop, std::max(area.width - kLeft - kRight - legend_width(), 10.0),
+    double left = kLeft;
+    for (const std::string& row : panel_.rows) left = std::max(left, canvas_.text_width(row, kTickSize) + 24);
+    return {area.x + left, area.y + kTop, std::max(area.width - left - kRight - legend_width(), 10.0),
             std::max(area.height - kTop - kBottom, 10.0)};
   }
 
@@ -76,6 +79,7 @@ class PanelDrawing {
     for (const Line& line : panel_.lines) values.insert(values.end(), line.x.begin(), line.x.end());
     for (const Histogram& histogram : panel_.histograms)
       values.insert(values.end(), histogram.values.begin(), histogram.values.end());
+    for (const Bar& bar : panel_.bars) values.insert(values.end(), {bar.begin, bar.end});
     if (values.empty()) return values;
     for (const Mark& mark : panel_.marks) values.push_back(mark.x);
     return values;
@@ -90,6 +94,7 @@ class PanelDrawing {
   // Bars stand on zero, and the highest must not touch the upper edge.
   [[nodiscard]] Axis y_axis() const {
     Axis axis = panel_.y;
+    if (!panel_.rows.empty()) return {"", false, 0.0, static_cast<double>(panel_.rows.size())};
     if (bars_.empty() || axis.low < axis.high || axis.logarithmic) return axis;
     double highest = 1;
     for (const auto& bars : bars_) highest = std::max(highest, *std::max_element(bars.begin(), bars.end()));
@@ -116,7 +121,9 @@ class PanelDrawing {
       canvas_.line(x, plot_.bottom(), x, plot_.bottom() + 5, kFaintInk);
       canvas_.text(x, plot_.bottom() + 21, tick.label, kTickSize, kFaintInk, Anchor::middle);
     }
+    for (std::size_t row = 0; row < panel_.rows.size(); ++row) draw_row(row);
     for (const Tick& tick : y_.ticks()) {
+      if (!panel_.rows.empty()) break;
       const double y = at_y(tick.value);
       canvas_.line(plot_.x, y, plot_.right(), y, kGrid);
       if (tick.label.empty()) continue;
@@ -125,6 +132,32 @@ class PanelDrawing {
     }
     canvas_.line(plot_.x, plot_.bottom(), plot_.right(), plot_.bottom(), kFaintInk);
     canvas_.line(plot_.x, plot_.y, plot_.x, plot_.bottom(), kFaintInk);
+  }
+
+  // Rows count from above.
+  [[nodiscard]] double at_row(double row) const {
+    return plot_.y + row * plot_.height / static_cast<double>(panel_.rows.size());
+  }
+
+  void draw_row(std::size_t row) {
+    const double top = at_row(static_cast<double>(row));
+    const double middle = at_row(static_cast<double>(row) + 0.5);
+    canvas_.line(plot_.x, top, plot_.right(), top, kGrid);
+    canvas_.text(plot_.x - 9, middle + 0.36 * kTickSize, panel_.rows[row], kTickSize, kInk, Anchor::right);
+  }
+
+  void draw_bar(const Bar& bar) {
+    if (bar.row >= panel_.rows.size() || !std::isfinite(bar.begin) || !std::isfinite(bar.end)) return;
+    Colour colour = colour_of(bar.colour);
+    colour.alpha = 0.85;
+    const double left = at_x(bar.begin);
+    const double top = at_row(static_cast<double>(bar.row) + bar.top);
+    const double bottom = at_row(static_cast<double>(bar.row) + bar.bottom);
+    // Neighbours stay apart, and what is there at all stays visible.
+    const double width = std::max(at_x(bar.end) - left - 1.0, 1.0);
+    canvas_.fill({left, top, width, bottom - top}, colour);
+    if (bar.label.empty() || canvas_.text_width(bar.label, kTickSize) + 8 > width || bottom - top < kTickSize) return;
+    canvas_.text(left + 4, 0.5 * (top + bottom) + 0.36 * kTickSize, bar.label, kTickSize, kBackground);
   }
 
   void draw_bars(const std::vector<double>& bars) {

@@ -1,4 +1,4 @@
-// cellmirror check FILE...: all diagnostics of cell files, components, SCRIPT and bus descriptions.
+// cellmirror check FILE...: all diagnostics of cell files, components, SCRIPT, bus descriptions and robot programs.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,6 +10,7 @@
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/robot_streams.hpp"
 #include "app/subcommands/check_bus_files.hpp"
+#include "app/subcommands/check_programs.hpp"
 #include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
@@ -17,6 +18,7 @@
 #include "config/view_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/lang/reader.hpp"
+#include "scripts/programs/languages/languages.hpp"
 
 namespace cellmirror::app {
 
@@ -25,7 +27,8 @@ namespace {
 struct CheckOptions {
   std::vector<std::string> files;
   std::string cell;      // for the names in SCRIPT files
-  std::string language;  // of robot programs
+  std::string language;  // of robot programs; empty: by the extension
+  std::string robot;     // of the cell, that the programs are for
   bool json = false;
 };
 
@@ -64,15 +67,25 @@ void check_view_file(const std::filesystem::path& path, const NameDirectory* nam
   }
 }
 
-void check_one(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
+struct Checked {
+  const NameDirectory* names = nullptr;
+  const program::Language* language = nullptr;
+  const RobotModel* robot = nullptr;
+};
+
+void check_one(const std::filesystem::path& path, const Checked& against, Diagnostics& diagnostics) {
   ProgressLine line("files loaded");
-  if (path.extension() == ".spt") return check_script_file(path, names, diagnostics);
+  const program::Language* language = against.language;
+  if (language == nullptr) language = program::language_of_extension(path.extension().string());
+  if (language != nullptr) return check_robot_program(path, *language, against.robot, diagnostics);
+  if (path.extension() == ".spt") return check_script_file(path, against.names, diagnostics);
   if (path.extension() == ".toml") return check_cell_file(path, diagnostics, load_progress(line));
-  if (path.extension() == kViewExtension) return check_view_file(path, names, diagnostics);
+  if (path.extension() == kViewExtension) return check_view_file(path, against.names, diagnostics);
   if (is_bus_file(path)) return check_bus_file(path, diagnostics);
   if (is_checkable(path)) return check_file(path, diagnostics, load_progress(line));
   diagnostics.error({path.string()}, "files of this kind cannot be checked",
-                    "known: .spt .toml .mpc .urdf .vws .dbc .eds .dcf");
+                    "known: .spt .toml .mpc .urdf .vws .dbc .eds .dcf " + program_extensions() +
+                        "; --language names that of a robot program");
 }
 
 void print_json(const Diagnostics& diagnostics) {
@@ -90,17 +103,32 @@ void print_json(const Diagnostics& diagnostics) {
   std::printf("%s\n", document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+// The cell that names are looked up in, and the robot.
+void load_for_check(const CheckOptions& options, std::optional<LoadedCell>& cell, std::optional<CellNames>& names,
+                    Checked& against, Diagnostics& diagnostics) {
+  ProgressLine line("files loaded");
+  cell = load_cell(options.cell, diagnostics, load_progress(line));
+  if (!cell) return;
+  against.names = &names.emplace(cell->cell);
+  if (options.robot.empty()) return;
+  against.robot = cell->cell.robot(options.robot);
+  if (against.robot != nullptr) return;
+  const Error why = cell->cell.explain_robot(options.robot);
+  diagnostics.error({options.cell}, why.what, why.remedy);
+}
+
 int check(const CheckOptions& options) {
-  if (!options.language.empty()) return refuse("robot programs (--language) are not available yet");
   Diagnostics diagnostics;
   std::optional<LoadedCell> cell;
   std::optional<CellNames> names;
-  if (!options.cell.empty()) {
-    ProgressLine line("files loaded");
-    cell = load_cell(options.cell, diagnostics, load_progress(line));
-    if (cell) names.emplace(cell->cell);
+  Checked against;
+  if (!options.language.empty()) {
+    const auto language = program::find_language(options.language);
+    if (!language) return refuse(language.error().text());
+    against.language = *language;
   }
-  for (const std::string& file : options.files) check_one(file, names ? &*names : nullptr, diagnostics);
+  if (!options.cell.empty()) load_for_check(options, cell, names, against, diagnostics);
+  for (const std::string& file : options.files) check_one(file, against, diagnostics);
   if (options.json) {
     print_json(diagnostics);
   } else {
@@ -116,12 +144,15 @@ int check(const CheckOptions& options) {
 void add_check(cli::Command program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
   cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
-  sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .dbc .eds .dcf").required();
-  sub.option("--cell", options->cell, "check the names in SCRIPT and view files against this cell");
-  sub.option("--language", options->language, "language of robot programs (not available yet)")
-      .one_of({"irdata", "srcl", "jet_boom", "jet_tarm"});
+  sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .dbc .eds .dcf " + program_extensions()).required();
+  auto cell = sub.option("--cell", options->cell, "check the names in SCRIPT and view files against this cell");
+  sub.option("--language", options->language, "the files are robot programs in this language").one_of(language_names());
+  sub.option("--robot", options->robot, "check that robot programs fit the joints of this robot of the cell")
+      .needs(cell);
   sub.flag("--json", options->json, "one JSON document: errors, warnings, diagnostics");
-  sub.footer("Example: cellmirror check scripts/demo.spt --cell cell.toml");
+  sub.footer(
+      "Examples: cellmirror check scripts/demo.spt --cell cell.toml\n"
+      "          cellmirror check --language irdata --cell cell.toml --robot PUMA_762 programs/weld.ird");
   sub.when_named([options, &action] { action = [options] { return check(*options); }; });
 }
 

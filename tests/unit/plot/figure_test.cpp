@@ -73,6 +73,23 @@ TEST(Figure, IsAPngOfTheSizeThatItsPanelsTake) {
   EXPECT_EQ(size_of(*png), std::pair(800U, 608U));
 }
 
+TEST(Figure, ShowsBarsInRows) {
+  Figure sut;
+  sut.panels.push_back({.title = "who", .x = {"t [s]"}, .y = {}, .histograms = {}, .lines = {}, .marks = {}});
+  sut.panels[0].rows = {"first", "second"};
+  const auto empty = png_of(sut);
+  sut.panels[0].bars = {{.row = 0, .begin = 0, .end = 2, .label = "a name"}, {.row = 1, .begin = 1, .end = 3}};
+  const auto bars = png_of(sut);
+  sut.panels[0].bars[0].row = 1;
+  const auto other_row = png_of(sut);
+  // What has no row, or no time, is left out.
+  sut.panels[0].bars = {{.row = 2, .begin = 0, .end = 2}, {.row = 0, .begin = NAN, .end = 2}};
+  const auto strange = png_of(sut);
+  ASSERT_TRUE(empty && bars && other_row && strange);
+  EXPECT_NE(*empty, *bars);
+  EXPECT_NE(*bars, *other_row);
+}
+
 TEST(Figure, ShowsTheDataAndTheWords) {
   Figure sut = one_panel();
   const auto with_all = png_of(sut);

@@ -1,0 +1,80 @@
+#include "app/simulation/off_line_gateway.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::chrono::milliseconds kNeverWatched{100};
+
+bool any_moves(const engine::TickState& tick, const OwnerPicture& picture) {
+  return std::ranges::any_of(picture.robots, [&](const RobotPicture& robot) {
+    const engine::RobotTickState& state = tick.robots[robot.slot];
+    return state.motion.moving || state.follow.follows();
+  });
+}
+
+}  // namespace
+
+OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
+    : observer_(std::move(observer)),
+      watchdog_(kNeverWatched, {}),
+      engine_(watchdog_, engine::Readers::owner),
+      period_(std::llround(1e9 / cell.loop.rate_hz)) {
+  clock_.set(kBegin);
+  context_.period = period_;
+  owner_ = std::make_unique<CellOwner>(CellOwner::Parts{
+      .cell = std::move(cell.cell),
+      .home = cell.home,
+      .streams = {},
+      .haptics = {},
+      .views = std::move(cell.views),
+      .collision = std::move(cell.collision),
+      .foot_switches = {},
+      .engine = engine_,
+      .board = board_,
+      .clock = clock_,
+      .instance = {},
+      .save_flight_record = [](std::string_view) -> Result<void> {
+        return fail("off line there is no flight recorder");
+      },
+      .reply = [](std::int64_t, const ScriptReply&) {},
+      .let_tick_pass = [this] { tick(); },
+      .refused = [this](const Diagnostics& findings) { observer_.refused(findings); },
+      .move_given = [this](std::string_view robot, const motion::Move& move) { observer_.move(robot, move); },
+      .program_event = [this](const program::ProgramEvent& event) { observer_.program(event); }});
+}
+
+Result<void> OffLineGateway::begin(const std::string& script, bool is_path) {
+  if (auto prepared = owner_->prepare(script, is_path); !prepared) return prepared;
+  tick();  // the robots come
+  return {};
+}
+
+bool OffLineGateway::work() {
+  bool any = false;
+  for (int turn = 0; turn < kTurnsPerTick; ++turn) {
+    if (!owner_->turn()) return any;
+    any = true;
+  }
+  return any;
+}
+
+void OffLineGateway::tick() {
+  clock_.advance(period_);
+  context_.now = clock_.now();
+  context_.scheduled = context_.now;
+  engine_.run(context_);
+  ++context_.cycle;
+  const std::shared_ptr<const OwnerPicture> picture = board_.look();
+  if (!picture) return;
+  const engine::TickState& state = engine_.owner_view();
+  robots_move_ = any_moves(state, *picture);
+  observer_.tick(picture, state);
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,147 @@
+#include "app/simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "app/simulation/collision_watch.hpp"
+#include "app/simulation/motion_recorder.hpp"
+#include "app/simulation/off_line_gateway.hpp"
+#include "app/simulation/program_recorder.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr double kStillInDeadlock = 1.0;  // s; programs that wait for each other wait for ever
+
+Nanoseconds nanoseconds(double time_s) { return Nanoseconds(std::llround(1e9 * time_s)); }
+
+class Simulation {
+ public:
+  Simulation(LoadedCell cell, const SimulationOptions& options)
+      : options_(options),
+        period_(nanoseconds(1.0 / cell.loop.rate_hz)),
+        motion_(OffLineGateway::kBegin, period_),
+        programs_(OffLineGateway::kBegin, motion_),
+        collisions_(OffLineGateway::kBegin, std::max(nanoseconds(options.collision_period_s), period_)),
+        gateway_(std::move(cell), observer()) {}
+
+  Result<SimulationResult> run(const SimulationProgress& progress) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::error_code error;
+    if (auto begun = gateway_.begin(options_.script, std::filesystem::exists(options_.script, error)); !begun)
+      return std::unexpected(begun.error());
+    go_on(progress);
+    result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  OffLineObserver observer() {
+    OffLineObserver observer;
+    observer.tick = [this](const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick) {
+      motion_.observe(picture, tick);
+      if (options_.collisions) collisions_.observe(picture, tick);
+    };
+    observer.move = [this](std::string_view robot, const motion::Move& move) { motion_.given(robot, move); };
+    observer.refused = [this](const Diagnostics& findings) { refused(findings); };
+    observer.program = [this](const program::ProgramEvent& event) {
+      programs_.hear(event);
+      last_event_s_ = gateway_.time_s();
+    };
+    return observer;
+  }
+
+  void refused(const Diagnostics& findings) {
+    for (const Diagnostic& diagnostic : findings.all()) {
+      if (result_.refusals.size() == kMostKeptRefusals) {
+        ++result_.more_refusals;
+        continue;
+      }
+      result_.refusals.push_back({gateway_.time_s(), diagnostic});
+    }
+  }
+
+  void go_on(const SimulationProgress& progress) {
+    double next_progress = 0;
+    for (;;) {
+      const bool worked = gateway_.work();
+      const double now = gateway_.time_s();
+      if (gateway_.owner().quiet()) return;
+      if (worked || gateway_.robots_move()) last_event_s_ = now;
+      if (stands_still(now - last_event_s_)) {
+        result_.end = SimulationEnd::stands_still;
+        return;
+      }
+      if (now >= options_.longest_s) {
+        result_.end = SimulationEnd::time_limit;
+        return;
+      }
+      if (progress && now >= next_progress) {
+        progress(now);
+        next_progress = now + 1.0;
+      }
+      gateway_.tick();
+    }
+  }
+
+  [[nodiscard]] bool stands_still(double for_s) const {
+    const bool deadlock = gateway_.owner().programs().controllers().deadlock().has_value();
+    return for_s > options_.still_s || (deadlock && for_s > kStillInDeadlock);
+  }
+
+  void finish() {
+    const double now = gateway_.time_s();
+    const OwnerPicture& picture = gateway_.picture();
+    result_.script = options_.script;
+    result_.simulated_s = now;
+    result_.tick_s = seconds(period_);
+    result_.ticks = gateway_.ticks();
+    result_.commands = picture.script.file.received;
+    const std::vector<program::ProgramStatus> status = gateway_.owner().programs().controllers().status();
+    programs_.finish(status, now, result_);
+    motion_.finish(result_);
+    collisions_.finish(result_.collision);
+    if (!options_.collisions) result_.collision.why_not = "--no-collisions";
+    if (result_.end == SimulationEnd::finished) return;
+    for (const program::ProgramStatus& program : status) {
+      if (program.waits_for.empty()) continue;
+      result_.end_note += fmt::format("{}{} of {} waits for {} at {}", result_.end_note.empty() ? "" : "; ",
+                                      program.name, program.robot, program.waits_for, program.step);
+    }
+  }
+
+  SimulationOptions options_;
+  Nanoseconds period_;
+  SimulationResult result_;
+  double last_event_s_ = 0;  // when anything happened, or moved
+  MotionRecorder motion_;
+  ProgramRecorder programs_;
+  CollisionWatch collisions_;
+  OffLineGateway gateway_;
+};
+
+}  // namespace
+
+bool SimulationResult::failed() const {
+  const bool program_failed =
+      std::ranges::any_of(programs, [](const SimulatedProgram& p) { return p.end == "failed"; });
+  return end != SimulationEnd::finished || !refusals.empty() || !deadlocks.empty() || program_failed;
+}
+
+Result<SimulationResult> simulate(LoadedCell cell, const SimulationOptions& options,
+                                  const SimulationProgress& progress) {
+  std::string name = cell.name;
+  const auto simulation = std::make_unique<Simulation>(std::move(cell), options);
+  auto result = simulation->run(progress);
+  if (result) result->cell = std::move(name);
+  return result;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,109 @@
+// cellmirror simulate: a script and its robot programs off line, faster than real time.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/simulation/simulation.hpp"
+#include "app/simulation/simulation_report.hpp"
+#include "app/subcommands/load_progress.hpp"
+#include "app/subcommands/subcommand.hpp"
+#include "config/command_line/command_line.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct SimulateOptions {
+  std::string cell;
+  SimulationOptions simulation;
+  bool no_collisions = false;
+  std::string plot;
+  bool json = false;
+};
+
+constexpr double kLongest = 1e6;         // s of simulated time
+constexpr double kLongestPeriod = 3600;  // s
+
+std::optional<LoadedCell> load(const std::string& file) {
+  Diagnostics diagnostics;
+  ProgressLine line("files loaded");
+  auto cell = load_cell(file, diagnostics, load_progress(line));
+  std::fputs(diagnostics.text().c_str(), stderr);
+  return cell;
+}
+
+// What a person has to know before the findings are trusted, in one sentence.
+std::string failure(const SimulationResult& result) {
+  std::size_t failed = 0;
+  for (const SimulatedProgram& run : result.programs) failed += run.end == "failed" ? 1 : 0;
+  return fmt::format("the simulation found faults: {} commands refused, {} programs failed, {} deadlocks; it ended: {}",
+                     result.refusals.size() + result.more_refusals, failed, result.deadlocks.size(),
+                     end_word(result.end));
+}
+
+int tell(const SimulateOptions& options, const SimulationResult& result) {
+  const std::string text = options.json ? simulation_json(result) : simulation_text(result);
+  std::fputs(text.c_str(), stdout);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return refuse(std::string("standard output cannot be written: ") + std::strerror(errno));
+  if (!options.plot.empty()) {
+    if (auto drawn = plot::write_png(simulation_figure(result), options.plot); !drawn)
+      return refuse(drawn.error().text());
+  }
+  return result.failed() ? refuse(failure(result)) : kExitDone;
+}
+
+int run(const SimulateOptions& options) {
+  auto cell = load(options.cell);
+  if (!cell) return kExitRefused;
+  SimulationOptions simulation = options.simulation;
+  simulation.collisions = !options.no_collisions;
+  Result<SimulationResult> result;
+  {
+    ProgressLine line("simulated seconds at most");
+    result = simulate(std::move(*cell), simulation, [&](double now_s) {
+      line.tell(static_cast<std::uint64_t>(now_s), static_cast<std::uint64_t>(std::ceil(simulation.longest_s)));
+    });
+  }
+  return result ? tell(options, *result) : refuse(result.error().text());
+}
+
+}  // namespace
+
+void add_simulate(cli::Command program, Action& action) {
+  auto options = std::make_shared<SimulateOptions>();
+  cli::Command sub =
+      program.subcommand("simulate", "Run a script and its robot programs off line, faster than real time");
+  sub.option("--cell", options->cell, "the cell file").required();
+  sub.option("--script", options->simulation.script, "the SCRIPT file: any path, or a name in the cell's scripts/")
+      .required();
+  auto off = sub.flag("--no-collisions", options->no_collisions, "do not test for collisions");
+  sub.option("--collision-period", options->simulation.collision_period_s,
+             "simulated seconds from one collision test to the next")
+      .between(1e-4, kLongestPeriod)
+      .show_default()
+      .excludes(off);
+  sub.option("--for", options->simulation.longest_s, "end it after so many simulated seconds")
+      .between(1e-3, kLongest)
+      .show_default();
+  sub.option("--still", options->simulation.still_s, "end it when nothing has happened for so many simulated seconds")
+      .between(1e-3, kLongest)
+      .show_default();
+  sub.option("--plot", options->plot, "draw programs, joints and distances over time: a PNG file");
+  sub.flag("--json", options->json, "one JSON document (docs/simulate.md)");
+  sub.footer(
+      "Collisions and limits are findings, no failure. The exit status is 1 where a command was refused, a program "
+      "failed,\n"
+      "programs wait for each other, or the script did not come to its end.\n"
+      "Example: cellmirror simulate --cell config/cells/transfer_cell/cell.toml --script trs_demo.spt --plot demo.png");
+  sub.when_named([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace cellmirror::app
