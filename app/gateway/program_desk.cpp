@@ -126,7 +126,7 @@ bool ProgramDesk::busy() const {
 
 Result<void> ProgramDesk::verdict(std::uint64_t since) const {
   if (const auto& deadlock = controllers_.deadlock())
-    return fail(deadlock->text(), "TF_STOP ends programs that wait, and lets the others go on");
+    return fail(deadlock->text(), "TF_STOP ends programs that wait");
   if (since >= failures_) return {};
   const std::uint64_t count = failures_ - since;
   if (count == 1) return fail(failed_.back());
@@ -188,7 +188,7 @@ void ProgramDesk::answer_awaiting() {
   std::erase_if(awaiting_, [&](const Awaiting& waiting) {
     const auto stuck = [&](const program::Deadlock::Waiting& program) { return program.robot == waiting.robot; };
     if (deadlock && std::ranges::any_of(deadlock->waiting, stuck)) {
-      waiting.activity->refuse({deadlock->text(), "TF_STOP ends programs that wait, and lets the others go on"});
+      waiting.activity->refuse({deadlock->text(), "TF_STOP ends programs that wait"});
       return true;
     }
     if (controllers_.busy(waiting.robot)) return false;

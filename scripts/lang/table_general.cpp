@@ -105,7 +105,8 @@ constexpr Form kForms[] = {
      .parameters = {},  // general_forms()
      .help = "sets the language in which robot programs loaded after it are parsed",
      .example = "ROBOT_LANGUAGE jet_tarm",
-     .definition = "the manual's four are dialects of ours, docs/robot-programs.md; those behind them are not the "
+     .definition = "irdata is the default, as in the manual; its four are dialects of ours, docs/robot-programs.md; "
+                   "those behind them are not the "
                    "manual's"},
     {.id = FormId::robact,
      .name = "ROBACT",

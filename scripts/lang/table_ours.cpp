@@ -225,7 +225,8 @@ constexpr Form kForms[] = {
      .parameters = kProgramRobot,
      .help = "holds the robot program that runs: the robot brakes on its path and waits there",
      .example = "TF_HOLD MANTEC_RM3",
-     .definition = "within the robot's accelerations; nothing of the program is carried out meanwhile, and no time limit runs",
+     .definition =
+         "within the robot's accelerations; nothing of the program is carried out meanwhile, and no time limit runs",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_resume,
@@ -245,7 +246,7 @@ constexpr Form kForms[] = {
      .parameters = kStep,
      .help = "lets a held robot program do one move, and holds it again",
      .example = "TF_STEP MANTEC_RM3 FORWARD",
-     .definition = "or what stands between two moves; BACKWARD for programs of check points only",
+     .definition = "what stands before that move is carried out too; BACKWARD for programs of check points only",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_stop,
@@ -255,7 +256,9 @@ constexpr Form kForms[] = {
      .parameters = kProgramRobot,
      .help = "ends the robot program that runs and forgets those that are queued behind it; the robot brakes",
      .example = "TF_STOP MANTEC_RM3",
-     .definition = "works at once, also on endless loops; STOP_ROB does the same where a program moves the robot",
+     .definition = "works at once, also on endless loops; refused where none runs; STOP_ROB does the same where a "
+                   "program moves the "
+                   "robot",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_wait,

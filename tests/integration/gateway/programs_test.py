@@ -312,22 +312,22 @@ TF_RUN hs3 {CRANE} exec_wait; TF_RUN r3demo {ARM}; TF_RUN hs1 {CRANE}; WAIT; hot
         self.assertEqual(self.messages()[-4:], ["a in", "a out", "b in", "b out"])
         self.assertEqual(self.status()["semaphores"]["TISCH"], 1)
 
-    def test_a_deadlock_is_reported_and_a_stop_frees_the_others(self):
-        self.load("left", ARM, "SEMAPHOR A1S = 1, B1S = 1", "BELEGE A1S", "WARTE 0.1", "BELEGE B1S", "FREI B1S", "FREI A1S")
-        self.load("right", PUMA, "SEMAPHOR A1S = 1, B1S = 1", "BELEGE B1S", "WARTE 0.1", "BELEGE A1S", "FREI A1S", "FREI B1S")
+    def test_a_deadlock_is_reported_until_its_programs_are_stopped(self):
+        self.load("left", ARM, "SEMAPHOR LINKS = 1", "SEMAPHOR RECHTS = 1", "BELEGE LINKS", "WARTE 0.1", "BELEGE RECHTS", "FREI RECHTS", "FREI LINKS")
+        self.load("right", PUMA, "SEMAPHOR LINKS = 1", "SEMAPHOR RECHTS = 1", "BELEGE RECHTS", "WARTE 0.1", "BELEGE LINKS", "FREI LINKS", "FREI RECHTS")
         errors = self.run_script("deadlock.spt", f"TF_RUN left {ARM}; TF_RUN right {PUMA}; WAIT; hot_message told;")
         self.assertEqual(len(errors), 1, errors)
         self.assertIn("deadlock", errors[0])
         deadlock = self.status()["deadlock"]
         waiting = {w["program"]: w for w in deadlock["waiting"]}
-        self.assertEqual(waiting["left"]["semaphore"], "B1S")
+        self.assertEqual(waiting["left"]["semaphore"], "RECHTS")
         self.assertEqual(waiting["left"]["releasers"], [f"{PUMA} right"])
-        self.assertEqual(waiting["right"]["semaphore"], "A1S")
+        self.assertEqual(waiting["right"]["semaphore"], "LINKS")
         self.assertEqual(self.state("left"), "waiting")
-        self.assertIn("semaphore B1S", self.program("left")["waits_for"])
+        self.assertIn("semaphore RECHTS", self.program("left")["waits_for"])
         self.refused(f"TF_WAIT {ARM}", "deadlock")
         self.assertIn("deadlock", self.scratch.cellmirror("status").stdout)
-        self.done(f"TF_STOP {ARM}")
+        self.done(f"TF_STOP {ARM}", f"TF_STOP {PUMA}")
         self.assertTrue(g.eventually(lambda: self.status()["deadlock"] is None))
 
     # Teach files.
