@@ -1,7 +1,6 @@
 #include "scripts/programs/irdata/cursor.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace cellmirror::program::irdata {
 
@@ -31,31 +30,12 @@ std::string_view Cursor::number(bool& whole) {
 void Cursor::skip_parameter(std::size_t begin) {
   at_ = begin;
   int depth = 0;
-  bool quoted = false;
   for (; at_ < line_.size(); ++at_) {
     const char c = line_[at_];
-    if (c == '\'') quoted = !quoted;
-    if (quoted) continue;
     if (c == '(' || c == '[') ++depth;
     if (c == ')' || c == ']') depth = std::max(depth - 1, 0);
     if (c == ',' && depth == 0) return;
   }
-}
-
-std::size_t find_comment(std::string_view line, std::size_t from) {
-  if (from >= line.size()) return std::string_view::npos;
-  const char* begin = line.data() + from;
-  const std::size_t size = line.size() - from;
-  const void* semicolon = std::memchr(begin, ';', size);
-  if (semicolon == nullptr) return std::string_view::npos;
-  if (std::memchr(begin, '\'', size) == nullptr)
-    return static_cast<std::size_t>(static_cast<const char*>(semicolon) - line.data());
-  bool quoted = false;
-  for (std::size_t at = from; at < line.size(); ++at) {
-    if (line[at] == '\'') quoted = !quoted;
-    if (line[at] == ';' && !quoted) return at;
-  }
-  return std::string_view::npos;
 }
 
 }  // namespace cellmirror::program::irdata

@@ -49,15 +49,12 @@ class Cursor {
   [[nodiscard]] std::string_view rest() const { return line_.substr(at_ < line_.size() ? at_ : line_.size()); }
   // Cuts off what is a comment.
   void end_at(std::size_t end) { line_ = line_.substr(0, end); }
-  // To the comma in front of the next parameter, from the begin of one; brackets and quotation marks are observed.
+  // To the comma in front of the next parameter, from the begin of one; commas within brackets are passed over.
   void skip_parameter(std::size_t begin);
 
  private:
   std::string_view line_;
   std::size_t at_ = 0;
 };
-
-// Where the comment of a line begins (its ';'), outside of quotation marks; npos: none.
-[[nodiscard]] std::size_t find_comment(std::string_view line, std::size_t from);
 
 }  // namespace cellmirror::program::irdata

@@ -72,7 +72,7 @@ void Translator::execute_record() {
     return;
   }
   const std::string_view whole = cursor_.line();
-  const std::size_t comment = find_comment(whole, cursor_.at());
+  const std::size_t comment = whole.find(';', cursor_.at());
   if (comment != std::string_view::npos) cursor_.end_at(comment);
   incomplete_ = false;
   parameter_begin_ = cursor_.at();

@@ -1,6 +1,8 @@
 // Inputs and outputs, waiting, semaphores.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "rt_core/base/text.hpp"
 #include "scripts/programs/irdata/translator.hpp"
 
@@ -139,7 +141,9 @@ void Translator::semaphore_record() {
     std::string remedy = "declare it in the header section with 'SEMAPHORE, name, first count'";
     if (findings_.may_suggest()) {
       std::vector<std::string> names;
-      for (const auto& [known, line] : semaphores_) names.emplace_back(known);
+      for (const auto& [known, line] : semaphores_)
+        if (names.size() < kMostSemaphores) names.emplace_back(known);
+      std::ranges::sort(names);
       const std::string near = did_you_mean(name, names);
       if (!near.empty()) remedy = near + " Or " + remedy;
     }
