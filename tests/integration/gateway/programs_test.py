@@ -7,6 +7,7 @@ import unittest
 import gateway as g
 
 ARM, PUMA, CRANE = "MANTEC_R3", "PUMA_762", "ZELLENKRAN"
+SPARE, SPARE_NODE = "mantec_R3a", "Mantec_4"  # a robot that no other test needs
 HOME = "STELLUNG(0, 40, 80, 0, 30, 0)"
 
 
@@ -174,10 +175,14 @@ TF_RUN hs3 {CRANE} exec_wait; TF_RUN r3demo {ARM}; TF_RUN hs1 {CRANE}; WAIT; hot
 
     def test_the_delay_of_the_robot_goes_before_its_program(self):
         self.load("late", ARM, "WARTE 0.1")
-        self.done(f"ROBACT {ARM}", "rob_program_delays 0.5", f"TF_RUN late {ARM}")
+        self.done(f"ROBACT {ARM}", "rob_program_delays 30", f"TF_RUN late {ARM}")
         try:
             self.assertEqual(self.state("late"), "delayed")
-            self.done(f"TF_WAIT {ARM}")
+            self.done(f"TF_STOP {ARM}", "rob_program_delays 0.5")
+            self.wait_state("late", "stopped")
+            start = time.monotonic()
+            self.done(f"TF_RUN late {ARM}", f"TF_WAIT {ARM}")
+            self.assertGreater(time.monotonic() - start, 0.6)
         finally:
             self.done("rob_program_delays 0")
         self.assertEqual(self.state("late"), "ended")
@@ -201,6 +206,24 @@ TF_RUN hs3 {CRANE} exec_wait; TF_RUN r3demo {ARM}; TF_RUN hs1 {CRANE}; WAIT; hot
         self.load("waits", ARM, ";% WAIT")
         self.done(f"TF_RUN waits {ARM}")
         self.refused(f"TF_WAIT {ARM}", "waits.src:1", "cannot wait for programs")
+
+    def test_a_program_may_start_and_stop_programs_and_scripts_and_even_delete_its_own_robot(self):
+        (self.scripts / "beside.spt").write_text("hot_message beside")
+        self.load("other", PUMA, ";% hot_message other")
+        self.load("starts", ARM, f";% TF_RUN other {PUMA}", ";% EXEC_SCRIPT beside", f";% TF_STOP {ARM}",
+                  ";% hot_message never again")
+        self.done(f"TF_RUN starts {ARM}")
+        self.wait_state("starts", "stopped")
+        self.assertTrue(g.eventually(lambda: {"other", "beside"} <= set(self.messages())), self.messages())
+        self.assertNotIn("never again", self.messages())
+        self.load("deletes", ARM, f";% TF_DELETE deletes {ARM}")
+        self.done(f"TF_RUN deletes {ARM}")
+        self.refused(f"TF_WAIT {ARM}", "deletes.src:1")
+        self.load("last", SPARE, f";% DELETE_NODE {SPARE_NODE}", ";% hot_message never again")
+        self.done(f"TF_RUN last {SPARE}")
+        self.assertTrue(g.eventually(lambda: not any(p["robot"] == SPARE for p in self.programs())))
+        self.assertNotIn("never again", self.messages())
+        self.refused(f"TF_LOAD last {SPARE}", SPARE)
 
     # Failures.
 
