@@ -32,6 +32,7 @@ void require(bool holds) {
 void execute(const std::shared_ptr<const Program>& program) {
   constexpr int kCommands = 200;
   constexpr std::size_t kBudget = 200;
+  constexpr int kTurns = 5;  // of an endless loop
   constexpr std::array kJoints = {JointKind::revolute,  JointKind::revolute, JointKind::revolute,
                                   JointKind::prismatic, JointKind::revolute, JointKind::revolute};
   Diagnostics unfit;
@@ -39,10 +40,14 @@ void execute(const std::shared_ptr<const Program>& program) {
   if (!unfit.ok()) return;
   const StillWorld world;
   Machine machine(program, kJoints);
-  for (int i = 0; i < kCommands; ++i) {
+  int turns = 0;
+  for (int i = 0; i < kCommands && turns < kTurns; ++i) {
     const Machine::Step step = machine.next(world, kBudget);
     if (step == Machine::Step::ended || step == Machine::Step::failed) return;
-    if (step == Machine::Step::spent) continue;
+    if (step == Machine::Step::spent) {
+      ++turns;
+      continue;
+    }
     static_cast<void>(trace_line(*program, machine.command()));
     if (std::holds_alternative<WaitCommand>(machine.command().what) && !machine.holds(world)) machine.time_out();
   }
