@@ -372,6 +372,29 @@ TF_RUN hs3 {CRANE} exec_wait; TF_RUN r3demo {ARM}; TF_RUN hs1 {CRANE}; WAIT; hot
         self.done(f"TF_RUN taught {ARM}", f"TF_WAIT {ARM}")
         self.assertAlmostEqual(self.joints(ARM)[1], math.radians(50), delta=1e-6)
 
+    def test_a_mirrored_robot_is_recorded_and_its_simulation_repeats_the_way(self):
+        names = ",".join(f"puma_762_joint_{i}" for i in range(1, 7))
+        simulator = g.sim_robot("dds", "--joint-names", names, "--rate", "100", "--motion", "sine:amplitude=0.2,period=4")
+        try:
+            self.done(f"ROBOT {PUMA} online", f"TF_RECORD led {PUMA} START")
+            fresh = g.eventually(lambda: self.scratch.robot(PUMA)["stream"]["state"] == "fresh", 20)
+            self.assertTrue(fresh, self.scratch.robot(PUMA)["stream"])
+            for name in ("first", "second", "third"):
+                self.done(f"TF_RECORD led {PUMA} POINT {name}")
+                time.sleep(0.4)
+            self.done(f"TF_RECORD led {PUMA} STOP", f"ROBOT {PUMA} offline")
+        finally:
+            simulator.close()
+            self.scratch.send(f"ROBOT {PUMA} offline")
+        text = (self.folder / "led.boom").read_text()
+        for name in ("first", "second", "third"):
+            self.assertIn(f"POINT {name}", text)
+        end = self.joints(PUMA)
+        self.done("ROBOT_LANGUAGE jet_boom", f"TF_LOAD led {PUMA}", f"TF_BACK led {PUMA}", f"TF_WAIT {PUMA}",
+                  f"TF_RUN led {PUMA}", f"TF_WAIT {PUMA}")
+        for repeated, taught in zip(self.joints(PUMA), end):
+            self.assertAlmostEqual(repeated, taught, delta=0.1)
+
 
 if __name__ == "__main__":
     g.main()
