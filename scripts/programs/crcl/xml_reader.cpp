@@ -28,6 +28,8 @@ class Reader {
       return;
     }
     parser_ = parser.get();
+    text_ = text;
+    line_end_ = text.find('\n');
     XML_SetUserData(parser_, this);
     XML_SetElementHandler(parser_, &Reader::on_start, &Reader::on_end);
     XML_SetCharacterDataHandler(parser_, &Reader::on_text);
@@ -50,13 +52,21 @@ class Reader {
     } while (!text.empty() && !stopped_);
   }
 
-  [[nodiscard]] std::uint32_t line() const { return static_cast<std::uint32_t>(XML_GetCurrentLineNumber(parser_)); }
-  [[nodiscard]] std::uint32_t column() const {
-    return static_cast<std::uint32_t>(XML_GetCurrentColumnNumber(parser_)) + 1;
+  // Where the parser is. expat would look at every byte once more for it; counting ends of lines is faster.
+  void find_place() {
+    const XML_Index index = XML_GetCurrentByteIndex(parser_);
+    const std::size_t here = index < 0 ? 0 : std::min(static_cast<std::size_t>(index), text_.size());
+    while (line_end_ < here) {
+      ++line_;
+      line_begin_ = line_end_ + 1;
+      line_end_ = text_.find('\n', line_begin_);
+    }
+    column_ = here < line_begin_ ? 1 : static_cast<std::uint32_t>(here - line_begin_) + 1;
   }
 
   void fail(std::string_view what) {
-    diagnostics_.error({.file = file_, .line = static_cast<int>(line()), .column = static_cast<int>(column())},
+    find_place();
+    diagnostics_.error({.file = file_, .line = static_cast<int>(line_), .column = static_cast<int>(column_)},
                        fmt::format("the XML cannot be read: {}", what));
     stop();
   }
@@ -83,17 +93,18 @@ class Reader {
     for (; attributes[0] != nullptr; attributes += 2) {
       if (without_prefix(attributes[0]) == "type") type = without_prefix(attributes[1]);
     }
+    find_place();
     if (depth_ == 1) {
       XmlNode root;
       root.name = without_prefix(name);
-      root.line = line();
-      root.column = column();
+      root.line = line_;
+      root.column = column_;
       if (!visitor_.root(root)) stop();
       return;
     }
     if (depth_ == 2) tree_.clear();
     if (tree_.size() >= kMostNodes) return fail(fmt::format("an element with more than {} in it", kMostNodes));
-    tree_.open(without_prefix(name), type, line(), column());
+    tree_.open(without_prefix(name), type, line_, column_);
   }
   void end() {
     if (stopped_) return;
@@ -114,6 +125,11 @@ class Reader {
   const XmlVisitor& visitor_;
   Diagnostics& diagnostics_;
   XML_Parser parser_ = nullptr;
+  std::string_view text_;
+  std::size_t line_begin_ = 0;
+  std::size_t line_end_ = 0;  // npos: the last line
+  std::uint32_t line_ = 1;
+  std::uint32_t column_ = 1;
   XmlTree tree_;
   int depth_ = 0;
   bool stopped_ = false;
