@@ -52,7 +52,7 @@ bool ProgramRun::collect() {
                           ? Error{fmt::format("{} could not go on with this move", robot_),
                                   "look for limits and singular postures on its way"}
                           : Error{fmt::format("another command has ended this move of {}", robot_), {}};
-    fail_now(error_text(moving_.front().statement, why));
+    fail_now(error_text(moving_.front().statement, why), moving_.front().statement);
     return true;
   }
   while (!moving_.empty() && moving_.front().ticket <= progress.finished) {
@@ -116,7 +116,7 @@ bool ProgramRun::look_at_activities() {
     const auto& [activity, statement] = activities_.front();
     if (activity->state() == Activity::State::running) return any;
     if (activity->state() == Activity::State::refused) {
-      fail_now(error_text(statement, activity->error()));
+      fail_now(error_text(statement, activity->error()), statement);
       return true;
     }
     activities_.pop_front();
@@ -164,6 +164,8 @@ bool ProgramRun::fetch() {
       if (!dropped(machine_.command())) pending_ = machine_.command();
       return true;
     case Machine::Step::spent:
+      // Where it computes: an endless loop is to be found.
+      if (machine_.position() < loaded_->program->statements.size()) newest_ = machine_.position();
       return true;
     case Machine::Step::ended:
       // Stepped back to where it began: there it stays, to be stepped or resumed.
@@ -174,29 +176,46 @@ bool ProgramRun::fetch() {
       closing_ = Closing{};
       return true;
     case Machine::Step::failed:
-      closing_ = Closing{End::failed, machine_.error().text()};
+      closing_ = Closing{End::failed, machine_.error().text(), failed_statement()};
       return true;
   }
   return false;
+}
+
+// The machine stands at it or behind it.
+std::optional<StatementId> ProgramRun::failed_statement() const {
+  const Program& program = *loaded_->program;
+  for (const StatementId back : {0U, 1U}) {
+    if (machine_.position() < back || machine_.position() - back >= program.statements.size()) continue;
+    const StatementId candidate = machine_.position() - back;
+    if (program.place(candidate).line == machine_.error().place.line) return candidate;
+  }
+  return newest_;
 }
 
 bool ProgramRun::close() {
   if (!rested()) return false;
   const Closing closing = std::move(*closing_);
   loaded_->error = closing.why;
+  if (closing.at) newest_ = closing.at;
   finish(closing.end, due_);
   return true;
 }
 
 void ProgramRun::fail_behind(StatementId statement, const Error& why) {
-  if (!closing_) closing_ = Closing{End::failed, error_text(statement, why)};
+  if (!closing_) closing_ = Closing{End::failed, error_text(statement, why), statement};
 }
 
-void ProgramRun::fail_now(std::string why) {
+void ProgramRun::fail_now(std::string why, std::optional<StatementId> at) {
   if (end_ != End::none) return;
   loaded_->error = std::move(why);
   // A refusal to brake leaves nothing that could be done beside: the program ends for the reason that it has.
   if (!moving_.empty()) static_cast<void>(context_.motion.stop(robot_));
+  if (at) {
+    moving_.clear();
+    waiting_.reset();
+    newest_ = at;
+  }
   finish(End::failed, std::max(due_, context_.clock.now()));
 }
 

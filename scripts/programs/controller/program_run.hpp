@@ -44,7 +44,8 @@ class ProgramRun final : private ProgramWorld {
   Result<void> step(Direction direction);
   // The robot brakes; what the program wanted is forgotten.
   void stop();
-  void fail_now(std::string why);
+  // At once. `at`: what is wrong there; none: it is not the program's.
+  void fail_now(std::string why, std::optional<StatementId> at = {});
 
   // The semaphore for which it waits and could take now; empty: none.
   [[nodiscard]] std::string_view wanted_semaphore() const { return held_ ? std::string_view{} : semaphore_; }
@@ -89,6 +90,7 @@ class ProgramRun final : private ProgramWorld {
   struct Closing {
     End end = End::ended;
     std::string why;
+    std::optional<StatementId> at;
   };
   // Held, and asked to go on: first the robot has to stand.
   struct Request {
@@ -119,6 +121,7 @@ class ProgramRun final : private ProgramWorld {
   void tell(ProgramEvent::Kind kind, Timestamp when, std::string text = {}, std::uint32_t ticket = 0);
   void tell_command(ProgramEvent::Kind kind, Timestamp when, const CanonicalCommand& command, std::uint32_t ticket = 0);
   [[nodiscard]] std::optional<StatementId> statement() const;
+  [[nodiscard]] std::optional<StatementId> failed_statement() const;
 
   // program_run_commands.cpp
   bool carry_out();

@@ -66,7 +66,7 @@ ProgramRun::Done ProgramRun::begin_to(const ToolCommand& tool, const CanonicalCo
   tell_command(ProgramEvent::Kind::command, due_, command);
   tool_set_ = true;
   if (auto set = context_.motion.set_tool(robot_, tool.X_PT); !set) {
-    fail_now(error_text(command.statement, set.error()));
+    fail_now(error_text(command.statement, set.error()), command.statement);
     return Done::yes;
   }
   tell_command(ProgramEvent::Kind::done, due_, command);
@@ -135,7 +135,7 @@ void ProgramRun::execute(const CanonicalCommand& command, Timestamp when) {
   if (const auto* script = std::get_if<ScriptCommand>(&command.what)) done = execute(*script, command.statement, when);
   if (end_ != End::none) return;  // the command has stopped its own program
   if (!done) {
-    fail_now(error_text(command.statement, done.error()));
+    fail_now(error_text(command.statement, done.error()), command.statement);
     return;
   }
   tell_command(ProgramEvent::Kind::done, when, command);
