@@ -43,7 +43,7 @@ struct Bar {
   double begin = 0;
   double end = 0;
   std::size_t colour = 0;  // as the lines of a panel are coloured, by number
-  std::string label;       // shown where it fits into the bar
+  std::string label = {};  // shown where it fits into the bar
   double top = 0.1;
   double bottom = 0.9;
 };

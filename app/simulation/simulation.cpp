@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <utility>
 
@@ -21,6 +22,13 @@ constexpr double kStillInDeadlock = 1.0;  // s; programs that wait for each othe
 
 Nanoseconds nanoseconds(double time_s) { return Nanoseconds(std::llround(1e9 * time_s)); }
 
+// Of this thread.
+double processor_time_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 class Simulation {
  public:
   Simulation(LoadedCell cell, const SimulationOptions& options)
@@ -33,11 +41,13 @@ class Simulation {
 
   Result<SimulationResult> run(const SimulationProgress& progress) {
     const auto begin = std::chrono::steady_clock::now();
+    const double processor_begin_s = processor_time_s();
     std::error_code error;
     if (auto begun = gateway_.begin(options_.script, std::filesystem::exists(options_.script, error)); !begun)
       return std::unexpected(begun.error());
     go_on(progress);
     result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result_.processor_s = processor_time_s() - processor_begin_s;
     finish();
     return std::move(result_);
   }
@@ -48,6 +58,7 @@ class Simulation {
     observer.tick = [this](const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick) {
       motion_.observe(picture, tick);
       if (options_.collisions) collisions_.observe(picture, tick);
+      if (picture->display != display_) read_messages(picture->display);
     };
     observer.move = [this](std::string_view robot, const motion::Move& move) { motion_.given(robot, move); };
     observer.refused = [this](const Diagnostics& findings) { refused(findings); };
@@ -56,6 +67,19 @@ class Simulation {
       last_event_s_ = gateway_.time_s();
     };
     return observer;
+  }
+
+  void read_messages(const std::shared_ptr<const DisplayState>& display) {
+    display_ = display;
+    for (const ShownText& message : display->messages) {
+      if (message.number <= last_message_) continue;
+      last_message_ = message.number;
+      if (result_.messages.size() == kMostKeptMessages) {
+        ++result_.more_messages;
+        continue;
+      }
+      result_.messages.push_back({seconds(message.time - OffLineGateway::kBegin), message.text});
+    }
   }
 
   void refused(const Diagnostics& findings) {
@@ -120,6 +144,8 @@ class Simulation {
   SimulationOptions options_;
   Nanoseconds period_;
   SimulationResult result_;
+  std::shared_ptr<const DisplayState> display_;
+  std::uint64_t last_message_ = 0;
   double last_event_s_ = 0;  // when anything happened, or moved
   MotionRecorder motion_;
   ProgramRecorder programs_;

@@ -14,9 +14,9 @@ namespace cellmirror::app {
 struct SimulationOptions {
   std::string script;  // any path, or the name of a file of the home's scripts/
   bool collisions = true;
-  double collision_period_s = 0.02;  // of simulated time
-  double longest_s = 3600;           // simulated time; then it is ended
-  double still_s = 60;               // ended when nothing has happened for so long
+  double collision_period_s = 0.001;  // of simulated time; at least a tick
+  double longest_s = 3600;            // simulated time; then it is ended
+  double still_s = 60;                // ended when nothing has happened for so long
 };
 
 // Called about once a simulated second.

@@ -92,6 +92,13 @@ json events_json(const SimulationResult& result) {
   return list;
 }
 
+json messages_json(const SimulationResult& result) {
+  json list = json::array();
+  for (const SimulatedMessage& message : result.messages)
+    list.push_back({{"time_s", message.time_s}, {"text", message.text}});
+  return list;
+}
+
 json collisions_json(const CollisionSummary& found) {
   json list = json::array();
   for (const SimulatedCollision& c : found.collisions) {
@@ -141,6 +148,7 @@ std::string simulation_json(const SimulationResult& result) {
                          {"failed", result.failed()},
                          {"simulated_s", result.simulated_s},
                          {"wall_s", result.wall_s},
+                         {"processor_s", result.processor_s},
                          {"times_real_time", result.times_real_time()},
                          {"tick_s", result.tick_s},
                          {"ticks", result.ticks},
@@ -153,6 +161,8 @@ std::string simulation_json(const SimulationResult& result) {
                          {"events_not_listed", result.more_events},
                          {"robots", robots_json(result)},
                          {"deadlocks", result.deadlocks},
+                         {"messages", messages_json(result)},
+                         {"messages_not_listed", result.more_messages},
                          {"refused", refusals_json(result)},
                          {"refused_not_listed", result.more_refusals},
                          {"collision", collisions_json(result.collision)}};

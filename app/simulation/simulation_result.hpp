@@ -18,6 +18,7 @@ inline constexpr std::size_t kMostKeptMoves = 100'000;
 inline constexpr std::size_t kMostKeptCollisions = 10'000;
 inline constexpr std::size_t kMostKeptRefusals = 1'000;
 inline constexpr std::size_t kMostKeptRuns = 10'000;
+inline constexpr std::size_t kMostKeptMessages = 1'000;
 inline constexpr std::size_t kMostKeptEvents = 200'000;
 
 // From here on a value counts as having approached its limit.
@@ -107,6 +108,12 @@ struct Refusal {
   Diagnostic diagnostic;
 };
 
+// HOT_MESSAGE.
+struct SimulatedMessage {
+  double time_s = 0;
+  std::string text;
+};
+
 struct CollisionSummary {
   bool tested = false;
   std::string why_not;
@@ -139,6 +146,7 @@ struct SimulationResult {
   std::string end_note;  // who waits for what
   double simulated_s = 0;
   double wall_s = 0;
+  double processor_s = 0;  // of the same, without what else the machine did
   double tick_s = 0;
   std::uint64_t ticks = 0;
   std::uint64_t commands = 0;  // of SCRIPT files
@@ -153,6 +161,8 @@ struct SimulationResult {
   std::vector<Refusal> refusals;
   std::uint64_t more_refusals = 0;
   std::vector<std::string> deadlocks;
+  std::vector<SimulatedMessage> messages;
+  std::uint64_t more_messages = 0;
   CollisionSummary collision;
 
   [[nodiscard]] double times_real_time() const { return wall_s > 0.0 ? simulated_s / wall_s : 0.0; }

@@ -18,6 +18,7 @@ constexpr std::size_t kListedMoves = 20;       // the longest
 constexpr std::size_t kListedCollisions = 30;  // the first
 constexpr std::size_t kListedRefusals = 30;
 constexpr std::size_t kListedLimits = 40;
+constexpr std::size_t kListedMessages = 30;
 constexpr std::size_t kLongestText = 400;
 
 struct Unit {
@@ -57,6 +58,16 @@ std::string programs(const SimulationResult& result) {
     text += '\n';
   }
   return text;
+}
+
+std::string messages(const SimulationResult& result) {
+  if (result.messages.empty()) return {};
+  std::string text = "\nmessages\n";
+  const std::size_t shown = std::min(result.messages.size(), kListedMessages);
+  for (std::size_t i = 0; i < shown; ++i)
+    text +=
+        fmt::format("  {:9.3f} s  {}\n", result.messages[i].time_s, printable(result.messages[i].text, kLongestText));
+  return text + more(result.messages.size() - shown + result.more_messages);
 }
 
 std::string robots(const SimulationResult& result) {
@@ -175,8 +186,8 @@ const char* end_word(SimulationEnd end) {
 }
 
 std::string simulation_text(const SimulationResult& result) {
-  return heading(result) + programs(result) + robots(result) + moves(result) + limits(result) + collisions(result) +
-         refusals(result);
+  return heading(result) + programs(result) + messages(result) + robots(result) + moves(result) + limits(result) +
+         collisions(result) + refusals(result);
 }
 
 }  // namespace cellmirror::app

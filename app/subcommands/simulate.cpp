@@ -15,6 +15,7 @@
 #include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
 
@@ -65,6 +66,7 @@ int run(const SimulateOptions& options) {
   if (!cell) return kExitRefused;
   SimulationOptions simulation = options.simulation;
   simulation.collisions = !options.no_collisions;
+  set_log_level(LogLevel::error);  // messages and refusals are in the result, with their times
   Result<SimulationResult> result;
   {
     ProgressLine line("simulated seconds at most");

@@ -2,8 +2,8 @@
 
     tests/bench/simulate/simulate_bench.py [--bin build/bin] [SCRIPT ...]
 
-Each script runs three times; the fastest one counts, since whatever else the machine does only slows it down. Exit status 1
-where a figure of the demo is below what is asked for: 100 times real time without collision tests, 10 times with them.
+Each script runs three times; the fastest one counts. Processor time is judged, since the machine may do other things beside it, and
+the time by the wall's clock is shown. Exit status 1 where a figure of the demo is below what is asked for: 100 times real time without collision tests, 10 times with them.
 """
 
 import argparse
@@ -14,7 +14,7 @@ import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
 CELL = SOURCE / "config/cells/transfer_cell/cell.toml"
-DEMO = "trsys_demo.spt"
+DEMO = "programs_demo.spt"  # trsys_demo.spt of the manual, then programs of five robots beside each other
 ASKED = {True: 10.0, False: 100.0}
 ROUNDS = 3
 
@@ -36,13 +36,14 @@ def main():
     for script in arguments.scripts:
         for collisions in (False, True):
             rounds = [simulate(arguments.bin / "cellmirror", script, collisions) for _ in range(ROUNDS)]
-            best = max(rounds, key=lambda found: found["times_real_time"])
+            best = min(rounds, key=lambda found: found["processor_s"])
+            times = best["simulated_s"] / best["processor_s"]
             tests = best["collision"]["tests"]
             how = f"{tests} collision tests, every {1e3 * best['collision']['period_s']:g} ms" if collisions else "no collision tests"
-            per_tick_us = 1e6 * best["wall_s"] / best["ticks"]
-            print(f"{script}: {best['simulated_s']:.3f} s in {best['wall_s']:.4f} s, {best['times_real_time']:.0f} times real time, "
-                  f"{per_tick_us:.1f} us a tick; {how}")
-            bad = bad or (script == DEMO and best["times_real_time"] < ASKED[collisions])
+            per_tick_us = 1e6 * best["processor_s"] / best["ticks"]
+            print(f"{script}: {best['simulated_s']:.3f} s in {best['processor_s']:.4f} s of processor time: {times:.0f} times real "
+                  f"time, {per_tick_us:.1f} us a tick; by the wall's clock {best['times_real_time']:.0f} times; {how}")
+            bad = bad or (script == DEMO and times < ASKED[collisions])
     return 1 if bad else 0
 
 

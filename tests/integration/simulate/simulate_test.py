@@ -1,0 +1,159 @@
+"""cellmirror simulate: closed forms on a small cell, and what has to hold on the transfer cell."""
+
+import json
+import unittest
+
+import gateway as g
+import small_cell as s
+
+TICK = 0.001
+# The slide: 1 m/s, 4 m/s2, linear ramps. A way of d > 0.25 m takes d + 0.25 s.
+SET_UP = """ROBACT S1;
+rob_vel_profile ramp;
+rob_jnt_act_vel 1000 1;
+rob_jnt_act_acc 4000 4;
+"""
+
+
+class Simulation(unittest.TestCase):
+    def setUp(self):
+        self.home = s.Home()
+        (self.home.root / "scripts").mkdir()
+
+    def tearDown(self):
+        self.home.close()
+
+    def script(self, text, name="test.spt"):
+        path = self.home.root / "scripts" / name
+        path.write_text(text)
+        return path
+
+    def simulate(self, text, *options, status=0):
+        done = s.program("simulate", "--cell", self.home.cell, "--script", self.script(text), "--json", *options)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return json.loads(done.stdout)
+
+
+class Durations(Simulation):
+    def test_a_ptp_move_takes_what_its_profile_says(self):
+        found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 1000")
+        self.assertEqual(found["end"], "finished")
+        (move,) = found["moves"]
+        self.assertEqual((move["robot"], move["kind"], move["outcome"]), ("S1", "joints", "arrived"))
+        self.assertAlmostEqual(move["duration_s"], 1.25, delta=1.5 * TICK)
+
+    def test_a_script_waits_for_its_moves_and_nothing_is_lost_between_queued_ones(self):
+        found = self.simulate(SET_UP + "MOVE_ROB S1 PTP JOINT_ABS 500;\nMOVE_ROB S1 PTP JOINT_ABS 0;\nWAIT;\n"
+                              "POS_ROB S1 JOINT_ABS 500")
+        first, second, third = found["moves"]
+        self.assertAlmostEqual(first["duration_s"], 0.75, delta=1.5 * TICK)
+        self.assertAlmostEqual(second["begin_s"], first["end_s"], delta=1.5 * TICK)
+        self.assertLess(abs(third["begin_s"] - second["end_s"]), 3 * TICK)
+        self.assertAlmostEqual(found["simulated_s"], 3 * 0.75, delta=10 * TICK)
+
+    def test_the_same_script_gives_the_same_answer_again(self):
+        def once():
+            found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 1900 30;\nPOS_ROB S1 JOINT_ABS 0 0")
+            for key in ("wall_s", "processor_s", "times_real_time"):
+                del found[key]
+            del found["collision"]["wall_s"]
+            return found
+        self.assertEqual(once(), once())
+
+    def test_a_command_that_recalculates_the_cell_does_not_wait_for_a_tick_that_never_comes(self):
+        found = self.simulate(SET_UP + "DRAW_SCENE;\nPOS_ROB S1 JOINT_ABS 100;\nDRAW_SCENE")
+        self.assertEqual(found["script_commands"], 7)
+        self.assertEqual(found["refused"], [])
+
+
+class Findings(Simulation):
+    # The arm reaches 0.25 m before the slide, the wall stands at 2 m: they touch at 1.75 m, 1.875 s after the beginning.
+    def test_a_collision_has_a_time_a_pair_and_an_end(self):
+        found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 1850;\nPOS_ROB S1 JOINT_ABS 1000", "--collision-period",
+                              "0.005")["collision"]
+        self.assertTrue(found["tested"])
+        self.assertEqual(found["period_s"], 0.005)
+        (touch,) = found["collisions"]
+        self.assertEqual({touch["a"], touch["b"]}, {"Wall", "Robot.Slide.Turn.Arm"})
+        self.assertGreater(touch["time_s"], 1.875 - 3 * TICK)
+        self.assertLess(touch["time_s"], 1.875 + 0.005 + 3 * TICK)
+        self.assertGreater(touch["parted_s"], touch["time_s"])
+        self.assertAlmostEqual(touch["depth_m"], 0.1, delta=0.01)  # depths of lasting touches are computed now and then
+        self.assertEqual(found["min_distance"]["distance_m"], 0)
+
+    def test_collisions_can_be_left_out(self):
+        found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 1850", "--no-collisions")["collision"]
+        self.assertFalse(found["tested"])
+        self.assertEqual((found["tests"], found["collisions"], found["why_not"]), (0, [], "--no-collisions"))
+
+    def test_set_collpar_switches_them_off(self):
+        found = self.simulate("SET_COLLPAR active 0;\n" + SET_UP + "POS_ROB S1 JOINT_ABS 1850")["collision"]
+        self.assertEqual(found["collisions"], [])
+
+    def test_limits_that_are_approached(self):
+        robot = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS -990", "--no-collisions")["robots"][0]
+        slide, turn = robot["joints"]
+        self.assertTrue(slide["range_approached"])
+        self.assertFalse(slide["range_violated"])
+        self.assertAlmostEqual(slide["nearest_limit"]["position_m"], -0.99, delta=1e-9)
+        self.assertEqual(slide["nearest_limit"]["limit_m"], -1)
+        self.assertTrue(slide["velocity_approached"])
+        self.assertFalse(slide["velocity_violated"])
+        self.assertAlmostEqual(abs(slide["peak_velocity_m_s"]), 1, delta=1e-6)
+        self.assertFalse(turn["moved"] or turn["range_approached"] or turn["velocity_approached"])
+
+    def test_what_is_refused_has_a_time_and_a_place(self):
+        found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 500;\nPOS_ROB S1 JOINT_ABS 5000", status=1)
+        (refused,) = found["refused"]
+        self.assertEqual(refused["line"], 6)
+        self.assertAlmostEqual(refused["time_s"], 0.75, delta=5 * TICK)
+        self.assertIn("limit", refused["message"])
+        self.assertTrue(found["failed"])
+
+    def test_robots_cannot_be_mirrored_and_memories_are_not_made(self):
+        found = self.simulate("ROBOT S1 online;\nROBACT S1;\nrob_ela_shm 0 4711 512;\nbin_ela_shm 0 4712 64", status=1)
+        self.assertEqual([r["line"] for r in found["refused"]], [1])
+        self.assertIn("off line", found["refused"][0]["message"])
+
+
+class Ends(Simulation):
+    def test_a_time_limit(self):
+        found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 2900", "--for", "0.5", "--no-collisions", status=1)
+        self.assertEqual(found["end"], "time limit")
+        self.assertAlmostEqual(found["simulated_s"], 0.5, delta=2 * TICK)
+        self.assertEqual(found["moves"][0]["outcome"], "under way")
+
+    def test_scripts_with_faults_are_refused_and_nothing_of_them_runs(self):
+        done = s.program("simulate", "--cell", self.home.cell, "--script", self.script("POS_ROB S1 JOINT_ABS x;\nNONSENSE"))
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stdout, "")
+        for words in ("has 2 errors", "test.spt:1:", "cellmirror check"):
+            self.assertIn(words, done.stderr)
+
+    def test_missing_files_and_wrong_usage(self):
+        self.assertEqual(s.program("simulate", "--cell", self.home.cell, "--script", "no.spt").returncode, 1)
+        self.assertEqual(s.program("simulate", "--cell", "no.toml", "--script", "no.spt").returncode, 1)
+        self.assertEqual(s.program("simulate", "--cell", self.home.cell).returncode, 2)
+
+    def test_a_picture_and_a_text(self):
+        picture = self.home.root / "chart.png"
+        done = s.program("simulate", "--cell", self.home.cell, "--script", self.script(SET_UP + "POS_ROB S1 JOINT_ABS 1850"),
+                         "--plot", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
+        for words in ("times real time", "robots that moved", "S1 joints", "Wall", "limits approached"):
+            self.assertIn(words, done.stdout)
+
+
+class TransferCell(unittest.TestCase):
+    def test_the_demo_that_moves_the_carried_arm(self):
+        done = s.program("simulate", "--cell", s.TRANSFER_CELL, "--script", "trs_demo.spt", "--json")
+        found = json.loads(done.stdout)
+        self.assertEqual(found["end"], "finished", done.stderr)
+        self.assertEqual(found["refused"], [])
+        self.assertGreater(len(found["moves"]), 2)
+        self.assertTrue(all(m["outcome"] == "arrived" for m in found["moves"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
