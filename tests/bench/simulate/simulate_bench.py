@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """How many times faster than real time scripts run off line, with and without collision tests.
 
     tests/bench/simulate/simulate_bench.py [--bin build/bin] [SCRIPT ...]
