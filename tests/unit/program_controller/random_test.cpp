@@ -169,10 +169,14 @@ class Chaos {
     for (const ProgramStatus& status : cell_.sut.status()) {
       const bool runs = status.state == ProgramState::delayed || status.state == ProgramState::running ||
                         status.state == ProgramState::waiting || status.state == ProgramState::held;
-      if (runs) EXPECT_EQ(++running[status.robot], 1);
+      if (runs) {
+        EXPECT_EQ(++running[status.robot], 1);
+      }
       EXPECT_EQ(status.state == ProgramState::failed, !status.error.empty()) << status.name;
       EXPECT_GE(status.elapsed_s, 0);
-      if (status.state == ProgramState::waiting) EXPECT_FALSE(status.waits_for.empty());
+      if (status.state == ProgramState::waiting) {
+        EXPECT_FALSE(status.waits_for.empty());
+      }
     }
     for (const char* id : kRobots) EXPECT_LE(cell_.motion.robot(id).most_ahead, 8U);
   }
