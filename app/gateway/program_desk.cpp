@@ -125,8 +125,7 @@ bool ProgramDesk::busy() const {
 }
 
 Result<void> ProgramDesk::verdict(std::uint64_t since) const {
-  if (const auto& deadlock = controllers_.deadlock())
-    return fail(deadlock->text(), "TF_STOP ends programs that wait");
+  if (const auto& deadlock = controllers_.deadlock()) return fail(deadlock->text(), "TF_STOP ends programs that wait");
   if (since >= failures_) return {};
   const std::uint64_t count = failures_ - since;
   if (count == 1) return fail(failed_.back());
