@@ -30,6 +30,10 @@ elseif(CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo")
   set(CELLMIRROR_TEST_OPTIONS -O1)
 endif()
 
+# g++ collects its garbage while it compiles; with 500 MB before the first time a source takes up to a sixth less (9.8 s of processor
+# time became 8.1 for one with JSON and threads).
+add_compile_options("$<$<COMPILE_LANG_AND_ID:CXX,GNU>:SHELL:--param ggc-min-heapsize=500000>")
+
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # Used where it is installed, but not among the packages of ./run and ./check: a first build, which finds nothing in the

@@ -211,8 +211,7 @@ void twenty_programs(benchmark::State& state) {
   NoScripts scripts;
   program::Controllers controllers(motion, scripts, motion.clock);
   Diagnostics diagnostics;
-  const auto program =
-      program::irdata_language().parse(kProgram, {.file = "round.ird", .codes = {}}, diagnostics);
+  const auto program = program::irdata_language().parse(kProgram, {.file = "round.ird", .codes = {}}, diagnostics);
   if (!program) return state.SkipWithError(diagnostics.text().c_str());
   for (std::size_t i = 0; i < kRobots; ++i) {
     const std::string robot = EngineMotion::name(i);

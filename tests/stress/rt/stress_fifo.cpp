@@ -9,8 +9,8 @@
 namespace cellmirror {
 namespace {
 
-// Looks again at once for a while: to yield at every turn hands the processor to whatever else the machine does, a time slice
-// for each value.
+// Looks again at once for a while: to yield at every turn hands the processor to whatever else the machine does, a time
+// slice for each value.
 class Patience {
  public:
   void wait() {
