@@ -120,7 +120,7 @@ class Check:
 
     def sanitizers(self) -> None:
         if self.build("fuzz", "build-fuzz", *SANITIZED_TARGETS):
-            seconds = os.environ.get("FUZZ_SECONDS", "2")
+            seconds = os.environ.get("FUZZ_SECONDS", "1")
             self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
             self.tests(f"fuzzing, {seconds} s each", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds, **SANITIZER_OPTIONS)
         if self.build("tsan", "build-tsan", "tests_stress", "tests_concurrency"):

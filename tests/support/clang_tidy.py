@@ -18,7 +18,7 @@ from test_report import Report
 
 ROOT = Path(__file__).resolve().parents[2]
 TIDY = "clang-tidy-19"
-SECONDS = float(os.environ.get("TIDY_SECONDS", "50"))
+SECONDS = float(os.environ.get("TIDY_SECONDS", "40"))
 CLEAN = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cellmirror/clang-tidy"
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.MULTILINE)
 

@@ -165,7 +165,7 @@ CommandReader::Joints CommandReader::read_joints(const Fields& fields, const Xml
     const auto index = static_cast<std::size_t>(*number - 1);
     if (index >= joints.size()) joints.resize(index + 1);
     if (joints[index]) fields.error(*one, fmt::format("joint {} is given twice", *number));
-    joints[index] = *position;
+    joints[index] = position;
   }
   return joints;
 }
