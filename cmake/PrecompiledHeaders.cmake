@@ -7,7 +7,7 @@ if(CELLMIRROR_PRECOMPILE)  # for ccache, which otherwise does not know what is i
 endif()
 
 # In every set.
-set(CELLMIRROR_COMMON_HEADERS <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <functional> <map>
+set(CELLMIRROR_COMMON_HEADERS <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <expected> <filesystem> <functional> <map>
   <memory> <optional> <span> <string> <string_view> <utility> <variant> <vector> <fmt/format.h> <Eigen/Geometry>)
 
 # cellmirror_precompiled(set HEADERS <a.h> ... LINK targets ... OPTIONS ...): OPTIONS of the compiler hold for the headers and

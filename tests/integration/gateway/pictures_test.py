@@ -8,7 +8,6 @@ import shutil
 import socket
 import struct
 import threading
-import time
 import unittest
 
 import gateway as g
@@ -127,16 +126,15 @@ class Pictures(unittest.TestCase):
         self.assertEqual(jpeg_size(base64.b64decode(answer["data"])), (64, 48))
 
     def test_status_answers_while_a_large_picture_is_drawn(self):
-        large = threading.Thread(target=lambda: self.snapshot("--size", "2048x1536", "-o", self.path("large.jpg")))
+        large = threading.Thread(target=lambda: self.snapshot("--size", "4096x3072", "-o", self.path("large.jpg")))
         large.start()
-        time.sleep(0.2)
         meanwhile = 0
         while large.is_alive():
             self.scratch.status()
             meanwhile += large.is_alive()
         large.join()
         self.assertGreater(meanwhile, 0)
-        self.assertEqual(jpeg_size(self.path("large.jpg").read_bytes()), (2048, 1536))
+        self.assertEqual(jpeg_size(self.path("large.jpg").read_bytes()), (4096, 3072))
 
     def test_status_tells_of_the_pictures(self):
         self.snapshot("--size", "64x64", "-o", self.path("s.png"))

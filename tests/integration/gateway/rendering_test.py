@@ -7,7 +7,7 @@ import unittest
 import gateway as g
 import pictures as p
 
-SIZE = "240x180"
+SIZE = "320x240"
 ARM = "STVW 0 VP 4600 -4600 1700 LP 2000 -1600 900 TW 0 VA 40 FCP 50 BCP 100000"  # MANTEC_R3 fills the picture
 DEFAULTS = {"WFRM_display": False, "SMEAR": False, "BFRM": False, "CPU_BFRM": False, "CAM_MAINVIEW": False,
             "LGT_TWOSIDE": False, "TCP_DRAW": False, "ZPF_DRAW": False, "FLDR": True, "GEO_VIS_TEST": True, "SHAD": True,
