@@ -23,7 +23,14 @@ function(cellmirror_precompiled set)
   target_link_libraries(cellmirror_precompiled_${set} PRIVATE cellmirror_flags Threads::Threads fmt::fmt Eigen3::Eigen ${ARG_LINK})
   target_compile_options(cellmirror_precompiled_${set} PRIVATE ${ARG_OPTIONS})
   set_target_properties(cellmirror_precompiled_${set} PROPERTIES CELLMIRROR_OPTIONS "${ARG_OPTIONS}")
-  target_precompile_headers(cellmirror_precompiled_${set} PRIVATE ${CELLMIRROR_COMMON_HEADERS} ${ARG_HEADERS})
+  set(headers ${CELLMIRROR_COMMON_HEADERS} ${ARG_HEADERS})
+  target_precompile_headers(cellmirror_precompiled_${set} PRIVATE ${headers})
+  # CMake gives the file that lists them an old time, so ninja would not see that the list has changed.
+  if(NOT "${CELLMIRROR_PRECOMPILED_${set}}" STREQUAL "${headers}")
+    set(folder ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/cellmirror_precompiled_${set}.dir)
+    file(REMOVE ${folder}/cmake_pch.hxx.pch ${folder}/cmake_pch.hxx.gch)
+    set(CELLMIRROR_PRECOMPILED_${set} "${headers}" CACHE INTERNAL "")
+  endif()
 endfunction()
 
 # cellmirror_use_precompiled(target set): set none is for a target that has sources in C as well. The sources of `target`

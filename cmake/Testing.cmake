@@ -2,13 +2,15 @@
 # ThreadSanitizer as well, as every stress test does. Integration and stress tests run alone, since they watch
 # the clock or share ports.
 #
-# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY | SANITIZED_ONLY] [PRECOMPILED none])  a GoogleTest program, one ctest entry.
+# cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY | RELEASE_TOO] [PRECOMPILED none])  a GoogleTest program, one ctest entry.
 #   PRECOMPILED none: with sources in C (cmake/PrecompiledHeaders.cmake).
+#   Unit and golden tests: a whole ./check builds and runs each once, with sanitizers. In a release build they are made by
+#     tests_sanitized only (./check --quick) and labelled "sanitized".
 #   RELEASE_ONLY: not built with sanitizers. For long comparisons of numbers whose code a fuzz target runs under them.
-#   SANITIZED_ONLY: in a release build made by tests_sanitized only (./check --quick), and labelled "sanitized"; a whole ./check
-#     runs it with sanitizers alone. For tests of what reads and writes, where neither time nor optimisation matters.
+#   RELEASE_TOO: in both. For what the optimiser, real clocks or locked memory may change.
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
-#   CELLMIRROR_FUZZERS a libFuzzer program, else <name>_replay, which runs the corpus as an ordinary test.
+#   CELLMIRROR_FUZZERS a libFuzzer program, which begins with the corpus, else <name>_replay, which runs that as an ordinary
+#   test; where it is built it is as with unit tests.
 # cellmirror_benchmark(name SOURCES ... USES ... [LINK ...] [SMOKE])       with SMOKE, a short round of it is a test
 if(CELLMIRROR_TESTS)
   enable_testing()
@@ -61,11 +63,20 @@ function(cellmirror_describe_test name)
     ENVIRONMENT "CELLMIRROR_SOURCE_DIR=${CMAKE_SOURCE_DIR};CELLMIRROR_BIN_DIR=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
 endfunction()
 
+# Takes a unit or golden test or a fuzz target out of what a release build makes by itself.
+function(cellmirror_leave_to_sanitizers name labels)
+  file(RELATIVE_PATH place ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
+  if(NOT CELLMIRROR_SANITIZE AND place MATCHES "^(unit|golden|fuzz)/")
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    set(${labels} ${${labels}} sanitized PARENT_SCOPE)
+  endif()
+endfunction()
+
 function(cellmirror_test name)
   if(NOT CELLMIRROR_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "RELEASE_ONLY;SANITIZED_ONLY" "TIMEOUT;PRECOMPILED" "SOURCES;USES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RELEASE_ONLY;RELEASE_TOO" "TIMEOUT;PRECOMPILED" "SOURCES;USES;LINK;LABELS" ${ARGN})
   if(ARG_RELEASE_ONLY AND CELLMIRROR_SANITIZE)
     return()
   endif()
@@ -79,9 +90,8 @@ function(cellmirror_test name)
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK}
     PRECOMPILED ${ARG_PRECOMPILED})
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
-  if(ARG_SANITIZED_ONLY AND NOT CELLMIRROR_SANITIZE)
-    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
-    list(APPEND ARG_LABELS sanitized)
+  if(NOT ARG_RELEASE_ONLY AND NOT ARG_RELEASE_TOO)
+    cellmirror_leave_to_sanitizers(${name} ARG_LABELS)
   endif()
   cellmirror_describe_test(${name} TIMEOUT ${ARG_TIMEOUT} LABELS ${ARG_LABELS})
 endfunction()
@@ -94,7 +104,9 @@ function(cellmirror_fuzz_target name)
   if(NOT CELLMIRROR_FUZZERS)  # libFuzzer begins with the corpus by itself
     cellmirror_executable(${name}_replay SOURCES ${ARG_SOURCE} ${CMAKE_SOURCE_DIR}/tests/fuzz/replay_main.cpp USES ${ARG_USES} LINK ${ARG_LINK})
     add_test(NAME ${name}_replay COMMAND ${name}_replay ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})
-    cellmirror_describe_test(${name}_replay LABELS fuzz)
+    set(labels fuzz)
+    cellmirror_leave_to_sanitizers(${name}_replay labels)
+    cellmirror_describe_test(${name}_replay LABELS ${labels})
   else()
     cellmirror_executable(${name} SOURCES ${ARG_SOURCE} USES ${ARG_USES} LINK ${ARG_LINK} -fsanitize=fuzzer)
     add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/tests/support/fuzz_for.sh $<TARGET_FILE:${name}> ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_CORPUS})

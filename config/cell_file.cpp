@@ -9,6 +9,7 @@
 
 #include "config/cell_reader.hpp"
 #include "config/component_files.hpp"
+#include "config/layout_file.hpp"
 #include "config/parse.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -78,11 +79,18 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
     cell = Cell::build(std::make_shared<const Component>(reader.root), source, building);
     for (std::size_t i = before; i < building.all().size(); ++i) reader.findings.add(building.all()[i]);
   }
+  Diagnostics of_layout;
+  DisplayLayout layout;
+  if (reader.layout_file) {
+    if (auto stored = read_layout(*reader.layout_file, reader.layout_file->string(), of_layout))
+      layout = *std::move(stored);
+  }
   collision::Settings collision;
   if (cell) collision = reader.collision.settings(*cell, reader.findings);
-  if (!reader.findings.ok()) cell.reset();
+  if (!reader.findings.ok() || !of_layout.ok()) cell.reset();
   take_sorted(diagnostics, reader.findings);
   diagnostics.take(of_components);
+  diagnostics.take(of_layout);
   source->release();
   if (!cell) return std::nullopt;
   return LoadedCell{std::move(reader.name),
@@ -100,6 +108,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     reader.pictures,
                     std::move(collision),
                     std::move(reader.views),
+                    std::move(layout),
                     std::move(reader.startup_script),
                     source->files(),
                     std::move(*cell)};

@@ -21,6 +21,7 @@
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/haptics/settings.hpp"
+#include "rt_core/ports/display_layout.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
 
@@ -81,6 +82,7 @@ struct LoadedCell {
   PictureSettings pictures;
   collision::Settings collision;  // paths in rules are full paths
   std::vector<ViewSetting> views;
+  DisplayLayout layout;                      // of the layout file, else the standard setting
   std::string startup_script;                // name of a file in the home's scripts/, which exists; empty: none
   std::vector<std::filesystem::path> files;  // every component file that was read
   Cell cell;

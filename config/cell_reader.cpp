@@ -65,7 +65,7 @@ bool CellReader::read(std::string_view text) {
   read_dds_output(top);
   read_queues(top);
   web = read_web(top);
-  pictures = read_display(top);
+  pictures = read_display(top, files_, layout_file);
   collision.read(top);
   read_startup(top);
   read_views(top);

@@ -1,6 +1,7 @@
 // Reads the text of a cell file. Private to this folder.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,7 @@ class CellReader {
   CollisionReader collision;
   std::string startup_script;
   std::vector<ViewSetting> views;
+  std::optional<std::filesystem::path> layout_file;  // which exists; not read yet
   Diagnostics findings;
 
  private:

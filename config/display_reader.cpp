@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 
+#include "config/layout_file.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/ports/image.hpp"
 
@@ -29,9 +31,26 @@ void read_size(TableReader& table, std::string_view key, int& width, int& height
   height = static_cast<int>((*size)[1]);
 }
 
+// Looked for in the home itself, beside the cell file.
+std::optional<std::filesystem::path> read_layout_file(TableReader& table, const FileFinder& files) {
+  const auto name = table.text("layout_file");
+  if (!name) return std::nullopt;
+  const std::string extension = std::filesystem::path(*name).extension().string();
+  if (!extension.empty() && extension != kLayoutExtension) {
+    table.error("layout_file", fmt::format("\"{}\" is no layout file", printable(*name)),
+                fmt::format("layout files end in {}; views (.vws) are loaded with LOAD_VIEWS", kLayoutExtension));
+    return std::nullopt;
+  }
+  auto found = files.find(FileUse::layout, *name);
+  if (found) return *std::move(found);
+  table.error("layout_file", found.error().what, found.error().remedy);
+  return std::nullopt;
+}
+
 }  // namespace
 
-PictureSettings read_display(TableReader& top) {
+PictureSettings read_display(TableReader& top, const FileFinder& files,
+                             std::optional<std::filesystem::path>& layout_file) {
   PictureSettings settings;
   auto table = top.table("display");
   if (!table) return settings;
@@ -44,6 +63,7 @@ PictureSettings read_display(TableReader& top) {
                                                                  {"egl", PictureRenderer::egl}})
                           .value_or(settings.renderer);
   settings.threads = static_cast<int>(table->integer("threads", 0, kMostThreads).value_or(settings.threads));
+  layout_file = read_layout_file(*table, files);
   table->finish();
   return settings;
 }

@@ -29,9 +29,15 @@ const char* folder_of(FileUse use, std::string_view name) {
     case FileUse::script:
       return "scripts";
     case FileUse::log:
+    case FileUse::layout:
       return "";
   }
   return "";
+}
+
+const char* default_extension(FileUse use) {
+  if (use == FileUse::script) return ".spt";
+  return use == FileUse::layout ? ".lay" : "";
 }
 
 // The place of `path` seen from `root`, where it lies in it.
@@ -68,27 +74,32 @@ Result<fs::path> find_in_package(const KismetHome& root, const fs::path& urdf, s
 }  // namespace
 
 Result<fs::path> HomeFiles::find(FileUse use, std::string_view name) const {
-  return home_.file(folder_of(use, name), name, use == FileUse::script ? ".spt" : "");
+  return home_.file(folder_of(use, name), name, default_extension(use));
 }
 
 Result<fs::path> HomeFiles::find_mesh_of_urdf(const fs::path& urdf, std::string_view name) const {
+  return find_named_in(urdf, "URDF", name, "mesh");
+}
+
+Result<fs::path> HomeFiles::find_named_in(const fs::path& file, std::string_view kind, std::string_view name,
+                                          std::string_view what) const {
+  const std::string remedy = fmt::format("use a path relative to the {}", kind);
   std::error_code error;
-  const fs::path at = fs::weakly_canonical(urdf, error);
-  if (error) return fail(fmt::format("{} cannot be opened: {}", urdf.string(), error.message()));
+  const fs::path at = fs::weakly_canonical(file, error);
+  if (error) return fail(fmt::format("{} cannot be opened: {}", file.string(), error.message()));
   const bool in_home = !below(home_.root(), at).empty();
   auto root = in_home ? Result<KismetHome>(home_) : KismetHome::open(at.parent_path());
   if (!root) return std::unexpected(root.error());
   if (name.starts_with(kPackage)) return find_in_package(*root, at, name.substr(kPackage.size()));
   if (name.starts_with(kFile)) name.remove_prefix(kFile.size());
   if (name.find("://") != std::string_view::npos)
-    return fail(fmt::format("the mesh {} is not a file", printable(name)), "use a path relative to the URDF");
-  if (fs::path(name).is_absolute())
-    return fail(fmt::format("the path {} is absolute", printable(name)), "use a path relative to the URDF");
+    return fail(fmt::format("the {} {} is not a file", what, printable(name)), remedy);
+  if (fs::path(name).is_absolute()) return fail(fmt::format("the path {} is absolute", printable(name)), remedy);
   const fs::path wanted = (at.parent_path() / name).lexically_normal();
   const std::string inside = below(root->root(), wanted);
   if (inside.empty() || name.empty()) {
     return fail(fmt::format("the path {} leaves {}", printable(name), root->root().string()),
-                "put the mesh beside the URDF");
+                fmt::format("put the {} beside the {}", what, kind));
   }
   return root->file("", inside);
 }
@@ -101,7 +112,8 @@ Result<CollisionMesh> FileFinder::mesh(const fs::path&, const Eigen::Vector3d&, 
 Result<CollisionMesh> HomeFiles::mesh(const fs::path& file, const Eigen::Vector3d& scale,
                                       std::optional<CollideAs> collide_as, const Place& place,
                                       Diagnostics& diagnostics) const {
-  return meshes_->mesh(file, scale, collide_as.value_or(CollideAs::exact), place, diagnostics);
+  const auto beside = [&](const std::string& name) { return find_named_in(file, "mesh", name, "picture"); };
+  return meshes_->mesh(file, scale, collide_as.value_or(CollideAs::exact), beside, place, diagnostics);
 }
 
 Result<fs::path> AnyFile::find(FileUse, std::string_view name) const { return fs::path("/") / fs::path(name); }

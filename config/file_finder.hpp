@@ -20,6 +20,7 @@ enum class FileUse {
   description,  // EDS, DCF, DBC: robots/
   script,       // scripts/
   log,          // candump logs: the home itself
+  layout,       // .lay: the home itself
 };
 
 class FileFinder {
@@ -52,6 +53,10 @@ class HomeFiles final : public FileFinder {
   [[nodiscard]] MeshLibrary& meshes() const { return *meshes_; }
 
  private:
+  // A file, a `what`, that `file`, a `kind`, names; the rules are those of find_mesh_of_urdf().
+  [[nodiscard]] Result<std::filesystem::path> find_named_in(const std::filesystem::path& file, std::string_view kind,
+                                                            std::string_view name, std::string_view what) const;
+
   KismetHome home_;
   std::shared_ptr<MeshLibrary> meshes_;
 };

@@ -50,9 +50,15 @@ void read_shape(TableReader& reader, const FileFinder& files, Geometry& geometry
   if (const auto checked = check_mesh(*found); !checked)
     return reader.error("mesh", checked.error().what, checked.error().remedy);
   geometry.mesh_file = found->string();
-  if (!geometry.collides) return;
-  auto content = files.mesh(*found, scale, collide_as, reader.place("mesh"), reader.diagnostics());
+  if (!geometry.collides && !geometry.drawn) return;
+  const auto shape = geometry.collides ? collide_as : CollideAs::exact;
+  auto content = files.mesh(*found, scale, shape, reader.place("mesh"), reader.diagnostics());
+  if (!content && !geometry.collides) {
+    reader.diagnostics().add({Severity::warning, reader.place("mesh"), content.error().what, "it is not drawn"});
+    return;
+  }
   if (!content) return reader.error("mesh", content.error().what, content.error().remedy);
+  geometry.look = std::move(content->look);
   geometry.collide_as = content->collide_as;
   geometry.mesh = std::move(content->mesh);
   geometry.pieces = std::move(content->pieces);
@@ -65,12 +71,12 @@ Geometry read_one(TableReader& reader, const FileFinder& files) {
   geometry.column = place.column;
   geometry.name = reader.text("name").value_or("");
   geometry.collides = reader.boolean("collides").value_or(true);
+  geometry.drawn = reader.boolean("drawn").value_or(true);
   read_shape(reader, files, geometry);
   geometry.X_NG = reader.pose();
   if (const auto rgba = reader.numbers("rgba", 4, {0.0, 1.0})) {
     for (std::size_t i = 0; i < 4; ++i) geometry.rgba[i] = static_cast<float>((*rgba)[i]);
   }
-  geometry.drawn = reader.boolean("drawn").value_or(true);
   geometry.stands_for = reader.texts("stands_for").value_or(std::vector<std::string>());
   reader.finish();
   return geometry;

@@ -21,13 +21,13 @@
 
 #include "config/file_finder.hpp"
 #include "config/mesh_check.hpp"
-#include "config/polygon.hpp"
+#include "config/mesh_looks.hpp"
+#include "config/mesh_scene.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
 
 namespace fs = std::filesystem;
-using geometry::kMostTriangles;
 using geometry::MeshFindings;
 using geometry::TriangleMesh;
 
@@ -118,72 +118,8 @@ void keep_only(Assimp::Importer& importer, std::string_view name) {
   }
 }
 
-struct Polygons {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<geometry::TriangleIndices> triangles;
-};
-
-Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
-  Eigen::Matrix4d out;
-  out << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
-  return out;
-}
-
-Error too_many() { return {fmt::format("there are more than {} triangles", kMostTriangles), "reduce the mesh"}; }
-
-Result<void> add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& X, Polygons& out) {
-  if (mesh.mVertices == nullptr || mesh.mFaces == nullptr) return {};
-  const auto first = static_cast<std::uint32_t>(out.vertices.size());
-  if (mesh.mNumVertices > 3 * kMostTriangles - first) return std::unexpected(too_many());
-  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const aiVector3D& p = mesh.mVertices[i];
-    out.vertices.emplace_back((X * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>());
-  }
-  const bool mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
-  std::vector<std::uint32_t> corners;
-  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-    const aiFace& face = mesh.mFaces[i];
-    if (face.mNumIndices < 3) continue;
-    if (face.mNumIndices - 2 > kMostTriangles - out.triangles.size()) return std::unexpected(too_many());
-    corners.clear();
-    for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      if (face.mIndices[k] >= mesh.mNumVertices) return fail(fmt::format("a face names a vertex that is not there"));
-      corners.push_back(first + face.mIndices[k]);
-    }
-    if (mirrored) std::ranges::reverse(corners);
-    cut_polygon(corners, out.vertices, out.triangles);
-  }
-  return {};
-}
-
-// All meshes, each as often as nodes show it.
-Result<Polygons> collect(const aiScene& scene, const Eigen::Vector3d& scale) {
-  Polygons out;
-  struct Open {
-    const aiNode* node;
-    Eigen::Matrix4d X;
-  };
-  Eigen::Matrix4d outermost = Eigen::Matrix4d::Identity();
-  outermost.diagonal().head<3>() = scale;
-  std::vector<Open> open{{scene.mRootNode, outermost}};
-  constexpr int kMostNodes = 100'000;
-  for (int visited = 0; !open.empty(); ++visited) {
-    if (visited >= kMostNodes) return fail(fmt::format("there are more than {} nodes", kMostNodes));
-    const Open top = open.back();
-    open.pop_back();
-    const Eigen::Matrix4d X = top.X * matrix_of(top.node->mTransformation);
-    for (unsigned i = 0; i < top.node->mNumMeshes; ++i) {
-      if (top.node->mMeshes[i] >= scene.mNumMeshes) return fail("a node names a mesh that is not there");
-      if (auto added = add_mesh(*scene.mMeshes[top.node->mMeshes[i]], X, out); !added)
-        return std::unexpected(added.error());
-    }
-    for (unsigned i = 0; i < top.node->mNumChildren; ++i) open.push_back({top.node->mChildren[i], X});
-  }
-  return out;
-}
-
-Result<Polygons> import(std::string_view bytes, const Format& format, const Eigen::Vector3d& scale,
-                        const Neighbours& neighbours) {
+Result<ScenePolygons> import(std::string_view bytes, const Format& format, const Eigen::Vector3d& scale,
+                             const Neighbours& neighbours, bool with_looks) {
   Assimp::Importer importer;
   keep_only(importer, format.importer);
   if (importer.GetImporterCount() == 0) return fail(fmt::format("this build reads no {} files", format.extension));
@@ -197,7 +133,22 @@ Result<Polygons> import(std::string_view bytes, const Format& format, const Eige
   if (!files->refusal().empty()) return fail(files->refusal(), "put it beside the mesh");
   if (scene == nullptr || scene->mRootNode == nullptr)
     return fail(fmt::format("it cannot be read: {}", printable(std::string(importer.GetErrorString()))));
-  return collect(*scene, scale);
+  return collect_polygons(*scene, scale, with_looks);
+}
+
+// STL has no colours that two programs would agree on.
+bool may_have_looks(std::string_view extension) { return extension != ".stl"; }
+
+Result<TriangleMesh> make_with_look(const std::string& name, std::string_view bytes, std::string_view extension,
+                                    ScenePolygons polygons, MeshFindings& findings, LookRequest& looks) {
+  if (extension == ".obj") name_obj_pictures(bytes, looks, polygons);
+  if (extension == ".gltf") decode_picture_names(polygons);
+  auto palette = load_palette(polygons, looks);
+  if (!palette) return geometry::make_mesh(name, std::move(polygons.vertices), std::move(polygons.triangles), findings);
+  std::vector<std::uint32_t> origins;
+  auto mesh = geometry::make_mesh(name, polygons.vertices, polygons.triangles, findings, &origins);
+  if (mesh) looks.look = std::make_shared<const MeshLook>(lay_over(*mesh, origins, polygons, std::move(*palette)));
+  return mesh;
 }
 
 // A file named in a mesh file: in the same folder, or below.
@@ -213,7 +164,8 @@ Result<std::string> read_neighbour(const fs::path& folder, const std::string& na
 }  // namespace
 
 Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extension, std::string name,
-                                const Eigen::Vector3d& scale, const Neighbours& neighbours, MeshFindings& findings) {
+                                const Eigen::Vector3d& scale, const Neighbours& neighbours, MeshFindings& findings,
+                                LookRequest* looks) {
   findings = MeshFindings();
   const auto* const format = std::ranges::find(kFormats, extension, &Format::extension);
   const auto refuse = [&](const Error& error) {
@@ -222,9 +174,12 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extensi
   if (format == kFormats.end()) return refuse({"its kind is not known", {}});
   if (auto checked = check_mesh_bytes(bytes, extension); !checked) return refuse(checked.error());
   try {
-    auto polygons = import(bytes, *format, scale, neighbours);
+    const bool with_looks = looks != nullptr && may_have_looks(extension);
+    auto polygons = import(bytes, *format, scale, neighbours, with_looks);
     if (!polygons) return refuse(polygons.error());
-    auto mesh = geometry::make_mesh(name, std::move(polygons->vertices), std::move(polygons->triangles), findings);
+    auto mesh =
+        with_looks ? make_with_look(name, bytes, extension, std::move(*polygons), findings, *looks)
+                   : geometry::make_mesh(name, std::move(polygons->vertices), std::move(polygons->triangles), findings);
     if (!mesh) return refuse(mesh.error());
     return mesh;
   } catch (const std::exception& exception) {
@@ -234,13 +189,14 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extensi
   }
 }
 
-Result<TriangleMesh> read_mesh_file(const fs::path& file, const Eigen::Vector3d& scale, MeshFindings& findings) {
+Result<TriangleMesh> read_mesh_file(const fs::path& file, const Eigen::Vector3d& scale, MeshFindings& findings,
+                                    LookRequest* looks) {
   const auto bytes = read_text_file(file, kLargestMesh);
   if (!bytes) return std::unexpected(bytes.error());
   const fs::path folder = file.parent_path();
   return parse_mesh(
       *bytes, lower_case(file.extension().string()), file.filename().string(), scale,
-      [&](const std::string& name) { return read_neighbour(folder, name); }, findings);
+      [&](const std::string& name) { return read_neighbour(folder, name); }, findings, looks);
 }
 
 }  // namespace cellmirror

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "config/mesh_file.hpp"
+#include "config/mesh_looks.hpp"
+#include "config/picture_library.hpp"
+#include "rt_core/base/home.hpp"
 #include "rt_core/geometry/convex_hull.hpp"
 #include "rt_core/geometry/convex_parts.hpp"
 
@@ -26,7 +29,15 @@ void tell_findings(const TriangleMesh& mesh, const MeshFindings& findings, const
                    lost ? "repair it where it was made" : "it was repaired when it was read"});
 }
 
+void tell_left_out(const TriangleMesh& mesh, const LookRequest& looks, const Place& place, Diagnostics& diagnostics) {
+  for (const Error& error : looks.left_out)
+    diagnostics.add({Severity::warning, place, fmt::format("the mesh {}: {}", mesh.name, error.what), error.remedy});
+}
+
 }  // namespace
+
+MeshLibrary::MeshLibrary() : pictures_(std::make_unique<PictureLibrary>()) {}
+MeshLibrary::~MeshLibrary() = default;
 
 Result<MeshLibrary::Pieces> MeshLibrary::pieces(Entry& entry, const TriangleMesh& mesh, CollideAs collide_as) {
   Pieces out;
@@ -49,8 +60,37 @@ Result<MeshLibrary::Pieces> MeshLibrary::pieces(Entry& entry, const TriangleMesh
   return out;
 }
 
+Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                               const Beside& beside, const Place& place, Diagnostics& diagnostics, CollisionMesh& out) {
+  about_to_read(file);
+  constexpr std::size_t kLargestText = 4UL << 20U;
+  LookRequest looks;
+  looks.text = [&](const std::string& name) -> Result<std::string> {
+    const auto at = beside(name);
+    if (!at) return std::unexpected(at.error());
+    return read_text_file(*at, kLargestText);
+  };
+  looks.picture = [&](const std::string& name) -> Result<Picture> {
+    const auto at = beside(name);
+    if (!at) return std::unexpected(at.error());
+    return pictures_->of_file(*at);
+  };
+  looks.embedded = [&](std::string_view bytes) { return pictures_->of_bytes(bytes); };
+  MeshFindings findings;
+  auto mesh = read_mesh_file(file, scale, findings, &looks);
+  if (!mesh) return std::unexpected(mesh.error());
+  tell_findings(*mesh, findings, place, diagnostics);
+  tell_left_out(*mesh, looks, place, diagnostics);
+  out.mesh = std::make_shared<const TriangleMesh>(std::move(*mesh));
+  out.look = std::move(looks.look);
+  entry.mesh = out.mesh;
+  entry.look = out.look;
+  return {};
+}
+
 Result<CollisionMesh> MeshLibrary::mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
-                                        CollideAs collide_as, const Place& place, Diagnostics& diagnostics) {
+                                        CollideAs collide_as, const Beside& beside, const Place& place,
+                                        Diagnostics& diagnostics) {
   const auto [at, is_new] = entries_.try_emplace(Key(file.string(), {scale.x(), scale.y(), scale.z()}));
   Entry& entry = at->second;
   CollisionMesh out;
@@ -60,14 +100,10 @@ Result<CollisionMesh> MeshLibrary::mesh(const std::filesystem::path& file, const
     return out;
   }
   out.mesh = entry.mesh.lock();
+  out.look = entry.look.lock();
   if (!out.mesh) {
-    about_to_read(file);
-    MeshFindings findings;
-    auto read = read_mesh_file(file, scale, findings);
-    if (!read) return std::unexpected(read.error());
-    tell_findings(*read, findings, place, diagnostics);
-    out.mesh = std::make_shared<const TriangleMesh>(std::move(*read));
-    entry.mesh = out.mesh;
+    if (auto done = read(entry, file, scale, beside, place, diagnostics, out); !done)
+      return std::unexpected(done.error());
   }
   if (collide_as == CollideAs::exact) return out;
   auto made = pieces(entry, *out.mesh, collide_as);

@@ -17,19 +17,30 @@
 
 namespace cellmirror {
 
+class PictureLibrary;
+
 // What Geometry holds of a mesh.
 struct CollisionMesh {
   CollideAs collide_as = CollideAs::exact;
   std::shared_ptr<const geometry::TriangleMesh> mesh;
+  std::shared_ptr<const MeshLook> look;
   std::vector<std::shared_ptr<const geometry::TriangleMesh>> pieces;  // for CollideAs::hull and parts
 };
 
 class MeshLibrary {
  public:
+  MeshLibrary();
+  ~MeshLibrary();
+  MeshLibrary(const MeshLibrary&) = delete;
+  MeshLibrary& operator=(const MeshLibrary&) = delete;
+
+  // Where a picture or a material file is that the mesh names.
+  using Beside = std::function<Result<std::filesystem::path>(const std::string& name)>;
+
   // Reads the file unless somebody still uses it with that scale. Notes and warnings about what was found in it go to
   // `diagnostics` at `place`, once each time it is read.
   Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale, CollideAs collide_as,
-                             const Place& place, Diagnostics& diagnostics);
+                             const Beside& beside, const Place& place, Diagnostics& diagnostics);
 
   // For progress. While counting, mesh() reads nothing and gives nothing, but counts the files that it would read.
   void count_only(bool counting) { counting_ = counting; }
@@ -45,6 +56,7 @@ class MeshLibrary {
   using Pieces = std::vector<std::shared_ptr<const geometry::TriangleMesh>>;
   struct Entry {
     std::weak_ptr<const geometry::TriangleMesh> mesh;
+    std::weak_ptr<const MeshLook> look;  // used by all that use the mesh
     // By kind: only while the pieces are used.
     std::map<CollideAs, std::vector<std::weak_ptr<const geometry::TriangleMesh>>> pieces;
   };
@@ -52,7 +64,11 @@ class MeshLibrary {
 
   static Result<Pieces> pieces(Entry& entry, const geometry::TriangleMesh& mesh, CollideAs collide_as);
 
+  Result<void> read(Entry& entry, const std::filesystem::path& file, const Eigen::Vector3d& scale, const Beside& beside,
+                    const Place& place, Diagnostics& diagnostics, CollisionMesh& out);
+
   std::map<Key, Entry> entries_;
+  std::unique_ptr<PictureLibrary> pictures_;
   bool counting_ = false;
   std::size_t counted_ = 0;
   Reading reading_;

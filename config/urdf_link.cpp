@@ -46,13 +46,20 @@ bool read_mesh(const XMLElement& shape, const UrdfXml& xml, const std::filesyste
     return false;
   }
   geometry.mesh_file = found->string();
-  if (!collides || !scale_is_good) return true;
-  auto content =
-      files.mesh(*found, geometry.size, std::nullopt, {xml.file(), shape.GetLineNum(), 0}, xml.diagnostics());
+  if (!scale_is_good) return true;
+  // What is drawn alone needs no hull and no pieces.
+  const auto collide_as = collides ? std::nullopt : std::optional(CollideAs::exact);
+  const Place place{xml.file(), shape.GetLineNum(), 0};
+  auto content = files.mesh(*found, geometry.size, collide_as, place, xml.diagnostics());
+  if (!content && !collides) {
+    xml.diagnostics().add({Severity::warning, place, content.error().what, "it is not drawn"});
+    return true;
+  }
   if (!content) {
     xml.error(shape, content.error().what, content.error().remedy);
     return false;
   }
+  geometry.look = std::move(content->look);
   geometry.collide_as = content->collide_as;
   geometry.mesh = std::move(content->mesh);
   geometry.pieces = std::move(content->pieces);

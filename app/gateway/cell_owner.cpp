@@ -33,12 +33,13 @@ CellOwner::CellOwner(Parts parts)
       fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
       display_({cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
                 std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }},
-               parts.views),
+               parts.views, std::move(parts.layout)),
       motion_(
           cell_, names_, [this] { return display_.screen_axes(); }, *fleet_),
       couplings_(cell_, *fleet_, motion_),
       program_motion_(cell_, motion_, *fleet_),
-      programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_, std::move(parts.program_event)}),
+      programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_, std::move(parts.program_event),
+                 !parts.let_tick_pass}),
       guarded_motion_(motion_, programs_),
       world_(cell_, *fleet_, motion_, programs_, [this] { hang_up_picture(); }),
       robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
@@ -86,8 +87,8 @@ void CellOwner::start() {
 }
 
 void CellOwner::stop() {
-  if (!thread_.joinable()) return;
   stopping_.request_stop();
+  if (!thread_.joinable()) return;
   wake_.wake();
   thread_.join();
 }

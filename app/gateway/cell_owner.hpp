@@ -53,6 +53,7 @@ class CellOwner {
     std::map<std::string, StreamConfig, std::less<>> streams;
     std::vector<RobotHaptic> haptics;
     std::vector<ViewSetting> views;
+    DisplayLayout layout = {};
     collision::Settings collision;
     FootSwitchSettings foot_switches;
     engine::Engine& engine;
@@ -84,7 +85,8 @@ class CellOwner {
   // (`script`: a file of the home's scripts/, or any path where `is_path`).
   Result<void> prepare(const std::string& script, bool is_path);
   void start();
-  // Ends the thread.
+  [[nodiscard]] bool running() const { return thread_.joinable(); }
+  // Ends the thread; submit() waits no longer.
   void stop();
 
   // Instead of start(), for whoever has no thread for it: all that can be done now, bounded. True where there may be

@@ -199,6 +199,7 @@ void CouplingDesk::follow() {
 }
 
 Result<void> CouplingDesk::update_velocities(const RobotModel& robot) {
+  follow();  // a command before this one may have deleted the master
   const auto found = by_slave_.find(robot.id());
   return found == by_slave_.end() ? Result<void>() : send(robot.id(), found->second);
 }

@@ -28,11 +28,13 @@ DisplayModes first_modes() {
   return modes;
 }
 
-DisplayState first_display(const CompiledCell& cell, const Extent& extent, std::span<const ViewSetting> settings) {
+DisplayState first_display(const CompiledCell& cell, const Extent& extent, std::span<const ViewSetting> settings,
+                           DisplayLayout layout) {
   DisplayState display;
   display.revision = 1;
   display.modes = first_modes();
-  const auto views = views_of_extent(extent);
+  display.layout = std::move(layout);
+  const auto views = views_of_extent(extent, display.layout);
   for (std::size_t id = 0; id < kViews; ++id) display.views[id].view = views[id];
   for (const ViewSetting& setting : settings) {
     const auto known = check_view_id(setting.id);
@@ -49,9 +51,10 @@ DisplayState first_display(const CompiledCell& cell, const Extent& extent, std::
   return display;
 }
 
-DisplayDesk::DisplayDesk(Parts parts, std::span<const ViewSetting> settings) : parts_(std::move(parts)) {
+DisplayDesk::DisplayDesk(Parts parts, std::span<const ViewSetting> settings, DisplayLayout layout)
+    : parts_(std::move(parts)) {
   const auto cell = parts_.cell.compile();
-  state_ = first_display(*cell, extent_of(*cell, parts_.cell.start_positions()), settings);
+  state_ = first_display(*cell, extent_of(*cell, parts_.cell.start_positions()), settings, std::move(layout));
   follow_cell();
 }
 

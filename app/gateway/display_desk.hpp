@@ -23,10 +23,10 @@ namespace cellmirror::app {
 
 // Floor, shadows, textures, antialiasing and the visibility test are on.
 [[nodiscard]] DisplayModes first_modes();
-// Before any command: views that show the whole extent, and what the cell file says of them. Settings that do not fit
-// are left out and told to the log.
+// Before any command: views that show the whole extent as the layout has them, and what the cell file says of them.
+// Settings that do not fit are left out and told to the log.
 [[nodiscard]] DisplayState first_display(const CompiledCell& cell, const Extent& extent,
-                                         std::span<const ViewSetting> settings);
+                                         std::span<const ViewSetting> settings, DisplayLayout layout = {});
 
 class DisplayDesk final : public DisplayHost {
  public:
@@ -46,7 +46,7 @@ class DisplayDesk final : public DisplayHost {
     std::function<bool(std::size_t slot)> is_online;          // the robot is mirrored now; empty: none ever is
   };
 
-  DisplayDesk(Parts parts, std::span<const ViewSetting> settings);
+  DisplayDesk(Parts parts, std::span<const ViewSetting> settings, DisplayLayout layout = {});
 
   Result<void> set_display(int display, bool full_screen) override;
   Result<void> set_view(int view, const ViewChange& change, const ViewPace& pace) override;

@@ -89,12 +89,13 @@ struct Gateway::Parts {
   std::unique_ptr<FaultMonitor> faults;
   std::mutex answering;  // of the engine's view for status and of what follows: several threads answer questions
   RobotStateBuilder status_builder;
-  std::unique_ptr<ControlServer> control;
   std::unique_ptr<MonitorPage> page;
+  std::unique_ptr<ControlServer> control;
 
   ~Parts() {
     control.reset();
-    page.reset();
+    // It stays until the end: its threads ask it for its report until it is closed.
+    if (page) page->close();
     faults.reset();
     studio.reset();
     publisher.reset();
@@ -103,7 +104,9 @@ struct Gateway::Parts {
     contacts.reset();
     ranging.reset();
     collisions.reset();
-    // The receiver's handler may wait for the owner to take a command, so it has to end first.
+    // The receiver's handler may wait for the owner to take a command, so it has to end first; an owner that never
+    // began takes none.
+    if (owner && !owner->running()) owner->stop();
     if (messages) messages->stop();
     if (owner) owner->stop();
     if (loop) loop->stop();
@@ -120,7 +123,7 @@ struct Gateway::Parts {
   Result<void> start_studio(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
   void start_fault_monitor();
   Result<void> start_control();
-  void start_page(const GatewayOptions& options, const WebSettings& settings);
+  void make_page(const GatewayOptions& options, const WebSettings& settings);
 
   Result<std::string> write_flight_record(const std::string& file_name, const std::string& reason);
   void answer(std::string_view request, ControlReply reply);
@@ -163,8 +166,9 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
   owner = std::make_unique<CellOwner>(CellOwner::Parts{
       std::move(loaded.cell), loaded.home, std::move(streams), std::move(loaded.haptics), std::move(loaded.views),
-      std::move(loaded.collision), loaded.foot_switches, *engine, board, clock, stream_priority, instance->info().name,
-      queues.tcp_force_key, queues.mode, save, reply, [this] { return picture_updates.count(); }, options.bell});
+      std::move(loaded.layout), std::move(loaded.collision), loaded.foot_switches, *engine, board, clock,
+      stream_priority, instance->info().name, queues.tcp_force_key, queues.mode, save, reply,
+      [this] { return picture_updates.count(); }, options.bell});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -270,7 +274,8 @@ void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply
                       });
 }
 
-void Gateway::Parts::start_page(const GatewayOptions& options, const WebSettings& settings) {
+// Serves nobody yet: whoever answers for the gateway asks it for its report.
+void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings& settings) {
   WebBackend::Parts parts;
   parts.home = home->root();
   parts.board = &board;
@@ -321,7 +326,7 @@ std::string Gateway::Parts::status() {
   const ContactReport contact_report = contacts->report();
   const ForceReport force_report = forces->report();
   const PictureReport picture_report = studio->report();
-  const PageReport page_report = page ? page->report() : PageReport{};
+  const PageReport page_report = page->report();
   const Timestamp now = clock.now();
   return status_document({instance->info().name,
                           cell_name,
@@ -375,8 +380,9 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->start_studio(pictures, options.headless, dds);
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();
+  parts->make_page(options, web);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
-  parts->start_page(options, web);
+  parts->page->open();
   // Last: the startup script finds everything running.
   parts->owner->start();
   return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));

@@ -214,6 +214,7 @@ void add_views(JsonBuilder& out, const LiveSources& sources) {
     const bool moving = view.sequence && !scene::ended(*view.sequence, sources.now, sources.picture_updates);
     out.begin_object()
         .member("id", id)
+        .member("name", display.layout.views.at(id).name)
         .member("viewpoint_m", now.viewpoint)
         .member("lookpoint_m", now.lookpoint)
         .member("twist_rad", now.twist)
@@ -225,10 +226,22 @@ void add_views(JsonBuilder& out, const LiveSources& sources) {
   out.end_array();
 }
 
+// The main view first.
+void add_displays(JsonBuilder& out, const DisplayLayout& layout) {
+  out.key("displays").begin_array();
+  for (std::size_t i = 0; i < kDisplays; ++i) {
+    out.begin_object().member("id", i + 1).member("name", layout.displays.at(i).name).key("views").begin_array();
+    for (const LayoutPane& pane : layout.displays.at(i).panes) out.value(pane.view);
+    out.end_array().end_object();
+  }
+  out.end_array();
+}
+
 void add_display(JsonBuilder& out, const LiveSources& sources) {
   const DisplayState& display = *sources.picture.display;
   out.key("display").begin_object().member("display", display.display).member("full_screen", display.full_screen);
   add_views(out, sources);
+  add_displays(out, display.layout);
   out.key("modes").begin_object();
   for (std::size_t i = 0; i < kDisplayModes; ++i) out.member(kModeWords.at(i), display.modes.test(i));
   out.member("LEGEND", display.legend).end_object().end_object();
@@ -277,10 +290,11 @@ std::uint64_t TreeRevision::of(const std::shared_ptr<const CompiledCell>& cell) 
 }
 
 std::string live_document(const LiveSources& sources, LoopWindow& window, std::uint64_t tree_revision) {
+  const std::int64_t time_ms = to_wall_clock_ns(sources.now) / 1'000'000;
   JsonBuilder out;
   out.begin_object()
       .key("time_s")
-      .fixed(static_cast<double>(to_wall_clock_ns(sources.now) / 1'000'000) * 1e-3, 3)
+      .fixed(1e-3 * static_cast<double>(time_ms), 3)
       .member("uptime_s", sources.uptime_s)
       .member("cell", sources.cell)
       .member("instance", sources.instance)

@@ -20,47 +20,65 @@ int port_of(const MonitorPage::Options& options) {
 
 }  // namespace
 
-MonitorPage::MonitorPage(const Options& options, WebBackend::Parts backend) {
-  state_.on = options.wanted && options.settings.enabled;
-  state_.read_only = options.settings.read_only;
-  if (!state_.on) return;
-  backend.server_status = [this] { return server_ ? server_->status() : web::ServerStatus{}; };
+MonitorPage::MonitorPage(Options options, WebBackend::Parts backend) : options_(std::move(options)) {
+  state_.on = options_.wanted && options_.settings.enabled;
+  state_.read_only = options_.settings.read_only;
+  backend.server_status = [this] { return report().server; };
   backend_ = std::make_unique<WebBackend>(std::move(backend));
-  start(options);
 }
 
-MonitorPage::~MonitorPage() = default;
+MonitorPage::~MonitorPage() { close(); }
 
-void MonitorPage::start(const Options& options) {
-  web::ServerOptions to;
-  to.address = options.settings.address;
-  to.port = port_of(options);
-  to.read_only = options.settings.read_only;
-  to.origins = options.settings.origins;
-  to.version = CELLMIRROR_VERSION;
-  to.cell = options.cell;
-  to.instance = options.instance;
-  // Beside the locks: what lies in the instance's own folder ends with the gateway.
-  auto token = web::kept_token(options.folder.parent_path() / ".locks" / ("page-token-" + options.instance));
-  if (!token) {
-    state_.problem = token.error().text();
-    return log_warning("web", "{}", state_.problem);
+void MonitorPage::open() {
+  if (!options_.wanted || !options_.settings.enabled) return;
+  auto server = start_server();
+  if (!server) return refuse(server.error());
+  const web::PageAddress page{options_.settings.address, (*server)->port(), (*server)->token(),
+                              options_.settings.read_only};
+  {
+    const std::scoped_lock lock(mutex_);
+    server_ = std::move(*server);
+    state_.address = page.url();
   }
-  to.token = *token;
-  auto server = web::Server::start(to, *backend_);
-  if (!server) {
-    state_.problem = server.error().text();
-    return log_warning("web", "{}", state_.problem);
-  }
-  server_ = std::move(*server);
-  const web::PageAddress page{to.address, server_->port(), to.token, to.read_only};
-  state_.address = page.url();
   // Without the file the page only shows, since nobody can know the token.
-  if (const auto written = web::write_page_address(options.folder, page); !written)
+  if (const auto written = web::write_page_address(options_.folder, page); !written)
     log_warning("web", "{}", written.error().text());
 }
 
+void MonitorPage::close() {
+  std::unique_ptr<web::Server> ended;
+  {
+    const std::scoped_lock lock(mutex_);
+    ended = std::move(server_);
+  }
+  // Without the lock: what is still being done for clients asks for the report.
+  ended.reset();
+}
+
+Result<std::unique_ptr<web::Server>> MonitorPage::start_server() {
+  web::ServerOptions to;
+  to.address = options_.settings.address;
+  to.port = port_of(options_);
+  to.read_only = options_.settings.read_only;
+  to.origins = options_.settings.origins;
+  to.version = CELLMIRROR_VERSION;
+  to.cell = options_.cell;
+  to.instance = options_.instance;
+  // Beside the locks: what lies in the instance's own folder ends with the gateway.
+  auto token = web::kept_token(options_.folder.parent_path() / ".locks" / ("page-token-" + options_.instance));
+  if (!token) return std::unexpected(token.error());
+  to.token = *token;
+  return web::Server::start(to, *backend_);
+}
+
+void MonitorPage::refuse(const Error& error) {
+  log_warning("web", "{}", error.text());
+  const std::scoped_lock lock(mutex_);
+  state_.problem = error.text();
+}
+
 PageReport MonitorPage::report() const {
+  const std::scoped_lock lock(mutex_);
   PageReport out = state_;
   if (server_) out.server = server_->status();
   return out;

@@ -34,18 +34,28 @@ class MonitorPage {
     std::filesystem::path folder;  // of the instance: the address and the token are left there for its owner
   };
 
-  // Where the page cannot be served a warning is logged, and the gateway goes on without.
-  MonitorPage(const Options& options, WebBackend::Parts backend);
+  // Serves nobody yet: open() is called once the page itself can be asked for its report, which its clients do.
+  MonitorPage(Options options, WebBackend::Parts backend);
   ~MonitorPage();
+  MonitorPage(const MonitorPage&) = delete;
+  MonitorPage& operator=(const MonitorPage&) = delete;
 
-  // Any thread.
+  // Where the page cannot be served a warning is logged, and the gateway goes on without.
+  void open();
+  // Ends all connections, and waits for what is being done for them. Nobody is called back after that.
+  void close();
+
+  // Any thread, before open(), during close() and after it too.
   [[nodiscard]] PageReport report() const;
 
  private:
-  void start(const Options& options);
+  Result<std::unique_ptr<web::Server>> start_server();
+  void refuse(const Error& error);
 
-  PageReport state_;  // but for the counters; never changed after the start
+  Options options_;
   std::unique_ptr<WebBackend> backend_;
+  mutable std::mutex mutex_;  // of what follows
+  PageReport state_;          // but for the counters
   std::unique_ptr<web::Server> server_;
 };
 

@@ -39,6 +39,8 @@ std::optional<Pose> commanded_pose(const kinematics::Task& task, const Pose& X_Z
 
 Result<MotionRecord*> MotionDesk::open(const RobotModel* robot, std::string_view id) {
   if (auto checked = port_.check_simulated(id); !checked) return std::unexpected(checked.error());
+  // Deleted with its component a moment ago: the tick has not let go of it yet.
+  if (robot == nullptr) return std::unexpected(cell_.explain_robot(id));
   MotionRecord& record = records_.try_emplace(robot->id(), robot->id()).first->second;
   follow(*robot, record);
   return &record;

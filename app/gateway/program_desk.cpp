@@ -16,7 +16,8 @@ namespace cellmirror::app {
 namespace {
 
 constexpr std::string_view kProgramLog = "programs";
-constexpr std::size_t kLoggedFindings = 20;  // of one program
+constexpr std::size_t kLoggedFindings = 20;          // of one program
+constexpr std::uintmax_t kReadAtOnce = 16UL * 1024;  // bytes: less than a millisecond
 
 bool has_the_robot(program::ProgramState state) {
   switch (state) {
@@ -35,7 +36,8 @@ bool has_the_robot(program::ProgramState state) {
 ProgramDesk::ProgramDesk(Parts parts)
     : parts_(std::move(parts)),
       controllers_(parts_.moves, *this, parts_.clock),
-      recordings_(parts_.cell, parts_.home, parts_.fleet, parts_.clock) {
+      recordings_(parts_.cell, parts_.home, parts_.fleet, parts_.clock),
+      loads_(parts_.home) {
   controllers_.on_event([this](const program::ProgramEvent& event) { note(event); });
 }
 
@@ -51,20 +53,39 @@ Result<void> ProgramDesk::set_language(std::string_view language) {
   return {};
 }
 
-Result<void> ProgramDesk::load_program(std::string_view program, std::string_view robot) {
-  if (auto checked = check_robot(robot); !checked) return checked;
+Result<ActivityHandle> ProgramDesk::load_program(std::string_view program, std::string_view robot) {
+  if (auto checked = check_robot(robot); !checked) return std::unexpected(checked.error());
   const auto language = program::find_language(language_);
   if (!language) return std::unexpected(language.error());
-  Diagnostics findings;
-  auto read = read_program(parts_.home, **language, program, findings);
-  const std::size_t logged = std::min(findings.all().size(), kLoggedFindings);
-  for (std::size_t i = 0; i < logged; ++i) log_text(LogLevel::warning, kProgramLog, findings.all()[i].text());
-  if (!read) return std::unexpected(std::move(read.error()));
-  return controllers_.load(robot, program, std::move(*read));
+  auto path = find_program_file(parts_.home, **language, program);
+  if (!path) return std::unexpected(path.error());
+  std::error_code error;
+  const bool long_one = std::filesystem::file_size(*path, error) > kReadAtOnce;
+  if (parts_.read_aside && (long_one || loads_.under_way(program, robot))) {
+    return loads_.begin(program, robot, **language, *std::move(path));
+  }
+  if (auto loaded = accept(program, robot, read_program(parts_.home, **language, *path)); !loaded)
+    return std::unexpected(loaded.error());
+  return ActivityHandle();
 }
 
-Result<void> ProgramDesk::run_program(std::string_view program, std::string_view robot, ProgramBegin begin) {
-  if (auto checked = check_robot(robot); !checked) return checked;
+Result<void> ProgramDesk::accept(std::string_view program, std::string_view robot, ProgramText text) {
+  const std::vector<Diagnostic>& findings = text.findings.all();
+  const std::size_t logged = std::min(findings.size(), kLoggedFindings);
+  for (std::size_t i = 0; i < logged; ++i) log_text(LogLevel::warning, kProgramLog, findings[i].text());
+  if (!text.program) return std::unexpected(std::move(text.program.error()));
+  return controllers_.load(robot, program, *std::move(text.program));
+}
+
+// A program that is being loaded begins when it is there, so that commands that nobody waits for keep their order.
+Result<ActivityHandle> ProgramDesk::run_program(std::string_view program, std::string_view robot, ProgramBegin begin) {
+  if (auto checked = check_robot(robot); !checked) return std::unexpected(checked.error());
+  if (loads_.has_to_wait(program, robot)) return loads_.add_run(program, robot, begin);
+  if (auto begun = begin_run(program, robot, begin); !begun) return std::unexpected(begun.error());
+  return ActivityHandle();
+}
+
+Result<void> ProgramDesk::begin_run(std::string_view program, std::string_view robot, ProgramBegin begin) {
   const bool idle = !controllers_.busy(robot);
   const auto when =
       begin == ProgramBegin::exec_wait ? program::Controllers::Begin::exec_wait : program::Controllers::Begin::now;
@@ -74,15 +95,56 @@ Result<void> ProgramDesk::run_program(std::string_view program, std::string_view
   return {};
 }
 
+bool ProgramDesk::end_loads() {
+  bool any = false;
+  while (auto ended = loads_.take()) {
+    any = true;
+    const std::string& program = ended->what.program;
+    const std::string& robot = ended->what.robot;
+    auto loaded = check_robot(robot);  // it may have been deleted
+    if (loaded) loaded = accept(program, robot, std::move(ended->text));
+    if (loaded) {
+      ended->activity->finish();
+    } else {
+      ended->activity->refuse(loaded.error());
+    }
+    for (const ProgramLoads::Run& run : ended->runs) {
+      if (!loaded && run.program == program) {
+        run.activity->refuse(loaded.error());
+      } else {
+        begin_waiting_run(run, robot);
+      }
+    }
+  }
+  return any;
+}
+
+void ProgramDesk::begin_waiting_run(const ProgramLoads::Run& run, std::string_view robot) {
+  if (const auto begun = begin_run(run.program, robot, run.begin)) {
+    run.activity->finish();
+  } else {
+    run.activity->refuse(begun.error());
+  }
+}
+
 Result<void> ProgramDesk::delete_program(std::string_view program, std::string_view robot) {
-  return controllers_.remove(robot, program);
+  const auto waiting = loads_.give_up(program, robot, {fmt::format("TF_DELETE has given up {}", program), {}});
+  auto removed = controllers_.remove(robot, program);
+  if (!waiting) return removed;
+  for (const ProgramLoads::Run& run : *waiting) begin_waiting_run(run, robot);
+  return {};
 }
 Result<void> ProgramDesk::hold_program(std::string_view robot) { return controllers_.hold(robot); }
 Result<void> ProgramDesk::resume_program(std::string_view robot) { return controllers_.resume(robot); }
 Result<void> ProgramDesk::step_program(std::string_view robot, bool backward) {
   return controllers_.step(robot, backward ? program::Direction::backward : program::Direction::forward);
 }
-Result<void> ProgramDesk::stop_programs(std::string_view robot) { return controllers_.stop(robot); }
+Result<void> ProgramDesk::stop_programs(std::string_view robot) {
+  const bool waited = loads_.give_up_runs(robot, {"TF_STOP has ended it before it began", {}});
+  auto stopped = controllers_.stop(robot);
+  if (waited) return {};
+  return stopped;
+}
 
 Result<ActivityHandle> ProgramDesk::await_programs(std::string_view robot) {
   if (auto checked = check_robot(robot); !checked) return std::unexpected(checked.error());
@@ -121,7 +183,8 @@ Result<void> ProgramDesk::set_analogue_input(std::string_view robot, std::size_t
 
 // Programs in a deadlock wait for ever: WAIT shall tell so and not wait with them.
 bool ProgramDesk::busy() const {
-  return parts_.motion.moving() || parts_.display.busy() || (controllers_.busy() && !controllers_.deadlock());
+  return parts_.motion.moving() || parts_.display.busy() || loads_.runs_wait() ||
+         (controllers_.busy() && !controllers_.deadlock());
 }
 
 Result<void> ProgramDesk::verdict(std::uint64_t since) const {
@@ -142,7 +205,8 @@ Result<ActivityHandle> ProgramDesk::execute(std::string_view text, std::string_v
 
 bool ProgramDesk::follow() {
   recordings_.follow();
-  const bool any = controllers_.follow();
+  const bool loaded = end_loads();
+  const bool any = controllers_.follow() || loaded;
   if (!awaiting_.empty()) answer_awaiting();
   return any;
 }
@@ -160,6 +224,7 @@ void ProgramDesk::follow_cell() {
 
 void ProgramDesk::shut_down() {
   controllers_.stop_all();
+  loads_.give_up_all({"the gateway ends", {}});
   for (const Awaiting& waiting : awaiting_) waiting.activity->refuse({"the gateway ends", {}});
   awaiting_.clear();
 }
@@ -190,7 +255,7 @@ void ProgramDesk::answer_awaiting() {
       waiting.activity->refuse({deadlock->text(), "TF_STOP ends programs that wait"});
       return true;
     }
-    if (controllers_.busy(waiting.robot)) return false;
+    if (controllers_.busy(waiting.robot) || loads_.runs_wait(waiting.robot)) return false;
     const auto failed = failed_of_robot_.find(waiting.robot);
     if (failed == failed_of_robot_.end()) {
       waiting.activity->finish();
@@ -228,6 +293,7 @@ SignalPicture ProgramDesk::signals_of(const RobotModel& robot) const {
 ProgramsPicture ProgramDesk::picture() const {
   ProgramsPicture picture;
   picture.programs = controllers_.status();
+  picture.loading = loads_.pictures();
   picture.deadlock = controllers_.deadlock();
   for (const auto& [name, count] : controllers_.semaphores().counts()) picture.semaphores.emplace_back(name, count);
   for (const std::string& id : parts_.cell.robot_ids()) {

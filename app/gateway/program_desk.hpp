@@ -14,6 +14,7 @@
 #include "app/gateway/display_desk.hpp"
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/motion_desk.hpp"
+#include "app/gateway/program_loads.hpp"
 #include "app/gateway/program_picture.hpp"
 #include "app/gateway/program_recordings.hpp"
 #include "rt_core/base/home.hpp"
@@ -42,14 +43,16 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
     program::ProgramMotion& moves;
     const Clock& clock;
     std::function<void(const program::ProgramEvent&)> event = {};  // told of all that happens
+    // Long programs are read in a thread of their own. Not off line, where no time passes meanwhile.
+    bool read_aside = false;
   };
   explicit ProgramDesk(Parts parts);
   // Before the first program runs; it outlives the desk's last follow().
   void set_runner(script::ScriptRunner& runner) { runner_ = &runner; }
 
   Result<void> set_language(std::string_view language) override;
-  Result<void> load_program(std::string_view program, std::string_view robot) override;
-  Result<void> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override;
+  Result<ActivityHandle> load_program(std::string_view program, std::string_view robot) override;
+  Result<ActivityHandle> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override;
   Result<void> delete_program(std::string_view program, std::string_view robot) override;
   Result<void> hold_program(std::string_view robot) override;
   Result<void> resume_program(std::string_view robot) override;
@@ -69,8 +72,8 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
 
   // Lets programs go on. Often; between the commands of SCRIPT, never within one. True where anything did.
   bool follow();
-  // A program or a recording needs follow() soon.
-  [[nodiscard]] bool needs_turns() const { return controllers_.busy() || recordings_.busy(); }
+  // A program, a recording or a load needs follow() soon.
+  [[nodiscard]] bool needs_turns() const { return controllers_.busy() || recordings_.busy() || !loads_.empty(); }
   // After every change of the tree: the programs of robots that are gone end and are forgotten.
   void follow_cell();
   // The robot takes no motion commands any more: what it runs fails with this reason.
@@ -90,6 +93,10 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
     std::shared_ptr<Activity> activity;
   };
 
+  Result<void> accept(std::string_view program, std::string_view robot, ProgramText text);
+  Result<void> begin_run(std::string_view program, std::string_view robot, ProgramBegin begin);
+  void begin_waiting_run(const ProgramLoads::Run& run, std::string_view robot);
+  bool end_loads();
   void note(const program::ProgramEvent& event);
   void answer_awaiting();
   [[nodiscard]] SignalPicture signals_of(const RobotModel& robot) const;
@@ -100,6 +107,7 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
   script::ScriptRunner* runner_ = nullptr;
   program::Controllers controllers_;
   ProgramRecordings recordings_;
+  ProgramLoads loads_;
   std::string language_ = "irdata";  // manual 1.2.1
   std::uint64_t failures_ = 0;
   std::deque<std::string> failed_;  // why, the newest last

@@ -54,23 +54,25 @@ Result<fs::path> find_program_file(const KismetHome& home, const program::Langua
               fmt::format("looked for {}; ROBOT_LANGUAGE sets the language", tried));
 }
 
-Result<std::shared_ptr<const program::Program>> read_program(const KismetHome& home, const program::Language& language,
-                                                             std::string_view name, Diagnostics& diagnostics) {
-  const auto path = find_program_file(home, language, name);
-  if (!path) return std::unexpected(path.error());
-  const auto text = read_text_file(*path, program::kLargestProgramText);
-  if (!text) return std::unexpected(text.error());
+ProgramText read_program(const KismetHome& home, const program::Language& language, const fs::path& path) {
+  ProgramText read;
+  const auto text = read_text_file(path, program::kLargestProgramText);
+  if (!text) {
+    read.program = std::unexpected(text.error());
+    return read;
+  }
   program::ParseContext context;
-  context.file = path->lexically_relative(home.root()).string();
+  context.file = path.lexically_relative(home.root()).string();
   context.codes = codes_of(home, language);
-  auto program = language.parse(*text, context, diagnostics);
-  if (program != nullptr && diagnostics.ok()) return program;
-  const auto& all = diagnostics.all();
+  read.program = language.parse(*text, context, read.findings);
+  if (*read.program != nullptr && read.findings.ok()) return read;
+  const auto& all = read.findings.all();
   const auto first = std::ranges::find(all, Severity::error, &Diagnostic::severity);
-  const std::size_t errors = diagnostics.errors();
-  return fail(fmt::format("{} has {} error{}, it is not loaded; the first: {}", context.file, errors,
-                          errors == 1 ? "" : "s", first == all.end() ? std::string("unknown") : first->text()),
-              fmt::format("`cellmirror check --language {} FILE` shows all of them", language.name));
+  const std::size_t errors = read.findings.errors();
+  read.program = fail(fmt::format("{} has {} error{}, it is not loaded; the first: {}", context.file, errors,
+                                  errors == 1 ? "" : "s", first == all.end() ? std::string("unknown") : first->text()),
+                      fmt::format("`cellmirror check --language {} FILE` shows all of them", language.name));
+  return read;
 }
 
 }  // namespace cellmirror::app

@@ -20,11 +20,15 @@ inline constexpr std::string_view kProgramFolder = "programs";
 [[nodiscard]] Result<std::filesystem::path> find_program_file(const KismetHome& home, const program::Language& language,
                                                               std::string_view name);
 
-// Reads and parses it; a table of codes of the user's (Language::codes_file) is looked for in the same folders. All
-// findings are in `diagnostics`; a program with errors is refused with the first of them and their number.
-[[nodiscard]] Result<std::shared_ptr<const program::Program>> read_program(const KismetHome& home,
-                                                                           const program::Language& language,
-                                                                           std::string_view name,
-                                                                           Diagnostics& diagnostics);
+// What a file was read as.
+struct ProgramText {
+  Result<std::shared_ptr<const program::Program>> program;
+  Diagnostics findings;
+};
+
+// Reads and parses the file at `path`; a table of codes of the user's (Language::codes_file) is looked for in the same
+// folders. A program with errors is refused with the first of them and their number. Any thread.
+[[nodiscard]] ProgramText read_program(const KismetHome& home, const program::Language& language,
+                                       const std::filesystem::path& path);
 
 }  // namespace cellmirror::app

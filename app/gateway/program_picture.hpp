@@ -21,8 +21,15 @@ struct SignalPicture {
   std::vector<std::pair<std::size_t, double>> analogue_outputs;
 };
 
+// A program that is being loaded.
+struct LoadPicture {
+  std::string robot;
+  std::string program;
+};
+
 struct ProgramsPicture {
   std::vector<program::ProgramStatus> programs;
+  std::vector<LoadPicture> loading;
   std::optional<program::Deadlock> deadlock;
   std::vector<std::pair<std::string, std::uint32_t>> semaphores;
   std::vector<SignalPicture> signals;

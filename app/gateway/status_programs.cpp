@@ -68,7 +68,12 @@ json programs_json(const ProgramsPicture& programs) {
                           {"language", recording.language},
                           {"points", recording.points}});
   }
+  json loading = json::array();
+  for (const LoadPicture& load : programs.loading) {
+    loading.push_back({{"robot", load.robot}, {"program", load.program}});
+  }
   return {{"loaded", std::move(all)},
+          {"loading", std::move(loading)},
           {"deadlock", deadlock_json(programs.deadlock)},
           {"semaphores", std::move(semaphores)},
           {"signals", std::move(signals)},

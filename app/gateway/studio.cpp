@@ -69,6 +69,20 @@ Result<void> Studio::refusal(const web::PictureWish& wish) const {
   return picture ? check_camera(wish, *picture->cell) : Result<void>();
 }
 
+void Studio::expect_pictures() {
+  if (options_.headless || !options_.settings.on) return;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (std::exchange(expected_, true)) return;
+  }
+  add_job([this](bool given_up) {
+    web::PictureWish small;
+    small.width = 160;
+    small.height = 120;
+    if (!given_up && !renderer_) static_cast<void>(take(small, ImageFormat::jpeg));
+  });
+}
+
 Result<std::unique_ptr<web::PictureStream>> Studio::open_pictures(const web::PictureWish& wish) {
   if (const auto refused = refusal(wish); !refused) return std::unexpected(refused.error());
   auto stream = streams_.open(wish);
@@ -204,6 +218,7 @@ double Studio::wished_hz(Timestamp now) const {
 
 void Studio::round(Timestamp now) {
   if (!report_.on) return;
+  follow_traces();
   const std::vector<Guest> wanted = guests(now);
   if (wanted.empty()) {
     shots_.clear();
@@ -212,6 +227,11 @@ void Studio::round(Timestamp now) {
   if (!need_renderer()) return;
   effort_.begin_round(wished_hz(now));
   serve(wanted);
+}
+
+void Studio::follow_traces() {
+  const auto picture = boards_.pictures.look();
+  if (picture && picture->display && picture->display->on(DisplayMode::smear)) source_.refresh();
 }
 
 void Studio::serve(const std::vector<Guest>& guests) {

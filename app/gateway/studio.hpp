@@ -74,6 +74,9 @@ class Studio {
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
 
+  // Any thread. The first time the renderer is made and the cell's meshes go to it, so that the first picture comes
+  // sooner. Does not wait.
+  void expect_pictures();
   // Any thread, as web::Backend. Does not wait.
   Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish);
   // Waits for the picture.
@@ -113,6 +116,8 @@ class Studio {
   void run_jobs();
   void give_up_jobs();
   void round(Timestamp now);
+  // A trace has a point for each scene that was joined, so one is, also where nobody looks.
+  void follow_traces();
   [[nodiscard]] std::vector<Guest> guests(Timestamp now);
   // Different pictures a second that are wished for.
   [[nodiscard]] double wished_hz(Timestamp now) const;
@@ -156,6 +161,7 @@ class Studio {
   mutable std::mutex mutex_;  // of what follows
   std::deque<Job> jobs_;
   bool ended_ = false;
+  bool expected_ = false;  // expect_pictures() was called
   PictureReport report_;
 
   WakeSignal wake_;

@@ -56,6 +56,10 @@ void WebBackend::execute(std::string_view command, std::function<void(const web:
     (*back)({false, "too many commands wait to be executed; try again"});
 }
 
+void WebBackend::expect_pictures() {
+  if (parts_.studio != nullptr) parts_.studio->expect_pictures();
+}
+
 Result<std::unique_ptr<web::PictureStream>> WebBackend::open_pictures(const web::PictureWish& wish) {
   if (parts_.studio == nullptr) return no_pictures();
   return parts_.studio->open_pictures(wish);

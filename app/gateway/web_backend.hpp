@@ -41,6 +41,7 @@ class WebBackend final : public web::Backend {
   [[nodiscard]] std::string names_json() override;
   [[nodiscard]] std::string metrics_text() override;
   void execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) override;
+  void expect_pictures() override;
   Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish) override;
   Result<EncodedImage> picture(const web::PictureWish& wish, ImageFormat format) override;
   Result<std::optional<web::PickedObject>> pick(const web::PictureWish& wish, int x, int y) override;

@@ -19,7 +19,7 @@ Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotReques
   const auto positions = loaded.cell.start_positions();
   CellPoses poses;
   compute_poses(*cell, positions, poses);
-  const DisplayState display = first_display(*cell, extent_of(*cell, positions), loaded.views);
+  const DisplayState display = first_display(*cell, extent_of(*cell, positions), loaded.views, loaded.layout);
   const Timestamp now = SystemClock().now();
   Scene scene;
   scene::SceneBuilder builder;

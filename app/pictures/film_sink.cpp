@@ -38,12 +38,18 @@ Result<void> write_all(int fd, std::span<const std::uint8_t> bytes, const std::s
 class FrameFiles final : public FilmSink {
  public:
   explicit FrameFiles(fs::path folder) : folder_(std::move(folder)) {}
-  Result<void> add(std::span<const std::uint8_t> jpeg) override {
-    return write_picture_file(folder_ / fmt::format("frame-{:05}.jpg", ++frames_), jpeg);
+  Result<void> add(std::span<const std::uint8_t> jpeg) override { return write_picture_file(frame(++frames_), jpeg); }
+  // Frames behind the last one are of a longer film that was there before.
+  Result<std::string> finish() override {
+    std::error_code error;
+    for (std::uint64_t behind = frames_ + 1; fs::remove(frame(behind), error); ++behind) {
+    }
+    return fmt::format("{} frames in {}", frames_, folder_.string());
   }
-  Result<std::string> finish() override { return fmt::format("{} frames in {}", frames_, folder_.string()); }
 
  private:
+  [[nodiscard]] fs::path frame(std::uint64_t number) const { return folder_ / fmt::format("frame-{:05}.jpg", number); }
+
   fs::path folder_;
   std::uint64_t frames_ = 0;
 };
@@ -74,25 +80,32 @@ class Ffmpeg final : public FilmSink {
 
   Result<void> add(std::span<const std::uint8_t> jpeg) override {
     ++frames_;
-    return write_all(pipe_.get(), jpeg, "the pipe to ffmpeg");
+    auto written = write_all(pipe_.get(), jpeg, "the pipe to ffmpeg");
+    if (!written && wait() != 0) return refusal();
+    return written;
   }
   Result<std::string> finish() override {
-    if (const int status = wait(); status != 0)
-      return fail(fmt::format("ffmpeg made no {}: it ended with {}", name_, status), "it has said why above");
+    if (wait() != 0) return refusal();
     return fmt::format("{} frames in {}", frames_, name_);
   }
 
  private:
+  [[nodiscard]] std::unexpected<Error> refusal() const {
+    return fail(fmt::format("ffmpeg made no {}: it ended with {}", name_, status_), "it has said why above");
+  }
+
   int wait() {
     pipe_ = Descriptor();
-    if (process_ <= 0) return 0;
+    if (process_ <= 0) return status_;
     int status = 0;
     while (::waitpid(std::exchange(process_, -1), &status, 0) < 0 && errno == EINTR) {
     }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    return status_;
   }
 
   pid_t process_;
+  int status_ = 0;
   Descriptor pipe_;
   std::string name_;
   std::uint64_t frames_ = 0;
@@ -139,8 +152,13 @@ Result<std::unique_ptr<FilmSink>> start_ffmpeg(const std::string& program, const
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, reading.get(), STDIN_FILENO);
+  // In a process group of its own: Ctrl-C ends the film, not the program that still has to write it down.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   pid_t process = 0;
-  const int failed = ::posix_spawn(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int failed = ::posix_spawn(&process, program.c_str(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) return fail(fmt::format("{} cannot be started: {}", program, system_error_text(failed)));
   return std::make_unique<Ffmpeg>(process, std::move(writing), name);

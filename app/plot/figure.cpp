@@ -1,9 +1,11 @@
 #include "app/plot/figure.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "app/plot/panel.hpp"
 
@@ -24,12 +26,19 @@ Result<std::string> png_of(const Figure& figure) {
   constexpr double kMargin = 28;
   canvas.text(kMargin, 38, figure.title, 23, kInk, Anchor::left, true);
   canvas.text(kMargin, 64, figure.subtitle, 15, kFaintInk);
+  // Panels below each other often share their x axis: they begin and end at the same place.
+  std::vector<Sides> sides(columns);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const Sides needed = sides_of(canvas, figure.panels[i]);
+    Sides& of_column = sides[i % columns];
+    of_column = {std::max(of_column.left, needed.left), std::max(of_column.right, needed.right)};
+  }
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const std::size_t row = i / columns;
     const double x = static_cast<double>(i % columns) * figure.panel_width;
     const double y = header + static_cast<double>(row) * figure.panel_height;
     draw_panel(canvas, {x, y, static_cast<double>(figure.panel_width), static_cast<double>(figure.panel_height)},
-               figure.panels[i]);
+               sides[i % columns], figure.panels[i]);
   }
   return canvas.png();
 }

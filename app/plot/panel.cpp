@@ -33,10 +33,10 @@ double dash_of(std::size_t series) {
 
 class PanelDrawing {
  public:
-  PanelDrawing(Canvas& canvas, const Rectangle& area, const Panel& panel)
+  PanelDrawing(Canvas& canvas, const Rectangle& area, const Sides& sides, const Panel& panel)
       : canvas_(canvas),
         panel_(panel),
-        plot_(inner(area)),
+        plot_(inner(area, sides)),
         x_(panel.x, values_of_x(), ticks_in(plot_.width, 90)),
         bars_(bars()),
         y_(y_axis(), values_of_y(), ticks_in(plot_.height, 45)) {}
@@ -58,19 +58,9 @@ class PanelDrawing {
     return std::max<std::size_t>(static_cast<std::size_t>(std::max(pixels, 0.0) / pixels_each), 2);
   }
 
-  [[nodiscard]] double legend_width() {
-    double width = 0;
-    for (const Line& line : panel_.lines) {
-      if (!line.label.empty()) width = std::max(width, canvas_.text_width(line.label, kTickSize) + 48);
-    }
-    return width;
-  }
-
-  [[nodiscard]] Rectangle inner(const Rectangle& area) {
-    constexpr double kLeft = 92, kRight = 26, kTop = 44, kBottom = 68;
-    double left = kLeft;
-    for (const std::string& row : panel_.rows) left = std::max(left, canvas_.text_width(row, kTickSize) + 24);
-    return {area.x + left, area.y + kTop, std::max(area.width - left - kRight - legend_width(), 10.0),
+  [[nodiscard]] static Rectangle inner(const Rectangle& area, const Sides& sides) {
+    constexpr double kTop = 44, kBottom = 68;
+    return {area.x + sides.left, area.y + kTop, std::max(area.width - sides.left - sides.right, 10.0),
             std::max(area.height - kTop - kBottom, 10.0)};
   }
 
@@ -254,8 +244,19 @@ class PanelDrawing {
 
 }  // namespace
 
-void draw_panel(Canvas& canvas, const Rectangle& area, const Panel& panel) {
-  PanelDrawing(canvas, area, panel).draw(area);
+Sides sides_of(Canvas& canvas, const Panel& panel) {
+  constexpr double kLeft = 92, kRight = 26;
+  Sides sides{kLeft, kRight};
+  for (const std::string& row : panel.rows) sides.left = std::max(sides.left, canvas.text_width(row, kTickSize) + 24);
+  for (const Line& line : panel.lines) {
+    if (!line.label.empty())
+      sides.right = std::max(sides.right, kRight + 48 + canvas.text_width(line.label, kTickSize));
+  }
+  return sides;
+}
+
+void draw_panel(Canvas& canvas, const Rectangle& area, const Sides& sides, const Panel& panel) {
+  PanelDrawing(canvas, area, sides, panel).draw(area);
 }
 
 }  // namespace cellmirror::plot

@@ -33,6 +33,7 @@ OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
       .streams = {},
       .haptics = {},
       .views = std::move(cell.views),
+      .layout = std::move(cell.layout),
       .collision = std::move(cell.collision),
       .foot_switches = {},
       .engine = engine_,

@@ -17,7 +17,7 @@ constexpr std::size_t kMostPanels = 24;
 // One row a robot that moved or ran programs: its programs above, its moves below.
 plot::Panel rows_panel(const SimulationResult& result, const plot::Axis& time) {
   plot::Panel panel;
-  panel.title = "Programs and moves";
+  panel.title = "Programs (orange: failed) and their moves (light blue: delays)";
   panel.x = time;
   const auto row_of = [&panel](const std::string& name) {
     const auto known = std::ranges::find(panel.rows, name);

@@ -15,6 +15,7 @@
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
 #include "config/command_line/command_line.hpp"
+#include "config/layout_file.hpp"
 #include "config/view_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/lang/reader.hpp"
@@ -81,10 +82,14 @@ void check_one(const std::filesystem::path& path, const Checked& against, Diagno
   if (path.extension() == ".spt") return check_script_file(path, against.names, diagnostics);
   if (path.extension() == ".toml") return check_cell_file(path, diagnostics, load_progress(line));
   if (path.extension() == kViewExtension) return check_view_file(path, against.names, diagnostics);
+  if (path.extension() == kLayoutExtension) {
+    static_cast<void>(read_layout(path, path.string(), diagnostics));
+    return;
+  }
   if (is_bus_file(path)) return check_bus_file(path, diagnostics);
   if (is_checkable(path)) return check_file(path, diagnostics, load_progress(line));
   diagnostics.error({path.string()}, "files of this kind cannot be checked",
-                    "known: .spt .toml .mpc .urdf .vws .dbc .eds .dcf " + program_extensions() +
+                    "known: .spt .toml .mpc .urdf .vws .lay .dbc .eds .dcf " + program_extensions() +
                         "; --language names that of a robot program");
 }
 
@@ -144,7 +149,8 @@ int check(const CheckOptions& options) {
 void add_check(cli::Command program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
   cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
-  sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .dbc .eds .dcf " + program_extensions()).required();
+  sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .lay .dbc .eds .dcf " + program_extensions())
+      .required();
   auto cell = sub.option("--cell", options->cell, "check the names in SCRIPT and view files against this cell");
   sub.option("--language", options->language, "the files are robot programs in this language").one_of(language_names());
   sub.option("--robot", options->robot, "check that robot programs fit the joints of this robot of the cell")

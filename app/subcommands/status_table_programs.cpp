@@ -69,10 +69,14 @@ std::string programs_table(const json& status) {
   if (!status.contains("programs")) return {};  // an older gateway
   const json& programs = status.at("programs");
   const json& loaded = programs.at("loaded");
-  if (loaded.empty() && programs.at("recordings").empty() && programs.at("signals").empty()) return {};
+  const json loading = programs.value("loading", json::array());  // an older gateway has none
+  if (loaded.empty() && loading.empty() && programs.at("recordings").empty() && programs.at("signals").empty())
+    return {};
   std::string out =
       fmt::format("\nprograms  {} loaded, {} failures\n", loaded.size(), programs.at("failures").get<std::uint64_t>());
   for (const json& program : loaded) out += program_line(program);
+  for (const json& load : loading)
+    out += fmt::format("  loading {} of {}\n", word(load.at("program")), word(load.at("robot")));
   for (const json& recording : programs.at("recordings")) {
     out += fmt::format("  recording {} of {}, {} check points\n", word(recording.at("program")),
                        word(recording.at("robot")), recording.at("points").get<std::uint64_t>());

@@ -42,7 +42,7 @@ struct Renderer::Impl {
         meshes(gl),
         target(gl),
         object_target(gl),
-        bodies(gl),
+        bodies(gl, meshes.textures()),
         background(gl),
         floor(gl),
         ribbons(gl) {}
@@ -106,6 +106,9 @@ Result<void> Renderer::Impl::end(int width, int height) {
   meshes.end_frame();
   counters.meshes = meshes.size();
   counters.uploads = meshes.uploads();
+  counters.textures = meshes.textures().size();
+  counters.texture_uploads = meshes.textures().uploads();
+  counters.texture_bytes = meshes.textures().bytes();
   ++counters.frames;
   if (gl.GetError() == GL_NO_ERROR) return {};
   return fail("the graphics system ran out of memory with a picture of " + std::to_string(width) + "x" +

@@ -93,6 +93,7 @@ Route route(const HttpRequest& request, ServerContext& context) {
     answer.headers.emplace_back("Allow", "GET, HEAD");
     return answer;
   }
+  if (request.path == "/") context.backend.expect_pictures();
   if (const PageFile* file = find_page_file(request.path)) return file_answer(*file, request);
   if (auto found = document(request, context)) return std::move(*found);
   if (auto found = snapshot(request, context)) return std::move(*found);

@@ -60,6 +60,8 @@ class Backend {
   [[nodiscard]] virtual std::string metrics_text() = 0;   // Prometheus text format
   // Executes a SCRIPT command; `reply` is called once, from another thread, or at once where there is no room.
   virtual void execute(std::string_view command, std::function<void(const CommandReply&)> reply) = 0;
+  // Somebody opens the page and will want pictures in a moment. Does not wait.
+  virtual void expect_pictures() = 0;
   // Starts a stream. Refused where there are too many or there is no renderer; says why.
   virtual Result<std::unique_ptr<PictureStream>> open_pictures(const PictureWish& wish) = 0;
   // One picture. May take a few tenths of a second.

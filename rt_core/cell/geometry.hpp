@@ -14,6 +14,8 @@
 
 namespace cellmirror {
 
+struct MeshLook;
+
 // What stands for a mesh in collision tests and ranging. Anything but `exact` is only taken where the cell or component
 // file says that it is good enough.
 enum class CollideAs : std::uint8_t {
@@ -32,6 +34,7 @@ struct Geometry {
   // Shape mesh: the file's triangles, scaled, in frame G; shared by all that use the file with the same scale. Null
   // only where the geometry was made without reading files (tests).
   std::shared_ptr<const geometry::TriangleMesh> mesh;
+  std::shared_ptr<const MeshLook> look;  // its pictures and colours, for drawing alone; null where it has none
   CollideAs collide_as = CollideAs::exact;
   std::vector<std::shared_ptr<const geometry::TriangleMesh>> pieces;  // convex; for `hull` (one) and `parts`
   Pose X_NG = Pose::Identity();                                       // pose in the node

@@ -149,6 +149,8 @@ std::string position_text(JointKind kind, double value) {
   return fmt::format("{:.6g} rad ({:.6g} deg)", value, deg_from_rad(value));
 }
 
+Pose RobotModel::X_FT() const { return parameters_.X_FP * parameters_.X_PT; }
+
 std::vector<std::string> RobotModel::joint_names() const {
   std::vector<std::string> names;
   names.reserve(joints_.size());

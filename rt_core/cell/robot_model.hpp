@@ -46,7 +46,7 @@ class RobotModel {
   [[nodiscard]] std::span<const JointKind> joint_kinds() const { return joint_kinds_; }
   [[nodiscard]] std::vector<std::string> joint_names() const;
   [[nodiscard]] const RobotParameters& parameters() const { return parameters_; }
-  [[nodiscard]] Pose X_FT() const { return parameters_.X_FP * parameters_.X_PT; }  // TCP in the flange
+  [[nodiscard]] Pose X_FT() const;  // TCP in the flange
 
   // One value a joint, SI. Ranges: minimum below maximum. Start position: inside the range. Velocities and
   // accelerations: positive; minimum velocity: zero or more, not above the maximum; active values: not above the

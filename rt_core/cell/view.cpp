@@ -8,8 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "rt_core/base/contract.hpp"
-
 namespace cellmirror {
 
 namespace {
@@ -38,10 +36,22 @@ void include(const Eigen::Vector3d& p_W, Extent& extent) {
   extent.high = extent.high.cwiseMax(p_W);
 }
 
-// So far away that all corners are in a picture of 4 to 3, with some room beside them.
-View whole(const Extent& extent, const Eigen::Vector3d& towards_viewer, bool orthogonal) {
+constexpr double kAspect = 4.0 / 3.0;  // of a picture, width to height
+
+// Of the narrowest pane that shows the view; never wider than the picture.
+double aspect_of(const DisplayLayout& layout, std::size_t view) {
+  double aspect = kAspect;
+  for (const LayoutDisplay& display : layout.displays) {
+    for (const LayoutPane& pane : display.panes) {
+      if (pane.view == static_cast<int>(view)) aspect = std::min(aspect, kAspect * pane.width / pane.height);
+    }
+  }
+  return aspect;
+}
+
+// So far away that all corners are in the picture, with some room beside them.
+View whole(const Extent& extent, const Eigen::Vector3d& towards_viewer, bool orthogonal, double aspect) {
   constexpr double kOpeningAngle = 40.0 * std::numbers::pi / 180.0;
-  constexpr double kAspect = 4.0 / 3.0;
   constexpr double kRoom = 1.08;
   const Eigen::Vector3d half_size = 0.5 * (extent.high - extent.low);
   const double radius = std::max(half_size.norm(), 0.1);
@@ -53,7 +63,7 @@ View whole(const Extent& extent, const Eigen::Vector3d& towards_viewer, bool ort
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d side((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
     const Eigen::Vector3d p_S = R_WS.transpose() * side.cwiseProduct(half_size);
-    const double aside = std::max(std::abs(p_S.y()), std::abs(p_S.x()) / kAspect) / std::tan(0.5 * kOpeningAngle);
+    const double aside = std::max(std::abs(p_S.y()), std::abs(p_S.x()) / aspect) / std::tan(0.5 * kOpeningAngle);
     distance = std::max(distance, orthogonal ? aside : p_S.z() + aside);
   }
   distance *= kRoom;
@@ -98,16 +108,13 @@ Extent extent_of(const CompiledCell& cell, std::span<const JointValues> q) {
   return extent.low.allFinite() ? extent : Extent{};
 }
 
-std::array<View, kViews> views_of_extent(const Extent& extent) {
-  const Eigen::Vector3d above = Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d side = -Eigen::Vector3d::UnitY();
-  return {whole(extent, {-0.5, -0.7, 0.4}, false),
-          whole(extent, above, true),
-          whole(extent, side, true),
-          whole(extent, above, true),
-          whole(extent, side, true),
-          whole(extent, side, false),
-          whole(extent, {-0.3, -0.4, 0.85}, false)};
+std::array<View, kViews> views_of_extent(const Extent& extent, const DisplayLayout& layout) {
+  std::array<View, kViews> views;
+  for (std::size_t id = 0; id < kViews; ++id) {
+    const LayoutView& view = layout.views[id];
+    views[id] = whole(extent, view.towards_viewer, view.orthogonal, aspect_of(layout, id));
+  }
+  return views;
 }
 
 Result<void> check_view_id(int id) {
@@ -143,13 +150,6 @@ View changed_by(View view, const ViewChange& change) {
   view.near_distance = change.near_distance.value_or(view.near_distance);
   view.far_distance = change.far_distance.value_or(view.far_distance);
   return view;
-}
-
-// Manual 1.2.3, COVW: the views of each display.
-int first_view(int display) {
-  constexpr std::array<int, kDisplays> kFirstView = {0, 1, 3, 4, 5, 6};
-  CELLMIRROR_EXPECTS(display >= 1 && display <= static_cast<int>(kDisplays));
-  return kFirstView[static_cast<std::size_t>(display - 1)];
 }
 
 }  // namespace cellmirror

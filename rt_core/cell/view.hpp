@@ -29,9 +29,9 @@ struct Extent {
 inline constexpr double kFarthestView = 10'000.0;  // m: of viewpoints and lookpoints, in each coordinate
 inline constexpr double kNearestLookpoint = 1e-6;  // m, from the viewpoint
 
-// Views that show the whole extent: 0 perspective, 1 and 3 from above, 2 and 4 from the side (-y), 5 from the side in
-// perspective, 6 bird's eye.
-[[nodiscard]] std::array<View, kViews> views_of_extent(const Extent& extent);
+// Views that show the whole extent from where the layout has them, in a picture of 4 to 3; those that the layout shows
+// in a narrower pane, in that.
+[[nodiscard]] std::array<View, kViews> views_of_extent(const Extent& extent, const DisplayLayout& layout = {});
 
 // Refused: another id than 0 to 6.
 [[nodiscard]] Result<void> check_view_id(int id);
@@ -39,8 +39,5 @@ inline constexpr double kNearestLookpoint = 1e-6;  // m, from the viewpoint
 // of 0..pi, clipping planes that leave nothing between them.
 [[nodiscard]] Result<void> check_view(int id, const View& view);
 [[nodiscard]] View changed_by(View view, const ViewChange& change);
-
-// The current view of a display, 1 to 6 (STDP).
-[[nodiscard]] int first_view(int display);
 
 }  // namespace cellmirror

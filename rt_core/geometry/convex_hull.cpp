@@ -97,8 +97,9 @@ TriangleMesh mesh_of(std::string name, std::span<const Eigen::Vector3d> points, 
   hull.vertices.assign(points.begin(), points.end());
   hull.triangles = std::move(triangles);
   remove_unused(hull.vertices, hull.triangles);
-  remove_degenerate(hull.vertices, hull.triangles, findings);
-  remove_duplicates(hull.triangles, findings);
+  Origins origins(hull.triangles.size());  // of no use here
+  remove_degenerate(hull.vertices, hull.triangles, origins, findings);
+  remove_duplicates(hull.triangles, origins, findings);
   if (hull.triangles.empty()) return hull;
   remove_unused(hull.vertices, hull.triangles);
   hull.closed = orient(hull.vertices, hull.triangles, findings) && findings.shells == 1;

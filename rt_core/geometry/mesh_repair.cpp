@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "rt_core/geometry/mesh_repair_steps.hpp"
@@ -106,13 +107,16 @@ void remove_unused(Vertices& vertices, Triangles& triangles) {
 }
 
 Result<TriangleMesh> make_mesh(std::string name, std::vector<Eigen::Vector3d> vertices,
-                               std::vector<TriangleIndices> triangles, MeshFindings& findings) {
+                               std::vector<TriangleIndices> triangles, MeshFindings& findings,
+                               std::vector<std::uint32_t>* origins) {
   findings = MeshFindings();
   if (auto checked = check(vertices, triangles); !checked) return std::unexpected(checked.error());
   remove_unused(vertices, triangles);
   findings.welded_vertices = weld(vertices, triangles);
-  remove_degenerate(vertices, triangles, findings);
-  remove_duplicates(triangles, findings);
+  Origins from(triangles.size());
+  std::iota(from.begin(), from.end(), 0U);
+  remove_degenerate(vertices, triangles, from, findings);
+  remove_duplicates(triangles, from, findings);
   if (triangles.empty()) return fail("no triangle has an area");
   remove_unused(vertices, triangles);
   TriangleMesh mesh;
@@ -121,6 +125,7 @@ Result<TriangleMesh> make_mesh(std::string name, std::vector<Eigen::Vector3d> ve
   mesh.vertices = std::move(vertices);
   triangles.shrink_to_fit();
   mesh.triangles = std::move(triangles);
+  if (origins != nullptr) *origins = std::move(from);
   return mesh;
 }
 

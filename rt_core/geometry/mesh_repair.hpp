@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,11 @@ struct MeshFindings {
 
 // `vertices` in m. Refused: coordinates that are not finite or beyond kLargestCoordinate, indices without a vertex,
 // more than kMostTriangles triangles, and meshes of which no triangle is left. `findings` are filled in either way.
+// `origins`, where given, gets for each triangle of the mesh the index of the one of `triangles` in whose plane it
+// lies: the same one, turned or as it was, or one that was split.
 [[nodiscard]] Result<TriangleMesh> make_mesh(std::string name, std::vector<Eigen::Vector3d> vertices,
-                                             std::vector<TriangleIndices> triangles, MeshFindings& findings);
+                                             std::vector<TriangleIndices> triangles, MeshFindings& findings,
+                                             std::vector<std::uint32_t>* origins = nullptr);
 
 // Positive where the triangles of a closed mesh face outwards, m3.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);

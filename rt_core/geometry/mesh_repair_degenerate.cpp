@@ -32,7 +32,8 @@ Flat line_of(const Vertices& vertices, const TriangleIndices& t) {
 
 class DegenerateRemover {
  public:
-  DegenerateRemover(const Vertices& vertices, Triangles& triangles) : vertices_(vertices), triangles_(triangles) {
+  DegenerateRemover(const Vertices& vertices, Triangles& triangles, Origins& origins)
+      : vertices_(vertices), triangles_(triangles), origins_(origins) {
     double farthest = 0.0;
     for (const Eigen::Vector3d& p : vertices) farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
     constexpr double kUnits = 8.0;  // of rounding in the coordinates
@@ -64,11 +65,22 @@ class DegenerateRemover {
 
   // Welded to a line or a point: their two remaining sides cancel, nothing opens.
   void drop_lines() {
-    std::erase_if(triangles_, [&](const TriangleIndices& t) {
-      if (!has_equal_corners(t)) return false;
-      dropped_.push_back(line_of(vertices_, t));
-      return true;
-    });
+    drop([](const TriangleIndices& t) { return has_equal_corners(t); });
+  }
+
+  template <class Is>
+  void drop(Is is) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      if (is(triangles_[i])) {
+        dropped_.push_back(line_of(vertices_, triangles_[i]));
+        continue;
+      }
+      triangles_[kept] = triangles_[i];
+      origins_[kept++] = origins_[i];
+    }
+    triangles_.resize(kept);
+    origins_.resize(kept);
   }
 
   // Of the two triangles at an edge, the one that is not `triangle`; nothing where there are not two.
@@ -99,6 +111,7 @@ class DegenerateRemover {
       touched[i] = true;
       touched[neighbour] = true;
       split(triangles_[neighbour], line, triangles_[i]);
+      origins_[i] = origins_[neighbour];
       any = true;
     }
     return any;
@@ -119,11 +132,7 @@ class DegenerateRemover {
   }
 
   void drop_flat() {
-    std::erase_if(triangles_, [&](const TriangleIndices& t) {
-      if (!is_flat(t)) return false;
-      dropped_.push_back(line_of(vertices_, t));
-      return true;
-    });
+    drop([&](const TriangleIndices& t) { return is_flat(t); });
   }
 
   void tell_lost(MeshFindings& findings) const {
@@ -145,6 +154,7 @@ class DegenerateRemover {
 
   const Vertices& vertices_;
   Triangles& triangles_;
+  Origins& origins_;
   double smallest_height_ = 0;  // m
   std::vector<Flat> dropped_;
 };
@@ -163,11 +173,11 @@ bool same_sense(const TriangleIndices& a, const TriangleIndices& b) {
 
 }  // namespace
 
-void remove_degenerate(const Vertices& vertices, Triangles& triangles, MeshFindings& findings) {
-  DegenerateRemover(vertices, triangles).run(findings);
+void remove_degenerate(const Vertices& vertices, Triangles& triangles, Origins& origins, MeshFindings& findings) {
+  DegenerateRemover(vertices, triangles, origins).run(findings);
 }
 
-void remove_duplicates(Triangles& triangles, MeshFindings& findings) {
+void remove_duplicates(Triangles& triangles, Origins& origins, MeshFindings& findings) {
   struct Corners {
     TriangleIndices sorted{};
     std::uint32_t triangle = 0;
@@ -192,9 +202,12 @@ void remove_duplicates(Triangles& triangles, MeshFindings& findings) {
   if (findings.duplicate_triangles == 0) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (!drop[i]) triangles[kept++] = triangles[i];
+    if (drop[i]) continue;
+    triangles[kept] = triangles[i];
+    origins[kept++] = origins[i];
   }
   triangles.resize(kept);
+  origins.resize(kept);
 }
 
 }  // namespace cellmirror::geometry

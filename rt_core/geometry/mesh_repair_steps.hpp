@@ -13,6 +13,7 @@ namespace cellmirror::geometry {
 
 using Vertices = std::vector<Eigen::Vector3d>;
 using Triangles = std::vector<TriangleIndices>;
+using Origins = std::vector<std::uint32_t>;  // by triangle
 
 // One side of a triangle, to be sorted by edge.
 struct EdgeUse {
@@ -44,8 +45,9 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
 // Makes vertices that are nearer than the tolerance one; the first stays as it is. Returns how many went.
 std::size_t weld(Vertices& vertices, Triangles& triangles);
 // Removes triangles without area so that closed meshes stay closed: a flat triangle splits its neighbour.
-void remove_degenerate(const Vertices& vertices, Triangles& triangles, MeshFindings& findings);
-void remove_duplicates(Triangles& triangles, MeshFindings& findings);
+// `origins` goes along with the triangles: those that are removed leave it too, a piece of a split one has its origin.
+void remove_degenerate(const Vertices& vertices, Triangles& triangles, Origins& origins, MeshFindings& findings);
+void remove_duplicates(Triangles& triangles, Origins& origins, MeshFindings& findings);
 // Makes neighbours face the same way and closed shells outwards; says whether the mesh is closed.
 bool orient(const Vertices& vertices, Triangles& triangles, MeshFindings& findings);
 // How often the triangles go round p: 1 inside of a closed mesh that faces outwards, 0 outside. Source: van Oosterom,

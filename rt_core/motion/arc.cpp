@@ -22,4 +22,14 @@ std::optional<Arc> Arc::through(const Eigen::Vector3d& start, const Eigen::Vecto
   return arc;
 }
 
+double Arc::radius() const CELL_RT { return spoke.norm(); }
+
+Eigen::Vector3d Arc::displacement(double s) const CELL_RT {
+  return (std::cos(s * angle) - 1) * spoke + std::sin(s * angle) * normal.cross(spoke);
+}
+
+Eigen::Vector3d Arc::velocity(double s) const CELL_RT {
+  return angle * (std::cos(s * angle) * normal.cross(spoke) - std::sin(s * angle) * spoke);
+}
+
 }  // namespace cellmirror::motion

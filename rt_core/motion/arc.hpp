@@ -22,14 +22,10 @@ struct Arc {
   [[nodiscard]] static std::optional<Arc> through(const Eigen::Vector3d& start, const Eigen::Vector3d& via,
                                                   const Eigen::Vector3d& goal) CELL_RT;
 
-  [[nodiscard]] double radius() const CELL_RT { return spoke.norm(); }
-  [[nodiscard]] Eigen::Vector3d displacement(double s) const CELL_RT {
-    return (std::cos(s * angle) - 1) * spoke + std::sin(s * angle) * normal.cross(spoke);
-  }
-  // Of the displacement, for a share that grows by 1 a second.
-  [[nodiscard]] Eigen::Vector3d velocity(double s) const CELL_RT {
-    return angle * (std::cos(s * angle) * normal.cross(spoke) - std::sin(s * angle) * spoke);
-  }
+  [[nodiscard]] double radius() const CELL_RT;
+  [[nodiscard]] Eigen::Vector3d displacement(double s) const CELL_RT;
+  [[nodiscard]] Eigen::Vector3d velocity(
+      double s) const CELL_RT;  // of the displacement, for a share that grows by 1 a second
 };
 
 }  // namespace cellmirror::motion

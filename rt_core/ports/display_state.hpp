@@ -11,12 +11,10 @@
 #include <vector>
 
 #include "rt_core/base/time.hpp"
+#include "rt_core/ports/display_layout.hpp"
 #include "rt_core/ports/view.hpp"
 
 namespace cellmirror {
-
-inline constexpr std::size_t kViews = 7;     // 0 to 6, manual 1.2.3, COVW
-inline constexpr std::size_t kDisplays = 6;  // 1 to 6, manual 1.2.3, STDP
 
 // SET_MODE, in the order of the manual.
 enum class DisplayMode : std::uint8_t {
@@ -83,6 +81,7 @@ struct DisplayState {
   std::uint64_t revision = 0;
   int display = 1;  // STDP, 1 to 6
   bool full_screen = false;
+  DisplayLayout layout;  // as the cell file has it; nothing changes it
   std::array<DisplayView, kViews> views;
   DisplayModes modes;
   double tag_length_m = 0.25;  // TAG_DRAWLEN; the manual's default

@@ -25,9 +25,9 @@ void arm_allocation_guard() noexcept;
 // memalign, and so operator new, as allocations; free and operator delete of a real block as frees. Guards nest. It
 // counts, it does not forbid: the caller (a test, the cyclic thread, `status`) compares.
 //
-// Counting needs the interposer: link the object library cellmirror_allocation_guard into the PROGRAM. Without it, and
-// in sanitizer builds (whose own interposers it would disturb), armed() is false and everything stays 0; tests assert
-// armed() or skip visibly.
+// Counting needs the interposer: link the object library cellmirror_allocation_guard into the PROGRAM (in sanitizer
+// builds it hooks into the interposers of those). Without it armed() is false and everything stays 0; tests assert
+// armed().
 class AllocationGuard {
  public:
   AllocationGuard() CELL_RT {

@@ -3,7 +3,33 @@
 // manual 3.2.5: a replacement has to define all of them).
 #include "rt_core/rt/allocation_guard.hpp"
 
-#ifndef CELLMIRROR_SANITIZED  // sanitizers bring interposers of their own
+#ifdef CELLMIRROR_SANITIZED  // sanitizers bring interposers of their own, and call hooks from them
+
+#include <sanitizer/allocator_interface.h>
+
+#include <cstddef>
+
+namespace {
+
+using cellmirror::detail::heap_calls_of_thread;
+
+void on_allocation(const volatile void* /*block*/, std::size_t /*size*/) {
+  if (heap_calls_of_thread.depth > 0) cellmirror::detail::note_allocation_in_guard();
+}
+
+void on_free(const volatile void* block) {
+  if (block != nullptr && heap_calls_of_thread.depth > 0) cellmirror::detail::note_free_in_guard();
+}
+
+[[gnu::constructor]] void arm() noexcept {
+  if (__sanitizer_install_malloc_and_free_hooks(on_allocation, on_free) != 0) {
+    cellmirror::detail::arm_allocation_guard();
+  }
+}
+
+}  // namespace
+
+#else
 
 #include <unistd.h>
 

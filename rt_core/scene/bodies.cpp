@@ -1,6 +1,7 @@
 #include "rt_core/scene/bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rt_core/scene/draw_rules.hpp"
 
@@ -15,6 +16,7 @@ SceneBody body_of(const CompiledGeometry& part, DrawMode mode) {
   body.shape = geometry.shape;
   body.size = geometry.size;
   body.mesh = geometry.mesh;
+  body.look = geometry.look;
   body.rgba = geometry.rgba;
   body.mode = mode;
   // A wireframe is looked through; so is what has a see-through colour of its own.
@@ -96,6 +98,18 @@ void Bodies::find_slabs() {
     if (box.min().z() > floor_z_ + kSameLevel) continue;
     slabs_.push_back({box.max().z(), box.min().head<2>(), box.max().head<2>()});
     bodies_[i].casts_shadow = false;
+  }
+  leave_paint_without_shadow();
+}
+
+void Bodies::leave_paint_without_shadow() {
+  constexpr double kThickness = 0.003;  // m
+  for (std::size_t i = 0; i < first_moving_; ++i) {
+    const Box box = moved(bodies_[i].X_WG, boxes_[i]);
+    if (box.sizes().z() > kThickness) continue;
+    for (const ShadowCatcher& slab : slabs_) {
+      if (std::abs(box.min().z() - slab.z_m) < kThickness) bodies_[i].casts_shadow = false;
+    }
   }
 }
 

@@ -41,6 +41,8 @@ class Bodies {
   [[nodiscard]] bool same(const CompiledCell& cell, std::span<const DrawRule> rules) const;
   void find_floor();
   void find_slabs();
+  // What lies flat on a slab would darken itself.
+  void leave_paint_without_shadow();
 
   Version version_;
   std::vector<SceneBody> bodies_;  // in the order of the nodes: those that stand still come first

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "rt_core/base/contract.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/scene/paths.hpp"
 
@@ -17,26 +18,10 @@ namespace {
 
 constexpr int kBirdsEye = 6;
 
-// Manual 1.2.3, COVW.
-constexpr std::array<std::string_view, kViews> kTitles = {"perspective", "top",  "side",      "top",
-                                                          "side",        "side", "bird's eye"};
-
-// The first of them is the main view of the display.
-std::vector<int> views_of_display(int display) {
-  switch (display) {
-    case 2:
-      return {1, 2};
-    case 3:
-      return {3};
-    case 4:
-      return {4};
-    case 5:
-      return {5};
-    case 6:
-      return {kBirdsEye};
-    default:
-      return {0};
-  }
+// Of an unknown display: those of the first one.
+std::span<const LayoutPane> panes_of_layout(const DisplayState& display) {
+  const int known = display.display >= 1 && display.display <= static_cast<int>(kDisplays) ? display.display : 1;
+  return display.layout.displays[static_cast<std::size_t>(known - 1)].panes;
 }
 
 std::string title_of(const PaneInput& input, int id) {
@@ -44,7 +29,7 @@ std::string title_of(const PaneInput& input, int id) {
   const DisplayView& shown = input.display.views[index];
   if (!shown.camera.empty() && camera_now(input.cell, input.poses, input.display, shown.camera))
     return fmt::format("{} {}", id, last_name(shown.camera));
-  return fmt::format("{} {}", id, kTitles[index]);
+  return fmt::format("{} {}", id, input.display.layout.views[index].name);
 }
 
 Pane pane_of(const PaneInput& input, int id) {
@@ -71,15 +56,17 @@ std::vector<Pane> panes_of_display(const PaneInput& input) {
   if (input.display.on(DisplayMode::camera_main_view)) {
     if (auto pane = pane_of_current_camera(input)) return {*std::move(pane)};
   }
-  std::vector<int> ids = views_of_display(input.display.display);
-  if (input.display.full_screen) ids.resize(1);
+  const std::span<const LayoutPane> placed = panes_of_layout(input.display);
+  CELLMIRROR_EXPECTS(!placed.empty());
+  if (input.display.full_screen) return {pane_of(input, placed.front().view)};
   std::vector<Pane> panes;
-  const double height = 1.0 / static_cast<double>(ids.size());
-  for (const int id : ids) {
-    Pane pane = pane_of(input, id);
-    pane.top = height * static_cast<double>(panes.size());
-    pane.height = height;
-    if (!input.display.full_screen) pane.title = title_of(input, id);
+  for (const LayoutPane& area : placed) {
+    Pane pane = pane_of(input, area.view);
+    pane.left = area.left;
+    pane.top = area.top;
+    pane.width = area.width;
+    pane.height = area.height;
+    pane.title = title_of(input, area.view);
     panes.push_back(std::move(pane));
   }
   return panes;

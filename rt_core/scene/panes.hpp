@@ -33,9 +33,9 @@ struct PaneInput {
 // At `part` 0 to 1 of the way: all parameters evenly.
 [[nodiscard]] View between(const View& from, const View& to, double part);
 
-// Of the current display: its views with their titles; the top view stands above the side view, so that x is the same
-// in both. FULL: its first view alone, without title. CAM_MAINVIEW: the current camera (the first where none was named)
-// with the clipping planes of the bird's eye view, whose number the pane carries; without any camera the display as is.
+// Of the current display, as the layout has it: its views with their titles. FULL: its first view alone, without title.
+// CAM_MAINVIEW: the current camera (the first where none was named) with the clipping planes of the bird's eye view,
+// whose number the pane carries; without any camera the display as is.
 [[nodiscard]] std::vector<Pane> panes_of_display(const PaneInput& input);
 // One pane with this view, 0 to 6; without title.
 [[nodiscard]] std::vector<Pane> panes_of_view(const PaneInput& input, int id);

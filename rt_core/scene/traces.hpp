@@ -10,8 +10,8 @@
 
 namespace cellmirror::scene {
 
-// One for each robot that was active since the mode was switched on; off forgets them. The TCP is sampled where a
-// picture is made: a part of the way on which nobody looked is a straight line.
+// One for each robot that was active since the mode was switched on; off forgets them. The TCP is sampled
+// with each scene that is built.
 class Traces {
  public:
   static constexpr std::size_t kTraces = 8;      // the one that waits longest goes

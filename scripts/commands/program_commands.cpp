@@ -5,18 +5,24 @@ namespace cellmirror::script {
 
 namespace {
 
+// Of a command that may go on.
+Outcome begun(Result<ActivityHandle> result) {
+  if (!result) return Outcome::refused(std::move(result.error()));
+  return *result ? Outcome::pending(std::move(*result)) : Outcome::done();
+}
+
 Outcome load(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.load_program(command.text(0), command.text(1)));
+  return begun(host.programs.load_program(command.text(0), command.text(1)));
 }
 
 // A third slot is exec_wait.
 Outcome run(const ParsedCommand& command, CommandHost& host) {
   const ProgramBegin begin = command.given(2) ? ProgramBegin::exec_wait : ProgramBegin::now;
-  return Outcome::of(host.programs.run_program(command.text(0), command.text(1), begin));
+  return begun(host.programs.run_program(command.text(0), command.text(1), begin));
 }
 
 Outcome run_backward(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.run_program(command.text(0), command.text(1), ProgramBegin::backward));
+  return begun(host.programs.run_program(command.text(0), command.text(1), ProgramBegin::backward));
 }
 
 Outcome delete_program(const ParsedCommand& command, CommandHost& host) {
@@ -38,9 +44,7 @@ Outcome stop(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome await(const ParsedCommand& command, CommandHost& host) {
-  auto begun = host.programs.await_programs(command.text(0));
-  if (!begun) return Outcome::refused(std::move(begun.error()));
-  return *begun ? Outcome::pending(std::move(*begun)) : Outcome::done();
+  return begun(host.programs.await_programs(command.text(0)));
 }
 
 Outcome record(const ParsedCommand& command, CommandHost& host) {

@@ -22,8 +22,10 @@ class ProgramHost {
  public:
   virtual ~ProgramHost() = default;
   virtual Result<void> set_language(std::string_view language) = 0;  // one of program::languages()
-  virtual Result<void> load_program(std::string_view program, std::string_view robot) = 0;  // TF_LOAD
-  virtual Result<void> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) = 0;  // TF_RUN
+  // TF_LOAD. Null: it is loaded, else it is when the activity ends.
+  virtual Result<ActivityHandle> load_program(std::string_view program, std::string_view robot) = 0;
+  // TF_RUN. Null: it was accepted, else it waits until it is loaded.
+  virtual Result<ActivityHandle> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) = 0;
   virtual Result<void> delete_program(std::string_view program, std::string_view robot) = 0;  // TF_DELETE
   // Of the program that the robot runs.
   virtual Result<void> hold_program(std::string_view robot) = 0;                 // TF_HOLD

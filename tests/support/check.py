@@ -16,12 +16,13 @@ ROOT = Path(__file__).resolve().parents[2]
 
 SANITIZER_OPTIONS = {
     "ASAN_OPTIONS": "detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1",
+    "LSAN_OPTIONS": f"suppressions={ROOT}/tests/support/lsan.supp:print_suppressions=0",
     "UBSAN_OPTIONS": "print_stacktrace=1:halt_on_error=1",
     "TSAN_OPTIONS": f"halt_on_error=1:second_deadlock_stack=1:suppressions={ROOT}/tests/support/tsan.supp",
 }
 
 # One clang build serves the address and undefined-behaviour sanitizers, the fuzzers and clang-tidy.
-SANITIZED_TARGETS = ("tests_unit", "tests_golden", "tests_fuzz", "cellmirror_precompiled_app")
+SANITIZED_TARGETS = ("tests_unit", "tests_golden", "tests_fuzz", "programs")
 SANITIZED_BUILD = f"configure fuzz build-fuzz && build build-fuzz {' '.join(SANITIZED_TARGETS)}"
 
 
@@ -101,7 +102,7 @@ class Check:
         targets = []  # all; what runs with sanitizers in a whole check is built without them only where that check is not whole
         if self.options.label == "bench":
             targets = ["all", "benches"]
-        elif self.options.quick or self.options.label == "unit":
+        elif self.options.quick or self.options.label in ("unit", "golden", "fuzz"):
             targets = ["all", "tests_sanitized"]
         if not self.build("release", "build", *targets, configure_arguments="-DCELLMIRROR_TESTS=ON" if without_tests else ""):
             self.packages.wait()
@@ -121,7 +122,7 @@ class Check:
     def sanitizers(self) -> None:
         if self.build("fuzz", "build-fuzz", *SANITIZED_TARGETS):
             seconds = os.environ.get("FUZZ_SECONDS", "1")
-            self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
+            self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz|whole)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
             self.tests(f"fuzzing, {seconds} s each", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds, **SANITIZER_OPTIONS)
         if self.build("tsan", "build-tsan", "tests_stress", "tests_concurrency"):
             self.tests("threads", "build-tsan", "-L", "^(stress|concurrency)$", **SANITIZER_OPTIONS)

@@ -51,8 +51,9 @@ class Cell:
         self.messages = []
         self.modes = {mode: mode in ("FLDR", "SHAD", "LEGEND", "BEEP") for mode in MODES}
         self.display, self.full_screen = 1, False
-        self.views = [{"id": i, "viewpoint_m": [6 + i, -9, 5 + i], "lookpoint_m": [4, 0, 0.8], "twist_rad": 0,
+        self.views = [{"id": i, "name": f"angle {i}", "viewpoint_m": [6 + i, -9, 5 + i], "lookpoint_m": [4, 0, 0.8], "twist_rad": 0,
                        "opening_angle_rad": 0.7, "camera": "", "moving": False} for i in range(7)]
+        self.displays = [{"id": i, "name": f"layout {i}", "views": [i] if i > 1 else [0, 1]} for i in range(1, 7)]
         self.hidden, self.revision = set(), 1
 
     def now(self):
@@ -104,7 +105,8 @@ class Cell:
             "queues": [{"name": name, "dropped": dropped, "high_water": 12, "capacity": 1024} for name, dropped in
                        (("messages (2351)", 0), ("sensor queue (1990)", int(3 * now)), ("ticks to the studio", 0))],
             "messages": [{"number": number, "text": text, "age_s": now - at} for number, at, text in self.messages[-20:]],
-            "display": {"display": self.display, "full_screen": self.full_screen, "views": self.views, "modes": self.modes},
+            "display": {"display": self.display, "full_screen": self.full_screen, "views": self.views,
+                        "displays": self.displays, "modes": self.modes},
             "cameras": ["CAMERA_5", "UMG_Kamera_1"], "bell": self.modes["BEEP"],
         }
 

@@ -26,21 +26,27 @@ Colour finite(Colour colour) {
   return colour;
 }
 
-Colour shown_colour(const SceneBody& body) {
-  Colour colour = finite(body.rgba);
-  if (body.mode == DrawMode::transparent) colour[3] = std::min(colour[3], kSeeThrough);
-  switch (body.mark) {
+// Of a mark: its colour and, as alpha, the share that it has in the body's.
+Colour over_colour(Mark mark) {
+  const auto with_share = [](Colour colour, float share) { return Colour{colour[0], colour[1], colour[2], share}; };
+  switch (mark) {
     case Mark::none:
       break;
     case Mark::near:
-      return mixed(colour, palette::kNear, 0.80F);
+      return with_share(palette::kNear, 0.80F);
     case Mark::touching:
-      return mixed(colour, palette::kTouching, 0.85F);
+      return with_share(palette::kTouching, 0.85F);
     case Mark::ghost:
-      colour = mixed(colour, palette::kGhost, 0.75F);
-      colour[3] = std::min(colour[3], kGhostAlpha);
-      break;
+      return with_share(palette::kGhost, 0.75F);
   }
+  return {0, 0, 0, 0};
+}
+
+// Without its mark, but as see-through as it is drawn.
+Colour own_colour(const SceneBody& body) {
+  Colour colour = finite(body.rgba);
+  if (body.mode == DrawMode::transparent) colour[3] = std::min(colour[3], kSeeThrough);
+  if (body.mark == Mark::ghost) colour[3] = std::min(colour[3], kGhostAlpha);
   return colour;
 }
 
@@ -62,6 +68,7 @@ bool backfaces_removed(const Scene& scene, const DrawnBody& body) {
 std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes) {
   std::vector<DrawnBody> bodies;
   bodies.reserve(scene.bodies.size());
+  const bool pictures = scene.modes.test(static_cast<std::size_t>(DisplayMode::textures));
   for (const SceneBody& body : scene.bodies) {
     const Eigen::Matrix4d& X_WG = body.X_WG.matrix();
     if (!X_WG.allFinite() || X_WG.cwiseAbs().maxCoeff() > kFarthest) continue;
@@ -70,9 +77,12 @@ std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes) {
     DrawnBody drawn;
     drawn.mesh = use.mesh;
     drawn.X_WM = X_WG * Eigen::Vector4d(use.scale.x(), use.scale.y(), use.scale.z(), 1).asDiagonal();
-    drawn.rgba = shown_colour(body);
+    drawn.own = own_colour(body);
+    drawn.over = over_colour(body.mark);
+    drawn.rgba = mixed(drawn.own, drawn.over, drawn.over[3]);
     if (drawn.rgba[3] <= 0) continue;
     drawn.mode = body.mode;
+    drawn.textured = pictures && use.mesh->has_look() && body.mode != DrawMode::wireframe;
     drawn.mark = body.mark;
     drawn.object = body.object;
     drawn.casts_shadow = body.casts_shadow;
@@ -84,29 +94,46 @@ std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes) {
   return bodies;
 }
 
-BodyPass::BodyPass(const GlApi& gl) : gl_(gl), one_sided_(gl), two_sided_(gl), striped_(gl), plain_(gl), objects_(gl) {}
+BodyPass::BodyPass(const GlApi& gl, TextureStore& textures)
+    : gl_(gl), textures_(textures), one_sided_(gl), two_sided_(gl), striped_(gl), plain_(gl), objects_(gl) {}
+
+Result<void> BodyPass::build(Shading& shading, std::string_view fragment,
+                             std::initializer_list<std::string_view> defines) {
+  const ShaderProgram& program = shading.program;
+  if (auto built = shading.program.build(shaders::kBodyVertex, fragment, defines); !built) return built;
+  shading.uniforms = {program.uniform("clip_from_mesh"),
+                      program.uniform("world_from_normal"),
+                      program.uniform("rgb"),
+                      program.uniform("alpha"),
+                      program.uniform("to_eye"),
+                      program.uniform("object"),
+                      program.uniform("picture"),
+                      program.uniform("material"),
+                      program.uniform("own"),
+                      program.uniform("over")};
+  return {};
+}
 
 Result<void> BodyPass::build() {
-  const auto made = [](Shading& shading, const Result<void>& built) -> Result<void> {
-    if (!built) return built;
-    const ShaderProgram& program = shading.program;
-    shading.uniforms = {program.uniform("clip_from_mesh"),
-                        program.uniform("world_from_normal"),
-                        program.uniform("rgb"),
-                        program.uniform("alpha"),
-                        program.uniform("to_eye"),
-                        program.uniform("object")};
-    return {};
-  };
-  const auto lit = [&](Shading& shading, std::initializer_list<std::string_view> defines) {
-    return made(shading, shading.program.build(shaders::kBodyVertex, shaders::kBodyFragment, defines));
-  };
-  Result<void> built = lit(one_sided_, {});
-  if (built) built = lit(two_sided_, {"TWO_SIDED"});
-  if (built) built = lit(striped_, {"TWO_SIDED", "STRIPES"});
-  if (built) built = lit(plain_, {"PLAIN"});
-  if (built) built = made(objects_, objects_.program.build(shaders::kBodyVertex, shaders::kObjectFragment, {"PLAIN"}));
+  Result<void> built = build(one_sided_, shaders::kBodyFragment, {});
+  if (built) built = build(two_sided_, shaders::kBodyFragment, {"TWO_SIDED"});
+  if (built) built = build(striped_, shaders::kBodyFragment, {"TWO_SIDED", "STRIPES"});
+  if (built) built = build(plain_, shaders::kBodyFragment, {"PLAIN"});
+  if (built) built = build(objects_, shaders::kObjectFragment, {"PLAIN"});
   return built;
+}
+
+BodyPass::Shading& BodyPass::with_pictures(Shading& shading) {
+  if (!shading.tried) {
+    shading.tried = true;
+    auto made = std::make_unique<Shading>(gl_);
+    const auto built = &shading == &one_sided_ ? build(*made, shaders::kBodyFragment, {"TEXTURED"})
+                       : &shading == &two_sided_
+                           ? build(*made, shaders::kBodyFragment, {"TEXTURED", "TWO_SIDED"})
+                           : build(*made, shaders::kBodyFragment, {"TEXTURED", "TWO_SIDED", "STRIPES"});
+    if (built) shading.textured = std::move(made);
+  }
+  return shading.textured == nullptr ? shading : *shading.textured;
 }
 
 BodyCounts BodyPass::examine(const Frame& frame, std::vector<DrawnBody>& bodies) {
@@ -137,8 +164,17 @@ void BodyPass::put(const Frame& frame, const DrawnBody& body) {
     gl_.UniformMatrix3fv(uniforms.world_from_normal, 1, GL_FALSE, normals.data());
   }
   if (used_ == &objects_) return gl_.Uniform1ui(uniforms.object, body.object);
+  const bool pictures = uniforms.picture >= 0;
+  if (pictures) {
+    gl_.Uniform3fv(uniforms.own, 1, body.own.data());
+    gl_.Uniform4fv(uniforms.over, 1, body.over.data());
+  }
+  constexpr std::array<float, 3> kWhite{1, 1, 1};  // the light alone: the colour comes a pixel
   const Colour colour = body.mode == DrawMode::wireframe ? line_colour(body.rgba) : body.rgba;
-  gl_.Uniform3fv(uniforms.rgb, 1, colour.data());
+  if (pictures)
+    gl_.Uniform3fv(uniforms.rgb, 1, kWhite.data());
+  else
+    gl_.Uniform3fv(uniforms.rgb, 1, colour.data());
   gl_.Uniform1f(uniforms.alpha, colour[3]);
 }
 
@@ -156,14 +192,30 @@ void BodyPass::draw(const Frame& frame, const DrawnBody& body) {
   };
   const Buffers& drawn = buffers();
   gl_.BindVertexArray(drawn.array);
+  if (used_->uniforms.picture >= 0) return draw_parts(body, drawn);
   gl_.DrawElements(mode == DrawMode::wireframe ? GL_LINES : GL_TRIANGLES, drawn.count, GL_UNSIGNED_INT, nullptr);
+}
+
+void BodyPass::draw_parts(const DrawnBody& body, const Buffers& buffers) {
+  constexpr GLint kUnit = 2;  // 0 and 1 are the floor's
+  gl_.Uniform1i(used_->uniforms.picture, kUnit);
+  gl_.ActiveTexture(GL_TEXTURE0 + kUnit);
+  const std::vector<StoredMaterial>& materials = body.mesh->materials(textures_);
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < buffers.ends.size() && i < materials.size(); first = buffers.ends[i++]) {
+    if (buffers.ends[i] == first) continue;
+    gl_.BindTexture(GL_TEXTURE_2D, materials[i].texture->name());
+    gl_.Uniform3fv(used_->uniforms.material, 1, materials[i].rgb.data());
+    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(buffers.ends[i] - first), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(std::size_t{first} * sizeof(Corner)));
+  }
 }
 
 BodyPass::Shading& BodyPass::shading_of(const Frame& frame, const DrawnBody& body) {
   if (body.mode == DrawMode::wireframe) return plain_;
-  if (body.mark == Mark::touching) return striped_;
   const bool two_sided = frame.scene.modes.test(static_cast<std::size_t>(DisplayMode::two_sided_light));
-  return two_sided || body.see_through() ? two_sided_ : one_sided_;
+  Shading& plain = body.mark == Mark::touching ? striped_ : two_sided || body.see_through() ? two_sided_ : one_sided_;
+  return body.textured ? with_pictures(plain) : plain;
 }
 
 void BodyPass::draw_opaque(const Frame& frame, std::vector<DrawnBody>& bodies) {

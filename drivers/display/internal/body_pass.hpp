@@ -1,6 +1,10 @@
 // Draws the bodies of a scene. Private to this folder.
 #pragma once
 
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "drivers/display/internal/frame.hpp"
@@ -12,8 +16,11 @@ namespace cellmirror::display {
 // A body, or a part of an arrow or of axes, as it is drawn.
 struct DrawnBody {
   StoredMesh* mesh = nullptr;
-  Eigen::Matrix4d X_WM;  // with the scale of the mesh
-  Colour rgba{};         // sRGB, with its mark
+  Eigen::Matrix4d X_WM;   // with the scale of the mesh
+  Colour rgba{};          // sRGB, with its mark
+  bool textured = false;  // with the pictures of its mesh
+  Colour own{};           // sRGB, without its mark; seen where the pictures are see-through
+  Colour over{};          // its mark's colour and, as alpha, the share that it has in any other
   DrawMode mode = DrawMode::gouraud;
   Mark mark = Mark::none;
   std::uint32_t object = 0;
@@ -37,7 +44,7 @@ struct BodyCounts {
 
 class BodyPass {
  public:
-  explicit BodyPass(const GlApi& gl);
+  BodyPass(const GlApi& gl, TextureStore& textures);
   Result<void> build();
 
   // Sets distance and visible of each body for this pane; counts.
@@ -58,20 +65,33 @@ class BodyPass {
     GLint alpha = -1;
     GLint to_eye = -1;
     GLint object = -1;
+    GLint picture = -1;
+    GLint material = -1;
+    GLint own = -1;
+    GLint over = -1;
   };
   struct Shading {
     explicit Shading(const GlApi& gl) : program(gl) {}
     ShaderProgram program;
     Uniforms uniforms;
+    // With pictures; built when first needed, and null where the driver refuses it.
+    std::unique_ptr<Shading> textured;
+    bool tried = false;
   };
 
   void use(const Frame& frame, Shading& shading);
+  static Result<void> build(Shading& shading, std::string_view fragment,
+                            std::initializer_list<std::string_view> defines);
+  // The same with pictures, or the plain one.
+  Shading& with_pictures(Shading& shading);
   void put(const Frame& frame, const DrawnBody& body);
+  void draw_parts(const DrawnBody& body, const Buffers& buffers);
   void draw(const Frame& frame, const DrawnBody& body);
   [[nodiscard]] Shading& shading_of(const Frame& frame, const DrawnBody& body);
   void draw_ghosts(const Frame& frame, std::span<const DrawnBody* const> ghosts);
 
   const GlApi& gl_;
+  TextureStore& textures_;
   Shading one_sided_;
   Shading two_sided_;
   Shading striped_;

@@ -12,6 +12,8 @@ namespace {
 
 constexpr GLuint kPosition = 0;  // as in the shaders
 constexpr GLuint kNormal = 1;
+constexpr GLuint kPlace = 2;
+constexpr GLuint kColour = 3;
 
 const void* offset_of(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
@@ -20,6 +22,13 @@ void describe_vertices(const GlApi& gl) {
   gl.VertexAttribPointer(kPosition, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), offset_of(0));
   gl.EnableVertexAttribArray(kNormal);
   gl.VertexAttribPointer(kNormal, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), offset_of(offsetof(Vertex, normal)));
+}
+
+void describe_dress(const GlApi& gl) {
+  gl.EnableVertexAttribArray(kPlace);
+  gl.VertexAttribPointer(kPlace, 2, GL_FLOAT, GL_FALSE, sizeof(Dress), offset_of(0));
+  gl.EnableVertexAttribArray(kColour);
+  gl.VertexAttribPointer(kColour, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Dress), offset_of(offsetof(Dress, colour)));
 }
 
 void fill_indices(const GlApi& gl, Buffers& buffers, const std::vector<Corner>& corners, GLenum usage) {
@@ -37,11 +46,15 @@ void share_vertices(const GlApi& gl, const Buffers& of, Buffers& buffers) {
   gl.BindVertexArray(buffers.array);
   gl.BindBuffer(GL_ARRAY_BUFFER, of.vertices);
   describe_vertices(gl);
+  if (of.dress == 0) return;
+  gl.BindBuffer(GL_ARRAY_BUFFER, of.dress);
+  describe_dress(gl);
 }
 
 void free_buffers(const GlApi& gl, Buffers& buffers) {
   if (buffers.array != 0) gl.DeleteVertexArrays(1, &buffers.array);
   if (buffers.vertices != 0) gl.DeleteBuffers(1, &buffers.vertices);
+  if (buffers.dress != 0) gl.DeleteBuffers(1, &buffers.dress);
   if (buffers.indices != 0) gl.DeleteBuffers(1, &buffers.indices);
   buffers = {};
 }
@@ -66,8 +79,14 @@ bool usable(double size) {
 
 }  // namespace
 
-StoredMesh::StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh)
-    : gl_(gl), mesh_(std::move(mesh)), bounds_(bounding_sphere(*mesh_)) {
+StoredMesh::StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh,
+                       std::shared_ptr<const MeshLook> look)
+    : gl_(gl),
+      mesh_(std::move(mesh)),
+      look_(std::move(look)),
+      dressed_(look_ != nullptr && sound(*look_, mesh_->triangles.size())),
+      bounds_(bounding_sphere(*mesh_)) {
+  if (dressed_) order_ = order_by_material(*look_);
   Surface surface = smooth_surface(*mesh_);
   upload(surface, smooth_);
   smooth_corners_ = std::move(surface.corners);
@@ -77,7 +96,8 @@ StoredMesh::~StoredMesh() {
   for (Buffers* buffers : {&smooth_, &flat_, &wires_, &facing_}) free_buffers(gl_, *buffers);
 }
 
-void StoredMesh::upload(const Surface& surface, Buffers& buffers) {
+void StoredMesh::upload(Surface& surface, Buffers& buffers) {
+  const std::vector<Dress> dresses = dressed_ ? dress(surface, *look_) : std::vector<Dress>();
   gl_.GenVertexArrays(1, &buffers.array);
   gl_.BindVertexArray(buffers.array);
   gl_.GenBuffers(1, &buffers.vertices);
@@ -85,11 +105,32 @@ void StoredMesh::upload(const Surface& surface, Buffers& buffers) {
   gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(surface.vertices.size() * sizeof(Vertex)),
                  surface.vertices.data(), GL_STATIC_DRAW);
   describe_vertices(gl_);
-  fill_indices(gl_, buffers, surface.corners, GL_STATIC_DRAW);
+  if (!dressed_) return fill_indices(gl_, buffers, surface.corners, GL_STATIC_DRAW);
+  gl_.GenBuffers(1, &buffers.dress);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, buffers.dress);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(dresses.size() * sizeof(Dress)), dresses.data(),
+                 GL_STATIC_DRAW);
+  describe_dress(gl_);
+  std::vector<Corner> corners;
+  corners.reserve(surface.corners.size());
+  for (const std::size_t triangle : order_.triangles)
+    corners.insert(corners.end(), {surface.corners[3 * triangle], surface.corners[3 * triangle + 1],
+                                   surface.corners[3 * triangle + 2]});
+  for (const std::uint32_t end : order_.ends) buffers.ends.push_back(3 * end);
+  fill_indices(gl_, buffers, corners, GL_STATIC_DRAW);
+}
+
+const std::vector<StoredMaterial>& StoredMesh::materials(TextureStore& textures) {
+  if (!dressed_ || !materials_.empty()) return materials_;
+  for (const MeshMaterial& material : look_->palette)
+    materials_.push_back({textures.texture(material.picture), material.rgb});
+  return materials_;
 }
 
 const Buffers& StoredMesh::flat() {
-  if (flat_.array == 0) upload(flat_surface(*mesh_), flat_);
+  if (flat_.array != 0) return flat_;
+  Surface surface = flat_surface(*mesh_);
+  upload(surface, flat_);
   return flat_;
 }
 
@@ -127,11 +168,22 @@ void StoredMesh::select_facing(DrawMode mode, const Eigen::Vector4d& eye) {
     }
     return;
   }
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    if (!faces_[i]) continue;
-    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
-      selected_.push_back(mode == DrawMode::flat ? static_cast<Corner>(c) : smooth_corners_[c]);
+  facing_.ends.clear();
+  if (!dressed_) {
+    for (std::uint32_t i = 0; i < faces_.size(); ++i) append(mode, i);
+    return;
   }
+  std::uint32_t at = 0;
+  for (const std::uint32_t end : order_.ends) {
+    for (; at < end; ++at) append(mode, order_.triangles[at]);
+    facing_.ends.push_back(static_cast<std::uint32_t>(selected_.size()));
+  }
+}
+
+void StoredMesh::append(DrawMode mode, std::uint32_t triangle) {
+  if (!faces_[triangle]) return;
+  for (std::size_t c = std::size_t{3} * triangle; c < std::size_t{3} * triangle + 3; ++c)
+    selected_.push_back(mode == DrawMode::flat ? static_cast<Corner>(c) : smooth_corners_[c]);
 }
 
 const Buffers& StoredMesh::facing(DrawMode mode, const Eigen::Vector4d& eye) {
@@ -147,12 +199,14 @@ const Buffers& StoredMesh::facing(DrawMode mode, const Eigen::Vector4d& eye) {
   return facing_;
 }
 
-StoredMesh* MeshStore::stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh) {
+StoredMesh* MeshStore::stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
+                              const std::shared_ptr<const MeshLook>& look) {
   if (mesh == nullptr) return nullptr;
-  auto entry = meshes_.find(mesh.get());
+  const Key key(mesh.get(), look.get());
+  auto entry = meshes_.find(key);
   if (entry == meshes_.end()) {
     if (!sound(*mesh)) return nullptr;
-    entry = meshes_.emplace(mesh.get(), std::make_unique<StoredMesh>(gl_, mesh)).first;
+    entry = meshes_.emplace(key, std::make_unique<StoredMesh>(gl_, mesh, look)).first;
     ++uploads_;
   }
   entry->second->last_used = frame_;
@@ -205,7 +259,7 @@ ShapeUse MeshStore::shape_of(const SceneBody& body) {
       return {entry.get(), Eigen::Vector3d::Ones()};
     }
     case Shape::mesh:
-      return {stored(body.mesh), Eigen::Vector3d::Ones()};
+      return {stored(body.mesh, body.look), Eigen::Vector3d::Ones()};
   }
   return {};
 }

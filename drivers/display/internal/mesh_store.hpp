@@ -5,10 +5,13 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "drivers/display/internal/dress.hpp"
 #include "drivers/display/internal/gl_api.hpp"
 #include "drivers/display/internal/surface.hpp"
+#include "drivers/display/internal/texture_store.hpp"
 #include "rt_core/ports/scene.hpp"
 
 namespace cellmirror::display {
@@ -18,12 +21,20 @@ struct Buffers {
   GLuint array = 0;  // vertex array object
   GLuint vertices = 0;
   GLuint indices = 0;
-  GLsizei count = 0;  // of indices
+  GLuint dress = 0;                 // of vertices; 0: the mesh has no look
+  GLsizei count = 0;                // of indices
+  std::vector<std::uint32_t> ends;  // of indices, by material; empty: the mesh has no look, or these are edges
+};
+
+struct StoredMaterial {
+  std::shared_ptr<const Texture> texture;
+  std::array<float, 3> rgb{1, 1, 1};
 };
 
 class StoredMesh {
  public:
-  StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh);
+  StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh,
+             std::shared_ptr<const MeshLook> look = nullptr);
   ~StoredMesh();
   StoredMesh(const StoredMesh&) = delete;
   StoredMesh& operator=(const StoredMesh&) = delete;
@@ -36,16 +47,26 @@ class StoredMesh {
   // the direction to it. Valid until the next call.
   const Buffers& facing(DrawMode mode, const Eigen::Vector4d& eye);
 
+  [[nodiscard]] bool has_look() const { return dressed_; }
+  // Of its look; uploads the pictures when they are first asked for.
+  const std::vector<StoredMaterial>& materials(TextureStore& textures);
+
   [[nodiscard]] const BoundingSphere& bounds() const { return bounds_; }
-  [[nodiscard]] bool unshared() const { return mesh_.use_count() == 1; }
+  // Nobody else has the mesh; or the look, where the mesh is stored with several.
+  [[nodiscard]] bool unshared() const { return mesh_.use_count() == 1 || look_.use_count() == 1; }
   std::uint64_t last_used = 0;  // number of the frame
 
  private:
-  void upload(const Surface& surface, Buffers& buffers);
+  void upload(Surface& surface, Buffers& buffers);
+  void append(DrawMode mode, std::uint32_t triangle);
   void select_facing(DrawMode mode, const Eigen::Vector4d& eye);
 
   const GlApi& gl_;
   std::shared_ptr<const geometry::TriangleMesh> mesh_;
+  std::shared_ptr<const MeshLook> look_;  // may be null
+  bool dressed_ = false;                  // has a look that is sound
+  MaterialOrder order_;
+  std::vector<StoredMaterial> materials_;
   BoundingSphere bounds_;
   Buffers smooth_;
   Buffers flat_;
@@ -68,7 +89,7 @@ enum class Solid : std::uint8_t { box, cylinder, sphere, cone, funnel };
 
 class MeshStore {
  public:
-  explicit MeshStore(const GlApi& gl) : gl_(gl) {}
+  explicit MeshStore(const GlApi& gl) : gl_(gl), textures_(gl) {}
 
   [[nodiscard]] ShapeUse shape_of(const SceneBody& body);
   [[nodiscard]] StoredMesh& solid(Solid solid);
@@ -78,14 +99,18 @@ class MeshStore {
   void end_frame();
   [[nodiscard]] std::size_t size() const { return meshes_.size() + capsules_.size(); }
   [[nodiscard]] std::uint64_t uploads() const { return uploads_; }
+  [[nodiscard]] TextureStore& textures() { return textures_; }
 
  private:
   using Capsule = std::array<double, 2>;
+  using Key = std::pair<const geometry::TriangleMesh*, const MeshLook*>;
 
-  [[nodiscard]] StoredMesh* stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh);
+  [[nodiscard]] StoredMesh* stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
+                                   const std::shared_ptr<const MeshLook>& look);
 
   const GlApi& gl_;
-  std::map<const geometry::TriangleMesh*, std::unique_ptr<StoredMesh>> meshes_;
+  TextureStore textures_;
+  std::map<Key, std::unique_ptr<StoredMesh>> meshes_;
   std::map<Capsule, std::unique_ptr<StoredMesh>> capsules_;
   std::array<std::unique_ptr<StoredMesh>, 5> solids_;
   std::uint64_t frame_ = 0;

@@ -1,4 +1,5 @@
-// The shaders, GLSL 3.30. Attribute 0 is the position, 1 the normal. Private to this folder.
+// The shaders, GLSL 3.30. Attribute 0 is the position, 1 the normal, 2 the place in a picture, 3 a colour. Private to
+// this folder.
 #pragma once
 
 #include <string_view>
@@ -6,7 +7,7 @@
 namespace cellmirror::display::shaders {
 
 // Light is reckoned a vertex and in linear light, where sRGB is taken for a square: close enough, and cheap in
-// software. PLAIN: without light. TWO_SIDED: back faces are lit as if they were front faces.
+// software. PLAIN: without light. TWO_SIDED: back faces are lit as if they were front faces. TEXTURED: rgb is white.
 inline constexpr std::string_view kBodyVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -19,6 +20,12 @@ out vec4 front;
 #ifdef TWO_SIDED
 out vec4 back;
 #endif
+#ifdef TEXTURED
+layout(location = 2) in vec2 place;
+layout(location = 3) in vec4 tint_in;
+out vec2 at;
+out vec3 tint;
+#endif
 
 // Sky and ground, a key light from above that is also the one of the shadows, and a little light from the eye.
 vec3 light(vec3 n) {
@@ -30,6 +37,10 @@ vec3 light(vec3 n) {
 
 void main() {
   gl_Position = clip_from_mesh * vec4(position, 1.0);
+#ifdef TEXTURED
+  at = place;
+  tint = tint_in.rgb;
+#endif
 #ifdef PLAIN
   front = vec4(rgb, alpha);
 #else
@@ -43,11 +54,20 @@ void main() {
 }
 )";
 
-// STRIPES: a second sign beside the colour.
+// STRIPES: a second sign beside the colour. TEXTURED: roots of light and colour are multiplied, since both are sRGB;
+// the picture's colour is multiplied by its alpha already, and a mark covers it as it covers any other colour.
 inline constexpr std::string_view kBodyFragment = R"(
 in vec4 front;
 #ifdef TWO_SIDED
 in vec4 back;
+#endif
+#ifdef TEXTURED
+in vec2 at;
+in vec3 tint;
+uniform sampler2D picture;
+uniform vec3 material;
+uniform vec3 own;
+uniform vec4 over;
 #endif
 layout(location = 0) out vec4 colour;
 
@@ -56,6 +76,11 @@ void main() {
   colour = gl_FrontFacing ? front : back;
 #else
   colour = front;
+#endif
+#ifdef TEXTURED
+  vec4 texel = texture(picture, at);
+  vec3 surface = texel.rgb * material * tint + (1.0 - texel.a) * own;
+  colour.rgb *= mix(surface, over.rgb, over.a);
 #endif
 #ifdef STRIPES
   float across = fract((gl_FragCoord.x + gl_FragCoord.y) / 14.0);

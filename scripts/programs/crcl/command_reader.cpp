@@ -73,10 +73,9 @@ void CommandReader::read(const XmlTree& tree) {
   add(fields, node, program::EndStatement{});
 }
 
-void CommandReader::finish(const XmlNode& root) {
+void CommandReader::finish(const Place& root) {
   if (part_ == Part::behind || !diagnostics_.ok()) return;
-  diagnostics_.error({.file = file_, .line = static_cast<int>(root.line), .column = static_cast<int>(root.column)},
-                     part_ == Part::before ? "the program has no <InitCanon>" : "the program has no <EndCanon>");
+  diagnostics_.error(root, part_ == Part::before ? "the program has no <InitCanon>" : "the program has no <EndCanon>");
 }
 
 // People call a step by its Name, or by its CommandID.
@@ -115,7 +114,7 @@ void CommandReader::message(const Fields& fields, const XmlNode& node) {
   fields.only(node, {"CommandID", "Message"});
   const XmlNode* text_node = fields.required(node, "Message");
   if (text_node == nullptr) return;
-  std::string text = text_node->text;
+  std::string text(text_node->text);
   std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
   const auto both_blank = [](char a, char b) { return a == ' ' && b == ' '; };
   text.erase(std::unique(text.begin(), text.end(), both_blank), text.end());

@@ -18,8 +18,8 @@ class CommandReader {
 
   // A child of <CRCLProgram>: Name, InitCanon, MiddleCommand, EndCanon.
   void read(const XmlTree& tree);
-  // What is missing at the end of the program.
-  void finish(const XmlNode& root);
+  // What is missing at the end of the program, which begins at `root`.
+  void finish(const Place& root);
 
  private:
   using Handler = void (CommandReader::*)(const Fields&, const XmlNode&);

@@ -29,20 +29,22 @@ std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& 
   constexpr std::size_t kShortMove = 250;  // bytes
   builder.reserve(text.size() / kShortMove);
   crcl::CommandReader reader(builder, context.file, found);
-  crcl::XmlNode program;
+  int root_line = 0;
+  int root_column = 0;
   const crcl::XmlVisitor visitor = {
       .root =
           [&](const crcl::XmlNode& root) {
-            program = root;
+            root_line = static_cast<int>(root.line);
+            root_column = static_cast<int>(root.column);
             if (root.name == "CRCLProgram") return true;
-            found.error({.file = context.file, .line = static_cast<int>(root.line)},
+            found.error({.file = context.file, .line = root_line},
                         fmt::format("<{}> is no CRCL program", printable(root.name)), "it begins with <CRCLProgram>");
             return false;
           },
       .element = [&](const crcl::XmlTree& element) { reader.read(element); },
   };
   crcl::read_xml(text, context.file, visitor, found);
-  reader.finish(program);
+  reader.finish({.file = context.file, .line = root_line, .column = root_column});
   auto made = builder.build(found);
   diagnostics.take(found);
   return made;

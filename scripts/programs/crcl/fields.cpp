@@ -35,11 +35,11 @@ void Fields::warning(const XmlNode& at, std::string message, std::string remedy)
 
 void Fields::only(const XmlNode& node, std::initializer_list<std::string_view> names, std::string_view repeated) const {
   for (const XmlNode* one = tree_.first(node); one != nullptr; one = tree_.next(*one)) {
-    const bool known = one->name == "Name" || std::find(names.begin(), names.end(), one->name) != names.end();
-    if (!known) {
+    const auto is_it = [&](std::string_view name) { return same_name(one->name, name); };
+    if (!is_it("Name") && std::none_of(names.begin(), names.end(), is_it)) {
       const std::vector<std::string> candidates(names.begin(), names.end());
       error(*one, fmt::format("<{}> does not belong here", printable(one->name)), did_you_mean(one->name, candidates));
-    } else if (one->name != repeated && tree_.child(node, one->name) != one) {
+    } else if (!is_it(repeated) && tree_.child(node, one->name) != one) {
       error(*one, fmt::format("<{}> is given twice", one->name));
     }
   }

@@ -4,21 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
+
+#include "rt_core/base/text.hpp"
+#include "scripts/programs/crcl/plain_xml.hpp"
 
 namespace cellmirror::crcl {
 namespace {
 
-std::string_view without_prefix(std::string_view name) {
-  const std::size_t colon = name.rfind(':');
-  return colon == std::string_view::npos ? name : name.substr(colon + 1);
-}
-
-class Reader {
+class ExpatReader {
  public:
-  Reader(const std::string& file, const XmlVisitor& visitor, Diagnostics& diagnostics)
-      : file_(file), visitor_(visitor), diagnostics_(diagnostics) {}
+  ExpatReader(const std::string& file, const XmlVisitor& visitor, Diagnostics& diagnostics, XmlProgress visited)
+      : file_(file), visitor_(visitor), diagnostics_(diagnostics), visited_(visited) {}
 
   void read(std::string_view text) {
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
@@ -31,9 +30,9 @@ class Reader {
     text_ = text;
     line_end_ = text.find('\n');
     XML_SetUserData(parser_, this);
-    XML_SetElementHandler(parser_, &Reader::on_start, &Reader::on_end);
-    XML_SetCharacterDataHandler(parser_, &Reader::on_text);
-    XML_SetStartDoctypeDeclHandler(parser_, &Reader::on_doctype);
+    XML_SetElementHandler(parser_, &ExpatReader::on_start, &ExpatReader::on_end);
+    XML_SetCharacterDataHandler(parser_, &ExpatReader::on_text);
+    XML_SetStartDoctypeDeclHandler(parser_, &ExpatReader::on_doctype);
     parse(text);
   }
 
@@ -75,15 +74,15 @@ class Reader {
   }
 
   static void on_start(void* self, const XML_Char* name, const XML_Char** attributes) {
-    static_cast<Reader*>(self)->start(name, attributes);
+    static_cast<ExpatReader*>(self)->start(name, attributes);
   }
-  static void on_end(void* self, const XML_Char* /*name*/) { static_cast<Reader*>(self)->end(); }
+  static void on_end(void* self, const XML_Char* /*name*/) { static_cast<ExpatReader*>(self)->end(); }
   static void on_text(void* self, const XML_Char* text, int size) {
-    static_cast<Reader*>(self)->text({text, static_cast<std::size_t>(size)});
+    static_cast<ExpatReader*>(self)->text({text, static_cast<std::size_t>(size)});
   }
   static void on_doctype(void* self, const XML_Char* /*name*/, const XML_Char* /*system*/, const XML_Char* /*id*/,
                          int /*internal*/) {
-    static_cast<Reader*>(self)->fail("a document type declaration");
+    static_cast<ExpatReader*>(self)->fail("a document type declaration");
   }
 
   void start(std::string_view name, const XML_Char** attributes) {
@@ -95,30 +94,29 @@ class Reader {
     }
     find_place();
     if (depth_ == 1) {
-      XmlNode root;
-      root.name = without_prefix(name);
-      root.line = line_;
-      root.column = column_;
-      if (!visitor_.root(root)) stop();
+      const XmlNode root = {.name = without_prefix(name), .type = {}, .text = {}, .line = line_, .column = column_};
+      if (!visited_.root && !visitor_.root(root)) stop();
       return;
     }
     if (depth_ == 2) tree_.clear();
     if (tree_.size() >= kMostNodes) return fail(fmt::format("an element with more than {} in it", kMostNodes));
-    tree_.open(without_prefix(name), type, line_, column_);
+    texts_[depth_ - 1].clear();
+    tree_.open(tree_.keep(without_prefix(name)), tree_.keep(type), line_, column_);
   }
   void end() {
     if (stopped_) return;
     --depth_;
     if (depth_ == 0) return;
-    tree_.close();
-    if (depth_ == 1) visitor_.element(tree_);
+    tree_.close(tree_.keep(trimmed(texts_[depth_])));
+    if (depth_ == 1 && ++elements_ > visited_.elements) visitor_.element(tree_);
   }
   void text(std::string_view text) {
     if (stopped_ || depth_ < 2) return;
-    if (tree_.text_of_open_node() + text.size() > kLongestText) {
+    std::string& before = texts_[depth_ - 1];
+    if (before.size() + text.size() > kLongestText) {
       return fail(fmt::format("an element with more than {} bytes of text", kLongestText));
     }
-    tree_.add_text(text);
+    before += text;
   }
 
   const std::string& file_;
@@ -131,14 +129,23 @@ class Reader {
   std::uint32_t line_ = 1;
   std::uint32_t column_ = 1;
   XmlTree tree_;
-  int depth_ = 0;
+  std::array<std::string, kMostDepth> texts_;  // of the open elements
+  std::size_t depth_ = 0;
+  XmlProgress visited_;
+  std::size_t elements_ = 0;
   bool stopped_ = false;
 };
 
 }  // namespace
 
+void read_xml_by_expat(std::string_view text, const std::string& file, const XmlVisitor& visitor,
+                       Diagnostics& diagnostics, XmlProgress visited) {
+  ExpatReader(file, visitor, diagnostics, visited).read(text);
+}
+
 void read_xml(std::string_view text, const std::string& file, const XmlVisitor& visitor, Diagnostics& diagnostics) {
-  Reader(file, visitor, diagnostics).read(text);
+  const PlainRead plain = read_plain_xml(text, visitor);
+  if (!plain.complete) read_xml_by_expat(text, file, visitor, diagnostics, plain.visited);
 }
 
 }  // namespace cellmirror::crcl

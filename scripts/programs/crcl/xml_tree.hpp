@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +13,20 @@ namespace cellmirror::crcl {
 
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
 
+// Names are short and mostly differ at once: faster than the library's comparison.
+[[nodiscard]] inline bool same_name(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] != b[i]) return false;
+  }
+  return true;
+}
+
+// Views of the document, or of what the tree has kept: valid until the tree is cleared.
 struct XmlNode {
-  std::string name;  // without a prefix
-  std::string type;  // xsi:type without a prefix; empty where there is none
-  std::string text;  // what stands directly in it, without the space around
+  std::string_view name;  // without a prefix
+  std::string_view type;  // xsi:type without a prefix; empty where there is none
+  std::string_view text;  // what stands directly in it, without the space around
   std::uint32_t line = 0;
   std::uint32_t column = 0;
   std::uint32_t parent = kNoNode;
@@ -26,20 +37,24 @@ struct XmlNode {
 
 class XmlTree {
  public:
-  // Building: begin() forgets everything and opens the root.
-  void clear() { used_ = 0; }
+  // Building. What open() and close() are given is not copied: it has to live as long as the tree is read, as what
+  // keep() returns does. The first element that is opened after clear() is the root.
+  void clear();
+  [[nodiscard]] std::string_view keep(std::string_view text) { return kept_.emplace_back(text); }
   void open(std::string_view name, std::string_view type, std::uint32_t line, std::uint32_t column);
-  void add_text(std::string_view text);
-  void close();
+  void close(std::string_view text);  // without the space around
 
-  [[nodiscard]] bool complete() const { return used_ > 0 && open_ == kNoNode; }
   [[nodiscard]] std::size_t size() const { return used_; }
   [[nodiscard]] const XmlNode& root() const { return nodes_[0]; }
   [[nodiscard]] const XmlNode* first(const XmlNode& node) const { return at(node.first_child); }
   [[nodiscard]] const XmlNode* next(const XmlNode& node) const { return at(node.next); }
   // The first child of that name; null where there is none.
-  [[nodiscard]] const XmlNode* child(const XmlNode& node, std::string_view name) const;
-  [[nodiscard]] std::size_t text_of_open_node() const { return open_ == kNoNode ? 0 : nodes_[open_].text.size(); }
+  [[nodiscard]] const XmlNode* child(const XmlNode& node, std::string_view name) const {
+    for (const XmlNode* one = first(node); one != nullptr; one = next(*one)) {
+      if (same_name(one->name, name)) return one;
+    }
+    return nullptr;
+  }
 
  private:
   [[nodiscard]] const XmlNode* at(std::uint32_t index) const { return index == kNoNode ? nullptr : &nodes_[index]; }
@@ -47,6 +62,13 @@ class XmlTree {
   std::vector<XmlNode> nodes_;  // only grows; the first used_ count
   std::size_t used_ = 0;
   std::uint32_t open_ = kNoNode;
+  std::deque<std::string> kept_;
 };
+
+// "xsi:type" is "type".
+[[nodiscard]] inline std::string_view without_prefix(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
 
 }  // namespace cellmirror::crcl

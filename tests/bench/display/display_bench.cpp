@@ -1,15 +1,18 @@
 // display_bench [ROUNDS]: the renderer against a bare OSMesa program that draws the same buffers in the same run, by
 // turns, with and without anti-aliasing: 100,000 triangles, Gouraud, 1280x720. Tells medians and the ratio of rates.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 
 #include "drivers/display/image_codec.hpp"
 #include "drivers/display/internal/surface.hpp"
 #include "drivers/display/internal/view_transform.hpp"
 #include "drivers/display/renderer.hpp"
+#include "rt_core/ports/mesh_look.hpp"
 #include "tests/bench/display/bare_program.hpp"
 #include "tests/unit/display/test_scenes.hpp"
 
@@ -87,6 +90,48 @@ void time_gallery(Renderer& renderer, int rounds, int width, int height) {
               median(drawing), median(picking), median(jpeg), bytes.size());
 }
 
+// Of the processors, by all threads of this program.
+double cpu_milliseconds(const std::function<void()>& work) {
+  const std::clock_t begin = std::clock();
+  work();
+  return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+// What a picture on a mesh costs.
+void time_textured(Renderer& renderer, int rounds) {
+  constexpr int kEdge = 512;
+  auto image = std::make_shared<Image>();
+  image->width = image->height = kEdge;
+  for (int i = 0; i < kEdge * kEdge; ++i) {
+    const auto value = static_cast<std::uint8_t>((i / 32 + i / (32 * kEdge)) % 2 == 0 ? 210 : 60);
+    image->rgba.insert(image->rgba.end(), {value, value, value, 255});
+  }
+  const auto mesh = torus(1, 0.42, 500, 100);
+  auto look = std::make_shared<MeshLook>();
+  look->materials.assign(mesh->triangles.size(), 0);
+  look->palette = {{std::move(image), {1, 1, 1}}};
+  for (const geometry::TriangleIndices& triangle : mesh->triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      const Eigen::Vector3d& p = mesh->vertices[vertex];
+      look->places.emplace_back(static_cast<float>(2 * p.x()), static_cast<float>(2 * p.y()));
+    }
+  }
+  Scene scene;
+  add_mesh(scene, mesh, Pose::Identity()).look = std::move(look);
+  const std::vector<Pane> panes = {pane_looking_at({0.6, -2.6, 2.1}, {0, 0, 0}, 0.8)};
+  Image picture;
+  std::array<std::vector<double>, 2> times;
+  for (int i = 0; i < 2 * (rounds + 3); ++i) {
+    const auto on = static_cast<std::size_t>(i % 2);
+    scene.modes.set(static_cast<std::size_t>(DisplayMode::textures), on != 0);
+    const double a =
+        cpu_milliseconds([&] { static_cast<void>(renderer.draw(scene, panes, kWidth, kHeight, picture)); });
+    if (i >= 6) times[on].push_back(a);
+  }
+  std::printf("%-22s %8.2f ms of processor, TEXTURES off %.2f ms\n", "picture on a mesh", median(times[1]),
+              median(times[0]));
+}
+
 int run(int rounds) {
   const auto renderer = Renderer::create({.backend = Backend::osmesa});
   if (!renderer) {
@@ -95,6 +140,7 @@ int run(int rounds) {
   }
   std::printf("%s\n%-22s %11s %11s\n", std::string((*renderer)->name()).c_str(), "", "renderer", "bare OSMesa");
   const bool done = compare(**renderer, rounds, false) && compare(**renderer, rounds, true);
+  time_textured(**renderer, rounds);
   time_gallery(**renderer, rounds, 640, 480);
   time_gallery(**renderer, rounds, kWidth, kHeight);
   return done ? 0 : 1;

@@ -1,60 +1,52 @@
-// Bytes as a CRCL document. Besides crashes: a program comes out just where nothing is wrong, findings lie in the text,
-// and what was read is executed.
-#include <array>
+// Bytes as a CRCL document. What is read in place is compared with what expat alone reads: the same elements with the
+// same texts and places, and the same findings.
+#include <fmt/format.h>
+
 #include <cstdint>
-#include <cstdlib>
-#include <string_view>
+#include <string>
 
 #include "scripts/programs/crcl/crcl.hpp"
-#include "scripts/programs/program/machine.hpp"
-#include "scripts/programs/program/trace.hpp"
+#include "scripts/programs/crcl/xml_reader.hpp"
+#include "tests/support/program_fuzz.hpp"
 
 namespace {
 
 using namespace cellmirror;
-using namespace cellmirror::program;
 
-constexpr std::array<JointKind, 4> kJoints = {JointKind::revolute, JointKind::revolute, JointKind::prismatic,
-                                              JointKind::continuous};
-
-struct World final : ProgramWorld {
-  [[nodiscard]] JointValues joints() const override { return {0.5, -0.25, 0.125}; }
-  [[nodiscard]] Result<Pose> position() const override { return Pose::Identity(); }
-  [[nodiscard]] bool digital_input(std::size_t /*number*/) const override { return false; }
-  [[nodiscard]] double analogue_input(std::size_t /*number*/) const override { return 0; }
-  [[nodiscard]] bool digital_output(std::size_t /*number*/) const override { return false; }
-  [[nodiscard]] double analogue_output(std::size_t /*number*/) const override { return 0; }
-};
-
-void require(bool holds) {
-  if (!holds) std::abort();
+void describe(const crcl::XmlTree& tree, const crcl::XmlNode& node, int depth, std::string& out) {
+  out += fmt::format("{} {}:{} {} [{}] [{}]\n", depth, node.line, node.column, node.name, node.type, node.text);
+  for (const crcl::XmlNode* one = tree.first(node); one != nullptr; one = tree.next(*one)) {
+    describe(tree, *one, depth + 1, out);
+  }
 }
 
-void execute(const std::shared_ptr<const Program>& program) {
-  const World world;
-  Machine machine(program, kJoints);
-  for (int steps = 0; steps < 2000; ++steps) {
-    if (machine.next(world, 50) != Machine::Step::command) return;
-    require(!trace_line(*program, machine.command()).empty());
-  }
+template <typename Read>
+std::string visited(Read read) {
+  std::string out;
+  Diagnostics findings;
+  const crcl::XmlVisitor visitor = {
+      .root =
+          [&](const crcl::XmlNode& root) {
+            out += fmt::format("root {}:{} {}\n", root.line, root.column, root.name);
+            return root.name != "unwanted";
+          },
+      .element = [&](const crcl::XmlTree& tree) { describe(tree, tree.root(), 0, out); },
+  };
+  read(visitor, findings);
+  return out + findings.text();
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  Diagnostics diagnostics;
-  const auto program = crcl_language().parse(text, {.file = "fuzz.crcl", .codes = {}}, diagnostics);
-  require((program != nullptr) == diagnostics.ok());
-  for (const Diagnostic& finding : diagnostics.all()) {
-    require(finding.place.line >= 0 && static_cast<std::size_t>(finding.place.line) <= size + 1);
-    require(finding.place.column >= 0 && static_cast<std::size_t>(finding.place.column) <= size + 1);
-    require(!finding.message.empty());
-  }
-  if (program == nullptr) return 0;
-  require(program->places.size() == program->statements.size());
-  Diagnostics unfit;
-  program->check_for(kJoints, unfit);
-  if (unfit.ok()) execute(program);
+  const std::string file = "fuzz";
+  const std::string mostly_in_place = visited(
+      [&](const crcl::XmlVisitor& visitor, Diagnostics& findings) { crcl::read_xml(text, file, visitor, findings); });
+  const std::string by_expat = visited([&](const crcl::XmlVisitor& visitor, Diagnostics& findings) {
+    crcl::read_xml_by_expat(text, file, visitor, findings);
+  });
+  program::require(mostly_in_place == by_expat);
+  program::read_fuzzed(program::crcl_language(), text);
   return 0;
 }

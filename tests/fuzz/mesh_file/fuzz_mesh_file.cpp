@@ -1,5 +1,5 @@
 // Any bytes as a mesh file; the first says which format. A mesh that is fit for geometry, or a reason; its hull and
-// convex parts, where it has them, are convex.
+// convex parts, where it has them, are convex; its look fits it. Material files hold the same bytes.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "config/mesh_file.hpp"
+#include "config/mesh_looks.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/geometry/convex_hull.hpp"
 #include "rt_core/geometry/convex_parts.hpp"
@@ -22,9 +23,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 1 || size > kLargest) return 0;
   const std::string_view bytes{reinterpret_cast<const char*>(data) + 1, size - 1};
   geometry::MeshFindings findings;
+  PictureLibrary pictures;
+  LookRequest looks;
+  looks.text = [&](const std::string&) { return Result<std::string>(bytes); };
+  looks.picture = [&](const std::string&) { return Result<Picture>(std::make_shared<const Image>()); };
+  looks.embedded = [&](std::string_view picture) { return pictures.of_bytes(picture); };
   const auto mesh = parse_mesh(
       bytes, kExtensions[data[0] % kExtensions.size()], "fuzz", Eigen::Vector3d(1, -2, 0.5),
-      [](const std::string&) { return Result<std::string>(std::string(72, '\1')); }, findings);
+      [](const std::string&) { return Result<std::string>(std::string(72, '\1')); }, findings, &looks);
   if (!mesh) {
     CELLMIRROR_EXPECTS(!mesh.error().what.empty());
     return 0;
@@ -34,6 +40,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const std::uint32_t corner : triangle) CELLMIRROR_EXPECTS(corner < mesh->vertices.size());
   }
   for (const Eigen::Vector3d& p : mesh->vertices) CELLMIRROR_EXPECTS(p.allFinite());
+  if (looks.look) {
+    const MeshLook& look = *looks.look;
+    CELLMIRROR_EXPECTS(look.materials.size() == mesh->triangles.size());
+    CELLMIRROR_EXPECTS(look.places.size() == 3 * mesh->triangles.size());
+    CELLMIRROR_EXPECTS(look.colours.empty() || look.colours.size() == look.places.size());
+    for (const std::uint16_t material : look.materials) CELLMIRROR_EXPECTS(material < look.palette.size());
+    for (const Eigen::Vector2f& place : look.places) CELLMIRROR_EXPECTS(place.allFinite());
+  }
   CELLMIRROR_EXPECTS(mesh->closed == findings.why_open().empty());
   if (mesh->closed) CELLMIRROR_EXPECTS(geometry::signed_volume(*mesh) > 0.0);
   if (const auto hull = geometry::convex_hull("fuzz", mesh->vertices)) CELLMIRROR_EXPECTS(hull->closed && hull->convex);

@@ -3,13 +3,13 @@
 // commands are finite and in their bounds, and budgets are kept.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "scripts/programs/program/describe.hpp"
 #include "scripts/programs/program/machine.hpp"
 #include "scripts/programs/program/program_builder.hpp"
 #include "scripts/programs/program/trace.hpp"
+#include "tests/support/program_fuzz.hpp"
 
 namespace {
 
@@ -17,10 +17,6 @@ using namespace cellmirror;
 using namespace cellmirror::program;
 
 constexpr std::array<JointKind, 3> kJoints = {JointKind::revolute, JointKind::prismatic, JointKind::continuous};
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 class Bytes {
  public:

@@ -64,9 +64,14 @@ class QuietHost final : public WorldHost,
   Result<void> set_point_of_reference(const Pose& /*X_FP*/) override { return called(); }
   Result<void> set_tool_center_point(const Pose& /*X_PT*/) override { return called(); }
   Result<void> set_language(std::string_view /*language*/) override { return called(); }
-  Result<void> load_program(std::string_view /*program*/, std::string_view /*robot*/) override { return called(); }
-  Result<void> run_program(std::string_view /*program*/, std::string_view /*robot*/, ProgramBegin /*begin*/) override {
-    return called();
+  Result<ActivityHandle> load_program(std::string_view /*program*/, std::string_view /*robot*/) override {
+    ++calls;
+    return ActivityHandle();
+  }
+  Result<ActivityHandle> run_program(std::string_view /*program*/, std::string_view /*robot*/,
+                                     ProgramBegin /*begin*/) override {
+    ++calls;
+    return ActivityHandle();
   }
   Result<void> delete_program(std::string_view /*program*/, std::string_view /*robot*/) override { return called(); }
   Result<void> hold_program(std::string_view /*robot*/) override { return called(); }

@@ -120,12 +120,15 @@ class RecordingHost final : public WorldHost,
   }
 
   Result<void> set_language(std::string_view language) override { return record("set_language {}", language); }
-  Result<void> load_program(std::string_view program, std::string_view robot) override {
-    return record("load_program {} {}", program, robot);
+  Result<ActivityHandle> load_program(std::string_view program, std::string_view robot) override {
+    if (auto done = record("load_program {} {}", program, robot); !done) return std::unexpected(done.error());
+    return ActivityHandle();
   }
-  Result<void> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override {
+  Result<ActivityHandle> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override {
     constexpr std::array<std::string_view, 3> kNames = {"now", "exec_wait", "backward"};
-    return record("run_program {} {} {}", program, robot, kNames[static_cast<std::size_t>(begin)]);
+    const auto done = record("run_program {} {} {}", program, robot, kNames[static_cast<std::size_t>(begin)]);
+    if (!done) return std::unexpected(done.error());
+    return ActivityHandle();
   }
   Result<void> delete_program(std::string_view program, std::string_view robot) override {
     return record("delete_program {} {}", program, robot);

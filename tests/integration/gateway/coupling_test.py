@@ -138,8 +138,11 @@ class Coupling(unittest.TestCase):
 
     # The last by its name: the robot does not come back.
     def test_when_a_robot_vanishes_its_slaves_are_free(self):
-        self.done(f"MASTER_SLAVE on {MIRRORED} 1 {SLAVE} 1 J_1 J_1")
-        self.done("DELETE_NODE Puma")
+        # In one go, so that nobody looks after the couplings in between.
+        (self.scratch.home / "scripts" / "vanishes.spt").write_text(
+            f"MASTER_SLAVE on {MIRRORED} 1 {SLAVE} 1 J_1 J_1;\nDELETE_NODE Puma;\nROBACT {SLAVE};\n"
+            "rob_jnt_max_vel 90 90 90 90 90 90\n")
+        self.done("EXEC_SCRIPT vanishes.spt")
         self.assertTrue(g.eventually(lambda: self.couplings() == {}), self.couplings())
         self.done(f"POS_ROB {SLAVE} JOINT_ABS 5")
         self.arrives(SLAVE, 1, 5)

@@ -143,6 +143,16 @@ class Motion(unittest.TestCase):
         self.done(f"POS_ROB {ARM} FRAME_ABS 600 300 900 180 0 0")
         self.at((BASE[0] + 0.6, BASE[1] + 0.3, 0.9), self.tcp()[0])
 
+    def slow(self, robot=ARM):
+        """So slow that a move still goes on however late this machine looks; until the test ends."""
+        fast = self.scratch.robot(robot)["parameters"]["active_velocity"]
+        self.set_velocities(robot, [0.3] * len(fast))
+        self.addCleanup(self.set_velocities, robot, fast)
+
+    def set_velocities(self, robot, values):
+        self.done(f"ROBACT {robot}")
+        self.done("rob_jnt_act_vel " + " ".join(f"{value:.17g}" for value in values))
+
     # --- time
 
     def test_answer_comes_at_arrival(self):
@@ -152,10 +162,10 @@ class Motion(unittest.TestCase):
         self.assertAlmostEqual(self.joints()[0], math.pi / 2, delta=1e-9)
 
     def test_other_messages_are_executed_while_one_waits(self):
-        waiting = Background(self.scratch, f"POS_ROB {ARM} JOINT_INC 120")
-        start = time.monotonic()
+        self.slow()
+        waiting = Background(self.scratch, f"POS_ROB {ARM} JOINT_INC 120")  # 7 s
+        self.assertTrue(g.eventually(lambda: self.motion()["moving"], every=0.01))
         self.done("hot_message meanwhile")
-        self.assertLess(time.monotonic() - start, 0.5)
         self.assertTrue(self.motion()["moving"])
         self.assertEqual(waiting.answer().returncode, 0)
 
@@ -222,6 +232,7 @@ class Motion(unittest.TestCase):
         self.same_rotation((1, 0, 0, 0), self.tcp()[1])
 
     def test_superseded_move_is_told_to_who_waits(self):
+        self.slow()
         waiting = Background(self.scratch, f"POS_ROB {ARM} JOINT_INC 120")
         self.assertTrue(g.eventually(lambda: self.motion()["moving"], every=0.01))
         self.done(f"POS_ROB {ARM} JOINT_ABS 5")
@@ -231,6 +242,7 @@ class Motion(unittest.TestCase):
         self.assertAlmostEqual(self.joints()[0], math.radians(5), delta=1e-9)
 
     def test_stopped_move_is_told_to_who_waits_and_forgets_what_is_queued(self):
+        self.slow()
         waiting = Background(self.scratch, f"POS_ROB {ARM} JOINT_INC 150")
         self.assertTrue(g.eventually(lambda: self.motion()["moving"], every=0.01))
         self.done(f"MOVE_ROB {ARM} PTP JOINT_INC 0 10")
@@ -279,6 +291,7 @@ class Motion(unittest.TestCase):
 
     def test_robot_that_is_online_takes_no_motion_commands(self):
         robot = "PUMA_762"
+        self.slow(robot)
         waiting = Background(self.scratch, f"POS_ROB {robot} JOINT_INC 100")
         self.assertTrue(g.eventually(lambda: self.motion(robot)["moving"], every=0.01))
         self.done(f"ROBOT {robot} online")

@@ -2,11 +2,14 @@
 
 import base64
 import json
+import os
 import pathlib
 import re
 import shutil
+import signal
 import socket
 import struct
+import subprocess
 import threading
 import unittest
 
@@ -41,7 +44,7 @@ def require_renderer(scratch):
         raise AssertionError(done.stderr)
 
 
-class Pictures(unittest.TestCase):
+class WithGateway(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = g.Scratch()
@@ -67,6 +70,8 @@ class Pictures(unittest.TestCase):
     def path(self, name):
         return self.scratch.root / name
 
+
+class Pictures(WithGateway):
     def test_picture_has_the_wanted_size_and_format(self):
         self.snapshot("--size", "320x200", "-o", self.path("a.png"))
         self.assertEqual(png_size(self.path("a.png")), (320, 200))
@@ -164,14 +169,107 @@ class Pictures(unittest.TestCase):
         self.assertEqual(told["frames"], 5)
         self.assertEqual(len(re.findall(b"\xff\xd8\xff", self.path("film.mjpeg").read_bytes())), 5)
 
-    def test_mp4_is_made_by_ffmpeg_or_its_absence_is_told(self):
-        film = self.path("film.mp4")
-        done = self.snapshot("--film", film, "--seconds", 1, "--rate", 5, "--size", "161x121")
-        if shutil.which("ffmpeg") is None:
-            self.assertIn("ffmpeg", done.stderr)
-            self.assertEqual(len(list(self.path("film.mp4.frames").glob("*.jpg"))), 5)
-        else:
-            self.assertEqual(film.read_bytes()[4:8], b"ftyp")
+    def test_film_replaces_a_longer_one_that_was_there(self):
+        for seconds, frames in ((1.2, 6), (0.6, 3)):
+            self.snapshot("--film", self.path("again"), "--seconds", seconds, "--rate", 5, "--size", "64x48")
+            self.assertEqual(len(list(self.path("again").glob("*.jpg"))), frames)
+
+    def test_without_ffmpeg_a_film_becomes_frames_and_says_so(self):
+        film = self.path("none.mp4")
+        done = subprocess.run([g.BIN / "cellmirror", "snapshot", "--instance", self.scratch.instance, "--film", film,
+                               "--seconds", "1", "--rate", "5", "--size", "161x121"],
+                              env=dict(self.scratch.environment, PATH=str(self.scratch.root)), capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("apt-get install ffmpeg", done.stderr)
+        self.assertEqual(len(list(self.path("none.mp4.frames").glob("*.jpg"))), 5)
+        self.assertFalse(film.exists())
+
+
+class Films(WithGateway):
+    """MP4 by a real ffmpeg, looked at with ffprobe."""
+
+    @classmethod
+    def setUpClass(cls):
+        for program in ("ffmpeg", "ffprobe"):
+            if shutil.which(program) is None:
+                raise unittest.SkipTest(f"skipped: {program} is not installed (apt-get install ffmpeg)")
+        super().setUpClass()
+
+    def probe(self, film):
+        """Codec, edges, rate and duration as the file says, and the frames that can be read from it."""
+        done = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_entries",
+                               "stream=codec_name,pix_fmt,width,height,avg_frame_rate,duration,nb_read_frames", film],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        (stream,) = json.loads(done.stdout)["streams"]
+        return stream
+
+    def rgb(self, file):
+        """Of all its frames, 64 x 48 pixels each: whatever cannot be played is told on stderr."""
+        done = subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-i", file, "-vf", "scale=64:48:flags=area", "-pix_fmt", "rgb24",
+                               "-f", "rawvideo", "-"], capture_output=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        size = 64 * 48 * 3
+        return [done.stdout[at:at + size] for at in range(0, len(done.stdout), size)]
+
+    def difference(self, a, b):
+        return sum(abs(x - y) for x, y in zip(a, b, strict=True)) / len(a)
+
+    def on_demand(self):
+        return self.scratch.status()["pictures"]["on_demand"]
+
+    def test_mp4_has_the_frames_the_size_and_the_length_that_were_asked_for(self):
+        for size, seen in (("160x120", (160, 120)), ("161x121", (160, 120))):  # H.264 of this kind wants even edges
+            film = self.path("film.mp4")
+            told = json.loads(self.snapshot("--film", film, "--seconds", 1.5, "--rate", 8, "--size", size, "--json").stdout)
+            stream = self.probe(film)
+            self.assertEqual((stream["codec_name"], stream["pix_fmt"]), ("h264", "yuv420p"))
+            self.assertEqual((stream["width"], stream["height"]), seen)
+            self.assertEqual((told["frames"], int(stream["nb_read_frames"])), (12, 12))
+            self.assertEqual(stream["avg_frame_rate"], "8/1")
+            self.assertAlmostEqual(float(stream["duration"]), 1.5, delta=0.01)
+
+    def test_mjpeg_can_be_played(self):
+        film = self.path("film.mjpeg")
+        self.snapshot("--film", film, "--seconds", 1, "--rate", 5, "--size", "160x120")
+        stream = self.probe(film)
+        self.assertEqual((stream["codec_name"], stream["width"], stream["height"]), ("mjpeg", 160, 120))
+        self.assertEqual(len(self.rgb(film)), 5)
+
+    def test_view_sequence_is_in_the_film_that_ctrl_c_ends(self):
+        self.send("STVW 0 VP 4000 -6500 3000 LP 3000 500 1000")
+        self.snapshot("--view", 0, "--size", "320x240", "-o", self.path("first.png"))
+        film = self.path("sequence.mp4")
+        before = self.on_demand()
+        taking = subprocess.Popen([g.BIN / "cellmirror", "snapshot", "--instance", self.scratch.instance, "--view", "0", "--film",
+                                   film, "--seconds", "60", "--rate", "10", "--size", "320x240", "--json"],
+                                  env=self.scratch.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                  start_new_session=True)
+        try:
+            self.assertTrue(g.eventually(lambda: self.on_demand() >= before + 3))
+            self.send("STVW 0 VP 9000 -4000 4000 LP 5000 0 1000 TIME 0.5")
+            self.assertTrue(g.eventually(lambda: self.scratch.status()["display"]["views"][0]["sequence"] is None))
+            there = self.on_demand()
+            self.assertTrue(g.eventually(lambda: self.on_demand() >= there + 3))
+            os.killpg(taking.pid, signal.SIGINT)  # as a terminal does: everybody in the group gets it
+            out, problem = taking.communicate(timeout=60)
+        finally:
+            taking.kill()
+            taking.wait()
+        self.assertEqual(taking.returncode, 0, problem)
+        self.snapshot("--view", 0, "--size", "320x240", "-o", self.path("last.png"))
+        frames = self.rgb(film)
+        self.assertEqual(len(frames), json.loads(out)["frames"])
+        first, last = self.rgb(self.path("first.png"))[0], self.rgb(self.path("last.png"))[0]
+        self.assertGreater(self.difference(first, last), 8)
+        self.assertLess(self.difference(frames[0], first), 4)  # the colours, too, are those of the picture
+        self.assertLess(self.difference(frames[-1], last), 4)
+
+    def test_what_ffmpeg_cannot_write_is_told(self):
+        done = self.snapshot("--film", self.path("no") / "where.mp4", "--seconds", 1, "--size", "64x48", expect=1)
+        self.assertIn("ffmpeg made no", done.stderr)
+        self.assertIn("No such file or directory", done.stderr)
 
 
 class WithoutPictures(unittest.TestCase):

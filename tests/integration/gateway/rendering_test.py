@@ -240,18 +240,8 @@ class Rendering(unittest.TestCase):
         self.send("SET_MODE LEGEND off", ARM, "ROBACT MANTEC_R3")
         view = ("--view", "0")
         plain = self.picture(*view)
-        self.send("SET_MODE SMEAR on", "MOVE_ROB MANTEC_R3 PTP JOINT_INC 60 30 0 0 0 0",
-                  "MOVE_ROB MANTEC_R3 PTP JOINT_INC -60 -30 0 0 0 0")
-        # A trace grows with the pictures that are drawn.
-        angles = lambda: [joint["position"] for joint in self.scratch.robot("MANTEC_R3")["joints"]]
-        there = angles()
-        end = time.monotonic() + 20
-        while time.monotonic() < end:
-            self.picture(*view)
-            now = angles()
-            if now == there and time.monotonic() > end - 17:
-                break
-            there = now
+        # A trace grows whether anybody looks or not: no picture is taken until the robot is back.
+        self.send("SET_MODE SMEAR on", "POS_ROB MANTEC_R3 JOINT_INC 60 30 0 0 0 0", "POS_ROB MANTEC_R3 JOINT_INC -60 -30 0 0 0 0")
         traced = self.after("DRAW_SCENE", options=view, before=plain, at_least=0.001)
         self.assertGreater(p.difference(plain, traced), 0.001)
         self.back("SET_MODE SMEAR off", options=view, to=plain, at_most=0.01)
@@ -340,6 +330,72 @@ class Rendering(unittest.TestCase):
         begin = time.monotonic()
         self.assertTrue(g.eventually(lambda: p.difference(plain, self.picture()) < 0.001, 30, 0.2))
         self.assertLess(time.monotonic() - begin, 15)
+
+
+LAYOUT = """format = 1
+[[view]]
+id = 5
+name = "gate"
+seen_from = [1, 0, 0.2]
+[[display]]
+id = 2
+name = "gate and plan"
+pane = [{ view = 5, area = [0, 0, 0.5, 1] }, { view = 3, area = [0.5, 0, 0.5, 0.5] }]
+"""
+
+
+class Layout(unittest.TestCase):
+    """A cell with a layout file (.lay)."""
+
+    def setUp(self):
+        self.scratch = g.Scratch()
+        self.addCleanup(self.scratch.remove)
+        (self.scratch.home / "mine.lay").write_text(LAYOUT)
+        self.text = self.scratch.cell_file.read_text()
+        self.scratch.cell_file.write_text(self.text + '[display]\nlayout_file = "mine.lay"\n')
+
+    def start(self):
+        gateway = g.Gateway(self.scratch, pictures=True)
+        self.addCleanup(gateway.close)
+        return gateway
+
+    def picture(self, size, *options):
+        file = self.scratch.root / "picture.png"
+        done = self.scratch.cellmirror("snapshot", *options, "-o", str(file), "--size", size)
+        if done.returncode != 0 and "renderer" in done.stderr.lower():
+            raise unittest.SkipTest(f"skipped: no picture can be drawn here: {done.stderr.strip()}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return p.read_png(file)
+
+    def test_displays_show_the_views_where_and_as_the_file_says(self):
+        self.start()
+        for command in ("SET_MODE LEGEND off", "STDP 2"):
+            self.assertEqual(self.scratch.send(command).returncode, 0)
+        running = ("--instance", self.scratch.instance)
+        whole = self.picture("480x360", *running)
+        for box, view, size in (((0, 0, 0.5, 1), "5", "240x360"), ((0.5, 0, 1, 0.5), "3", "240x180")):
+            alone = self.picture(size, *running, "--view", view)
+            self.assertLess(p.difference(whole.box(*box), alone), 0.05)  # but for the title and the border
+            self.assertGreater(alone.colours(), 20)
+        self.assertEqual(whole.box(0.52, 0.52, 0.98, 0.98).colours(), 1, "what no pane covers is grey")
+        display = self.scratch.status()["display"]
+        self.assertEqual((display["views"][5]["name"], display["views"][5]["projection"]), ("gate", "perspective"))
+        self.assertEqual(display["displays"][1], {"id": 2, "name": "gate and plan", "panes": [
+            {"view": 5, "area": [0, 0, 0.5, 1]}, {"view": 3, "area": [0.5, 0, 0.5, 0.5]}]})
+        # Without a gateway the views stand in the same place.
+        at_rest = self.picture("240x360", "--cell", str(self.scratch.cell_file), "--view", "5")
+        self.assertLess(p.difference(at_rest, self.picture("240x360", *running, "--view", "5")), 0.05)
+
+    def test_a_faulty_file_starts_nothing_and_is_told_whole(self):
+        (self.scratch.home / "mine.lay").write_text(LAYOUT + "[[display]]\nid = 9\n[[view]]\nid = 8\n")
+        done = self.scratch.cellmirror("run", str(self.scratch.cell_file), "--headless", "--no-web", "--for", "1",
+                                       "--instance", self.scratch.instance, instance=False)
+        self.assertEqual(done.returncode, 1)
+        for word in ("mine.lay:11:6: error: display 2: id is 9", "mine.lay:13:6: error: view 2: id is 8", "nothing was started"):
+            self.assertIn(word, done.stderr)
+        checked = self.scratch.cellmirror("check", str(self.scratch.home / "mine.lay"))
+        self.assertEqual(checked.returncode, 1)
+        self.assertIn("mine.lay:13:6", checked.stderr)
 
 
 if __name__ == "__main__":

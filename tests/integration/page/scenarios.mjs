@@ -146,6 +146,18 @@ const scenarios = {
     await shot(page, "performance");
   },
 
+  // From the address to the first picture, each time in a browser that knows nothing yet: the argument says how often.
+  async first_picture() {
+    const times_ms = [];
+    for (let i = 0; i < Number(rest[0]); ++i) {
+      const page = await opened();
+      await page.waitForFunction(() => window.measured.some(({name}) => name === "cellmirror.picture"));
+      times_ms.push(await page.evaluate(() => window.measured.find(({name}) => name === "cellmirror.picture").startTime));
+      await page.context().close();
+    }
+    console.log(`first picture: ${times_ms.map((time) => time.toFixed(0)).join(" ")} ms`);
+  },
+
   async screens() {
     for (const [name, options] of kScreens) await screen(name, options);
   },
@@ -183,6 +195,21 @@ const scenarios = {
     await run(page, "hot_message <b>ding</b>");
     await page.waitForFunction(() => document.getElementById("hot-message").textContent === "<b>ding</b>");
     await page.waitForFunction(() => Number(document.documentElement.dataset.rung) > 0);
+  },
+
+  // Views and displays are called as the cell's layout file has it.
+  async layout() {
+    const page = await opened();
+    await live(page);
+    await page.waitForFunction(() => document.querySelector('#view-choice option[value="view:3"]').textContent === "View 3, angle 3");
+    const titles = await page.locator("#display-choice option").allInnerTexts();
+    assert.deepEqual(titles, [1, 2, 3, 4, 5, 6].map((id) => `${id}, layout ${id}`));
+    await page.selectOption("#display-choice", "2");
+    await page.locator("#console-log .done").waitFor();
+    await picture(page);
+    await page.focus("#view-canvas");
+    await page.keyboard.press("ArrowLeft");
+    assert.equal(await page.inputValue("#view-choice"), "free");
   },
 
   // Fingers on a phone.

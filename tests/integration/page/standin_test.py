@@ -43,6 +43,9 @@ class Page(unittest.TestCase):
         for name in ("desk-light", "desk-dark", "tablet-light", "phone-light", "phone-dark"):
             self.assertGreater((browser.ARTEFACTS / f"{name}.png").stat().st_size, 10000)
 
+    def test_views_and_displays_have_the_names_of_the_layout(self):
+        self.run_scenario("layout")
+
     def test_it_can_be_used_by_keyboard(self):
         self.run_scenario("keyboard")
 

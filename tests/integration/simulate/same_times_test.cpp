@@ -1,161 +1,171 @@
 // Robot programs run beside real time, as in the gateway, and off line: the same commands in the same order, and the
 // same times within a tick.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <cmath>
+#include <future>
 #include <map>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "app/gateway/cell_owner.hpp"
 #include "app/simulation/simulation.hpp"
-#include "config/cell_file.hpp"
-#include "rt_core/rt/cyclic_thread.hpp"
-#include "rt_core/rt/watchdog.hpp"
+#include "tests/integration/simulate/real_time_owner.hpp"
 
 namespace cellmirror::app {
 namespace {
 
 namespace fs = std::filesystem;
-using program::ProgramEvent;
 
-constexpr double kTick = 1e-3;         // s
-constexpr double kTolerance = 1.5e-3;  // s: a tick, and that neither clock begins on one
-constexpr int kTries = 3;              // a machine that stands still for a moment tells nothing about us
-constexpr std::chrono::seconds kPatience{60};
+constexpr double kTick = 1e-3;      // s
+constexpr double kRounding = 2e-5;  // s
+constexpr double kMostOutliers = 0.1;
+constexpr std::size_t kRuns = 5;
+constexpr std::chrono::milliseconds kApart{300};
 
-LoadedCell load(const fs::path& file) {
-  Diagnostics diagnostics;
-  auto cell = load_cell(file, diagnostics);
-  EXPECT_TRUE(cell) << diagnostics.text();
-  return std::move(*cell);
-}
-
-// What a robot's programs did, and how long after its first event.
+// What a robot's programs did of one kind ("command", "move_ended", ...), in its order. Kinds apart: when something is
+// noticed decides in which order things of different kinds are told.
 struct Step {
   std::string what;
-  double time_s = 0;
+  double time_s = 0;  // after the start of the robot's first program
 };
-using Steps = std::map<std::string, std::vector<Step>>;
+using Key = std::pair<std::string, std::string>;  // robot, kind
+using Steps = std::map<Key, std::vector<Step>>;
 
-Steps relative(Steps steps) {
-  for (auto& [robot, list] : steps) {
-    const double first = list.front().time_s;
-    for (Step& step : list) step.time_s -= first;
+class Recording {
+ public:
+  void add(const std::string& robot, const std::string& kind, std::string what, double time_s) {
+    const double begin = begins_.try_emplace(robot, time_s).first->second;
+    steps_[{robot, kind}].push_back({std::move(what), time_s - begin});
+    if (kind == "ended" || kind == "failed") ++ends_;
   }
-  return steps;
-}
+  [[nodiscard]] std::size_t ends() const { return ends_; }
+  [[nodiscard]] const Steps& steps() const { return steps_; }
 
-// The owner and the tick in their threads.
-Steps run_in_real_time(const fs::path& cell_file, const std::string& script, std::size_t ends) {
-  LoadedCell loaded = load(cell_file);
-  SystemClock clock;
-  Watchdog watchdog(std::chrono::milliseconds(100), {});
-  const auto engine = std::make_unique<engine::Engine>(watchdog);
-  PictureBoard board;
+ private:
+  std::map<std::string, double> begins_;
+  Steps steps_;
+  std::size_t ends_ = 0;
+};
+
+Steps run_in_real_time(const fs::path& cell, const std::string& script, std::size_t ends) {
   std::mutex mutex;
-  Steps steps;
-  std::size_t ended = 0;
-  CellOwner owner(CellOwner::Parts{
-      .cell = std::move(loaded.cell),
-      .home = loaded.home,
-      .streams = {},
-      .haptics = {},
-      .views = {},
-      .collision = {},
-      .foot_switches = {},
-      .engine = *engine,
-      .board = board,
-      .clock = clock,
-      .instance = {},
-      .save_flight_record = [](std::string_view) -> Result<void> { return {}; },
-      .reply = [](std::int64_t, const ScriptReply&) {},
-      .program_event =
-          [&](const ProgramEvent& event) {
-            const std::scoped_lock lock(mutex);
-            steps[event.robot].push_back({std::string(name_of(event.kind)) + " " + event.program + " " + event.text,
-                                          1e-9 * static_cast<double>(event.time.ns)});
-            if (event.kind == ProgramEvent::Kind::ended || event.kind == ProgramEvent::Kind::failed) ++ended;
-          }});
-  CyclicThread loop(*engine, {.name = "tick", .period = Nanoseconds(1'000'000), .policy = RealTimePolicy::prefer});
-  EXPECT_TRUE(owner.prepare(script, true));
-  EXPECT_TRUE(loop.start());
-  owner.start();
-  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  Recording recording;
+  const auto hear = [&](const program::ProgramEvent& event) {
+    const std::scoped_lock lock(mutex);
+    recording.add(event.robot, std::string(name_of(event.kind)), event.program + " " + event.text,
+                  1e-9 * static_cast<double>(event.time.ns));
+  };
   const auto done = [&] {
     const std::scoped_lock lock(mutex);
-    return ended >= ends;
+    return recording.ends() >= ends;
   };
-  while (!done() && std::chrono::steady_clock::now() < give_up)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  EXPECT_TRUE(done()) << "the programs do not end";
+  RealTimeOwner owner(load_cell_for_test(cell), [](std::int64_t, const ScriptReply&) {}, hear);
+  owner.start(script);
+  EXPECT_TRUE(await(done)) << "the programs do not end";
   owner.stop();
-  loop.stop();
-  return steps;
+  return recording.steps();
 }
 
-Steps run_off_line(const fs::path& cell_file, const std::string& script, std::size_t& ends) {
-  SimulationOptions options;
-  options.script = script;
-  options.collisions = false;
-  const auto result = simulate(load(cell_file), options);
-  EXPECT_TRUE(result) << result.error().text();
-  Steps steps;
-  ends = 0;
-  for (const SimulatedEvent& event : result->events) {
-    steps[event.robot].push_back({event.event + " " + event.program + " " + event.text, event.time_s});
-    if (event.event == "ended" || event.event == "failed") ++ends;
+// All beside each other, each begun a little after the one before: where the machine stands still for a moment, they
+// are at different places.
+std::vector<Steps> runs_in_real_time(const fs::path& cell, const std::string& script, std::size_t ends) {
+  std::vector<std::future<Steps>> running;
+  for (std::size_t i = 0; i < kRuns; ++i) {
+    running.push_back(std::async(std::launch::async, [&] { return run_in_real_time(cell, script, ends); }));
+    std::this_thread::sleep_for(kApart);
   }
-  EXPECT_FALSE(result->failed());
-  return steps;
-}
-
-std::vector<std::string> words(const std::vector<Step>& steps) {
-  std::vector<std::string> out;
-  for (const Step& step : steps) out.push_back(step.what);
+  std::vector<Steps> out;
+  for (std::future<Steps>& run : running) out.push_back(run.get());
   return out;
 }
 
-double largest_difference(const Steps& a, const Steps& b) {
-  double largest = 0;
-  for (const auto& [robot, list] : a) {
-    const auto other = b.find(robot);
-    if (other == b.end() || other->second.size() != list.size()) return 1e9;
-    for (std::size_t i = 0; i < list.size(); ++i)
-      largest = std::max(largest, std::abs(list[i].time_s - other->second[i].time_s));
+Recording run_off_line(const fs::path& cell, const std::string& script) {
+  SimulationOptions options;
+  options.script = script;
+  options.collisions = false;
+  const auto result = simulate(load_cell_for_test(cell), options);
+  Recording recording;
+  EXPECT_TRUE(result) << result.error().text();
+  if (!result) return recording;
+  EXPECT_FALSE(result->failed());
+  for (const SimulatedEvent& event : result->events)
+    recording.add(event.robot, event.event, event.program + " " + event.text, event.time_s);
+  return recording;
+}
+
+std::map<Key, std::vector<std::string>> words(const Steps& steps) {
+  std::map<Key, std::vector<std::string>> out;
+  for (const auto& [key, list] : steps) {
+    for (const Step& step : list) out[key].push_back(step.what);
   }
-  return largest;
+  return out;
+}
+
+// Programs begin and end at exact instants, however late that is noticed. Of several moves that have ended when
+// somebody looks, only the last one's instant is known, and two commands of a script that start programs of two robots
+// are executed at two instants: on a machine that stands still for a moment some are off. So the median of the runs is
+// compared, and a few of the moves may be further off. When a move was given ahead says nothing.
+struct Differences {
+  double of_programs = 0;  // s, the largest
+  std::vector<double> of_steps;
+  std::string text;
+
+  [[nodiscard]] bool within_a_tick() const {
+    const auto far = [](double difference) { return difference > kTick + kRounding; };
+    const auto outliers = static_cast<double>(std::ranges::count_if(of_steps, far));
+    return !far(of_programs) && outliers <= kMostOutliers * static_cast<double>(of_steps.size());
+  }
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Differences differences(const std::vector<Steps>& real, const Steps& off_line) {
+  Differences out;
+  for (const auto& [key, list] : off_line) {
+    if (key.second == "command") continue;
+    const bool of_program = key.second == "started" || key.second == "ended";
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      std::vector<double> times;
+      for (const Steps& run : real) times.push_back(run.at(key)[i].time_s);
+      const double time = median(std::move(times));
+      const double difference = std::abs(time - list[i].time_s);
+      if (of_program) out.of_programs = std::max(out.of_programs, difference);
+      out.of_steps.push_back(difference);
+      if (difference <= kTick + kRounding) continue;
+      out.text += fmt::format("{} {} {}: {:.6f} s off line, {:.6f} s in the gateway\n", key.first, key.second,
+                              list[i].what, list[i].time_s, time);
+    }
+  }
+  return out;
 }
 
 class SameTimes : public testing::TestWithParam<std::string> {};
 
 TEST_P(SameTimes, InTheGatewayAndOffLine) {
-  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
-  if (source == nullptr) GTEST_SKIP() << "skipped: CELLMIRROR_SOURCE_DIR is not set";
-  const fs::path cell = fs::path(source) / "config/cells/transfer_cell/cell.toml";
+  if (source_folder().empty()) GTEST_SKIP() << "skipped: CELLMIRROR_SOURCE_DIR is not set";
+  const fs::path cell = source_folder() / "config/cells/transfer_cell/cell.toml";
   const std::string script = cell.parent_path() / "scripts" / GetParam();
-  std::size_t ends = 0;
-  const Steps off_line = relative(run_off_line(cell, script, ends));
-  ASSERT_GT(ends, 0U);
-  double difference = 0;
-  for (int attempt = 0; attempt < kTries; ++attempt) {
-    const Steps real = relative(run_in_real_time(cell, script, ends));
-    ASSERT_EQ(real.size(), off_line.size());
-    for (const auto& [robot, steps] : real) EXPECT_EQ(words(steps), words(off_line.at(robot))) << robot;
-    difference = largest_difference(real, off_line);
-    if (difference <= kTick + kTolerance) break;
-  }
-  EXPECT_LE(difference, kTick + kTolerance);
+  const Recording off_line = run_off_line(cell, script);
+  ASSERT_GT(off_line.ends(), 0U);
+  const std::vector<Steps> real = runs_in_real_time(cell, script, off_line.ends());
+  for (const Steps& run : real) ASSERT_EQ(words(run), words(off_line.steps()));
+  const Differences difference = differences(real, off_line.steps());
+  EXPECT_TRUE(difference.within_a_tick()) << difference.text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scripts, SameTimes, testing::Values("trsys_demo.spt"));
+// The manual's own script, and its examples of TF_RUN: two arms that hand over parts, and three programs of a crane
+// behind each other.
+INSTANTIATE_TEST_SUITE_P(Scripts, SameTimes, testing::Values("trsys_demo.spt", "tf_run.spt"));
 
 }  // namespace
 }  // namespace cellmirror::app

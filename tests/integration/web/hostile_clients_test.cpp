@@ -56,6 +56,14 @@ bool starts(const std::string& answer, int status) {
   return answer.starts_with("HTTP/1.1 " + std::to_string(status) + " ");
 }
 
+TEST_F(HostileClients, OnlyWhoOpensThePageIsTakenForAVisitor) {
+  EXPECT_TRUE(works());
+  EXPECT_FALSE(starts(ask("GET / HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n"), 200));
+  EXPECT_EQ(backend.expected, 0);
+  EXPECT_TRUE(starts(get("/"), 200));
+  EXPECT_EQ(backend.expected, 1);
+}
+
 TEST_F(HostileClients, AreAnsweredWithAStatusAndNothingElseHappens) {
   const auto post = [&](const std::string& headers, const std::string& body) {
     return ask("POST /api/command HTTP/1.1\r\n" + host() + headers + "Content-Length: " + std::to_string(body.size()) +

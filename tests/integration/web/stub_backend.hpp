@@ -57,6 +57,7 @@ class StubBackend final : public Backend {
       reply({command != "BAD", command == "BAD" ? "there is no such command" : ""});
     }
   }
+  void expect_pictures() override { ++expected; }
   Result<std::unique_ptr<PictureStream>> open_pictures(const PictureWish& /*wish*/) override {
     return std::make_unique<StubStream>(open_streams);
   }
@@ -70,6 +71,7 @@ class StubBackend final : public Backend {
 
   std::atomic<int> open_streams{0};
   std::atomic<bool> status_throws{false};
+  std::atomic<int> expected{0};  // times that somebody opened the page
   std::mutex mutex;
   std::vector<std::string> commands;
   std::vector<std::function<void(const CommandReply&)>> held;

@@ -357,5 +357,19 @@ TEST(FirstDisplay, TakesTheCellFilesViewsAndLeavesOutWhatDoesNotFit) {
   EXPECT_TRUE(sut.cameras.empty());
 }
 
+TEST(FirstDisplay, HasItsViewsWhereTheLayoutHasThem) {
+  DisplayLayout layout;
+  layout.views[3].towards_viewer = {1, 0, 0};
+  layout.displays[4].name = "gate";
+  ViewSetting setting;
+  setting.id = 4;
+  setting.change.viewpoint = Eigen::Vector3d(7, 8, 9);
+  const DisplayState sut = first_display(CompiledCell{}, Extent{}, std::span(&setting, 1), layout);
+  EXPECT_GT(sut.views[3].view.viewpoint.x(), 1);
+  EXPECT_TRUE(sut.views[3].view.orthogonal);
+  EXPECT_EQ(sut.views[4].view.viewpoint, Eigen::Vector3d(7, 8, 9)) << "the cell file says more than the layout";
+  EXPECT_EQ(sut.layout.displays[4].name, "gate");
+}
+
 }  // namespace
 }  // namespace cellmirror::app

@@ -278,6 +278,21 @@ TEST_F(ProgramMotionTest, WhatCannotBeDoneIsRefusedAndMovesNothing) {
   EXPECT_FALSE(sut_.progress(kRobot).moving);
 }
 
+TEST_F(ProgramMotionTest, RobotThatWasDeletedIsRefusedBeforeTheTickHasLetGoOfItToo) {
+  ASSERT_TRUE(sut_.move(kRobot, joints(TargetKind::joints_relative, {0.1}, 1), {}));
+  tick(5);
+  ASSERT_TRUE(cell_.delete_node("Puma"));
+  EXPECT_FALSE(sut_.stop(kRobot));
+  EXPECT_FALSE(sut_.delay(kRobot, 1, {}));
+  EXPECT_FALSE(sut_.move(kRobot, joints(TargetKind::joints_relative, {0.1}, 1), {}));
+  EXPECT_FALSE(sut_.room(kRobot));
+  EXPECT_FALSE(sut_.progress(kRobot).moving);
+  desk_.follow_cell();
+  ASSERT_TRUE(fleet_.follow_cell());
+  tick();
+  EXPECT_FALSE(sut_.stop(kRobot));
+}
+
 TEST_F(ProgramMotionTest, QueueHasRoomForAsManyMovesAsTheTickTakes) {
   std::size_t given = 0;
   while (sut_.room(kRobot) && given < 1000) {

@@ -57,6 +57,7 @@ TEST(StatusTable, ShowsRobotProgramsWithWhatTheyWaitForTheirTimesSignalsAndADead
      "error":"programs/far.ird:4:1: error: out of reach"}],
     "deadlock":{"text":"deadlock: PUMA fetch waits","waiting":[]},"semaphores":{"TABLE":0},
     "signals":[{"robot":"PUMA","inputs_on":[3,7],"outputs_on":[],"analogue_inputs":[],"analogue_outputs":[{"number":1,"value":2.5}]}],
+    "loading":[{"robot":"PUMA","program":"long"}],
     "recordings":[{"robot":"PUMA","program":"taught","language":"jet_boom","points":4}],"failures":1,"last_failure":"x"})");
   const auto table = status_table(text, false);
   ASSERT_TRUE(table) << table.error().text();
@@ -64,6 +65,7 @@ TEST(StatusTable, ShowsRobotProgramsWithWhatTheyWaitForTheirTimesSignalsAndADead
   EXPECT_THAT(*table, HasSubstr("fetch of PUMA  srcl waiting for semaphore TABLE, at line 12  12.3 of 45.7 s"));
   EXPECT_THAT(*table, HasSubstr("far of PUMA  irdata failed, backward, at N40  1.5 s"));
   EXPECT_THAT(*table, HasSubstr("programs/far.ird:4:1: error: out of reach"));
+  EXPECT_THAT(*table, HasSubstr("loading long of PUMA"));
   EXPECT_THAT(*table, HasSubstr("recording taught of PUMA, 4 check points"));
   EXPECT_THAT(*table, HasSubstr("signals of PUMA:  inputs on 3 7  analogue outputs 1=2.5"));
   EXPECT_THAT(*table, HasSubstr("semaphores TABLE=0"));

@@ -79,6 +79,14 @@ TEST_F(StudioTest, NobodyLooksNothingIsTried) {
   EXPECT_EQ(sut.report().streams, 1U);
 }
 
+TEST_F(StudioTest, OnceSomebodyIsExpectedTheRendererIsMade) {
+  Studio sut(broken(), boards_, updates_);
+  for (int i = 0; i < 100; ++i) sut.expect_pictures();
+  EXPECT_TRUE(eventually([&] { return tries_ == 1; }));
+  EXPECT_FALSE(sut.picture({}, ImageFormat::png)) << "and there is room for those who want one";
+  EXPECT_EQ(tries_, 1);
+}
+
 TEST_F(StudioTest, WishesThatNobodyCanFulfilAreRefusedAtOnce) {
   Studio sut(broken(), boards_, updates_);
   web::PictureWish wish;

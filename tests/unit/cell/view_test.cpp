@@ -70,9 +70,19 @@ TEST(Views, TheCellFillsAPictureOfFourToThreeAndNothingIsOutsideOfIt) {
   }
 }
 
-TEST(Views, TheFirstOfADisplayIsTheOneOfTheManual) {
-  const int expected[] = {0, 1, 3, 4, 5, 6};
-  for (int display = 1; display <= 6; ++display) EXPECT_EQ(first_view(display), expected[display - 1]);
+TEST(Views, StandWhereTheLayoutHasThemAndShowTheWholeCellInANarrowPane) {
+  const Extent extent{{-2, -1, 0}, {4, 3, 2}};
+  DisplayLayout layout;
+  layout.views[4].towards_viewer = {3, 0, 0};
+  layout.views[0].orthogonal = true;
+  layout.displays[1].panes = {{.view = 1, .left = 0, .top = 0, .width = 0.25, .height = 1}};
+  const auto sut = views_of_extent(extent, layout);
+  EXPECT_LT((sut[4].viewpoint - sut[4].lookpoint).normalized().cross(Eigen::Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_GT(sut[4].viewpoint.x(), sut[4].lookpoint.x());
+  EXPECT_TRUE(sut[0].orthogonal);
+  const double height = 2 * (sut[1].viewpoint - sut[1].lookpoint).norm() * std::tan(0.5 * sut[1].opening_angle);
+  EXPECT_GT(height / 3.0, 6.0) << "a third as wide as high";
+  EXPECT_EQ(sut[3].viewpoint, views_of_extent(extent)[3].viewpoint) << "the same view in a whole picture";
 }
 
 TEST(Views, ChangeLeavesWhatItDoesNotName) {

@@ -58,11 +58,17 @@ geometry = [{ mesh = "tetra.stl" }, { mesh = "tetra.stl", scale = [2, 2, 2] }]
   EXPECT_TRUE(a[0].pieces.empty());
 }
 
-TEST_F(CollisionConfig, does_not_read_what_is_only_drawn) {
+TEST_F(CollisionConfig, loads_without_a_mesh_that_is_only_drawn_and_cannot_be_read) {
   home.write("envlib/broken.stl", "solid but not STL\n");
-  const auto sut = load("[[node]]\nname = \"A\"\ngeometry = [{ mesh = \"broken.stl\", collides = false }]\n");
+  const auto sut = load(
+      "[[node]]\nname = \"A\"\ngeometry = [\n{ mesh = \"broken.stl\", collides = false },\n"
+      "{ mesh = \"l.obj\", collides = false, collide_as = \"hull\" }]\n");
   ASSERT_TRUE(sut) << diagnostics.text();
+  EXPECT_EQ(finding(),
+            "cell.toml:6:10: warning: the mesh broken.stl is refused: there are no facets in it; it is not drawn\n");
   EXPECT_EQ(geometry(*sut, "A")[0].mesh, nullptr);
+  EXPECT_NE(geometry(*sut, "A")[1].mesh, nullptr);
+  EXPECT_TRUE(geometry(*sut, "A")[1].pieces.empty());
 }
 
 TEST_F(CollisionConfig, refuses_a_bad_mesh_where_it_is_named) {

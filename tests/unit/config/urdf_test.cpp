@@ -14,6 +14,7 @@
 #include "config/cell_file.hpp"
 #include "config/parse.hpp"
 #include "rt_core/base/pose.hpp"
+#include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
 namespace cellmirror {
@@ -154,7 +155,7 @@ TEST(Urdf, longChainsDoNotExhaustTheStack) {
 
 TEST(UrdfMeshes, areFoundBesideTheFileAndInPackagesAndNowhereElse) {
   const TemporaryHome home;
-  home.write("robots/arm/meshes/a.stl", "solid");
+  home.write("robots/arm/meshes/a.stl", tetra_stl());
   home.write("secret.stl", "solid");
   const auto check = [&](const std::string& mesh) {
     const auto path = home.write("robots/arm/urdf/arm.urdf",

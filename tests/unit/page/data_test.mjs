@@ -57,7 +57,9 @@ test("a free view begins where the picture is", () => {
   assert.equal(start_of_free_view({kind: "view", id: 1}, {views}).viewpoint_m[0], 1);
   assert.equal(start_of_free_view({kind: "camera", name: "C"}, {views}).viewpoint_m[0], 2);
   assert.equal(start_of_free_view({kind: "display"}, {views}).viewpoint_m[0], 0);
-  assert.equal(start_of_free_view({kind: "display"}, {views, display: 2}).viewpoint_m[0], 1);
+  const displays = [{id: 1, name: "a", views: [2]}, {id: 2, name: "b", views: [1, 0]}];
+  assert.equal(start_of_free_view({kind: "display"}, {views, display: 2, displays}).viewpoint_m[0], 1);
+  assert.equal(start_of_free_view({kind: "display"}, {views, display: 1, displays}).viewpoint_m[0], 2);
   assert.ok(start_of_free_view({kind: "display"}, null).opening_angle_rad > 0);
 });
 

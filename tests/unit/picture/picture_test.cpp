@@ -280,6 +280,11 @@ TEST_F(Modes, TexturesAndAntialiasing) {
   EXPECT_GT(effect(DisplayMode::antialiasing), 300) << "at edges";
 }
 
+TEST_F(Modes, TexturesAreOnMeshesToo) {
+  show("can_cell");
+  EXPECT_GT(effect(DisplayMode::textures), 600) << "without a floor: the stripes of the bench, the scale of the table";
+}
+
 TEST_F(Modes, BackfaceRemovalLeavesClosedBodiesAsTheyAreFromOutside) {
   EXPECT_LT(effect(DisplayMode::backface_removal), 40);
   set(DisplayMode::backface_removal, false);

@@ -21,13 +21,7 @@ void use(void* block) { asm volatile("" : : "r"(block) : "memory"); }
 
 class AllocationGuardTest : public testing::Test {
  protected:
-  void SetUp() override {
-#ifdef CELLMIRROR_SANITIZED
-    ASSERT_FALSE(AllocationGuard::armed());
-    GTEST_SKIP() << "skipped: sanitizers bring interposers of their own";
-#endif
-    ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in";
-  }
+  void SetUp() override { ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in"; }
 };
 
 TEST_F(AllocationGuardTest, CountsEveryKindOfAllocation) {
@@ -94,6 +88,9 @@ TEST_F(AllocationGuardTest, OtherThreadsDoNotCountForThisOneButForTheProcess) {
 }
 
 TEST_F(AllocationGuardTest, PosixMemalignKeepsItsContract) {
+#ifdef CELLMIRROR_SANITIZED
+  GTEST_SKIP() << "skipped: a sanitizer ends the program at an alignment of 3";
+#endif
   void* block = this;
   errno = 42;
   EXPECT_EQ(posix_memalign(&block, 3, 10), EINVAL);

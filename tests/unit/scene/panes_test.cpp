@@ -42,6 +42,25 @@ TEST_F(Panes, TheTopViewStandsAboveTheSideViewAndTheyFillThePicture) {
   EXPECT_EQ(sut[1].title, "2 side");
 }
 
+TEST_F(Panes, StandWhereTheLayoutHasThemUnderItsNames) {
+  cell_.display.layout.views[5].name = "gate";
+  cell_.display.layout.displays[1].panes = {{.view = 5, .left = 0.25, .top = 0.125, .width = 0.5, .height = 0.75},
+                                            {.view = 0, .left = 0.75, .top = 0, .width = 0.25, .height = 1}};
+  cell_.display.display = 2;
+  const auto sut = panes_of_display(input());
+  ASSERT_EQ(sut.size(), 2U);
+  EXPECT_EQ(sut[0].view, 5);
+  EXPECT_EQ(sut[0].title, "5 gate");
+  EXPECT_EQ(sut[0].left, 0.25);
+  EXPECT_EQ(sut[0].top, 0.125);
+  EXPECT_EQ(sut[0].width, 0.5);
+  EXPECT_EQ(sut[0].height, 0.75);
+  EXPECT_EQ(sut[1].title, "0 perspective");
+  cell_.display.full_screen = true;
+  EXPECT_EQ(views(), std::vector<int>{5});
+  EXPECT_EQ(panes_of_display(input())[0].width, 1);
+}
+
 TEST_F(Panes, FullIsTheMainViewAloneWithoutTitle) {
   cell_.display.display = 2;
   cell_.display.full_screen = true;

@@ -219,6 +219,25 @@ TEST_F(BuilderTest, ASlabUnderEverythingCatchesShadowsAndCastsNone) {
   EXPECT_TRUE(scene_.bodies[cell_.body_of(SmallCell::arm)].casts_shadow);
 }
 
+TEST_F(BuilderTest, PaintOnASlabCastsNoShadow) {
+  for (const double above : {0.001, 0.05}) {
+    auto slab = std::make_shared<Geometry>();
+    slab->shape = Shape::box;
+    slab->size = {3, 2, 0.1};
+    slab->X_NG.translation() << 0, 0, -0.85;
+    auto sheet = std::make_shared<Geometry>(*slab);
+    sheet->size = {1, 1, 0.001};
+    sheet->X_NG.translation() << 0, 0, -0.80 + above;
+    cell_.cell.geometry[0].geometry = slab;
+    if (above < 0.01) cell_.cell.geometry.insert(cell_.cell.geometry.begin(), cell_.cell.geometry[0]);
+    cell_.cell.geometry[0].geometry = sheet;
+    cell_.cell.geometry[1].geometry = slab;
+    changed();
+    EXPECT_EQ(build().bodies.at(0).casts_shadow, above > 0.01) << "a sheet in the air does";
+    EXPECT_FALSE(scene_.bodies.at(1).casts_shadow);
+  }
+}
+
 TEST_F(BuilderTest, AnActiveSensorWithoutReadingShowsItsRange) {
   EXPECT_TRUE(build().cones.empty());
   cell_.cell.sensors[0].sensor.active = true;

@@ -100,7 +100,7 @@ function update_force(row, force) {
   const newtons = norm(force.tcp_force_n);
   setText(row.value, newtons === null ? "" : `${number(newtons, 1)} N at the TCP`);
   const joints = force.joints ?? [];
-  const efforts = joints.map((joint) => `${joint.name} ${number(joint.effort, 1)}`).join("   ");
+  const efforts = joints.map((joint) => `${joint.name}\u00a0${number(joint.effort, 1)}`).join("   ");
   const beyond = joints.filter((joint) => joint.beyond_limit).map((joint) => joint.name);
   setText(row.joints, beyond.length ? `${efforts}   beyond the limit: ${beyond.join(", ")}` : efforts);
   row.node.classList.toggle("warning", beyond.length > 0);

@@ -12,7 +12,6 @@ const kMostEdges = [1920, 1200];  // of the gateway
 const kRate_hz = 15;
 const kWishEvery_ms = 40;
 const kAskAgain_ms = 5000;
-const kMainViews = {1: 0, 2: 1, 3: 3, 4: 4, 5: 5, 6: 6};  // of the displays of STDP, docs/script-reference.md
 
 // As large as the area in true pixels, no larger than is worth drawing, both even.
 export function picture_size(width, height, density, most_pixels = kMostPixels) {
@@ -34,7 +33,10 @@ export function start_of_free_view(choice, display) {
   const views = display?.views ?? [];
   if (choice.kind === "free") return choice.view;
   let found = null;
-  if (choice.kind === "display") found = views.find((view) => view.id === (kMainViews[display?.display] ?? 0));
+  if (choice.kind === "display") {
+    const main = display?.displays?.find(({id}) => id === display.display)?.views?.[0] ?? 0;
+    found = views.find((view) => view.id === main);
+  }
   if (choice.kind === "view") found = views.find((view) => view.id === choice.id);
   if (choice.kind === "camera") found = views.find((view) => view.camera === choice.name);
   return math.sound_view(found ?? views.find((view) => view.id === 0) ?? views[0]);

@@ -68,6 +68,7 @@ export class ViewChoice {
     }
     if (!this.display_) return;
     const select = byId("display-choice");
+    this.show_displays_(select, this.display_.displays ?? []);
     if (document.activeElement !== select) select.value = String(this.display_.display ?? 1);
     setAttribute(byId("view-full"), "aria-pressed", String(this.display_.full_screen === true));
     this.show_views_(this.display_.views ?? []);
@@ -80,7 +81,16 @@ export class ViewChoice {
       if (!option) continue;
       const note = view.camera ? `, at ${view.camera}` : view.moving ? ", moving" : "";
       option.dataset.title ??= option.textContent;
-      setText(option, option.dataset.title + note);
+      const title = view.name ? `View ${Number(view.id)}, ${view.name}` : option.dataset.title;
+      setText(option, title + note);
+    }
+  }
+
+  // As the cell's layout file names them.
+  show_displays_(select, displays) {
+    for (const {id, name} of displays) {
+      const option = select.querySelector(`option[value="${Number(id)}"]`);
+      if (option) setText(option, `${Number(id)}, ${name}`);
     }
   }
 

@@ -1,0 +1,76 @@
+// Programs that are being loaded, and what waits for them. Belongs to the thread that owns the cell.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/gateway/program_picture.hpp"
+#include "app/gateway/program_reader.hpp"
+#include "scripts/commands/program_host.hpp"
+
+namespace cellmirror::app {
+
+class ProgramLoads {
+ public:
+  static constexpr std::size_t kMost = 64;      // under way
+  static constexpr std::size_t kMostRuns = 64;  // that wait for one of them
+
+  // A TF_RUN that came while its program was being loaded, or behind such a one of the same robot.
+  struct Run {
+    std::string program;
+    ProgramBegin begin = ProgramBegin::now;
+    std::shared_ptr<Activity> activity;
+  };
+  struct Ended {
+    LoadPicture what;
+    std::shared_ptr<Activity> activity;
+    std::vector<Run> runs;
+    ProgramText text;
+  };
+
+  explicit ProgramLoads(const KismetHome& home) : reader_(home) {}
+
+  // Refused: kMost are under way.
+  Result<ActivityHandle> begin(std::string_view program, std::string_view robot, const program::Language& language,
+                               std::filesystem::path path);
+  [[nodiscard]] bool under_way(std::string_view program, std::string_view robot) const;
+  // A run of that program waits: it is being loaded, or runs of that robot wait before it.
+  [[nodiscard]] bool has_to_wait(std::string_view program, std::string_view robot) const;
+  // Of a run that has to wait. Refused: kMostRuns wait for that load.
+  Result<ActivityHandle> add_run(std::string_view program, std::string_view robot, ProgramBegin begin);
+  // Loads of that name, and runs that wait for them, are refused with that reason. Returns the runs of other programs
+  // that waited behind these; none where there is no such load.
+  std::optional<std::vector<Run>> give_up(std::string_view program, std::string_view robot, const Error& why);
+  bool give_up_runs(std::string_view robot, const Error& why);  // false: none waits
+  void give_up_all(const Error& why);
+  // The next that has been read; whoever takes it ends its activities. In the order in which they began.
+  [[nodiscard]] std::optional<Ended> take();
+
+  [[nodiscard]] bool empty() const { return loads_.empty(); }
+  [[nodiscard]] bool runs_wait() const;
+  [[nodiscard]] bool runs_wait(std::string_view robot) const;
+  [[nodiscard]] std::vector<LoadPicture> pictures() const;
+
+ private:
+  struct Load {
+    std::uint64_t id = 0;
+    LoadPicture what;
+    std::shared_ptr<Activity> activity;
+    std::vector<Run> runs;
+  };
+  [[nodiscard]] std::deque<Load>::const_reverse_iterator before_run(std::string_view program,
+                                                                    std::string_view robot) const;
+
+  std::deque<Load> loads_;
+  std::uint64_t last_id_ = 0;
+  ProgramReader reader_;
+};
+
+}  // namespace cellmirror::app

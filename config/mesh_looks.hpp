@@ -1,0 +1,41 @@
+// The look of a mesh: the pictures and colours that its file gives it, laid over the triangles that are left after
+// repair. Private to this folder.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/mesh_scene.hpp"
+#include "config/picture_library.hpp"
+
+namespace cellmirror {
+
+// What parse_mesh() is given where a look is wanted, and what it hands back.
+struct LookRequest {
+  // Text that the mesh names beside itself (MTL), a picture by its name in the mesh, and one by its bytes.
+  std::function<Result<std::string>(const std::string& name)> text;
+  std::function<Result<Picture>(const std::string& name)> picture;
+  std::function<Result<Picture>(std::string_view bytes)> embedded;
+
+  std::shared_ptr<const MeshLook> look;  // null: there is nothing to show but the shape
+  std::vector<Error> left_out;           // what could not be had, at most kMostLeftOut
+  static constexpr std::size_t kMostLeftOut = 16;
+};
+
+// `bytes`: of the mesh file; `percent_coded`: names of pictures are URIs.
+void name_obj_pictures(std::string_view bytes, LookRequest& request, ScenePolygons& polygons);
+void decode_picture_names(ScenePolygons& polygons);
+
+// Loads what the palette names. Empty where no triangle shows a picture and no vertex has a colour.
+[[nodiscard]] std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polygons,
+                                                                    LookRequest& request);
+
+// `from`: the polygons as they were before repair; `origins` as make_mesh() gives them.
+[[nodiscard]] MeshLook lay_over(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& origins,
+                                const ScenePolygons& from, std::vector<MeshMaterial> palette);
+
+}  // namespace cellmirror

@@ -1,0 +1,36 @@
+// What a textured mesh has beside its surface: places in pictures and colours, by vertex, and its triangles in the
+// order of their materials. Private to this folder; knows no OpenGL.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "drivers/display/internal/surface.hpp"
+#include "rt_core/ports/mesh_look.hpp"
+
+namespace cellmirror::display {
+
+struct Dress {
+  Eigen::Vector2f place = Eigen::Vector2f::Zero();  // in the picture, from its upper left corner
+  std::array<std::uint8_t, 4> colour{255, 255, 255, 255};
+  bool operator==(const Dress& other) const { return place == other.place && colour == other.colour; }
+};
+static_assert(sizeof(Dress) == 12);
+
+// Looks of files have been made for their mesh; one that was put together otherwise must not be read past its end.
+[[nodiscard]] bool sound(const MeshLook& look, std::size_t triangles);
+
+// By vertex of the surface. Vertices of which corners have several dresses are doubled: the surface grows and its
+// corners name the new ones.
+[[nodiscard]] std::vector<Dress> dress(Surface& surface, const MeshLook& look);
+
+// The triangles of one material stand side by side.
+struct MaterialOrder {
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t> ends;  // by material, in `triangles`
+};
+[[nodiscard]] MaterialOrder order_by_material(const MeshLook& look);
+
+}  // namespace cellmirror::display

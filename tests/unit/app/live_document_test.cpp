@@ -1,0 +1,291 @@
+// What the monitor page is sent several times a second: the keys that docs/monitor-page.md names, whatever the cell is
+// in.
+#include "app/gateway/live_document.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/scene/small_cell.hpp"
+
+namespace cellmirror::app {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+
+constexpr Timestamp kNow{10'000'000'000};
+
+class Idle final : public Cycle {
+ public:
+  void run(const CycleContext&) CELL_RT override {}
+};
+
+// The small cell, whose one robot is simulated, and nothing else known.
+class LiveDocument : public testing::Test {
+ protected:
+  LiveDocument() {
+    small_.cell.robots.front().min_range = {};
+    small_.cell.robots.front().max_range = {};
+    RobotPicture picture;
+    picture.id = "ARM";
+    picture_.robots = {picture};
+    RobotState state;
+    state.id = "ARM";
+    state.joints.resize(1);
+    state.joints[0].name = "J_1";
+    state.joints[0].position = 0.25;
+    robots_ = {state};
+  }
+
+  [[nodiscard]] json document() {
+    picture_.cell = std::make_shared<const CompiledCell>(small_.cell);
+    picture_.display = std::make_shared<const DisplayState>(small_.display);
+    const LiveSources sources{.instance = "default",
+                              .cell = "small",
+                              .uptime_s = 12.5,
+                              .rate_hz = 1000,
+                              .now = kNow,
+                              .loop = loop_,
+                              .picture = picture_,
+                              .tick = tick_,
+                              .robots = robots_,
+                              .poses = small_.poses,
+                              .picture_updates = 100,
+                              .proximity = proximity_,
+                              .ranges = ranges_,
+                              .forces = forces_,
+                              .queues = queues_};
+    return json::parse(live_document(sources, window_, 7));
+  }
+
+  scene::SmallCell small_;
+  Idle idle_;
+  CyclicThread loop_{idle_, {}};
+  OwnerPicture picture_;
+  engine::TickState tick_;
+  std::vector<RobotState> robots_;
+  std::shared_ptr<ProximityState> proximity_;
+  std::shared_ptr<RangeReadings> ranges_;
+  std::shared_ptr<ForceState> forces_;
+  std::vector<engine::QueueStatus> queues_;
+  LoopWindow window_;
+};
+
+TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
+  const json sut = document();
+  for (const char* key : {"time_s",
+                          "uptime_s",
+                          "cell",
+                          "instance",
+                          "revision",
+                          "tree_revision",
+                          "loop",
+                          "robots",
+                          "touching",
+                          "touching_count",
+                          "near",
+                          "near_count",
+                          "warning_distance_m",
+                          "ranges",
+                          "forces",
+                          "programs",
+                          "deadlock",
+                          "queues",
+                          "messages",
+                          "bell",
+                          "display",
+                          "cameras"})
+    EXPECT_TRUE(sut.contains(key)) << key;
+  EXPECT_EQ(sut["cell"], "small");
+  EXPECT_EQ(sut["uptime_s"], 12.5);
+  EXPECT_EQ(sut["tree_revision"], 7);
+  EXPECT_THAT(sut["cameras"], ElementsAre("CAM"));
+  for (const char* key : {"touching", "near", "ranges", "forces", "programs", "queues", "messages"})
+    EXPECT_EQ(sut[key], json::array()) << key;
+  EXPECT_EQ(sut["deadlock"], "");
+}
+
+TEST_F(LiveDocument, ASimulatedRobotHasNoAge) {
+  picture_.active_robot = "ARM";
+  tick_.robots[0].motion.moving = true;
+  const json sut = document()["robots"][0];
+  EXPECT_EQ(sut["id"], "ARM");
+  EXPECT_EQ(sut["mode"], "simulated");
+  EXPECT_EQ(sut["state"], "off");
+  EXPECT_TRUE(sut["age_s"].is_null());
+  EXPECT_EQ(sut["active"], true);
+  EXPECT_EQ(sut["moving"], true);
+  EXPECT_EQ(sut["joints"][0]["position"], 0.25);
+  EXPECT_EQ(sut["joints"][0]["unit"], "rad");
+}
+
+TEST_F(LiveDocument, AMirroredRobotTellsItsStateAndAge) {
+  robots_[0].online = true;
+  robots_[0].state = DataState::stale;
+  tick_.robots[0].receive_time = kNow - Nanoseconds(1'500'000'000);
+  json sut = document()["robots"][0];
+  EXPECT_EQ(sut["mode"], "mirrored");
+  EXPECT_EQ(sut["state"], "stale");
+  EXPECT_DOUBLE_EQ(sut["age_s"], 1.5);
+  tick_.robots[0].receive_time = {};  // online, but nothing has come yet
+  sut = document()["robots"][0];
+  EXPECT_TRUE(sut["age_s"].is_null());
+}
+
+TEST_F(LiveDocument, AJointHasLimitsWhereItsRangeIsOne) {
+  CompiledRobot& robot = small_.cell.robots.front();
+  json sut = document()["robots"][0]["joints"][0];
+  EXPECT_TRUE(sut["lower"].is_null());
+  robot.min_range[0] = -1;
+  robot.max_range[0] = 2;
+  sut = document()["robots"][0]["joints"][0];
+  EXPECT_EQ(sut["lower"], -1.0);
+  EXPECT_EQ(sut["upper"], 2.0);
+  robots_[0].joints[0].kind = JointKind::continuous;
+  EXPECT_TRUE(document()["robots"][0]["joints"][0]["lower"].is_null());
+  robots_[0].joints[0].kind = JointKind::prismatic;
+  EXPECT_EQ(document()["robots"][0]["joints"][0]["unit"], "m");
+}
+
+TEST_F(LiveDocument, WhatJsonCannotHoldIsNullOrReplaced) {
+  robots_[0].joints[0].position = std::numeric_limits<double>::quiet_NaN();
+  robots_[0].joints[0].velocity = -std::numeric_limits<double>::infinity();
+  robots_[0].joints[0].name = "a\"\\\n\x01\xFF";
+  small_.display.messages.push_back({"\xC3\x28 </script>", kNow - Nanoseconds(2'000'000'000), 3, true});
+  const json sut = document();
+  EXPECT_TRUE(sut["robots"][0]["joints"][0]["position"].is_null());
+  EXPECT_TRUE(sut["robots"][0]["joints"][0]["velocity"].is_null());
+  EXPECT_EQ(sut["robots"][0]["joints"][0]["name"].get<std::string>().substr(0, 4), "a\"\\\n");
+  EXPECT_EQ(sut["messages"][0]["number"], 3);
+  EXPECT_EQ(sut["messages"][0]["bell"], true);
+  EXPECT_EQ(sut["messages"][0]["age_s"], 2.0);
+}
+
+TEST_F(LiveDocument, PairsAreBoundedAndCounted) {
+  proximity_ = std::make_shared<ProximityState>();
+  proximity_->names = std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"Arm.J_1", "Table"});
+  proximity_->warning_distance_m = 0.05;
+  proximity_->touching.resize(70);
+  proximity_->near.resize(60);
+  proximity_->near[0].b = 1;
+  proximity_->near[0].distance_m = 0.25;
+  proximity_->near[0].time_to_contact_s = 1.5;
+  proximity_->near[1].b = 99;  // a name that is not there
+  const json sut = document();
+  EXPECT_EQ(sut["touching"].size(), 50U);
+  EXPECT_EQ(sut["touching_count"], 70);
+  EXPECT_EQ(sut["near"].size(), 50U);
+  EXPECT_EQ(sut["near_count"], 60);
+  EXPECT_EQ(sut["warning_distance_m"], 0.05);
+  EXPECT_EQ(sut["near"][0]["a"], "Arm.J_1");
+  EXPECT_EQ(sut["near"][0]["b"], "Table");
+  EXPECT_EQ(sut["near"][0]["distance_m"], 0.25);
+  EXPECT_EQ(sut["near"][0]["time_to_contact_s"], 1.5);
+  EXPECT_EQ(sut["near"][1]["b"], "");
+  EXPECT_TRUE(sut["near"][1]["time_to_contact_s"].is_null());
+}
+
+TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
+  ranges_ = std::make_shared<RangeReadings>();
+  ranges_->readings.resize(2);
+  ranges_->readings[0].id = "USS";
+  ranges_->readings[0].range_m = 1.5;
+  ranges_->readings[1].distance_m = 0.5;
+  ranges_->readings[1].object = "Table";
+  forces_ = std::make_shared<ForceState>();
+  forces_->robots.resize(2);
+  forces_->robots[0].id = "ARM";
+  forces_->robots[0].tcp_known = true;
+  forces_->robots[0].tcp_T.force = {1, 2, 3};
+  forces_->robots[0].joints.resize(2);
+  forces_->robots[0].joints[1].kind = JointKind::prismatic;
+  forces_->robots[0].joints[1].max_effort = 80;
+  const json sut = document();
+  EXPECT_TRUE(sut["ranges"][0]["distance_m"].is_null());
+  EXPECT_EQ(sut["ranges"][0]["range_m"], 1.5);
+  EXPECT_EQ(sut["ranges"][1]["distance_m"], 0.5);
+  EXPECT_THAT(sut["forces"][0]["tcp_force_n"], ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_TRUE(sut["forces"][1]["tcp_force_n"].is_null());
+  EXPECT_EQ(sut["forces"][0]["joints"][0]["unit"], "Nm");
+  EXPECT_TRUE(sut["forces"][0]["joints"][0]["max_effort"].is_null());
+  EXPECT_EQ(sut["forces"][0]["joints"][1]["unit"], "N");
+  EXPECT_EQ(sut["forces"][0]["joints"][1]["max_effort"], 80.0);
+}
+
+TEST_F(LiveDocument, ProgramsAreBounded) {
+  picture_.programs.programs.resize(60);
+  program::ProgramStatus& status = picture_.programs.programs.front();
+  status.robot = "ARM";
+  status.name = "weld";
+  status.direction = program::Direction::backward;
+  status.expected_s = 4.5;
+  const json sut = document()["programs"];
+  EXPECT_EQ(sut.size(), 50U);
+  EXPECT_EQ(sut[0]["program"], "weld");
+  EXPECT_EQ(sut[0]["state"], "loaded");
+  EXPECT_EQ(sut[0]["direction"], "backward");
+  EXPECT_EQ(sut[0]["expected_s"], 4.5);
+  EXPECT_TRUE(sut[1]["expected_s"].is_null());
+}
+
+TEST_F(LiveDocument, ViewsAreWhereTheyAreNowUnderTheNamesOfTheLayout) {
+  DisplayView& shown = small_.display.views[2];
+  ViewSequence sequence;
+  sequence.from.viewpoint = {0, 0, 0};
+  sequence.to.viewpoint = {8, 0, 0};
+  sequence.first_step = 75;
+  sequence.steps = 100;
+  shown.view = sequence.to;
+  shown.sequence = sequence;
+  small_.display.layout.views[2].name = "gate";
+  small_.display.layout.displays[3] = {"yard", {{.view = 5}, {.view = 2}}};
+  small_.display.display = 4;
+  const json sut = document()["display"];
+  EXPECT_EQ(sut["display"], 4);
+  EXPECT_EQ(sut["views"].size(), kViews);
+  EXPECT_EQ(sut["views"][2]["name"], "gate");
+  EXPECT_THAT(sut["views"][2]["viewpoint_m"], ElementsAre(2.0, 0.0, 0.0)) << "a quarter of the way";
+  EXPECT_EQ(sut["views"][2]["moving"], true);
+  EXPECT_EQ(sut["views"][3]["moving"], false);
+  EXPECT_EQ(sut["displays"].size(), kDisplays);
+  EXPECT_EQ(sut["displays"][3], (json{{"id", 4}, {"name", "yard"}, {"views", {5, 2}}}));
+  EXPECT_EQ(sut["displays"][1]["views"], json({1, 2}));
+  EXPECT_EQ(sut["modes"].size(), kDisplayModes + 1);
+}
+
+TEST_F(LiveDocument, QueuesTellTheirDrops) {
+  queues_ = {{"commands", 64, 12, 1000, 3}};
+  EXPECT_EQ(document()["queues"][0],
+            (json{{"name", "commands"}, {"dropped", 3}, {"high_water", 12}, {"capacity", 64}}));
+}
+
+TEST_F(LiveDocument, TheLoopsFiguresAreThoseSinceTheDocumentBefore) {
+  for (int i = 0; i < 50; ++i) loop_.wakeup_latency().record(Nanoseconds(2'000'000));
+  json sut = document()["loop"];
+  EXPECT_EQ(sut["rate_hz"], 1000.0);
+  EXPECT_NEAR(sut["latency_p99_us"], 2000, 200);
+  EXPECT_EQ(sut["compute_p99_us"], 0.0);
+  for (int i = 0; i < 50; ++i) loop_.wakeup_latency().record(Nanoseconds(20'000));
+  EXPECT_NEAR(document()["loop"]["latency_p99_us"], 20, 2);
+  EXPECT_EQ(document()["loop"]["latency_p99_us"], 0.0);
+}
+
+TEST(TreeRevision, GoesUpWhereTheTreeLooksOtherwiseAndOnlyThen) {
+  TreeRevision sut;
+  scene::SmallCell small;
+  const auto first = std::make_shared<const CompiledCell>(small.cell);
+  const std::uint64_t before = sut.of(first);
+  EXPECT_EQ(sut.of(first), before);
+  small.cell.revision = 2;  // something else about the cell has changed
+  EXPECT_EQ(sut.of(std::make_shared<const CompiledCell>(small.cell)), before);
+  small.cell.visible[scene::SmallCell::table] = 0;
+  EXPECT_EQ(sut.of(std::make_shared<const CompiledCell>(small.cell)), before + 1);
+  small.cell.paths = std::make_shared<std::vector<std::string>>(small.paths);
+  EXPECT_EQ(sut.of(std::make_shared<const CompiledCell>(small.cell)), before + 2);
+}
+
+}  // namespace
+}  // namespace cellmirror::app
