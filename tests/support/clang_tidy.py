@@ -41,9 +41,22 @@ def newest_first() -> dict[str, int]:
     return order
 
 
+def each_source(commands: list[dict[str, str]]) -> list[dict[str, str]]:
+    """The compile commands of a build with a source each: several are compiled together there (cmake/Library.cmake)."""
+    alone = []
+    for entry in commands:
+        file = Path(entry["file"])
+        together = re.findall(r'^#include "(/.+)"$', file.read_text(), re.MULTILINE) if file.parent.name == "Unity" else [str(file)]
+        alone += [{**entry, "command": entry["command"].replace(str(file), source), "file": source} for source in together]
+    return alone
+
+
 def sources(build: Path) -> dict[Path, str]:
-    """The translation units of the product, each with its compile command: no tests, no examples in the pages."""
-    commands = json.loads((build / "compile_commands.json").read_text())
+    """The translation units of the product, each with its compile command: no tests, no examples in the pages. Leaves the
+    commands in build/clang-tidy, for clang-tidy and for editors."""
+    commands = each_source(json.loads((build / "compile_commands.json").read_text()))
+    (build / "clang-tidy").mkdir(exist_ok=True)
+    (build / "clang-tidy/compile_commands.json").write_text(json.dumps(commands, indent=1))
     units = {Path(entry["file"]): entry["command"] for entry in commands}
     tops = {unit: unit.relative_to(ROOT).parts[0] for unit in units if unit.is_relative_to(ROOT)}
     order = newest_first()
@@ -72,7 +85,7 @@ def check(build: Path, unit: Path, command: str, end: float) -> str | None:
         return ""
     if time.monotonic() > end:
         return None
-    result = subprocess.run([TIDY, "-p", str(build), "--quiet", str(unit)], cwd=ROOT, capture_output=True, text=True)
+    result = subprocess.run([TIDY, "-p", str(build / "clang-tidy"), "--quiet", str(unit)], cwd=ROOT, capture_output=True, text=True)
     if result.returncode == 0:
         clean.touch()
         return ""
