@@ -58,5 +58,8 @@ function(cellmirror_use_precompiled target set)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict -Wno-stringop-overflow
     -Wno-stringop-overread -Wno-array-bounds -Wno-error=maybe-uninitialized -Wno-error=free-nonheap-object
     -Wno-error=dangling-pointer -Wno-error=use-after-free -Wno-error=nonnull>)
+  if(CMAKE_UNITY_BUILD)  # what is private to a source looks to g++ as if it came from a header
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+  endif()
   target_precompile_headers(${target} REUSE_FROM cellmirror_precompiled_${set})
 endfunction()
