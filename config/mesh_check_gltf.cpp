@@ -26,6 +26,8 @@ class GltfCheck {
                               geometry::kMostTriangles),
                   "reduce the mesh");
     }
+    if (!pictures_are_bounded())
+      return fail("its pictures have more bytes together than a mesh may have", "have its images share no bytes");
     return {};
   }
 
@@ -105,6 +107,21 @@ class GltfCheck {
     }
     constexpr std::uint64_t kMost = 12 * geometry::kMostTriangles;
     return total <= kMost;
+  }
+
+  // assimp copies the bytes of each image, of those too that many have in common.
+  [[nodiscard]] bool pictures_are_bounded() const {
+    const auto& views = list("bufferViews");
+    std::uint64_t total = 0;
+    for (const auto& image : list("images")) {
+      if (!image.is_object() || !image.contains("bufferView")) continue;
+      const auto& view = image["bufferView"];
+      if (!view.is_number_unsigned() || view.get<std::uint64_t>() >= views.size()) return false;
+      const auto& named = views[view.get<std::size_t>()];
+      if (named.is_object() && named.contains("byteLength")) total += named["byteLength"].get<std::uint64_t>();
+      if (total > kLargestMesh) return false;
+    }
+    return true;
   }
 
   const nlohmann::json& json_;

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -118,8 +119,17 @@ void keep_only(Assimp::Importer& importer, std::string_view name) {
   }
 }
 
-Result<ScenePolygons> import(std::string_view bytes, const Format& format, const Eigen::Vector3d& scale,
-                             const Neighbours& neighbours, bool with_looks) {
+struct Imported {
+  ScenePolygons polygons;
+  std::optional<std::vector<MeshMaterial>> palette;  // where there is a look
+};
+
+// STL has no colours that two programs would agree on.
+bool may_have_looks(std::string_view extension) { return extension != ".stl"; }
+
+// `looks` null: shapes alone.
+Result<Imported> import(std::string_view bytes, const Format& format, const Eigen::Vector3d& scale,
+                        const Neighbours& neighbours, LookRequest* looks) {
   Assimp::Importer importer;
   keep_only(importer, format.importer);
   if (importer.GetImporterCount() == 0) return fail(fmt::format("this build reads no {} files", format.extension));
@@ -133,21 +143,26 @@ Result<ScenePolygons> import(std::string_view bytes, const Format& format, const
   if (!files->refusal().empty()) return fail(files->refusal(), "put it beside the mesh");
   if (scene == nullptr || scene->mRootNode == nullptr)
     return fail(fmt::format("it cannot be read: {}", printable(std::string(importer.GetErrorString()))));
-  return collect_polygons(*scene, scale, with_looks);
+  auto polygons = collect_polygons(*scene, scale, looks != nullptr);
+  if (!polygons) return std::unexpected(polygons.error());
+  Imported out{std::move(*polygons), std::nullopt};
+  if (looks == nullptr) return out;
+  if (format.extension == ".obj") name_obj_pictures(bytes, *looks, out.polygons);
+  // Those of DAE were decoded by assimp.
+  if (format.extension == ".gltf") decode_picture_names(out.polygons);
+  out.palette = load_palette(out.polygons, *looks);
+  out.polygons.embedded.clear();
+  return out;
 }
 
-// STL has no colours that two programs would agree on.
-bool may_have_looks(std::string_view extension) { return extension != ".stl"; }
-
-Result<TriangleMesh> make_with_look(const std::string& name, std::string_view bytes, std::string_view extension,
-                                    ScenePolygons polygons, MeshFindings& findings, LookRequest& looks) {
-  if (extension == ".obj") name_obj_pictures(bytes, looks, polygons);
-  if (extension == ".gltf") decode_picture_names(polygons);
-  auto palette = load_palette(polygons, looks);
-  if (!palette) return geometry::make_mesh(name, std::move(polygons.vertices), std::move(polygons.triangles), findings);
+Result<TriangleMesh> make(const std::string& name, Imported from, MeshFindings& findings, LookRequest* looks) {
+  ScenePolygons& polygons = from.polygons;
+  if (!from.palette)
+    return geometry::make_mesh(name, std::move(polygons.vertices), std::move(polygons.triangles), findings);
   std::vector<std::uint32_t> origins;
   auto mesh = geometry::make_mesh(name, polygons.vertices, polygons.triangles, findings, &origins);
-  if (mesh) looks.look = std::make_shared<const MeshLook>(lay_over(*mesh, origins, polygons, std::move(*palette)));
+  if (mesh)
+    looks->look = std::make_shared<const MeshLook>(lay_over(*mesh, origins, polygons, std::move(*from.palette)));
   return mesh;
 }
 
@@ -174,12 +189,9 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extensi
   if (format == kFormats.end()) return refuse({"its kind is not known", {}});
   if (auto checked = check_mesh_bytes(bytes, extension); !checked) return refuse(checked.error());
   try {
-    const bool with_looks = looks != nullptr && may_have_looks(extension);
-    auto polygons = import(bytes, *format, scale, neighbours, with_looks);
-    if (!polygons) return refuse(polygons.error());
-    auto mesh =
-        with_looks ? make_with_look(name, bytes, extension, std::move(*polygons), findings, *looks)
-                   : geometry::make_mesh(name, std::move(polygons->vertices), std::move(polygons->triangles), findings);
+    auto imported = import(bytes, *format, scale, neighbours, may_have_looks(extension) ? looks : nullptr);
+    if (!imported) return refuse(imported.error());
+    auto mesh = make(name, std::move(*imported), findings, looks);
     if (!mesh) return refuse(mesh.error());
     return mesh;
   } catch (const std::exception& exception) {

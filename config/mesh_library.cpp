@@ -64,6 +64,7 @@ Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, 
                                const Beside& beside, const Place& place, Diagnostics& diagnostics, CollisionMesh& out) {
   about_to_read(file);
   constexpr std::size_t kLargestText = 4UL << 20U;
+  pictures_->begin_mesh();
   LookRequest looks;
   looks.text = [&](const std::string& name) -> Result<std::string> {
     const auto at = beside(name);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "config/obj_materials.hpp"
@@ -53,6 +54,18 @@ std::string decoded(const std::string& text) {
   return out;
 }
 
+// Null where it cannot be had, which is told.
+Picture load_picture(const SceneMaterial& from, const ScenePolygons& polygons, LookRequest& request) {
+  std::string name = from.embedded ? "in the file" : from.picture;
+  std::ranges::replace(name, '\\', '/');
+  auto picture = from.embedded ? request.embedded(polygons.embedded[*from.embedded]) : request.picture(name);
+  if (picture) return std::move(*picture);
+  const std::string place = from.place.empty() ? "" : fmt::format(" ({})", from.place);
+  leave_out(request, fmt::format("its picture {}{}: {}", printable(name), place, picture.error().what),
+            picture.error().remedy);
+  return nullptr;
+}
+
 }  // namespace
 
 void name_obj_pictures(std::string_view bytes, LookRequest& request, ScenePolygons& polygons) {
@@ -84,22 +97,18 @@ std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polyg
   std::vector<MeshMaterial> palette(polygons.palette.size());
   const auto is_white = [](const MeshLook::Rgba& colour) { return colour == MeshLook::Rgba{255, 255, 255, 255}; };
   bool anything = !std::ranges::all_of(polygons.colours, is_white);
+  // Null where a picture cannot be had: thousands of materials may name it.
+  std::map<std::pair<std::optional<std::size_t>, std::string>, Picture> known;
   for (std::size_t i = 0; i < palette.size(); ++i) {
     const SceneMaterial& from = polygons.palette[i];
     if (from.is_factor || polygons.colours.empty()) palette[i].rgb = from.rgb;
-    if (!used[i] || polygons.places.empty() || (from.picture.empty() && from.embedded.empty())) continue;
-    std::string name = from.embedded.empty() ? from.picture : "in the file";
-    std::ranges::replace(name, '\\', '/');
-    auto picture = from.embedded.empty() ? request.picture(name) : request.embedded(from.embedded);
-    if (picture) {
-      palette[i].picture = std::move(*picture);
-      if (!from.is_factor) palette[i].rgb = {1, 1, 1};
-      anything = true;
-      continue;
-    }
-    const std::string place = from.place.empty() ? "" : fmt::format(" ({})", from.place);
-    leave_out(request, fmt::format("its picture {}{}: {}", printable(name), place, picture.error().what),
-              picture.error().remedy);
+    if (!used[i] || polygons.places.empty() || (from.picture.empty() && !from.embedded)) continue;
+    const auto [at, is_new] = known.try_emplace({from.embedded, from.picture});
+    if (is_new) at->second = load_picture(from, polygons, request);
+    if (!at->second) continue;
+    palette[i].picture = at->second;
+    if (!from.is_factor) palette[i].rgb = {1, 1, 1};
+    anything = true;
   }
   return anything ? std::optional(std::move(palette)) : std::nullopt;
 }

@@ -26,11 +26,13 @@ struct LookRequest {
   static constexpr std::size_t kMostLeftOut = 16;
 };
 
-// `bytes`: of the mesh file; `percent_coded`: names of pictures are URIs.
+// `bytes`: of the mesh file.
 void name_obj_pictures(std::string_view bytes, LookRequest& request, ScenePolygons& polygons);
+// For formats in which the names of pictures are URIs.
 void decode_picture_names(ScenePolygons& polygons);
 
-// Loads what the palette names. Empty where no triangle shows a picture and no vertex has a colour.
+// Loads what the used part of the palette names, each picture once; the scene has to live still. Empty where no
+// triangle shows a picture and no vertex has a colour.
 [[nodiscard]] std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polygons,
                                                                     LookRequest& request);
 

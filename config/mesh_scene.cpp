@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "config/picture_file.hpp"
 #include "config/polygon.hpp"
 #include "rt_core/geometry/mesh_repair.hpp"
 
@@ -39,6 +38,16 @@ Eigen::Vector2f place_of(const aiVector3D& at) {
   constexpr float kFarthest = 1e4F;
   if (!(std::abs(at.x) <= kFarthest) || !(std::abs(at.y) <= kFarthest)) return Eigen::Vector2f::Zero();
   return {at.x, at.y};
+}
+
+// Where light is linear, as in the colours of glTF; near enough, sRGB is its root.
+aiColor4D root_of(const aiColor4D& light) {
+  return {std::sqrt(part_of_one(light.r)), std::sqrt(part_of_one(light.g)), std::sqrt(part_of_one(light.b)), light.a};
+}
+
+// assimp gives such a colour to every material of glTF, and to no other.
+bool has_base_colour(const aiMaterial& material, aiColor4D& colour) {
+  return material.Get(AI_MATKEY_BASE_COLOR, colour) == aiReturn_SUCCESS;
 }
 
 class Collector {
@@ -72,7 +81,10 @@ class Collector {
   }
 
   ScenePolygons finish() {
-    if (with_looks_) read_palette();
+    if (with_looks_) {
+      read_palette();
+      read_embedded();
+    }
     return std::move(out_);
   }
 
@@ -91,7 +103,10 @@ class Collector {
     if (const aiColor4D* colours = mesh.mColors[0]; colours != nullptr) {
       out_.colours.resize(known, MeshLook::Rgba{255, 255, 255, 255});
       std::transform(colours, colours + mesh.mNumVertices, std::back_inserter(out_.colours),
-                     [](const aiColor4D& c) { return MeshLook::Rgba{byte_of(c.r), byte_of(c.g), byte_of(c.b), 255}; });
+                     [](const aiColor4D& given) {
+                       const aiColor4D c = given;
+                       return MeshLook::Rgba{byte_of(c.r), byte_of(c.g), byte_of(c.b), 255};
+                     });
     }
     if (!out_.places.empty()) out_.places.resize(out_.vertices.size(), Eigen::Vector2f::Zero());
     if (!out_.colours.empty()) out_.colours.resize(out_.vertices.size(), MeshLook::Rgba{255, 255, 255, 255});
@@ -118,26 +133,29 @@ class Collector {
       aiString text;
       if (material.Get(AI_MATKEY_NAME, text) == aiReturn_SUCCESS) to.name = text.C_Str();
       aiColor4D colour;
-      const bool has_base = material.Get(AI_MATKEY_BASE_COLOR, colour) == aiReturn_SUCCESS;
-      to.is_factor = has_base;
-      // The base colour of glTF is linear; near enough, sRGB is its root.
-      if (has_base)
-        to.rgb = {std::sqrt(part_of_one(colour.r)), std::sqrt(part_of_one(colour.g)), std::sqrt(part_of_one(colour.b))};
-      else if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
+      to.is_factor = has_base_colour(material, colour);
+      if (to.is_factor) colour = root_of(colour);
+      if (to.is_factor || material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
         to.rgb = {part_of_one(colour.r), part_of_one(colour.g), part_of_one(colour.b)};
       unsigned channel = 0;
       if (!picture_of(material, text, channel)) continue;
-      if (const aiTexture* inside = scene_.GetEmbeddedTexture(text.C_Str()); inside != nullptr) {
-        const bool as_a_file = inside->mHeight == 0 && inside->pcData != nullptr;
-        if (as_a_file && inside->mWidth <= kLargestPictureFile)
-          to.embedded.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
-        else
-          to.embedded = "?";
-      } else {
-        to.picture = text.C_Str();
+      // "*3". The names that such pictures may have besides are nobody's references.
+      if (text.C_Str()[0] == '*') {
+        if (const int index = scene_.GetEmbeddedTextureAndIndex(text.C_Str()).second; index >= 0)
+          to.embedded = static_cast<std::size_t>(index);
       }
+      if (!to.embedded) to.picture = text.C_Str();
     }
     if (out_.palette.empty()) out_.palette.emplace_back();
+  }
+
+  void read_embedded() {
+    for (unsigned i = 0; i < scene_.mNumTextures; ++i) {
+      const aiTexture& texture = *scene_.mTextures[i];
+      const bool as_a_file = texture.mHeight == 0 && texture.pcData != nullptr;
+      out_.embedded.emplace_back(as_a_file ? reinterpret_cast<const char*>(texture.pcData) : "",
+                                 as_a_file ? texture.mWidth : 0);
+    }
   }
 
   const aiScene& scene_;

@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rt_core/base/result.hpp"
@@ -18,9 +21,9 @@ namespace cellmirror {
 
 struct SceneMaterial {
   std::string name;
-  std::string picture;   // name of a file as it stands in the mesh file; empty: none, or `embedded`
-  std::string embedded;  // the bytes of a picture that the mesh file holds itself
-  std::string place;     // where the picture is named, for messages; may be empty
+  std::string picture;                  // name of a file as it stands in the mesh file; empty: none, or `embedded`
+  std::optional<std::size_t> embedded;  // index in ScenePolygons::embedded
+  std::string place;                    // where the picture is named, for messages; may be empty
   std::array<float, 3> rgb{1, 1, 1};
   bool is_factor = false;  // rgb multiplies pictures and colours, as in glTF; elsewhere they stand for it
 };
@@ -33,6 +36,8 @@ struct ScenePolygons {
   std::vector<MeshLook::Rgba> colours;
   std::vector<std::uint16_t> materials;  // by triangle, index in `palette`; empty where looks are not wanted
   std::vector<SceneMaterial> palette;
+  // The bytes of the pictures that the mesh file holds itself: parts of the scene, and gone with it.
+  std::vector<std::string_view> embedded;
 };
 
 // All meshes, each as often as nodes show it. `with_looks` false: shapes alone.

@@ -1,10 +1,7 @@
 #include "config/picture_library.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
-#include "config/picture_file.hpp"
 #include "rt_core/base/home.hpp"
 
 namespace cellmirror {
@@ -17,26 +14,33 @@ std::size_t PictureLibrary::bytes() const {
   return total;
 }
 
-Result<Picture> PictureLibrary::of_bytes(std::string_view bytes) {
-  auto decoded = decode_picture(bytes);
-  if (!decoded) return std::unexpected(decoded.error());
+void PictureLibrary::begin_mesh() {
   std::erase_if(all_, [](const auto& one) { return one.expired(); });
-  if (decoded->rgba.size() > kMostBytes - this->bytes()) {
-    return fail(fmt::format("the cell's pictures would take more than {} MiB", kMostBytes >> 20U),
-                "make them smaller, or have meshes share them");
-  }
+  std::erase_if(files_, [](const auto& one) { return one.second.expired(); });
+  failed_.clear();
+  room_ = kMostPictureBytes - bytes();
+}
+
+Result<Picture> PictureLibrary::of_bytes(std::string_view bytes) {
+  auto decoded = decode_picture(bytes, room_);
+  if (!decoded) return std::unexpected(decoded.error());
   Picture picture = std::make_shared<const Image>(std::move(*decoded));
   all_.push_back(picture);
   return picture;
 }
 
 Result<Picture> PictureLibrary::of_file(const std::filesystem::path& file) {
-  std::weak_ptr<const Image>& known = files_[file.string()];
-  if (Picture picture = known.lock()) return picture;
+  const std::string path = file.string();
+  if (const auto known = files_.find(path); known != files_.end()) {
+    if (Picture picture = known->second.lock()) return picture;
+  }
+  if (const auto known = failed_.find(path); known != failed_.end()) return std::unexpected(known->second);
   const auto bytes = read_text_file(file, kLargestPictureFile);
-  if (!bytes) return std::unexpected(bytes.error());
-  auto picture = of_bytes(*bytes);
-  if (picture) known = *picture;
+  auto picture = bytes ? of_bytes(*bytes) : Result<Picture>(std::unexpected(bytes.error()));
+  if (picture)
+    files_[path] = *picture;
+  else
+    failed_.emplace(path, picture.error());
   return picture;
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/picture_file.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/image.hpp"
 
@@ -19,9 +20,9 @@ using Picture = std::shared_ptr<const Image>;
 
 class PictureLibrary {
  public:
-  // Of all pictures of a cell together, decoded (4 bytes a pixel).
-  static constexpr std::size_t kMostBytes = 128UL << 20U;
-
+  // Before each mesh. Until the next one no file that failed is opened again, and what was begun and failed counts as
+  // if it were in use: a mesh file cannot ask for more work than kMostPictureBytes of pixels.
+  void begin_mesh();
   Result<Picture> of_file(const std::filesystem::path& file);
   // One that stands in the mesh file itself.
   Result<Picture> of_bytes(std::string_view bytes);
@@ -31,6 +32,8 @@ class PictureLibrary {
  private:
   std::map<std::string, std::weak_ptr<const Image>> files_;  // by path
   std::vector<std::weak_ptr<const Image>> all_;
+  std::map<std::string, Error> failed_;  // by path
+  std::size_t room_ = kMostPictureBytes;
 };
 
 }  // namespace cellmirror

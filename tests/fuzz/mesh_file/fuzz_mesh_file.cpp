@@ -46,6 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     CELLMIRROR_EXPECTS(look.places.size() == 3 * mesh->triangles.size());
     CELLMIRROR_EXPECTS(look.colours.empty() || look.colours.size() == look.places.size());
     for (const std::uint16_t material : look.materials) CELLMIRROR_EXPECTS(material < look.palette.size());
+    CELLMIRROR_EXPECTS(pictures.bytes() <= kMostPictureBytes);
     for (const Eigen::Vector2f& place : look.places) CELLMIRROR_EXPECTS(place.allFinite());
   }
   CELLMIRROR_EXPECTS(mesh->closed == findings.why_open().empty());

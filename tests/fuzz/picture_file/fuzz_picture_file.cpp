@@ -10,7 +10,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace cellmirror;
   constexpr std::size_t kLargest = 64UL << 10U;
   if (size > kLargest) return 0;
-  const auto picture = decode_picture({reinterpret_cast<const char*>(data), size});
+  std::size_t room = kMostPictureBytes;
+  const auto picture = decode_picture({reinterpret_cast<const char*>(data), size}, room);
+  CELLMIRROR_EXPECTS(room <= kMostPictureBytes);
   if (!picture) {
     CELLMIRROR_EXPECTS(!picture.error().what.empty());
     return 0;
@@ -19,5 +21,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   CELLMIRROR_EXPECTS(picture->height > 0 && picture->height <= kLargestImageEdge);
   CELLMIRROR_EXPECTS(picture->rgba.size() == std::size_t{4} * static_cast<std::size_t>(picture->width) *
                                                  static_cast<std::size_t>(picture->height));
+  CELLMIRROR_EXPECTS(picture->rgba.size() == kMostPictureBytes - room);
   return 0;
 }

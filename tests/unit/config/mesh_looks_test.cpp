@@ -1,17 +1,20 @@
-// What meshes look like: pictures of OBJ, DAE and glTF, colours of PLY, and what is said where they cannot be had.
+// What meshes look like: pictures of OBJ and DAE, colours of PLY, and what is said where they cannot be had.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <optional>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "config/cell_file.hpp"
+#include "config/mesh_file.hpp"
+#include "config/mesh_library.hpp"
 #include "config/mesh_looks.hpp"
-#include "config/picture_file.hpp"
-#include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/geometry/mesh_repair.hpp"
+#include "tests/unit/config/mesh_looks.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/picture_bytes.hpp"
-#include "tests/unit/config/temporary_home.hpp"
 
 namespace cellmirror {
 namespace {
@@ -37,80 +40,15 @@ std::string square_mtl(const std::string& picture) {
   return "# a comment\nnewmtl other\nmap_Kd nowhere.png\nnewmtl paint\nKd 0.1 0.2 0.3\nmap_Kd " + picture + "\n";
 }
 
-struct MeshLooks : testing::Test {
-  // The look of the only mesh of a cell.
-  std::shared_ptr<const MeshLook> look_of(const std::string& mesh) {
-    diagnostics = {};
-    loaded =
-        load_cell(home.write("cell.toml", "format = 1\nname = \"c\"\n[[node]]\nname = \"A\"\ngeometry = [{ mesh = \"" +
-                                              mesh + "\" }]\n"),
-                  diagnostics);
-    EXPECT_TRUE(loaded) << diagnostics.text();
-    return loaded ? geometry().look : nullptr;
-  }
-  [[nodiscard]] const Geometry& geometry() const {
-    return loaded->cell.node(loaded->cell.find("A").value()).definition->geometry.at(0);
-  }
+struct MeshLooksOfObj : MeshLooks {
   std::shared_ptr<const MeshLook> square(const std::string& picture) {
     home.write("envlib/square.obj", kSquareObj);
     home.write("envlib/square.mtl", square_mtl(picture));
     return look_of("square.obj");
   }
-  [[nodiscard]] std::string finding() const {
-    std::string text = diagnostics.text();
-    for (std::size_t at = 0; (at = text.find(home.root().string())) != std::string::npos;)
-      text.replace(at, home.root().string().size(), "HOME");
-    return text;
-  }
-  TemporaryHome home;
-  Diagnostics diagnostics;
-  std::optional<LoadedCell> loaded;
 };
 
-std::vector<int> rgba_at(const Image& image, int x, int y) {
-  const std::uint8_t* const p = image.pixel(x, y);
-  return {p[0], p[1], p[2], p[3]};
-}
-
-TEST(PictureFile, reads_png_and_jpeg) {
-  const auto png = decode_picture(four_pixels());
-  ASSERT_TRUE(png) << png.error().text();
-  EXPECT_EQ(png->width, 2);
-  EXPECT_EQ(png->height, 2);
-  EXPECT_THAT(rgba_at(*png, 0, 0), ElementsAre(255, 0, 0, 255));
-  EXPECT_THAT(rgba_at(*png, 1, 0), ElementsAre(0, 255, 0, 255));
-  EXPECT_THAT(rgba_at(*png, 0, 1), ElementsAre(0, 0, 255, 255));
-  EXPECT_THAT(rgba_at(*png, 1, 1), ElementsAre(255, 255, 255, 128));
-  const auto jpeg = decode_picture(red_jpeg());
-  ASSERT_TRUE(jpeg) << jpeg.error().text();
-  EXPECT_EQ(jpeg->rgba.size(), 256U);
-  EXPECT_GT(jpeg->pixel(4, 4)[0], 245);
-  EXPECT_LT(jpeg->pixel(4, 4)[1], 10);
-  EXPECT_EQ(jpeg->pixel(4, 4)[3], 255);
-}
-
-TEST(PictureFile, refuses_what_is_damaged_too_large_or_of_another_kind) {
-  const auto refusal = [](const std::string& bytes) {
-    const auto sut = decode_picture(bytes);
-    return sut ? "accepted" : sut.error().what;
-  };
-  EXPECT_EQ(refusal(""), "it is empty");
-  EXPECT_EQ(refusal("GIF89a"), "it is neither PNG nor JPEG");
-  EXPECT_EQ(refusal(png_of(4097, 1, std::string(std::size_t{4} * 4097, 'x'))),
-            "it has 4097 x 1 pixels, more than 4096 x 4096");
-  EXPECT_THAT(refusal(png_of(0x7FFF'FFFF, 0x7FFF'FFFF, "")), testing::AnyOf(HasSubstr("it has"), HasSubstr("damaged")));
-  const std::string png = four_pixels();
-  const std::string jpeg = red_jpeg();
-  for (std::size_t length = 8; length < png.size() - 12; ++length)  // without IEND it is whole enough
-    EXPECT_THAT(refusal(png.substr(0, length)), HasSubstr("it is damaged: ")) << length;
-  for (std::size_t length = 3; length + 2 < jpeg.size(); length += 5)
-    EXPECT_NE(refusal(jpeg.substr(0, length)), "accepted") << length;
-  std::string flipped = png;
-  flipped[45] = static_cast<char>(flipped[45] ^ 1);
-  EXPECT_THAT(refusal(flipped), HasSubstr("it is damaged: "));
-}
-
-TEST_F(MeshLooks, obj_names_its_picture_in_a_material_file) {
+TEST_F(MeshLooksOfObj, obj_names_its_picture_in_a_material_file) {
   home.write("envlib/pictures/four.png", four_pixels());
   const auto sut = square("-s 1 1 1 -clamp on pictures/four.png");
   ASSERT_TRUE(sut) << finding();
@@ -128,7 +66,7 @@ TEST_F(MeshLooks, obj_names_its_picture_in_a_material_file) {
   }
 }
 
-TEST_F(MeshLooks, a_picture_may_lie_anywhere_in_the_home_and_nowhere_else) {
+TEST_F(MeshLooksOfObj, a_picture_may_lie_anywhere_in_the_home_and_nowhere_else) {
   home.write("robots/four.png", four_pixels());
   EXPECT_TRUE(square("../robots/four.png"));
   EXPECT_TRUE(square("..\\robots\\four.png"));
@@ -145,7 +83,7 @@ TEST_F(MeshLooks, a_picture_may_lie_anywhere_in_the_home_and_nowhere_else) {
   EXPECT_THAT(finding(), HasSubstr("its picture link.png (square.mtl:6): "));
 }
 
-TEST_F(MeshLooks, what_is_missing_or_broken_is_told_and_the_cell_loads_without) {
+TEST_F(MeshLooksOfObj, what_is_missing_or_broken_is_told_and_the_cell_loads_without) {
   EXPECT_EQ(square("four.png"), nullptr);
   EXPECT_THAT(finding(), HasSubstr("warning: the mesh square.obj: its picture four.png (square.mtl:6): "));
   EXPECT_EQ(geometry().mesh->triangles.size(), 2U);
@@ -184,61 +122,46 @@ TEST_F(MeshLooks, meshes_share_a_picture_and_the_shape_does_not_grow) {
   EXPECT_EQ(all[0].mesh->vertices.size(), 4U);
 }
 
-TEST_F(MeshLooks, pictures_of_a_cell_are_bounded_together) {
-  PictureLibrary sut;
-  std::vector<Picture> held;
-  const std::string bytes = png_of(64, 64, std::string(std::size_t{4} * 64 * 64, 'x'));
-  for (int i = 0; i < 3; ++i) held.push_back(*sut.of_bytes(bytes));
-  EXPECT_EQ(sut.bytes(), std::size_t{3} * 4 * 64 * 64);
-  held.clear();
-  EXPECT_EQ(sut.bytes(), 0U);
+TEST(MeshLooksOfMaterials, a_picture_that_many_name_is_asked_for_once_and_told_once) {
+  std::string mtl;
+  std::string obj = "mtllib all.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\n";
+  for (const std::string name : {"a", "b", "c"}) {
+    mtl += "newmtl " + name + "\nmap_Kd four.png\n";
+    obj += "usemtl " + name + "\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n";
+  }
+  const auto read = [&](const Result<Picture>& answer) {
+    int asked = 0;
+    LookRequest looks;
+    looks.text = [&](const std::string&) { return Result<std::string>(mtl); };
+    looks.picture = [&](const std::string&) { return ++asked, answer; };
+    geometry::MeshFindings findings;
+    EXPECT_TRUE(parse_mesh(obj, ".obj", "all.obj", Eigen::Vector3d::Ones(), {}, findings, &looks));
+    EXPECT_EQ(asked, 1);
+    return looks;
+  };
+  const Picture picture = std::make_shared<const Image>();
+  const LookRequest good = read(picture);
+  ASSERT_TRUE(good.look);
+  EXPECT_EQ(std::ranges::count(good.look->palette, picture, &MeshMaterial::picture), 3);
+  const LookRequest bad = read(fail("it is damaged"));
+  ASSERT_EQ(bad.left_out.size(), 1U);
+  EXPECT_EQ(bad.left_out[0].what, "its picture four.png (all.mtl:2): it is damaged");
 }
 
-TEST_F(MeshLooks, gltf_holds_its_picture_itself) {
-  const std::string picture = four_pixels();
-  std::string buffer = tetra_buffer();
-  for (const float part : {0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 1.0F, 1.0F, 1.0F}) put_float(buffer, part);
-  buffer += picture;
-  const std::string size = std::to_string(picture.size());
-  std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1,"material":0}]}],
-"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[0.25,1,1,1]}}],
-"textures":[{"source":0}],"images":[{"bufferView":3,"mimeType":"image/png"}],
-"buffers":[{"byteLength":)" +
-                     std::to_string(buffer.size()) +
-                     R"(}],
-"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24},
-{"buffer":0,"byteOffset":72,"byteLength":32},{"buffer":0,"byteOffset":104,"byteLength":)" +
-                     size + R"(}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
-{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"},
-{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}]})";
-  while (json.size() % 4 != 0) json += ' ';
-  while (buffer.size() % 4 != 0) buffer += '\0';
-  std::string glb = "glTF";
-  put_u32(glb, 2);
-  put_u32(glb, static_cast<std::uint32_t>(28 + json.size() + buffer.size()));
-  put_u32(glb, static_cast<std::uint32_t>(json.size()));
-  glb += "JSON" + json;
-  put_u32(glb, static_cast<std::uint32_t>(buffer.size()));
-  glb += std::string("BIN\0", 4) + buffer;
-  home.write("envlib/t.glb", glb);
-  const auto sut = look_of("t.glb");
-  ASSERT_TRUE(sut) << finding();
-  const MeshMaterial& material = sut->palette[sut->materials[0]];
-  ASSERT_TRUE(material.picture);
-  EXPECT_THAT(rgba_at(*material.picture, 1, 0), ElementsAre(0, 255, 0, 255));
-  EXPECT_NEAR(material.rgb[0], 0.5F, 1e-6F);  // a quarter of the light
-  for (std::size_t i = 0; i < sut->places.size(); ++i) {
-    const Eigen::Vector3d& p = geometry().mesh->vertices[geometry().mesh->triangles[i / 3][i % 3]];
-    const Eigen::Vector2f wanted(p.x() + p.z() > 0 ? 1.0F : 0.0F, p.y() + p.z() > 0 ? 1.0F : 0.0F);
-    EXPECT_NEAR((sut->places[i] - wanted).norm(), 0, 1e-6) << i;
-  }
-  std::string damaged = glb;
-  damaged[damaged.find("PNG") + 40] ^= 0x55;
-  home.write("envlib/bad.glb", damaged);
-  EXPECT_EQ(look_of("bad.glb"), nullptr);
-  EXPECT_THAT(finding(), HasSubstr("the mesh bad.glb: its picture in the file: it is damaged: "));
+TEST_F(MeshLooks, a_picture_that_was_mended_is_found_when_its_mesh_is_read_again) {
+  home.write("envlib/square.obj", kSquareObj);
+  home.write("envlib/square.mtl", square_mtl("four.png"));
+  MeshLibrary sut;
+  const auto has_look = [&] {
+    const std::filesystem::path folder = home.root() / "envlib";
+    const auto beside = [&](const std::string& picture) { return Result<std::filesystem::path>(folder / picture); };
+    return sut.mesh(folder / "square.obj", Eigen::Vector3d::Ones(), CollideAs::exact, beside, {}, diagnostics)->look !=
+           nullptr;
+  };
+  home.write("envlib/four.png", "GIF89a");
+  EXPECT_FALSE(has_look());
+  home.write("envlib/four.png", four_pixels());
+  EXPECT_TRUE(has_look());
 }
 
 TEST_F(MeshLooks, dae_names_its_picture) {

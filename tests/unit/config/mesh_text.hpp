@@ -144,10 +144,9 @@ inline std::string tetra_gltf(const std::string& uri) {
 {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
 }
 
-inline std::string tetra_glb() {
-  std::string json = tetra_gltf("");
+inline std::string glb_of(std::string json, std::string buffer) {
   while (json.size() % 4 != 0) json += ' ';
-  const std::string buffer = tetra_buffer();
+  while (buffer.size() % 4 != 0) buffer += '\0';
   std::string out = "glTF";
   put_u32(out, 2);
   put_u32(out, static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + buffer.size()));
@@ -157,5 +156,7 @@ inline std::string tetra_glb() {
   out += std::string("BIN\0", 4) + buffer;
   return out;
 }
+
+inline std::string tetra_glb() { return glb_of(tetra_gltf(""), tetra_buffer()); }
 
 }  // namespace cellmirror
