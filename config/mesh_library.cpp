@@ -86,6 +86,7 @@ Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, 
   out.look = std::move(looks.look);
   entry.mesh = out.mesh;
   entry.look = out.look;
+  entry.had_look = out.look != nullptr;
   return {};
 }
 
@@ -102,7 +103,7 @@ Result<CollisionMesh> MeshLibrary::mesh(const std::filesystem::path& file, const
   }
   out.mesh = entry.mesh.lock();
   out.look = entry.look.lock();
-  if (!out.mesh) {
+  if (!out.mesh || (entry.had_look && !out.look)) {
     if (auto done = read(entry, file, scale, beside, place, diagnostics, out); !done)
       return std::unexpected(done.error());
   }

@@ -37,8 +37,8 @@ class MeshLibrary {
   // Where a picture or a material file is that the mesh names.
   using Beside = std::function<Result<std::filesystem::path>(const std::string& name)>;
 
-  // Reads the file unless somebody still uses it with that scale. Notes and warnings about what was found in it go to
-  // `diagnostics` at `place`, once each time it is read.
+  // Reads the file unless somebody still uses it, and its look where it has one, with that scale. Notes and warnings
+  // about what was found in it go to `diagnostics` at `place`, once each time it is read.
   Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale, CollideAs collide_as,
                              const Beside& beside, const Place& place, Diagnostics& diagnostics);
 
@@ -56,7 +56,9 @@ class MeshLibrary {
   using Pieces = std::vector<std::shared_ptr<const geometry::TriangleMesh>>;
   struct Entry {
     std::weak_ptr<const geometry::TriangleMesh> mesh;
-    std::weak_ptr<const MeshLook> look;  // used by all that use the mesh
+    // May be gone before the mesh: who only computes with the shape keeps no look.
+    std::weak_ptr<const MeshLook> look;
+    bool had_look = false;
     // By kind: only while the pieces are used.
     std::map<CollideAs, std::vector<std::weak_ptr<const geometry::TriangleMesh>>> pieces;
   };

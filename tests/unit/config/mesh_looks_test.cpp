@@ -164,6 +164,30 @@ TEST_F(MeshLooks, a_picture_that_was_mended_is_found_when_its_mesh_is_read_again
   EXPECT_TRUE(has_look());
 }
 
+TEST_F(MeshLooks, a_mesh_whose_look_nobody_kept_is_read_again) {
+  home.write("envlib/square.obj", kSquareObj);
+  home.write("envlib/square.mtl", square_mtl("four.png"));
+  home.write("envlib/four.png", four_pixels());
+  home.write("envlib/l.obj", kLObj);
+  MeshLibrary sut;
+  int readings = 0;
+  sut.tell([&](const std::filesystem::path&) { ++readings; });
+  const auto mesh = [&](const std::string& name) {
+    const std::filesystem::path folder = home.root() / "envlib";
+    return sut.mesh(
+        folder / name, Eigen::Vector3d::Ones(), CollideAs::exact,
+        [&](const std::string& picture) { return Result<std::filesystem::path>(folder / picture); }, {}, diagnostics);
+  };
+  const auto shape = mesh("square.obj")->mesh;
+  const auto again = mesh("square.obj");
+  EXPECT_TRUE(again->look);
+  EXPECT_EQ(mesh("square.obj")->look, again->look);
+  EXPECT_EQ(readings, 2);
+  const auto without_look = mesh("l.obj")->mesh;
+  EXPECT_EQ(mesh("l.obj")->mesh, without_look);
+  EXPECT_EQ(readings, 3);
+}
+
 TEST_F(MeshLooks, dae_names_its_picture) {
   std::string dae = tetra_dae("Z_UP");
   const auto put = [&](const std::string& before, const std::string& text) { dae.insert(dae.find(before), text); };
