@@ -149,7 +149,7 @@ Result<Imported> import(std::string_view bytes, const Format& format, const Eige
   if (looks == nullptr) return out;
   if (format.extension == ".obj") name_obj_pictures(bytes, *looks, out.polygons);
   // Those of DAE were decoded by assimp.
-  if (format.extension == ".gltf") decode_picture_names(out.polygons);
+  if (format.extension == ".gltf" || format.extension == ".glb") decode_picture_names(out.polygons);
   out.palette = load_palette(out.polygons, *looks);
   out.polygons.embedded.clear();
   return out;

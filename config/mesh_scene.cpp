@@ -52,7 +52,10 @@ bool has_base_colour(const aiMaterial& material, aiColor4D& colour) {
 
 class Collector {
  public:
-  Collector(const aiScene& scene, bool with_looks) : scene_(scene), with_looks_(with_looks) {}
+  Collector(const aiScene& scene, bool with_looks) : scene_(scene), with_looks_(with_looks) {
+    aiColor4D ignored;
+    linear_ = scene.mNumMaterials > 0 && has_base_colour(*scene.mMaterials[0], ignored);
+  }
 
   Result<void> add(const aiMesh& mesh, const Eigen::Matrix4d& X) {
     if (mesh.mVertices == nullptr || mesh.mFaces == nullptr) return {};
@@ -103,8 +106,8 @@ class Collector {
     if (const aiColor4D* colours = mesh.mColors[0]; colours != nullptr) {
       out_.colours.resize(known, MeshLook::Rgba{255, 255, 255, 255});
       std::transform(colours, colours + mesh.mNumVertices, std::back_inserter(out_.colours),
-                     [](const aiColor4D& given) {
-                       const aiColor4D c = given;
+                     [this](const aiColor4D& given) {
+                       const aiColor4D c = linear_ ? root_of(given) : given;
                        return MeshLook::Rgba{byte_of(c.r), byte_of(c.g), byte_of(c.b), 255};
                      });
     }
@@ -160,6 +163,7 @@ class Collector {
 
   const aiScene& scene_;
   bool with_looks_;
+  bool linear_ = false;
   ScenePolygons out_;
 };
 

@@ -114,6 +114,39 @@ TEST_F(MeshLooksOfGltf, a_picture_in_the_file_is_decoded_once_for_all_materials_
   EXPECT_EQ(pictures.bytes(), 16U);
 }
 
+TEST_F(MeshLooksOfGltf, colours_of_corners_are_linear_light) {
+  Gltf gltf;
+  gltf.attributes = R"("POSITION":0,"COLOR_0":3)";
+  const auto sut = look_of("t.glb", gltf);
+  ASSERT_TRUE(sut) << finding();
+  ASSERT_EQ(sut->colours.size(), 12U);
+  const std::array<MeshLook::Rgba, 4> wanted{
+      {{128, 255, 0, 255}, {180, 180, 180, 255}, {255, 255, 255, 255}, {0, 0, 0, 255}}};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const Eigen::Vector3d& p = geometry().mesh->vertices[geometry().mesh->triangles[i / 3][i % 3]];
+    EXPECT_EQ(sut->colours[i], wanted.at(static_cast<std::size_t>(p.x() + 2 * p.y() + 3 * p.z())));
+  }
+}
+
+TEST_F(MeshLooksOfGltf, names_of_pictures_are_percent_coded_and_stay_in_the_home_all_the_same) {
+  home.write("envlib/four pixels.png", four_pixels());
+  home.write("envlib/four", four_pixels());
+  for (const char* file : {"t.glb", "t.gltf"}) {
+    const auto look = [&](const std::string& uri) {
+      Gltf gltf;
+      gltf.images = R"({"uri":")" + uri + R"("})";
+      return look_of(file, gltf);
+    };
+    EXPECT_TRUE(look("four%20pixels.png")) << finding();
+    EXPECT_EQ(look("%2e%2E%2F../four.png"), nullptr);
+    EXPECT_THAT(finding(), HasSubstr("the path ../../four.png leaves HOME"));
+    EXPECT_EQ(look("%2Fetc%2Fhostname"), nullptr);
+    EXPECT_THAT(finding(), HasSubstr("the path /etc/hostname is absolute"));
+    EXPECT_EQ(look("four%00.png"), nullptr);
+    EXPECT_THAT(finding(), HasSubstr("holds a NUL byte"));
+  }
+}
+
 TEST_F(MeshLooksOfGltf, images_that_repeat_the_same_bytes_are_bounded) {
   Gltf gltf;
   gltf.picture = std::string(1U << 20U, 'x');
