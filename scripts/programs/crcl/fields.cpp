@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <vector>
 
+#include "rt_core/base/contract.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::crcl {
 namespace {
+
+constexpr std::size_t kMostNames = 16;  // that an element may hold
 
 Place place(const std::string& file, const XmlNode& at) {
   return {.file = file, .line = static_cast<int>(at.line), .column = static_cast<int>(at.column)};
@@ -34,13 +38,18 @@ void Fields::warning(const XmlNode& at, std::string message, std::string remedy)
 }
 
 void Fields::only(const XmlNode& node, std::initializer_list<std::string_view> names, std::string_view repeated) const {
+  std::bitset<kMostNames> seen;  // each of the names, and Name behind them
+  CELLMIRROR_EXPECTS(names.size() < seen.size());
   for (const XmlNode* one = tree_.first(node); one != nullptr; one = tree_.next(*one)) {
     const auto is_it = [&](std::string_view name) { return same_name(one->name, name); };
-    if (!is_it("Name") && std::none_of(names.begin(), names.end(), is_it)) {
+    const auto index = static_cast<std::size_t>(std::find_if(names.begin(), names.end(), is_it) - names.begin());
+    if (index == names.size() && !is_it("Name")) {
       const std::vector<std::string> candidates(names.begin(), names.end());
       error(*one, fmt::format("<{}> does not belong here", printable(one->name)), did_you_mean(one->name, candidates));
-    } else if (!is_it(repeated) && tree_.child(node, one->name) != one) {
+    } else if (seen[index] && !is_it(repeated)) {
       error(*one, fmt::format("<{}> is given twice", one->name));
+    } else {
+      seen[index] = true;
     }
   }
 }

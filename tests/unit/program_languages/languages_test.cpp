@@ -165,6 +165,20 @@ TEST(Crcl, BoundsWhatOneCommandMayHold) {
   EXPECT_NE(diagnostics.text().find("an element with more than 500000 in it"), std::string::npos);
 }
 
+// Looking for each element among those before it would take minutes.
+TEST(Crcl, ReadsACommandOfManyElementsThatDoNotBelongThereOrAreRepeated) {
+  constexpr std::size_t kEach = 200'000;
+  std::string content;
+  for (std::size_t n = 0; n < kEach; ++n) content += "<x/>";
+  for (std::size_t n = 0; n < kEach; ++n) content += "<Name/>";
+  Diagnostics diagnostics;
+  EXPECT_EQ(parse_crcl(crcl("<MiddleCommand xsi:type=\"MessageType\"><CommandID>2</CommandID><Message>hello</Message>" +
+                            content + "</MiddleCommand>"),
+                       diagnostics),
+            nullptr);
+  EXPECT_EQ(diagnostics.errors(), kEach + (kEach - 1));
+}
+
 TEST(Crcl, ReadsAProgramOf100000Commands) {
   std::string commands;
   for (int n = 0; n < 100'000; ++n) {
