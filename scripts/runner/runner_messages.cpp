@@ -27,6 +27,10 @@ Error as_error(const Diagnostics& findings) {
   return error;
 }
 
+// Programs are read and begin later, and then it turns out what is wrong with them. (A robot that does not arrive was
+// told to do something else.)
+bool may_be_wrong_later(FormId id) { return id == FormId::tf_load || id == FormId::tf_run || id == FormId::tf_back; }
+
 bool waits_for_programs(FormId id) { return id == FormId::wait || id == FormId::tf_wait; }
 
 }  // namespace
@@ -36,7 +40,12 @@ Result<std::string> ScriptRunner::execute_message(std::string_view text, std::st
   auto result = begin_message(command_, CommandSource::message, text, source, activity);
   if (result) return *std::move(result);
   const Result<std::string> begun;
-  count_message(CommandSource::message, begun, {});
+  if (may_be_wrong_later(command_.id())) {
+    const Place place{std::string(source), command_.begin().line, command_.begin().column};
+    waiting_messages_.push_back({CommandSource::message, std::move(activity), place, [](const auto&) {}});
+  } else {
+    count_message(CommandSource::message, begun, {});
+  }
   return begun;
 }
 

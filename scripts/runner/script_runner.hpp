@@ -96,7 +96,7 @@ class ScriptRunner {
 
   // Executes one command now, whatever the files do; returns a text for the acknowledgement. EXEC_SCRIPT starts the
   // file and returns when it was accepted, a motion when it has begun; WAIT is refused. `source` names the sender in
-  // errors.
+  // errors. A robot program that cannot be loaded or run later is counted and remembered as refused then.
   Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
   // The same for a sender who is answered, once: now, or within a step() when what the command began has ended.
   using Answer = std::function<void(const Result<std::string>& result)>;
@@ -158,8 +158,8 @@ class ScriptRunner {
   CommandHost host_;
   const KismetHome& home_;
   const Clock& clock_;
-  // A message that is answered when its activity has ended, or a command of a robot program. At most one a robot runs,
-  // and of TF_WAIT one a sender, so they stay few.
+  // A message that is answered or counted when its activity has ended, or a command of a robot program. At most one a
+  // robot runs, of TF_WAIT there is one a sender, and whoever loads programs bounds how many, so they stay few.
   struct WaitingMessage {
     CommandSource from;
     ActivityHandle activity;

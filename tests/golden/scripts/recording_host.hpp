@@ -122,13 +122,13 @@ class RecordingHost final : public WorldHost,
   Result<void> set_language(std::string_view language) override { return record("set_language {}", language); }
   Result<ActivityHandle> load_program(std::string_view program, std::string_view robot) override {
     if (auto done = record("load_program {} {}", program, robot); !done) return std::unexpected(done.error());
-    return ActivityHandle();
+    return activity;
   }
   Result<ActivityHandle> run_program(std::string_view program, std::string_view robot, ProgramBegin begin) override {
     constexpr std::array<std::string_view, 3> kNames = {"now", "exec_wait", "backward"};
     const auto done = record("run_program {} {} {}", program, robot, kNames[static_cast<std::size_t>(begin)]);
     if (!done) return std::unexpected(done.error());
-    return ActivityHandle();
+    return activity;
   }
   Result<void> delete_program(std::string_view program, std::string_view robot) override {
     return record("delete_program {} {}", program, robot);

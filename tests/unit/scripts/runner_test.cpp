@@ -337,6 +337,28 @@ TEST_F(ScriptRunnerTest, SenderLearnsWhyItDidNotComeToItsEnd) {
   EXPECT_NE(sut_->last_errors().back().find("message from process 7:1:1: error: superseded"), std::string::npos);
 }
 
+TEST_F(ScriptRunnerTest, ProgramsThatNobodyWaitsForAreCountedAndRememberedWhenTheyTurnOutWrong) {
+  for (const char* command : {"TF_LOAD r3demo PUMA_762", "TF_RUN r3demo PUMA_762", "TF_BACK r3demo PUMA_762"}) {
+    const SourceCounters before = sut_->counters().message;
+    gateway_.activity = std::make_shared<Activity>();
+    ASSERT_TRUE(sut_->execute_message(command, "message from process 7"));
+    EXPECT_EQ(sut_->counters().message.done, before.done) << command;
+    gateway_.activity->refuse({"programs/r3demo.ird has 1 error", {}});
+    sut_->step(10);
+    EXPECT_EQ(sut_->counters().message.done, before.done) << command;
+    EXPECT_EQ(sut_->counters().message.refused, before.refused + 1) << command;
+    ASSERT_FALSE(sut_->last_errors().empty());
+    EXPECT_NE(sut_->last_errors().back().find("message from process 7:1:1: error: programs/r3demo.ird has 1 error"),
+              std::string::npos);
+  }
+  gateway_.activity = std::make_shared<Activity>();
+  ASSERT_TRUE(sut_->execute_message("TF_LOAD r3demo PUMA_762"));
+  gateway_.activity->finish();
+  sut_->step(10);
+  EXPECT_EQ(sut_->counters().message.done, 1U);
+  EXPECT_EQ(sut_->counters().message.received, 4U);
+}
+
 TEST_F(ScriptRunnerTest, SendersThatWaitAreAnsweredWhenEverythingEnds) {
   gateway_.activity = std::make_shared<Activity>();
   std::vector<Result<std::string>> answers;
