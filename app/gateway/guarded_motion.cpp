@@ -22,6 +22,7 @@ Result<void> GuardedMotion::queue_move(std::string_view robot, MovePath path, co
 }
 
 Result<void> GuardedMotion::stop(std::string_view robot) {
+  programs_.give_up_waiting(robot, {"stopped by STOP_ROB", {}});
   if (programs_.moving_program(robot).empty()) return motion_.stop(robot);
   return programs_.stop_programs(robot);
 }

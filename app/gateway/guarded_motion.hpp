@@ -16,7 +16,7 @@ class GuardedMotion final : public MotionHost {
   // Refused while a program moves the robot.
   Result<ActivityHandle> position(std::string_view robot, const MotionTarget& target) override;
   Result<void> queue_move(std::string_view robot, MovePath path, const MotionTarget& target) override;
-  // Never refused for that: STOP_ROB stops the program with its robot.
+  // Never refused for that: STOP_ROB stops the program with its robot, and those that wait until they are loaded.
   Result<void> stop(std::string_view robot) override;
   Result<void> set_positioning(Positioning positioning) override { return motion_.set_positioning(positioning); }
   [[nodiscard]] bool moving() const override { return motion_.moving(); }

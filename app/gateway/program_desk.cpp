@@ -37,7 +37,9 @@ ProgramDesk::ProgramDesk(Parts parts)
     : parts_(std::move(parts)),
       controllers_(parts_.moves, *this, parts_.clock),
       recordings_(parts_.cell, parts_.home, parts_.fleet, parts_.clock),
-      loads_(parts_.home) {
+      loads_([&home = parts_.home](const program::Language& language, const std::filesystem::path& path) {
+        return read_program(home, language, path);
+      }) {
   controllers_.on_event([this](const program::ProgramEvent& event) { note(event); });
 }
 
@@ -120,7 +122,10 @@ bool ProgramDesk::end_loads() {
 }
 
 void ProgramDesk::begin_waiting_run(const ProgramLoads::Run& run, std::string_view robot) {
-  if (const auto begun = begin_run(run.program, robot, run.begin)) {
+  const bool first = !controllers_.busy(robot);
+  auto begun = begin_run(run.program, robot, run.begin);
+  if (begun && first && run.held) begun = controllers_.hold(robot);
+  if (begun) {
     run.activity->finish();
   } else {
     run.activity->refuse(begun.error());
@@ -128,19 +133,37 @@ void ProgramDesk::begin_waiting_run(const ProgramLoads::Run& run, std::string_vi
 }
 
 Result<void> ProgramDesk::delete_program(std::string_view program, std::string_view robot) {
-  const auto waiting = loads_.give_up(program, robot, {fmt::format("TF_DELETE has given up {}", program), {}});
-  auto removed = controllers_.remove(robot, program);
-  if (!waiting) return removed;
-  for (const ProgramLoads::Run& run : *waiting) begin_waiting_run(run, robot);
+  // One that is being loaded for the first time is not there yet. What is refused changes nothing.
+  const bool there = loaded(program, robot) || !loads_.under_way(program, robot);
+  if (auto removed = controllers_.remove(robot, program); !removed && there) return removed;
+  for (const ProgramLoads::Run& run : loads_.give_up(program, robot, {"given up by TF_DELETE", {}}))
+    begin_waiting_run(run, robot);
   return {};
 }
-Result<void> ProgramDesk::hold_program(std::string_view robot) { return controllers_.hold(robot); }
-Result<void> ProgramDesk::resume_program(std::string_view robot) { return controllers_.resume(robot); }
+
+bool ProgramDesk::loaded(std::string_view program, std::string_view robot) const {
+  return std::ranges::any_of(controllers_.status(), [&](const program::ProgramStatus& status) {
+    return status.robot == robot && status.name == program;
+  });
+}
+
+// A program that waits until it is loaded begins held, and TF_RESUME takes that back.
+Result<void> ProgramDesk::hold_program(std::string_view robot) {
+  if (controllers_.busy(robot) || !loads_.runs_wait(robot)) return controllers_.hold(robot);
+  loads_.hold_runs(robot, true);
+  return {};
+}
+Result<void> ProgramDesk::resume_program(std::string_view robot) {
+  const bool released = loads_.hold_runs(robot, false);
+  auto resumed = controllers_.resume(robot);
+  if (released && !controllers_.busy(robot)) return {};
+  return resumed;
+}
 Result<void> ProgramDesk::step_program(std::string_view robot, bool backward) {
   return controllers_.step(robot, backward ? program::Direction::backward : program::Direction::forward);
 }
 Result<void> ProgramDesk::stop_programs(std::string_view robot) {
-  const bool waited = loads_.give_up_runs(robot, {"TF_STOP has ended it before it began", {}});
+  const bool waited = loads_.give_up_runs(robot, {"stopped by TF_STOP", {}});
   auto stopped = controllers_.stop(robot);
   if (waited) return {};
   return stopped;
@@ -218,8 +241,16 @@ void ProgramDesk::follow_cell() {
     if (parts_.cell.robot(status.robot) == nullptr && (gone.empty() || gone.back() != status.robot))
       gone.push_back(status.robot);
   }
-  for (const std::string& robot : gone)
-    controllers_.give_up(robot, {fmt::format("the robot {} was deleted", robot), {}}, true);
+  const auto why = [](std::string_view robot) { return Error{fmt::format("the robot {} was deleted", robot), {}}; };
+  for (const std::string& robot : gone) controllers_.give_up(robot, why(robot), true);
+  for (const LoadPicture& load : loads_.pictures()) {
+    if (parts_.cell.robot(load.robot) == nullptr) loads_.give_up_robot(load.robot, why(load.robot));
+  }
+}
+
+void ProgramDesk::give_up(std::string_view robot, const Error& why) {
+  give_up_waiting(robot, why);
+  controllers_.give_up(robot, why, false);
 }
 
 void ProgramDesk::shut_down() {

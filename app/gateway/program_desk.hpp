@@ -74,10 +74,13 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
   bool follow();
   // A program, a recording or a load needs follow() soon.
   [[nodiscard]] bool needs_turns() const { return controllers_.busy() || recordings_.busy() || !loads_.empty(); }
-  // After every change of the tree: the programs of robots that are gone end and are forgotten.
+  // After every change of the tree: the programs of robots that are gone end and are forgotten, those that are being
+  // loaded too, so that they do not run on a robot that gets the same name later.
   void follow_cell();
   // The robot takes no motion commands any more: what it runs fails with this reason.
-  void give_up(std::string_view robot, const Error& why) { controllers_.give_up(robot, why, false); }
+  void give_up(std::string_view robot, const Error& why);
+  // TF_RUN that waits until its program is loaded is refused with this reason.
+  void give_up_waiting(std::string_view robot, const Error& why) { loads_.give_up_runs(robot, why); }
   // All programs end; whoever waits is refused.
   void shut_down();
 
@@ -102,6 +105,7 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
   [[nodiscard]] SignalPicture signals_of(const RobotModel& robot) const;
   // Refused: the cell has no such robot.
   [[nodiscard]] Result<void> check_robot(std::string_view robot) const;
+  [[nodiscard]] bool loaded(std::string_view program, std::string_view robot) const;
 
   Parts parts_;
   script::ScriptRunner* runner_ = nullptr;

@@ -15,6 +15,11 @@ bool is(const LoadPicture& load, std::string_view program, std::string_view robo
   return load.program == program && load.robot == robot;
 }
 
+// Whoever is not answered finds this in the log, without the command.
+void refuse_run(const ProgramLoads::Run& run, const Error& why) {
+  run.activity->refuse({fmt::format("{} was not started: {}", run.program, why.what), why.remedy});
+}
+
 }  // namespace
 
 Result<ActivityHandle> ProgramLoads::begin(std::string_view program, std::string_view robot,
@@ -23,8 +28,8 @@ Result<ActivityHandle> ProgramLoads::begin(std::string_view program, std::string
     return fail(fmt::format("{} robot programs are being loaded already", kMost), "wait until some of them are there");
   }
   const std::uint64_t id = ++last_id_;
+  if (auto ordered = reader_.read(id, language, std::move(path)); !ordered) return std::unexpected(ordered.error());
   loads_.push_back({id, {std::string(robot), std::string(program)}, std::make_shared<Activity>(), {}});
-  reader_.read(id, language, std::move(path));
   return loads_.back().activity;
 }
 
@@ -32,70 +37,93 @@ bool ProgramLoads::under_way(std::string_view program, std::string_view robot) c
   return std::ranges::any_of(loads_, [&](const Load& load) { return is(load.what, program, robot); });
 }
 
-// The last load that the run waits for.
-std::deque<ProgramLoads::Load>::const_reverse_iterator ProgramLoads::before_run(std::string_view program,
-                                                                                std::string_view robot) const {
-  return std::find_if(loads_.rbegin(), loads_.rend(), [&](const Load& load) {
-    return is(load.what, program, robot) || (load.what.robot == robot && !load.runs.empty());
-  });
+// The last of the first `count` loads that the run waits for.
+std::optional<std::size_t> ProgramLoads::before_run(std::string_view program, std::string_view robot,
+                                                    std::size_t count) const {
+  for (std::size_t i = count; i > 0; --i) {
+    const Load& load = loads_[i - 1];
+    if (is(load.what, program, robot) || (load.what.robot == robot && !load.runs.empty())) return i - 1;
+  }
+  return std::nullopt;
 }
 
 bool ProgramLoads::has_to_wait(std::string_view program, std::string_view robot) const {
-  return before_run(program, robot) != loads_.rend();
+  return before_run(program, robot, loads_.size()).has_value();
 }
 
 Result<ActivityHandle> ProgramLoads::add_run(std::string_view program, std::string_view robot, ProgramBegin begin) {
-  const auto before = before_run(program, robot);
-  CELLMIRROR_EXPECTS(before != loads_.rend());
-  std::vector<Run>& runs = loads_[static_cast<std::size_t>(loads_.rend() - before) - 1].runs;
-  if (runs.size() == kMostRuns) {
-    return fail(fmt::format("{} TF_RUN wait already until {} is loaded", kMostRuns, before->what.program));
+  const auto before = before_run(program, robot, loads_.size());
+  CELLMIRROR_EXPECTS(before.has_value());
+  Load& load = loads_[*before];
+  if (load.runs.size() == kMostRuns) {
+    return fail(fmt::format("{} TF_RUN wait already until {} is loaded", kMostRuns, load.what.program));
   }
-  runs.push_back({std::string(program), begin, std::make_shared<Activity>()});
-  return runs.back().activity;
+  const bool held = std::ranges::any_of(loads_, [&](const Load& other) {
+    return other.what.robot == robot && !other.runs.empty() && other.runs.back().held;
+  });
+  load.runs.push_back({std::string(program), begin, std::make_shared<Activity>(), held});
+  return load.runs.back().activity;
 }
 
-std::optional<std::vector<ProgramLoads::Run>> ProgramLoads::give_up(std::string_view program, std::string_view robot,
-                                                                    const Error& why) {
-  if (!under_way(program, robot)) return std::nullopt;
-  std::vector<Run> others;
-  for (auto load = loads_.begin(); load != loads_.end();) {
-    if (!is(load->what, program, robot)) {
-      ++load;
+void ProgramLoads::refuse(const Load& load, const Error& why) {
+  reader_.forget(load.id);
+  load.activity->refuse({fmt::format("{} was not loaded: {}", load.what.program, why.what), why.remedy});
+  for (const Run& run : load.runs) refuse_run(run, why);
+}
+
+std::vector<ProgramLoads::Run> ProgramLoads::give_up(std::string_view program, std::string_view robot,
+                                                     const Error& why) {
+  std::vector<Run> free;
+  for (std::size_t i = 0; i < loads_.size();) {
+    if (!is(loads_[i].what, program, robot)) {
+      ++i;
       continue;
     }
-    reader_.forget(load->id);
-    load->activity->refuse(why);
-    for (Run& run : load->runs) {
-      if (run.program == program) {
-        run.activity->refuse(why);
-      } else {
-        others.push_back(std::move(run));
-      }
+    Load load = std::move(loads_[i]);
+    loads_.erase(loads_.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto others =
+        std::ranges::stable_partition(load.runs, [&](const Run& run) { return run.program == program; });
+    for (Run& run : others) {
+      const auto before = before_run(run.program, robot, i);
+      (before ? loads_[*before].runs : free).push_back(std::move(run));
     }
-    load = loads_.erase(load);
+    load.runs.erase(others.begin(), others.end());
+    refuse(load, why);
   }
-  return others;
+  return free;
 }
 
 bool ProgramLoads::give_up_runs(std::string_view robot, const Error& why) {
   bool any = false;
   for (Load& load : loads_) {
     if (load.what.robot != robot) continue;
-    for (const Run& run : load.runs) run.activity->refuse(why);
+    for (const Run& run : load.runs) refuse_run(run, why);
     any = any || !load.runs.empty();
     load.runs.clear();
   }
   return any;
 }
 
+void ProgramLoads::give_up_robot(std::string_view robot, const Error& why) {
+  std::erase_if(loads_, [&](const Load& load) {
+    if (load.what.robot != robot) return false;
+    refuse(load, why);
+    return true;
+  });
+}
+
 void ProgramLoads::give_up_all(const Error& why) {
-  for (const Load& load : loads_) {
-    reader_.forget(load.id);
-    load.activity->refuse(why);
-    for (const Run& run : load.runs) run.activity->refuse(why);
-  }
+  for (const Load& load : loads_) refuse(load, why);
   loads_.clear();
+}
+
+bool ProgramLoads::hold_runs(std::string_view robot, bool held) {
+  bool any = false;
+  for (Load& load : loads_) {
+    if (load.what.robot != robot) continue;
+    for (Run& run : load.runs) any = std::exchange(run.held, held) != held || any;
+  }
+  return any;
 }
 
 std::optional<ProgramLoads::Ended> ProgramLoads::take() {

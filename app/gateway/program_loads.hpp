@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/gateway/program_picture.hpp"
@@ -27,6 +28,7 @@ class ProgramLoads {
     std::string program;
     ProgramBegin begin = ProgramBegin::now;
     std::shared_ptr<Activity> activity;
+    bool held = false;  // TF_HOLD came before it could begin
   };
   struct Ended {
     LoadPicture what;
@@ -35,9 +37,9 @@ class ProgramLoads {
     ProgramText text;
   };
 
-  explicit ProgramLoads(const KismetHome& home) : reader_(home) {}
+  explicit ProgramLoads(ProgramReader::Reading reading) : reader_(std::move(reading)) {}
 
-  // Refused: kMost are under way.
+  // Refused: kMost are under way, or the system gives no thread.
   Result<ActivityHandle> begin(std::string_view program, std::string_view robot, const program::Language& language,
                                std::filesystem::path path);
   [[nodiscard]] bool under_way(std::string_view program, std::string_view robot) const;
@@ -45,11 +47,14 @@ class ProgramLoads {
   [[nodiscard]] bool has_to_wait(std::string_view program, std::string_view robot) const;
   // Of a run that has to wait. Refused: kMostRuns wait for that load.
   Result<ActivityHandle> add_run(std::string_view program, std::string_view robot, ProgramBegin begin);
-  // Loads of that name, and runs that wait for them, are refused with that reason. Returns the runs of other programs
-  // that waited behind these; none where there is no such load.
-  std::optional<std::vector<Run>> give_up(std::string_view program, std::string_view robot, const Error& why);
-  bool give_up_runs(std::string_view robot, const Error& why);  // false: none waits
+  // Loads of that name, and runs that wait for them, are refused with that reason. Runs of other programs that waited
+  // behind these keep their places behind loads that came before; returns those that need not wait any longer.
+  std::vector<Run> give_up(std::string_view program, std::string_view robot, const Error& why);
+  bool give_up_runs(std::string_view robot, const Error& why);   // false: none waits
+  void give_up_robot(std::string_view robot, const Error& why);  // its loads and runs
   void give_up_all(const Error& why);
+  // Whether the runs of the robot that wait begin held. False: they would have anyway.
+  bool hold_runs(std::string_view robot, bool held);
   // The next that has been read; whoever takes it ends its activities. In the order in which they began.
   [[nodiscard]] std::optional<Ended> take();
 
@@ -65,8 +70,9 @@ class ProgramLoads {
     std::shared_ptr<Activity> activity;
     std::vector<Run> runs;
   };
-  [[nodiscard]] std::deque<Load>::const_reverse_iterator before_run(std::string_view program,
-                                                                    std::string_view robot) const;
+  void refuse(const Load& load, const Error& why);
+  [[nodiscard]] std::optional<std::size_t> before_run(std::string_view program, std::string_view robot,
+                                                      std::size_t count) const;
 
   std::deque<Load> loads_;
   std::uint64_t last_id_ = 0;

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "app/gateway/program_files.hpp"
 
@@ -22,14 +24,18 @@ class ProgramReader {
     ProgramText text;
   };
 
-  explicit ProgramReader(const KismetHome& home) : home_(home) {}
-  // Waits for the file that is being read, about a second at most; those behind it are forgotten.
+  // Called in the thread; what it throws refuses the program.
+  using Reading = std::function<ProgramText(const program::Language& language, const std::filesystem::path& path)>;
+
+  explicit ProgramReader(Reading reading) : reading_(std::move(reading)) {}
+  // Waits for the file that is being read: about a second, some seconds for 64 MiB of faults. Those behind it are
+  // forgotten.
   ~ProgramReader() = default;
   ProgramReader(const ProgramReader&) = delete;
   ProgramReader& operator=(const ProgramReader&) = delete;
 
-  // One after the other, in this order. The thread begins with the first.
-  void read(std::uint64_t id, const program::Language& language, std::filesystem::path path);
+  // One after the other, in this order. The thread begins with the first. Refused: the system gives no thread.
+  Result<void> read(std::uint64_t id, const program::Language& language, std::filesystem::path path);
   void forget(std::uint64_t id);  // unless it is being read, or has been
   // The next that has been read; none: not yet.
   [[nodiscard]] std::optional<Read> take();
@@ -40,9 +46,11 @@ class ProgramReader {
     const program::Language* language = nullptr;
     std::filesystem::path path;
   };
+  Result<void> start_thread();
   void loop(const std::stop_token& stop);
+  [[nodiscard]] ProgramText text_of(const Order& order) const;
 
-  const KismetHome& home_;
+  const Reading reading_;
   std::mutex mutex_;  // of the two below
   std::deque<Order> orders_;
   std::deque<Read> read_;

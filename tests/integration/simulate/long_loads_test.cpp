@@ -130,6 +130,34 @@ TEST_F(LongLoads, AreLoadedAndDoNotRunAfterTfStop) {
   expect_done(3);
 }
 
+TEST_F(LongLoads, AreLoadedAndDoNotRunAfterStopRob) {
+  owner_->put(1, "TF_LOAD long MANTEC_R3");
+  owner_->put(2, "TF_RUN long MANTEC_R3");
+  owner_->put(3, "STOP_ROB MANTEC_R3");
+  owner_->start({});
+  await_answers(3);
+  expect_done(1);
+  expect_refused(2, "STOP_ROB");
+  expect_done(3);
+}
+
+TEST_F(LongLoads, BeginHeldAfterTfHold) {
+  owner_->put(1, "TF_LOAD long MANTEC_R3");
+  owner_->put(2, "TF_RUN long MANTEC_R3");
+  owner_->put(3, "TF_HOLD MANTEC_R3");
+  owner_->start({});
+  await_answers(3);
+  for (const std::int64_t tag : {1, 2, 3}) expect_done(tag);
+  owner_->put(4, "TF_RESUME MANTEC_R3");
+  owner_->put(5, "TF_WAIT MANTEC_R3");
+  await_answers(5);
+  for (const std::int64_t tag : {4, 5}) expect_done(tag);
+  ASSERT_GE(events_.size(), 2U);
+  EXPECT_EQ(events_[0], "started long");
+  EXPECT_EQ(events_[1], "held long");
+  EXPECT_EQ(events_.back(), "ended long");
+}
+
 TEST_F(LongLoads, GiveUpOnlyTheirOwnRunsByTfDelete) {
   owner_->put(1, "TF_LOAD short MANTEC_R3");
   owner_->put(2, "TF_LOAD long MANTEC_R3");
