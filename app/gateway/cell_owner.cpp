@@ -157,6 +157,7 @@ bool CellOwner::execute_files() {
 }
 
 bool CellOwner::turn() {
+  turns_.fetch_add(1, std::memory_order_acq_rel);
   motion_.follow();
   couplings_.follow();
   haptics_.follow();

@@ -2,6 +2,8 @@
 // it has a thread; the off-line simulation gives it turns between ticks.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -100,6 +102,11 @@ class CellOwner {
   // From any other thread: false, at once, where the queue is full.
   [[nodiscard]] bool offer(const ScriptMessage& message);
   [[nodiscard]] engine::QueueStatus command_queue() const;
+  // For whoever sets the clock by hand, from any thread: has the owner take a turn at once instead of within a
+  // millisecond, and tells how many it has begun. Once that has risen by two, what lay before the owner then has been
+  // seen to.
+  void wake() { wake_.wake(); }
+  [[nodiscard]] std::uint64_t turns() const { return turns_.load(std::memory_order_acquire); }
   // For whoever gives turns.
   [[nodiscard]] const ProgramDesk& programs() const { return programs_; }
 
@@ -140,7 +147,8 @@ class CellOwner {
   std::unique_ptr<SwitchDesk> switches_;  // its thread wakes the owner's
   WakeSignal room_;                       // wakes the receiver's thread when the queue has room again
   Timestamp last_picture_;
-  bool changed_ = true;        // since the last picture
+  bool changed_ = true;  // since the last picture
+  std::atomic<std::uint64_t> turns_{0};
   std::stop_source stopping_;  // apart from the thread, so that submit() may ask before the thread is there
   std::thread thread_;
 };

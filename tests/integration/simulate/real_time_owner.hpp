@@ -32,27 +32,32 @@ inline std::filesystem::path source_folder() {
   return folder == nullptr ? std::filesystem::path() : std::filesystem::path(folder);
 }
 
+using Reply = std::function<void(std::int64_t tag, const ScriptReply& reply)>;
+using ProgramEvents = std::function<void(const program::ProgramEvent& event)>;
+
+// Both functions are called on the owner's thread.
+inline CellOwner::Parts owner_parts(LoadedCell loaded, engine::Engine& engine, PictureBoard& board, const Clock& clock,
+                                    Reply reply, ProgramEvents event) {
+  return {.cell = std::move(loaded.cell),
+          .home = loaded.home,
+          .streams = {},
+          .haptics = {},
+          .views = {},
+          .collision = {},
+          .foot_switches = {},
+          .engine = engine,
+          .board = board,
+          .clock = clock,
+          .instance = {},
+          .save_flight_record = [](std::string_view) -> Result<void> { return {}; },
+          .reply = std::move(reply),
+          .program_event = std::move(event)};
+}
+
 class RealTimeOwner {
  public:
-  using Reply = std::function<void(std::int64_t tag, const ScriptReply& reply)>;
-  using Event = std::function<void(const program::ProgramEvent& event)>;
-
-  // Both are called on the owner's thread.
-  RealTimeOwner(LoadedCell loaded, Reply reply, Event event)
-      : owner_(CellOwner::Parts{.cell = std::move(loaded.cell),
-                                .home = loaded.home,
-                                .streams = {},
-                                .haptics = {},
-                                .views = {},
-                                .collision = {},
-                                .foot_switches = {},
-                                .engine = *engine_,
-                                .board = board_,
-                                .clock = clock_,
-                                .instance = {},
-                                .save_flight_record = [](std::string_view) -> Result<void> { return {}; },
-                                .reply = std::move(reply),
-                                .program_event = std::move(event)}) {}
+  RealTimeOwner(LoadedCell loaded, Reply reply, ProgramEvents event)
+      : owner_(owner_parts(std::move(loaded), *engine_, board_, clock_, std::move(reply), std::move(event))) {}
   ~RealTimeOwner() { stop(); }
   RealTimeOwner(const RealTimeOwner&) = delete;
   RealTimeOwner& operator=(const RealTimeOwner&) = delete;
