@@ -120,6 +120,35 @@ TEST(MeshFile, refuses_damaged_files_with_the_reason) {
   EXPECT_EQ(refusal("v 0 0 0\nv 1 0 0\nl 1 2\n", ".obj").substr(0, 23), "the mesh m is refused: ");
 }
 
+TEST(MeshFile, reads_no_dae_beyond_the_end_of_its_arrays) {
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string dae = tetra_dae("Z_UP");
+    const std::size_t at = dae.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return dae.replace(at, from.size(), to);
+  };
+  const std::string beyond = "the mesh m is refused: <accessor> in line 6 reaches beyond its array";
+  EXPECT_EQ(refusal(changed(R"("pa" count="12")", R"("pa")"), ".dae"), beyond);
+  EXPECT_EQ(refusal(changed(R"(count="4" stride)", R"(count="5" stride)"), ".dae"), beyond);
+  EXPECT_EQ(refusal(changed(R"(stride="3")", R"(stride="4")"), ".dae"), beyond);
+  EXPECT_EQ(refusal(changed(R"(stride="3")", R"(stride="3" offset="1")"), ".dae"), beyond);
+  EXPECT_EQ(
+      refusal(changed(R"(<param name="X")", R"(<extra><param name="E" type="float"/></extra><param name="X")"), ".dae"),
+      beyond);
+  EXPECT_EQ(refusal(changed("#pa", "#other"), ".dae"), beyond);
+  const std::string names =
+      R"(<source id="i"><Name_array id="ia" count="4">A B C D</Name_array><technique_common><accessor source="#ia"
+count="4"><param name="X" type="name"/></accessor></technique_common></source>)";
+  const std::string with_names =
+      changed("<library_geometries>",
+              "<library_animations><animation>" + names + "</animation></library_animations><library_geometries>");
+  expect_tetrahedron(parse(with_names, ".dae"), 0.5);
+  std::string shows_names = with_names;
+  const std::string positions = R"("POSITION" source="#p")";
+  shows_names.replace(shows_names.find(positions), positions.size(), R"("POSITION" source="#i")");
+  EXPECT_EQ(refusal(shows_names, ".dae"), "the mesh m is refused: <input> in line 9 names no numbers");
+}
+
 // The area that triangles of a plane polygon cover, those that face down counted negative.
 double covered(const std::vector<Eigen::Vector3d>& vertices, const std::vector<geometry::TriangleIndices>& triangles) {
   double area = 0.0;
