@@ -7,9 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "config/parse.hpp"
 #include "config/table_reader.hpp"
-#include "rt_core/base/home.hpp"
+#include "config/tables_file.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -33,22 +32,8 @@ void read_name(TableReader& table, std::string& name) {
   name = *text;
 }
 
-// The id where it is a good one that did not stand before.
-std::optional<int> read_id(TableReader& table, int lowest, int highest, const char* what, std::vector<int>& before) {
-  table.require("id");
-  const auto read = table.integer("id", lowest, highest);
-  if (!read) return std::nullopt;
-  const int id = static_cast<int>(*read);
-  if (std::ranges::find(before, id) != before.end()) {
-    table.error("id", fmt::format("{} {} stands twice", what, id));
-    return std::nullopt;
-  }
-  before.push_back(id);
-  return id;
-}
-
 void read_view(TableReader& table, DisplayLayout& layout, std::vector<int>& before) {
-  const auto id = read_id(table, 0, static_cast<int>(kViews) - 1, "view", before);
+  const auto id = read_new_id(table, 0, static_cast<int>(kViews) - 1, "view", before);
   LayoutView ignored = layout.views.front();
   LayoutView& view = id ? layout.views[static_cast<std::size_t>(*id)] : ignored;
   read_name(table, view.name);
@@ -119,7 +104,7 @@ void compare(const TableReader& table, const std::vector<ReadPane>& before, cons
 }
 
 void read_display(TableReader& table, DisplayLayout& layout, std::vector<int>& before) {
-  const auto id = read_id(table, 1, static_cast<int>(kDisplays), "display", before);
+  const auto id = read_new_id(table, 1, static_cast<int>(kDisplays), "display", before);
   LayoutDisplay ignored;
   LayoutDisplay& display = id ? layout.displays[static_cast<std::size_t>(*id - 1)] : ignored;
   read_name(table, display.name);
@@ -143,33 +128,20 @@ void read_display(TableReader& table, DisplayLayout& layout, std::vector<int>& b
 }  // namespace
 
 std::optional<DisplayLayout> parse_layout(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
-  Diagnostics findings;
-  DisplayLayout layout;
-  if (const auto table = parse_toml(text, file, findings)) {
-    TableReader top(*table, file, "", findings);
-    top.format();
+  return parse_tables<DisplayLayout>(text, file, diagnostics, [](TableReader& top, DisplayLayout& layout) {
     std::vector<int> views;
     for (TableReader& row : top.tables("view", kViews)) read_view(row, layout, views);
     std::vector<int> displays;
     for (TableReader& row : top.tables("display", kDisplays)) read_display(row, layout, displays);
     if (!top.has("view") && !top.has("display"))
       top.error({}, "there are no views and no displays in it", "docs/cell-files.md shows [[view]] and [[display]]");
-    top.finish();
-  }
-  const bool good = findings.ok();
-  take_sorted(diagnostics, findings);
-  if (!good) return std::nullopt;
-  return layout;
+  });
 }
 
 std::optional<DisplayLayout> read_layout(const std::filesystem::path& path, const std::string& shown,
                                          Diagnostics& diagnostics) {
-  const auto text = read_text_file(path, kLargestLayoutFile);
-  if (!text) {
-    diagnostics.error({shown}, text.error().what, text.error().remedy);
-    return std::nullopt;
-  }
-  return parse_layout(*text, shown, diagnostics);
+  const auto text = text_of_file(path, kLargestLayoutFile, shown, diagnostics);
+  return text ? parse_layout(*text, shown, diagnostics) : std::nullopt;
 }
 
 }  // namespace cellmirror

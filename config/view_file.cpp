@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <numbers>
 #include <system_error>
+#include <vector>
 
 #include "config/table_reader.hpp"
-#include "rt_core/base/home.hpp"
+#include "config/tables_file.hpp"
 #include "rt_core/cell/view.hpp"
 
 namespace cellmirror {
@@ -29,10 +29,9 @@ void check_pairs(const TableReader& table, const ViewChange& change) {
     table.error("near_m", "the near plane is not nearer than the far plane");
 }
 
-StoredView read_view(TableReader& table) {
+StoredView read_view(TableReader& table, std::vector<int>& before) {
   StoredView view;
-  table.require("id");
-  view.id = static_cast<int>(table.integer("id", 0, kViews - 1).value_or(-1));
+  view.id = read_new_id(table, 0, static_cast<int>(kViews) - 1, "view", before).value_or(-1);
   view.change.viewpoint = table.vector3("viewpoint_m", kPlace);
   view.change.lookpoint = table.vector3("lookpoint_m", kPlace);
   view.change.twist = table.number("twist_rad");
@@ -67,11 +66,7 @@ std::string literal(std::string_view name) { return fmt::format("'{}'", name); }
 }  // namespace
 
 std::optional<ViewFile> parse_views(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
-  Diagnostics findings;
-  ViewFile views;
-  if (const auto table = parse_toml(text, file, findings)) {
-    TableReader top(*table, file, "", findings);
-    top.format();
+  return parse_tables<ViewFile>(text, file, diagnostics, [](TableReader& top, ViewFile& views) {
     if (auto display = top.table("display")) {
       StoredDisplay stored;
       stored.display = static_cast<int>(display->integer("layout", 1, kDisplays).value_or(1));
@@ -80,20 +75,11 @@ std::optional<ViewFile> parse_views(std::string_view text, const std::string& fi
       display->finish();
       views.display = stored;
     }
-    for (TableReader& row : top.tables("view", kViews)) {
-      StoredView view = read_view(row);
-      if (view.id >= 0 && std::ranges::find(views.views, view.id, &StoredView::id) != views.views.end())
-        row.error("id", fmt::format("view {} stands twice", view.id));
-      views.views.push_back(std::move(view));
-    }
+    std::vector<int> ids;
+    for (TableReader& row : top.tables("view", kViews)) views.views.push_back(read_view(row, ids));
     if (!views.display && !top.has("view"))
       top.error({}, "there are no views and no display in it", "add [[view]] tables, docs/cell-files.md shows them");
-    top.finish();
-  }
-  const bool good = findings.ok();
-  diagnostics.take(findings);
-  if (!good) return std::nullopt;
-  return views;
+  });
 }
 
 std::string text_of(const Place& place) { return fmt::format("{}:{}:{}", place.file, place.line, place.column); }
@@ -116,12 +102,8 @@ std::string views_text(const DisplayState& display) {
 
 std::optional<ViewFile> read_views(const std::filesystem::path& path, const std::string& shown,
                                    Diagnostics& diagnostics) {
-  const auto text = read_text_file(path, kLargestViewFile);
-  if (!text) {
-    diagnostics.error({shown}, text.error().what, text.error().remedy);
-    return std::nullopt;
-  }
-  return parse_views(*text, shown, diagnostics);
+  const auto text = text_of_file(path, kLargestViewFile, shown, diagnostics);
+  return text ? parse_views(*text, shown, diagnostics) : std::nullopt;
 }
 
 Result<void> write_views(const std::filesystem::path& path, const DisplayState& display) {
