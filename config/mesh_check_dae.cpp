@@ -1,5 +1,5 @@
 // assimp 5.2.5 allocates what the counts of a DAE say, follows nodes that show themselves, reads numbers from text that
-// holds none, for ever, and vertices from behind the end of arrays.
+// holds none, for ever, and vertices and weights from behind the end of arrays.
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
@@ -57,6 +57,8 @@ Result<void> check_element(const XMLElement& element, std::size_t bytes) {
   const std::string_view name = element.Name();
   const bool whole = std::ranges::find(kWhole, name) != kWhole.end();
   const auto fault = [&](const char* what) { return std::unexpected(fault_at(element, what)); };
+  // Its indices of joints and weights are used unseen, and what is rigid needs none.
+  if (name == "skin") return fault("bends a mesh by a skeleton, and those of a cell are rigid");
   if (whole || std::ranges::find(kNumbers, name) != kNumbers.end()) {
     for (const tinyxml2::XMLNode* child = element.FirstChild(); child != nullptr; child = child->NextSibling()) {
       if (child->ToComment() != nullptr) continue;

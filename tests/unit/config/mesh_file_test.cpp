@@ -120,6 +120,18 @@ TEST(MeshFile, refuses_damaged_files_with_the_reason) {
   EXPECT_EQ(refusal("v 0 0 0\nv 1 0 0\nl 1 2\n", ".obj").substr(0, 23), "the mesh m is refused: ");
 }
 
+TEST(MeshFile, refuses_a_dae_with_a_skin_and_takes_empty_controllers) {
+  const auto with = [](const std::string& controllers) {
+    std::string dae = tetra_dae("Z_UP");
+    return dae.insert(dae.find("<library_visual_scenes"),
+                      "<library_controllers>" + controllers + "</library_controllers>");
+  };
+  expect_tetrahedron(parse(with(""), ".dae"), 0.5);
+  EXPECT_NE(refusal(with(R"(<controller id="c"><skin source="#g"/></controller>)"), ".dae")
+                .find("bends a mesh by a skeleton"),
+            std::string::npos);
+}
+
 TEST(MeshFile, reads_no_dae_beyond_the_end_of_its_arrays) {
   const auto changed = [](const std::string& from, const std::string& to) {
     std::string dae = tetra_dae("Z_UP");
