@@ -1,4 +1,5 @@
 #include "app/gateway/status_collisions.hpp"
+#include "app/gateway/status_values.hpp"
 
 #include <array>
 #include <cstddef>
@@ -28,8 +29,6 @@ const char* word(ProximityChange change) {
   }
   return "touched";
 }
-
-json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 

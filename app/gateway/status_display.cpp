@@ -1,4 +1,5 @@
 #include "app/gateway/status_display.hpp"
+#include "app/gateway/status_values.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +10,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 json sequence_json(const ViewSequence& sequence, Timestamp now) {
   if (sequence.steps > 0) return {{"steps", sequence.steps}};

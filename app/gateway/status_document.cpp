@@ -19,6 +19,7 @@
 #include "app/gateway/status_programs.hpp"
 #include "app/gateway/status_ranges.hpp"
 #include "app/gateway/status_switches.hpp"
+#include "app/gateway/status_values.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
 
 namespace cellmirror::app {
@@ -54,17 +55,6 @@ const char* word(InverseClass inverse_class) {
   return kWords.at(static_cast<std::size_t>(inverse_class));
 }
 
-json age_s(Timestamp now, Timestamp then) { return then.known() ? json(seconds(now - then)) : json(nullptr); }
-
-json percentiles_us(const LatencyHistogram& histogram) {
-  const HistogramSnapshot snapshot = histogram.snapshot();
-  const auto us = [](Nanoseconds d) { return static_cast<double>(d.count()) * 1e-3; };
-  return {{"p50", us(snapshot.percentile(50))},
-          {"p99", us(snapshot.percentile(99))},
-          {"p999", us(snapshot.percentile(99.9))},
-          {"max", us(snapshot.max())}};
-}
-
 std::string note(const std::string& why_not, const std::string& remedy) {
   return why_not.empty() || remedy.empty() ? why_not : why_not + "; " + remedy;
 }
@@ -79,8 +69,8 @@ json loop_json(const StatusSources& sources) {
           {"memory_note", note(sources.memory.why_not, sources.memory.remedy)},
           {"ticks", sources.loop.cycles()},
           {"missed", sources.loop.missed()},
-          {"wakeup_latency_us", percentiles_us(sources.loop.wakeup_latency())},
-          {"compute_us", percentiles_us(sources.loop.compute_time())},
+          {"wakeup_latency_us", percentiles_us(sources.loop.wakeup_latency().snapshot())},
+          {"compute_us", percentiles_us(sources.loop.compute_time().snapshot())},
           {"allocations", AllocationGuard::armed() ? json(sources.loop.heap_calls()) : json(nullptr)},
           {"faults", sources.faults.faults},
           {"fault_latched", sources.faults.latched},
@@ -107,7 +97,7 @@ json stream_json(const RobotPicture& robot, const engine::RobotTickState& tick, 
   return {{"kind", status.kind},
           {"endpoint", status.endpoint},
           {"state", robot.online ? word(tick.state) : "off"},
-          {"age_s", age_s(now, tick.receive_time)},
+          {"age_s", age_json(now, tick.receive_time)},
           {"rate_hz", status.rate_hz},
           {"received", status.received},
           {"lost", status.lost},
@@ -126,7 +116,7 @@ json joints_json(const RobotState& robot, Timestamp now) {
                    {"velocity", joint.velocity},
                    {"effort", joint.effort},
                    {"state", word(joint.state)},
-                   {"age_s", age_s(now, joint.receive_time)}});
+                   {"age_s", age_json(now, joint.receive_time)}});
   }
   return out;
 }
@@ -264,7 +254,7 @@ json queues_json(const StatusSources& sources) {
 json messages_json(const StatusSources& sources) {
   json out = json::array();
   for (const ShownText& message : sources.picture.display->messages) {
-    out.push_back({{"text", message.text}, {"age_s", age_s(sources.now, message.time)}});
+    out.push_back({{"text", message.text}, {"age_s", age_json(sources.now, message.time)}});
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/gateway/status_collisions.hpp"
+#include "app/gateway/status_values.hpp"
 #include "rt_core/dynamics/arrows.hpp"
 
 namespace cellmirror::app {
@@ -14,8 +15,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostArrows = 500;  // keeps the document within bounds
-
-json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 json optional_limit(double limit) { return limit > 0.0 ? json(limit) : json(nullptr); }
 

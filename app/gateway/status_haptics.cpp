@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/gateway/haptic_words.hpp"
+#include "app/gateway/status_values.hpp"
 
 namespace cellmirror::app {
 
@@ -11,18 +12,10 @@ namespace {
 
 using nlohmann::json;
 
-json age_s(Timestamp now, Timestamp then) { return then.known() ? json(seconds(now - then)) : json(nullptr); }
-
-json list(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-double us(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-3; }
-
-json percentiles_us(const HistogramSnapshot& snapshot) {
-  return {{"p50", us(snapshot.percentile(50))},
-          {"p99", us(snapshot.percentile(99))},
-          {"p999", us(snapshot.percentile(99.9))},
-          {"max", us(snapshot.max())},
-          {"count", snapshot.count()}};
+json counted_percentiles_us(const HistogramSnapshot& snapshot) {
+  json out = percentiles_us(snapshot);
+  out["count"] = snapshot.count();
+  return out;
 }
 
 json memory_json(const HapticPicture& haptic) {
@@ -32,21 +25,23 @@ json memory_json(const HapticPicture& haptic) {
 
 json device_json(const HapticPicture& haptic, const HapticState& state, Timestamp now) {
   return {{"process", state.device_writer},    {"gone", haptic.device_gone},
-          {"sequence", state.device_sequence}, {"age_s", age_s(now, state.device_time)},
+          {"sequence", state.device_sequence}, {"age_s", age_json(now, state.device_time)},
           {"buttons", state.buttons},          {"samples", state.samples},
           {"skipped", state.skipped},          {"torn", state.torn}};
 }
 
 json force_json(const HapticState& state, std::size_t joints) {
   const auto end = state.joint_torques.begin() + static_cast<std::ptrdiff_t>(joints);
-  return {
-      {"world_n", list(state.force_W)},      {"end_effector_n", list(state.force_E)},
-      {"axis_torque_nm", state.axis_torque}, {"joint_efforts", std::vector<double>(state.joint_torques.begin(), end)},
-      {"contacts", state.contacts},          {"saturated", state.saturated}};
+  return {{"world_n", vector_json(state.force_W)},
+          {"end_effector_n", vector_json(state.force_E)},
+          {"axis_torque_nm", state.axis_torque},
+          {"joint_efforts", std::vector<double>(state.joint_torques.begin(), end)},
+          {"contacts", state.contacts},
+          {"saturated", state.saturated}};
 }
 
 json model_json(const HapticState& state, const haptics::ContactModel& model, Timestamp now) {
-  return {{"age_s", age_s(now, state.model_time)},
+  return {{"age_s", age_json(now, state.model_time)},
           {"constraints", model.count},
           {"certain", model.certain},
           {"reach_m", model.reach}};
@@ -83,13 +78,13 @@ json haptic_json(const HapticPicture& haptic, const engine::TickState& tick, con
           {"resets", state.resets},
           {"memory", memory_json(haptic)},
           {"device", device_json(haptic, state, now)},
-          {"device_position_m", list(state.x_device)},
-          {"proxy_position_m", list(state.x_proxy)},
+          {"device_position_m", vector_json(state.x_device)},
+          {"proxy_position_m", vector_json(state.x_proxy)},
           {"force", force_json(state, tick.robots[haptic.slot].joint_count)},
           {"energy_j", state.energy},
           {"passivity_damping_n_s_m", state.passivity_damping},
           {"contact_model", model_json(state, contacts.newest[haptic.channel], now)},
-          {"latency_us", percentiles_us(haptic.meter->latency.snapshot())},
+          {"latency_us", counted_percentiles_us(haptic.meter->latency.snapshot())},
           {"settings", settings_json(haptic.settings)}};
 }
 
@@ -108,7 +103,7 @@ json tcp_force_json(const OwnerPicture& picture, Timestamp now) {
           {"max_force_n", picture.forces.limits.max_force},
           {"max_torque_nm", picture.forces.limits.max_torque},
           {"written", report.newest.sequence},
-          {"age_s", age_s(now, report.newest.time)}};
+          {"age_s", age_json(now, report.newest.time)}};
 }
 
 }  // namespace
@@ -121,9 +116,9 @@ json haptics_json(const OwnerPicture& picture, const engine::TickState& tick, co
           {"contact_models",
            {{"rate_hz", contacts.rate_hz},
             {"skipped", contacts.skipped},
-            {"compute_us", percentiles_us(contacts.compute)},
-            {"visible_after_us", percentiles_us(contacts.visible_after)},
-            {"adopting_us", percentiles_us(contacts.adopting)}}},
+            {"compute_us", counted_percentiles_us(contacts.compute)},
+            {"visible_after_us", counted_percentiles_us(contacts.visible_after)},
+            {"adopting_us", counted_percentiles_us(contacts.adopting)}}},
           {"tcp_force", tcp_force_json(picture, now)}};
 }
 

@@ -1,5 +1,7 @@
 #include "app/subcommands/status_table_display.hpp"
 
+#include "app/subcommands/status_words.hpp"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -9,8 +11,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-std::string text(const json& value) { return value.get<std::string>(); }
 
 void add(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
 

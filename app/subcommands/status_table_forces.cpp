@@ -1,5 +1,7 @@
 #include "app/subcommands/status_table_forces.hpp"
 
+#include "app/subcommands/status_words.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,8 +12,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-std::string text(const json& value) { return value.get<std::string>(); }
 
 std::string joint_text(const json& joint) {
   const bool slides = joint.contains("effort_n");

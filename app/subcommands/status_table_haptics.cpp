@@ -1,5 +1,7 @@
 #include "app/subcommands/status_table_haptics.hpp"
 
+#include "app/subcommands/status_words.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,8 +12,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-std::string text(const json& value) { return value.get<std::string>(); }
 
 std::string age(const json& age_s) {
   return age_s.is_number() ? fmt::format("{:.1f} ms", age_s.get<double>() * 1e3) : std::string("-");

@@ -1,22 +1,14 @@
 #include "app/subcommands/status_table_pictures.hpp"
 
+#include "app/subcommands/status_words.hpp"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 namespace cellmirror::app {
 
-namespace {
-
 using nlohmann::json;
-
-std::string milliseconds(const json& number) {
-  return number.is_number() ? fmt::format("{:.1f}", number.get<double>()) : std::string("-");
-}
-
-std::uint64_t count(const json& value) { return value.get<std::uint64_t>(); }
-
-}  // namespace
 
 std::string pictures_table(const json& status) {
   if (!status.contains("pictures")) return {};
@@ -25,7 +17,7 @@ std::string pictures_table(const json& status) {
   if (!pictures.at("renderer").is_string() && problem.empty()) return {};
   const auto pair = [&](const char* key) {
     const json& times = pictures.at(key);
-    return fmt::format("p50 {} p99 {} ms", milliseconds(times.at("p50")), milliseconds(times.at("p99")));
+    return fmt::format("p50 {} p99 {} ms", milliseconds(times.at("p50"), 1), milliseconds(times.at("p99"), 1));
   };
   std::string out = "\npictures  ";
   if (pictures.at("renderer").is_string()) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/subcommands/status_words.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -16,12 +17,7 @@ using nlohmann::json;
 constexpr std::size_t kPairsShown = 10;
 constexpr std::size_t kEventsShown = 5;
 
-std::string text(const json& value) { return value.get<std::string>(); }
 std::string mm(const json& metres) { return fmt::format("{:.1f} mm", mm_from_m(metres.get<double>())); }
-
-std::string milliseconds(const json& number) {
-  return number.is_number() ? fmt::format("{:.2f}", number.get<double>()) : std::string("-");
-}
 
 std::string age(const json& age_s) {
   if (!age_s.is_number()) return "-";
@@ -74,8 +70,8 @@ std::string collision_lines(const json& collisions) {
       "\ncollisions  {} of {} bodies, {} pairs tested; {:.0f} Hz, age {} (p50 {} p99 {} ms), computed in p50 {} us\n",
       collisions.at("active").get<bool>() ? "on" : "off", collisions.at("bodies").get<std::uint64_t>(),
       collisions.at("pairs").at("tested").get<std::uint64_t>(), collisions.at("rate_hz").get<double>(),
-      age(collisions.at("age_s")), milliseconds(ages.at("p50")), milliseconds(ages.at("p99")),
-      milliseconds(collisions.at("compute_us").at("p50")));
+      age(collisions.at("age_s")), milliseconds(ages.at("p50"), 2), milliseconds(ages.at("p99"), 2),
+      milliseconds(collisions.at("compute_us").at("p50"), 2));
   const std::string note = text(collisions.at("note"));
   if (!note.empty()) out += fmt::format("  note: {}\n", note);
   return out + findings(collisions);

@@ -1,5 +1,7 @@
 #include "app/subcommands/status_table_switches.hpp"
 
+#include "app/subcommands/status_words.hpp"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -9,12 +11,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-std::uint64_t count(const json& value) { return value.get<std::uint64_t>(); }
-
-std::string milliseconds(const json& number) {
-  return number.is_number() ? fmt::format("{:.2f}", number.get<double>()) : std::string("-");
-}
 
 std::string script_line(const json& switches) {
   const json& scripts = switches.at("scripts");
@@ -29,8 +25,8 @@ std::string script_line(const json& switches) {
                        last.at("running").get<bool>() ? ", running" : "");
   }
   const json& first = switches.at("first_command_ms");
-  out += fmt::format("; first command after p50 {} p99 {} ms\n", milliseconds(first.at("p50")),
-                     milliseconds(first.at("p99")));
+  out += fmt::format("; first command after p50 {} p99 {} ms\n", milliseconds(first.at("p50"), 2),
+                     milliseconds(first.at("p99"), 2));
   return out;
 }
 

@@ -1,0 +1,28 @@
+// Values of the status document that several of its parts have (docs/status.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include "rt_core/base/time.hpp"
+#include "rt_core/rt/latency_histogram.hpp"
+
+namespace cellmirror::app {
+
+// s from `then` to `now`; null where `then` is not known.
+inline nlohmann::json age_json(Timestamp now, Timestamp then) {
+  return then.known() ? nlohmann::json(seconds(now - then)) : nlohmann::json(nullptr);
+}
+
+inline nlohmann::json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// us: p50, p99, p999 and max.
+inline nlohmann::json percentiles_us(const HistogramSnapshot& snapshot) {
+  const auto us = [](Nanoseconds d) { return static_cast<double>(d.count()) * 1e-3; };
+  return {{"p50", us(snapshot.percentile(50))},
+          {"p99", us(snapshot.percentile(99))},
+          {"p999", us(snapshot.percentile(99.9))},
+          {"max", us(snapshot.max())}};
+}
+
+}  // namespace cellmirror::app
