@@ -131,6 +131,35 @@ test("a token comes from the address and leaves it", () => {
   assert.equal(token.token_in("#token=%"), null);
 });
 
+test("where the browser forbids storage, the token lasts as long as the page", (context) => {
+  const before = globalThis.window;
+  context.after(() => {
+    token.keep_token("");
+    globalThis.window = before;
+  });
+  globalThis.window = {
+    get sessionStorage() {
+      throw new Error("The operation is insecure.");
+    },
+    location: {hash: "#token=abc", pathname: "/", search: ""},
+    history: {replaceState: () => {}},
+  };
+  assert.equal(token.take_token(), "abc");
+  window.location.hash = "";
+  assert.equal(token.take_token(), "abc");
+  token.keep_token("");
+  assert.equal(token.kept_token(), null);
+});
+
+test("a store that takes nothing loses no token", (context) => {
+  const full = {setItem: () => {
+    throw new Error("QuotaExceededError");
+  }, getItem: () => null, removeItem: () => {}};
+  context.after(() => token.keep_token("", full));
+  token.keep_token("abc", full);
+  assert.equal(token.kept_token(full), "abc");
+});
+
 test("bars stand within their range", () => {
   assert.equal(place_in_range(0, -1, 1), 0.5);
   assert.equal(place_in_range(9, -1, 1), 1);

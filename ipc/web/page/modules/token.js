@@ -13,7 +13,19 @@ export function token_in(fragment) {
   }
 }
 
-export function take_token(place = window.location, store = window.sessionStorage, history = window.history) {
+// Where nothing can be stored; it lasts as long as the page.
+let unstored = null;
+
+// Browsers that forbid storage throw at the mere name of it.
+function tabs_store() {
+  try {
+    return window.sessionStorage;
+  } catch {
+    return null;
+  }
+}
+
+export function take_token(place = window.location, store = tabs_store(), history = window.history) {
   const given = token_in(place.hash);
   if (given !== null) {
     keep_token(given, store);
@@ -22,16 +34,18 @@ export function take_token(place = window.location, store = window.sessionStorag
   return kept_token(store);
 }
 
-export function keep_token(token, store = window.sessionStorage) {
+export function keep_token(token, store = tabs_store()) {
+  unstored = null;
   try {
     if (token) store.setItem(kKey, token);
     else store.removeItem(kKey);
   } catch {
-    // Storage may be forbidden; then the token lasts as long as the page.
+    unstored = token || null;
   }
 }
 
-export function kept_token(store = window.sessionStorage) {
+export function kept_token(store = tabs_store()) {
+  if (unstored !== null) return unstored;
   try {
     return store.getItem(kKey);
   } catch {
