@@ -81,6 +81,7 @@ class Cameras(unittest.TestCase):
                              "--nodes", "21,22", "--pan-range", "-1.6,1.6", "--tilt-range", "-1.4,0.45",
                              "--start", "0,-0.6292", "--control", self.scratch.root / "head.sock", "--no-input", *more])
         self.processes.append(process)
+        self.assertTrue(g.eventually((self.scratch.root / "head.sock").exists), "the head listens")
         return process
 
     def tell(self, line):
