@@ -47,10 +47,8 @@ struct HeadFault {
   bool ended = false;
   std::uint64_t applied = 0;  // records and steps that it struck
 
-  [[nodiscard]] bool in_force(Timestamp now) const {
-    const double t = seconds(now - origin);
-    return !ended && t >= spec.from_s && t < spec.until_s;
-  }
+  [[nodiscard]] bool over(Timestamp now) const { return ended || seconds(now - origin) >= spec.until_s; }
+  [[nodiscard]] bool in_force(Timestamp now) const { return !over(now) && seconds(now - origin) >= spec.from_s; }
 };
 
 }  // namespace cellmirror::sim

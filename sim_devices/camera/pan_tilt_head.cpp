@@ -68,7 +68,12 @@ void PanTiltHead::move(std::size_t axis, Timestamp now, double dt) {
   axes_[axis].step(runs_away ? axes_[axis].limits().most : goal_[axis], slow != nullptr ? slow->spec.scale : 1.0, dt);
 }
 
+void PanTiltHead::forget_past_faults(Timestamp now) {
+  std::erase_if(faults_, [now](const HeadFault& fault) { return fault.over(now); });
+}
+
 Result<int> PanTiltHead::add_fault(const HeadFaultSpec& spec, Timestamp now) {
+  forget_past_faults(now);
   if (faults_.size() >= kMostFaults) {
     return fail("there are " + std::to_string(kMostFaults) + " faults already", "`clear` ends them");
   }
@@ -80,12 +85,11 @@ std::size_t PanTiltHead::end_faults(int id, std::optional<HeadFaultKind> kind, T
   std::size_t ended = 0;
   for (HeadFault& fault : faults_) {
     if ((id != 0 && fault.id != id) || (kind && fault.spec.kind != *kind)) continue;
-    if (fault.ended || seconds(now - fault.origin) >= fault.spec.until_s) continue;
+    if (fault.over(now)) continue;
     fault.ended = true;
     ++ended;
   }
-  // Those that are over make room for others.
-  std::erase_if(faults_, [](const HeadFault& fault) { return fault.ended; });
+  forget_past_faults(now);
   return ended;
 }
 

@@ -63,6 +63,8 @@ class PanTiltHead {
 
   [[nodiscard]] HeadFault* in_force(HeadFaultKind kind, int joint, Timestamp now);
   void move(std::size_t axis, Timestamp now, double dt);
+  // They make room for others.
+  void forget_past_faults(Timestamp now);
 
   std::array<HeadAxis, kHeadAxes> axes_;
   HeadAngles goal_;

@@ -148,6 +148,22 @@ TEST_F(PanTiltHeadTest, HasRoomForSoManyFaultsAndEndsThemByKind) {
   EXPECT_TRUE(sut.faults().empty());
 }
 
+TEST_F(PanTiltHeadTest, FaultsWhoseTimeIsOverMakeRoomForOthers) {
+  for (std::size_t i = 0; i < PanTiltHead::kMostFaults; ++i) order("slow@0..1");
+  EXPECT_FALSE(sut.add_fault(*parse_head_fault("deaf"), now));
+  run_ms(1100);
+  EXPECT_TRUE(sut.add_fault(*parse_head_fault("deaf"), now));
+  EXPECT_EQ(sut.faults().size(), 1U);
+}
+
+TEST_F(PanTiltHeadTest, ClearForgetsThemButCountsOnlyThoseInForce) {
+  order("slow@0..1");
+  order("stuck");
+  run_ms(1100);
+  EXPECT_EQ(sut.end_faults(0, {}, now), 1U);
+  EXPECT_TRUE(sut.faults().empty());
+}
+
 TEST(HeadFault, IsReadWithItsKeysAndWindow) {
   const auto sut = parse_head_fault(" slow:by=0.25,joint=2@3..4.5 ");
   ASSERT_TRUE(sut) << sut.error().text();
