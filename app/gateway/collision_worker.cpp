@@ -42,8 +42,26 @@ CollisionWorker::CollisionWorker(engine::Engine& engine, const PictureBoard& pic
 bool CollisionWorker::wanted(const OwnerPicture& picture) {
   const bool wanted = picture.collision->active &&
                       !(nothing_to_test_ && picture.collision == settings_ && !follower_.is_news(picture.cell));
-  if (!wanted) ages_.paused();
+  if (!wanted) {
+    ages_.paused();
+    show_nothing(picture);
+  }
   return wanted;
+}
+
+// When tests were switched off or the last pair to test went: whoever shows findings takes them away. The posture's
+// time stays, so that nobody takes it for news that nothing touches.
+void CollisionWorker::show_nothing(const OwnerPicture& picture) {
+  const auto last = board_.look();
+  if (!last || last->pairs == 0) return;
+  std::shared_ptr<ProximityState> nothing = states_.take();
+  *nothing = ProximityState();
+  nothing->sequence = ++sequence_;
+  nothing->posture_time = last->posture_time;
+  nothing->finished = last->finished;
+  nothing->names = last->names;
+  nothing->warning_distance_m = picture.collision->warning_distance_m;
+  board_.hang_up(std::move(nothing));
 }
 
 void CollisionWorker::adopt(const OwnerPicture& picture) {
@@ -79,6 +97,7 @@ void CollisionWorker::check(const engine::TickState& tick) {
   compute_.record(clock_.now() - start);
   std::shared_ptr<ProximityState> state = states_.take();
   *state = found;
+  state->sequence = ++sequence_;  // those that show nothing count, too
   for (const ProximityEvent& event : found.events) log_event(event);
   board_.hang_up(std::move(state));
   ages_.shown(tick.time, clock_.now());

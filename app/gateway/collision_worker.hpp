@@ -51,6 +51,7 @@ class CollisionWorker final : private TickJob {
  private:
   bool wanted(const OwnerPicture& picture) override;
   void run(const OwnerPicture& picture, const engine::TickState& tick) override;
+  void show_nothing(const OwnerPicture& picture);
   // Derives the pairs anew; up to a second for kinds of robots that were not seen before.
   void adopt(const OwnerPicture& picture);
   void check(const engine::TickState& tick);
@@ -65,6 +66,7 @@ class CollisionWorker final : private TickJob {
   std::shared_ptr<const collision::Settings> settings_;
   bool nothing_to_test_ = false;
   Recycler<ProximityState> states_;
+  std::uint64_t sequence_ = 0;
 
   ProximityBoard board_;
   AgeKeeper ages_;

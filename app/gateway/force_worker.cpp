@@ -187,10 +187,24 @@ void ForceWorker::take_cell(const OwnerPicture& picture) {
 bool ForceWorker::wanted(const OwnerPicture& picture) {
   take_cell(picture);
   const bool wanted = computation_.has_mechanisms() || !picture.haptics.empty();
-  if (!wanted) ages_.paused();
+  if (!wanted) {
+    ages_.paused();
+    show_nothing();
+  }
   const std::scoped_lock lock(mutex_);
   active_ = wanted;
   return wanted;
+}
+
+// When the last robot with masses went: whoever shows its efforts and arrows takes them away.
+void ForceWorker::show_nothing() {
+  const auto last = board_.look();
+  if (!last || last->robots.empty()) return;
+  std::shared_ptr<ForceState> nothing = states_.take();
+  nothing->sequence = ++sequence_;
+  nothing->posture_time = last->posture_time;
+  nothing->robots.clear();
+  board_.hang_up(std::move(nothing));
 }
 
 void ForceWorker::run(const OwnerPicture& picture, const engine::TickState& tick) {

@@ -95,6 +95,7 @@ class ForceWorker final : private TickJob {
   bool wanted(const OwnerPicture& picture) override;
   void run(const OwnerPicture& picture, const engine::TickState& tick) override;
   void take_cell(const OwnerPicture& picture);
+  void show_nothing();
 
   const Clock& clock_;
   const Eigen::Vector3d gravity_W_;

@@ -89,10 +89,8 @@ std::string_view name(const ProximityState& state, std::uint32_t body) {
   return state.names && body < state.names->size() ? std::string_view((*state.names)[body]) : std::string_view();
 }
 
-void add_proximity(JsonBuilder& out, const ProximityState* state) {
-  const ProximityState nothing;
-  const ProximityState& found = state == nullptr ? nothing : *state;
-  out.key("touching").begin_array();
+void add_touching(JsonBuilder& out, const ProximityState& found) {
+  out.begin_array();
   for (std::size_t i = 0; i < std::min(kMostPairs, found.touching.size()); ++i) {
     const TouchingPair& pair = found.touching[i];
     out.begin_object()
@@ -101,7 +99,11 @@ void add_proximity(JsonBuilder& out, const ProximityState* state) {
         .member("depth_m", pair.depth_m)
         .end_object();
   }
-  out.end_array().member("touching_count", found.touching.size()).key("near").begin_array();
+  out.end_array();
+}
+
+void add_near(JsonBuilder& out, const ProximityState& found) {
+  out.begin_array();
   for (std::size_t i = 0; i < std::min(kMostPairs, found.near.size()); ++i) {
     const NearPair& pair = found.near[i];
     out.begin_object()
@@ -112,7 +114,26 @@ void add_proximity(JsonBuilder& out, const ProximityState* state) {
         .member("time_to_contact_s", pair.time_to_contact_s)
         .end_object();
   }
-  out.end_array().member("near_count", found.near.size()).member("warning_distance_m", found.warning_distance_m);
+  out.end_array();
+}
+
+// Where nothing is tested, nobody knows what touches: an empty list would say that nothing does.
+void add_proximity(JsonBuilder& out, const LiveSources& sources) {
+  const ProximityState* state = sources.proximity.get();
+  const bool known = state != nullptr && state->pairs > 0 && sources.picture.collision->active;
+  const ProximityState nothing;
+  const ProximityState& found = known ? *state : nothing;
+  out.key("touching");
+  if (known) {
+    add_touching(out, found);
+  } else {
+    out.null();
+  }
+  out.member("touching_count", found.touching.size()).key("near");
+  add_near(out, found);
+  out.member("near_count", found.near.size())
+      .member("warning_distance_m", sources.picture.collision->warning_distance_m)
+      .member("collision_age_s", known ? age_s(sources.now, found.posture_time) : std::nullopt);
 }
 
 void add_ranges(JsonBuilder& out, const RangeReadings* readings) {
@@ -302,7 +323,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
       .member("tree_revision", tree_revision);
   add_loop(out, sources, window.look(sources.loop));
   add_robots(out, sources);
-  add_proximity(out, sources.proximity.get());
+  add_proximity(out, sources);
   add_ranges(out, sources.ranges.get());
   add_forces(out, sources.forces.get());
   add_programs(out, sources.picture.programs);

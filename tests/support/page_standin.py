@@ -99,6 +99,7 @@ class Cell:
             "loop": {"rate_hz": 1000, "latency_p99_us": 40 + 6 * math.sin(3 * now), "compute_p99_us": 9 + math.sin(2 * now),
                      "missed": 0},
             "robots": [self.robot(i) for i in range(n)], "touching": touching, "near": self.near(), "warning_distance_m": 0.1,
+            "collision_age_s": 0.003,
             "ranges": [{"id": f"USS_{i}", "distance_m": 0.4 + 0.3 * math.sin(now + i) if i < 2 else None, "range_m": 2.0,
                         "object": "Cell.Table_1.top"} for i in range(3)],
             "forces": forces,

@@ -38,6 +38,8 @@ class LiveDocument : public testing::Test {
     state.joints[0].name = "J_1";
     state.joints[0].position = 0.25;
     robots_ = {state};
+    picture_.collision = std::make_shared<const collision::Settings>();
+    small_.display.cameras.emplace_back().name = "CAM";
   }
 
   [[nodiscard]] json document() {
@@ -76,35 +78,19 @@ class LiveDocument : public testing::Test {
 
 TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
   const json sut = document();
-  for (const char* key : {"time_s",
-                          "uptime_s",
-                          "cell",
-                          "instance",
-                          "revision",
-                          "tree_revision",
-                          "loop",
-                          "robots",
-                          "touching",
-                          "touching_count",
-                          "near",
-                          "near_count",
-                          "warning_distance_m",
-                          "ranges",
-                          "forces",
-                          "programs",
-                          "deadlock",
-                          "queues",
-                          "messages",
-                          "bell",
-                          "display",
-                          "cameras"})
+  for (const char* key :
+       {"time_s",  "uptime_s", "cell",           "instance", "revision",   "tree_revision",      "loop",
+        "robots",  "touching", "touching_count", "near",     "near_count", "warning_distance_m", "collision_age_s",
+        "ranges",  "forces",   "programs",       "deadlock", "queues",     "messages",           "bell",
+        "display", "cameras"})
     EXPECT_TRUE(sut.contains(key)) << key;
   EXPECT_EQ(sut["cell"], "small");
   EXPECT_EQ(sut["uptime_s"], 12.5);
   EXPECT_EQ(sut["tree_revision"], 7);
   EXPECT_THAT(sut["cameras"], ElementsAre("CAM"));
-  for (const char* key : {"touching", "near", "ranges", "forces", "programs", "queues", "messages"})
+  for (const char* key : {"near", "ranges", "forces", "programs", "queues", "messages"})
     EXPECT_EQ(sut[key], json::array()) << key;
+  for (const char* key : {"touching", "collision_age_s"}) EXPECT_TRUE(sut[key].is_null()) << key;
   EXPECT_EQ(sut["deadlock"], "");
 }
 
@@ -167,7 +153,7 @@ TEST_F(LiveDocument, WhatJsonCannotHoldIsNullOrReplaced) {
 TEST_F(LiveDocument, PairsAreBoundedAndCounted) {
   proximity_ = std::make_shared<ProximityState>();
   proximity_->names = std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"Arm.J_1", "Table"});
-  proximity_->warning_distance_m = 0.05;
+  proximity_->pairs = 200;
   proximity_->touching.resize(70);
   proximity_->near.resize(60);
   proximity_->near[0].b = 1;
@@ -186,6 +172,29 @@ TEST_F(LiveDocument, PairsAreBoundedAndCounted) {
   EXPECT_EQ(sut["near"][0]["time_to_contact_s"], 1.5);
   EXPECT_EQ(sut["near"][1]["b"], "");
   EXPECT_TRUE(sut["near"][1]["time_to_contact_s"].is_null());
+}
+
+TEST_F(LiveDocument, NobodyKnowsWhatTouchesWhereNothingIsTested) {
+  proximity_ = std::make_shared<ProximityState>();
+  proximity_->posture_time = kNow - Nanoseconds(1'500'000'000);
+  proximity_->pairs = 3;
+  proximity_->near.resize(1);
+  json sut = document();
+  EXPECT_EQ(sut["touching"], json::array());
+  EXPECT_EQ(sut["collision_age_s"], 1.5);
+  collision::Settings off;
+  off.active = false;
+  off.warning_distance_m = 0.25;
+  picture_.collision = std::make_shared<const collision::Settings>(off);
+  sut = document();
+  EXPECT_TRUE(sut["touching"].is_null());
+  EXPECT_TRUE(sut["collision_age_s"].is_null());
+  EXPECT_EQ(sut["near"], json::array());
+  EXPECT_EQ(sut["near_count"], 0);
+  EXPECT_EQ(sut["warning_distance_m"], 0.25);
+  picture_.collision = std::make_shared<const collision::Settings>();
+  proximity_->pairs = 0;
+  EXPECT_TRUE(document()["touching"].is_null());
 }
 
 TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {

@@ -23,6 +23,19 @@ function show_ends(row, pair) {
   setAttribute(row.b, "title", pair.b);
 }
 
+const kOld_s = 0.5;
+
+// What the head says of collisions. Nobody knows what touches where nothing is tested, and what is old is said.
+export function collisions_in_brief(live) {
+  if (!Array.isArray(live.touching)) return {text: "collisions not known", state: "none", title: null};
+  const touching = live.touching_count ?? live.touching.length;
+  const text = touching ? `${touching} touching` : "nothing touches";
+  if (live.collision_age_s > kOld_s) {
+    return {text: `${text} (old)`, state: "stale", title: `found ${age(live.collision_age_s)} ago`};
+  }
+  return {text, state: touching ? "lost" : "fresh", title: null};
+}
+
 export class Findings {
   constructor({show_node}) {
     const opened = (event) => {
@@ -55,7 +68,9 @@ export class Findings {
     this.ranges_.show((live.ranges ?? []).slice(0, kMostRows), (range) => range.id);
     this.forces_.show((live.forces ?? []).slice(0, kMostRows), (force) => force.robot);
     byId("no-touching").hidden = touching.length > 0;
+    setText(byId("no-touching"), live.touching ? "Nothing touches." : "Not known: nothing is tested.");
     byId("no-near").hidden = near.length > 0;
+    setText(byId("no-near"), live.touching ? "Nothing is near." : "Not known: nothing is tested.");
     byId("range-part").hidden = (live.ranges ?? []).length === 0;
     byId("force-part").hidden = (live.forces ?? []).length === 0;
     const warning = Number.isFinite(this.warning_m_) ? `nearest first; warning below ${length(this.warning_m_)}` : "nearest first";
@@ -64,13 +79,14 @@ export class Findings {
 
   tell_counts_(touching, near, live) {
     const badge = byId("touching-badge");
-    const unknown = !Array.isArray(live.touching);
-    setText(badge, unknown ? "collisions not known" : touching ? `${touching} touching` : "nothing touches");
-    setAttribute(badge, "data-state", unknown ? "none" : touching ? "lost" : "fresh");
+    const brief = collisions_in_brief(live);
+    setText(badge, brief.text);
+    setAttribute(badge, "data-state", brief.state);
+    setAttribute(badge, "title", brief.title);
     const warned = (live.near ?? []).filter((pair) => warned_of(pair, live.warning_distance_m)).length;
     const near_badge = byId("near-badge");
     setText(near_badge, `${warned} near`);
-    near_badge.hidden = unknown || warned === 0;
+    near_badge.hidden = warned === 0;
     setText(byId("near-tab-count"), touching + near ? String(touching + near) : "");
   }
 }

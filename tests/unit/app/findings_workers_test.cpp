@@ -1,0 +1,142 @@
+// Workers take their findings away when there is nothing to find any more: nothing that is old stays for good.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "app/gateway/collision_worker.hpp"
+#include "app/gateway/force_worker.hpp"
+#include "tests/unit/cell/cell_from_text.hpp"
+
+namespace cellmirror::app {
+namespace {
+
+// A heavy ball on a linear axis.
+constexpr const char* kHeavySledge = R"(
+[[node]]
+name = "X"
+geometry = [{ name = "ball", sphere_m = 0.1 }]
+body = { mass_kg = 10.0 }
+[node.joint]
+type = "prismatic"
+axis = [0, 0, 1]
+range_m = [-1.0, 1.0]
+velocity_m_s = 1.5
+acceleration_m_s2 = 3.0
+[[node]]
+name = "TOP"
+parent = "X"
+[robot]
+id = "SLEDGE"
+flange = "TOP"
+)";
+
+constexpr Nanoseconds kTick{1'000'000};
+
+// The ball sits in a post. Ticks by hand.
+struct FindingsWorkersTest : testing::Test {
+  FindingsWorkersTest() {
+    auto files = std::make_shared<TextFiles>();
+    files->add("sledge.mpc", kHeavySledge);
+    Diagnostics diagnostics;
+    cell = build_cell(
+        "[[node]]\nname = \"Sledge\"\nabstract = \"sledge.mpc\"\n"
+        "[[node]]\nname = \"Post\"\ngeometry = [{ name = \"post\", box_m = [0.1, 0.1, 0.1] }]\n",
+        files, diagnostics);
+    EXPECT_TRUE(cell) << diagnostics.text();
+    engine::Command command;
+    command.kind = engine::CommandKind::add_robot;
+    command.slot = static_cast<std::uint8_t>(cell->robot("SLEDGE")->slot());
+    command.joint_count = 1;
+    command.lower.fill(-1.0);
+    command.upper.fill(1.0);
+    engine.send(command);
+    hang_up(settings);
+  }
+
+  void hang_up(const collision::Settings& with) {
+    auto picture = std::make_shared<OwnerPicture>();
+    picture->cell = cell->compile();
+    picture->collision = std::make_shared<const collision::Settings>(with);
+    pictures.hang_up(picture);
+  }
+
+  // Lets ticks pass until the condition holds; false: it never does.
+  bool comes(const std::function<bool()>& condition) {
+    const Timestamp end = clock.now() + std::chrono::seconds(30);
+    while (!condition()) {
+      if (clock.now() > end) return false;
+      CycleContext context;
+      context.now = context.scheduled = clock.now();
+      context.cycle = cycle++;
+      context.period = kTick;
+      engine.run(context);
+      std::this_thread::sleep_for(kTick);
+    }
+    return true;
+  }
+
+  SystemClock clock;
+  Watchdog watchdog{std::chrono::seconds(100), {}};
+  engine::Engine engine{watchdog};
+  std::uint64_t cycle = 0;
+  std::optional<Cell> cell;
+  collision::Settings settings;
+  PictureBoard pictures;
+};
+
+struct CollisionWorkerTest : FindingsWorkersTest {
+  bool touches() {
+    const auto found = sut.board().look();
+    return found && found->pairs == 1 && found->touching.size() == 1;
+  }
+  bool shows_nothing() {
+    const auto found = sut.board().look();
+    return found && found->pairs == 0 && found->touching.empty() && found->near.empty();
+  }
+  CollisionWorker sut{engine, pictures, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
+};
+
+TEST_F(CollisionWorkerTest, ShowsNothingWhileTestsAreSwitchedOff) {
+  ASSERT_TRUE(comes([this] { return touches(); }));
+  const auto last = sut.board().look();
+  settings.active = false;
+  hang_up(settings);
+  ASSERT_TRUE(comes([this] { return shows_nothing(); }));
+  EXPECT_GT(sut.board().look()->sequence, last->sequence) << "whoever follows the numbers hears of it";
+  EXPECT_GE(sut.board().look()->posture_time, last->posture_time);
+  settings.active = true;
+  hang_up(settings);
+  EXPECT_TRUE(comes([this] { return touches(); }));
+}
+
+TEST_F(CollisionWorkerTest, ShowsNothingWhenTheLastPairIsTestedNoMore) {
+  ASSERT_TRUE(comes([this] { return touches(); }));
+  settings.rules = {{"Post", "Sledge", collision::PairRule::Kind::ignore, ""}};
+  hang_up(settings);
+  EXPECT_TRUE(comes([this] { return shows_nothing(); }));
+  settings.rules.clear();
+  hang_up(settings);
+  ASSERT_TRUE(comes([this] { return touches(); }));
+  ASSERT_TRUE(cell->delete_node("Sledge"));
+  hang_up(settings);
+  EXPECT_TRUE(comes([this] { return shows_nothing(); }));
+}
+
+TEST_F(FindingsWorkersTest, ForcesOfTheLastRobotGoWithIt) {
+  ForceWorker sut(engine, pictures, clock, kTick, Eigen::Vector3d(0, 0, -9.80665));
+  ASSERT_TRUE(comes([&] {
+    const auto found = sut.board().look();
+    return found && found->robots.size() == 1;
+  }));
+  const auto last = sut.board().look();
+  ASSERT_TRUE(cell->delete_node("Sledge"));
+  hang_up(settings);
+  ASSERT_TRUE(comes([&] { return sut.board().look()->robots.empty(); }));
+  EXPECT_GT(sut.board().look()->sequence, last->sequence);
+}
+
+}  // namespace
+}  // namespace cellmirror::app
