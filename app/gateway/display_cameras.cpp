@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/gateway/display_desk.hpp"
 #include "rt_core/scene/camera_mount.hpp"
@@ -13,6 +16,11 @@ namespace {
 
 bool is_unique(const CompiledCell& cell, std::string_view name) {
   return std::ranges::count(cell.cameras, name, &CompiledCamera::name) == 1;
+}
+
+std::optional<std::size_t> place_in(const std::vector<std::string>& paths, std::string_view path) {
+  const auto at = std::ranges::find(paths, path);
+  return at == paths.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - paths.begin()));
 }
 
 }  // namespace
@@ -37,30 +45,35 @@ Result<CameraSetting*> DisplayDesk::open_camera(std::string_view camera) {
 }
 
 // A frame that is gone is tracked no more, a view of a camera that is gone stays where it was set, and a robot that is
-// gone has no arc. Draw rules stay: they count again when their component is loaded again.
+// gone has no arc. Draw rules stay: they count again when their component is loaded again. A camera is known again by
+// its path: its name in the state is another one once a second camera of that name comes or goes.
 void DisplayDesk::follow_cell() {
   if (parts_.cell.revision() == cell_revision_) return;
   cell_revision_ = parts_.cell.revision();
   const auto cell = parts_.cell.compile();
   std::vector<CameraSetting> cameras;
+  std::vector<std::string> paths;
   for (const CompiledCamera& camera : cell->cameras) {
-    CameraSetting setting;
-    setting.name = is_unique(*cell, camera.name) ? camera.name : (*cell->paths)[static_cast<std::size_t>(camera.node)];
-    const auto old = std::ranges::find(state_.cameras, setting.name, &CameraSetting::name);
-    if (old != state_.cameras.end()) setting = *old;
+    const std::string& path = (*cell->paths)[static_cast<std::size_t>(camera.node)];
+    const auto old = place_in(camera_paths_, path);
+    CameraSetting setting = old ? state_.cameras[*old] : CameraSetting{};
+    setting.name = is_unique(*cell, camera.name) ? camera.name : path;
     if (!setting.tracks.empty() && !parts_.cell.knows(setting.tracks)) setting.tracks.clear();
     cameras.push_back(std::move(setting));
+    paths.push_back(path);
   }
-  const auto is_gone = [&](std::string_view camera) {
-    return !camera.empty() && std::ranges::find(cameras, camera, &CameraSetting::name) == cameras.end();
+  const auto name_now = [&](std::string_view before) -> std::string {
+    const auto old = std::ranges::find(state_.cameras, before, &CameraSetting::name);
+    if (old == state_.cameras.end()) return {};
+    const auto now = place_in(paths, camera_paths_[static_cast<std::size_t>(old - state_.cameras.begin())]);
+    return now ? cameras[*now].name : std::string();
   };
-  for (DisplayView& shown : state_.views) {
-    if (is_gone(shown.camera)) shown.camera.clear();
-  }
-  if (is_gone(state_.current_camera)) state_.current_camera.clear();
+  for (DisplayView& shown : state_.views) shown.camera = name_now(shown.camera);
+  state_.current_camera = name_now(state_.current_camera);
   if (cameras.empty()) state_.modes.reset(static_cast<std::size_t>(DisplayMode::camera_main_view));
   std::erase_if(state_.arcs, [&](const std::string& robot) { return parts_.cell.robot(robot) == nullptr; });
   state_.cameras = std::move(cameras);
+  camera_paths_ = std::move(paths);
   changed();
 }
 

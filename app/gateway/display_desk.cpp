@@ -121,6 +121,13 @@ Result<void> DisplayDesk::set_view(int id, const ViewChange& change, const ViewP
   if (auto known = check_view_id(id); !known) return known;
   ViewSequence sequence;
   sequence.from = view_now(id);
+  if (!view(id).camera.empty()) {
+    // It goes on from where the camera is, but how it projects and clips is the view's own.
+    const View& own = view(id).view;
+    sequence.from.orthogonal = own.orthogonal;
+    sequence.from.near_distance = own.near_distance;
+    sequence.from.far_distance = own.far_distance;
+  }
   sequence.to = changed_by(sequence.from, change);
   if (auto checked = check_view(id, sequence.to); !checked) return checked;
   if (const auto* steps = std::get_if<InSteps>(&pace)) {
@@ -146,6 +153,7 @@ Result<void> DisplayDesk::set_mode(DisplayMode mode, bool on) {
   if (on && mode == DisplayMode::camera_main_view && parts_.cell.compile()->cameras.empty())
     return fail("the cell has no camera that could fill the display", "a cell or component file adds one");
   state_.modes.set(bit_of(mode), on);
+  if (mode == DisplayMode::smear && !on) ++state_.smear_ends;
   changed();
   return {};
 }

@@ -92,6 +92,7 @@ class DisplayDesk final : public DisplayHost {
   DisplayState state_;
   std::shared_ptr<const DisplayState> shared_;  // null: something has changed since
   std::uint64_t cell_revision_ = 0;             // that state_.cameras is of
+  std::vector<std::string> camera_paths_;       // of state_.cameras: their names there may change
   std::uint64_t messages_shown_ = 0;
   CellPoses poses_;
 };

@@ -267,7 +267,7 @@ void add_display(JsonBuilder& out, const LiveSources& sources) {
   for (std::size_t i = 0; i < kDisplayModes; ++i) out.member(kModeWords.at(i), display.modes.test(i));
   out.member("LEGEND", display.legend).end_object().end_object();
   out.key("cameras").begin_array();
-  for (const CompiledCamera& camera : sources.picture.cell->cameras) out.value(camera.name);
+  for (const CameraSetting& camera : display.cameras) out.value(camera.name);
   out.end_array();
 }
 

@@ -12,9 +12,10 @@ class Stream final : public web::PictureStream {
  public:
   explicit Stream(std::shared_ptr<Looker> looker) : looker_(std::move(looker)) {}
   void change(const web::PictureWish& wish) override { looker_->change(wish); }
-  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t after) const override {
-    return looker_->newest(after);
+  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has) const override {
+    return looker_->newest(has);
   }
+  [[nodiscard]] std::string problem() const override { return looker_->problem(); }
 
  private:
   std::shared_ptr<Looker> looker_;
@@ -31,21 +32,34 @@ void Looker::change(const web::PictureWish& wish) {
   if (!check_wish(wish)) return;  // whoever speaks with the client has told it
   asked_now();
   const std::scoped_lock lock(mutex_);
-  if (!same_drawing(wish_, wish)) newest_.reset();
+  if (!same_drawing(wish_, wish)) {
+    newest_.reset();
+    problem_.clear();
+  }
   wish_ = wish;
 }
 
-std::shared_ptr<const EncodedImage> Looker::newest(std::uint64_t after) {
+std::shared_ptr<const EncodedImage> Looker::newest(std::uint64_t has) {
   asked_now();
   const std::scoped_lock lock(mutex_);
-  return newest_ && newest_->sequence > after ? newest_ : nullptr;
+  return newest_ && newest_->sequence != has ? newest_ : nullptr;
+}
+
+std::string Looker::problem() const {
+  const std::scoped_lock lock(mutex_);
+  return problem_;
 }
 
 void Looker::show(std::shared_ptr<const EncodedImage> picture, const web::PictureWish& wish) {
-  shown = picture->sequence;
   const std::scoped_lock lock(mutex_);
   if (!same_drawing(wish_, wish)) return;
+  problem_.clear();
   newest_.swap(picture);  // the one before is let go by the argument, without the lock
+}
+
+void Looker::tell(const Error& problem, const web::PictureWish& wish) {
+  const std::scoped_lock lock(mutex_);
+  if (same_drawing(wish_, wish)) problem_ = problem.text();
 }
 
 bool Looker::looks(Timestamp now) const {

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "ipc/web/web_backend.hpp"
+#include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror::app {
@@ -20,15 +22,18 @@ class Looker {
   // Any thread.
   [[nodiscard]] web::PictureWish wish() const;
   void change(const web::PictureWish& wish);
-  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t after);
+  // The picture of its wish, if that is not the one it has already (`has`: its sequence). It may be an older one: what
+  // somebody else looks at was drawn before.
+  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has);
+  [[nodiscard]] std::string problem() const;
 
   // The picture thread's.
   // Not where it has changed its wish from `wish` meanwhile.
   void show(std::shared_ptr<const EncodedImage> picture, const web::PictureWish& wish);
+  void tell(const Error& problem, const web::PictureWish& wish);
   // Whether it has asked within kPatience: for a client that stands still nothing is drawn.
   [[nodiscard]] bool looks(Timestamp now) const;
-  // The number of what was shown last, and when the next one is due by its rate.
-  std::uint64_t shown = 0;
+  // When the next one is due by its rate.
   Timestamp due;
 
   static constexpr Nanoseconds kPatience{1'000'000'000};
@@ -41,6 +46,7 @@ class Looker {
   mutable std::mutex mutex_;               // of what follows
   web::PictureWish wish_;
   std::shared_ptr<const EncodedImage> newest_;
+  std::string problem_;  // why there is no picture of the wish; empty: there is one, or it is being drawn
 };
 
 // All of them. Any thread. `clock` outlives the streams.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/gateway/picture_rate.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/ports/display_state.hpp"
 #include "rt_core/ports/image.hpp"
@@ -17,7 +18,6 @@ namespace cellmirror::app {
 namespace {
 
 constexpr double kFarthest = 1e4;  // m
-constexpr double kHighestRate = 60;
 
 bool good_place(const Eigen::Vector3d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest; }
 
@@ -52,8 +52,10 @@ Result<void> check_wish(const web::PictureWish& wish) {
     return fail(fmt::format("a picture of {} x {} pixels", wish.width, wish.height),
                 fmt::format("edges are {} to {} pixels", kSmallestImageEdge, kLargestImageEdge));
   }
-  if (!(wish.rate_hz > 0 && wish.rate_hz <= kHighestRate))
-    return fail(fmt::format("{} pictures a second", wish.rate_hz), "above 0 to 60");
+  if (!(wish.rate_hz >= kLowestPictureRate && wish.rate_hz <= kHighestPictureRate)) {
+    return fail(fmt::format("{} pictures a second", wish.rate_hz),
+                fmt::format("{} to {}", kLowestPictureRate, kHighestPictureRate));
+  }
   if (wish.quality < 1 || wish.quality > 100)
     return fail(fmt::format("a quality of {}", wish.quality), "1 to 100; 80 is good");
   return wish.free_view ? check_free_view(*wish.free_view) : Result<void>();

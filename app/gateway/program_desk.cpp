@@ -242,10 +242,11 @@ void ProgramDesk::follow_cell() {
       gone.push_back(status.robot);
   }
   const auto why = [](std::string_view robot) { return Error{fmt::format("the robot {} was deleted", robot), {}}; };
-  for (const std::string& robot : gone) controllers_.give_up(robot, why(robot), true);
+  // First, so that what waits for a load is told this reason and not that a program before it has failed.
   for (const LoadPicture& load : loads_.pictures()) {
     if (parts_.cell.robot(load.robot) == nullptr) loads_.give_up_robot(load.robot, why(load.robot));
   }
+  for (const std::string& robot : gone) controllers_.give_up(robot, why(robot), true);
 }
 
 void ProgramDesk::give_up(std::string_view robot, const Error& why) {
@@ -262,13 +263,18 @@ void ProgramDesk::shut_down() {
 
 void ProgramDesk::note(const program::ProgramEvent& event) {
   using Kind = program::ProgramEvent::Kind;
-  if (event.kind == Kind::failed || event.kind == Kind::deadlock) {
-    log_warning(kProgramLog, "{}", event.text);
+  if (event.kind == Kind::failed || event.kind == Kind::deadlock) log_warning(kProgramLog, "{}", event.text);
+  // A deadlock fails those who wait while it lasts (verdict()): somebody may end it, and then all has gone well.
+  if (event.kind == Kind::failed) {
     ++failures_;
     failed_.push_back(event.text);
     if (failed_.size() > kKeptFailures) failed_.pop_front();
   }
-  if (event.kind == Kind::failed) failed_of_robot_[event.robot] = event.text;
+  if (event.kind == Kind::failed) {
+    // The first: those that were queued behind it fail for no reason of their own.
+    failed_of_robot_.try_emplace(event.robot, event.text);
+    loads_.give_up_queued_runs(event.robot, {fmt::format("{} before it has failed", event.program), {}});
+  }
   if (event.kind == Kind::started || event.kind == Kind::ended || event.kind == Kind::stopped) {
     log_info(kProgramLog, "{} of {} {}", event.program, event.robot,
              event.kind == Kind::started ? "started"

@@ -115,7 +115,7 @@ class ProgramDesk final : public ProgramHost, public program::ProgramScripts {
   std::string language_ = "irdata";  // manual 1.2.1
   std::uint64_t failures_ = 0;
   std::deque<std::string> failed_;  // why, the newest last
-  // By robot: what failed since its programs were last begun.
+  // By robot: what failed first since its programs were last begun.
   std::map<std::string, std::string, std::less<>> failed_of_robot_;
   std::vector<Awaiting> awaiting_;
 };

@@ -104,6 +104,19 @@ bool ProgramLoads::give_up_runs(std::string_view robot, const Error& why) {
   return any;
 }
 
+// The runs of one robot wait in the order in which they came: add_run() puts none at a load before that of another.
+void ProgramLoads::give_up_queued_runs(std::string_view robot, const Error& why) {
+  for (Load& load : loads_) {
+    if (load.what.robot != robot) continue;
+    const auto first_kept =
+        std::ranges::find_if(load.runs, [](const Run& run) { return run.begin != ProgramBegin::exec_wait; });
+    for (auto run = load.runs.begin(); run != first_kept; ++run) refuse_run(*run, why);
+    const bool all = first_kept == load.runs.end();
+    load.runs.erase(load.runs.begin(), first_kept);
+    if (!all) return;
+  }
+}
+
 void ProgramLoads::give_up_robot(std::string_view robot, const Error& why) {
   std::erase_if(loads_, [&](const Load& load) {
     if (load.what.robot != robot) return false;

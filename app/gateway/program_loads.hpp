@@ -50,7 +50,9 @@ class ProgramLoads {
   // Loads of that name, and runs that wait for them, are refused with that reason. Runs of other programs that waited
   // behind these keep their places behind loads that came before; returns those that need not wait any longer.
   std::vector<Run> give_up(std::string_view program, std::string_view robot, const Error& why);
-  bool give_up_runs(std::string_view robot, const Error& why);   // false: none waits
+  bool give_up_runs(std::string_view robot, const Error& why);  // false: none waits
+  // Those that would begin behind what the robot runs now, which has failed: exec_wait, up to the first without.
+  void give_up_queued_runs(std::string_view robot, const Error& why);
   void give_up_robot(std::string_view robot, const Error& why);  // its loads and runs
   void give_up_all(const Error& why);
   // Whether the runs of the robot that wait begin held. False: they would have anyway.

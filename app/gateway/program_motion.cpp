@@ -188,7 +188,11 @@ Result<std::uint32_t> CellProgramMotion::delay(std::string_view id, double secon
 
 Result<void> CellProgramMotion::set_tool(std::string_view id, const std::optional<Pose>& X_PT) {
   if (X_PT && !kinematics::is_pose(*X_PT)) return fail("the tool centre point is not a pose of finite numbers");
-  if (cell_.robot(id) == nullptr) return std::unexpected(cell_.explain_robot(id));
+  if (cell_.robot(id) == nullptr) {
+    // A program ends behind its deleted robot: the next robot of that name must not get its tool.
+    if (const auto gone = arms_.find(id); gone != arms_.end()) arms_.erase(gone);
+    return std::unexpected(cell_.explain_robot(id));
+  }
   arms_.try_emplace(std::string(id)).first->second.kinematics.set_tool(X_PT);
   return {};
 }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <future>
 #include <utility>
 
 #include "app/gateway/picked_object.hpp"
+#include "app/gateway/picture_rate.hpp"
 #include "app/gateway/picture_wish.hpp"
 #include "app/gateway/scene_fingerprint.hpp"
 #include "app/pictures/renderer_options.hpp"
@@ -21,16 +21,11 @@ constexpr Nanoseconds kAnew{950'000'000};              // an unchanged picture i
 constexpr Nanoseconds kRendererAgain{10'000'000'000};  // a renderer that could not be had is tried again after so long
 constexpr Nanoseconds kFreshEnough{5'000'000};         // a scene serves several drawings of one round for so long
 
-Nanoseconds period_of(double rate_hz) { return Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)); }
-
-template <class T>
-Result<T> wait_for(std::future<Result<T>> answer) {
-  if (answer.wait_for(std::chrono::nanoseconds(Studio::kPatience)) == std::future_status::ready) return answer.get();
-  return fail(fmt::format("there was no picture within {:g} s", seconds(Studio::kPatience)),
-              "ask for a smaller one, or look at `cellmirror status`");
-}
-
 constexpr const char* kEnding = "the gateway is ending";
+
+std::unexpected<Error> too_many() {
+  return fail(fmt::format("{} pictures are waited for already", Studio::kMostJobs), "ask again in a moment");
+}
 
 }  // namespace
 
@@ -103,45 +98,36 @@ bool Studio::add_job(Job job) {
   return true;
 }
 
-void Studio::ask_picture(const web::PictureWish& wish, ImageFormat format, PictureReply reply) {
+void Studio::ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) {
   if (const auto refused = refusal(wish); !refused) return reply(std::unexpected(refused.error()));
-  const auto shared = std::make_shared<PictureReply>(std::move(reply));
+  const auto shared = std::make_shared<web::PictureReply>(std::move(reply));
   const bool added = add_job([this, wish, format, shared](bool given_up) {
     (*shared)(given_up ? Result<EncodedImage>(fail(kEnding)) : take(wish, format));
   });
-  if (!added) (*shared)(fail(fmt::format("{} pictures are waited for already", kMostJobs), "ask again in a moment"));
+  if (!added) (*shared)(too_many());
 }
 
-Result<EncodedImage> Studio::picture(const web::PictureWish& wish, ImageFormat format) {
-  const auto promise = std::make_shared<std::promise<Result<EncodedImage>>>();
-  auto answer = promise->get_future();
-  ask_picture(wish, format, [promise](Result<EncodedImage> taken) { promise->set_value(std::move(taken)); });
-  return wait_for(std::move(answer));
-}
-
-Result<std::optional<web::PickedObject>> Studio::pick(const web::PictureWish& wish, int x, int y) {
+void Studio::ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) {
   using Picked = Result<std::optional<web::PickedObject>>;
-  if (const auto refused = refusal(wish); !refused) return std::unexpected(refused.error());
+  if (const auto refused = refusal(wish); !refused) return reply(std::unexpected(refused.error()));
   if (x < 0 || y < 0 || x >= wish.width || y >= wish.height)
-    return fail(fmt::format("the pixel {}, {} is not in the picture", x, y));
-  const auto promise = std::make_shared<std::promise<Picked>>();
-  auto answer = promise->get_future();
-  const bool added = add_job([this, wish, x, y, promise](bool given_up) {
-    promise->set_value(given_up ? Picked(fail(kEnding)) : look_at(wish, x, y));
-  });
-  if (!added) return fail(fmt::format("{} pictures are waited for already", kMostJobs), "ask again in a moment");
-  return wait_for(std::move(answer));
+    return reply(fail(fmt::format("the pixel {}, {} is not in the picture", x, y)));
+  const auto shared = std::make_shared<web::PickReply>(std::move(reply));
+  const bool added = add_job(
+      [this, wish, x, y, shared](bool given_up) { (*shared)(given_up ? Picked(fail(kEnding)) : look_at(wish, x, y)); });
+  if (!added) (*shared)(too_many());
 }
 
 void Studio::loop(const std::stop_token& stop) {
   set_thread_name("pictures");
-  const Nanoseconds period = period_of(options_.settings.rate_hz);
+  const Nanoseconds period = picture_period(options_.settings.rate_hz);
   Timestamp next = boards_.clock.now();
   while (!stop.stop_requested()) {
-    run_jobs();
+    // One at a time: those who look continuously have their turn between.
+    const bool more = run_job();
     const Timestamp now = boards_.clock.now();
     if (now < next) {
-      wake_.wait(next - now);
+      if (!more) wake_.wait(next - now);
       continue;
     }
     round(now);
@@ -153,17 +139,16 @@ void Studio::loop(const std::stop_token& stop) {
   give_up_jobs();
 }
 
-void Studio::run_jobs() {
-  for (std::size_t i = 0; i < kMostJobs; ++i) {
-    Job job;
-    {
-      const std::scoped_lock lock(mutex_);
-      if (jobs_.empty()) return;
-      job = std::move(jobs_.front());
-      jobs_.pop_front();
-    }
-    job(false);
+bool Studio::run_job() {
+  Job job;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (jobs_.empty()) return false;
+    job = std::move(jobs_.front());
+    jobs_.pop_front();
   }
+  job(false);
+  return true;
 }
 
 void Studio::give_up_jobs() {
@@ -177,38 +162,36 @@ void Studio::give_up_jobs() {
 }
 
 std::vector<Studio::Guest> Studio::guests(Timestamp now) {
-  const Nanoseconds half = period_of(options_.settings.rate_hz) / 2;
-  const auto is_due = [&](Timestamp& due, double rate_hz) {
-    if (due.known() && due > now + half) return false;
-    const Nanoseconds period = period_of(rate_hz);
-    due = due.known() && now - due < period ? due + period : now + period;
-    return true;
-  };
+  const Nanoseconds half = picture_period(options_.settings.rate_hz) / 2;
   std::vector<Guest> out;
   for (auto& looker : streams_.all()) {
     if (!looker->looks(now)) continue;
     const web::PictureWish wish = looker->wish();
-    if (is_due(looker->due, wish.rate_hz)) out.push_back({std::move(looker), nullptr, wish});
+    if (picture_is_due(looker->due, wish.rate_hz, now, half)) out.push_back({std::move(looker), nullptr, wish});
   }
   for (std::size_t i = 0; i < options_.outputs.size(); ++i) {
     Output& output = options_.outputs[i];
-    if (output.output->watched() && is_due(output_due_[i], output.wish.rate_hz))
+    if (output.output->watched() && picture_is_due(output_due_[i], output.wish.rate_hz, now, half))
       out.push_back({nullptr, &output, output.wish});
   }
   return out;
 }
 
-double Studio::wished_hz(Timestamp now) const {
-  std::vector<web::PictureWish> wishes;
+std::vector<web::PictureWish> Studio::wishes(Timestamp now) const {
+  std::vector<web::PictureWish> out;
   for (const auto& looker : streams_.all()) {
-    if (looker->looks(now)) wishes.push_back(looker->wish());
+    if (looker->looks(now)) out.push_back(looker->wish());
   }
   for (const Output& output : options_.outputs) {
-    if (output.output->watched()) wishes.push_back(output.wish);
+    if (output.output->watched()) out.push_back(output.wish);
   }
+  return out;
+}
+
+double Studio::wished_hz(std::span<const web::PictureWish> wishes) const {
   double sum = 0;
   for (std::size_t i = 0; i < wishes.size(); ++i) {
-    const auto before = std::span(wishes).first(i);
+    const auto before = wishes.first(i);
     const bool shared =
         std::ranges::any_of(before, [&](const web::PictureWish& other) { return same_drawing(other, wishes[i]); });
     if (!shared) sum += std::min(wishes[i].rate_hz, options_.settings.rate_hz);
@@ -219,13 +202,12 @@ double Studio::wished_hz(Timestamp now) const {
 void Studio::round(Timestamp now) {
   if (!report_.on) return;
   follow_traces();
+  const std::vector<web::PictureWish> all = wishes(now);
+  shots_.keep(all);
   const std::vector<Guest> wanted = guests(now);
-  if (wanted.empty()) {
-    shots_.clear();
-    return;
-  }
-  if (!need_renderer()) return;
-  effort_.begin_round(wished_hz(now));
+  if (wanted.empty()) return;
+  if (const auto renderer = need_renderer(); !renderer) return tell(wanted, renderer.error());
+  effort_.begin_round(wished_hz(all));
   serve(wanted);
 }
 
@@ -235,61 +217,58 @@ void Studio::follow_traces() {
 }
 
 void Studio::serve(const std::vector<Guest>& guests) {
-  for (Shot& shot : shots_) shot.used = false;
-  std::vector<bool> done(guests.size(), false);
-  for (std::size_t i = 0; i < guests.size(); ++i) {
-    if (done[i]) continue;
-    Shot& shot = shot_for(guests[i].wish);
-    shot.used = true;
-    const bool drawn = bring_up_to_date(shot);
-    for (std::size_t k = i; k < guests.size(); ++k) {
-      if (done[k] || !same_drawing(guests[k].wish, shot.wish)) continue;
-      done[k] = true;
-      if (drawn) give(guests[k], shot);
+  std::vector<Guest> left = guests;
+  while (!left.empty()) {
+    Shot& shot = shots_.of(left.front().wish);
+    const auto others =
+        std::ranges::stable_partition(left, [&](const Guest& guest) { return same_drawing(guest.wish, shot.wish); });
+    const std::vector<Guest> same(left.begin(), others.begin());
+    left.erase(left.begin(), others.begin());
+    if (const auto drawn = bring_up_to_date(shot); !drawn) {
+      tell(same, drawn.error());
+      continue;
     }
+    for (const Guest& guest : same) give(guest, shot);
   }
-  // Those that come less often keep what was drawn for them a little longer.
-  const Timestamp now = boards_.clock.now();
-  std::erase_if(shots_, [&](const Shot& shot) { return !shot.used && now - shot.drawn > 2 * kAnew; });
 }
 
-Studio::Shot& Studio::shot_for(const web::PictureWish& wish) {
-  const auto found = std::ranges::find_if(shots_, [&](const Shot& shot) { return same_drawing(shot.wish, wish); });
-  if (found != shots_.end()) return *found;
-  // A view that is turned by hand is another one with every picture.
-  if (shots_.size() >= 2 * PictureStreams::kMost) std::erase_if(shots_, [](const Shot& shot) { return !shot.used; });
-  shots_.emplace_back().wish = wish;
-  return shots_.back();
+void Studio::tell(const std::vector<Guest>& guests, const Error& problem) {
+  for (const Guest& guest : guests) {
+    if (guest.looker) guest.looker->tell(problem, guest.wish);
+  }
 }
 
-bool Studio::bring_up_to_date(Shot& shot) {
+Result<void> Studio::bring_up_to_date(Shot& shot) {
   const auto panes = prepare(shot.wish);
   if (!panes) {
     note_problem(panes.error());
-    return false;
+    return std::unexpected(panes.error());
   }
   const std::uint64_t print = fingerprint(source_.scene(), *panes);
   const Timestamp now = boards_.clock.now();
   if (shot.drawn.known() && shot.fingerprint == print && now - shot.drawn < kAnew) {
     count(&PictureReport::unchanged);
     effort_.unchanged();
-    return true;
+    return {};
   }
   const bool smooth = effort_.antialiasing();
-  if (const auto drawn = draw(*panes, shot.wish.width, shot.wish.height, shot.image, smooth); !drawn) return false;
+  if (const auto drawn = draw(*panes, shot.wish.width, shot.wish.height, shot.image, smooth); !drawn) return drawn;
   effort_.drew(boards_.clock.now() - now);
   if (!smooth) count(&PictureReport::in_haste);
   shot.fingerprint = print;
   shot.drawn = now;
   shot.posture_time = source_.scene().posture_time;
   shot.encoded.clear();
-  return true;
+  return {};
 }
 
 void Studio::give(const Guest& guest, Shot& shot) {
   const auto picture = encode(shot, guest.wish.quality);
-  if (!picture) return note_problem(picture.error());
-  if (guest.looker && guest.looker->shown != (*picture)->sequence) guest.looker->show(*picture, guest.wish);
+  if (!picture) {
+    note_problem(picture.error());
+    return tell({guest}, picture.error());
+  }
+  if (guest.looker) guest.looker->show(*picture, guest.wish);
   if (guest.output != nullptr) guest.output->output->publish_image(**picture);
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "app/gateway/picture_updates.hpp"
 #include "app/gateway/recycler.hpp"
 #include "app/gateway/scene_source.hpp"
+#include "app/gateway/shots.hpp"
 #include "app/gateway/wake_signal.hpp"
 #include "config/picture_settings.hpp"
 #include "drivers/display/image_codec.hpp"
@@ -52,7 +54,6 @@ struct PictureReport {
 class Studio {
  public:
   using RendererMaker = std::function<Result<std::unique_ptr<display::Renderer>>()>;
-  using PictureReply = std::function<void(Result<EncodedImage>)>;
 
   // Pictures for somebody within the process, at his rate, as long as output->watched().
   struct Output {
@@ -66,7 +67,6 @@ class Studio {
     RendererMaker make_renderer;  // empty: as the settings say
   };
   static constexpr std::size_t kMostJobs = 16;
-  static constexpr Nanoseconds kPatience{15'000'000'000};  // for one picture on demand
 
   // What `boards` and `updates` refer to outlives the studio.
   Studio(Options options, const SceneSource::Boards& boards, PictureUpdates& updates);
@@ -79,11 +79,9 @@ class Studio {
   void expect_pictures();
   // Any thread, as web::Backend. Does not wait.
   Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish);
-  // Waits for the picture.
-  Result<EncodedImage> picture(const web::PictureWish& wish, ImageFormat format);
-  Result<std::optional<web::PickedObject>> pick(const web::PictureWish& wish, int x, int y);
-  // Does not wait: `reply` is called once, by the picture's thread, or at once where the wish is refused.
-  void ask_picture(const web::PictureWish& wish, ImageFormat format, PictureReply reply);
+  // `reply` is called once, by the picture's thread, or at once where the wish is refused.
+  void ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply);
+  void ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply);
 
   [[nodiscard]] PictureReport report() const;
   // The names and counters of the outputs; they are there as long as the studio.
@@ -93,16 +91,6 @@ class Studio {
  private:
   using Job = std::function<void(bool given_up)>;
 
-  // What was drawn last for one kind of wish.
-  struct Shot {
-    web::PictureWish wish;
-    std::uint64_t fingerprint = 0;
-    Timestamp drawn;
-    Image image;
-    Timestamp posture_time;
-    std::vector<std::pair<int, std::shared_ptr<const EncodedImage>>> encoded;  // by quality
-    bool used = false;
-  };
   // Somebody who gets a picture in this round.
   struct Guest {
     std::shared_ptr<Looker> looker;  // null: an output
@@ -113,19 +101,21 @@ class Studio {
   [[nodiscard]] Result<void> refusal(const web::PictureWish& wish) const;
   bool add_job(Job job);
   void loop(const std::stop_token& stop);
-  void run_jobs();
+  // One of them. False: there is none.
+  bool run_job();
   void give_up_jobs();
   void round(Timestamp now);
   // A trace has a point for each scene that was joined, so one is, also where nobody looks.
   void follow_traces();
   [[nodiscard]] std::vector<Guest> guests(Timestamp now);
+  // Of all who look, also of those who get no picture in this round.
+  [[nodiscard]] std::vector<web::PictureWish> wishes(Timestamp now) const;
   // Different pictures a second that are wished for.
-  [[nodiscard]] double wished_hz(Timestamp now) const;
+  [[nodiscard]] double wished_hz(std::span<const web::PictureWish> wishes) const;
   void serve(const std::vector<Guest>& guests);
   void give(const Guest& guest, Shot& shot);
-  Shot& shot_for(const web::PictureWish& wish);
-  // False where it could not be drawn.
-  bool bring_up_to_date(Shot& shot);
+  static void tell(const std::vector<Guest>& guests, const Error& problem);
+  Result<void> bring_up_to_date(Shot& shot);
   Result<std::shared_ptr<const EncodedImage>> encode(Shot& shot, int quality);
 
   Result<EncodedImage> take(const web::PictureWish& wish, ImageFormat format);
@@ -149,7 +139,7 @@ class Studio {
   Timestamp renderer_tried_;
   display::ImageEncoder encoder_;
   PictureEffort effort_;
-  std::vector<Shot> shots_;
+  Shots shots_;
   std::vector<Timestamp> output_due_;
   std::uint64_t sequence_ = 0;
   Recycler<EncodedImage> recycled_;

@@ -106,7 +106,8 @@ std::string names_document(const OwnerPicture& picture, const std::filesystem::p
   std::vector<std::string> cameras;
   std::vector<std::string> sensors;
   for (const CompiledRobot& robot : cell.robots) robots.push_back(robot.id);
-  for (const CompiledCamera& camera : cell.cameras) cameras.push_back(camera.name);
+  // As commands and the display name them: two of one name by their paths.
+  for (const CameraSetting& camera : picture.display->cameras) cameras.push_back(camera.name);
   for (const CompiledSensor& sensor : cell.sensors) sensors.push_back(sensor.name);
   for (std::size_t i = 1; i < cell.size(); ++i) {
     if (kinds[i] == "frame" || kinds[i] == "joint") frames.push_back(paths[i]);
@@ -121,7 +122,7 @@ std::string names_document(const OwnerPicture& picture, const std::filesystem::p
   add_names(out, "cameras", cameras);
   add_names(out, "sensors", sensors);
   add_names(out, "scripts", files_with(home / "scripts", ".spt", false));
-  add_names(out, "views", files_with(home / "views", ".vws", false));
+  add_names(out, "views", files_with(home / "scripts", ".vws", false));
   return out.end_object().take();
 }
 

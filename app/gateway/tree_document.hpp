@@ -13,7 +13,7 @@ namespace cellmirror::app {
 
 [[nodiscard]] std::string tree_document(const OwnerPicture& picture, std::uint64_t tree_revision);
 
-// `home`: of the cell; its scripts/ and views are listed.
+// `home`: of the cell; the scripts and view files in its scripts/ are listed.
 [[nodiscard]] std::string names_document(const OwnerPicture& picture, const std::filesystem::path& home);
 
 // Names of the files in a folder and below that have this extension, sorted, without it where `bare`; a bounded number,

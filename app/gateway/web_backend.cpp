@@ -65,14 +65,14 @@ Result<std::unique_ptr<web::PictureStream>> WebBackend::open_pictures(const web:
   return parts_.studio->open_pictures(wish);
 }
 
-Result<EncodedImage> WebBackend::picture(const web::PictureWish& wish, ImageFormat format) {
-  if (parts_.studio == nullptr) return no_pictures();
-  return parts_.studio->picture(wish, format);
+void WebBackend::ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) {
+  if (parts_.studio == nullptr) return reply(no_pictures());
+  parts_.studio->ask_picture(wish, format, std::move(reply));
 }
 
-Result<std::optional<web::PickedObject>> WebBackend::pick(const web::PictureWish& wish, int x, int y) {
-  if (parts_.studio == nullptr) return no_pictures();
-  return parts_.studio->pick(wish, x, y);
+void WebBackend::ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) {
+  if (parts_.studio == nullptr) return reply(no_pictures());
+  parts_.studio->ask_pick(wish, x, y, std::move(reply));
 }
 
 }  // namespace cellmirror::app

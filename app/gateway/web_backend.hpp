@@ -43,8 +43,8 @@ class WebBackend final : public web::Backend {
   void execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) override;
   void expect_pictures() override;
   Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish) override;
-  Result<EncodedImage> picture(const web::PictureWish& wish, ImageFormat format) override;
-  Result<std::optional<web::PickedObject>> pick(const web::PictureWish& wish, int x, int y) override;
+  void ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) override;
+  void ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) override;
 
  private:
   Parts parts_;

@@ -166,7 +166,7 @@ struct SimulationResult {
   CollisionSummary collision;
 
   [[nodiscard]] double times_real_time() const { return wall_s > 0.0 ? simulated_s / wall_s : 0.0; }
-  // A command was refused, a program failed, programs wait for each other, or it did not come to its end.
+  // A command was refused, a program failed, or it did not come to its end, also since programs wait for each other.
   [[nodiscard]] bool failed() const;
 };
 

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <ctime>
+#include <memory>
+#include <utility>
 
 namespace cellmirror::web {
 
@@ -89,6 +91,15 @@ Answer json_answer(std::string text) {
   Answer out;
   out.content_type = "application/json";
   out.body = chunk_of(std::move(text));
+  return out;
+}
+
+Answer picture_answer(Result<EncodedImage> picture) {
+  if (!picture) return text_answer(503, picture.error().text());
+  Answer out;
+  out.content_type = picture->format == ImageFormat::png ? "image/png" : "image/jpeg";
+  const auto kept = std::make_shared<const EncodedImage>(std::move(*picture));
+  out.body = {kept, {reinterpret_cast<const char*>(kept->bytes.data()), kept->bytes.size()}};
   return out;
 }
 

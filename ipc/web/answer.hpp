@@ -9,6 +9,8 @@
 #include "ipc/web/http_request.hpp"
 #include "ipc/web/outgoing.hpp"
 #include "ipc/web/page_files.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/image.hpp"
 
 namespace cellmirror::web {
 
@@ -21,6 +23,8 @@ struct Answer {
 
 [[nodiscard]] Answer text_answer(int status, std::string text);
 [[nodiscard]] Answer json_answer(std::string text);
+// 503 with the reason where there is none.
+[[nodiscard]] Answer picture_answer(Result<EncodedImage> picture);
 // 304 where the client has the file already; compressed where it takes that.
 [[nodiscard]] Answer file_answer(const PageFile& file, const HttpRequest& request);
 

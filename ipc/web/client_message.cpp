@@ -173,8 +173,9 @@ Result<void> check_picture_wish(const PictureWish& wish) {
     return fail(fmt::format("pictures have {} to {} by {} to {} pixels", kSmallestPictureEdge, kLargestPictureWidth,
                             kSmallestPictureEdge, kLargestPictureHeight));
   if (wish.view && (*wish.view < 0 || *wish.view > 6)) return fail("views are 0 to 6");
-  if (!(wish.rate_hz > 0.0 && wish.rate_hz <= kMostPicturesPerSecond))
-    return fail(fmt::format("rate_hz is not within 0 and {}", kMostPicturesPerSecond));
+  if (!(wish.rate_hz >= kFewestPicturesPerSecond && wish.rate_hz <= kMostPicturesPerSecond)) {
+    return fail(fmt::format("rate_hz is not within {} and {}", kFewestPicturesPerSecond, kMostPicturesPerSecond));
+  }
   if (wish.quality < 1 || wish.quality > 100) return fail("quality is not within 1 and 100");
   return wish.free_view ? check_free_view(*wish.free_view) : Result<void>{};
 }

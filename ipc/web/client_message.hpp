@@ -14,6 +14,7 @@ namespace cellmirror::web {
 inline constexpr int kSmallestPictureEdge = 16;  // pixels
 inline constexpr int kLargestPictureWidth = 1920;
 inline constexpr int kLargestPictureHeight = 1200;
+inline constexpr double kFewestPicturesPerSecond = 0.01;
 inline constexpr double kMostPicturesPerSecond = 60;
 inline constexpr std::size_t kMaxCommandBytes = 8000;
 

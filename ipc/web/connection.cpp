@@ -196,6 +196,26 @@ void Connection::do_route(Work& work, Timestamp now) {
   if (!taken) answer(text_answer(503, "too much is asked at once; try again"));
 }
 
+// No thread waits for it: many of these must not hold up the news of the pages.
+void Connection::do_route(TakeSnapshot& snapshot, Timestamp now) {
+  std::atomic<std::uint64_t>& waiting = *context_.snapshots;
+  if (waiting.load(std::memory_order_relaxed) >= kMaxSnapshotsWaiting) {
+    count(context_.counters.refused);
+    Answer busy = text_answer(503, "too many snapshots are waited for already; ask again in a moment");
+    busy.headers.emplace_back("Retry-After", "1");
+    return answer(busy);
+  }
+  stage_ = Stage::waiting;
+  since_ = now;
+  waiting.fetch_add(1, std::memory_order_relaxed);
+  context_.backend.ask_picture(
+      snapshot.wish, snapshot.format,
+      [inbox = context_.inbox, number = number_, snapshots = context_.snapshots](Result<EncodedImage> picture) {
+        snapshots->fetch_sub(1, std::memory_order_relaxed);
+        inbox->post(number, [made = picture_answer(std::move(picture))](Connection* client) { client->answer(made); });
+      });
+}
+
 void Connection::do_route(ExecuteBody& /*execute*/, Timestamp now) {
   stage_ = Stage::body;
   if (in_.size() >= request_.body_bytes) return execute_body(now);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 #include <variant>
 
@@ -16,16 +15,6 @@ namespace {
 
 constexpr int kMostWrongTokens = 3;
 constexpr std::size_t kMostPicksWaiting = 4;
-
-// Nothing that one client asks for may end the gateway.
-Result<std::optional<PickedObject>> guarded_pick(Backend& backend, const PictureWish& wish,
-                                                 const PickMessage& message) {
-  try {
-    return backend.pick(wish, message.x, message.y);
-  } catch (const std::exception& error) {
-    return fail(std::string("unexpected failure: ") + error.what());
-  }
-}
 
 void send_text(Outgoing& out, std::string_view text) { out.push(frame(Opcode::text, text)); }
 
@@ -64,6 +53,7 @@ void LiveSession::follow(const HelloMessage& message, Outgoing& out) {
 
 void LiveSession::follow(const PictureMessage& message, Outgoing& out) {
   wish_ = message.wish;
+  told_.clear();
   if (stream_) {
     stream_->change(wish_);
     return;
@@ -118,15 +108,14 @@ void LiveSession::follow(const PickMessage& message, Outgoing& out) {
   if (!stream_) return send_text(out, refused_message(message.id, "there is no picture to pick from"));
   if (message.x >= wish_.width || message.y >= wish_.height)
     return send_text(out, refused_message(message.id, "that pixel is outside of the picture"));
-  const auto pick = [&backend = context_.backend, inbox = context_.inbox, connection = connection_, wish = wish_,
-                     message] {
-    auto object = guarded_pick(backend, wish, message);
-    inbox->post(connection,
-                [id = message.id, object = std::move(object)](Connection* client) { client->picked(id, object); });
-  };
-  if (picks_waiting_ >= kMostPicksWaiting || !context_.jobs.submit(pick))
+  if (picks_waiting_ >= kMostPicksWaiting)
     return send_text(out, refused_message(message.id, "too much is asked at once; try again"));
   ++picks_waiting_;
+  context_.backend.ask_pick(
+      wish_, message.x, message.y,
+      [inbox = context_.inbox, connection = connection_, id = message.id](Result<std::optional<PickedObject>> object) {
+        inbox->post(connection, [id, object = std::move(object)](Connection* client) { client->picked(id, object); });
+      });
 }
 
 void LiveSession::command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out) {
@@ -139,12 +128,20 @@ void LiveSession::picked(std::int64_t id, const Result<std::optional<PickedObjec
   send_text(out, object ? picked_message(id, *object) : refused_message(id, object.error().text()));
 }
 
+void LiveSession::tell_problem(Outgoing& out) {
+  std::string problem = stream_->problem();
+  if (problem.empty() || problem == told_) return;
+  told_ = std::move(problem);
+  send_text(out, refused_message(0, told_));
+}
+
 bool LiveSession::ready_for_picture(const Outgoing& out) const { return stream_ && credit_.may_send() && out.empty(); }
 
 void LiveSession::send_picture(Timestamp now, Outgoing& out) {
   const std::shared_ptr<const EncodedImage> picture = stream_->newest(newest_);
-  if (!picture) return;
+  if (!picture) return tell_problem(out);
   newest_ = picture->sequence;
+  told_.clear();
   const std::string_view bytes(reinterpret_cast<const char*>(picture->bytes.data()), picture->bytes.size());
   out.push(frame_header(Opcode::binary, kPictureHeaderBytes + bytes.size()) +
            picture_header(credit_.next(), *picture, now));

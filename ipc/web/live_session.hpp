@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "ipc/web/client_message.hpp"
@@ -31,6 +32,8 @@ class LiveSession {
   void send_picture(Timestamp now, Outgoing& out);
 
  private:
+  // Once for each wish, since the client sees only that no picture comes.
+  void tell_problem(Outgoing& out);
   // Pictures that would have come while the client was not ready for them.
   void count_left_out(Timestamp now);
   void follow(const HelloMessage& message, Outgoing& out);
@@ -53,6 +56,7 @@ class LiveSession {
   PictureWish wish_;
   PictureCredit credit_;
   std::uint64_t newest_ = 0;  // sequence of the stream
+  std::string told_;          // problem of the stream
   std::optional<Timestamp> no_credit_since_;
 
   static constexpr double kMessagesPerSecond = 500;  // no person and no page sends more

@@ -50,14 +50,7 @@ std::optional<Route> snapshot(const HttpRequest& request, ServerContext& context
   if (!png && request.path != "/snapshot.jpg") return std::nullopt;
   const auto wish = read_picture_query(request.query);
   if (!wish) return refused(context, 400, wish.error().text());
-  return Work([&backend = context.backend, wish = *wish, png] {
-    const auto picture = backend.picture(wish, png ? ImageFormat::png : ImageFormat::jpeg);
-    if (!picture) return text_answer(503, picture.error().text());
-    Answer answer;
-    answer.content_type = png ? "image/png" : "image/jpeg";
-    answer.body = chunk_of(std::string(picture->bytes.begin(), picture->bytes.end()));
-    return answer;
-  });
+  return TakeSnapshot{*wish, png ? ImageFormat::png : ImageFormat::jpeg};
 }
 
 Route command(const HttpRequest& request, ServerContext& context) {

@@ -13,13 +13,18 @@ namespace cellmirror::web {
 
 // Done by another thread.
 using Work = std::function<Answer()>;
+// One picture, drawn by another thread.
+struct TakeSnapshot {
+  PictureWish wish;
+  ImageFormat format = ImageFormat::png;
+};
 // The body is a SCRIPT command.
 struct ExecuteBody {};
 // The connection becomes a WebSocket; its header Sec-WebSocket-Accept.
 struct OpenWebSocket {
   std::string accept;
 };
-using Route = std::variant<Answer, Work, ExecuteBody, OpenWebSocket>;
+using Route = std::variant<Answer, Work, TakeSnapshot, ExecuteBody, OpenWebSocket>;
 
 // Looks at the head alone; whoever may not ask is told so here, before any of the body is taken.
 [[nodiscard]] Route route(const HttpRequest& request, ServerContext& context);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -35,6 +36,9 @@ struct ServerContext {
   JobPool& jobs;
   std::shared_ptr<Inbox> inbox;
   Counters& counters;
+  // Snapshots that are being drawn or wait for that, also for clients that are gone; whoever brings one counts it down,
+  // maybe after the end of the server.
+  std::shared_ptr<std::atomic<std::uint64_t>> snapshots = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
 }  // namespace cellmirror::web

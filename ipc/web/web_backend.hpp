@@ -33,8 +33,10 @@ class PictureStream {
  public:
   virtual ~PictureStream() = default;  // ends the stream
   virtual void change(const PictureWish& wish) = 0;
-  // The newest picture, if it is newer than `after` (its sequence); null: there is none yet. Never waits.
-  [[nodiscard]] virtual std::shared_ptr<const EncodedImage> newest(std::uint64_t after) const = 0;
+  // The newest picture, if it is another one than that with the sequence `has`; null: there is none yet. Never waits.
+  [[nodiscard]] virtual std::shared_ptr<const EncodedImage> newest(std::uint64_t has) const = 0;
+  // Why no picture comes of what was wished last; empty: nothing is wrong. Never waits.
+  [[nodiscard]] virtual std::string problem() const = 0;
 };
 
 struct PickedObject {
@@ -46,6 +48,9 @@ struct CommandReply {
   bool done = false;
   std::string text;  // empty, or why it was refused and what to do
 };
+
+using PictureReply = std::function<void(Result<EncodedImage>)>;
+using PickReply = std::function<void(Result<std::optional<PickedObject>>)>;
 
 class Backend {
  public:
@@ -62,12 +67,14 @@ class Backend {
   virtual void execute(std::string_view command, std::function<void(const CommandReply&)> reply) = 0;
   // Somebody opens the page and will want pictures in a moment. Does not wait.
   virtual void expect_pictures() = 0;
-  // Starts a stream. Refused where there are too many or there is no renderer; says why.
+  // Starts a stream. Refused where there are too many or pictures are switched off; says why. What turns out only when
+  // it is drawn (no renderer, a camera that is gone) is the stream's problem().
   virtual Result<std::unique_ptr<PictureStream>> open_pictures(const PictureWish& wish) = 0;
-  // One picture. May take a few tenths of a second.
-  virtual Result<EncodedImage> picture(const PictureWish& wish, ImageFormat format) = 0;
+  // One picture: a few tenths of a second, and those before it. Neither this nor the next one waits: `reply` is called
+  // once, from another thread, or at once where it is refused; it may outlive the server.
+  virtual void ask_picture(const PictureWish& wish, ImageFormat format, PictureReply reply) = 0;
   // x, y: pixels in a picture of that wish. None: nothing is there.
-  virtual Result<std::optional<PickedObject>> pick(const PictureWish& wish, int x, int y) = 0;
+  virtual void ask_pick(const PictureWish& wish, int x, int y, PickReply reply) = 0;
 };
 
 }  // namespace cellmirror::web

@@ -16,6 +16,7 @@ namespace cellmirror::web {
 inline constexpr int kDefaultPort = 8420;
 inline constexpr std::size_t kMaxClients = 16;              // WebSockets at once
 inline constexpr std::size_t kMaxConnections = 64;          // with those of requests
+inline constexpr std::size_t kMaxSnapshotsWaiting = 8;      // of all clients; the gateway's pictures have other uses
 inline constexpr std::size_t kMaxMessageBytes = 16 * 1024;  // from a client
 inline constexpr double kCommandsPerSecond = 20;            // of a client; and twice as many at once
 inline constexpr std::size_t kMaxCommandsWaiting = 32;      // of a client, for their acknowledgement

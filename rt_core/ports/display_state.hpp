@@ -84,7 +84,8 @@ struct DisplayState {
   DisplayLayout layout;  // as the cell file has it; nothing changes it
   std::array<DisplayView, kViews> views;
   DisplayModes modes;
-  double tag_length_m = 0.25;  // TAG_DRAWLEN; the manual's default
+  std::uint64_t smear_ends = 0;  // how often SMEAR was switched off: whoever missed it knows that the traces are over
+  double tag_length_m = 0.25;    // TAG_DRAWLEN; the manual's default
   std::vector<DrawRule> draw_rules;
   std::vector<CameraSetting> cameras;  // of all cameras of the cell, in its order
   std::string current_camera;          // of CAM_MAINVIEW: the one a command named last; empty: the first

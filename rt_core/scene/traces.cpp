@@ -32,10 +32,11 @@ void Traces::extend(const SceneInput& input) {
 }
 
 void Traces::draw(const SceneInput& input, Scene& scene) {
-  if (!input.display->on(DisplayMode::smear)) {
-    traces_.clear();
-    return;
-  }
+  const bool on = input.display->on(DisplayMode::smear);
+  // It may have been off between two scenes.
+  if (!on || input.display->smear_ends != smear_ends_) traces_.clear();
+  smear_ends_ = input.display->smear_ends;
+  if (!on) return;
   std::erase_if(traces_, [&](const Trace& trace) {
     return std::ranges::find(input.cell->robots, trace.robot, &CompiledRobot::id) == input.cell->robots.end();
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <string>
 
@@ -28,6 +29,7 @@ class Traces {
   Trace& trace_of(const std::string& robot);
 
   std::deque<Trace> traces_;  // the newest last
+  std::uint64_t smear_ends_ = 0;
 };
 
 }  // namespace cellmirror::scene

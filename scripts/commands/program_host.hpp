@@ -43,7 +43,7 @@ class ProgramHost {
 
   // True while a robot moves, or a robot program or a view sequence runs that can still end: what WAIT waits for.
   [[nodiscard]] virtual bool busy() const = 0;
-  // Programs that have failed, and deadlocks, so far.
+  // Programs that have failed so far.
   [[nodiscard]] virtual std::uint64_t failures() const = 0;
   // What failed since failures() was `since`, or why programs that run cannot end (a deadlock).
   [[nodiscard]] virtual Result<void> verdict(std::uint64_t since) const = 0;

@@ -51,14 +51,15 @@ Result<void> Controllers::load(std::string_view robot, std::string_view name, st
   if (auto fit = controller.check_load(name, *program); !fit) return fit;
   const auto known = controller.programs().find(name);
   const std::shared_ptr<LoadedProgram> replaced = known == controller.programs().end() ? nullptr : known->second;
+  const Semaphores before = context_.semaphores;
   if (replaced) set_back_semaphores(*replaced);
   if (auto declared = declare_semaphores(*program); !declared) {
-    if (replaced) static_cast<void>(declare_semaphores(*replaced->program));  // they were known before
+    context_.semaphores = before;
     return declared;
   }
   controller.put(name, std::move(program));
-  changed_ = true;
   alone_since_ = {};
+  look_again();
   return {};
 }
 
@@ -99,11 +100,12 @@ void Controllers::set_back_semaphores(const LoadedProgram& gone) {
 }
 
 Result<void> Controllers::run(std::string_view robot, std::string_view name, Begin begin, Direction direction) {
-  changed_ = true;
-  alone_since_ = {};
-  return with(find(robot), [&](VirtualController& controller) {
+  const Result<void> begun = with(find(robot), [&](VirtualController& controller) {
     return controller.run(name, begin == Begin::exec_wait, direction);
   });
+  alone_since_ = {};
+  look_again();
+  return begun;
 }
 
 Result<void> Controllers::remove(std::string_view robot, std::string_view name) {
@@ -114,7 +116,7 @@ Result<void> Controllers::remove(std::string_view robot, std::string_view name) 
   for (const std::string& semaphore : (*removed)->used) {
     if (!used(semaphore, **removed, false)) context_.semaphores.forget(semaphore);
   }
-  changed_ = true;
+  look_again();
   return {};
 }
 
@@ -131,30 +133,32 @@ Result<void> Controllers::step(std::string_view robot, Direction direction) {
 }
 
 Result<void> Controllers::stop(std::string_view robot) {
-  changed_ = true;
-  return with(find(robot), [](VirtualController& controller) { return controller.stop(); });
+  const Result<void> stopped = with(find(robot), [](VirtualController& controller) { return controller.stop(); });
+  look_again();
+  return stopped;
 }
 
 void Controllers::stop_all() {
-  changed_ = true;
   for (const auto& controller : controllers()) {
     if (controller->busy()) static_cast<void>(controller->stop());
   }
+  look_again();
 }
 
 void Controllers::give_up(std::string_view robot, const Error& why, bool forget) {
   const auto found = robots_.find(robot);
   if (found == robots_.end()) return;
-  changed_ = true;
   const std::shared_ptr<VirtualController> controller = found->second;
   controller->give_up(why.text());
-  if (!forget) return;
-  robots_.erase(found);
-  for (const auto& [name, program] : controller->programs()) {
-    for (const std::string& semaphore : program->used) {
-      if (!used(semaphore, *program, false)) context_.semaphores.forget(semaphore);
+  if (forget) {
+    robots_.erase(found);
+    for (const auto& [name, program] : controller->programs()) {
+      for (const std::string& semaphore : program->used) {
+        if (!used(semaphore, *program, false)) context_.semaphores.forget(semaphore);
+      }
     }
   }
+  look_again();
 }
 
 Result<SignalBoard*> Controllers::open_signals(std::string_view robot, std::size_t number) {
@@ -195,6 +199,13 @@ bool Controllers::busy() const {
 bool Controllers::busy(std::string_view robot) const {
   const auto found = robots_.find(robot);
   return found != robots_.end() && found->second->busy();
+}
+
+bool Controllers::waits_for_time() const {
+  return std::any_of(robots_.begin(), robots_.end(), [](const auto& robot) {
+    const ProgramRun* run = robot.second->run();
+    return run != nullptr && run->waits_for_time();
+  });
 }
 
 bool Controllers::moves(std::string_view robot) const {

@@ -75,6 +75,8 @@ class Controllers {
   // A program runs, waits, is held, queued or delayed.
   [[nodiscard]] bool busy() const;
   [[nodiscard]] bool busy(std::string_view robot) const;
+  // One that runs goes on by itself at a known time: behind its rob_program_delays, at a time limit.
+  [[nodiscard]] bool waits_for_time() const;
   // The robot's moves belong to a program now; POS_ROB from elsewhere is refused. Not while the program carries out a
   // SCRIPT comment at rest, which may move the robot itself.
   [[nodiscard]] bool moves(std::string_view robot) const;
@@ -102,6 +104,7 @@ class Controllers {
   // By another program; `by_occupied_ones`: that runs or is queued.
   [[nodiscard]] bool used(std::string_view semaphore, const LoadedProgram& except, bool by_occupied_ones) const;
   void look_for_deadlock();
+  void look_again();
   void report(Deadlock found);
   [[nodiscard]] std::vector<std::string> could_release(std::string_view semaphore) const;
 

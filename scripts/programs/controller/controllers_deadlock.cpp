@@ -12,13 +12,13 @@ namespace cellmirror::program {
 
 namespace {
 
-void append_parties(const VirtualController& controller, std::vector<Party>& parties) {
+void append_parties(const VirtualController& controller, const Semaphores& semaphores, std::vector<Party>& parties) {
   std::size_t behind = Party::kNobody;
   if (const ProgramRun* run = controller.run(); run != nullptr) {
     behind = parties.size();
-    // Held or not: a semaphore is what it needs before all else.
-    parties.push_back(
-        {controller.robot(), &run->loaded(), run->step_name(), std::string(run->semaphore()), Party::kNobody});
+    // Held or not: a semaphore is what it needs before all else. Of a free one it has to be let go on only.
+    const std::string wanted(semaphores.available(run->semaphore()) ? std::string_view{} : run->semaphore());
+    parties.push_back({controller.robot(), &run->loaded(), run->step_name(), wanted, Party::kNobody});
   }
   for (const VirtualController::Queued& queued : controller.queue()) {
     parties.push_back({controller.robot(), queued.program.get(), {}, {}, behind});
@@ -34,20 +34,26 @@ void Controllers::look_for_deadlock() {
   std::optional<Deadlock> found;
   if (waiting) {
     std::vector<Party> parties;
-    for (const auto& [robot, controller] : robots_) append_parties(*controller, parties);
+    for (const auto& [robot, controller] : robots_) append_parties(*controller, context_.semaphores, parties);
     found = find_deadlock(parties);
   }
   const bool alone = found && std::any_of(found->waiting.begin(), found->waiting.end(),
                                           [](const Deadlock::Waiting& one) { return one.releasers.empty(); });
   if (!alone) alone_since_ = {};
   if (alone && !alone_since_.known()) alone_since_ = context_.clock.now();
-  if (alone && context_.clock.now() - alone_since_ < kGrace) return;
-  if (!found) {
-    deadlock_.reset();
-    return;
+  if (found) {
+    for (Deadlock::Waiting& one : found->waiting) one.not_started = could_release(one.semaphore);
   }
-  for (Deadlock::Waiting& one : found->waiting) one.not_started = could_release(one.semaphore);
-  if (deadlock_ != found) report(std::move(*found));
+  if (deadlock_ == found) return;
+  deadlock_.reset();
+  const bool grace = alone && context_.clock.now() - alone_since_ < kGrace;
+  if (found && !grace) report(std::move(*found));
+}
+
+// After a command: at once, since a script may ask for the deadlock before the next follow().
+void Controllers::look_again() {
+  changed_ = true;
+  if (!following_) look_for_deadlock();
 }
 
 std::vector<std::string> Controllers::could_release(std::string_view semaphore) const {

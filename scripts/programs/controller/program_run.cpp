@@ -122,11 +122,13 @@ bool ProgramRun::look_at_activities() {
     activities_.pop_front();
     any = true;
   }
-  if (phase_ == Phase::activity) {
-    phase_ = Phase::running;
-    lent_ = false;
-    due_ = std::max(due_, context_.clock.now());
-  }
+  if (phase_ != Phase::activity) return any;
+  if (any) due_ = std::max(due_, context_.clock.now());
+  const MotionProgress progress = context_.motion.progress(robot_);
+  if (progress.moving) return any;
+  phase_ = Phase::running;
+  lent_ = false;
+  due_ = std::max(due_, progress.finished_time);
   return any;
 }
 
@@ -161,7 +163,7 @@ bool ProgramRun::fetch() {
   statements_left_ -= std::min<std::uint64_t>(statements_left_, executed);
   switch (step) {
     case Machine::Step::command:
-      if (!dropped(machine_.command())) pending_ = machine_.command();
+      pending_ = machine_.command();
       return true;
     case Machine::Step::spent:
       // Where it computes: an endless loop is to be found.

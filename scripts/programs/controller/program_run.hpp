@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -51,6 +52,10 @@ class ProgramRun final : private ProgramWorld {
   [[nodiscard]] std::string_view wanted_semaphore() const { return held_ ? std::string_view{} : semaphore_; }
   // The same, also while it is held.
   [[nodiscard]] std::string_view semaphore() const { return semaphore_; }
+  // What it waits for comes by itself, at a known time: rob_program_delays, a time limit.
+  [[nodiscard]] bool waits_for_time() const {
+    return !held_ && (phase_ == Phase::delayed || (phase_ == Phase::condition && deadline_.known()));
+  }
   // Since when it waits.
   [[nodiscard]] Timestamp due() const { return due_; }
   // A SCRIPT comment is being carried out at rest: it may move the robot itself.
@@ -97,10 +102,11 @@ class ProgramRun final : private ProgramWorld {
     bool step = false;
     bool stopping = false;  // the moves ahead are being forgotten
   };
-  // Where the robot is in a reversible program that is turned round.
-  struct Between {
-    StatementId statement = 0;        // of a check point
-    std::optional<Direction> toward;  // on the way to it in this direction; none: stands there
+  // Where the robot stands in a reversible program that was turned round.
+  struct Turned {
+    StatementId check_point = 0;  // it stands there or, was it on its way to it when it was turned, before it
+    // By direction: the statement that the program goes on with; none: what lies behind the check point in it.
+    std::array<std::optional<StatementId>, 2> next;
   };
   enum class Done : std::uint8_t { yes, not_yet };
 
@@ -134,6 +140,7 @@ class ProgramRun final : private ProgramWorld {
   Done begin_to(const RestCommand& rest, const CanonicalCommand& command);
   // Outputs, releases, comments: at the end of the moves before, for which the program does not wait where they fly.
   Done carry_out_at_end(const CanonicalCommand& command);
+  [[nodiscard]] bool moved_by_comment(const CanonicalCommand& command) const;
   [[nodiscard]] bool may_execute(const CanonicalCommand& command) const;
   void execute(const CanonicalCommand& command, Timestamp when);
   Result<void> execute(const OutputCommand& output, Timestamp when);
@@ -146,9 +153,10 @@ class ProgramRun final : private ProgramWorld {
   void hold_here();
   void go();
   bool settle();
-  [[nodiscard]] std::optional<Between> between() const;
   Result<void> turn(Direction direction);
-  [[nodiscard]] bool dropped(const CanonicalCommand& command) const;
+  [[nodiscard]] std::optional<StatementId> first_undone(Direction direction) const;
+  void forget_ahead();
+  void put_machine_at_robot();
   [[nodiscard]] bool step_is_over() const;
   [[nodiscard]] std::uint32_t first_move_ahead() const;
 
@@ -197,9 +205,10 @@ class ProgramRun final : private ProgramWorld {
   Nanoseconds held_time_{0};
   std::optional<Request> request_;
   bool stepping_ = false;
-  std::uint32_t step_ticket_ = 0;     // the move of this step; 0: none yet
-  bool forget_ahead_ = false;         // turned round: the moves in the tick are not wanted any more
-  std::optional<Between> turned_at_;  // until the first move behind it: commands that lie behind the robot are dropped
+  std::uint32_t step_ticket_ = 0;  // the move of this step; 0: none yet
+  bool forget_ahead_ = false;      // turned round: what is ahead of the robot is not wanted any more
+  std::optional<Direction> went_;  // turned round from this direction, and what is ahead has not been forgotten yet
+  std::optional<Turned> turned_;   // until the first move behind it
 
   std::size_t statements_left_ = kStatements;
   std::size_t scripts_left_ = kScripts;

@@ -55,7 +55,7 @@ void ProgramRun::put_ahead(const Result<std::uint32_t>& ticket, const CanonicalC
   }
   const bool move = std::holds_alternative<MoveCommand>(command.what);
   moving_.push_back({*ticket, command.statement, move, fly});
-  if (move) turned_at_.reset();
+  if (move) turned_.reset();
   if (move && stepping_) step_ticket_ = *ticket;
   tell_command(ProgramEvent::Kind::command, context_.clock.now(), command, *ticket);
 }
@@ -117,9 +117,14 @@ ProgramRun::Done ProgramRun::carry_out_at_end(const CanonicalCommand& command) {
   tell_command(ProgramEvent::Kind::command, due_, command);
   lent_ = true;
   execute(command, due_);
-  lent_ = !activities_.empty() && end_ == End::none;
+  // A move of this robot may be all that the comment has begun (MOVE_ROB): then there is no activity.
+  lent_ = end_ == End::none && (!activities_.empty() || moved_by_comment(command));
   if (lent_) phase_ = Phase::activity;
   return Done::yes;
+}
+
+bool ProgramRun::moved_by_comment(const CanonicalCommand& command) const {
+  return std::holds_alternative<ScriptCommand>(command.what) && context_.motion.progress(robot_).moving;
 }
 
 bool ProgramRun::may_execute(const CanonicalCommand& command) const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "rt_core/base/contract.hpp"
 #include "scripts/programs/controller/program_run.hpp"
 
 namespace cellmirror::program {
@@ -54,21 +55,48 @@ Result<void> ProgramRun::step(Direction direction) {
   return {};
 }
 
-std::optional<ProgramRun::Between> ProgramRun::between() const {
-  if (turned_at_) return turned_at_;
-  const auto ahead = std::find_if(moving_.begin(), moving_.end(), [](const Moving& moving) { return moving.move; });
-  if (ahead != moving_.end()) return Between{ahead->statement, machine_.direction()};
-  if (at_) return Between{*at_, {}};
+// The robot goes the other way when it stands: until then it may come to the next check point.
+Result<void> ProgramRun::turn(Direction direction) {
+  const bool moved = turned_ || at_ || first_move_ahead() != 0;
+  if (!moved) return fail(fmt::format("{} of {} has not moved yet", loaded_->name, robot_), "step FORWARD");
+  const Direction before = machine_.direction();
+  if (auto turned = machine_.set_direction(direction); !turned) return turned;
+  if (went_ == direction) {  // taken back: all that is ahead is wanted again
+    went_.reset();
+    forget_ahead_ = false;
+    return {};
+  }
+  if (!forget_ahead_) went_ = before;
+  forget_ahead_ = true;
   return {};
 }
 
-// The machine is turned at once; the robot goes the other way when it stands.
-Result<void> ProgramRun::turn(Direction direction) {
-  const auto here = between();
-  if (!here) return fail(fmt::format("{} of {} has not moved yet", loaded_->name, robot_), "step FORWARD");
-  if (auto turned = machine_.set_direction(direction); !turned) return turned;
-  turned_at_ = here;
-  forget_ahead_ = true;
+// The first command in this direction that has not been carried out or come to its end.
+std::optional<StatementId> ProgramRun::first_undone(Direction direction) const {
+  const bool forward = direction == Direction::forward;
+  std::optional<StatementId> first;
+  const auto consider = [&](StatementId statement) {
+    if (!first || (forward ? statement < *first : statement > *first)) first = statement;
+  };
+  if (forward) consider(machine_.position());
+  if (!moving_.empty()) consider(moving_.front().statement);
+  if (!deferred_.empty()) consider(deferred_.front().command.statement);
+  if (pending_) consider(pending_->statement);
+  if (closing_ && closing_->at) consider(*closing_->at);
+  return first;
+}
+
+void ProgramRun::forget_ahead() {
+  if (!went_) return;  // forgotten already, and nothing was given since
+  const auto ahead = std::find_if(moving_.begin(), moving_.end(), [](const Moving& moving) { return moving.move; });
+  if (ahead != moving_.end()) {
+    turned_ = Turned{ahead->statement, {}};
+  } else if (!turned_) {
+    turned_ = Turned{*at_, {}};
+  }
+  if (const auto undone = first_undone(*went_)) turned_->next[static_cast<std::size_t>(*went_)] = undone;
+  went_.reset();
+  moving_.clear();
   pending_.reset();
   closing_.reset();
   deferred_.clear();
@@ -77,16 +105,13 @@ Result<void> ProgramRun::turn(Direction direction) {
   semaphore_.clear();
   lent_ = false;
   phase_ = Phase::running;
-  return {};
 }
 
-// What lies behind the robot in the direction in which it goes now. The machine is ahead of the robot by the moves that
-// wait in the tick, so that it passes them once more when it is turned.
-bool ProgramRun::dropped(const CanonicalCommand& command) const {
-  if (!turned_at_) return false;
-  const bool forward = machine_.direction() == Direction::forward;
-  if (command.statement == turned_at_->statement) return turned_at_->toward != machine_.direction();
-  return forward ? command.statement < turned_at_->statement : command.statement > turned_at_->statement;
+// The machine was ahead of the robot by what has been forgotten.
+void ProgramRun::put_machine_at_robot() {
+  const auto next = turned_->next[static_cast<std::size_t>(machine_.direction())];
+  const Result<void> put = next ? machine_.go_on_with(*next) : machine_.stand_at(turned_->check_point);
+  CELLMIRROR_EXPECTS(put.has_value());
 }
 
 bool ProgramRun::settle() {
@@ -101,13 +126,12 @@ bool ProgramRun::settle() {
       fail_now(stopped.error().text());
       return true;
     }
-    // It has braked beyond the end of the move that ran when it was turned.
-    if (first_move_ahead() != 0) turned_at_->statement = moving_.front().statement;
-    moving_.clear();
+    forget_ahead();
     request_->stopping = true;
     return true;
   }
   if (progress.moving) return false;
+  put_machine_at_robot();
   forget_ahead_ = false;
   go();
   return true;

@@ -34,6 +34,11 @@ Result<void> Semaphores::declare(std::string_view name, std::uint32_t initial) {
   return {};
 }
 
+bool Semaphores::available(std::string_view name) const {
+  const auto found = semaphores_.find(name);
+  return found != semaphores_.end() && found->second.count > 0;
+}
+
 bool Semaphores::try_acquire(std::string_view name) {
   const auto found = semaphores_.find(name);
   if (found == semaphores_.end() || found->second.count == 0) return false;

@@ -33,6 +33,7 @@ class Semaphores {
   Result<void> declare(std::string_view name, std::uint32_t initial);
   // One that was never declared begins with 0.
   [[nodiscard]] bool try_acquire(std::string_view name);
+  [[nodiscard]] bool available(std::string_view name) const;  // to who tries next
   // Refused: beyond kMostCount, or kMost.
   Result<void> release(std::string_view name, Timestamp when);
   // When it was released last; never: not yet.

@@ -115,9 +115,8 @@ Result<void> VirtualController::step(Direction direction) {
 
 Result<void> VirtualController::stop() {
   if (!busy()) return std::unexpected(none_runs());
+  if (const std::shared_ptr<ProgramRun> run = std::exchange(run_, nullptr)) run->stop();
   drop_queue(ProgramState::stopped, {});
-  if (run_) run_->stop();
-  run_.reset();
   return {};
 }
 

@@ -84,7 +84,7 @@ Term ExpressionReader::symbol(std::string_view name, std::uint32_t column) {
     return unknown;
   }
   const Term index = list_index();
-  if (!index.known) return unknown;
+  if (!index.known || !has_element(symbol->variable, index)) return unknown;
   return terms_.apply(Operator::element, column, {index}, symbol->variable);
 }
 
@@ -100,6 +100,18 @@ Term ExpressionReader::list_index() {
     return Term{};
   }
   return index;
+}
+
+bool ExpressionReader::has_element(VariableId list, const Term& index) {
+  const std::optional<Value> value = terms_.constant(index);
+  const auto* number = value ? std::get_if<std::int64_t>(&*value) : nullptr;
+  if (number == nullptr || list == kNone) return true;  // too many variables have been told
+  const Variable& variable = terms_.builder().variable_of(list);
+  const std::int64_t last = variable.first + static_cast<std::int64_t>(variable.initial.size()) - 1;
+  if (*number >= variable.first && *number <= last) return true;
+  terms_.findings().error(index.column, fmt::format("'{}' has no element {}", variable.name, *number),
+                          fmt::format("its elements are {} to {}", variable.first, last));
+  return false;
 }
 
 const Symbol* ExpressionReader::known_symbol(std::string_view name, std::uint32_t column) {
@@ -302,7 +314,7 @@ AssignTarget ExpressionReader::read_target(Cursor& cursor) {
         symbol->kind == Symbol::Kind::list ? fmt::format("write {}[index]", name) : "write the name of a variable");
     return target;
   }
-  if (indexed && !index.known) return target;
+  if (indexed && (!index.known || !has_element(symbol->variable, index))) return target;
   target.type = symbol->type;
   target.variable = symbol->variable;
   if (indexed) target.index = terms_.id(index);

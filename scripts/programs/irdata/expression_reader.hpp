@@ -71,6 +71,8 @@ class ExpressionReader {
   Term port(Operator which, std::string_view text, std::uint32_t column);
   Term list_bound(Word which, std::uint32_t column);
   Term list_index();
+  // False, and told: a constant index of an element that is not there.
+  bool has_element(VariableId list, const Term& index);
   bool are_numbers(std::size_t begin, std::string_view function);
   void undeclared(std::string_view name, std::uint32_t column);
 

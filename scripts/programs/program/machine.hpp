@@ -68,6 +68,9 @@ class Machine {
   // Reversible programs: the robot is at, or on its way to, the check point of this statement (of a command that was
   // given); commands given after it have been taken back. next() goes on from there.
   Result<void> stand_at(StatementId check_point);
+  // Reversible programs: next() goes on with this statement in the direction in force, whatever was given before.
+  // Backward: with this check point.
+  Result<void> go_on_with(StatementId statement);
 
   // The statement that next() will execute; the size of the program at its end.
   [[nodiscard]] StatementId position() const { return position_; }
@@ -118,7 +121,7 @@ class Machine {
   std::optional<StatementId> waiting_;  // the newest WaitCommand
   bool timed_out_ = false;
   std::vector<CheckPoint> check_points_;  // of reversible programs, once they are run backward
-  bool behind_end_ = false;               // backward from the end, and the last check point has not been given yet
+  bool behind_end_ = false;               // backward from the end, and the last check point is to be given
   CanonicalCommand command_;
   Diagnostic error_;
   std::uint64_t executed_ = 0;

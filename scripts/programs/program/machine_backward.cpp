@@ -1,6 +1,7 @@
 // Reversible programs run backward: from check point to check point. Such a program has no jumps, so the check points
 // before position_ are those that have been given.
 #include <algorithm>
+#include <iterator>
 
 #include "scripts/programs/program/machine.hpp"
 #include "scripts/programs/program/program_check.hpp"
@@ -73,6 +74,22 @@ Result<void> Machine::stand_at(StatementId check_point) {
   position_ = check_point + 1;
   behind_end_ = false;
   find_settings();
+  return {};
+}
+
+Result<void> Machine::go_on_with(StatementId statement) {
+  if (!program_->reversible) return fail("the program '" + program_->name + "' goes one way only");
+  behind_end_ = false;
+  if (direction_ == Direction::forward) {
+    position_ = std::min(statement, static_cast<StatementId>(program_->statements.size()));
+    find_settings();
+    return {};
+  }
+  const auto to = std::ranges::find(check_points_, statement, &CheckPoint::statement);
+  if (to == check_points_.end()) return fail("the program '" + program_->name + "' has no such check point");
+  const auto from = std::next(to);
+  behind_end_ = from == check_points_.end();
+  position_ = behind_end_ ? static_cast<StatementId>(program_->statements.size()) : from->statement + 1;
   return {};
 }
 

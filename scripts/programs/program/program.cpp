@@ -23,7 +23,7 @@ void Program::check_for(std::span<const JointKind> joints, Diagnostics& diagnost
   for (StatementId id = 0; id < statements.size(); ++id) {
     const auto* move = std::get_if<MoveStatement>(&statements[id]);
     if (move == nullptr) continue;
-    const std::size_t count = joint_count(*this, move->target);
+    const std::size_t count = std::max(joint_count(*this, move->target), joint_count(*this, move->via));
     if (count > joints.size()) {
       diagnostics.error(place(id),
                         fmt::format("the move has {} joint values, the robot has {} joints", count, joints.size()));

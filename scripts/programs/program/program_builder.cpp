@@ -89,13 +89,13 @@ std::size_t ProgramBuilder::foldable_tail(std::span<const ExpressionId> operands
   return count;
 }
 
-std::optional<ExpressionId> ProgramBuilder::fold(Operator which, std::span<const ExpressionId> operands,
-                                                 std::uint32_t payload) {
+Result<std::optional<ExpressionId>> ProgramBuilder::fold(Operator which, std::span<const ExpressionId> operands,
+                                                         std::uint32_t payload) {
   if (looks_at_world(which) || names_something(which)) return std::nullopt;
   const std::size_t count = foldable_tail(operands);
   if (count == 0) return std::nullopt;
   auto value = apply(which, std::span<const Value>(program_->constants).last(count), payload);
-  if (!value) return std::nullopt;
+  if (!value) return fail(std::move(value.error().what), "change the values");
   program_->expressions.resize(program_->expressions.size() - count);
   program_->constants.resize(program_->constants.size() - count);
   types_.resize(program_->expressions.size());
@@ -108,7 +108,9 @@ Result<ExpressionId> ProgramBuilder::operation(Operator which, std::span<const E
   CELLMIRROR_EXPECTS(which != Operator::constant && which != Operator::variable);
   const auto type = operation_type(which, operands, payload);
   if (!type) return std::unexpected(type.error());
-  if (const auto folded = fold(which, operands, payload)) return *folded;
+  const auto folded = fold(which, operands, payload);
+  if (!folded) return std::unexpected(folded.error());
+  if (*folded) return **folded;
   const ExpressionNode node{.which = which,
                             .operands = static_cast<std::uint8_t>(operands.size()),
                             .first_operand = static_cast<std::uint32_t>(program_->operands.size()),

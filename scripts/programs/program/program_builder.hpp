@@ -39,7 +39,7 @@ class ProgramBuilder {
   // Refused: a list without an index.
   Result<ExpressionId> variable(VariableId id);
   // `payload`: see Operator. Refused: a wrong number of operands, types that the operator does not take, nested too
-  // deep. What a constant operation would fail with (division by 0) it fails with when it is executed.
+  // deep, constants that it fails with (division by 0).
   Result<ExpressionId> operation(Operator which, std::span<const ExpressionId> operands, std::uint32_t payload = 0);
   Result<ExpressionId> operation(Operator which, std::initializer_list<ExpressionId> operands,
                                  std::uint32_t payload = 0);
@@ -89,7 +89,9 @@ class ProgramBuilder {
  private:
   void append(const Statement& statement);
   [[nodiscard]] std::size_t foldable_tail(std::span<const ExpressionId> operands) const;
-  std::optional<ExpressionId> fold(Operator which, std::span<const ExpressionId> operands, std::uint32_t payload);
+  // None where it is not constant.
+  Result<std::optional<ExpressionId>> fold(Operator which, std::span<const ExpressionId> operands,
+                                           std::uint32_t payload);
   [[nodiscard]] Result<ValueType> operation_type(Operator which, std::span<const ExpressionId> operands,
                                                  std::uint32_t payload) const;
   void push_node(const ExpressionNode& node, ValueType type, std::uint8_t depth);

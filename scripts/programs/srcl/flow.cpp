@@ -49,7 +49,11 @@ std::optional<bool> Parser::flow_statement(const Token& at) {
     case Keyword::call:
       return call(at);
     case Keyword::return_back:
-      emitter_.add(ReturnStatement{}, at);
+      if (blocks_.in_subprogram()) {
+        emitter_.add(ReturnStatement{}, at);
+      } else {
+        faults_.add(at, fmt::format("{} stands outside of a subprogram", shown(at)), "end the program with ENDE");
+      }
       return true;
     case Keyword::halt:
       emitter_.add(PauseStatement{}, at);

@@ -145,6 +145,87 @@ class Ends(Simulation):
             self.assertIn(words, done.stdout)
 
 
+class Waiting(Simulation):
+    """What ends by itself is waited for, however long nothing happens until then."""
+
+    def setUp(self):
+        super().setUp()
+        (self.home.root / "programs").mkdir()
+
+    def program(self, name, *records):
+        lines = [f"HEADER, {name}", *records, "END"]
+        (self.home.root / f"programs/{name}.ird").write_text(
+            "".join(f"{n}, {line}\n" for n, line in enumerate(lines, start=1)))
+
+    def second_robot(self):
+        slider = (self.home.root / "envlib/slider.mpc").read_text()
+        (self.home.root / "envlib/other.mpc").write_text(slider.replace('"S1"', '"S2"').replace('"EYE"', '"EYE2"'))
+        node = '[[node]]\nname = "Other"\nabstract = "other.mpc"\nxyz_m = [0.0, 9.0, 0.0]\n'
+        self.home.cell.write_text(s.CELL.replace("[collision]", node + "[collision]"))
+
+    def test_a_time_limit_of_a_program(self):
+        self.program("waits", "END_HEADER", "WAIT_INPUT, 3, ON, 5, late", "LABEL, late")
+        found = self.simulate("TF_LOAD waits S1;\nTF_RUN waits S1;\nWAIT", "--still", "2", "--no-collisions")
+        self.assertEqual(found["end"], "finished")
+        self.assertAlmostEqual(found["simulated_s"], 5, delta=10 * TICK)
+
+    def test_the_delay_of_programs(self):
+        self.program("nothing", "END_HEADER")
+        found = self.simulate("ROBACT S1;\nrob_program_delays 5;\nTF_LOAD nothing S1;\nTF_RUN nothing S1;\nWAIT",
+                              "--still", "2", "--no-collisions")
+        self.assertEqual(found["end"], "finished")
+        self.assertAlmostEqual(found["simulated_s"], 5, delta=10 * TICK)
+
+    def test_an_input_that_nobody_sets_is_not_waited_for(self):
+        self.program("waits", "END_HEADER", "WAIT_INPUT, 3, ON")
+        found = self.simulate("TF_LOAD waits S1;\nTF_RUN waits S1;\nWAIT", "--still", "2", "--no-collisions", status=1)
+        self.assertEqual(found["end"], "stands still")
+        self.assertLess(found["simulated_s"], 3)
+
+    def test_a_robot_that_a_comment_moves_rests_before_the_program_goes_on(self):
+        self.program("closes", "END_HEADER", "COMMENT, %MOVE_ROB S1 PTP JOINT_ABS 1000", "DOUT, 4, ON")
+        found = self.simulate(SET_UP + "TF_LOAD closes S1;\nTF_RUN closes S1;\nWAIT", "--no-collisions")
+        (move,) = found["moves"]
+        (output,) = [event for event in found["events"] if event["event"] == "done" and "output" in event["text"]]
+        self.assertGreaterEqual(output["time_s"], move["end_s"] - TICK / 2)
+
+    def test_a_time_limit_beside_a_deadlock(self):
+        self.second_robot()
+        self.program("stuck", "SEMAPHORE, nobody_releases, 0", "END_HEADER", "ACQUIRE, nobody_releases")
+        self.program("waits", "END_HEADER", "WAIT_INPUT, 3, ON, 5, late", "LABEL, late")
+        found = self.simulate("TF_LOAD stuck S1;\nTF_LOAD waits S2;\nTF_RUN stuck S1;\nTF_RUN waits S2",
+                              "--no-collisions", status=1)
+        self.assertEqual(found["end"], "stands still")
+        ends = {program["program"]: program["end"] for program in found["programs"]}
+        self.assertEqual(ends["waits"], "ended")
+
+    def test_a_deadlock_that_the_script_ends_in_time_is_no_failure(self):
+        self.second_robot()
+        self.program("takes", "SEMAPHORE, table, 0", "END_HEADER", "ACQUIRE, table")
+        self.program("gives", "SEMAPHORE, table, 0", "END_HEADER", "RELEASE, table")
+        found = self.simulate(SET_UP + "TF_LOAD takes S2;\nTF_LOAD gives S1;\nTF_RUN takes S2;\n"
+                              "POS_ROB S1 JOINT_ABS 1900;\nTF_RUN gives S1;\nWAIT", "--no-collisions")
+        self.assertEqual(len(found["deadlocks"]), 1)
+        self.assertEqual((found["end"], found["refused"], found["failed"]), ("finished", [], False))
+
+    def test_a_script_that_ends_a_deadlock_waits_for_what_it_starts_then(self):
+        self.program("stuck", "SEMAPHORE, nobody_releases, 0", "END_HEADER", "ACQUIRE, nobody_releases")
+        self.program("home", "END_HEADER", "WAIT_INPUT, 3, ON, 2, late", "LABEL, late")
+        found = self.simulate("TF_LOAD stuck S1;\nTF_LOAD home S1;\nTF_RUN stuck S1;\nWAIT;\nTF_STOP S1;\n"
+                              "TF_RUN home S1;\nWAIT", "--no-collisions", status=1)
+        self.assertEqual([refusal["line"] for refusal in found["refused"]], [4])
+        ends = {program["program"]: program["end"] for program in found["programs"]}
+        self.assertEqual(ends, {"stuck": "stopped", "home": "ended"})
+
+    def test_programs_that_are_stopped_with_their_queue_have_one_run_each(self):
+        self.program("first", "END_HEADER", "WAIT_INPUT, 3, ON")
+        self.program("second", "END_HEADER")
+        found = self.simulate("TF_LOAD first S1;\nTF_LOAD second S1;\nTF_RUN first S1;\nTF_RUN second S1 exec_wait;\n"
+                              "TF_STOP S1", "--no-collisions")
+        self.assertEqual([(run["program"], run["end"]) for run in found["programs"]],
+                         [("first", "stopped"), ("second", "stopped")])
+
+
 class TransferCell(unittest.TestCase):
     def test_the_demo_that_moves_the_carried_arm(self):
         done = s.program("simulate", "--cell", s.TRANSFER_CELL, "--script", "trs_demo.spt", "--json")

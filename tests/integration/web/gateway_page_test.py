@@ -7,7 +7,7 @@ import stat
 import unittest
 
 import gateway as g
-from page_client import Live, Page
+from page_client import Live, Page, picture_number
 
 SAMPLE = re.compile(r'^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="(\\.|[^"\\\n])*",?)*\})? '
                     r'(NaN|[+-]Inf|[-+]?[0-9.]+([eE][-+]?[0-9]+)?)$')
@@ -111,7 +111,7 @@ class GatewayPage(unittest.TestCase):
         seen = live.until(lambda m: isinstance(m, dict) and m["is"] == "live" and m["messages"])
         self.assertIn("look here", seen["messages"][-1]["text"])
         for key in ("time_s", "uptime_s", "revision", "tree_revision", "loop", "robots", "touching", "near", "ranges", "forces",
-                    "queues", "display", "cameras", "bell", "warning_distance_m"):
+                    "queues", "display", "cameras", "bell", "warning_distance_m", "collision_age_s"):
             self.assertIn(key, seen)
         robot = next(robot for robot in seen["robots"] if robot["id"] == "MANTEC_R3")
         self.assertEqual(robot["mode"], "simulated")
@@ -151,6 +151,37 @@ class GatewayPage(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("--no-web", done.stderr)
 
+
+class PagesPictures(unittest.TestCase):
+    def setUp(self):
+        self.scratch = g.Scratch()
+        self.addCleanup(self.scratch.remove)
+        self.gateway = g.Gateway(self.scratch, pictures=True, page=True)
+        self.addCleanup(self.gateway.close)
+        if self.scratch.cellmirror("snapshot", "--instance", self.scratch.instance, "-o",
+                                   self.scratch.root / "first.png").returncode != 0:
+            self.skipTest("skipped: no OpenGL without a display here")
+        self.live = Live(page_of(self.scratch))
+        self.addCleanup(self.live.close)
+
+    def picture(self):
+        """The next one, acknowledged."""
+        number = picture_number(self.live.until(picture_number))
+        self.live.say(do="shown", sequence=number)
+
+    def test_a_camera_that_is_not_there_is_told_and_ends_nothing(self):
+        self.live.say(do="picture", width=64, height=48)
+        self.picture()
+        self.live.say(do="picture", width=64, height=48, camera="CAMERA_55")
+        self.assertIn("there is no camera CAMERA_55", self.live.until_is("refused")["text"])
+        self.live.say(do="picture", width=64, height=48)
+        self.picture()
+
+    def test_a_low_rate_holds_back_nothing_that_is_wished_later(self):
+        self.live.say(do="picture", width=64, height=48, rate_hz=0.01)
+        self.picture()
+        self.live.say(do="picture", width=64, height=48, rate_hz=60, view=3)
+        self.picture()
 
 if __name__ == "__main__":
     g.main()

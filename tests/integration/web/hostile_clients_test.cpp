@@ -173,6 +173,21 @@ TEST_F(HostileClients, MayNotFlood) {
   EXPECT_LT(backend.commands.size(), 60u) << "a burst of 40 and what comes meanwhile";
 }
 
+TEST_F(HostileClients, AreToldOnceAWishWhyNoPictureComes) {
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  backend.pictures_fail = true;
+  for (int wish = 0; wish < 2; ++wish) {
+    client.say(R"({"do": "picture", "camera": "C"})");
+    EXPECT_FALSE(client.read_until("there is no camera C").empty()) << wish;
+  }
+  // It would be said again every 5 ms; news come every 100 ms.
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(client.read_until("\"is\":\"live\"").find("there is no camera C"), std::string::npos);
+  backend.pictures_fail = false;
+  EXPECT_FALSE(client.read_until("CMP1").empty());
+}
+
 TEST_F(HostileClients, ThatDoNotAcknowledgeGetTwoPictures) {
   RawClient client(sut->port());
   client.open_live(sut->port());
@@ -209,6 +224,44 @@ TEST_F(HostileClients, AreNoReasonToEndWhereTheGatewayFails) {
   EXPECT_TRUE(starts(get("/api/status"), 500));
   backend.status_throws = false;
   EXPECT_TRUE(works());
+}
+
+TEST_F(HostileClients, ThatWaitForSnapshotsAndPicksDoNotStopTheNews) {
+  backend.keep_waiting = true;
+  std::vector<std::unique_ptr<RawClient>> waiting;
+  for (std::size_t i = 0; i < kMaxSnapshotsWaiting; ++i) {
+    waiting.push_back(std::make_unique<RawClient>(sut->port()));
+    waiting.back()->send("GET /snapshot.png HTTP/1.1\r\n" + host() + "\r\n");
+  }
+  const auto asked = [&] {
+    const std::scoped_lock lock(backend.mutex);
+    return backend.pictures.size();
+  };
+  for (int i = 0; i < 500 && asked() < kMaxSnapshotsWaiting; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_EQ(asked(), kMaxSnapshotsWaiting);
+  const std::string busy = get("/snapshot.jpg");
+  EXPECT_TRUE(starts(busy, 503)) << busy;
+  EXPECT_NE(busy.find("Retry-After: 1\r\n"), std::string::npos) << busy;
+  EXPECT_EQ(asked(), kMaxSnapshotsWaiting) << "one more was not asked for";
+  std::vector<std::unique_ptr<RawClient>> pages;
+  for (int i = 0; i < 3; ++i) {
+    pages.push_back(std::make_unique<RawClient>(sut->port()));
+    pages.back()->open_live(sut->port());
+    pages.back()->say(R"({"do": "picture"})");
+    pages.back()->say(R"({"do": "pick", "id": 9, "x": 0, "y": 0})");
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(pages.back()->read_until("\"is\":\"live\"").empty()) << i;
+  EXPECT_TRUE(works());
+  backend.keep_waiting = false;
+  {
+    const std::scoped_lock lock(backend.mutex);
+    for (const auto& give : backend.pictures) give();
+    for (const auto& give : backend.picks) give();
+  }
+  for (const auto& client : waiting) EXPECT_TRUE(starts(client->read_to_end().value_or(""), 200));
+  EXPECT_FALSE(pages.back()->read_until("\"is\":\"picked\"").empty());
+  EXPECT_TRUE(starts(get("/snapshot.png"), 200)) << "there is room again";
 }
 
 TEST_F(HostileClients, CannotCommandAPageThatOnlyShows) {

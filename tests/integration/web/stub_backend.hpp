@@ -17,21 +17,24 @@ namespace cellmirror::web {
 
 class StubStream final : public PictureStream {
  public:
-  explicit StubStream(std::atomic<int>& open) : open_(open) { ++open_; }
+  StubStream(std::atomic<int>& open, const std::atomic<bool>& fails) : open_(open), fails_(fails) { ++open_; }
   ~StubStream() override { --open_; }
   void change(const PictureWish& /*wish*/) override {}
-  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t after) const override {
+  [[nodiscard]] std::string problem() const override { return fails_ ? "there is no camera C" : ""; }
+  [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has) const override {
+    if (fails_) return nullptr;
     auto picture = std::make_shared<EncodedImage>();
     picture->width = 640;
     picture->height = 480;
     picture->bytes.assign(30'000, std::uint8_t{0x55});
     picture->posture_time = SystemClock().now();
-    picture->sequence = after + 1;
+    picture->sequence = has + 1;
     return picture;
   }
 
  private:
   std::atomic<int>& open_;
+  const std::atomic<bool>& fails_;
 };
 
 class StubBackend final : public Backend {
@@ -59,20 +62,32 @@ class StubBackend final : public Backend {
   }
   void expect_pictures() override { ++expected; }
   Result<std::unique_ptr<PictureStream>> open_pictures(const PictureWish& /*wish*/) override {
-    return std::make_unique<StubStream>(open_streams);
+    return std::make_unique<StubStream>(open_streams, pictures_fail);
   }
-  Result<EncodedImage> picture(const PictureWish& wish, ImageFormat format) override {
-    return EncodedImage{format, wish.width, wish.height, {1, 2, 3}, {}, 1};
+  void ask_picture(const PictureWish& wish, ImageFormat format, PictureReply reply) override {
+    const auto give = [reply = std::move(reply),
+                       picture = EncodedImage{format, wish.width, wish.height, {1, 2, 3}, {}, 1}] { reply(picture); };
+    const std::scoped_lock lock(mutex);
+    pictures.push_back(give);
+    if (!keep_waiting) give();
   }
-  Result<std::optional<PickedObject>> pick(const PictureWish& /*wish*/, int x, int /*y*/) override {
-    if (x == 0) return std::nullopt;
-    return PickedObject{"Robot.J_1", "ROBOT"};
+  void ask_pick(const PictureWish& /*wish*/, int x, int /*y*/, PickReply reply) override {
+    const auto give = [x, reply = std::move(reply)] {
+      reply(x == 0 ? std::nullopt : std::optional(PickedObject{"Robot.J_1", "ROBOT"}));
+    };
+    const std::scoped_lock lock(mutex);
+    picks.push_back(give);
+    if (!keep_waiting) give();
   }
 
   std::atomic<int> open_streams{0};
+  std::atomic<bool> pictures_fail{false};
   std::atomic<bool> status_throws{false};
-  std::atomic<int> expected{0};  // times that somebody opened the page
+  std::atomic<int> expected{0};           // times that somebody opened the page
+  std::atomic<bool> keep_waiting{false};  // whoever asks for a picture or a pick
   std::mutex mutex;
+  std::vector<std::function<void()>> pictures;  // that were asked for; each call answers once more
+  std::vector<std::function<void()>> picks;
   std::vector<std::string> commands;
   std::vector<std::function<void(const CommandReply&)>> held;
 };

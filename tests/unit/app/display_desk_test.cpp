@@ -184,6 +184,16 @@ TEST_F(DisplayDeskTest, AViewFollowsItsCameraUntilStvwTakesItBack) {
   EXPECT_LT((view(0).view.viewpoint - Eigen::Vector3d(-4, 0, 0)).norm(), 1e-9);
 }
 
+TEST_F(DisplayDeskTest, AViewThatLeavesItsCameraProjectsAndClipsAsBefore) {
+  const View before = view(1).view;
+  ASSERT_TRUE(before.orthogonal);
+  ASSERT_TRUE(sut_->connect_view(1, "CAM"));
+  ASSERT_TRUE(sut_->set_view(1, looking_from({0, -4, 0}), AtOnce{}));
+  EXPECT_TRUE(view(1).view.orthogonal);
+  EXPECT_EQ(view(1).view.near_distance, before.near_distance);
+  EXPECT_EQ(view(1).view.far_distance, before.far_distance);
+}
+
 TEST_F(DisplayDeskTest, TheScreensAxesGoAlongWithASequence) {
   ViewChange upright = looking_from({0, -5, 0});
   upright.twist = 0.0;
@@ -220,6 +230,28 @@ TEST_F(DisplayDeskTest, LetsGoOfCamerasFramesAndRobotsThatAreGone) {
   EXPECT_TRUE(sut_->state()->arcs.empty());
 }
 
+TEST_F(DisplayDeskTest, ACameraKeepsWhatWasSetWhenItsNameInTheStateChanges) {
+  ASSERT_TRUE(cell_->delete_node("Right"));
+  ASSERT_TRUE(sut_->show_pyramid("EYE", true));
+  ASSERT_TRUE(sut_->set_camera_online("EYE", true));
+  ASSERT_TRUE(sut_->track("EYE", "Part"));
+  ASSERT_TRUE(sut_->connect_view(1, "EYE"));
+  const auto expect_all_of = [this](const std::string& name) {
+    sut_->follow();
+    EXPECT_TRUE(camera(name).pyramid);
+    EXPECT_TRUE(camera(name).online);
+    EXPECT_EQ(camera(name).tracks, "Lab.Table.Part");
+    EXPECT_EQ(view(1).camera, name);
+    EXPECT_EQ(sut_->state()->current_camera, name);
+  };
+  expect_all_of("EYE");
+  ASSERT_TRUE(cell_->activate("Right"));  // a second of that name
+  expect_all_of("Left.EYE");
+  EXPECT_FALSE(camera("Right.EYE").online);
+  ASSERT_TRUE(cell_->delete_node("Right"));
+  expect_all_of("EYE");
+}
+
 TEST_F(DisplayDeskTest, SwitchesWhatConcernsOneCamera) {
   ASSERT_TRUE(sut_->show_pyramid("CAM", true));
   ASSERT_TRUE(sut_->set_camera_online("Left.EYE", true));
@@ -248,6 +280,15 @@ TEST_F(DisplayDeskTest, ShadowsNeedTheFloorAndTheCamerasViewACamera) {
   sut_->follow();
   EXPECT_FALSE(sut_->state()->on(DisplayMode::camera_main_view));
   EXPECT_FALSE(sut_->set_mode(DisplayMode::camera_main_view, true));
+}
+
+TEST_F(DisplayDeskTest, WhoMissedThatSmearWasOffCanTell) {
+  const std::uint64_t before = sut_->state()->smear_ends;
+  ASSERT_TRUE(sut_->set_mode(DisplayMode::smear, true));
+  EXPECT_EQ(sut_->state()->smear_ends, before);
+  ASSERT_TRUE(sut_->set_mode(DisplayMode::smear, false));
+  ASSERT_TRUE(sut_->set_mode(DisplayMode::smear, true));
+  EXPECT_EQ(sut_->state()->smear_ends, before + 1);
 }
 
 TEST_F(DisplayDeskTest, OfDrawModesTheLastCounts) {

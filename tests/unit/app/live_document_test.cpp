@@ -265,6 +265,12 @@ TEST_F(LiveDocument, ViewsAreWhereTheyAreNowUnderTheNamesOfTheLayout) {
   EXPECT_EQ(sut["modes"].size(), kDisplayModes + 1);
 }
 
+TEST_F(LiveDocument, CamerasAreNamedAsTheDisplayNamesThem) {
+  small_.display.cameras[0].name = "Left.CAM";
+  small_.display.cameras.emplace_back().name = "Right.CAM";
+  EXPECT_THAT(document()["cameras"], ElementsAre("Left.CAM", "Right.CAM"));
+}
+
 TEST_F(LiveDocument, QueuesTellTheirDrops) {
   queues_ = {{"commands", 64, 12, 1000, 3}};
   EXPECT_EQ(document()["queues"][0],

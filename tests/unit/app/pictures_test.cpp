@@ -8,9 +8,11 @@
 #include <string>
 
 #include "app/gateway/picked_object.hpp"
+#include "app/gateway/picture_rate.hpp"
 #include "app/gateway/picture_streams.hpp"
 #include "app/gateway/picture_wish.hpp"
 #include "app/gateway/scene_fingerprint.hpp"
+#include "app/gateway/shots.hpp"
 #include "app/pictures/base64.hpp"
 #include "app/pictures/film.hpp"
 #include "app/pictures/picture_file.hpp"
@@ -100,6 +102,7 @@ TEST(PictureWish, OutOfRangeIsRefused) {
   EXPECT_TRUE(refused([](auto& w) { w.height = kLargestImageEdge + 1; }));
   EXPECT_TRUE(refused([](auto& w) { w.rate_hz = 0; }));
   EXPECT_TRUE(refused([](auto& w) { w.rate_hz = kNan; }));
+  EXPECT_TRUE(refused([](auto& w) { w.rate_hz = 1e-12; }));
   EXPECT_TRUE(refused([](auto& w) { w.quality = 0; }));
   EXPECT_TRUE(refused([](auto& w) { w.view = 0, w.camera = "C"; }));
   EXPECT_FALSE(refused([](auto& w) { w.free_view = View(); }));
@@ -160,6 +163,99 @@ TEST(PictureStreams, PictureOfAnEarlierWishIsNotShown) {
   other.width = 1;
   stream->change(other);
   EXPECT_EQ(looker->wish().width, 640) << "a wish that nobody can fulfil changes nothing";
+}
+
+web::PictureWish seen_from(double x) {
+  web::PictureWish wish;
+  wish.free_view = View();
+  wish.free_view->viewpoint.x() = x;
+  return wish;
+}
+
+// A view that is turned by hand is another wish with every picture.
+TEST(Shots, TakeNoMoreMemoryThanThereAreThatLook) {
+  Shots sut;
+  const web::PictureWish stays;
+  const std::uint8_t* const kept = [&] {
+    Shot& shot = sut.of(stays);
+    shot.image.rgba.resize(100);
+    return shot.image.rgba.data();
+  }();
+  const std::uint8_t* turned = nullptr;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<web::PictureWish> wishes = {stays, seen_from(i)};
+    sut.keep(wishes);
+    Shot& shot = sut.of(wishes[1]);
+    EXPECT_FALSE(shot.drawn.known()) << i;
+    shot.image.rgba.resize(100);
+    shot.drawn = Timestamp{1};
+    if (turned != nullptr) EXPECT_EQ(shot.image.rgba.data(), turned) << i;
+    turned = shot.image.rgba.data();
+    EXPECT_EQ(sut.images(), 2U) << i;
+  }
+  EXPECT_EQ(sut.of(stays).image.rgba.data(), kept);
+  EXPECT_TRUE(sut.of(seen_from(19)).drawn.known());
+  sut.keep({});
+  EXPECT_EQ(sut.images(), 0U) << "nobody looks";
+}
+
+TEST(PictureRate, ALowRateThatWasWishedBeforeHoldsBackNothing) {
+  constexpr Nanoseconds kHalf{25'000'000};
+  Timestamp due;
+  Timestamp now{1'000'000'000};
+  EXPECT_TRUE(picture_is_due(due, kLowestPictureRate, now, kHalf));
+  now = now + 2 * kHalf;
+  EXPECT_FALSE(picture_is_due(due, kLowestPictureRate, now, kHalf));
+  int pictures = 0;
+  for (int i = 0; i < 20; ++i) {
+    now = now + 2 * kHalf;
+    pictures += picture_is_due(due, 10, now, kHalf) ? 1 : 0;
+  }
+  EXPECT_EQ(pictures, 9) << "in a second, from a tenth of it on";
+}
+
+TEST(PictureRate, EveryRateHasAPeriod) {
+  for (const double rate : {0.0, 1e-300, 1e-12, -1.0}) EXPECT_EQ(picture_period(rate), Nanoseconds(100'000'000'000));
+  EXPECT_EQ(picture_period(20), Nanoseconds(50'000'000));
+}
+
+// Somebody else looked at it before, or the client itself: what was drawn then is shown at once.
+TEST(PictureStreams, PictureThatWasDrawnEarlierIsShownToo) {
+  ManualClock clock;
+  PictureStreams sut(clock);
+  const auto stream = sut.open({});
+  const auto looker = sut.all().at(0);
+  looker->show(numbered(9), {});
+  EXPECT_EQ(stream->newest(0)->sequence, 9U);
+  web::PictureWish other;
+  other.view = 3;
+  stream->change(other);
+  looker->show(numbered(4), other);
+  ASSERT_NE(stream->newest(9), nullptr);
+  EXPECT_EQ(stream->newest(9)->sequence, 4U);
+  stream->change({});
+  looker->show(numbered(9), {});
+  ASSERT_NE(stream->newest(4), nullptr);
+}
+
+TEST(PictureStreams, TellWhyThereIsNoPictureOfWhatIsWishedNow) {
+  ManualClock clock;
+  PictureStreams sut(clock);
+  const auto stream = sut.open({});
+  const auto looker = sut.all().at(0);
+  EXPECT_EQ(stream->problem(), "");
+  looker->tell(Error{"gone", ""}, {});
+  EXPECT_EQ(stream->problem(), "gone");
+  web::PictureWish other;
+  other.camera = "C";
+  stream->change(other);
+  EXPECT_EQ(stream->problem(), "");
+  looker->tell(Error{"late", ""}, {});
+  EXPECT_EQ(stream->problem(), "") << "of what was wished before";
+  looker->tell(Error{"no camera C", ""}, other);
+  EXPECT_EQ(stream->problem(), "no camera C");
+  looker->show(numbered(2), other);
+  EXPECT_EQ(stream->problem(), "");
 }
 
 // Nothing is drawn for a client that stands still.

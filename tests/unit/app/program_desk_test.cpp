@@ -21,6 +21,7 @@
 #include "rt_core/base/log.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/rt/watchdog.hpp"
+#include "scripts/programs/languages/languages.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
 namespace cellmirror::app {
@@ -161,6 +162,29 @@ TEST_F(ProgramDeskTest, RunsALongProgramWhenItIsRead) {
   EXPECT_TRUE(happened("ended long"));
 }
 
+TEST_F(ProgramDeskTest, ADeadlockFailsWhoWaitsOnlyWhileItLasts) {
+  folder_.write("programs/takes.ird",
+                "1, HEADER, takes\n2, SEMAPHORE, table, 0\n3, END_HEADER\n4, ACQUIRE, table\n5, END\n");
+  folder_.write("programs/gives.ird",
+                "1, HEADER, gives\n2, SEMAPHORE, table, 0\n3, END_HEADER\n4, RELEASE, table\n5, END\n");
+  const std::uint64_t before = sut().failures();
+  load("takes");
+  run("takes");
+  follow();
+  parts_->clock.advance(program::Controllers::kGrace);
+  follow();
+  EXPECT_FALSE(sut().busy());
+  EXPECT_FALSE(sut().verdict(before));
+  constexpr std::string_view kOther = "MANTEC_R3";
+  ASSERT_TRUE(sut().load_program("gives", kOther));
+  ASSERT_TRUE(sut().run_program("gives", kOther, ProgramBegin::now));
+  EXPECT_TRUE(sut().busy()) << "it may end now";
+  for (int turn = 0; turn < 10; ++turn) follow();
+  EXPECT_TRUE(happened("ended takes"));
+  EXPECT_FALSE(sut().busy());
+  EXPECT_TRUE(sut().verdict(before));
+}
+
 TEST_F(ProgramDeskTest, StopRobEndsWhatWaitsUntilItIsLoaded) {
   const auto loaded = load("long");
   const auto begun = run("long");
@@ -282,6 +306,56 @@ TEST_F(ProgramDeskTest, TfDeleteOfTheLastThatWasWaitedForBeginsTheOthers) {
   const auto behind = run("short", ProgramBegin::exec_wait);
   EXPECT_TRUE(sut().delete_program("other", kArm));
   expect_done(behind);
+}
+
+// Fails on its first move.
+constexpr const char* kFails = "1, HEADER, fails\n2, END_HEADER\n3, LIN, POSE(9999999, 0, 0, 0, 0, 0)\n4, END\n";
+
+TEST_F(ProgramDeskTest, TfWaitTellsWhyTheFirstProgramFailedAndNotThatThoseBehindItDidNotStart) {
+  folder_.write("programs/fails.ird", kFails);
+  load("fails");
+  load("short");
+  run("fails");
+  run("short", ProgramBegin::exec_wait);
+  const auto awaited = sut().await_programs(kArm);
+  ASSERT_TRUE(awaited) << awaited.error().text();
+  for (int turn = 0; turn < 10; ++turn) follow();
+  EXPECT_TRUE(happened("failed short"));
+  expect_refused(*awaited, "fails.ird:3:");
+}
+
+// However far it has been read by then.
+TEST_F(ProgramDeskTest, WhatIsQueuedBehindAProgramThatFailsDoesNotStartWhenItIsLoadedLater) {
+  folder_.write("programs/fails.ird", kFails);
+  load("fails");
+  const auto loaded = load("long");
+  run("fails");
+  const auto queued = run("long", ProgramBegin::exec_wait);
+  follow_until_all_is_read();
+  expect_done(loaded);
+  EXPECT_TRUE(happened("failed fails"));
+  EXPECT_FALSE(happened("started long"));
+  EXPECT_NE(queued->state(), Activity::State::running);
+}
+
+TEST(ProgramLoads, WhatIsQueuedBehindAProgramThatFailsIsRefusedUpToTheNextThatIsStartedAnew) {
+  ProgramLoads sut([](const program::Language& /*language*/, const std::filesystem::path& /*path*/) {
+    return ProgramText{fail("is not looked at"), {}};
+  });
+  const program::Language& language = **program::find_language("irdata");
+  for (const char* name : {"first", "second", "third"}) ASSERT_TRUE(sut.begin(name, "R", language, {}));
+  ASSERT_TRUE(sut.begin("first", "Q", language, {}));
+  const ActivityHandle first = *sut.add_run("first", "R", ProgramBegin::exec_wait);
+  const ActivityHandle second = *sut.add_run("second", "R", ProgramBegin::exec_wait);
+  const ActivityHandle anew = *sut.add_run("second", "R", ProgramBegin::now);
+  const ActivityHandle behind = *sut.add_run("third", "R", ProgramBegin::exec_wait);
+  const ActivityHandle other = *sut.add_run("first", "Q", ProgramBegin::exec_wait);
+  sut.give_up_queued_runs("R", {"runs before it has failed", {}});
+  for (const ActivityHandle& refused : {first, second}) ASSERT_EQ(refused->state(), Activity::State::refused);
+  EXPECT_EQ(second->error().text(), "second was not started: runs before it has failed");
+  for (const ActivityHandle& kept : {anew, behind, other}) EXPECT_EQ(kept->state(), Activity::State::running);
+  sut.give_up_queued_runs("R", {"another before it has failed", {}});
+  EXPECT_EQ(behind->state(), Activity::State::running);
 }
 
 }  // namespace

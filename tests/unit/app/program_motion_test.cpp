@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "app/gateway/fleet.hpp"
 #include "app/gateway/motion_desk.hpp"
@@ -361,6 +363,18 @@ TEST(MoveSettings, TakeThePlaceOfTheRobotsOwnWhichStayTheUpperBounds) {
     wrong.settings.joint_acceleration = bad;
     EXPECT_FALSE(parameters_for(robot, kKinds, wrong)) << bad;
   }
+}
+
+// The robot of a program is deleted first, then the program ends.
+TEST_F(ProgramMotionTest, ARobotThatIsLoadedAgainDoesNotHaveTheToolOfAProgramFromBefore) {
+  const Eigen::Vector3d own = tcp();
+  ASSERT_TRUE(sut_.set_tool(kRobot, shift(0, 0, 0.3)));
+  ASSERT_GT((tcp() - own).norm(), 0.1);
+  Cell with_robot = std::exchange(cell_, transfer_cell());
+  ASSERT_TRUE(cell_.delete_node("Puma"));
+  EXPECT_FALSE(sut_.set_tool(kRobot, std::nullopt));
+  cell_ = std::move(with_robot);
+  EXPECT_NEAR((tcp() - own).norm(), 0, 1e-9);
 }
 
 }  // namespace

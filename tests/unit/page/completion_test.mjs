@@ -11,9 +11,10 @@ const commands = [
   {name: "POS_ROB", syntax: "POS_ROB <Robot_id> FRAME_INC [X x] [Y y]", kind: "command", help: "frame", parameters: []},
   {name: "LEVEL_DOWN", syntax: "LEVEL_DOWN <frame_node>", kind: "command", help: "detail", parameters: []},
   {name: "COVW", syntax: "COVW <view_id> <cam_id>", kind: "command", help: "camera", parameters: [], missing: "a later issue"},
+  {name: "LOAD_VIEWS", syntax: "LOAD_VIEWS <view_filename>", kind: "command", help: "views", parameters: []},
   {name: "#", syntax: "# text", kind: "convention", help: "comment", parameters: []},
 ];
-const names = {robots: ["PUMA_762", "MANTEC_R3"], frames: ["Cell.Table", "Puma.J_1"], cameras: ["CAMERA_5"]};
+const names = {robots: ["PUMA_762", "MANTEC_R3"], frames: ["Cell.Table", "Puma.J_1"], cameras: ["CAMERA_5"], views: ["gate.vws"]};
 const offered = (text) => sut.completions(text, text.length, commands, names).map(({text: word}) => word);
 
 test("commands come first, each once, without regard to case", () => {
@@ -26,6 +27,7 @@ test("names are of the kind that is wanted there", () => {
   assert.deepEqual(offered("ROBOT "), ["PUMA_762", "MANTEC_R3"]);
   assert.deepEqual(offered("LEVEL_DOWN ").sort(), ["Cell.Table", "Puma.J_1"]);
   assert.deepEqual(offered("COVW 0 "), ["CAMERA_5"]);
+  assert.deepEqual(offered("LOAD_VIEWS "), ["gate.vws"]);
 });
 
 test("a part of a name is enough", () => assert.deepEqual(offered("LEVEL_DOWN table"), ["Cell.Table"]));

@@ -70,6 +70,22 @@ TEST_F(BackwardTest, GoesOnFromTheCheckPointThatTheRobotIsAt) {
   EXPECT_FALSE(sut.stand_at(100));
 }
 
+TEST_F(BackwardTest, GivesAgainWhatWasTakenBack) {
+  Machine sut = machine();
+  EXPECT_EQ(steps(sut, 9), "P1 0.1, P2 fly 0.2, P3 0.3, ended");
+  ASSERT_TRUE(sut.go_on_with(1));
+  EXPECT_EQ(steps(sut, 1), "P1 0.1, ");
+  ASSERT_TRUE(sut.set_direction(Direction::backward));
+  ASSERT_TRUE(sut.go_on_with(7));
+  EXPECT_EQ(steps(sut, 9), "P3 0.3, P2 fly 0.3, P1 0.2, ended");
+  ASSERT_TRUE(sut.go_on_with(4));
+  EXPECT_EQ(steps(sut, 1), "P2 fly 0.3, ");
+  EXPECT_FALSE(sut.go_on_with(0)) << "a setting is no check point";
+  ASSERT_TRUE(sut.set_direction(Direction::forward));
+  ASSERT_TRUE(sut.go_on_with(100));
+  EXPECT_EQ(steps(sut, 1), "ended");
+}
+
 TEST_F(MachineTest, ReportsWhatCannotBeRunBackward) {
   builder.set_reversible();
   const VariableId where = ok(builder.declare("where", ValueType::joints));

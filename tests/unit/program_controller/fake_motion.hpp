@@ -82,7 +82,9 @@ class FakeMotion final : public ProgramMotion {
   }
   MotionProgress progress(std::string_view id) const override {
     MotionProgress progress = find(id)->progress;
-    progress.moving = find(id)->begun || find(id)->braking > 0;
+    const Robot& of = *find(id);
+    const bool begins = !of.queue.empty() && of.wanted_pace > 0 && may_begin(of, of.queue.front().ticket);
+    progress.moving = of.begun || begins || of.braking > 0;
     progress.pace = find(id)->pace;
     return progress;
   }

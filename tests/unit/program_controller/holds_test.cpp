@@ -195,6 +195,99 @@ TEST(ProgramStep, GoesBackToTheCheckPointBefore) {
   EXPECT_EQ(cell.status("A", "p").state, ProgramState::ended);
 }
 
+// Back and forth between 0 and 1, so that each check point that is left out makes the way shorter; behind each is an
+// output of its own. The moves are put ahead, since they fly.
+constexpr int kTurns = 12;
+ProgramMaker back_and_forth() {
+  ProgramMaker maker;
+  maker.reversible();
+  for (int i = 1; i <= kTurns; ++i) maker.fly(i % 2).out(i, true);
+  return maker;
+}
+
+void expect_whole(CellOfPrograms& cell, double least_s) {
+  cell.finish();
+  EXPECT_EQ(cell.status("A", "p").state, ProgramState::ended);
+  EXPECT_GT(cell.status("A", "p").elapsed_s, least_s);
+  EXPECT_DOUBLE_EQ(cell.q("A"), kTurns % 2);
+  for (std::size_t i = 1; i <= kTurns; ++i) EXPECT_TRUE(cell.sut.signals("A")->digital_outputs[i]) << i;
+}
+
+// `later`: from the instant of the step to that at which it is taken back: braking, standing, or on the way back.
+TEST(ProgramStep, BackwardThatIsTakenBackLeavesNothingOut) {
+  const double least_s = kTurns * (1 - kFlyTime) - 0.1;
+  for (const double held_at : {0.5, 0.89, 1.79, 2.2}) {
+    for (const double later : {0.0, 0.02, 0.06, 0.08, 0.12, 0.3}) {
+      for (const bool by_step : {false, true}) {
+        SCOPED_TRACE(testing::Message() << held_at << " s, taken back " << later << " s later, step: " << by_step);
+        CellOfPrograms cell;
+        ProgramMaker maker = back_and_forth();
+        cell.load("A", "p", maker);
+        cell.run("A", "p");
+        cell.pass(held_at);
+        ASSERT_TRUE(cell.sut.hold("A"));
+        ASSERT_TRUE(cell.sut.step("A", Direction::backward));
+        cell.pass(later);
+        if (by_step) {
+          static_cast<void>(cell.sut.hold("A"));  // it may have come to the first check point and be held already
+          ASSERT_TRUE(cell.sut.step("A", Direction::forward));
+          cell.pass(3);
+          EXPECT_EQ(cell.status("A", "p").state, ProgramState::held);
+        }
+        ASSERT_TRUE(cell.sut.resume("A"));
+        expect_whole(cell, least_s);
+      }
+    }
+  }
+}
+
+TEST(ProgramStep, BackwardFromTheFirstWayChangesNothing) {
+  CellOfPrograms cell;
+  ProgramMaker maker;
+  cell.load("A", "p", maker.reversible().out(1, true).move(5).move(1));
+  cell.run("A", "p");
+  cell.pass(2);
+  ASSERT_TRUE(cell.sut.hold("A"));
+  ASSERT_TRUE(cell.sut.step("A", Direction::backward));
+  cell.pass(1);
+  EXPECT_EQ(cell.status("A", "p").state, ProgramState::held);
+  EXPECT_LT(cell.q("A"), 2.1);
+  ASSERT_TRUE(cell.sut.resume("A"));
+  cell.finish();
+  EXPECT_NEAR(cell.status("A", "p").elapsed_s, 5 + 4, 0.2);
+}
+
+TEST(ProgramStep, ForwardFromTheFirstWayBackwardChangesNothing) {
+  CellOfPrograms cell;
+  ProgramMaker maker;
+  cell.load("A", "p", maker.reversible().move(1).move(5));
+  cell.run("A", "p", Direction::backward);
+  cell.pass(2);
+  ASSERT_TRUE(cell.sut.hold("A"));
+  ASSERT_TRUE(cell.sut.step("A", Direction::forward));
+  cell.pass(1);
+  EXPECT_EQ(cell.status("A", "p").state, ProgramState::held);
+  ASSERT_TRUE(cell.sut.resume("A"));
+  cell.finish();
+  EXPECT_NEAR(cell.status("A", "p").elapsed_s, 5 + 4, 0.2);
+}
+
+TEST(ProgramStep, BackwardThatIsTakenBackRepeatsNothing) {
+  CellOfPrograms cell;
+  ProgramMaker maker;
+  cell.load("A", "p", maker.reversible().move(1).script("S").pause().script("S").move(2));
+  cell.run("A", "p");
+  cell.pass(2);
+  EXPECT_EQ(cell.status("A", "p").state, ProgramState::held);
+  ASSERT_TRUE(cell.sut.step("A", Direction::backward));  // it is the first check point: there it stays
+  cell.pass(1);
+  EXPECT_EQ(cell.status("A", "p").state, ProgramState::held);
+  ASSERT_TRUE(cell.sut.resume("A"));
+  cell.finish();
+  EXPECT_EQ(cell.scripts.sources.size(), 2U);
+  EXPECT_DOUBLE_EQ(cell.q("A"), 2);
+}
+
 TEST(ProgramStep, GoesBackOnlyWhereTheProgramCan) {
   CellOfPrograms cell;
   ProgramMaker forward;

@@ -260,6 +260,11 @@ TEST(ProgramRuns, EndAtOnceWhenStoppedAndForgetTheQueue) {
   EXPECT_EQ(cell.status("A", "second").state, ProgramState::stopped);
   EXPECT_EQ(cell.sut.failures(), 0U);
   EXPECT_FALSE(cell.sut.stop("A"));
+  std::vector<std::string> stopped;  // in the order in which they would have run
+  for (const ProgramEvent& event : cell.events) {
+    if (event.kind == Kind::stopped) stopped.push_back(event.program);
+  }
+  EXPECT_EQ(stopped, (std::vector<std::string>{"first", "second"}));
 }
 
 TEST(ProgramRuns, BeginWhenTheRobotRests) {
@@ -311,6 +316,42 @@ TEST(ProgramRuns, WaitForWhatTheirCommentsHaveBegun) {
   EXPECT_TRUE(cell.sut.moves("A"));
   cell.finish();
   EXPECT_NEAR(cell.status("A", "p").elapsed_s, 2, 0.002);
+}
+
+// MOVE_ROB is done when the move is queued.
+TEST(ProgramRuns, WaitUntilTheirRobotRestsBehindACommentThatMovesIt) {
+  CellOfPrograms cell;
+  ProgramMaker maker;
+  cell.load("A", "p", maker.move(1).script("MOVE_ROB A").out(4, true));
+  cell.scripts.answer = [&](std::string_view) -> Result<ActivityHandle> {
+    MoveCommand command;
+    command.target.joints[0] = 3;
+    EXPECT_TRUE(cell.motion.move("A", command, {}));
+    return nullptr;
+  };
+  cell.run("A", "p");
+  cell.pass(2);
+  EXPECT_EQ(cell.status("A", "p").state, ProgramState::waiting);
+  EXPECT_FALSE(cell.sut.signals("A")->digital_outputs[4]);
+  cell.finish();
+  EXPECT_TRUE(cell.sut.signals("A")->digital_outputs[4]);
+  EXPECT_DOUBLE_EQ(cell.q("A"), 3);
+  EXPECT_NEAR(cell.status("A", "p").elapsed_s, 3, 0.002);
+}
+
+TEST(ProgramRuns, EndWhenTheirRobotRestsBehindACommentThatMovesIt) {
+  CellOfPrograms cell;
+  ProgramMaker maker;
+  cell.load("A", "p", maker.script("MOVE_ROB A"));
+  cell.scripts.answer = [&](std::string_view) -> Result<ActivityHandle> {
+    MoveCommand command;
+    command.target.joints[0] = 2;
+    EXPECT_TRUE(cell.motion.move("A", command, {}));
+    return nullptr;
+  };
+  cell.run("A", "p");
+  cell.finish();
+  EXPECT_DOUBLE_EQ(cell.q("A"), 2);
 }
 
 TEST(ProgramRuns, FailWhereWhatTheirCommentsHaveBegunIsRefused) {

@@ -89,6 +89,32 @@ TEST(ProgramSemaphores, BeginAnewWhenTheirProgramsAreLoadedAgain) {
   EXPECT_TRUE(cell.sut.semaphores().counts().empty());
 }
 
+TEST(ProgramSemaphores, AreAsBeforeWhenALoadIsRefused) {
+  CellOfPrograms cell;
+  ProgramMaker first("first");
+  ProgramMaker wrong("wrong");
+  ProgramMaker corrected("corrected");
+  ProgramMaker second("second");
+  cell.load("A", "first", first.semaphore("table", 1).semaphore("own", 1).acquire("own").acquire("table"));
+  cell.load("B", "second", second.semaphore("table", 1).semaphore("own", 1));
+  cell.run("A", "first");
+  cell.finish();
+  const auto before = cell.sut.semaphores().counts();
+  EXPECT_FALSE(cell.sut.load("A", "third", wrong.semaphore("s1", 1).semaphore("own", 1).semaphore("table", 2).make()));
+  EXPECT_EQ(cell.sut.semaphores().counts(), before);
+  cell.load("A", "third", corrected.semaphore("s1", 0));
+  // It would replace one, whose semaphores begin anew.
+  EXPECT_TRUE(cell.sut.remove("B", "second"));
+  ProgramMaker other("other");
+  cell.load("B", "other", other.semaphore("table", 1).acquire("table"));
+  const auto with_three = cell.sut.semaphores().counts();
+  ProgramMaker again("again");
+  EXPECT_FALSE(cell.sut.load("A", "first", again.semaphore("own", 5).semaphore("table", 2).make()));
+  EXPECT_EQ(cell.sut.semaphores().counts(), with_three);
+  ProgramMaker as_it_was("as_it_was");
+  cell.load("C", "other", as_it_was.semaphore("own", 1));
+}
+
 // Each has what the other wants.
 void cross(CellOfPrograms& cell) {
   ProgramMaker left("left");
@@ -134,9 +160,50 @@ TEST(ProgramDeadlock, EndsWhenSomebodyIsStopped) {
 
   cross(cell);
   cell.pass(4);
+  ASSERT_TRUE(cell.sut.deadlock());
   cell.sut.stop_all();
-  cell.pass(0.01);
   EXPECT_FALSE(cell.sut.deadlock());
+}
+
+// A script that stops them and starts others may wait for those in the same turn.
+TEST(ProgramDeadlock, EndsWithTheCommandThatEndsIt) {
+  CellOfPrograms cell;
+  cross(cell);
+  cell.pass(2);
+  ASSERT_TRUE(cell.sut.deadlock());
+  ASSERT_TRUE(cell.sut.stop("B"));
+  EXPECT_FALSE(cell.sut.deadlock()) << "who is left waits for what may be started next";
+  cell.pass(0.5);
+  EXPECT_FALSE(cell.sut.deadlock());
+  cell.pass(0.6);
+  ASSERT_TRUE(cell.sut.deadlock());
+  EXPECT_EQ(cell.sut.deadlock()->waiting.size(), 1U);
+  ProgramMaker helper("helper");
+  cell.load("C", "helper", helper.move(1).release("S2"));
+  cell.run("C", "helper");
+  EXPECT_FALSE(cell.sut.deadlock());
+  cell.finish();
+
+  cross(cell);
+  cell.pass(2);
+  ASSERT_TRUE(cell.sut.deadlock());
+  cell.sut.give_up("A", {"gone", {}}, true);
+  EXPECT_FALSE(cell.sut.deadlock());
+}
+
+TEST(ProgramDeadlock, GoesOnWhenACommandDoesNotEndIt) {
+  CellOfPrograms cell;
+  ProgramMaker waiter("waiter");
+  ProgramMaker other("other");
+  cell.load("A", "waiter", waiter.acquire("S").move(1));
+  cell.load("B", "other", other.move(1));
+  cell.run("A", "waiter");
+  cell.pass(1.5);
+  ASSERT_TRUE(cell.sut.deadlock());
+  cell.run("B", "other");
+  EXPECT_TRUE(cell.sut.deadlock());
+  cell.pass(3);
+  EXPECT_EQ(cell.sut.failures(), 1U);
 }
 
 TEST(ProgramDeadlock, CountsProgramsThatAreQueuedBehindOneThatWaits) {
@@ -198,6 +265,25 @@ TEST(ProgramDeadlock, ComesWhenTheOnlyReleaserFails) {
   cell.pass(1);
   EXPECT_TRUE(cell.sut.deadlock());
   EXPECT_EQ(cell.sut.failures(), 2U);
+}
+
+TEST(ProgramDeadlock, IsNoneWhereTheSemaphoreIsFreeAndWhoWaitsIsHeld) {
+  CellOfPrograms cell;
+  ProgramMaker waiter("waiter");
+  ProgramMaker owner("owner");
+  cell.load("A", "waiter", waiter.semaphore("table", 1).move(0.5).acquire("table").move(1));
+  cell.load("B", "owner", owner.semaphore("table", 1).acquire("table").move(1).release("table"));
+  cell.run("B", "owner");
+  cell.run("A", "waiter");
+  cell.pass(0.7);
+  EXPECT_EQ(cell.status("A", "waiter").state, ProgramState::waiting);
+  ASSERT_TRUE(cell.sut.hold("A"));
+  cell.pass(5);
+  EXPECT_FALSE(cell.sut.deadlock());
+  EXPECT_EQ(cell.sut.failures(), 0U);
+  ASSERT_TRUE(cell.sut.resume("A"));
+  cell.finish();
+  EXPECT_EQ(cell.status("A", "waiter").state, ProgramState::ended);
 }
 
 }  // namespace

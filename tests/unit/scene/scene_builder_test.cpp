@@ -147,6 +147,22 @@ TEST_F(BuilderTest, TheTraceGrowsWithTheTcpUntilTheModeIsOff) {
   EXPECT_TRUE(build().traces.empty()) << "a new one begins";
 }
 
+TEST_F(BuilderTest, TheTraceBeginsAnewWhereTheModeWasOffBetweenTwoScenes) {
+  input_.active_robot = "ARM";
+  set(DisplayMode::smear);
+  for (const double angle : {0.0, 0.1}) {
+    cell_.pose(angle);
+    build();
+  }
+  ASSERT_EQ(scene_.traces.size(), 1U);
+  ++cell_.display.smear_ends;
+  cell_.pose(2);
+  EXPECT_TRUE(build().traces.empty());
+  cell_.pose(2.1);
+  ASSERT_EQ(build().traces.size(), 1U);
+  EXPECT_EQ(scene_.traces[0].points.size(), 2U) << "no line from where the trace before ended";
+}
+
 TEST_F(BuilderTest, ATraceStaysBounded) {
   input_.active_robot = "ARM";
   set(DisplayMode::smear);

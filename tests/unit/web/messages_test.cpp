@@ -80,6 +80,7 @@ TEST(ClientMessages, AreRefusedWithAReason) {
                            R"({"do": "picture", "width": 5000})",
                            R"({"do": "picture", "width": 8})",
                            R"({"do": "picture", "rate_hz": 0})",
+                           R"({"do": "picture", "rate_hz": 1e-12})",
                            R"({"do": "picture", "rate_hz": 1e9})",
                            R"({"do": "picture", "quality": 0})",
                            R"({"do": "picture", "free": 1})",

@@ -18,7 +18,7 @@ export function positions(syntax) {
 
 const kKinds = [
   [/robot/i, "robots"], [/cam_id|camera/i, "cameras"], [/uss_id|sensor/i, "sensors"], [/script_file/i, "scripts"],
-  [/frame|node|wfrm/i, "frames"],
+  [/view_file/i, "views"], [/frame|node|wfrm/i, "frames"],
 ];
 
 export function names_for(parameter, names) {
