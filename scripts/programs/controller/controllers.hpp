@@ -84,7 +84,7 @@ class Controllers {
   [[nodiscard]] std::vector<ProgramStatus> status() const;
   // As it is now; none when somebody has ended it.
   [[nodiscard]] const std::optional<Deadlock>& deadlock() const { return deadlock_; }
-  // Counts programs that failed and deadlocks, so that WAIT can tell what failed since it began.
+  // Counts programs that failed and deadlocks, also those that have ended since.
   [[nodiscard]] std::uint64_t failures() const { return context_.failures; }
   [[nodiscard]] const std::string& last_failure() const { return context_.last_failure; }
   // The callback must not call the controllers.
