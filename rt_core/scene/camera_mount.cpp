@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rt_core/base/contract.hpp"
+#include "rt_core/scene/paths.hpp"
 
 namespace cellmirror::scene {
 namespace {
@@ -37,6 +38,16 @@ std::optional<std::size_t> node_of(const CompiledCell& cell, const std::string& 
 }
 
 }  // namespace
+
+std::optional<std::size_t> camera_named(const CompiledCell& cell, std::string_view name) {
+  std::optional<std::size_t> ending;
+  for (std::size_t camera = 0; camera < cell.cameras.size(); ++camera) {
+    const std::int32_t node = cell.cameras[camera].node;
+    if (path_of(cell, node) == name) return camera;
+    if (!ending && names_node(cell, name, node)) ending = camera;
+  }
+  return ending;
+}
 
 std::optional<std::size_t> carrier_slot(const CompiledCell& cell, std::size_t camera) {
   CELLMIRROR_EXPECTS(camera < cell.cameras.size());
@@ -107,10 +118,8 @@ CameraState camera_state(const CompiledCell& cell, const CellPoses& poses, const
 std::vector<CameraState> online_cameras(const CompiledCell& cell, const CellPoses& poses, const DisplayState& display) {
   std::vector<CameraState> states;
   for (std::size_t camera = 0; camera < cell.cameras.size(); ++camera) {
-    const CompiledCamera& compiled = cell.cameras[camera];
-    const auto setting = std::ranges::find_if(display.cameras, [&](const CameraSetting& known) {
-      return known.name == compiled.name || (cell.paths && known.name == (*cell.paths)[index(compiled.node)]);
-    });
+    const auto setting = std::ranges::find_if(
+        display.cameras, [&](const CameraSetting& known) { return camera_named(cell, known.name) == camera; });
     if (setting == display.cameras.end() || !setting->online) continue;
     states.push_back(camera_state(cell, poses, *setting, camera));
   }

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "rt_core/cell/compiled_cell.hpp"
@@ -17,6 +18,9 @@ namespace cellmirror::scene {
 // The slot of the robot whose joint is the nearest above the camera in the kinematic tree; none: nothing moves it but
 // what it is fixed to. `camera` is an index into CompiledCell::cameras here and below.
 [[nodiscard]] std::optional<std::size_t> carrier_slot(const CompiledCell& cell, std::size_t camera);
+
+// The camera that a setting or a command means: the one with this path, else the first whose path it ends.
+[[nodiscard]] std::optional<std::size_t> camera_named(const CompiledCell& cell, std::string_view name);
 
 // Where the camera looks with its head at zero. A camera on more joints than a head has, or on none: its workframe.
 [[nodiscard]] Pose mount_pose(const CompiledCell& cell, const CellPoses& poses, std::size_t camera);

@@ -7,15 +7,14 @@
 #include "rt_core/ports/camera_state.hpp"
 #include "rt_core/scene/bounds.hpp"
 #include "rt_core/scene/camera_mount.hpp"
-#include "rt_core/scene/paths.hpp"
 
 namespace cellmirror::scene {
 
 namespace {
 
-const CameraSetting* setting_of(const CompiledCell& cell, const DisplayState& display, const CompiledCamera& camera) {
+const CameraSetting* setting_of(const CompiledCell& cell, const DisplayState& display, std::size_t camera) {
   const auto at = std::ranges::find_if(
-      display.cameras, [&](const CameraSetting& setting) { return names_node(cell, setting.name, camera.node); });
+      display.cameras, [&](const CameraSetting& setting) { return camera_named(cell, setting.name) == camera; });
   return at == display.cameras.end() ? nullptr : &*at;
 }
 
@@ -52,7 +51,7 @@ CameraNow now_of(const CompiledCell& cell, const CellPoses& poses, const Display
   now.focal_distance_m = camera.focal_distance_m;
   now.fovy_rad = camera.fovy_rad;
   now.housing_m = housing_of(cell, camera.node);
-  const CameraSetting* setting = setting_of(cell, display, camera);
+  const CameraSetting* setting = setting_of(cell, display, index);
   if (setting == nullptr || setting->tracks.empty()) return now;
   const CameraState state = camera_state(cell, poses, *setting, index);
   if (!state.tracking) return now;
@@ -69,10 +68,9 @@ CameraNow now_of(const CompiledCell& cell, const CellPoses& poses, const Display
 
 std::optional<CameraNow> camera_now(const CompiledCell& cell, const CellPoses& poses, const DisplayState& display,
                                     std::string_view name) {
-  for (std::size_t i = 0; i < cell.cameras.size(); ++i) {
-    if (names_node(cell, name, cell.cameras[i].node)) return now_of(cell, poses, display, i);
-  }
-  return std::nullopt;
+  const auto camera = camera_named(cell, name);
+  if (!camera) return std::nullopt;
+  return now_of(cell, poses, display, *camera);
 }
 
 std::vector<CameraNow> cameras_now(const CompiledCell& cell, const CellPoses& poses, const DisplayState& display) {

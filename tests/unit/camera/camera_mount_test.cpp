@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "config/cell_file.hpp"
 
@@ -132,6 +134,21 @@ TEST_F(CameraMountTest, OnlyCamerasOnlineAreTold) {
   ASSERT_EQ(sut.size(), 1U);
   EXPECT_EQ(sut.front().name, "UMG_Kamera_1");
   EXPECT_TRUE(sut.front().mirrored);
+}
+
+TEST(CameraNamed, ThatWithThePathBeforeOneThatEndsWithIt) {
+  CompiledCell cell;
+  cell.paths =
+      std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"", "Head.CAM", "CAM", "Hall.TOP"});
+  for (const std::int32_t node : {1, 2, 3}) {
+    cell.cameras.emplace_back();
+    cell.cameras.back().node = node;
+  }
+  EXPECT_EQ(camera_named(cell, "CAM"), 1U);
+  EXPECT_EQ(camera_named(cell, "Head.CAM"), 0U);
+  EXPECT_EQ(camera_named(cell, "TOP"), 2U);
+  EXPECT_EQ(camera_named(cell, "AM"), std::nullopt);
+  EXPECT_EQ(camera_named(cell, ""), std::nullopt);
 }
 
 TEST(PanTilt, PointsWhereItIsTold) {
