@@ -72,8 +72,9 @@ Verdict DeviceJudge::judge_new(const HapticSample& sample, Timestamp now, const 
   writer_known_ = true;
   if (another_writer || backwards || in_step) {
     forget_place();
-    // Nobody drives the instrument yet, or it is a device that was started anew after it had been missed.
-    if (seen_ && !old(now, settings)) return {.fault = HapticFault::two_writers};
+    // Where the last sample is old, this is a device that was started anew, or another one that takes over. Its first
+    // sample may lie anywhere, so it does not count; where nobody drives the instrument yet, nothing is lost by that.
+    if (seen_) return {.fault = old(now, settings) ? HapticFault::stale : HapticFault::two_writers};
   }
   if (standing_still) return {.fault = old(now, settings) ? HapticFault::stale : HapticFault::none};
   if (!finite(sample) || (settings.uses_pose && !is_rotation(sample))) return {.fault = HapticFault::not_finite};

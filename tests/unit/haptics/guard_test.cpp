@@ -105,6 +105,15 @@ std::vector<Fault> faults() {
        [](PressedRig& rig) { broken_sample(rig, [](HapticSample& sample) { sample.writer = 78; }); }},
       {"count goes back", HapticFault::two_writers,
        [](PressedRig& rig) { broken_sample(rig, [](HapticSample& sample) { sample.sequence -= 3; }); }},
+      {"another writer far away, when the last sample has just turned old", HapticFault::stale,
+       [](PressedRig& rig) {
+         ticks(rig, 3, HapticRead::unchanged);
+         ASSERT_EQ(rig.state().fault, HapticFault::none);
+         broken_sample(rig, [](HapticSample& sample) {
+           sample.writer = 78;
+           sample.p_DH.x() += 0.3;
+         });
+       }},
       {"second writer in exact step", HapticFault::two_writers,
        [](PressedRig& rig) {
          for (const std::uint64_t writes : {10, 12}) {
