@@ -49,6 +49,7 @@ class LogChannel final : public CanChannel {
     board_.update([&frame](CanChannelStatus& status) {
       if (!frame.frame.error) {
         ++status.received;
+        if (status.bus == CanBusState::bus_off) status.bus = CanBusState::active;  // a frame proves that it is not off
         return;
       }
       ++status.error_frames;

@@ -213,6 +213,7 @@ void UdpChannel::take(std::span<const std::uint8_t> datagram, bool cut, Timestam
   board_.update([&](CanChannelStatus& status) {
     if (!frame->error) {
       ++status.received;
+      if (status.bus == CanBusState::bus_off) status.bus = CanBusState::active;  // a frame proves that it is not off
       return;
     }
     ++status.error_frames;

@@ -111,6 +111,15 @@ TEST_F(LogTest, BrokenLinesAreCountedWithTheirPlace) {
   EXPECT_EQ(sut->status().last_error, path + ":4: the line is too long or holds a NUL byte");
 }
 
+TEST_F(LogTest, BusOffEndsWithTheFirstFrame) {
+  const auto sut = open("(1.0) vcan0 20000040#0000000000000000\n(1.0) vcan0 123#\n");
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_TRUE(got.frame.error);
+  EXPECT_EQ(sut->status().bus, CanBusState::bus_off);
+  EXPECT_EQ(sut->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ(sut->status().bus, CanBusState::active);
+}
+
 TEST_F(LogTest, RepeatsFromTheStart) {
   const auto sut = open("(1.0) vcan0 123#\n(1.0) vcan0 124#\n", true, true);
   for (int i = 0; i < 10; ++i) {
@@ -240,6 +249,23 @@ TEST(UdpChannel, MembersHearEachOtherButNotThemselves) {
   EXPECT_EQ((*a)->status().sent, 1U);
   EXPECT_EQ((*a)->status().received, 1U);
   EXPECT_EQ((*a)->status().bus, CanBusState::active);
+}
+
+TEST(UdpChannel, BusOffEndsWithTheFirstFrame) {
+  CanChannelConfig config;
+  config.endpoint = own_group();
+  auto sender = open_can_channel(config);
+  auto sut = open_can_channel(config);
+  if (!sender || !sut) GTEST_SKIP() << "skipped: no multicast on the loopback interface: " << sender.error().text();
+  CanFrame bus_off = frame(CAN_ERR_BUSOFF, {0, 0, 0, 0, 0, 0, 0, 0});
+  bus_off.error = true;
+  ReceivedCanFrame got;
+  ASSERT_TRUE((*sender)->send(bus_off));
+  ASSERT_EQ((*sut)->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ((*sut)->status().bus, CanBusState::bus_off);
+  ASSERT_TRUE((*sender)->send(frame(7, {})));
+  ASSERT_EQ((*sut)->receive(got, kLong), CanReceive::frame);
+  EXPECT_EQ((*sut)->status().bus, CanBusState::active);
 }
 
 TEST(UdpChannel, UnknownInterfaceIsRefused) {
