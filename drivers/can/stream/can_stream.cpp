@@ -81,13 +81,22 @@ void CanStream::run() {
   }
   ReceivedCanFrame frame;
   CanReceive last = CanReceive::timeout;
+  Timestamp seen_due;  // when this thread first saw that advance() is due
   while (!stop_) {
     const Nanoseconds until_due = due.known() ? due - clock_->now() : kLongestWait;
     const CanReceive received = channel_->receive(frame, std::clamp<Nanoseconds>(until_due, 0ns, kLongestWait));
     const std::lock_guard lock(mutex_);
     const bool is_frame = received == CanReceive::frame;
     if (is_frame && !frame.frame.error) protocol_->receive(frame.frame, frame.receive_time);
-    if (const Timestamp now = clock_->now(); due.known() && now >= due) protocol_->advance(now);
+    const Timestamp now = clock_->now();
+    if (due.known() && now >= due && !seen_due.known()) seen_due = now;
+    // Where this thread was held up, what arrived meanwhile comes before SYNC and timeouts: those answers and
+    // heartbeats were in time. Frames that arrive from then on do not hold advance() up, so no flood can.
+    const bool waits = is_frame && frame.receive_time < seen_due;
+    if (seen_due.known() && !waits) {
+      protocol_->advance(now);
+      seen_due = {};
+    }
     due = protocol_->next_due();
     ended_ = received == CanReceive::end;
     // The state of the bus can only have changed where no ordinary frame came.

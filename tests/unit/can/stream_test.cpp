@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <mutex>
 #include <thread>
 
@@ -223,6 +225,96 @@ TEST_F(StreamTest, ErrorFramesShowInTheStatus) {
   open();
   bus.inject_error(CAN_ERR_ACK);
   EXPECT_TRUE(becomes_true([&] { return has_detail("no acknowledgement"); }));
+}
+
+// A bus with a clock of its own. Nodes 3 and 4 answer each SYNC after 1 ms and send heartbeats; the stream is on time
+// but after its third SYNC, when it comes back only after the stall, to all that arrived meanwhile.
+struct StallingBus {
+  static constexpr int kSyncs = 5;
+
+  struct StreamClock final : Clock {
+    [[nodiscard]] Timestamp now() const CELL_RT override { return {ns}; }
+    std::atomic<std::int64_t> ns{1'000'000'000};
+  };
+
+  class Channel final : public CanChannel {
+   public:
+    explicit Channel(StallingBus& bus) : bus_(&bus) {}
+
+    CanReceive receive(ReceivedCanFrame& got, Nanoseconds timeout) override {
+      if (!arriving_.empty()) {
+        got = arriving_.front();
+        arriving_.pop_front();
+        bus_->clock.ns = std::max({bus_->clock.ns.load(), got.receive_time.ns, back_.ns});
+        return CanReceive::frame;
+      }
+      if (syncs_ == kSyncs) {
+        bus_->finished = true;
+        std::this_thread::sleep_for(1ms);
+        return CanReceive::timeout;
+      }
+      bus_->clock.ns += timeout.count();
+      return CanReceive::timeout;
+    }
+
+    bool send(const CanFrame& sent) override {
+      if (sent.id != 0x080) return true;
+      const Timestamp sync = bus_->clock.now();
+      answer(sync + 1ms, 0x180, {0x37, 0x02, 1, 0, 0, 0});
+      if (++syncs_ != 3) return true;
+      back_ = sync + bus_->stall;
+      for (Timestamp t = sync + 100ms; t < back_; t = t + 100ms) answer(t, 0x700, {0x05});
+      return true;
+    }
+
+    [[nodiscard]] CanChannelStatus status() const override { return {}; }
+
+   private:
+    void answer(Timestamp time, std::uint32_t base, std::initializer_list<int> bytes) {
+      for (const std::uint32_t node : {3U, 4U}) arriving_.push_back({frame(base + node, bytes), time});
+    }
+
+    StallingBus* bus_;
+    std::deque<ReceivedCanFrame> arriving_;
+    Timestamp back_;
+    int syncs_ = 0;
+  };
+
+  StreamClock clock;
+  Nanoseconds stall{0};
+  std::atomic<bool> finished{false};
+};
+
+struct StallTest : StreamTest {
+  JointStreamStatus status_after(Nanoseconds stall) {
+    stalling.stall = stall;
+    config.nodes.push_back(config.nodes[0]);
+    config.nodes[1].node_id = 4;
+    config.nodes[1].joint = 1;
+    config.nodes[1].joint_name = "J_2";
+    options.open_channel = [this](const CanChannelConfig&) {
+      return Result<std::unique_ptr<CanChannel>>(std::make_unique<StallingBus::Channel>(stalling));
+    };
+    const auto made = make_cia402_stream(config, stalling.clock, options);
+    if (!made || !(*made)->open(sink)) return {};
+    EXPECT_TRUE(becomes_true([&] { return stalling.finished.load(); }));
+    return (*made)->status();
+  }
+  StallingBus stalling;
+};
+
+TEST_F(StallTest, AnswersThatCameInTimeBelongToTheirCycleThoughTheStreamIsLate) {
+  const JointStreamStatus status = status_after(6ms);
+  EXPECT_EQ(status.lost, 0U);
+  EXPECT_THAT(status.last_errors, testing::IsEmpty());
+  EXPECT_EQ(status.received, 2U + StallingBus::kSyncs - 1U) << "one a cycle, two of the first, which waits for nobody";
+  EXPECT_EQ(sink.newest().present, 3U);
+}
+
+TEST_F(StallTest, HeartbeatsThatCameInTimeCountThoughTheStreamIsLate) {
+  const JointStreamStatus status = status_after(450ms);
+  EXPECT_THAT(status.last_errors, testing::IsEmpty());
+  EXPECT_EQ(status.condition, "operational");
 }
 
 TEST_F(StreamTest, AChannelThatCannotBeOpenedIsAnError) {
