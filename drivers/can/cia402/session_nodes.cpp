@@ -133,6 +133,9 @@ void Cia402Session::on_heartbeat(std::size_t index, NmtState state, Timestamp no
   Node& node = nodes_[index];
   node.status.heard = true;
   node.status.last_heartbeat = now;
+  // Its boot-up may have been missed, while the bus was off for instance, and a reset forgets what SDO wrote.
+  const bool was_away = node.status.heartbeat_lost || node.status.nmt == NmtState::operational;
+  if (state == NmtState::pre_operational && was_away && !node.status.configuring) node.configured = false;
   node.status.nmt = state;
   if (plan_.config.heartbeat_timeout.count() > 0) node.heartbeat_deadline = now + plan_.config.heartbeat_timeout;
   if (node.status.heartbeat_lost) {

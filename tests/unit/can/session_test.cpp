@@ -77,6 +77,13 @@ struct SessionTest : testing::Test {
                                                             position >> 16 & 0xFF, position >> 24 & 0xFF}),
                  now);
   }
+  // Node 3 takes all that is written by SDO.
+  void accept_configuration() {
+    for (Frames sent = out.take(); !sent.empty() && sent.back().id == 0x603; sent = out.take()) {
+      const auto& request = sent.back().data;
+      sut->receive(frame(0x583, {0x60, request[1], request[2], request[3], 0, 0, 0, 0}), now);
+    }
+  }
 };
 
 TEST_F(SessionTest, StartsItsNodesAtOpen) {
@@ -386,6 +393,37 @@ TEST_F(SessionTest, AnSdoTimeoutIsRetriedUntilTheNodeIsThere) {
   EXPECT_EQ(out.take()[0], frame(0x000, {0x80, 0x03}));
   sut->receive(frame(0x703, {0x00}), now);
   EXPECT_EQ(out.take()[0], frame(0x000, {0x80, 0x03})) << "boot-up starts over at once";
+}
+
+TEST_F(SessionTest, ADriveThatIsPreOperationalAfterAMissedBootUpIsConfiguredAgain) {
+  config.nodes = {node(3, 0)};
+  config.nodes[0].configure = true;
+  config.heartbeat_timeout = 500ms;
+  for (const bool is_told_lost : {true, false}) {
+    start();
+    accept_configuration();
+    sut->receive(frame(0x703, {0x05}), now);
+    now = now + 2s;
+    if (is_told_lost) sut->advance(now);
+    ASSERT_TRUE(out.take().empty());
+    sut->receive(frame(0x703, {0x7F}), now);
+    const Frames sent = out.take();
+    ASSERT_EQ(sent.size(), 2U) << is_told_lost;
+    EXPECT_EQ(sent[0], frame(0x000, {0x80, 0x03}));
+    EXPECT_EQ(sent[1].id, 0x603U);
+  }
+}
+
+TEST_F(SessionTest, AConfiguredDriveThatMissedItsStartIsOnlyStartedAgain) {
+  config.nodes = {node(3, 0)};
+  config.nodes[0].configure = true;
+  start();
+  accept_configuration();
+  for (int i = 0; i < 3; ++i) {
+    now = now + 2s;
+    sut->receive(frame(0x703, {0x7F}), now);
+    EXPECT_EQ(out.take(), (Frames{frame(0x000, {0x01, 0x03})}));
+  }
 }
 
 TEST_F(SessionTest, MappingOfTheEdsIsUsed) {
