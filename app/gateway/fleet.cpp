@@ -174,12 +174,12 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
   command.slot = static_cast<std::uint8_t>(robot.slot);
   command.mode = engine::RobotMode::mirrored;
   if (const auto config = streams_.find(robot.id); config != streams_.end()) command.ages = ages_of(config->second);
-  // The mode first: commands are taken before samples, so the first sample already finds a mirrored robot.
-  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
-  if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) {
-    command.mode = engine::RobotMode::simulated;
-    if (auto sent = send(command); !sent) return std::unexpected(sent.error());
-    return opened;
+  // The stream first: one that cannot be opened leaves the robot to what it does. Samples wait for the mode in the
+  // inlet.
+  if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) return opened;
+  if (auto sent = send(command); !sent) {
+    robot.stream->close();
+    return std::unexpected(sent.error());
   }
   robot.online = true;
   return {};

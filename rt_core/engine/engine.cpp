@@ -21,6 +21,12 @@ double passed_time(const CycleContext& context) CELL_RT {
   return std::min(passed_ns, static_cast<double>(longest.count())) * 1e-9;
 }
 
+// What a stream left behind when it was closed: the next one that is opened for the slot shall not find it.
+void forget_samples(Fifo<JointSample, kSampleQueue>& queue) CELL_RT {
+  JointSample sample;
+  for (std::size_t i = 0; i < kSampleQueue && queue.pop(sample); ++i) continue;
+}
+
 }  // namespace
 
 Engine::Engine(Watchdog& watchdog, Readers readers)
@@ -78,8 +84,12 @@ bool Engine::apply_to_robot(const Command& command) CELL_RT {
                                slots_);
     case CommandKind::uncouple:
       return couplings_.uncouple(command.slot, slots_);
+    case CommandKind::set_mode:
+      if (command.mode == RobotMode::simulated) forget_samples(inlets_[command.slot]->queue);
+      return slots_[command.slot].apply(command);
     case CommandKind::add_robot:
     case CommandKind::remove_robot:
+      if (command.kind == CommandKind::remove_robot) forget_samples(inlets_[command.slot]->queue);
       couplings_.remove(command.slot, slots_);
       return slots_[command.slot].apply(command);
     default:
@@ -107,10 +117,11 @@ int Engine::take_samples() CELL_RT {
   int taken = 0;
   JointSample sample;
   for (std::size_t slot = 0; slot < kMaxRobots; ++slot) {
+    // A stream is opened before its robot is mirrored, since it may fail to open: what it brings until then waits.
+    if (slots_[slot].state().mode == RobotMode::simulated) continue;
     int of_this_robot = 0;
     while (of_this_robot < kSamplesPerTick && inlets_[slot]->queue.pop(sample)) {
       ++of_this_robot;
-      // Samples that a stream left behind when it was closed fall away here: the slot is not mirrored any more.
       slots_[slot].take(sample);
       record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
     }

@@ -191,6 +191,37 @@ TEST_F(EngineTest, RobotThatGoesOfflineStaysWhereItWas) {
   tick();
   EXPECT_EQ(robot().mode, RobotMode::simulated);
   EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.7);
+  mirror();
+  tick();
+  EXPECT_EQ(robot().samples, 0U) << "what was left behind is not of the stream that is opened next";
+}
+
+TEST_F(EngineTest, SamplesOfAStreamThatIsOpenedBeforeTheRobotIsMirroredWaitForThat) {
+  add_robot();
+  tick();
+  sut_->inlet(3).push(sample(1, 0.7, -0.7));
+  tick();
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.1);
+  mirror();
+  tick();
+  EXPECT_EQ(robot().samples, 1U);
+  EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.7);
+}
+
+TEST_F(EngineTest, RobotThatTakesTheSlotOfAnotherGetsNoneOfItsSamples) {
+  add_robot();
+  mirror();
+  tick();
+  Command command;
+  command.kind = CommandKind::remove_robot;
+  command.slot = 3;
+  sut_->inlet(3).push(sample(1, 0.9, 0.9));
+  sut_->send(command);
+  add_robot();
+  tick();
+  mirror();
+  tick();
+  EXPECT_EQ(robot().samples, 0U);
 }
 
 TEST_F(EngineTest, FullSampleQueueRefusesAndCounts) {
