@@ -107,7 +107,8 @@ Result<void> MotionDesk::queue_move(std::string_view id, MovePath path, const Mo
   const RobotModel* robot = cell_.robot(id);
   auto record = open(robot, id);
   if (!record) return std::unexpected(record.error());
-  if ((*record)->pending.count() > motion::kMoveQueue) {  // one runs, the others wait
+  // The one that runs counts too: before the next tick nobody knows whether it has begun, and all of them still wait.
+  if ((*record)->pending.count() >= motion::kMoveQueue) {
     return fail(fmt::format("{} moves of {} wait already", motion::kMoveQueue, id),
                 "wait until some of them are done, or STOP_ROB forgets them");
   }

@@ -16,6 +16,7 @@
 #include "app/gateway/fleet.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/motion/executor.hpp"
 #include "rt_core/rt/watchdog.hpp"
 
 namespace cellmirror::app {
@@ -97,6 +98,19 @@ TEST_F(MotionDeskTest, RobotThatCannotGoOnlineEndsItsMoveAndGoesStraightAfterwar
   EXPECT_NEAR(first_joint(), kBent[0], 1e-9);
   arrive(sut_.position(kMantec,
                        {.mode = TargetMode::tool_inc, .joints = {}, .pose = Pose(Eigen::Translation3d(0, 0, 0.01))}));
+}
+
+TEST_F(MotionDeskTest, EveryMoveThatIsAcceptedIsGoneThoughTheTickHasBegunNone) {
+  constexpr std::array kStep = {0.001};
+  const double from = first_joint();
+  std::size_t accepted = 0;
+  while (accepted < 1000 &&
+         sut_.queue_move(kMantec, MovePath::joints, {.mode = TargetMode::joint_inc, .joints = kStep})) {
+    ++accepted;
+  }
+  EXPECT_EQ(accepted, motion::kMoveQueue);
+  for (int most = 60'000; sut_.moving() && most > 0; --most) tick();
+  EXPECT_NEAR(first_joint(), from + static_cast<double>(accepted) * kStep[0], 1e-9);
 }
 
 }  // namespace
