@@ -150,9 +150,11 @@ void Cia402Session::decode(const Tpdo& tpdo, const CanFrame& frame) {
   }
   if (tpdo.velocity.bits != 0) {
     const double scale = config.velocity_scale != 0.0 ? config.velocity_scale : config.scale;
-    sample_.velocity[config.joint] = config.sign * raw(tpdo.velocity) * scale;
+    velocity_.set(config.joint, config.sign * raw(tpdo.velocity) * scale, sample_.receive_time);
   }
-  if (tpdo.torque.bits != 0) sample_.effort[config.joint] = config.sign * raw(tpdo.torque) * config.torque_scale;
+  if (tpdo.torque.bits != 0) {
+    effort_.set(config.joint, config.sign * raw(tpdo.torque) * config.torque_scale, sample_.receive_time);
+  }
   if (tpdo.position.bits != 0) {
     sample_.position[config.joint] = config.sign * raw(tpdo.position) * config.scale + config.offset;
     sample_.present |= 1U << config.joint;
@@ -168,6 +170,8 @@ bool Cia402Session::cycle_is_complete() const {
 
 void Cia402Session::emit() {
   if (sample_.present == 0) return;
+  sample_.velocity = velocity_.at(sample_.receive_time, plan_.config.ages.stale_after);
+  sample_.effort = effort_.at(sample_.receive_time, plan_.config.ages.stale_after);
   sample_.sequence = ++counters_.samples;
   output_->sample(sample_);
   sample_.present = 0;

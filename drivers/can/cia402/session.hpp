@@ -16,6 +16,7 @@
 #include "drivers/can/canopen/sdo_client.hpp"
 #include "drivers/can/cia402/plan.hpp"
 #include "drivers/can/cia402/state.hpp"
+#include "drivers/can/timed_values.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/can_channel.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -157,6 +158,8 @@ class Cia402Session {
   std::array<std::uint8_t, 128> node_of_id_{};
   bool has_extended_ = false;
   JointSample sample_;  // newest values; `present` collects the cycle under way
+  TimedValues velocity_;
+  TimedValues effort_;
   bool in_cycle_ = false;
   Timestamp cycle_start_;
   Timestamp next_sync_;

@@ -118,30 +118,34 @@ void DbcSession::receive(const CanFrame& frame, Timestamp now) {
   }
   sample_.present = 0;
   sample_.refused = 0;
-  for (const Field& field : source.fields) take(source, field, frame);
+  for (const Field& field : source.fields) take(source, field, frame, now);
   if ((sample_.present | sample_.refused) == 0) return;
+  sample_.velocity = velocity_.at(now, plan_.config.ages.stale_after);
+  sample_.effort = effort_.at(now, plan_.config.ages.stale_after);
   sample_.receive_time = now;
   sample_.sequence = ++counters_.samples;
   output_->sample(sample_);
 }
 
-void DbcSession::take(const Source& source, const Field& field, const CanFrame& frame) {
+void DbcSession::take(const Source& source, const Field& field, const CanFrame& frame, Timestamp now) {
   if (!is_present(*source.message, *field.signal, frame.payload())) return;
   const double value = physical_value(*field.signal, frame.payload()) * field.scale + field.offset;
   const bool finite = std::isfinite(value);
   if (!finite) reject(fmt::format("{}.{} is not finite", source.message->name, field.signal->name));
   const std::uint32_t bit = 1U << field.joint;
+  const auto keep = [&](TimedValues& values) {
+    if (finite) return values.set(field.joint, value, now);
+    values.forget(field.joint);
+  };
   switch (field.quantity) {
     case JointQuantity::position:
       (finite ? sample_.present : sample_.refused) |= bit;
       if (finite) sample_.position[field.joint] = value;
       return;
     case JointQuantity::velocity:
-      if (finite) sample_.velocity[field.joint] = value;
-      return;
+      return keep(velocity_);
     case JointQuantity::effort:
-      if (finite) sample_.effort[field.joint] = value;
-      return;
+      return keep(effort_);
   }
 }
 

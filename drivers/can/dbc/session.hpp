@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/can/dbc/dbc.hpp"
+#include "drivers/can/timed_values.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/can_channel.hpp"
@@ -54,8 +55,9 @@ class DbcSession {
   DbcSession(const DbcSession&) = delete;  // points into its own plan
   DbcSession& operator=(const DbcSession&) = delete;
 
-  // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with the
-  // next one. Frames shorter than the DBC says are refused, longer ones (FD padding) are taken.
+  // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with it
+  // unless they are stale or were refused. Frames shorter than the DBC says are refused, longer ones (FD padding) are
+  // taken.
   void receive(const CanFrame& frame, Timestamp now);
 
   [[nodiscard]] const DbcCounters& counters() const { return counters_; }
@@ -73,13 +75,15 @@ class DbcSession {
     std::vector<Field> fields;
   };
 
-  void take(const Source& source, const Field& field, const CanFrame& frame);
+  void take(const Source& source, const Field& field, const CanFrame& frame, Timestamp now);
   void reject(const std::string& why);
 
   DbcPlan plan_;
   DbcSessionOutput* output_;
   std::map<std::pair<bool, std::uint32_t>, Source> sources_;  // by extended, identifier
   JointSample sample_;
+  TimedValues velocity_;
+  TimedValues effort_;
   DbcCounters counters_;
 };
 

@@ -243,6 +243,20 @@ TEST_F(DbcSessionTest, RefusesValuesThatAreNotFinite) {
   EXPECT_EQ(sut->counters().rejected, 1U);
 }
 
+TEST_F(DbcSessionTest, EffortIsNotKnownAnyMoreWhenItsFrameStopsOrItsNewestValueIsRefused) {
+  const CanFrame good = frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 0, 0, 0x80, 0x3F});
+  const CanFrame no_number = frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 0, 0, 0xC0, 0x7F});
+  const CanFrame other = frame(0x100, {0, 0, 0, 0, 0, 0, 0, 0});
+  sut->receive(good, {1});
+  sut->receive(other, Timestamp{1} + StreamAges{}.stale_after);
+  EXPECT_EQ(recorder.samples.back().effort[2], 1.0);
+  sut->receive(other, Timestamp{2} + StreamAges{}.stale_after);
+  EXPECT_EQ(recorder.samples.back().effort[2], 0.0);
+  sut->receive(good, {3'000'000'000});
+  sut->receive(no_number, {3'000'000'001});
+  EXPECT_EQ(recorder.samples.back().effort[2], 0.0);
+}
+
 TEST_F(DbcSessionTest, MultiplexedSignalsOfOneMessageReachTheirJoints) {
   sut->receive(frame(0x102, {0, 0x10, 0x27, 0, 0, 0, 0, 0}), {1});
   sut->receive(frame(0x102, {1, 0xF0, 0xD8, 0, 0, 0, 0, 0}), {2});

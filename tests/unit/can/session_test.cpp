@@ -128,6 +128,26 @@ TEST_F(SessionTest, VelocityAndTorqueComeWithTheirScales) {
   EXPECT_DOUBLE_EQ(out.samples[0].effort[0], 1.0);
 }
 
+TEST_F(SessionTest, VelocityAndTorqueThatStoppedToComeAreNotKnownAnyMore) {
+  config.nodes[0].tpdos = {{.number = 1, .entries = {{0x6064, 0, 32}}},
+                           {.number = 2, .entries = {{0x606C, 0, 32}, {0x6077, 0, 16}}}};
+  config.nodes[0].torque_scale = 0.1;
+  start();
+  const CanFrame position = frame(0x183, {0xE8, 0x03, 0, 0});
+  sut->receive(frame(0x283, {0xE8, 0x03, 0, 0, 10, 0}), now);
+  now = now + config.ages.stale_after;
+  sut->receive(position, now);
+  EXPECT_DOUBLE_EQ(out.samples.back().velocity[0], 1.0);
+  EXPECT_DOUBLE_EQ(out.samples.back().effort[0], 1.0);
+  now = now + 1ns;
+  sut->receive(position, now);
+  EXPECT_EQ(out.samples.back().velocity[0], 0.0);
+  EXPECT_EQ(out.samples.back().effort[0], 0.0);
+  sut->receive(frame(0x283, {0xE8, 0x03, 0, 0, 20, 0}), now);
+  sut->receive(position, now);
+  EXPECT_DOUBLE_EQ(out.samples.back().effort[0], 2.0);
+}
+
 TEST_F(SessionTest, ProducesSyncWithItsPhase) {
   config.sync_period = 10ms;
   start();
