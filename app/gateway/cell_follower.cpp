@@ -44,8 +44,15 @@ bool same_bodies(const CompiledCell& a, const CompiledCell& b, bool sensors) {
          all_same(a.joints, b.joints) && all_same(a.X_PF, b.X_PF) && (!sensors || all_same(a.sensors, b.sensors));
 }
 
+bool same_tool_points(const CompiledCell& a, const CompiledCell& b) {
+  return std::ranges::equal(a.robots, b.robots, [](const CompiledRobot& x, const CompiledRobot& y) {
+    return x.slot == y.slot && same(x.X_FT, y.X_FT);
+  });
+}
+
 bool CellFollower::is_news(const std::shared_ptr<const CompiledCell>& cell) const {
-  return cell != newest_ && (!cell_ || !same_bodies(*cell_, *cell, sensors_));
+  if (cell == newest_) return false;
+  return !cell_ || !same_bodies(*cell_, *cell, sensors_) || (tool_points_ && !same_tool_points(*cell_, *cell));
 }
 
 bool CellFollower::take_cell(const std::shared_ptr<const CompiledCell>& cell) {

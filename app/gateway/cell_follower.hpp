@@ -13,11 +13,14 @@ namespace cellmirror::app {
 // Whether the two differ in nothing that poses, bodies and the pairs of bodies depend on: cameras, parameters of moves
 // and the like may. `sensors`: ultrasonic sensors count too.
 [[nodiscard]] bool same_bodies(const CompiledCell& a, const CompiledCell& b, bool sensors);
+// Whether the tool centre points of the robots, which are those of both, are where they were. No pose depends on them.
+[[nodiscard]] bool same_tool_points(const CompiledCell& a, const CompiledCell& b);
 
 // One thread.
 class CellFollower {
  public:
-  explicit CellFollower(bool sensors) : sensors_(sensors) {}
+  // Bodies matter always; `sensors`, `tool_points`: these too.
+  explicit CellFollower(bool sensors, bool tool_points = false) : sensors_(sensors), tool_points_(tool_points) {}
 
   // True where the cell is another one than before in what matters here; else the one before is kept, with all that was
   // computed for it.
@@ -38,6 +41,7 @@ class CellFollower {
 
  private:
   bool sensors_;
+  bool tool_points_;
   std::shared_ptr<const CompiledCell> newest_;  // that was found to be the same as cell_
   std::shared_ptr<const CompiledCell> cell_;
   std::vector<JointValues> positions_ = std::vector<JointValues>(kMaxRobots);

@@ -39,11 +39,15 @@ ContactWorker::Finder& ContactWorker::finder_for(const HapticPicture& haptic) {
 }
 
 bool ContactWorker::follow(const OwnerPicture& picture) {
+  const std::shared_ptr<const CompiledCell> before = follower_.cell();
   const bool news = follower_.take_cell(picture.cell);
-  if (!news && settings_ == picture.collision) return false;
+  const bool other_settings = settings_ != picture.collision;
+  if (!news && !other_settings) return false;
   const Timestamp start = clock_.now();
   settings_ = picture.collision;
-  pairs_ = derivation_.derive(*follower_.cell(), *settings_);
+  // A new tool centre point leaves the pairs as they are, and the other instruments are not to wait for it.
+  if (other_settings || !before || !same_bodies(*before, *follower_.cell(), false))
+    pairs_ = derivation_.derive(*follower_.cell(), *settings_);
   for (Finder& finder : finders_) {
     if (finder.finder) finder.finder->adopt(follower_.cell(), pairs_);
   }

@@ -50,7 +50,7 @@ class ContactWorker final : private TickJob {
 
   bool wanted(const OwnerPicture& picture) override;
   void run(const OwnerPicture& picture, const engine::TickState& tick) override;
-  // True where pairs or finders are others than before.
+  // True where the finders have adopted something new.
   bool follow(const OwnerPicture& picture);
   Finder& finder_for(const HapticPicture& haptic);
 
@@ -59,7 +59,7 @@ class ContactWorker final : private TickJob {
 
   // The worker's own.
   collision::PairDerivation derivation_;
-  CellFollower follower_{false};
+  CellFollower follower_{false, true};  // planes are told for the tool centre point
   std::shared_ptr<const collision::Settings> settings_;
   std::shared_ptr<const collision::PairTable> pairs_;
   std::array<Finder, kMaxHapticDevices> finders_;

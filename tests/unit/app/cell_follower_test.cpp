@@ -63,6 +63,20 @@ TEST_F(CellFollowerTest, TakesOnlyChangesThatMatter) {
   EXPECT_TRUE(sut.take_cell(cell->compile()));
 }
 
+TEST_F(CellFollowerTest, TakesToolCentrePointsWhereTheyMatter) {
+  CellFollower with_tools{false, true};
+  ASSERT_TRUE(sut.take_cell(cell->compile()));
+  ASSERT_TRUE(with_tools.take_cell(cell->compile()));
+  ASSERT_TRUE(cell->set_camera("Cam", 3.0, 0.4));
+  EXPECT_FALSE(with_tools.take_cell(cell->compile()));
+  const Pose X_PT = pose_from_xyz_rpy({0, 0, 0.02}, {0, 0, 0});
+  ASSERT_TRUE(cell->edit_robot("ARM")->set_tool_center_point(X_PT));
+  EXPECT_FALSE(sut.take_cell(cell->compile()));
+  EXPECT_TRUE(with_tools.take_cell(cell->compile()));
+  EXPECT_EQ(with_tools.cell()->robots.front().X_FT.matrix(), X_PT.matrix());
+  EXPECT_FALSE(with_tools.take_cell(cell->compile()));
+}
+
 TEST_F(CellFollowerTest, WaitsForRobotsThatTheTickDoesNotKnowYet) {
   ASSERT_TRUE(sut.take_cell(cell->compile()));
   robot().mode = engine::RobotMode::absent;

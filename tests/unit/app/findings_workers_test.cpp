@@ -1,13 +1,17 @@
-// Workers take their findings away when there is nothing to find any more: nothing that is old stays for good.
+// Workers take their findings away when there is nothing to find any more, and find anew what has changed: nothing that
+// is old stays for good.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "app/gateway/collision_worker.hpp"
+#include "app/gateway/contact_worker.hpp"
 #include "app/gateway/force_worker.hpp"
+#include "app/gateway/haptic_instrument.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
 
 namespace cellmirror::app {
@@ -60,6 +64,7 @@ struct FindingsWorkersTest : testing::Test {
     auto picture = std::make_shared<OwnerPicture>();
     picture->cell = cell->compile();
     picture->collision = std::make_shared<const collision::Settings>(with);
+    picture->haptics = devices;
     pictures.hang_up(picture);
   }
 
@@ -84,6 +89,7 @@ struct FindingsWorkersTest : testing::Test {
   std::uint64_t cycle = 0;
   std::optional<Cell> cell;
   collision::Settings settings;
+  std::vector<HapticPicture> devices;
   PictureBoard pictures;
 };
 
@@ -123,6 +129,43 @@ TEST_F(CollisionWorkerTest, ShowsNothingWhenTheLastPairIsTestedNoMore) {
   ASSERT_TRUE(cell->delete_node("Sledge"));
   hang_up(settings);
   EXPECT_TRUE(comes([this] { return shows_nothing(); }));
+}
+
+struct SilentDevice final : HapticDevicePort {
+  HapticRead read(HapticSample& /*sample*/) CELL_RT override { return HapticRead::none; }
+  void write(const HapticOutput& /*output*/) CELL_RT override {}
+};
+
+struct ContactWorkerTest : FindingsWorkersTest {
+  ContactWorkerTest() {
+    auto made = make_instrument(*cell, *cell->robot("SLEDGE"), {}, cell->start_positions());
+    EXPECT_TRUE(made) << made.error().text();
+    instrument = *made;
+    engine::Command open;
+    open.kind = engine::CommandKind::open_haptic;
+    open.instrument = instrument.get();
+    open.device = &device;
+    engine.send(open);
+    HapticPicture haptic;
+    haptic.slot = instrument->slot;
+    haptic.online = true;
+    haptic.reach_m = 0.01;
+    devices.push_back(haptic);
+    hang_up(settings);
+  }
+  haptics::ContactModel newest() { return sut.report().newest[0]; }
+
+  SilentDevice device;
+  std::shared_ptr<const haptics::Instrument> instrument;
+  ContactWorker sut{engine, pictures, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
+};
+
+TEST_F(ContactWorkerTest, FindsThePlanesForTheNewToolCentrePoint) {
+  ASSERT_TRUE(comes([this] { return newest().sequence > 0; }));
+  const Eigen::Vector3d expected = newest().x_ref + Eigen::Vector3d(0, 0, 0.02);
+  ASSERT_TRUE(cell->edit_robot("SLEDGE")->set_tool_center_point(pose_from_xyz_rpy({0, 0, 0.02}, {0, 0, 0})));
+  hang_up(settings);
+  EXPECT_TRUE(comes([&] { return (newest().x_ref - expected).norm() < 1e-9; })) << newest().x_ref.transpose();
 }
 
 TEST_F(FindingsWorkersTest, ForcesOfTheLastRobotGoWithIt) {
