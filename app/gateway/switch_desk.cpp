@@ -81,6 +81,8 @@ void SwitchDesk::start_watching() {
 
 void SwitchDesk::stop_watching() {
   if (!reader_) return;
+  // First of all: the last change may be the one that switches something off.
+  reader_->stop();
   footswitch::SwitchEdge edge;
   for (std::size_t taken = 0; taken < footswitch::kEdgeQueue && reader_->next(edge); ++taken)
     scripts_.add({edge.input, edge.on, edge.not_told});

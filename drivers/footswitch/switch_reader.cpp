@@ -69,6 +69,12 @@ SwitchReader::SwitchReader(std::span<const std::byte> memory, Options options)
 
 SwitchReader::~SwitchReader() = default;
 
+void SwitchReader::stop() {
+  thread_.reset();
+  options_.wake = {};  // the owner is here
+  look(SystemClock().now());
+}
+
 void SwitchReader::look(Timestamp now) {
   copy_shared_bytes(memory_, copy_);
   found_.clear();

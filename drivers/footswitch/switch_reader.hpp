@@ -42,6 +42,8 @@ class SwitchReader {
   SwitchReader(const SwitchReader&) = delete;
   SwitchReader& operator=(const SwitchReader&) = delete;
 
+  // The owner's thread: ends the watching, once. Then all that changed before it can be had from next().
+  void stop();
   // The owner's thread: the next change, in order. False where there is none.
   bool next(SwitchEdge& edge) { return queue_.pop(edge); }
   // Any thread.

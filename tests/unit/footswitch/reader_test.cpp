@@ -71,6 +71,24 @@ TEST(SwitchReader, LooksAtTheFirstBytesOfALargeMemoryOnly) {
   EXPECT_FALSE(watched.sut->next(edge));
 }
 
+TEST(SwitchReader, HandsOnWhatChangedJustBeforeItsEnd) {
+  for (int round = 0; round < 20; ++round) {
+    Watched watched(1);
+    SwitchEdge edge;
+    watched.write(0, 1);
+    ASSERT_TRUE(watched.next(edge));
+    watched.write(0, 0);
+    watched.sut->stop();
+    const SwitchReader::Counters last = watched.sut->counters();
+    EXPECT_EQ(last.edges, 2U);
+    ASSERT_TRUE(watched.sut->next(edge));
+    EXPECT_FALSE(edge.on);
+    watched.write(0, 1);
+    EXPECT_FALSE(watched.sut->next(edge));
+    EXPECT_EQ(watched.sut->counters().looks, last.looks) << "nobody watches any more";
+  }
+}
+
 TEST(SwitchReader, CountsWhatItsOwnerDidNotTakeInTime) {
   Watched watched(kMostSwitchBytes);
   std::uint8_t value = 0;
