@@ -62,7 +62,9 @@ class SocketCanChannel final : public SocketChannel {
   [[nodiscard]] bool is_current() override;
   void take(const canfd_frame& raw, std::size_t bytes, Timestamp receive_time);
   void set_bus(CanBusState bus);
+  void set_down(const std::string& why);
   [[nodiscard]] bool is_up() const;
+  [[nodiscard]] std::string switched_off() const;
 
   std::string interface_;
   unsigned index_ = 0;
@@ -99,7 +101,11 @@ Result<void> SocketCanChannel::open_socket() {
     return fail(fmt::format("cannot bind to {}: {}", interface_, std::strerror(errno)));
   }
   socket_ = std::move(fd);
-  set_bus(is_up() ? CanBusState::active : CanBusState::down);
+  if (is_up()) {
+    set_bus(CanBusState::active);
+  } else {
+    set_down(switched_off());
+  }
   return {};
 }
 
@@ -111,22 +117,27 @@ bool SocketCanChannel::is_up() const {
 
 bool SocketCanChannel::is_current() {
   if (if_nametoindex(interface_.c_str()) != index_) {
-    go_down("the interface " + interface_ + " was removed");
-    bus_ = CanBusState::down;
+    set_down("the interface " + interface_ + " was removed");
     return false;
   }
   const bool up = is_up();
   if (up && bus_ == CanBusState::down) set_bus(CanBusState::active);
-  if (!up && bus_ != CanBusState::down) {
-    bus_ = CanBusState::down;
-    go_down("the interface " + interface_ + " is down: 'ip link set " + interface_ + " up'");
-  }
+  if (!up && bus_ != CanBusState::down) set_down(switched_off());
   return true;
+}
+
+std::string SocketCanChannel::switched_off() const {
+  return fmt::format("the interface {} is down: 'ip link set {} up'", interface_, interface_);
 }
 
 void SocketCanChannel::set_bus(CanBusState bus) {
   bus_ = bus;
   board_.update([bus](CanChannelStatus& status) { status.bus = bus; });
+}
+
+void SocketCanChannel::set_down(const std::string& why) {
+  bus_ = CanBusState::down;
+  go_down(why);
 }
 
 bool SocketCanChannel::fill() {
@@ -145,8 +156,7 @@ bool SocketCanChannel::fill() {
   if (count < 0) {
     if (errno == EAGAIN || errno == EINTR) return true;
     const int error = errno;
-    bus_ = CanBusState::down;
-    go_down(fmt::format("{}: {}", interface_, std::strerror(error)));
+    set_down(error == ENETDOWN ? switched_off() : fmt::format("{}: {}", interface_, std::strerror(error)));
     return error == ENETDOWN;  // the socket stays bound and hears again when the interface is up
   }
   const ClockPair clocks = ClockPair::read();
@@ -211,7 +221,7 @@ bool SocketCanChannel::send(const CanFrame& frame) {
       return;
     }
     ++status.send_refused;
-    status.last_error = fmt::format("send: {}", std::strerror(error));
+    status.last_error = down ? switched_off() : fmt::format("send: {}", std::strerror(error));
     if (down) status.bus = CanBusState::down;
   });
   return sent;

@@ -28,6 +28,8 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
+constexpr const char* kDown = "the interface vcan0 is down: 'ip link set vcan0 up'";
+
 int shell(const std::string& command) {
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
@@ -161,8 +163,16 @@ TEST_F(VcanTest, SurvivesALinkThatGoesDownAndUp) {
   ASSERT_EQ(shell("ip link set vcan0 down"), 0);
   EXPECT_TRUE(becomes_true([&] { return sut->receive(got, 1ms) == CanReceive::down; }));
   EXPECT_EQ(sut->status().bus, CanBusState::down);
+  EXPECT_EQ(sut->status().last_error, kDown);
   EXPECT_FALSE(sut->send(data_frame(1, {})));
   EXPECT_EQ(sut->status().send_refused, 1U);
+  EXPECT_EQ(sut->status().last_error, kDown);
+  CanChannelConfig config;
+  config.endpoint = "socketcan:vcan0";
+  const auto opened_down = open_can_channel(config);
+  ASSERT_TRUE(opened_down) << opened_down.error().text();
+  EXPECT_EQ((*opened_down)->status().bus, CanBusState::down);
+  EXPECT_EQ((*opened_down)->status().last_error, kDown);
   ASSERT_EQ(shell("ip link set vcan0 up"), 0);
   ASSERT_EQ(shell("cansend vcan0 123#"), 0);
   ASSERT_TRUE(receives());
@@ -260,8 +270,7 @@ TEST_F(VcanTest, AStreamMirrorsADriveThroughALinkFailure) {
                        [](const auto& d) { return d.second.find("0x8611 following error") != std::string::npos; });
   }));
   ASSERT_EQ(shell("ip link set vcan0 down"), 0);
-  EXPECT_TRUE(becomes_true([&] { return (*stream)->status().condition.find("down") != std::string::npos; }))
-      << (*stream)->status().condition;
+  EXPECT_TRUE(becomes_true([&] { return (*stream)->status().condition == kDown; })) << (*stream)->status().condition;
   ASSERT_EQ(shell("ip link set vcan0 up"), 0);
   const int before = sink.count;
   EXPECT_TRUE(becomes_true([&] { return sink.count > before + 10; })) << (*stream)->status().condition;
