@@ -215,7 +215,11 @@ Result<void> HapticDesk::reset(std::string_view robot) {
     after = try_reset(device);
   }
   if (!after) return std::unexpected(after.error());
-  if (after->phase != HapticPhase::faulted) return {};
+  if (after->phase != HapticPhase::faulted) {
+    // It may be another instrument than when the fault came.
+    follow_cell(device);
+    return {};
+  }
   return fail(fmt::format("the haptic device of {} stays in fault: {}", robot, explanation(after->fault)),
               fmt::format("{}; then RESET_HAPTIC {}", remedy(after->fault), robot));
 }
@@ -243,7 +247,8 @@ void HapticDesk::follow(Device& device, const HapticState& state) {
   if (!device.online) return;
   follow_process(device, state);
   tell_faults(device, state);
-  follow_cell(device);
+  // Opened anew, it would begin without its fault, which only the user may take back.
+  if (state.phase != HapticPhase::faulted) follow_cell(device);
 }
 
 void HapticDesk::follow_memory(Device& device) {

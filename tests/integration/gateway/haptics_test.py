@@ -286,6 +286,23 @@ class Processes(unittest.TestCase):
         finally:
             other.remove()
 
+    def test_a_fault_outlives_a_change_of_its_instrument(self):
+        device = h.Device(self.scratch.keys["LAP_LEFT"])
+        self.wait_for("active")
+        device.silent = True
+        self.wait_for("faulted")
+        device.silent = False
+        for command in ("ROBACT LAP_LEFT", "rob_tcp_def 0 0 5 0 0 0"):
+            done = self.scratch.send(command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        time.sleep(0.2)
+        self.assertEqual((self.haptic()["phase"], self.haptic()["fault"]), ("faulted", "stale"))
+        done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.wait_for("active")
+        self.assertEqual(self.haptic()["resets"], 0)  # opened anew, for the new instrument
+        device.close()
+
     def test_two_devices_at_once(self):
         self.start_device("LAP_LEFT")
         self.start_device("LAP_RIGHT")
