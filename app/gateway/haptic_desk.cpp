@@ -153,7 +153,8 @@ Result<void> HapticDesk::make_memory(Device& device, std::int32_t key, std::size
   device.users = device.segment->users();
   device.stream->set_memory("shared memory " + key_text(key), device.meter);
   if (bytes < haptic_block_offset::kSize) {
-    log_warning("haptic.memory", "the memory of {} has {} bytes: force only, a device needs {} to move the instrument",
+    log_warning("haptic.memory",
+                "the memory of {} has {} bytes: its forces stay zero, a device needs {} to tell where the hand is",
                 device.config.robot, bytes, haptic_block_offset::kSize);
   }
   return {};

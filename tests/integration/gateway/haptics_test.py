@@ -270,7 +270,7 @@ class Processes(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
         memory = h.attach(key, 16)
         self.assertEqual(struct.unpack("<3f", ctypes.string_at(memory._address, 12)), (0.0, 0.0, 0.0))
-        self.assertEqual(self.haptic()["phase"], "waiting")  # such a device is told forces, and moves nothing
+        self.assertEqual(self.haptic()["phase"], "waiting")  # such a device moves nothing, so nothing pushes it back
         memory.detach()
 
     def test_a_key_that_another_gateway_has(self):
