@@ -170,8 +170,8 @@ bool Cia402Session::cycle_is_complete() const {
 
 void Cia402Session::emit() {
   if (sample_.present == 0) return;
-  sample_.velocity = velocity_.at(sample_.receive_time, plan_.config.ages.stale_after);
-  sample_.effort = effort_.at(sample_.receive_time, plan_.config.ages.stale_after);
+  sample_.velocity = velocity_.at(sample_.receive_time, plan_.config.ages.lost_after);
+  sample_.effort = effort_.at(sample_.receive_time, plan_.config.ages.lost_after);
   sample_.sequence = ++counters_.samples;
   output_->sample(sample_);
   sample_.present = 0;

@@ -120,8 +120,8 @@ void DbcSession::receive(const CanFrame& frame, Timestamp now) {
   sample_.refused = 0;
   for (const Field& field : source.fields) take(source, field, frame, now);
   if ((sample_.present | sample_.refused) == 0) return;
-  sample_.velocity = velocity_.at(now, plan_.config.ages.stale_after);
-  sample_.effort = effort_.at(now, plan_.config.ages.stale_after);
+  sample_.velocity = velocity_.at(now, plan_.config.ages.lost_after);
+  sample_.effort = effort_.at(now, plan_.config.ages.lost_after);
   sample_.receive_time = now;
   sample_.sequence = ++counters_.samples;
   output_->sample(sample_);

@@ -56,7 +56,7 @@ class DbcSession {
   DbcSession& operator=(const DbcSession&) = delete;
 
   // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with it
-  // unless they are stale or were refused. Frames shorter than the DBC says are refused, longer ones (FD padding) are
+  // unless they are lost or were refused. Frames shorter than the DBC says are refused, longer ones (FD padding) are
   // taken.
   void receive(const CanFrame& frame, Timestamp now);
 

@@ -248,9 +248,9 @@ TEST_F(DbcSessionTest, EffortIsNotKnownAnyMoreWhenItsFrameStopsOrItsNewestValueI
   const CanFrame no_number = frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 0, 0, 0xC0, 0x7F});
   const CanFrame other = frame(0x100, {0, 0, 0, 0, 0, 0, 0, 0});
   sut->receive(good, {1});
-  sut->receive(other, Timestamp{1} + StreamAges{}.stale_after);
+  sut->receive(other, Timestamp{1} + StreamAges{}.lost_after);
   EXPECT_EQ(recorder.samples.back().effort[2], 1.0);
-  sut->receive(other, Timestamp{2} + StreamAges{}.stale_after);
+  sut->receive(other, Timestamp{2} + StreamAges{}.lost_after);
   EXPECT_EQ(recorder.samples.back().effort[2], 0.0);
   sut->receive(good, {3'000'000'000});
   sut->receive(no_number, {3'000'000'001});

@@ -135,7 +135,7 @@ TEST_F(SessionTest, VelocityAndTorqueThatStoppedToComeAreNotKnownAnyMore) {
   start();
   const CanFrame position = frame(0x183, {0xE8, 0x03, 0, 0});
   sut->receive(frame(0x283, {0xE8, 0x03, 0, 0, 10, 0}), now);
-  now = now + config.ages.stale_after;
+  now = now + config.ages.lost_after;
   sut->receive(position, now);
   EXPECT_DOUBLE_EQ(out.samples.back().velocity[0], 1.0);
   EXPECT_DOUBLE_EQ(out.samples.back().effort[0], 1.0);
