@@ -4,45 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "app/gateway/fleet.hpp"
-#include "config/cell_file.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/motion/executor.hpp"
 #include "rt_core/rt/watchdog.hpp"
+#include "tests/unit/app/transfer_cell.hpp"
 
 namespace cellmirror::app {
 namespace {
 
 constexpr std::string_view kMantec = "MANTEC_R3";
-
-Cell cell_with_mantec() {
-  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
-  Diagnostics diagnostics;
-  auto loaded = load_cell(
-      std::filesystem::path(source == nullptr ? "." : source) / "config" / "cells" / "transfer_cell" / "cell.toml",
-      diagnostics);
-  EXPECT_TRUE(loaded) << diagnostics.text();
-  return std::move(loaded->cell);
-}
-
-// Only rob_positioning asks who is active.
-struct NamesOfNobody final : NameDirectory {
-  [[nodiscard]] bool knows(NameKind /*kind*/, std::string_view /*name*/) const override { return false; }
-  [[nodiscard]] Error explain(NameKind /*kind*/, std::string_view /*name*/) const override { return {}; }
-  [[nodiscard]] std::span<const JointKind> joints(std::string_view /*robot*/) const override { return {}; }
-  [[nodiscard]] std::vector<std::string> joint_names(std::string_view /*robot*/) const override { return {}; }
-  [[nodiscard]] std::string_view active_robot() const override { return {}; }
-  [[nodiscard]] std::vector<std::string> all(NameKind /*kind*/) const override { return {}; }
-};
 
 // As one of a CAN interface that the machine does not have.
 struct StreamOfNothing final : JointStream {
@@ -76,12 +51,12 @@ class MotionDeskTest : public testing::Test {
   }
   [[nodiscard]] double first_joint() { return fleet_.positions()[cell_.robot(kMantec)->slot()][0]; }
 
-  Cell cell_ = cell_with_mantec();
+  Cell cell_ = transfer_cell();
   ManualClock clock_;
   Watchdog watchdog_{std::chrono::seconds(1), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
   Fleet fleet_{cell_, *engine_, {}, clock_, 0};
-  NamesOfNobody names_;
+  NoNames names_;
   MotionDesk sut_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_};
   std::uint64_t cycle_ = 0;
 };

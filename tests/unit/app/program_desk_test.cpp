@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,24 +16,15 @@
 
 #include "app/gateway/guarded_motion.hpp"
 #include "app/gateway/program_motion.hpp"
-#include "config/cell_file.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/rt/watchdog.hpp"
 #include "scripts/programs/languages/languages.hpp"
+#include "tests/unit/app/transfer_cell.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
 namespace cellmirror::app {
 namespace {
-
-struct NobodyActive final : NameDirectory {
-  [[nodiscard]] bool knows(NameKind /*kind*/, std::string_view /*name*/) const override { return false; }
-  [[nodiscard]] Error explain(NameKind /*kind*/, std::string_view /*name*/) const override { return {}; }
-  [[nodiscard]] std::span<const JointKind> joints(std::string_view /*robot*/) const override { return {}; }
-  [[nodiscard]] std::vector<std::string> joint_names(std::string_view /*robot*/) const override { return {}; }
-  [[nodiscard]] std::string_view active_robot() const override { return {}; }
-  [[nodiscard]] std::vector<std::string> all(NameKind /*kind*/) const override { return {}; }
-};
 
 // `first`: before some thousand records that are jumped over.
 std::string program_that_is_read_aside(std::string_view first = {}) {
@@ -58,13 +48,7 @@ class ProgramDeskTest : public testing::Test {
     auto home = KismetHome::open(folder_.root());
     ASSERT_TRUE(home);
     home_.emplace(*std::move(home));
-    const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
-    Diagnostics diagnostics;
-    auto loaded = load_cell(
-        std::filesystem::path(source == nullptr ? "." : source) / "config" / "cells" / "transfer_cell" / "cell.toml",
-        diagnostics);
-    ASSERT_TRUE(loaded) << diagnostics.text();
-    parts_ = std::make_unique<Gateway>(std::move(loaded->cell), *home_, events_);
+    parts_ = std::make_unique<Gateway>(transfer_cell(), *home_, events_);
   }
 
   [[nodiscard]] ProgramDesk& sut() { return parts_->programs; }
@@ -135,7 +119,7 @@ class ProgramDeskTest : public testing::Test {
 
     Cell cell;
     ManualClock clock;
-    NobodyActive names;
+    NoNames names;
     Watchdog watchdog{std::chrono::seconds(1), {}};
     std::unique_ptr<engine::Engine> engine = std::make_unique<engine::Engine>(watchdog);
     Fleet fleet{cell, *engine, {}, clock, 0};

@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -14,10 +12,10 @@
 #include "app/gateway/motion_desk.hpp"
 #include "app/gateway/move_settings.hpp"
 #include "app/gateway/program_motion.hpp"
-#include "config/cell_file.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/motion/planner.hpp"
 #include "rt_core/rt/watchdog.hpp"
+#include "tests/unit/app/transfer_cell.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -30,26 +28,6 @@ using program::TargetKind;
 
 constexpr Nanoseconds kPeriod{1'000'000};
 constexpr std::string_view kRobot = "PUMA_762";
-
-Cell transfer_cell() {
-  const char* source = std::getenv("CELLMIRROR_SOURCE_DIR");
-  Diagnostics diagnostics;
-  auto loaded = load_cell(
-      std::filesystem::path(source == nullptr ? "." : source) / "config" / "cells" / "transfer_cell" / "cell.toml",
-      diagnostics);
-  EXPECT_TRUE(loaded) << diagnostics.text();
-  return std::move(loaded->cell);
-}
-
-// SCRIPT's names have no part in the moves of programs.
-struct NoNames final : NameDirectory {
-  [[nodiscard]] bool knows(NameKind /*kind*/, std::string_view /*name*/) const override { return false; }
-  [[nodiscard]] Error explain(NameKind /*kind*/, std::string_view /*name*/) const override { return {}; }
-  [[nodiscard]] std::span<const JointKind> joints(std::string_view /*robot*/) const override { return {}; }
-  [[nodiscard]] std::vector<std::string> joint_names(std::string_view /*robot*/) const override { return {}; }
-  [[nodiscard]] std::string_view active_robot() const override { return {}; }
-  [[nodiscard]] std::vector<std::string> all(NameKind /*kind*/) const override { return {}; }
-};
 
 class ProgramMotionTest : public testing::Test {
  protected:
