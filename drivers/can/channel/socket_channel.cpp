@@ -148,4 +148,11 @@ void SocketChannel::go_down(const std::string& why) {
   });
 }
 
+void SocketChannel::note_refused(const std::string& why) {
+  board_.update([&why](CanChannelStatus& status) {
+    ++status.send_refused;
+    if (status.bus != CanBusState::down) status.last_error = why;
+  });
+}
+
 }  // namespace cellmirror::can

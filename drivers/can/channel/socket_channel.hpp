@@ -77,6 +77,8 @@ class SocketChannel : public CanChannel {
   // Counts and remembers the kernel's drop counter.
   void note_dropped(const Ancillary& ancillary);
   void go_down(const std::string& why);
+  // Counts a frame that was not sent. Why the channel is down stays what is shown.
+  void note_refused(const std::string& why);
 
   Descriptor socket_;
   StatusBoard board_;

@@ -49,6 +49,9 @@ std::uint8_t sendable_length(const CanFrame& frame) {
   return kCanMaxData;
 }
 
+// What reading and sending say when the interface of a bound socket was removed.
+bool is_gone(int error) { return error == ENODEV || error == ENXIO; }
+
 class SocketCanChannel final : public SocketChannel {
  public:
   explicit SocketCanChannel(std::string interface)
@@ -65,6 +68,7 @@ class SocketCanChannel final : public SocketChannel {
   void set_down(const std::string& why);
   [[nodiscard]] bool is_up() const;
   [[nodiscard]] std::string switched_off() const;
+  [[nodiscard]] std::string removed() const { return "the interface " + interface_ + " was removed"; }
 
   std::string interface_;
   unsigned index_ = 0;
@@ -117,7 +121,7 @@ bool SocketCanChannel::is_up() const {
 
 bool SocketCanChannel::is_current() {
   if (if_nametoindex(interface_.c_str()) != index_) {
-    set_down("the interface " + interface_ + " was removed");
+    set_down(removed());
     return false;
   }
   const bool up = is_up();
@@ -156,7 +160,9 @@ bool SocketCanChannel::fill() {
   if (count < 0) {
     if (errno == EAGAIN || errno == EINTR) return true;
     const int error = errno;
-    set_down(error == ENETDOWN ? switched_off() : fmt::format("{}: {}", interface_, std::strerror(error)));
+    set_down(error == ENETDOWN ? switched_off()
+             : is_gone(error)  ? removed()
+                               : fmt::format("{}: {}", interface_, std::strerror(error)));
     return error == ENETDOWN;  // the socket stays bound and hears again when the interface is up
   }
   const ClockPair clocks = ClockPair::read();
@@ -213,18 +219,14 @@ bool SocketCanChannel::send(const CanFrame& frame) {
     error = errno;
   }
   const bool sent = written == static_cast<ssize_t>(bytes);
-  const bool down = !sent && error == ENETDOWN;
-  if (down) bus_ = CanBusState::down;
-  board_.update([&](CanChannelStatus& status) {
-    if (sent) {
-      ++status.sent;
-      return;
-    }
-    ++status.send_refused;
-    status.last_error = down ? switched_off() : fmt::format("send: {}", std::strerror(error));
-    if (down) status.bus = CanBusState::down;
-  });
-  return sent;
+  if (sent) {
+    board_.update([](CanChannelStatus& status) { ++status.sent; });
+    return true;
+  }
+  if (error == ENETDOWN) set_down(switched_off());
+  if (is_gone(error)) set_down(removed());
+  note_refused(fmt::format("send: {}", std::strerror(error)));
+  return false;
 }
 
 }  // namespace

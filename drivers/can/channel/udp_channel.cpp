@@ -233,14 +233,11 @@ bool UdpChannel::send(const CanFrame& frame) {
     error = errno;
   }
   const bool sent = written == static_cast<ssize_t>(datagram.size);
-  board_.update([&](CanChannelStatus& status) {
-    if (sent) {
-      ++status.sent;
-    } else {
-      ++status.send_refused;
-      status.last_error = fmt::format("send: {}", std::strerror(error));
-    }
-  });
+  if (sent) {
+    board_.update([](CanChannelStatus& status) { ++status.sent; });
+  } else {
+    note_refused(fmt::format("send: {}", std::strerror(error)));
+  }
   return sent;
 }
 

@@ -25,9 +25,9 @@ Cia402Session::Cia402Session(Cia402Plan plan, Cia402SessionOutput& output) : pla
     node.plan = node_plan;
     node.status.node_id = node_plan.config.node_id;
     node.status.joint_name = node_plan.config.joint_name;
-    if (node_plan.config.configure) {
+    if (node_plan.config.configure) node.steps = steps_of(plan_, node_plan);
+    if (asks_lost_nodes(node) || !node.steps.empty()) {
       node.sdo.emplace(node_plan.config.node_id, plan_.config.sdo_timeout);
-      node.steps = steps_of(plan_, node_plan);
     }
     for (const TpdoConfig& config : node_plan.tpdos) {
       const auto field = [&config](ObjectAddress address) {
@@ -102,7 +102,8 @@ void Cia402Session::receive(const CanFrame& frame, Timestamp now) {
       }
       return;
     case kSdoResponseBase:
-      if (!nodes_[index].sdo) return;
+      // Nodes that are not configured are asked while they are lost only; other answers are to other masters.
+      if (nodes_[index].steps.empty() && !nodes_[index].asking) return;
       if (frame.length != 8) {
         reject(index, fmt::format("SDO answer of {} bytes instead of 8", frame.length));
         return;
@@ -231,6 +232,7 @@ void Cia402Session::advance(Timestamp now) {
       on_sdo_progress(i, now);
     }
     if (node.retry.known() && now >= node.retry) bring_up(i, now);
+    if (node.ask.known() && now >= node.ask) ask(i, now);
   }
 }
 
@@ -242,6 +244,7 @@ Timestamp Cia402Session::next_due() const {
   for (const Node& node : nodes_) {
     take(node.heartbeat_deadline);
     take(node.retry);
+    take(node.ask);
     if (node.sdo) take(node.sdo->due());
   }
   return due;

@@ -76,6 +76,9 @@ struct Cia402NodeStatus {
 
 class Cia402Session {
  public:
+  // A node that is lost is asked by SDO after this time and again this often. docs/can.md, "Watching".
+  static constexpr Nanoseconds kAskLost{1'000'000'000};
+
   // `output` outlives the session; `plan` comes from plan_cia402().
   Cia402Session(Cia402Plan plan, Cia402SessionOutput& output);
 
@@ -123,7 +126,9 @@ class Cia402Session {
     std::vector<ConfigurationStep> steps;
     std::size_t step = 0;
     bool configured = false;
-    Timestamp retry;  // of a configuration that failed
+    Timestamp retry;      // of a configuration that failed
+    Timestamp ask;        // when a lost node is asked next; never: it is not lost, or is not asked
+    bool asking = false;  // `sdo` reads, and nodes that are configured: what `step` has written
   };
 
   // session.cpp
@@ -147,6 +152,15 @@ class Cia402Session {
   void on_sdo_progress(std::size_t index, Timestamp now);
   void fail_configuration(std::size_t index, const std::string& why, Timestamp now);
   void watch(std::size_t index, Timestamp now);
+  // session_lost_nodes.cpp
+  [[nodiscard]] bool asks_lost_nodes(const Node& node) const;
+  void ask(std::size_t index, Timestamp now);
+  void ask_for_step(std::size_t index, Timestamp now);
+  void on_asked(std::size_t index, Timestamp now);
+  void on_forgotten(std::size_t index, Timestamp now);
+  [[nodiscard]] bool is_silent(const Node& node, Timestamp now) const;
+  [[nodiscard]] static bool is_last_write(const Node& node, std::size_t step);
+  [[nodiscard]] static bool kept(const Node& node);
   [[nodiscard]] static std::vector<ConfigurationStep> steps_of(const Cia402Plan& plan, const Cia402NodePlan& node);
 
   Cia402Plan plan_;

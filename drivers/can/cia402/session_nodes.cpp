@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <utility>
 
 #include "drivers/can/canopen/bytes.hpp"
 #include "drivers/can/canopen/cob_id.hpp"
@@ -56,7 +57,7 @@ std::vector<Cia402Session::ConfigurationStep> Cia402Session::steps_of(const Cia4
 void Cia402Session::bring_up(std::size_t index, Timestamp now) {
   Node& node = nodes_[index];
   node.retry = {};
-  if (node.sdo && !node.configured) {
+  if (!node.steps.empty() && !node.configured) {
     begin_configuration(index, now);
   } else {
     start_node(node, now);
@@ -75,6 +76,7 @@ void Cia402Session::begin_configuration(std::size_t index, Timestamp now) {
   node.status.configuring = true;
   node.answering = false;
   node.step = 0;
+  node.asking = false;
   node.sdo->reset();
   next_step(index, now);
 }
@@ -97,6 +99,7 @@ void Cia402Session::next_step(std::size_t index, Timestamp now) {
 
 void Cia402Session::on_sdo_progress(std::size_t index, Timestamp now) {
   Node& node = nodes_[index];
+  if (node.asking) return on_asked(index, now);
   if (!node.status.configuring) return;
   if (node.sdo->state() == SdoClient::State::done) {
     node.status.heard = true;
@@ -140,6 +143,8 @@ void Cia402Session::on_heartbeat(std::size_t index, NmtState state, Timestamp no
   if (plan_.config.heartbeat_timeout.count() > 0) node.heartbeat_deadline = now + plan_.config.heartbeat_timeout;
   if (node.status.heartbeat_lost) {
     node.status.heartbeat_lost = false;
+    node.ask = {};
+    if (std::exchange(node.asking, false)) node.sdo->reset();
     tell(Cia402EventKind::node_resolved, index, "the heartbeat is back");
   }
   if (state == NmtState::boot_up) {
@@ -177,6 +182,7 @@ void Cia402Session::watch(std::size_t index, Timestamp now) {
   node.status.heartbeat_lost = true;
   node.status.nmt.reset();
   node.answering = false;
+  if (asks_lost_nodes(node)) node.ask = now + kAskLost;
   tell(Cia402EventKind::node_lost, index, node.status.last_heartbeat.known() ? "no heartbeat" : "not heard");
 }
 

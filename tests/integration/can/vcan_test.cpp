@@ -199,6 +199,23 @@ TEST_F(VcanTest, SurvivesAnInterfaceThatIsRemovedAndComesBack) {
   EXPECT_EQ(sut->status().bus, CanBusState::active);
 }
 
+TEST_F(VcanTest, WhatIsSentMeanwhileDoesNotHideThatTheInterfaceWasRemoved) {
+  ASSERT_EQ(shell("ip link del vcan0"), 0);
+  for (int i = 0; i < 200; ++i) {
+    EXPECT_FALSE(sut->send(data_frame(0x181, {1})));
+    sut->receive(got, 5ms);
+    EXPECT_THAT(sut->status().last_error,
+                testing::AnyOf(HasSubstr("interface vcan0 is down"), HasSubstr("interface vcan0 was removed"),
+                               HasSubstr("no network interface vcan0")));
+  }
+  EXPECT_THAT(sut->status().last_error, HasSubstr("no network interface vcan0"));
+  ASSERT_EQ(shell("ip link add dev vcan0 type vcan && ip link set vcan0 mtu 72 up"), 0);
+  EXPECT_TRUE(becomes_true([&] {
+    sut->receive(got, 5ms);
+    return sut->send(data_frame(0x181, {1}));
+  }));
+}
+
 TEST_F(VcanTest, TellsErrorFrames) {
   ASSERT_EQ(shell("cansend vcan0 20000040#0000000000000000"), 0);  // CAN_ERR_BUSOFF
   ASSERT_TRUE(receives());

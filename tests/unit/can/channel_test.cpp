@@ -14,6 +14,7 @@
 #include "drivers/can/channel/endpoint.hpp"
 #include "drivers/can/channel/error_frame.hpp"
 #include "drivers/can/channel/open_channel.hpp"
+#include "drivers/can/channel/socket_channel.hpp"
 #include "drivers/can/channel/virtual_bus.hpp"
 #include "tests/unit/can/frames.hpp"
 
@@ -24,6 +25,29 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 constexpr Nanoseconds kLong = 5s;  // never waited out where the code works
+
+// A channel whose interface was removed: its socket cannot be opened again.
+struct ChannelWithoutInterface final : SocketChannel {
+  ChannelWithoutInterface() : SocketChannel("gone0") {}
+  Result<void> open_socket() override { return fail("there is no network interface gone0"); }
+  bool fill() override { return true; }
+  bool is_current() override { return true; }
+  bool send(const CanFrame& /*frame*/) override {
+    note_refused("send: not connected");
+    return false;
+  }
+};
+
+TEST(SocketChannel, AFrameThatIsNotSentDoesNotHideWhyTheChannelIsDown) {
+  ChannelWithoutInterface sut;
+  EXPECT_FALSE(sut.send({}));
+  EXPECT_EQ(sut.status().last_error, "send: not connected");
+  ReceivedCanFrame got;
+  EXPECT_EQ(sut.receive(got, 1ms), CanReceive::down);
+  EXPECT_FALSE(sut.send({}));
+  EXPECT_EQ(sut.status().last_error, "there is no network interface gone0");
+  EXPECT_EQ(sut.status().send_refused, 2U);
+}
 
 TEST(Endpoint, NamesTheKinds) {
   EXPECT_EQ(std::get<SocketCanEndpoint>(*parse_endpoint("socketcan:can0")).interface, "can0");

@@ -18,8 +18,6 @@ struct Sent : Cia402DriveOutput {
   std::vector<CanFrame> take() { return std::exchange(frames, {}); }
 };
 
-using Frames = std::vector<CanFrame>;
-
 TEST(Statusword, DecodesTheStatesOfTheStandard) {
   EXPECT_EQ(decode_statusword(0x0000), Cia402State::not_ready_to_switch_on);
   EXPECT_EQ(decode_statusword(0x0250), Cia402State::switch_on_disabled);

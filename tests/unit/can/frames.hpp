@@ -11,6 +11,8 @@
 
 namespace cellmirror {
 
+using Frames = std::vector<CanFrame>;
+
 inline CanFrame frame(std::uint32_t id, std::initializer_list<int> bytes) {
   CanFrame result;
   result.id = id;
