@@ -16,7 +16,7 @@ pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo-png)  # plots: app/plot
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)  # rt_core/inverse_kinematics, as is LAPACK
 find_package(LAPACK REQUIRED)
 find_package(fcl REQUIRED)     # rt_core/collision
-find_package(assimp REQUIRED)  # config: mesh files
+find_package(assimp REQUIRED)  # config/mesh_reader
 find_package(Qhull REQUIRED)   # rt_core/geometry: convex hulls
 # drivers/display. Of OSMesa and EGL only the headers: the libraries are opened when a picture is wanted.
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)

@@ -17,7 +17,9 @@ set(CELLMIRROR_LAYERS
   "rt_core/dynamics: rt_core/base rt_core/ports rt_core/kinematics rt_core/cell"
   "rt_core/contact_model: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
   "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion rt_core/haptics"
-  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
+  "config/mesh_message: rt_core/base rt_core/ports rt_core/geometry"
+  "config/mesh_reader: config/mesh_message rt_core/base rt_core/ports rt_core/geometry"
+  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics config/mesh_message"
   "config/command_line: rt_core/base"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
@@ -51,7 +53,7 @@ set(CELLMIRROR_LAYERS
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/scene
-  rt_core/engine config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web
+  rt_core/engine config/mesh_message config/mesh_reader config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web
   scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot app tests)

@@ -1,6 +1,7 @@
 // assimp 5.2.5 allocates what the counts of a glTF say, and follows circles of nodes.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -154,6 +155,20 @@ Result<void> check_glb(std::string_view bytes) {
   if (rest > 0 && (rest < kChunkHeader || number(chunk) > rest - kChunkHeader))
     return fail("its buffer reaches beyond its end", "export it anew");
   return check_gltf(bytes.substr(kHeader, length));
+}
+
+std::vector<std::string> gltf_buffer_files(std::string_view text, std::size_t most) {
+  std::vector<std::string> out;
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto buffers = json.is_object() ? json.find("buffers") : json.end();
+  if (buffers == json.end() || !buffers->is_array()) return out;
+  for (const auto& buffer : *buffers) {
+    if (out.size() >= most) break;
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const auto& name = buffer["uri"].get_ref<const std::string&>();
+    if (name.ends_with(".bin") && std::ranges::find(out, name) == out.end()) out.push_back(name);
+  }
+  return out;
 }
 
 }  // namespace cellmirror

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/mesh_scene.hpp"
+#include "config/mesh_message/scene_polygons.hpp"
 #include "config/picture_library.hpp"
 
 namespace cellmirror {
@@ -31,8 +31,8 @@ void name_obj_pictures(std::string_view bytes, LookRequest& request, ScenePolygo
 // For formats in which the names of pictures are URIs.
 void decode_picture_names(ScenePolygons& polygons);
 
-// Loads what the used part of the palette names, each picture once; the scene has to live still. Empty where no
-// triangle shows a picture and no vertex has a colour.
+// Loads what the used part of the palette names, each picture once. Empty where no triangle shows a picture and no
+// vertex has a colour.
 [[nodiscard]] std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polygons,
                                                                     LookRequest& request);
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "config/mesh_file.hpp"
-#include "config/polygon.hpp"
+#include "config/mesh_reader/polygon.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 

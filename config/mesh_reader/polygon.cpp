@@ -1,4 +1,4 @@
-#include "config/polygon.hpp"
+#include "config/mesh_reader/polygon.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,4 +1,4 @@
-#include "config/mesh_scene.hpp"
+#include "config/mesh_reader/mesh_scene.hpp"
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "config/polygon.hpp"
+#include "config/mesh_reader/polygon.hpp"
 #include "rt_core/geometry/mesh_repair.hpp"
 
 namespace cellmirror {
@@ -18,8 +18,6 @@ namespace cellmirror {
 using geometry::kMostTriangles;
 
 namespace {
-
-constexpr std::size_t kMostMaterials = 0xFFFF;
 
 Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
   Eigen::Matrix4d out;
@@ -33,10 +31,8 @@ float part_of_one(float value) { return std::isfinite(value) ? std::clamp(value,
 
 std::uint8_t byte_of(float value) { return static_cast<std::uint8_t>(std::lround(255.0F * part_of_one(value))); }
 
-// Beyond that, single precision no longer tells the pixels of a picture apart.
 Eigen::Vector2f place_of(const aiVector3D& at) {
-  constexpr float kFarthest = 1e4F;
-  if (!(std::abs(at.x) <= kFarthest) || !(std::abs(at.y) <= kFarthest)) return Eigen::Vector2f::Zero();
+  if (!(std::abs(at.x) <= kFarthestPlace) || !(std::abs(at.y) <= kFarthestPlace)) return Eigen::Vector2f::Zero();
   return {at.x, at.y};
 }
 
@@ -144,7 +140,8 @@ class Collector {
       if (!picture_of(material, text, channel)) continue;
       // "*3". The names that such pictures may have besides are nobody's references.
       if (text.C_Str()[0] == '*') {
-        if (const int index = scene_.GetEmbeddedTextureAndIndex(text.C_Str()).second; index >= 0)
+        if (const int index = scene_.GetEmbeddedTextureAndIndex(text.C_Str()).second;
+            index >= 0 && static_cast<std::size_t>(index) < kMostMaterials)
           to.embedded = static_cast<std::size_t>(index);
       }
       if (!to.embedded) to.picture = text.C_Str();
@@ -153,7 +150,8 @@ class Collector {
   }
 
   void read_embedded() {
-    for (unsigned i = 0; i < scene_.mNumTextures; ++i) {
+    const std::size_t count = std::min<std::size_t>(scene_.mNumTextures, kMostMaterials);
+    for (std::size_t i = 0; i < count; ++i) {
       const aiTexture& texture = *scene_.mTextures[i];
       const bool as_a_file = texture.mHeight == 0 && texture.pcData != nullptr;
       out_.embedded.emplace_back(as_a_file ? reinterpret_cast<const char*>(texture.pcData) : "",

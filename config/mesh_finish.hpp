@@ -1,0 +1,20 @@
+// From what the reader of a mesh found to the mesh and its look. Private to this folder; takes memory, any thread.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "config/mesh_looks.hpp"
+#include "config/mesh_message/scene_polygons.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/geometry/mesh_repair.hpp"
+
+namespace cellmirror {
+
+// What parse_mesh() does after reading. `polygons` as decode_mesh_answer() gives them, with looks where `looks` is not
+// null; `bytes` and `extension` of the mesh file.
+[[nodiscard]] Result<geometry::TriangleMesh> finish_mesh(ScenePolygons polygons, std::string_view bytes,
+                                                         std::string_view extension, const std::string& name,
+                                                         geometry::MeshFindings& findings, LookRequest* looks);
+
+}  // namespace cellmirror
