@@ -15,6 +15,7 @@
 
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "config/mesh_process.hpp"
 #include "drivers/display/renderer.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/sysv/limits.hpp"
@@ -101,6 +102,12 @@ Finding renderer_finding(const char* name, display::Backend backend) {
   return {name, renderer.error().what, false, renderer.error().remedy};
 }
 
+Finding mesh_reader_finding() {
+  const auto found = check_mesh_reader();
+  if (found) return {"reader of meshes", installed_mesh_reader().program.string(), true, {}};
+  return {"reader of meshes", found.error().what, false, found.error().remedy};
+}
+
 std::vector<Finding> examine() {
   std::vector<Finding> findings = {scheduling_finding(), memory_finding(),    idle_finding(),
                                    can_finding(),        interface_finding(), receive_buffer_finding()};
@@ -112,6 +119,7 @@ std::vector<Finding> examine() {
   findings.push_back(page_finding());
   add(ipc_findings(read_sysv_limits(), read_remove_ipc()));
   add(shared_memory_findings(read_shared_memory_limits(), read_left_segments(::geteuid())));
+  findings.push_back(mesh_reader_finding());
   findings.push_back(renderer_finding("GL renderer", display::Backend::osmesa));
   findings.push_back(renderer_finding("GL renderer, instead", display::Backend::egl));
   return findings;
