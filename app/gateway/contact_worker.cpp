@@ -10,6 +10,12 @@ namespace {
 
 constexpr Nanoseconds kLongestRest{4'000'000};
 
+// For which posture it was found: who moves another instrument sees that it is not for it.
+void tell_posture(const engine::RobotTickState& robot, haptics::ContactModel& found) {
+  found.joint_count = robot.joint_count;
+  for (std::size_t i = 0; i < robot.joint_count; ++i) found.q[i] = robot.joints[i].position;
+}
+
 }  // namespace
 
 ContactWorker::ContactWorker(engine::Engine& engine, const PictureBoard& pictures, const Clock& clock,
@@ -51,6 +57,7 @@ bool ContactWorker::follow(const OwnerPicture& picture) {
   for (Finder& finder : finders_) {
     if (finder.finder) finder.finder->adopt(follower_.cell(), pairs_);
   }
+  ++cells_;
   adopting_.record(clock_.now() - start);
   return true;
 }
@@ -63,6 +70,8 @@ void ContactWorker::run(const OwnerPicture& picture, const engine::TickState& ti
     if (!haptic.online || tick.haptics[haptic.channel].phase == HapticPhase::closed) continue;
     Finder& finder = finder_for(haptic);
     finder.finder->find(follower_.poses(), tick.time, finder.found);
+    finder.found.cell = cells_;
+    tell_posture(tick.robots[haptic.slot], finder.found);
     Latest<haptics::ContactModel>& inlet = engine_.contact_inlet(haptic.channel);
     inlet.writable() = finder.found;
     inlet.publish();

@@ -63,6 +63,7 @@ class ContactWorker final : private TickJob {
   std::shared_ptr<const collision::Settings> settings_;
   std::shared_ptr<const collision::PairTable> pairs_;
   std::array<Finder, kMaxHapticDevices> finders_;
+  std::uint64_t cells_ = 0;  // that were adopted
 
   AgeKeeper ages_;
   LatencyHistogram compute_;

@@ -92,6 +92,9 @@ Result<void> HapticDesk::open(Device& device) {
   auto instrument = instrument_of(device);
   if (!instrument) return std::unexpected(instrument.error());
   if (auto sent = send_open(device, std::move(*instrument)); !sent) return sent;
+  device.gone = false;
+  device.samples_seen = 0;
+  device.faults_seen = 0;
   device.online = true;
   return {};
 }
@@ -112,9 +115,6 @@ Result<void> HapticDesk::send_open(Device& device, std::shared_ptr<const Instrum
   if (device.instrument && !fleet_.settle()) kept_.push_back(device.instrument);
   device.instrument = std::move(instrument);
   device.revision = cell_.revision();
-  device.gone = false;
-  device.samples_seen = 0;
-  device.faults_seen = 0;
   return {};
 }
 
@@ -189,8 +189,8 @@ Result<void> HapticDesk::set_force_memory(std::string_view robot, std::int32_t k
   const bool was_online = open_anew.online;
   const bool same =
       open_anew.segment && open_anew.segment->options().key == key && open_anew.segment->options().bytes == bytes;
+  close(open_anew);
   if (!same) {
-    close(open_anew);
     drop_memory(open_anew);
     if (auto made = make_memory(open_anew, key, bytes); !made) return made;
   }
@@ -209,6 +209,7 @@ Result<void> HapticDesk::reset(std::string_view robot) {
   const HapticState before = engine_.owner_view().haptics[device.channel];
   if (before.phase != HapticPhase::faulted) return {};
   follow_process(device, before);
+  follow_cell(device);
   auto after = try_reset(device);
   if (after && after->phase == HapticPhase::faulted) {
     // The channel wants to see the cause away for a while.
@@ -216,11 +217,7 @@ Result<void> HapticDesk::reset(std::string_view robot) {
     after = try_reset(device);
   }
   if (!after) return std::unexpected(after.error());
-  if (after->phase != HapticPhase::faulted) {
-    // It may be another instrument than when the fault came.
-    follow_cell(device);
-    return {};
-  }
+  if (after->phase != HapticPhase::faulted) return {};
   return fail(fmt::format("the haptic device of {} stays in fault: {}", robot, explanation(after->fault)),
               fmt::format("{}; then RESET_HAPTIC {}", remedy(after->fault), robot));
 }
@@ -248,8 +245,7 @@ void HapticDesk::follow(Device& device, const HapticState& state) {
   if (!device.online) return;
   follow_process(device, state);
   tell_faults(device, state);
-  // Opened anew, it would begin without its fault, which only the user may take back.
-  if (state.phase != HapticPhase::faulted) follow_cell(device);
+  follow_cell(device);
 }
 
 void HapticDesk::follow_memory(Device& device) {

@@ -44,7 +44,9 @@ json model_json(const HapticState& state, const haptics::ContactModel& model, Ti
   return {{"age_s", age_json(now, state.model_time)},
           {"constraints", model.count},
           {"certain", model.certain},
-          {"reach_m", model.reach}};
+          {"reach_m", model.reach},
+          {"awaited", state.awaits_surroundings},
+          {"appeared", state.appeared}};
 }
 
 json settings_json(const haptics::HapticSettings& s) {

@@ -37,6 +37,7 @@ std::string device_lines(const json& haptic) {
                        text(haptic.at("fault_note")), text(haptic.at("remedy")), text(haptic.at("robot")));
   }
   if (!haptic.at("online").get<bool>()) return out;
+  if (haptic.at("contact_model").at("awaited").get<bool>()) out += "  waits for the surroundings of its instrument\n";
   out += fmt::format("  device: process {}, sample {} of age {}; {} skipped, {} torn; force {:.2f} N, {} contacts\n",
                      device.at("process").get<std::uint64_t>(), device.at("sequence").get<std::uint64_t>(),
                      age(device.at("age_s")), device.at("skipped").get<std::uint64_t>(),

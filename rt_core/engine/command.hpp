@@ -26,7 +26,8 @@ enum class CommandKind : std::uint8_t {
   hold_behind,    // slot, last_move; only while the robot is simulated
   couple,         // slot = the slave, master, joint_count, coupled, values = greatest velocities; its moves are braked
   uncouple,       // slot = the slave
-  open_haptic,    // channel, instrument, device; one that is open is closed before
+  open_haptic,    // channel, instrument, device; one that is open is closed before, or gets another instrument where
+                  // the device is the same: then a latched fault and device_gone stay
   close_haptic,   // channel
   reset_haptic,   // channel; refused where there is no fault, or its cause is still there
   haptic_device,  // channel, device_gone: whether the device's process is known to have ended

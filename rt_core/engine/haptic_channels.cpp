@@ -19,6 +19,7 @@ bool HapticChannels::apply(const Command& command, Timestamp now) CELL_RT {
     case CommandKind::close_haptic:
       if (entry.channel.used()) entry.channel.close();
       entry.instrument = nullptr;
+      entry.device = nullptr;
       return true;
     case CommandKind::reset_haptic:
       return entry.channel.used() && !entry.device_gone && entry.channel.reset();
@@ -31,9 +32,14 @@ bool HapticChannels::apply(const Command& command, Timestamp now) CELL_RT {
 }
 
 void HapticChannels::open(Entry& entry, const Command& command, Timestamp now) CELL_RT {
-  if (entry.channel.used()) entry.channel.close();
   entry.instrument = command.instrument;
   entry.opened = now;
+  if (entry.channel.used() && entry.device == command.device) {
+    entry.channel.exchange(*command.instrument);
+    return;
+  }
+  if (entry.channel.used()) entry.channel.close();
+  entry.device = command.device;
   entry.device_gone = false;
   entry.channel.open(*command.instrument, *command.device);
 }

@@ -41,6 +41,7 @@ class HapticChannels {
   struct Entry {
     haptics::HapticChannel channel;
     const haptics::Instrument* instrument = nullptr;
+    const HapticDevicePort* device = nullptr;
     Timestamp opened;
     bool device_gone = false;
     Latest<haptics::ContactModel> inlet;

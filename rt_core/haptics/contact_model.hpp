@@ -27,7 +27,12 @@ struct ContactModel {
   Timestamp posture_time;      // of the tick whose posture it was computed for
   std::uint8_t slot = 0;       // of the instrument's robot
   bool certain = true;         // false: something could not be settled; treat what is near as touching
+  std::uint64_t cell = 0;      // counted by the worker: another number where the cell was changed in between
   Eigen::Vector3d x_ref = Eigen::Vector3d::Zero();  // the tip's origin in that posture
+  // The joints of that posture, rad or m: an instrument whose tip does not stand at x_ref with them is another one,
+  // with another tool centre point or base. None: not told.
+  std::uint8_t joint_count = 0;
+  JointValues q{};
   double reach = 0;  // m: everything nearer than this to the instrument is in; the proxy stays within it. 0: all is in
   std::uint8_t count = 0;
   std::array<ContactConstraint, kMaxConstraints> constraints{};

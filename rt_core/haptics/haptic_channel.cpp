@@ -36,6 +36,12 @@ double recoverable(double elongation, const HapticSettings& settings) CELL_RT {
   return (0.5 * stiffness * full * full + settings.max_force * (elongation - full)) / scale_of(settings);
 }
 
+// Whether what the clutch has added to a device's place means the same for the other instrument.
+bool lies_as_before(const Instrument& a, const Instrument& b) CELL_RT {
+  return a.settings.drive == b.settings.drive && a.settings.X_WD.matrix() == b.settings.X_WD.matrix() &&
+         a.settings.workspace_scale == b.settings.workspace_scale && a.joint_count == b.joint_count;
+}
+
 }  // namespace
 
 void HapticChannel::open(const Instrument& instrument, HapticDevicePort& port) CELL_RT {
@@ -52,6 +58,7 @@ void HapticChannel::open(const Instrument& instrument, HapticDevicePort& port) C
   map_.restart();
   wish_ = Wish{};
   posture_ = Posture{};
+  was_engaged_ = false;
   last_bad_ = Timestamp{};
   restart_force();
 }
@@ -65,11 +72,23 @@ void HapticChannel::close() CELL_RT {
   port_ = nullptr;
 }
 
+void HapticChannel::exchange(const Instrument& instrument) CELL_RT {
+  if (!used()) return;
+  if (!lies_as_before(*instrument_, instrument)) map_.restart();
+  instrument_ = &instrument;
+  state_.slot = instrument.slot;
+  models_.restart();
+  judge_.forget_place();
+  if (state_.phase != HapticPhase::faulted) state_.phase = HapticPhase::waiting;
+  restart_force();
+}
+
 bool HapticChannel::reset() CELL_RT {
   if (state_.phase != HapticPhase::faulted) return false;
   if (!judge_.seen() || last_tick_ - last_bad_ < kQuietBeforeReset) return false;
   state_.phase = HapticPhase::waiting;
   state_.fault = HapticFault::none;
+  was_engaged_ = false;
   ++state_.resets;
   return true;
 }
@@ -95,7 +114,7 @@ HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
     moved = judge_.moved_to(settings.drive == Drive::pose ? judge_.sample().p_DH : wish.x_WE, judge_settings(settings));
     if (moved == HapticFault::none) wish_ = wish;
   }
-  models_.look_at(input.model, instrument_->slot);
+  models_.look_at(input.model, *instrument_, proxy_.x());
   fresh = verdict.fresh && moved == HapticFault::none;
   if (input.missed > settings.allowed_missed_periods) return HapticFault::late_tick;
   if (input.device_gone) return HapticFault::vanished;
@@ -104,9 +123,11 @@ HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
   return models_.stale(input.now, settings.model_stale_after) ? HapticFault::stale_model : HapticFault::none;
 }
 
-// A device that is not there yet, or is getting ready, is waited for; nonsense is told at once.
+// A device that is not there yet, or is getting ready, is waited for; nonsense is told at once. One that only waits for
+// the surroundings of another instrument is watched as before.
 bool HapticChannel::counts_while_waiting(HapticFault fault) const CELL_RT {
-  return fault == HapticFault::not_finite || fault == HapticFault::jump || fault == HapticFault::two_writers;
+  return was_engaged_ || fault == HapticFault::not_finite || fault == HapticFault::jump ||
+         fault == HapticFault::two_writers;
 }
 
 void HapticChannel::latch(HapticFault fault) CELL_RT {
@@ -119,6 +140,14 @@ void HapticChannel::latch(HapticFault fault) CELL_RT {
   state_.fault = fault;
   ++state_.faults;
   restart_force();
+}
+
+// Before the surroundings are known, a hand could pass a surface unfelt, and be pushed out of it later.
+void HapticChannel::wait_or_engage(const TickInput& input, bool ready) CELL_RT {
+  const bool surroundings_known =
+      models_.model() != nullptr && !models_.stale(input.now, instrument_->settings.model_stale_after);
+  state_.awaits_surroundings = judge_.seen() && !surroundings_known;
+  if (ready && surroundings_known) engage(input);
 }
 
 void HapticChannel::engage(const TickInput& input) CELL_RT {
@@ -135,6 +164,16 @@ void HapticChannel::engage(const TickInput& input) CELL_RT {
   wish_ = map_.wish(*instrument_, judge_.sample(), posture_.q);
   proxy_.start(posture_.X_WE.translation());
   judge_.forget_place();  // joints without an axis stand elsewhere than was taken for granted
+  restart_force();
+  was_engaged_ = true;
+  state_.phase = HapticPhase::engaging;
+}
+
+// A body was put onto the tip: as at an engagement, only what the hand presses on from here is felt.
+void HapticChannel::yield_to_what_appeared() CELL_RT {
+  ++state_.appeared;
+  if (state_.phase == HapticPhase::clutched) return;  // it engages anyway when the clutch is let go
+  proxy_.start(proxy_.x());
   restart_force();
   state_.phase = HapticPhase::engaging;
 }
@@ -162,12 +201,14 @@ bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
   bool fresh = false;
   const HapticFault fault = look(input, fresh);
   const bool waiting = state_.phase == HapticPhase::waiting;
+  state_.awaits_surroundings = false;
   if (fault != HapticFault::none && (!waiting || counts_while_waiting(fault))) {
     last_bad_ = input.now;
     latch(fault);
   }
-  if (waiting && fault == HapticFault::none && fresh) engage(input);
+  if (state_.phase == HapticPhase::waiting) wait_or_engage(input, fault == HapticFault::none && fresh);
   const bool driving = state_.phase != HapticPhase::waiting && state_.phase != HapticPhase::faulted;
+  if (driving && !waiting && models_.appeared()) yield_to_what_appeared();
   if (driving) move_and_answer(input);
   tell();
   write(input.now, input.period);

@@ -25,7 +25,7 @@ struct TickInput {
   Timestamp now;
   Nanoseconds period{};
   std::uint64_t missed = 0;             // periods just before this tick
-  const ContactModel* model = nullptr;  // newest; null: none yet
+  const ContactModel* model = nullptr;  // newest; null: none yet, and until one is there the device does not engage
   std::span<const double> q;            // rad or m, where the robot stands (all joints)
   bool device_gone = false;             // the device's process is known to have ended
 };
@@ -40,6 +40,10 @@ class HapticChannel {
   void open(const Instrument& instrument, HapticDevicePort& port) CELL_RT;
   // Writes a last output of zero force.
   void close() CELL_RT;
+  // Another instrument for the device that is open, which engages anew: no force until its surroundings are known. A
+  // latched fault stays, and so does what the clutch has added where the device lies as before. `instrument` as in
+  // open(); the one before is no longer looked into.
+  void exchange(const Instrument& instrument) CELL_RT;
   // Takes a latched fault back: the force fades in anew. False where there is none, or its cause was still there within
   // the last kQuietBeforeReset.
   bool reset() CELL_RT;
@@ -55,7 +59,9 @@ class HapticChannel {
   HapticFault look(const TickInput& input, bool& fresh) CELL_RT;
   [[nodiscard]] bool counts_while_waiting(HapticFault fault) const CELL_RT;
   void latch(HapticFault fault) CELL_RT;
+  void wait_or_engage(const TickInput& input, bool ready) CELL_RT;
   void engage(const TickInput& input) CELL_RT;
+  void yield_to_what_appeared() CELL_RT;
   void restart_force() CELL_RT;
   void work_clutch() CELL_RT;
   void move_and_answer(const TickInput& input) CELL_RT;
@@ -81,6 +87,7 @@ class HapticChannel {
   TipPosture tip_;                                        // of posture_, in the base
   Eigen::Vector3d held_force_ = Eigen::Vector3d::Zero();  // N, at the device, world axes: what it has now
   double stored_energy_ = 0;                              // J, in the spring, as the device feels it
+  bool was_engaged_ = false;                              // since it was opened, or the last reset
   HapticOutput output_;
   Timestamp last_tick_;
   Timestamp last_bad_;

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt_core/haptics/instrument_map.hpp"
+#include "rt_core/kinematics/forward.hpp"
+
 namespace cellmirror::haptics {
 
 namespace {
 
 constexpr double kFarthest = 1e4;  // m: no place of a cell is farther away
+constexpr double kSameTip = 1e-4;  // m: what a base that creeps may come between an instrument and a model
 
 bool bounded(const Eigen::Vector3d& v, double most) CELL_RT { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
 
@@ -24,16 +28,33 @@ bool sensible(const ContactModel& model) CELL_RT {
   return true;
 }
 
+bool belongs_to(const ContactModel& model, const Instrument& instrument) CELL_RT {
+  if (model.joint_count == 0) return true;
+  if (model.joint_count != instrument.joint_count) return false;
+  const Pose X_WE = instrument.X_WB * kinematics::forward(instrument.chain, chain_values(instrument, model.q));
+  return (X_WE.translation() - model.x_ref).norm() <= kSameTip;
+}
+
 }  // namespace
 
-void ModelWatch::look_at(const ContactModel* newest, std::uint8_t slot) CELL_RT {
-  if (newest == nullptr || newest->sequence == 0 || newest->slot != slot) return;
+void ModelWatch::restart() CELL_RT {
+  known_ = false;
+  appeared_ = false;
+  appearance_.restart();
+}
+
+void ModelWatch::look_at(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT {
+  appeared_ = false;
+  if (newest == nullptr || newest->sequence == 0 || newest->slot != instrument.slot) return;
   if (known_ && newest->sequence == model_.sequence && newest->posture_time == model_.posture_time) return;
-  if (!sensible(*newest)) return;
-  model_ = *newest;
+  if (!sensible(*newest) || !belongs_to(*newest, instrument)) return;
+  ContactModel taken = *newest;
+  for (std::size_t i = 0; !taken.certain && i < taken.count; ++i) {
+    taken.constraints[i].gap = std::min(taken.constraints[i].gap, 0.0);
+  }
+  appeared_ = known_ && appearance_.appeared(model_, taken, x);
+  model_ = taken;
   known_ = true;
-  if (model_.certain) return;
-  for (std::size_t i = 0; i < model_.count; ++i) model_.constraints[i].gap = std::min(model_.constraints[i].gap, 0.0);
 }
 
 bool ModelWatch::stale(Timestamp now, Nanoseconds stale_after) const CELL_RT {

@@ -1,26 +1,33 @@
-// Which contact model counts: the newest that makes sense, and how old it is.
+// Which contact model counts: the newest that makes sense and belongs to the instrument, and how old it is.
 #pragma once
 
-#include <cstdint>
+#include <Eigen/Core>
 
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/haptics/appearance.hpp"
 #include "rt_core/haptics/contact_model.hpp"
+#include "rt_core/haptics/instrument.hpp"
 
 namespace cellmirror::haptics {
 
 class ModelWatch {
  public:
-  void restart() CELL_RT { known_ = false; }
-  // `newest` null: none came, or it was taken away. What is not finite, not of this robot, or has no sequence is not
-  // taken; then the last one ages. In a model that is not certain, everything near counts as touching.
-  void look_at(const ContactModel* newest, std::uint8_t slot) CELL_RT;
+  void restart() CELL_RT;
+  // `newest` null: none came, or it was taken away. What is not finite, not of this instrument, or has no sequence is
+  // not taken; then the last one ages. In a model that is not certain, everything near counts as touching. `x` (m,
+  // world): where the tip stands.
+  void look_at(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT;
+  // In the last look a body came to be where the tip is (appearance.hpp).
+  [[nodiscard]] bool appeared() const CELL_RT { return appeared_; }
   // Null where none ever came.
   [[nodiscard]] const ContactModel* model() const CELL_RT { return known_ ? &model_ : nullptr; }
   [[nodiscard]] bool stale(Timestamp now, Nanoseconds stale_after) const CELL_RT;
 
  private:
   bool known_ = false;
+  bool appeared_ = false;
+  AppearanceWatch appearance_;
   ContactModel model_;
 };
 

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt_core/haptics/appearance.hpp"
+
 namespace cellmirror::haptics {
 
 namespace {
 
-constexpr double kSame = 1e-9;  // m
+constexpr double kSame = 1e-9;    // m
+constexpr double kPlaced = 1e-4;  // m: deeper inside, a tip that begins is not where it belongs
+constexpr int kModelsAgree = 2;   // the first of them may be of the posture before
 
 // Moves `target` back towards `from` until it is within `longest` of it.
 bool shorten(const Eigen::Vector3d& from, double longest, Eigen::Vector3d& target) CELL_RT {
@@ -25,6 +29,13 @@ void Proxy::start(const Eigen::Vector3d& x) CELL_RT {
   sticking_ = false;
   approaching_ = true;
   forgiven_depth_ = 0;
+  settled_ = 0;
+}
+
+void Proxy::settle(const ContactModel& model) CELL_RT {
+  if (model.sequence == looked_at_) return;
+  looked_at_ = model.sequence;
+  settled_ = tip_depth(model, x_) <= kPlaced ? std::min(settled_ + 1, kModelsAgree) : 0;
 }
 
 // The share of a depth that is felt: what is beyond the depth at which the engagement began.
@@ -101,6 +112,7 @@ ProxyContact Proxy::follow(const ContactModel* model, const Eigen::Vector3d& han
                            double longest_step) CELL_RT {
   ProxyContact contact;
   Eigen::Vector3d target = hand;
+  if (model != nullptr && approaching_) settle(*model);
   if (model != nullptr) contact = press(*model, hand, friction, target);
   bool held_back = shorten(x_, longest_step, target);
   // Beyond its reach the model knows nothing of what might be in the way.
@@ -111,7 +123,7 @@ ProxyContact Proxy::follow(const ContactModel* model, const Eigen::Vector3d& han
   }
   contact.arrived = !held_back;
   if (approaching_) {
-    approaching_ = held_back;
+    approaching_ = held_back || (contact.contacts > 0 && settled_ < kModelsAgree);
     contact.elongation.setZero();
   }
   x_ = target;

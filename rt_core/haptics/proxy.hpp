@@ -27,9 +27,10 @@ struct ProxyContact {
 
 class Proxy {
  public:
-  // Puts it there without asking; what was felt before is forgotten. Until it has arrived at the hand nothing is felt,
-  // and a hand that is inside of a body then feels it only when it presses on: the depth at which it began counts as
-  // none, and shrinks as the hand comes out.
+  // Puts it there without asking; what was felt before is forgotten. Until it has arrived at the hand, and where it
+  // touches something two models in a row have found it well placed, nothing is felt: what lies deep around it shows
+  // only bit by bit. A hand that is inside of a body then feels it only when it presses on: the depth at which it began
+  // counts as none, and shrinks as the hand comes out.
   void start(const Eigen::Vector3d& x) CELL_RT;
 
   // `model` null: nothing is known, so nothing is in the way. `longest_step` (m): what it may move in this tick.
@@ -48,13 +49,16 @@ class Proxy {
                      Eigen::Vector3d& target) CELL_RT;
   ProxyContact jammed(const Eigen::Vector3d& hand) CELL_RT;
   double felt_share(double depth) CELL_RT;
+  void settle(const ContactModel& model) CELL_RT;
   Eigen::Vector3d cling(const ContactModel& model, const NearestPoint& nearest, double limit_at_rest,
                         double limit_sliding) CELL_RT;
 
   Eigen::Vector3d x_ = Eigen::Vector3d::Zero();
   bool sticking_ = false;
   bool approaching_ = true;
-  double forgiven_depth_ = 0;  // m
+  int settled_ = 0;              // models in a row that left it where it stood
+  std::uint64_t looked_at_ = 0;  // sequence of the last of them
+  double forgiven_depth_ = 0;    // m
 };
 
 }  // namespace cellmirror::haptics

@@ -11,7 +11,7 @@ namespace cellmirror {
 
 enum class HapticPhase : std::uint8_t {
   closed,    // no device belongs to this place
-  waiting,   // no device has written yet; force zero
+  waiting,   // no device has written yet, or the surroundings are not known; force zero
   clutched,  // the hand moves, the instrument does not; force zero
   engaging,  // the force is being faded in
   active,
@@ -36,7 +36,8 @@ enum class HapticFault : std::uint8_t {
 struct HapticState {
   HapticPhase phase = HapticPhase::closed;
   HapticFault fault = HapticFault::none;
-  std::uint8_t slot = 0;  // of the instrument's robot
+  std::uint8_t slot = 0;             // of the instrument's robot
+  bool awaits_surroundings = false;  // phase waiting: the device is there, a contact model is not
   std::uint64_t device_sequence = 0;
   std::uint32_t device_writer = 0;  // process id
   Timestamp device_time;
@@ -54,6 +55,7 @@ struct HapticState {
   double axis_torque = 0;                              // Nm, about the tool axis (z of the end-effector frame)
   JointValues joint_torques{};                         // Nm or N, of the instrument's joints
   std::uint8_t contacts = 0;                           // constraints that bear force
+  std::uint64_t appeared = 0;    // bodies that came to be where the tip was, so that it engaged anew
   double energy = 0;             // J, that the passivity observer has seen come out (negative: generated)
   double passivity_damping = 0;  // Ns/m, that the passivity controller added in this tick
   Timestamp model_time;          // posture time of the contact model in use

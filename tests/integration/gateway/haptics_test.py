@@ -129,6 +129,34 @@ class Moving(Trainer):
         self.assertEqual(self.scratch.status()["collisions"]["touching_count"], 0)  # the tip stays outside
         self.device.go((0, 0, 0))
         self.assertTrue(g.eventually(lambda: h.norm(self.device.force()["force_device"]) < 0.05, 5))
+        self.assertEqual(self.haptic()["contact_model"]["appeared"], 0)  # what stands still is always felt
+
+    def largest_force(self, duration):
+        end = time.monotonic() + duration
+        largest = 0.0
+        while time.monotonic() < end:
+            largest = max(largest, h.norm(self.device.force()["force_device"]))
+        return largest
+
+    def test_a_body_that_is_put_onto_the_tip_does_not_push(self):
+        self.done("SET_FRAME Phantom PLACEMENT 0 0 0 " + " ".join(f"{-1000 * DEEP * x:.1f}" for x in INTO))
+        self.assertEqual(self.largest_force(1.0), 0.0)
+        state = self.haptic()
+        self.assertGreaterEqual(state["contact_model"]["appeared"], 1)
+        self.assertIn(state["phase"], ("engaging", "active"))
+        away = h.norm([a - b for a, b in zip(state["device_position_m"], state["proxy_position_m"])])
+        self.assertGreater(away, 0.005)  # the instrument has gone out of it
+        self.done("SET_FRAME Phantom PLACEMENT 0 0 0 0 0 0")
+        self.active()
+
+    def test_a_hand_that_is_inside_when_it_goes_online_is_not_pushed(self):
+        self.done("ROBOT LAP_LEFT offline")
+        self.device.go([DEEP * x for x in INTO])
+        self.done("ROBOT LAP_LEFT online")
+        self.assertEqual(self.largest_force(1.0), 0.0)
+        self.assertNotEqual(self.haptic()["phase"], "waiting")
+        self.assertTrue(g.eventually(lambda: self.haptic()["force"]["contacts"] >= 1, 5), self.haptic())
+        self.device.go((0, 0, 0))
 
     def test_the_loop_takes_no_memory_and_tells_its_latency(self):
         status = self.scratch.status()
@@ -300,7 +328,7 @@ class Processes(unittest.TestCase):
         done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.wait_for("active")
-        self.assertEqual(self.haptic()["resets"], 0)  # opened anew, for the new instrument
+        self.assertEqual(self.haptic()["resets"], 1)
         device.close()
 
     def test_two_devices_at_once(self):

@@ -103,6 +103,14 @@ TEST_F(Haptics, TableTellsAFaultAndWhatToDo) {
   EXPECT_EQ(haptics_table(nlohmann::json::object()), "");
 }
 
+TEST_F(Haptics, TableTellsThatTheSurroundingsAreAwaited) {
+  const auto table = [this] { return haptics_table({{"haptics", haptics_json(picture, tick, contacts, tick.time)}}); };
+  EXPECT_EQ(table().find("waits for the surroundings"), std::string::npos);
+  tick.haptics[kChannel].phase = HapticPhase::waiting;
+  tick.haptics[kChannel].awaits_surroundings = true;
+  EXPECT_NE(table().find("waits for the surroundings"), std::string::npos);
+}
+
 TEST_F(Haptics, DeviceWithoutMemoryIsShownAsSuch) {
   picture.haptics.front().key.reset();
   picture.haptics.front().online = false;

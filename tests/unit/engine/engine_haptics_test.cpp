@@ -231,6 +231,21 @@ TEST_F(EngineHapticsTest, DeviceThatIsKnownToHaveEndedIsAFaultThatCannotBeResetB
   EXPECT_EQ(haptic().phase, HapticPhase::active);
 }
 
+TEST_F(EngineHapticsTest, FaultOutlivesAnotherInstrumentOfTheSameDevice) {
+  engage();
+  send(CommandKind::haptic_device, true);
+  send(CommandKind::open_haptic);  // in the same instant
+  run(1);
+  ASSERT_EQ(haptic().fault, HapticFault::vanished);
+  send(CommandKind::open_haptic);
+  run(50);
+  EXPECT_EQ(haptic().phase, HapticPhase::faulted);
+  send(CommandKind::close_haptic);
+  send(CommandKind::open_haptic);
+  run(50);
+  EXPECT_EQ(haptic().phase, HapticPhase::active) << "offline and online begins anew";
+}
+
 TEST_F(EngineHapticsTest, CommandsThatNameNothingAreRefused) {
   Command command;
   command.kind = CommandKind::open_haptic;
