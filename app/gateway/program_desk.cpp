@@ -276,10 +276,11 @@ void ProgramDesk::note(const program::ProgramEvent& event) {
     loads_.give_up_queued_runs(event.robot, {fmt::format("{} before it has failed", event.program), {}});
   }
   if (event.kind == Kind::started || event.kind == Kind::ended || event.kind == Kind::stopped) {
-    log_info(kProgramLog, "{} of {} {}", event.program, event.robot,
+    log_info(kProgramLog, "{} of {} {}{}{}", event.program, event.robot,
              event.kind == Kind::started ? "started"
              : event.kind == Kind::ended ? "ended"
-                                         : "was stopped");
+                                         : "was stopped",
+             event.text.empty() ? "" : " ", event.text);
   }
   if (parts_.event) parts_.event(event);
 }

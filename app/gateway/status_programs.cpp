@@ -35,7 +35,8 @@ json deadlock_json(const std::optional<program::Deadlock>& deadlock) {
                        {"step", program.step},
                        {"semaphore", program.semaphore},
                        {"releasers", program.releasers},
-                       {"not_started", program.not_started}});
+                       {"not_started", program.not_started},
+                       {"kept_by", program.kept_by}});
   }
   return {{"text", deadlock->text()}, {"waiting", std::move(waiting)}};
 }

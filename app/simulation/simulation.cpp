@@ -64,6 +64,8 @@ class Simulation {
     observer.refused = [this](const Diagnostics& findings) { refused(findings); };
     observer.program = [this](const program::ProgramEvent& event) {
       programs_.hear(event);
+      if (event.kind == program::ProgramEvent::Kind::stopped && in_deadlock(event.robot))
+        result_.deadlock_was_stopped = true;
       last_event_s_ = gateway_.time_s();
     };
     return observer;
@@ -116,6 +118,12 @@ class Simulation {
     }
   }
 
+  // A program of that robot waits in the deadlock that lasts now.
+  [[nodiscard]] bool in_deadlock(std::string_view robot) {
+    const auto& deadlock = gateway_.owner().programs().controllers().deadlock();
+    return deadlock && std::ranges::any_of(deadlock->waiting, [&](const auto& one) { return one.robot == robot; });
+  }
+
   [[nodiscard]] bool stands_still(double for_s) const {
     const bool deadlock = gateway_.owner().programs().controllers().deadlock().has_value();
     return for_s > options_.still_s || (deadlock && for_s > kStillInDeadlock);
@@ -159,8 +167,9 @@ class Simulation {
 bool SimulationResult::failed() const {
   const bool program_failed =
       std::ranges::any_of(programs, [](const SimulatedProgram& p) { return p.end == "failed"; });
-  // A deadlock that nobody ends has the script stand still; one that ends in time has not done any harm.
-  return end != SimulationEnd::finished || !refusals.empty() || program_failed;
+  // A deadlock that nobody ends has the script stand still. Where a program that the script starts later releases what
+  // was waited for, nothing was wrong; where a program had to be stopped, the cell does not work.
+  return end != SimulationEnd::finished || !refusals.empty() || program_failed || deadlock_was_stopped;
 }
 
 Result<SimulationResult> simulate(LoadedCell cell, const SimulationOptions& options,

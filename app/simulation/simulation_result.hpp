@@ -161,12 +161,14 @@ struct SimulationResult {
   std::vector<Refusal> refusals;
   std::uint64_t more_refusals = 0;
   std::vector<std::string> deadlocks;
+  bool deadlock_was_stopped = false;  // one of them ended since somebody stopped a program that waited in it
   std::vector<SimulatedMessage> messages;
   std::uint64_t more_messages = 0;
   CollisionSummary collision;
 
   [[nodiscard]] double times_real_time() const { return wall_s > 0.0 ? simulated_s / wall_s : 0.0; }
-  // A command was refused, a program failed, or it did not come to its end, also since programs wait for each other.
+  // A command was refused, a program failed, programs waited for each other until one was stopped, or it did not come
+  // to its end.
   [[nodiscard]] bool failed() const;
 };
 

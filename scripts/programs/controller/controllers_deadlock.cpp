@@ -42,7 +42,10 @@ void Controllers::look_for_deadlock() {
   if (!alone) alone_since_ = {};
   if (alone && !alone_since_.known()) alone_since_ = context_.clock.now();
   if (found) {
-    for (Deadlock::Waiting& one : found->waiting) one.not_started = could_release(one.semaphore);
+    for (Deadlock::Waiting& one : found->waiting) {
+      one.not_started = could_release(one.semaphore);
+      one.kept_by = context_.semaphores.kept_by(one.semaphore);
+    }
   }
   if (deadlock_ == found) return;
   deadlock_.reset();

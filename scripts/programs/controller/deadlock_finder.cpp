@@ -41,7 +41,7 @@ std::optional<Deadlock> find_deadlock(std::span<const Party> parties) {
   for (std::size_t i = 0; i < parties.size(); ++i) {
     if (!stuck[i]) continue;
     const Party& party = parties[i];
-    Deadlock::Waiting waiting{party.robot, party.program->name, party.step, party.semaphore, {}, {}};
+    Deadlock::Waiting waiting{party.robot, party.program->name, party.step, party.semaphore, {}, {}, {}};
     for (const Party& other : parties) {
       if (&other == &party || !other.program->releases(party.semaphore)) continue;
       waiting.releasers.push_back(fmt::format("{} {}", other.robot, other.program->name));

@@ -149,7 +149,7 @@ bool ProgramRun::look_at_condition() {
 
 void ProgramRun::grant(Timestamp when) {
   due_ = std::max({due_, when, resumed_});
-  semaphore_.clear();
+  taken_.push_back(std::exchange(semaphore_, {}));
   phase_ = Phase::running;
   tell_command(ProgramEvent::Kind::done, due_, *waiting_);
   waiting_.reset();
@@ -247,7 +247,22 @@ void ProgramRun::finish(End end, Timestamp when) {
   constexpr std::array kEvents = {ProgramEvent::Kind::started, ProgramEvent::Kind::ended, ProgramEvent::Kind::stopped,
                                   ProgramEvent::Kind::failed};
   loaded_->state = kStates[static_cast<std::size_t>(end)];
-  tell(kEvents[static_cast<std::size_t>(end)], when, end == End::failed ? loaded_->error : std::string{});
+  const std::string kept = keep_semaphores(end);
+  tell(kEvents[static_cast<std::size_t>(end)], when, end == End::failed ? loaded_->error : kept);
+}
+
+// A stopped program gives nothing back: its robot stands where the semaphore keeps others out. Who only takes, as a
+// signal that another program gives, keeps nothing. Gives the text for people.
+std::string ProgramRun::keep_semaphores(End end) {
+  std::string text;
+  if (end == End::ended) return text;
+  const std::string who = fmt::format("{} {} {}", robot_, loaded_->name, end == End::failed ? "failed" : "was stopped");
+  for (const std::string& semaphore : taken_) {
+    if (!loaded_->releases(semaphore)) continue;
+    context_.semaphores.keep(semaphore, who);
+    text += fmt::format("{}{}", text.empty() ? "before it released semaphore " : ", ", semaphore);
+  }
+  return text;
 }
 
 std::string ProgramRun::error_text(StatementId statement, const Error& why) const {

@@ -146,6 +146,7 @@ class ProgramRun final : private ProgramWorld {
   Result<void> execute(const OutputCommand& output, Timestamp when);
   Result<void> execute(const ReleaseCommand& release, Timestamp when);
   Result<void> execute(const ScriptCommand& script, StatementId statement, Timestamp when);
+  std::string keep_semaphores(End end);
   [[nodiscard]] bool room() const;
   void put_ahead(const Result<std::uint32_t>& ticket, const CanonicalCommand& command, bool fly);
 
@@ -185,6 +186,7 @@ class ProgramRun final : private ProgramWorld {
   std::deque<Deferred> deferred_;
   std::deque<std::pair<ActivityHandle, StatementId>> activities_;
   std::string semaphore_;
+  std::vector<std::string> taken_;           // semaphores that it has acquired and not released, each as often
   std::optional<CanonicalCommand> waiting_;  // condition, semaphore: the command
   Timestamp deadline_;                       // condition: of its timeout; never: none
   std::optional<Closing> closing_;

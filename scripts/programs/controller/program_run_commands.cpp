@@ -160,7 +160,15 @@ Result<void> ProgramRun::execute(const OutputCommand& output, Timestamp when) {
 }
 
 Result<void> ProgramRun::execute(const ReleaseCommand& release, Timestamp when) {
-  return context_.semaphores.release(release.semaphore, when);
+  auto released = context_.semaphores.release(release.semaphore, when);
+  if (!released) return released;
+  const auto own = std::ranges::find(taken_, release.semaphore);
+  if (own != taken_.end()) {
+    taken_.erase(own);
+  } else {
+    context_.semaphores.make_up(release.semaphore);
+  }
+  return released;
 }
 
 Result<void> ProgramRun::execute(const ScriptCommand& script, StatementId statement, Timestamp when) {

@@ -29,6 +29,7 @@ std::string Deadlock::text() const {
     if (waiter.releasers.empty()) text += ", which no program that was started releases";
     if (!waiter.not_started.empty())
       text += fmt::format(" ({} could, if started)", fmt::join(waiter.not_started, ", "));
+    for (const std::string& keeper : waiter.kept_by) text += fmt::format(", {} before it released it", keeper);
   }
   return text;
 }

@@ -54,6 +54,7 @@ struct Deadlock {
     std::string semaphore;
     std::vector<std::string> releasers;    // "robot program" of those that could release it, all waiting themselves
     std::vector<std::string> not_started;  // of those that could, were they started
+    std::vector<std::string> kept_by;      // "robot program was stopped": before it released what it had taken
     bool operator==(const Waiting&) const = default;
   };
   std::vector<Waiting> waiting;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace cellmirror::program {
 
@@ -61,11 +62,30 @@ Timestamp Semaphores::released(std::string_view name) const {
   return found == semaphores_.end() ? Timestamp{} : found->second.released;
 }
 
+void Semaphores::keep(std::string_view name, std::string who) {
+  const auto found = semaphores_.find(name);
+  if (found == semaphores_.end()) return;
+  std::vector<std::string>& kept_by = found->second.kept_by;
+  if (std::ranges::find(kept_by, who) == kept_by.end()) kept_by.push_back(std::move(who));
+}
+
+void Semaphores::make_up(std::string_view name) {
+  const auto found = semaphores_.find(name);
+  if (found == semaphores_.end() || found->second.kept_by.empty()) return;
+  found->second.kept_by.erase(found->second.kept_by.begin());
+}
+
+std::vector<std::string> Semaphores::kept_by(std::string_view name) const {
+  const auto found = semaphores_.find(name);
+  return found == semaphores_.end() ? std::vector<std::string>{} : found->second.kept_by;
+}
+
 void Semaphores::reset(std::string_view name) {
   const auto found = semaphores_.find(name);
   if (found == semaphores_.end()) return;
   found->second.count = found->second.initial;
   found->second.released = {};
+  found->second.kept_by.clear();
 }
 
 void Semaphores::forget(std::string_view name) {

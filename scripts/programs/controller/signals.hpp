@@ -38,6 +38,11 @@ class Semaphores {
   Result<void> release(std::string_view name, Timestamp when);
   // When it was released last; never: not yet.
   [[nodiscard]] Timestamp released(std::string_view name) const;
+  // `who` ("B owner was stopped") had taken it and would have given it back; that is told in a deadlock until somebody
+  // else releases it instead, make_up(), or it begins anew.
+  void keep(std::string_view name, std::string who);
+  void make_up(std::string_view name);
+  [[nodiscard]] std::vector<std::string> kept_by(std::string_view name) const;
   // As it was declared; 0 where it was not. Unknown ones are passed over.
   void reset(std::string_view name);
   void forget(std::string_view name);
@@ -50,6 +55,7 @@ class Semaphores {
     std::uint32_t initial = 0;
     bool declared = false;
     Timestamp released;
+    std::vector<std::string> kept_by;  // the oldest first, each once
   };
   Result<Semaphore*> open(std::string_view name);
 

@@ -208,6 +208,14 @@ class Waiting(Simulation):
         self.assertEqual(len(found["deadlocks"]), 1)
         self.assertEqual((found["end"], found["refused"], found["failed"]), ("finished", [], False))
 
+    def test_a_deadlock_that_the_script_ends_by_stopping_a_program_is_a_failure(self):
+        self.second_robot()
+        self.program("stuck", "SEMAPHORE, nobody_releases, 0", "END_HEADER", "ACQUIRE, nobody_releases")
+        found = self.simulate(SET_UP + "TF_LOAD stuck S2;\nTF_RUN stuck S2;\nPOS_ROB S1 JOINT_ABS 1900;\nTF_STOP S2;\nWAIT",
+                              "--no-collisions", status=1)
+        self.assertEqual(len(found["deadlocks"]), 1)
+        self.assertEqual((found["end"], found["refused"], found["failed"]), ("finished", [], True))
+
     def test_a_script_that_ends_a_deadlock_waits_for_what_it_starts_then(self):
         self.program("stuck", "SEMAPHORE, nobody_releases, 0", "END_HEADER", "ACQUIRE, nobody_releases")
         self.program("home", "END_HEADER", "WAIT_INPUT, 3, ON, 2, late", "LABEL, late")

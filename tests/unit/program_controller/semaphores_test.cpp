@@ -267,6 +267,58 @@ TEST(ProgramDeadlock, ComesWhenTheOnlyReleaserFails) {
   EXPECT_EQ(cell.sut.failures(), 2U);
 }
 
+TEST(ProgramDeadlock, TellsWhoWasStoppedWithTheSemaphore) {
+  CellOfPrograms cell;
+  ProgramMaker waiter("waiter");
+  ProgramMaker owner("owner");
+  cell.load("A", "waiter", waiter.semaphore("table", 1).move(0.5).acquire("table").move(1));
+  cell.load("B", "owner", owner.semaphore("table", 1).acquire("table").move(5).release("table"));
+  cell.run("B", "owner");
+  cell.run("A", "waiter");
+  cell.pass(1);
+  ASSERT_TRUE(cell.sut.stop("B"));
+  EXPECT_EQ(cell.texts(Kind::stopped, "owner"), std::vector<std::string>{"before it released semaphore table"});
+  cell.pass(1.5);
+  ASSERT_TRUE(cell.sut.deadlock());
+  EXPECT_EQ(cell.sut.deadlock()->text(),
+            "deadlock: A waiter waits at line 2 for semaphore table, which no program that was started releases "
+            "(B owner could, if started), B owner was stopped before it released it");
+  // Another gives back what it had.
+  ProgramMaker helper("helper");
+  cell.load("C", "helper", helper.release("table"));
+  cell.run("C", "helper");
+  cell.finish();
+  EXPECT_TRUE(cell.sut.semaphores().kept_by("table").empty());
+}
+
+// It takes what another gives: a signal, that it never gives back.
+TEST(ProgramDeadlock, DoesNotNameWhoOnlyTakes) {
+  CellOfPrograms cell;
+  ProgramMaker taker("taker");
+  ProgramMaker giver("giver");
+  cell.load("A", "taker", taker.semaphore("S", 1).acquire("S").move(5));
+  cell.load("B", "giver", giver.semaphore("S", 1).release("S"));
+  cell.run("A", "taker");
+  cell.pass(1);
+  ASSERT_TRUE(cell.sut.stop("A"));
+  EXPECT_TRUE(cell.sut.semaphores().kept_by("S").empty());
+}
+
+TEST(ProgramSemaphores, ThatAStoppedProgramKeptBeginAnewWhenItIsLoadedAgain) {
+  CellOfPrograms cell;
+  ProgramMaker maker;
+  const auto program = maker.semaphore("table", 1).acquire("table").move(5).release("table").make();
+  ASSERT_TRUE(cell.sut.load("A", "p", program));
+  ASSERT_TRUE(cell.sut.load("B", "p", program));
+  cell.run("A", "p");
+  cell.pass(1);
+  ASSERT_TRUE(cell.sut.stop("A"));
+  EXPECT_EQ(cell.sut.semaphores().kept_by("table"), std::vector<std::string>{"A p was stopped"});
+  ASSERT_TRUE(cell.sut.load("A", "p", program));
+  EXPECT_TRUE(cell.sut.semaphores().kept_by("table").empty());
+  EXPECT_EQ(cell.sut.semaphores().counts().at("table"), 1U);
+}
+
 TEST(ProgramDeadlock, IsNoneWhereTheSemaphoreIsFreeAndWhoWaitsIsHeld) {
   CellOfPrograms cell;
   ProgramMaker waiter("waiter");
