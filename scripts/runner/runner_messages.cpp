@@ -27,13 +27,15 @@ Error as_error(const Diagnostics& findings) {
   return error;
 }
 
-// Programs are read and begin later, and then it turns out what is wrong with them. (A robot that does not arrive was
-// told to do something else.)
-bool may_be_wrong_later(FormId id) { return id == FormId::tf_load || id == FormId::tf_run || id == FormId::tf_back; }
-
 bool waits_for_programs(FormId id) { return id == FormId::wait || id == FormId::tf_wait; }
 
 }  // namespace
+
+// Programs are read and begin later, and then it turns out what is wrong with them. (A robot that does not arrive was
+// told to do something else.)
+bool ScriptRunner::may_be_wrong_later(FormId id) {
+  return id == FormId::tf_load || id == FormId::tf_run || id == FormId::tf_back;
+}
 
 Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
   ActivityHandle activity;

@@ -223,6 +223,7 @@ void ScriptRunner::execute_command(ScriptRun& run) {
   if (outcome.kind == Outcome::Kind::pending) {
     run.activity = std::move(outcome.activity);
     run.activity_place = {file.name(), place.line, place.column};
+    run.tells_later = may_be_wrong_later(command_.id());
     return;
   }
   ++run.report.counters.done;
@@ -274,7 +275,25 @@ void ScriptRunner::end_run(std::size_t index, bool stopped) {
   ended_.emplace_back(run->report.id, RunProgress{true, run->report.counters, run->first_command});
   if (ended_.size() > kMaxRuns) ended_.pop_front();
   run->report.stopped = stopped;
+  leave_activity(*run);
   if (run_ended_) run_ended_(run->report);
+}
+
+// The last command of a run that was stopped goes on; its end counts, and what is wrong with it is told.
+void ScriptRunner::leave_activity(const ScriptRun& run) {
+  if (!run.activity) return;
+  if (!run.tells_later) {
+    ++counters_.file.done;
+    return;
+  }
+  const Place place = run.activity_place;
+  waiting_messages_.push_back(
+      {CommandSource::file, run.activity, place, [this, place](const Result<std::string>& result) {
+         if (result || !refused_) return;
+         Diagnostics findings;
+         findings.error(place, result.error().what, result.error().remedy);
+         refused_(findings);
+       }});
 }
 
 bool ScriptRunner::stop(std::uint64_t id) {

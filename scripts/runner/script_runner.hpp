@@ -114,7 +114,8 @@ class ScriptRunner {
 
   [[nodiscard]] bool idle() const { return runs_.empty(); }
   [[nodiscard]] std::vector<RunStatus> runs() const;
-  // Ends a run, or all of them, before their next command; with all of them, messages that wait are refused.
+  // Ends a run, or all of them, before their next command; with all of them, messages that wait are refused. A robot
+  // program that the run was loading or starting is counted and, where that is refused later, told nevertheless.
   bool stop(std::uint64_t id);
   // The run is the next one to execute commands.
   void give_turn(std::uint64_t id);
@@ -150,15 +151,18 @@ class ScriptRunner {
   void count_message(CommandSource from, const Result<std::string>& result, const Place& place);
   [[nodiscard]] SourceCounters& counters_of(CommandSource from);
   std::size_t answer_messages();
+  [[nodiscard]] static bool may_be_wrong_later(FormId id);
   void refuse_waiting_messages();
   void end_run(std::size_t index, bool stopped);
+  void leave_activity(const ScriptRun& run);
   void note_first_command(ScriptRun& run);
   void remember(const Diagnostic& diagnostic);
 
   CommandHost host_;
   const KismetHome& home_;
   const Clock& clock_;
-  // A message that is answered or counted when its activity has ended, or a command of a robot program. At most one a
+  // A message that is answered or counted when its activity has ended, a command of a robot program, or of a script
+  // that was stopped. At most one a
   // robot runs, of TF_WAIT there is one a sender, and whoever loads programs bounds how many, so they stay few.
   struct WaitingMessage {
     CommandSource from;

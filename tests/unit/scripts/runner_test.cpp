@@ -359,6 +359,39 @@ TEST_F(ScriptRunnerTest, ProgramsThatNobodyWaitsForAreCountedAndRememberedWhenTh
   EXPECT_EQ(sut_->counters().message.received, 4U);
 }
 
+TEST_F(ScriptRunnerTest, AProgramThatAStoppedScriptWasLoadingIsToldWhenItTurnsOutWrong) {
+  write("a.spt", "\nTF_LOAD r3demo PUMA_762;\nTF_RUN r3demo PUMA_762;");
+  Diagnostics refused;
+  sut_->on_refused([&](const Diagnostics& findings) { refused.take(findings); });
+  gateway_.activity = std::make_shared<Activity>();
+  const auto id = sut_->start_file("a");
+  ASSERT_TRUE(id);
+  run_all();
+  ASSERT_TRUE(sut_->stop(*id));
+  EXPECT_EQ(sut_->counters().file.received, 1U);
+  EXPECT_EQ(sut_->counters().file.done, 0U);
+  gateway_.activity->refuse({"programs/r3demo.ird has 1 error", {}});
+  run_all();
+  EXPECT_EQ(sut_->counters().file.refused, 1U);
+  EXPECT_EQ(refused.errors(), 1U);
+  ASSERT_FALSE(sut_->last_errors().empty());
+  EXPECT_NE(sut_->last_errors().back().find("scripts/a.spt:2:1: error: programs/r3demo.ird has 1 error"),
+            std::string::npos);
+}
+
+TEST_F(ScriptRunnerTest, AMoveThatAStoppedScriptBeganGoesOn) {
+  write("a.spt", "POS_ROB PUMA_762 JOINT_ABS 1;");
+  gateway_.activity = std::make_shared<Activity>();
+  const auto id = sut_->start_file("a");
+  ASSERT_TRUE(id);
+  run_all();
+  ASSERT_TRUE(sut_->stop(*id));
+  gateway_.activity->refuse({"superseded", {}});
+  run_all();
+  EXPECT_EQ(sut_->counters().file.done, 1U);
+  EXPECT_TRUE(sut_->last_errors().empty());
+}
+
 TEST_F(ScriptRunnerTest, SendersThatWaitAreAnsweredWhenEverythingEnds) {
   gateway_.activity = std::make_shared<Activity>();
   std::vector<Result<std::string>> answers;
