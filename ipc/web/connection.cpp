@@ -199,12 +199,8 @@ void Connection::do_route(Work& work, Timestamp now) {
 // No thread waits for it: many of these must not hold up the news of the pages.
 void Connection::do_route(TakeSnapshot& snapshot, Timestamp now) {
   std::atomic<std::uint64_t>& waiting = *context_.snapshots;
-  if (waiting.load(std::memory_order_relaxed) >= kMaxSnapshotsWaiting) {
-    count(context_.counters.refused);
-    Answer busy = text_answer(503, "too many snapshots are waited for already; ask again in a moment");
-    busy.headers.emplace_back("Retry-After", "1");
-    return answer(busy);
-  }
+  if (waiting.load(std::memory_order_relaxed) >= kMaxSnapshotsWaiting)
+    return answer_busy(503, "too many snapshots are waited for already; ask again in a moment");
   stage_ = Stage::waiting;
   since_ = now;
   waiting.fetch_add(1, std::memory_order_relaxed);
@@ -252,6 +248,7 @@ void Connection::execute_body(Timestamp now) {
     count(context_.counters.refused);
     return answer(text_answer(400, "the body is no SCRIPT command"));
   }
+  if (!context_.posted_commands.allows(now)) return answer_busy(429, "too many commands; wait a second");
   stage_ = Stage::waiting;
   since_ = now;
   count(context_.counters.commands);
@@ -263,9 +260,13 @@ void Connection::execute_body(Timestamp now) {
 void Connection::take_frames(Timestamp now) {
   while (const auto message = frames_.next()) {
     if (closing_ && message->opcode != Opcode::close) continue;
+    if (!closing_ && !session_->may_say_more(now)) {
+      end(CloseCode::policy, "too much");
+      break;
+    }
     switch (message->opcode) {
       case Opcode::text:
-        if (!session_->receive(message->payload, now, out_)) end(CloseCode::policy, "too much, or wrong tokens");
+        if (!session_->receive(message->payload, now, out_)) end(CloseCode::policy, "wrong tokens");
         break;
       case Opcode::ping:
         out_.push(frame(Opcode::pong, message->payload));
@@ -277,7 +278,7 @@ void Connection::take_frames(Timestamp now) {
           stage_ = Stage::over;
           return;
         }
-        end(CloseCode::normal, {});
+        end(close_code_of(message->payload), {});  // section 5.5.1: its code is echoed
         break;
       default:
         end(CloseCode::unsupported, "only text is understood");
@@ -298,6 +299,13 @@ void Connection::end(CloseCode code, std::string_view why) {
   since_ = now_;
   out_.push(close_frame(code, why));
   write_some(now_);
+}
+
+void Connection::answer_busy(int status, std::string why) {
+  count(context_.counters.refused);
+  Answer busy = text_answer(status, std::move(why));
+  busy.headers.emplace_back("Retry-After", "1");
+  answer(busy);
 }
 
 void Connection::answer(const Answer& answer) {

@@ -65,6 +65,8 @@ class Connection {
   void execute_body(Timestamp now);
   void take_frames(Timestamp now);
   void cut();
+  // With the header that says when to ask again.
+  void answer_busy(int status, std::string why);
   [[nodiscard]] const Patience& patience() const { return context_.options.patience; }
 
   Descriptor socket_;

@@ -30,6 +30,16 @@ bool JobPool::submit(std::function<void()> job) {
   return true;
 }
 
+bool JobPool::submit_first(std::function<void()> job) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (stopping_) return false;
+    jobs_.push_front(std::move(job));
+  }
+  changed_.notify_one();
+  return true;
+}
+
 void JobPool::work() {
   set_thread_name("web-work");
   std::unique_lock lock(mutex_);

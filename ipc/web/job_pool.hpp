@@ -23,6 +23,8 @@ class JobPool {
 
   // False, at once, where too many wait.
   [[nodiscard]] bool submit(std::function<void()> job);
+  // Before all that wait, however many these are: for the one job that everybody waits for. False: the pool ends.
+  [[nodiscard]] bool submit_first(std::function<void()> job);
 
  private:
   void work();

@@ -22,11 +22,11 @@ void send_text(Outgoing& out, std::string_view text) { out.push(frame(Opcode::te
 
 void LiveSession::welcome(Outgoing& out) const {
   const ServerOptions& options = context_.options;
-  send_text(out, welcome_message({options.version, options.cell, options.instance, may_command_, options.read_only}));
+  send_text(out, welcome_message(
+                     {options.version, options.cell, options.instance, options.run, may_command_, options.read_only}));
 }
 
 bool LiveSession::receive(std::string_view text, Timestamp now, Outgoing& out) {
-  if (!messages_.allows(now)) return false;
   now_ = now;
   const auto message = read_client_message(text);
   if (!message) {

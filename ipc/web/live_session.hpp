@@ -22,6 +22,8 @@ class LiveSession {
   LiveSession(ServerContext& context, std::uint64_t connection) : context_(context), connection_(connection) {}
 
   void welcome(Outgoing& out) const;
+  // Counts a message, also pings and pongs. False: there were too many, the client is to be cut.
+  [[nodiscard]] bool may_say_more(Timestamp now) { return messages_.allows(now); }
   // False: the client is to be cut.
   [[nodiscard]] bool receive(std::string_view text, Timestamp now, Outgoing& out);
   void command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out);

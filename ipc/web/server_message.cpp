@@ -23,6 +23,7 @@ std::string welcome_message(const Welcome& welcome) {
                   {"version", welcome.version},
                   {"cell", welcome.cell},
                   {"instance", welcome.instance},
+                  {"run", welcome.run},
                   {"may_command", welcome.may_command},
                   {"read_only", welcome.read_only}});
 }

@@ -16,6 +16,7 @@ struct Welcome {
   std::string version;
   std::string cell;
   std::string instance;
+  std::string run;  // another one after a restart
   bool may_command = false;
   bool read_only = false;
 };

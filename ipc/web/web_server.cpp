@@ -225,12 +225,12 @@ bool Server::Impl::make_room() {
   return true;
 }
 
-// One document for all of them, made by another thread.
+// One document for all of them, made by another thread; documents that clients ask for do not take its place.
 void Server::Impl::ask_for_live(Timestamp now) {
   if (live_under_way || now < next_live) return;
   if (std::ranges::none_of(connections, [](const auto& connection) { return connection->live(); })) return;
   next_live = now + kLivePeriod;
-  live_under_way = jobs->submit([this, &backend = context->backend, box = inbox] {
+  live_under_way = jobs->submit_first([this, &backend = context->backend, box = inbox] {
     std::string text;
     try {
       text = frame(Opcode::text, live_message(backend.live_json()));
@@ -264,6 +264,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Back
     if (!token) return std::unexpected(token.error());
     settled.token = std::move(*token);
   }
+  if (settled.run.empty()) settled.run = std::to_string(to_wall_clock_ns(clock_now()));
   auto listener = listen_at(options.address, options.port);
   if (!listener) return std::unexpected(listener.error());
   Descriptor wake_up(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));

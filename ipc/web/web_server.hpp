@@ -42,6 +42,7 @@ struct ServerOptions {
   std::string version;
   std::string cell;
   std::string instance;
+  std::string run;  // tells this run of the gateway from those before; empty: made anew
   Patience patience;
 };
 

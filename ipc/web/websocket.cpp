@@ -16,6 +16,50 @@ bool is_control(Opcode opcode) { return static_cast<std::uint8_t>(opcode) >= 8; 
 
 bool is_known(std::uint8_t opcode) { return opcode <= 2 || (opcode >= 8 && opcode <= 10); }
 
+std::uint8_t byte_of(std::string_view text, std::size_t i) { return static_cast<std::uint8_t>(text[i]); }
+
+// Bytes of the well-formed character at `i`; 0: there is none (RFC 3629, section 4).
+std::size_t character_bytes(std::string_view text, std::size_t i) {
+  const std::uint8_t first = byte_of(text, i);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xC2 && first <= 0xDF ? 2
+                             : (first >> 4U) == 0xE         ? 3
+                             : (first & 0xF8U) == 0xF0      ? 4
+                                                            : 0;
+  if (length == 0 || text.size() - i < length) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte_of(text, i + k) & 0xC0U) != 0x80) return 0;
+  }
+  // Overlong forms, surrogates, and what is beyond U+10FFFF.
+  const std::uint8_t second = byte_of(text, i + 1);
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool no_character = (first == 0xED && second >= 0xA0) || (first == 0xF4 && second >= 0x90) || first > 0xF4;
+  return overlong || no_character ? 0 : length;
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = character_bytes(text, i);
+    if (bytes == 0) return false;
+    i += bytes;
+  }
+  return true;
+}
+
+// Section 7.4: those that a close frame may carry; 1004 to 1006 and 1015 are reserved.
+bool may_be_sent(std::uint16_t code) {
+  return (code >= 1000 && code <= 1003) || (code >= 1007 && code <= 1014) || (code >= 3000 && code <= 4999);
+}
+
+std::optional<CloseCode> mistake_in(const WebSocketMessage& message) {
+  if (message.opcode == Opcode::text)
+    return is_utf8(message.payload) ? std::nullopt : std::optional(CloseCode::bad_text);
+  if (message.opcode != Opcode::close || message.payload.empty()) return std::nullopt;
+  if (message.payload.size() == 1 || !may_be_sent(static_cast<std::uint16_t>(close_code_of(message.payload))))
+    return CloseCode::protocol_error;
+  return is_utf8(std::string_view(message.payload).substr(2)) ? std::nullopt : std::optional(CloseCode::bad_text);
+}
+
 }  // namespace
 
 struct FrameReader::Header {
@@ -60,7 +104,13 @@ std::string frame(Opcode opcode, std::string_view payload) {
   return frame_header(opcode, payload.size()).append(payload);
 }
 
+CloseCode close_code_of(std::string_view payload) {
+  if (payload.size() < 2) return CloseCode::none_given;
+  return static_cast<CloseCode>((byte_of(payload, 0) << 8U) | byte_of(payload, 1));
+}
+
 std::string close_frame(CloseCode code, std::string_view reason) {
+  if (code == CloseCode::none_given) return frame(Opcode::close, {});
   const auto number = static_cast<std::uint16_t>(code);
   std::string payload{static_cast<char>(static_cast<std::uint8_t>(number >> 8U)),
                       static_cast<char>(static_cast<std::uint8_t>(number & 0xFFU))};
@@ -111,7 +161,7 @@ std::optional<WebSocketMessage> FrameReader::take(const Header& header) {
   for (std::size_t i = 0; i < payload.size(); ++i)
     payload[i] = static_cast<char>(static_cast<std::uint8_t>(payload[i]) ^
                                    static_cast<std::uint8_t>(header.mask[i % kMaskBytes]));
-  if (is_control(header.opcode)) return WebSocketMessage{header.opcode, std::move(payload)};
+  if (is_control(header.opcode)) return take_checked({header.opcode, std::move(payload)});
   // Section 5.4: only the first part of a message has an opcode.
   if ((header.opcode == Opcode::continuation) != opcode_.has_value()) {
     error_ = CloseCode::protocol_error;
@@ -123,6 +173,12 @@ std::optional<WebSocketMessage> FrameReader::take(const Header& header) {
   WebSocketMessage message{*opcode_, std::move(parts_)};
   parts_.clear();
   opcode_.reset();
+  return take_checked(std::move(message));
+}
+
+std::optional<WebSocketMessage> FrameReader::take_checked(WebSocketMessage message) {
+  error_ = mistake_in(message);
+  if (error_) return std::nullopt;
   return message;
 }
 

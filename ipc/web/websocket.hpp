@@ -20,6 +20,8 @@ enum class CloseCode : std::uint16_t {
   going_away = 1001,
   protocol_error = 1002,
   unsupported = 1003,
+  none_given = 1005,  // never on the wire
+  bad_text = 1007,    // no UTF-8
   policy = 1008,
   too_big = 1009,
 };
@@ -30,7 +32,10 @@ enum class CloseCode : std::uint16_t {
 // The header of an unmasked frame, as servers send them; the payload follows it.
 [[nodiscard]] std::string frame_header(Opcode opcode, std::size_t payload_bytes);
 [[nodiscard]] std::string frame(Opcode opcode, std::string_view payload);
+// Without code and reason for `none_given`.
 [[nodiscard]] std::string close_frame(CloseCode code, std::string_view reason);
+// The code in the payload of a close frame that FrameReader let through, any that clients may send (section 7.4).
+[[nodiscard]] CloseCode close_code_of(std::string_view payload);
 
 struct WebSocketMessage {
   Opcode opcode = Opcode::text;  // text, binary, close, ping or pong
@@ -53,6 +58,7 @@ class FrameReader {
   struct Header;
   [[nodiscard]] std::optional<Header> read_header();
   std::optional<WebSocketMessage> take(const Header& header);
+  std::optional<WebSocketMessage> take_checked(WebSocketMessage message);
 
   std::size_t most_bytes_;
   std::string bytes_;  // not yet taken

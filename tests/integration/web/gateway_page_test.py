@@ -104,6 +104,7 @@ class GatewayPage(unittest.TestCase):
         self.addCleanup(live.close)
         welcome = live.until_is("welcome")
         self.assertFalse(welcome["may_command"])
+        self.assertTrue(welcome["run"])
         live.say(do="hello", token=self.page.token)
         self.assertTrue(live.until_is("welcome")["may_command"])
         live.say(do="command", id=1, text="hot_message  look here")
@@ -111,7 +112,7 @@ class GatewayPage(unittest.TestCase):
         seen = live.until(lambda m: isinstance(m, dict) and m["is"] == "live" and m["messages"])
         self.assertIn("look here", seen["messages"][-1]["text"])
         for key in ("time_s", "uptime_s", "revision", "tree_revision", "loop", "robots", "touching", "near", "ranges", "forces",
-                    "queues", "display", "cameras", "bell", "warning_distance_m", "collision_age_s"):
+                    "queues", "display", "cameras", "bell", "warning_distance_m", "collision_age_s", "within_warning_count"):
             self.assertIn(key, seen)
         robot = next(robot for robot in seen["robots"] if robot["id"] == "MANTEC_R3")
         self.assertEqual(robot["mode"], "simulated")

@@ -173,6 +173,51 @@ TEST_F(HostileClients, MayNotFlood) {
   EXPECT_LT(backend.commands.size(), 60u) << "a burst of 40 and what comes meanwhile";
 }
 
+TEST_F(HostileClients, MayNotFloodWithPings) {
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  for (int i = 0; i < 5000 && client.say("", 9); ++i) {
+  }
+  EXPECT_FALSE(client.read_until("\x03\xF0too much").empty()) << "1008";
+  EXPECT_TRUE(works());
+}
+
+TEST_F(HostileClients, MayNotFloodByRequests) {
+  const std::string request =
+      "POST /api/command HTTP/1.1\r\n" + host() + "Authorization: Bearer " + kToken + "\r\nContent-Length: 1\r\n\r\nA";
+  std::string refused;
+  for (int i = 0; i < 400 && refused.empty(); ++i) {
+    if (const std::string answered = ask(request); !starts(answered, 200)) refused = answered;
+  }
+  EXPECT_TRUE(starts(refused, 429)) << refused;
+  EXPECT_NE(refused.find("Retry-After: 1\r\n"), std::string::npos) << refused;
+}
+
+TEST_F(HostileClients, ThatSayGoodbyeHearTheirCode) {
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  client.say("\x0F\xA1 bye", 8);
+  EXPECT_NE(client.read_to_end().value_or("").find("\x88\x02\x0F\xA1"), std::string::npos) << "4001";
+}
+
+// More than the pool has places for, each of them 0.3 s of work: news come in between.
+TEST_F(HostileClients, ThatAskForManyDocumentsDoNotStopTheNews) {
+  RawClient page(sut->port());
+  page.open_live(sut->port());
+  ASSERT_FALSE(page.read_until("\"is\":\"live\"").empty());
+  std::vector<std::unique_ptr<RawClient>> asking;
+  for (int i = 0; i < 40; ++i) {
+    asking.push_back(std::make_unique<RawClient>(sut->port()));
+    asking.back()->send("GET /api/names HTTP/1.1\r\n" + host() + "\r\n");
+  }
+  const auto busy = [&] { return sut->status().requests >= 40; };
+  for (int i = 0; i < 500 && !busy(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(busy());
+  const int before = backend.lives;
+  for (int i = 0; i < 500 && backend.names < 10; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_GE(backend.lives - before, 3) << "while at least eight documents of 0.3 s were made, two at a time";
+}
+
 TEST_F(HostileClients, AreToldOnceAWishWhyNoPictureComes) {
   RawClient client(sut->port());
   client.open_live(sut->port());

@@ -39,7 +39,10 @@ class StubStream final : public PictureStream {
 
 class StubBackend final : public Backend {
  public:
-  [[nodiscard]] std::string live_json() override { return R"({"time_s":1})"; }
+  [[nodiscard]] std::string live_json() override {
+    ++lives;
+    return R"({"time_s":1})";
+  }
   [[nodiscard]] std::string status_json() override {
     if (status_throws) throw std::runtime_error("on purpose");
     return R"({"version":"test"})";
@@ -47,6 +50,7 @@ class StubBackend final : public Backend {
   [[nodiscard]] std::string tree_json() override { return "{}"; }
   [[nodiscard]] std::string commands_json() override { return "{}"; }
   [[nodiscard]] std::string names_json() override {
+    ++names;
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // a slow one
     return "{}";
   }
@@ -80,6 +84,8 @@ class StubBackend final : public Backend {
     if (!keep_waiting) give();
   }
 
+  std::atomic<int> lives{0};  // documents that were made
+  std::atomic<int> names{0};
   std::atomic<int> open_streams{0};
   std::atomic<bool> pictures_fail{false};
   std::atomic<bool> status_throws{false};

@@ -100,6 +100,22 @@ TEST(FrameReader, RefusesWhatTheStandardForbids) {
   expect_error("\x80\x80\x00\x00\x00\x00"s, CloseCode::protocol_error);          // goes on with nothing
 }
 
+// Sections 8.1 and 7.4.
+TEST(FrameReader, RefusesTextThatIsNoneAndCodesThatNobodyMaySend) {
+  for (const std::string& text : {"\xFF\xFE"s, "\xC0\xAF"s, "\xED\xA0\x80"s, "\xF4\x90\x80\x80"s, "\xE2\x82"s})
+    expect_error("\x81"s + static_cast<char>(0x80 | text.size()) + "\0\0\0\0"s + text, CloseCode::bad_text);
+  expect_error("\x88\x81\0\0\0\0\x03"s, CloseCode::protocol_error);      // half a code
+  expect_error("\x88\x82\0\0\0\0\x03\xED"s, CloseCode::protocol_error);  // 1005
+  expect_error("\x88\x82\0\0\0\0\x00\x01"s, CloseCode::protocol_error);  // 1
+  expect_error("\x88\x83\0\0\0\0\x03\xE8\xFF"s, CloseCode::bad_text);    // the reason
+  FrameReader sut(100);
+  sut.push("\x81\x89\0\0\0\0\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"s + "\x88\x80\0\0\0\0"s + "\x88\x82\0\0\0\0\x0F\xA1"s);
+  EXPECT_EQ(sut.next().value_or(WebSocketMessage{}).payload, "\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80")
+      << "two to four bytes";
+  EXPECT_EQ(close_code_of(sut.next().value_or(WebSocketMessage{}).payload), CloseCode::none_given);
+  EXPECT_EQ(static_cast<int>(close_code_of(sut.next().value_or(WebSocketMessage{}).payload)), 4001);
+}
+
 TEST(FrameReader, RefusesALongFrameByItsHeader) {
   expect_error("\x81\xFE\x00\x65"s, CloseCode::too_big);  // 101 bytes; the header alone
   expect_error("\x81\xFF\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF"s, CloseCode::too_big);
@@ -123,6 +139,7 @@ TEST(FrameHeader, SaysTheLengthAsShortAsPossible) {
   EXPECT_EQ(frame_header(Opcode::binary, 126), "\x82\x7E\x00\x7E"s);
   EXPECT_EQ(frame_header(Opcode::binary, 65536), "\x82\x7F\x00\x00\x00\x00\x00\x01\x00\x00"s);
   EXPECT_EQ(close_frame(CloseCode::policy, "no"), "\x88\x04\x03\xF0no"s);
+  EXPECT_EQ(close_frame(CloseCode::none_given, "no"), "\x88\x00"s);
 }
 
 }  // namespace
