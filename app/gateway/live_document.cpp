@@ -132,6 +132,7 @@ void add_proximity(JsonBuilder& out, const LiveSources& sources) {
   out.member("touching_count", found.touching.size()).key("near");
   add_near(out, found);
   out.member("near_count", found.near.size())
+      .member("within_warning_count", std::ranges::count_if(found.near, &NearPair::within_warning))
       .member("warning_distance_m", sources.picture.collision->warning_distance_m)
       .member("collision_age_s", known ? age_s(sources.now, found.posture_time) : std::nullopt);
 }
@@ -146,6 +147,7 @@ void add_ranges(JsonBuilder& out, const RangeReadings* readings) {
           .member("distance_m", reading.distance_m)
           .member("range_m", reading.range_m)
           .member("object", reading.object)
+          .member("in_blind_zone", reading.in_blind_zone)
           .member("doubtful", reading.doubtful)
           .end_object();
     }

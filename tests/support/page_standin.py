@@ -95,13 +95,14 @@ class Cell:
                    "joints": [{"name": f"J_{k + 1}", "unit": "rad", "effort": 20 * math.cos(now + k), "max_effort": 100,
                                "beyond_limit": False} for k in range(self.joints)]} for i, robot in enumerate(self.ids[:2])]
         return {
-            "is": "live", "time_s": now, "uptime_s": now, "cell": "stand_in", "instance": "standin", "revision": self.revision,
+            "is": "live", "time_s": time.time(), "uptime_s": now, "cell": "stand_in", "instance": "standin", "revision": self.revision,
             "loop": {"rate_hz": 1000, "latency_p99_us": 40 + 6 * math.sin(3 * now), "compute_p99_us": 9 + math.sin(2 * now),
                      "missed": 0},
             "robots": [self.robot(i) for i in range(n)], "touching": touching, "near": self.near(), "warning_distance_m": 0.1,
+            "within_warning_count": sum(pair["distance_m"] <= 0.1 for pair in self.near()),
             "collision_age_s": 0.003,
             "ranges": [{"id": f"USS_{i}", "distance_m": 0.4 + 0.3 * math.sin(now + i) if i < 2 else None, "range_m": 2.0,
-                        "object": "Cell.Table_1.top"} for i in range(3)],
+                        "object": "Cell.Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
             "forces": forces,
             "queues": [{"name": name, "dropped": dropped, "high_water": 12, "capacity": 1024} for name, dropped in
                        (("messages (2351)", 0), ("sensor queue (1990)", int(3 * now)), ("ticks to the studio", 0))],
@@ -205,7 +206,7 @@ class Client:
         self.writer.write(bytes([0x80 | opcode]) + size + data)
 
     def welcome(self):
-        self.send({"is": "welcome", "version": "0.1.0", "cell": "stand_in", "instance": "standin",
+        self.send({"is": "welcome", "version": "0.1.0", "cell": "stand_in", "instance": "standin", "run": str(self.cell.start),
                    "may_command": self.may_command and not self.options.read_only, "read_only": self.options.read_only})
 
     async def serve(self):

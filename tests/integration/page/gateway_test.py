@@ -55,6 +55,8 @@ class Page(unittest.TestCase):
             self.gateway.close()
         elif word == "back":
             self.start()
+            # As many as the page had of the gateway before: only the run tells that these are others.
+            self.assertEqual(self.scratch.send("hot_message The gateway is new").returncode, 0)
 
     def test_a_visit(self):
         shown = self.scratch.cellmirror("page", "--instance", self.scratch.instance, instance=False)

@@ -15,9 +15,12 @@ const browser = await chromium.launch({
 });
 const problems = [];
 
-async function opened(options = {}, to = address) {
+// `wire`: what comes from the gateway goes through wire.live(message) and wire.picture(bytes), where they are given;
+// null is dropped. wire.end() ends the connection.
+async function opened(options = {}, to = address, wire = null) {
   const context = await browser.newContext({viewport: {width: 1440, height: 900}, ...options});
   const page = await context.newPage();
+  if (wire) await page.routeWebSocket(/\/live$/, (socket) => tap(socket, wire));
   page.setDefaultTimeout(kPatience_ms);
   page.on("pageerror", (error) => problems.push(`${error.message}\n${error.stack}`));
   page.on("console", (message) => {
@@ -32,6 +35,19 @@ async function opened(options = {}, to = address) {
   });
   await page.goto(to);
   return page;
+}
+
+function tap(socket, wire) {
+  const gateway = socket.connectToServer();
+  wire.end = () => Promise.all([socket.close(), gateway.close()]);
+  gateway.onMessage((message) => {
+    if (typeof message !== "string") message = wire.picture ? wire.picture(message) : message;
+    else if (wire.live && message.startsWith('{"is": "live"')) {
+      const changed = wire.live(JSON.parse(message));
+      message = changed && JSON.stringify(changed);
+    }
+    if (message) socket.send(message);
+  });
 }
 
 const shot = (page, name, whole = false) => page.screenshot({path: path.join(process.env.ARTEFACTS, `${name}.png`), fullPage: whole});
@@ -114,6 +130,7 @@ const scenarios = {
     await page.locator("#gone").waitFor({state: "hidden", timeout: 40000});
     await live(page);
     await newer_picture(page, 2).catch(() => picture(page));
+    await page.locator("#message-list li", {hasText: "The gateway is new"}).waitFor({state: "attached"});
     await shot(page, "gateway-back");
     for (const [name, options] of kScreens.slice(1)) await screen(`gateway-${name}`, options);
   },
@@ -193,8 +210,30 @@ const scenarios = {
     await page.keyboard.press("ArrowDown");
     assert.equal(await page.getAttribute("#tree-list li >> nth=1", "aria-selected"), "true");
     await run(page, "hot_message <b>ding</b>");
+    const unread = (n) => page.waitForFunction((text) => document.getElementById("message-count").textContent === text, n);
+    await unread("1");
     await page.waitForFunction(() => document.getElementById("hot-message").textContent === "<b>ding</b>");
     await page.waitForFunction(() => Number(document.documentElement.dataset.rung) > 0);
+    await page.waitForFunction(() => getComputedStyle(document.getElementById("hot-message")).opacity === "0");
+    await page.click("#tab-messages");
+    await page.focus("#tab-near");
+    await page.keyboard.press("Enter");
+    await run(page, "hot_message again");
+    await unread("1");
+    assert.match(await page.locator("#near-list .end").first().innerText(), /^ROBOT_\d+…link$/);
+    const end = page.locator("#near-list .end").nth(1);
+    const whole = await end.getAttribute("title");
+    await end.focus();
+    await page.keyboard.press("Enter");
+    assert.equal(await page.getAttribute("#tab-tree", "aria-selected"), "true");
+    await page.waitForFunction((path) => document.getElementById("tree-chosen").textContent.includes(path), whole);
+    // Who reads further up in the console is not thrown to its end.
+    for (let i = 0; i < 20; ++i) await run(page, `ROBACT ROBOT_${1 + i % 2}`);
+    await page.evaluate(() => document.getElementById("console-log").scrollTo({top: 0, behavior: "instant"}));
+    const answers = await page.locator("#console-log .done").count();
+    await page.click('[data-robot="ROBOT_3"] .tools button:nth-child(2)');
+    await page.waitForFunction((n) => document.querySelectorAll("#console-log .done").length > n, answers);
+    assert.equal(await page.evaluate(() => document.getElementById("console-log").scrollTop), 0);
   },
 
   // Views and displays are called as the cell's layout file has it.
@@ -210,6 +249,42 @@ const scenarios = {
     await page.focus("#view-canvas");
     await page.keyboard.press("ArrowLeft");
     assert.equal(await page.inputValue("#view-choice"), "free");
+  },
+
+  // What is not of now does not look like it: a pause, news that stop while pictures come, pictures that stop.
+  async old() {
+    const wire = {live: (message) => ({...message, near_count: 180, within_warning_count: 180})};
+    const page = await opened({}, address, wire);
+    await live(page);
+    await picture(page);
+    await page.waitForFunction(() => document.getElementById("near-badge").textContent === "180 near");
+    assert.match(await text_of(page, "#near-note"), /the first \d+ of 180/);
+    assert.match(await page.locator("#range-list li").nth(1).innerText(), /doubtful, may be nearer/);
+
+    const values = () => page.locator(".chart .legend").first().innerText();
+    await page.click("#chart-pause");
+    const paused = await values();
+    await page.waitForFunction((before) => document.querySelector("#robot-list .joint .value").textContent !== before,
+      await page.locator("#robot-list .joint .value").first().innerText());
+    await page.selectOption("#chart-span", "20");
+    assert.equal(await values(), paused);
+    await page.click("#chart-pause");
+
+    wire.live = () => null;
+    const at = Date.now();
+    await page.waitForFunction(() => /^no news/.test(document.getElementById("line-text").textContent));
+    await page.waitForFunction(() => getComputedStyle(document.getElementById("touching-badge")).visibility === "hidden");
+    await page.waitForFunction(() => /until \d\d:\d\d:\d\d/.test(document.querySelector(".chart figcaption").textContent));
+    await newer_picture(page);
+    await shot(page, "old-news");
+
+    wire.picture = () => null;
+    await page.waitForFunction(() => /^picture 1\.\d s/.test(document.getElementById("view-age").textContent));
+    await wire.end();
+    await page.locator("#gone").waitFor();
+    const told = /as of (\d\d:\d\d:\d\d)/.exec(await text_of(page, "#gone-since"))[1];
+    const times = await page.evaluate((then) => [-1, 0, 1].map((s) => new Date(then + 1000 * s).toTimeString().slice(0, 8)), at);
+    assert.ok(times.includes(told), `${told} is none of ${times}`);
   },
 
   // Fingers on a phone.
@@ -233,6 +308,15 @@ const scenarios = {
     await page.locator("#picked-path").waitFor();
     const wide = await page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth + 1);
     assert.ok(!wide, "the page is wider than the phone");
+    await run(page, "hot_message small");
+    await page.waitForFunction(() => document.getElementById("hot-message").textContent === "small");
+    assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById("hot-message")).opacity), "1", "drawn too small to be read");
+    await page.setViewportSize({width: 844, height: 390});
+    await newer_picture(page);
+    for (const button of ["#view-home", "#chart-pause", "#tab-near"]) {
+      const {height} = await page.locator(button).boundingBox();
+      assert.ok(height >= 34, `${button} is ${height} px high on a phone held sideways`);
+    }
   },
 
   // Somebody without a token, and a wrong one.
@@ -243,6 +327,10 @@ const scenarios = {
       await picture(page);
       assert.match(await text_of(page, "#right-text"), /looking only|read-only/, name);
       assert.match(await run(page, "hot_message no"), /^refused: .*(cellmirror page|read-only)/);
+      await page.focus("#display-choice");
+      await page.selectOption("#display-choice", "3");
+      await page.waitForFunction(() => document.getElementById("display-choice").value === "1");
+      assert.equal(await page.evaluate(() => document.activeElement.id), "display-choice");
       await page.context().close();
     }
   },

@@ -46,6 +46,9 @@ class Page(unittest.TestCase):
     def test_views_and_displays_have_the_names_of_the_layout(self):
         self.run_scenario("layout")
 
+    def test_what_is_old_does_not_look_new(self):
+        self.run_scenario("old")
+
     def test_it_can_be_used_by_keyboard(self):
         self.run_scenario("keyboard")
 

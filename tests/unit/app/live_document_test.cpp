@@ -160,11 +160,13 @@ TEST_F(LiveDocument, PairsAreBoundedAndCounted) {
   proximity_->near[0].distance_m = 0.25;
   proximity_->near[0].time_to_contact_s = 1.5;
   proximity_->near[1].b = 99;  // a name that is not there
+  for (std::size_t i = 0; i < 55; ++i) proximity_->near[i].within_warning = true;
   const json sut = document();
   EXPECT_EQ(sut["touching"].size(), 50U);
   EXPECT_EQ(sut["touching_count"], 70);
   EXPECT_EQ(sut["near"].size(), 50U);
   EXPECT_EQ(sut["near_count"], 60);
+  EXPECT_EQ(sut["within_warning_count"], 55) << "also those that are left out";
   EXPECT_EQ(sut["warning_distance_m"], 0.05);
   EXPECT_EQ(sut["near"][0]["a"], "Arm.J_1");
   EXPECT_EQ(sut["near"][0]["b"], "Table");
@@ -204,6 +206,8 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
   ranges_->readings[0].range_m = 1.5;
   ranges_->readings[1].distance_m = 0.5;
   ranges_->readings[1].object = "Table";
+  ranges_->readings[1].in_blind_zone = true;
+  ranges_->readings[1].doubtful = true;
   forces_ = std::make_shared<ForceState>();
   forces_->robots.resize(2);
   forces_->robots[0].id = "ARM";
@@ -216,6 +220,10 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
   EXPECT_TRUE(sut["ranges"][0]["distance_m"].is_null());
   EXPECT_EQ(sut["ranges"][0]["range_m"], 1.5);
   EXPECT_EQ(sut["ranges"][1]["distance_m"], 0.5);
+  for (const char* key : {"in_blind_zone", "doubtful"}) {
+    EXPECT_EQ(sut["ranges"][0][key], false) << key;
+    EXPECT_EQ(sut["ranges"][1][key], true) << key;
+  }
   EXPECT_THAT(sut["forces"][0]["tcp_force_n"], ElementsAre(1.0, 2.0, 3.0));
   EXPECT_TRUE(sut["forces"][1]["tcp_force_n"].is_null());
   EXPECT_EQ(sut["forces"][0]["joints"][0]["unit"], "Nm");

@@ -1,13 +1,14 @@
 // Pictures, histories, the tree, tokens, numbers: what the page knows before it shows anything.
 import test from "node:test";
 import assert from "node:assert/strict";
-import {record} from "./modules/charts.js";
+import {left_out_in_words, record} from "./modules/charts.js";
 import * as format from "./modules/format.js";
 import {History} from "./modules/history.js";
-import {picture_size, start_of_free_view, wish_of} from "./modules/live_view.js";
+import {picture_size, PictureOrder, start_of_free_view, text_is_readable, wish_of} from "./modules/live_view.js";
 import {decode_picture} from "./modules/picture_format.js";
 import {state_text, time_text} from "./modules/programs.js";
 import {place_in_range, state_of} from "./modules/robots.js";
+import {kColours} from "./modules/strip_chart.js";
 import * as token from "./modules/token.js";
 import {TreeModel} from "./modules/tree_model.js";
 import {choice_of, value_of} from "./modules/view_choice.js";
@@ -71,6 +72,7 @@ test("a history keeps the newest and knows gaps", () => {
   assert.deepEqual(odd, [null, 19, null, 21, null]);
   assert.deepEqual(sut.window(["odd"], 2, [10]), [[20, 21, 22], [null, 210, null]]);
   assert.deepEqual(sut.window(["unknown"], 2)[1], [null, null, null]);
+  assert.deepEqual(sut.window(["odd"], 1, [], 20), [[19, 20], [19, null]], "up to an earlier time");
 });
 
 test("a history is bounded in series, and lets go of those that ended", () => {
@@ -90,7 +92,52 @@ test("everything that charts show is recorded", () => {
   assert.equal(sut.newest("tcp|R"), 5);
   assert.equal(sut.newest("e|R|J_1"), 7);
   assert.equal(sut.newest("range|U"), null);
+  assert.deepEqual(sut.keys("range|"), [], "what never had a value takes no place");
+  record(sut, {time_s: 2, ranges: [{id: "V", distance_m: 0.5}, {id: "W", distance_m: 0.5, doubtful: true}]});
+  assert.deepEqual(["V", "W"].map((id) => sut.newest(`range|${id}`)), [0.5, null]);
+  record(sut, {time_s: 3, near: [{a: "a", b: "b", distance_m: 0.2}]});
   assert.ok(Math.abs(sut.newest("near|a – b") - 0.2) < 1e-6);
+});
+
+test("in a large cell all but joints are recorded, and what is not is said", () => {
+  const joints = (value) => Array.from({length: 10}, (_, k) => ({name: `J_${k}`, ...value}));
+  const robots = Array.from({length: 64}, (_, i) => ({id: `R${i}`, joints: joints({position: 1, velocity: 0})}));
+  const live = {robots, loop: {latency_p99_us: 40, compute_p99_us: 9}, near: Array.from({length: 50}, (_, i) => ({a: `a${i}`, b: "b", distance_m: 1})),
+    ranges: [{id: "U", distance_m: 1}], forces: robots.map(({id}) => ({robot: id, tcp_force_n: [1, 0, 0], joints: joints({effort: 1})}))};
+  const sut = new History();
+  for (let i = 1; i < 4; ++i) record(sut, {...live, time_s: i});
+  record(sut, {...live, near: live.near.map((pair) => ({...pair, b: "another"})), time_s: 5});
+  assert.deepEqual(["loop|", "near|", "range|", "tcp|"].map((prefix) => sut.keys(prefix).length), [2, 100, 1, 64]);
+  assert.equal(sut.newest("q|R63|J_9"), 1);
+  assert.match(left_out_in_words(sut.left_out()), /not recorded: \d+ velocities, 640 efforts$/);
+  assert.equal(left_out_in_words([]), "");
+});
+
+test("an older picture is not drawn over a newer one", () => {
+  const sut = new PictureOrder();
+  assert.deepEqual([1, 3, 2, 4].map((sequence) => sut.is_newer(sequence)), [true, true, false, true]);
+  const before = sut.connection;
+  sut.begin();
+  assert.notEqual(sut.connection, before);
+  assert.equal(sut.is_newer(1), true, "each connection counts from the beginning");
+});
+
+test("text in a picture is readable where its pixels are not much smaller than the page's", () => {
+  assert.equal(text_is_readable(640, 640), true);
+  assert.equal(text_is_readable(1170, 390), false);
+});
+
+// WCAG 2.1, 1.4.11: 3 to 1, over the panels of style/theme.css.
+test("curves stand out from light and dark", () => {
+  const luminance = (colour) => [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16) / 255)
+    .map((part) => (part <= 0.03928 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, part, i) => sum + part * [0.2126, 0.7152, 0.0722][i], 0);
+  for (const colour of kColours) {
+    for (const ground of ["#ffffff", "#171c1f"]) {
+      const [dark, light] = [luminance(colour), luminance(ground)].sort((a, b) => a - b);
+      assert.ok((light + 0.05) / (dark + 0.05) >= 3, `${colour} on ${ground}`);
+    }
+  }
 });
 
 const nodes = [

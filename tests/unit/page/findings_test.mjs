@@ -1,7 +1,8 @@
 // What the head of the page says of collisions.
 import test from "node:test";
 import assert from "node:assert/strict";
-import {collisions_in_brief} from "./modules/findings.js";
+import {collisions_in_brief, cut_note, range_in_words, warned_count} from "./modules/findings.js";
+import {ShortNames} from "./modules/short_names.js";
 
 const pair = {a: "Arm.J_1", b: "Table", depth_m: 0.01};
 
@@ -22,4 +23,30 @@ test("what is old is said", () => {
   assert.match(old.text, /nothing touches.*old/);
   assert.match(old.title, /3\.1 s/);
   assert.equal(collisions_in_brief({touching: [pair], collision_age_s: 0.6}).state, "stale");
+});
+
+test("a reading that may be wrong warns and says why", () => {
+  const words = (range) => range_in_words(range, new ShortNames());
+  assert.deepEqual(words({distance_m: 1.2, object: "Arm.J_1.J_2"}), {value: "1.200 m", more: "Arm\u2026J_2", warns: false});
+  assert.deepEqual(words({distance_m: null, object: "", doubtful: true}), {value: "no echo", more: "doubtful, may be nearer", warns: true});
+  assert.match(words({distance_m: 0.01, object: "A.b", in_blind_zone: true, doubtful: true}).more, /A\.b; doubtful, may be nearer; in the blind zone/);
+});
+
+test("pairs that the gateway left out are counted", () => {
+  assert.equal(warned_count({near: Array(50).fill({within_warning: true}), within_warning_count: 180}), 180);
+  assert.equal(warned_count({near: [{distance_m: 0.01}, {distance_m: 0.2}], warning_distance_m: 0.1}), 1);
+  assert.equal(cut_note(40, 180), "the first 40 of 180");
+  assert.equal(cut_note(40, 40), "");
+});
+
+test("short names tell equal robots apart", () => {
+  const sut = new ShortNames();
+  assert.equal(sut.of("Table"), "Table");
+  assert.equal(sut.of("Table.top"), "Table.top");
+  const path = (i) => `Mantec_${i}.J_1.J_2.J_3`;
+  assert.deepEqual([1, 2].map((i) => sut.of(path(i))), ["Mantec_1\u2026J_3", "Mantec_2\u2026J_3"]);
+  const deep = ["Cell.Arm_1.J_1.J_2", "Cell.Arm_2.J_1.J_2", "Cell.Arm_2.J_9.J_2"];
+  for (const one of deep) sut.of(one);
+  assert.deepEqual(deep.map((one) => sut.of(one)), ["Cell.Arm_1\u2026J_2", "Cell.Arm_2.J_1.J_2", "Cell.Arm_2.J_9.J_2"]);
+  for (let i = 0; i < 5000; ++i) assert.equal(sut.of(path(i)), `Mantec_${i}\u2026J_3`);
 });

@@ -18,6 +18,18 @@ test("an orbit never goes over the top", () => {
   assert.ok(Math.abs(sut.distance(steep) - 5) < 1e-9);
 });
 
+test("a touch does not turn a picture from straight above or below", () => {
+  // rt_core/cell/view.cpp: up in such a picture is the world's y axis.
+  for (const [height, right, up] of [[5, [1, 0, 0], [0, 1, 0]], [-5, [-1, 0, 0], [0, 1, 0]]]) {
+    const steep = {...view, viewpoint_m: [0, 0, height]};
+    near(sut.picture_axes(steep).right, right);
+    near(sut.picture_axes(steep).up, up);
+    const touched = sut.picture_axes(sut.orbit(steep, 0, 0));
+    near(touched.right, right);
+    near(touched.up, up, 0.02);
+  }
+});
+
 test("an orbit leaves the lookpoint alone", () => {
   const moved = {...view, viewpoint_m: [1, -4, 3], lookpoint_m: [1, 1, 3]};
   near(sut.orbit(moved, 1, 0.3).lookpoint_m, [1, 1, 3]);

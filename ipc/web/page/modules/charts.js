@@ -1,7 +1,7 @@
 // Which charts there are and what they show. All values are recorded as they come; drawn is what can be seen, as much
 // as fits into a small part of an update, in turns.
 import {byId, element, setText, Visibility} from "./dom.js";
-import {joint_unit, norm, scaled, shown_unit} from "./format.js";
+import {clock_time, joint_unit, norm, scaled, shown_unit} from "./format.js";
 import {History} from "./history.js";
 import {StripChart} from "./strip_chart.js";
 
@@ -9,6 +9,7 @@ const kBudget_ms = 1.5;
 const kMostDrawn = 2;
 const kGap_s = 2;
 const kMostCurves = 6;
+const kSpare = 300;  // places that joints leave to what there is little of
 
 const kQuantities = {
   position: {prefix: "q", unit: (unit) => unit},
@@ -16,41 +17,51 @@ const kQuantities = {
   effort: {prefix: "e", unit: null},
 };
 
+// What there is little of goes first: in a large cell not all joints find a place.
 export function record(history, live) {
   history.add(live.time_s ?? 0, (put) => {
-    for (const robot of live.robots ?? []) {
-      for (const joint of robot.joints ?? []) {
-        put(`q|${robot.id}|${joint.name}`, joint.position);
-        put(`v|${robot.id}|${joint.name}`, joint.velocity);
-      }
-    }
-    for (const pair of live.near ?? []) put(`near|${pair.a} – ${pair.b}`, pair.distance_m);
-    for (const pair of live.touching ?? []) put(`near|${pair.a} – ${pair.b}`, 0);
-    for (const range of live.ranges ?? []) put(`range|${range.id}`, range.distance_m);
-    for (const force of live.forces ?? []) {
-      put(`tcp|${force.robot}`, norm(force.tcp_force_n));
-      for (const joint of force.joints ?? []) put(`e|${force.robot}|${joint.name}`, joint.effort);
-    }
     put("loop|wake-up p99", live.loop?.latency_p99_us);
     put("loop|tick p99", live.loop?.compute_p99_us);
+    for (const pair of live.near ?? []) put(`near|${pair.a} – ${pair.b}`, pair.distance_m);
+    for (const pair of live.touching ?? []) put(`near|${pair.a} – ${pair.b}`, 0);
+    // A doubtful distance is no measurement: something nearer may be there.
+    for (const range of live.ranges ?? []) put(`range|${range.id}`, range.doubtful ? null : range.distance_m);
+    for (const force of live.forces ?? []) put(`tcp|${force.robot}`, norm(force.tcp_force_n));
+    record_joints(put, live);
   });
 }
 
-const kShortPairs = new Map();
-
-function short_pair(label) {
-  if (kShortPairs.size > 1000) kShortPairs.clear();
-  if (!kShortPairs.has(label)) {
-    kShortPairs.set(label, label.split(" – ").map((path) => path.split(".").slice(-2).join(".")).join(" – "));
+function record_joints(put, live) {
+  for (const [prefix, quantity] of [["q", "position"], ["v", "velocity"]]) {
+    for (const robot of live.robots ?? []) {
+      for (const joint of robot.joints ?? []) put(`${prefix}|${robot.id}|${joint.name}`, joint[quantity], kSpare);
+    }
   }
-  return kShortPairs.get(label);
+  for (const force of live.forces ?? []) {
+    for (const joint of force.joints ?? []) put(`e|${force.robot}|${joint.name}`, joint.effort, kSpare);
+  }
+}
+
+// What is not recorded, for people; empty where everything is.
+export function left_out_in_words(keys) {
+  const kinds = {q: "positions", v: "velocities", e: "efforts", near: "distances", range: "ranges", tcp: "forces", loop: "loop"};
+  const counts = new Map();
+  for (const key of keys) {
+    const kind = kinds[key.slice(0, key.indexOf("|"))];
+    counts.set(kind, (counts.get(kind) ?? 0) + 1);
+  }
+  const parts = [...counts].map(([kind, count]) => `${count} ${kind}`);
+  return parts.length ? `too many curves; not recorded: ${parts.join(", ")}` : "";
 }
 
 export class Charts {
-  constructor() {
+  // `names`: ShortNames.
+  constructor({names}) {
+    this.names_ = names;
     this.history_ = new History();
     this.robot_ = null;
-    this.paused_ = false;
+    this.paused_at_ = null;  // time of the gateway's clock, s
+    this.quiet_ = false;
     this.turn_ = 0;
     this.nearest_ = [];
     const parent = byId("chart-list");
@@ -66,9 +77,10 @@ export class Charts {
     this.robot_choice_ = byId("chart-robot");
     this.robot_choice_.addEventListener("change", () => this.select(this.robot_choice_.value));
     byId("chart-pause").addEventListener("click", (event) => {
-      this.paused_ = !this.paused_;
-      event.currentTarget.setAttribute("aria-pressed", String(this.paused_));
-      setText(event.currentTarget, this.paused_ ? "Go on" : "Pause");
+      this.paused_at_ = this.paused_at_ === null ? this.history_.newest_time() : null;
+      event.currentTarget.setAttribute("aria-pressed", String(this.paused_at_ !== null));
+      setText(event.currentTarget, this.paused_at_ === null ? "Pause" : "Go on");
+      this.draw_all_();
     });
     for (const id of ["chart-quantity", "chart-span"]) byId(id).addEventListener("change", () => this.draw_all_());
   }
@@ -84,6 +96,13 @@ export class Charts {
     this.robots_ = live.robots ?? [];
   }
 
+  // Whether news has stopped coming: the newest that is shown is not of now.
+  tell_quiet(quiet) {
+    if (this.quiet_ === quiet) return;
+    this.quiet_ = quiet;
+    if (this.robots_) this.draw_all_();
+  }
+
   select(robot) {
     this.robot_ = robot;
     this.robot_choice_.value = robot;
@@ -97,7 +116,8 @@ export class Charts {
 
   update() {
     this.offer_robots_();
-    if (this.paused_) return;
+    setText(byId("chart-note"), left_out_in_words(this.history_.left_out()));
+    if (this.paused_at_ !== null) return;
     const end = performance.now() + kBudget_ms;
     let drawn = 0;
     for (let looked = 0; looked < this.charts_.length && drawn < kMostDrawn; ++looked) {
@@ -142,30 +162,31 @@ export class Charts {
 
   // The pairs that are nearest now.
   show_nearest_(chart) {
+    const keys = this.paused_at_ === null ? this.nearest_keys_() : this.nearest_;
+    const ends = keys.map((key) => key.slice(5).split(" – "));
+    const labels = ends.map((pair) => pair.map((path) => this.names_.of(path)).join(" – "));
+    this.show_(chart, labels, keys.map(() => "mm"), keys, keys.map(() => 1000), ends.map((pair) => pair.join(" – ")));
+  }
+
+  nearest_keys_() {
     const near = this.history_.keys("near|").map((key) => ({key, value: this.history_.newest(key), seen: this.history_.last_seen(key)}));
     near.sort((a, b) => (a.value ?? Infinity) - (b.value ?? Infinity) || b.seen - a.seen || (a.key < b.key ? -1 : 1));
     // One that was shown keeps its place while it is nearly among the nearest: curves must not come and go.
     const nearly = new Set(near.slice(0, 2 * kMostCurves).filter(({value}) => value !== null).map(({key}) => key));
     const kept = this.nearest_.filter((key) => nearly.has(key));
     const others = near.map(({key}) => key).filter((key) => !kept.includes(key));
-    const keys = [...kept, ...others].slice(0, kMostCurves);
-    this.nearest_ = keys;
-    this.show_(chart, keys.map((key) => short_pair(key.slice(5))), keys.map(() => "mm"), keys, keys.map(() => 1000));
+    this.nearest_ = [...kept, ...others].slice(0, kMostCurves);
+    return this.nearest_;
   }
 
   show_all_(chart, prefix, unit, scale) {
-    const keys = this.history_.keys(prefix).filter((key) => prefix !== "tcp|" || this.ever_(key)).slice(0, 2 * kMostCurves);
+    const keys = this.history_.keys(prefix).slice(0, 2 * kMostCurves);
     this.show_(chart, keys.map((key) => key.slice(prefix.length)), keys.map(() => unit), keys, keys.map(() => scale));
   }
 
-  // Only robots at whose TCP something was ever known.
-  ever_(key) {
-    this.known_ ??= new Set();
-    if (this.history_.newest(key) !== null) this.known_.add(key);
-    return this.known_.has(key);
-  }
-
-  show_(chart, labels, units, keys, scales) {
-    chart.show(labels, units, this.history_.window(keys, this.span_, scales), this.span_);
+  show_(chart, labels, units, keys, scales, titles = labels) {
+    const until = this.paused_at_ ?? this.history_.newest_time();
+    const end = this.paused_at_ !== null || this.quiet_ ? clock_time(new Date(until * 1000)) : "now";
+    chart.show({labels, titles, units}, this.history_.window(keys, this.span_, scales, until), {span: this.span_, until, end});
   }
 }

@@ -3,7 +3,7 @@
 
 const kFirstPause_s = 0.5;
 const kLongestPause_s = 8;
-const kSilent_s = 8;  // live comes ten times a second: no news for so long is a dead line
+const kSilent_s = 8;  // live comes ten times a second: nothing at all for so long is a dead line
 
 export function pause_after(failures, random = Math.random) {
   const pause = Math.min(kLongestPause_s, kFirstPause_s * 2 ** Math.min(failures, 10));

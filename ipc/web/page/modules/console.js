@@ -4,6 +4,7 @@ import {completed, completions, help_for} from "./completion.js";
 import {clock_time} from "./format.js";
 
 const kMostEntries = 200;
+const kAtTheEnd_px = 24;
 const kMostRemembered = 100;
 const kHistoryKey = "cellmirror.history";
 
@@ -48,9 +49,10 @@ export class Console {
     this.names_ = names;
   }
 
-  // Executes a command and writes down what became of it.
-  async run(text) {
-    const entry = this.write_(text);
+  // Executes a command and writes down what became of it. Where somebody reads further up, the log stays there, unless
+  // the command was typed.
+  async run(text, {typed = false} = {}) {
+    const entry = this.write_(text, typed);
     if (!this.may_command_()) {
       this.answer_(entry, false, this.why_not_());
       return false;
@@ -60,21 +62,31 @@ export class Console {
     return reply.done === true;
   }
 
-  write_(text) {
+  // What `change` adds stays in sight where the end of the log was.
+  keep_end_(change, always = false) {
+    const log = this.log_;
+    const follow = always || log.scrollHeight - log.scrollTop - log.clientHeight < kAtTheEnd_px;
+    change();
+    if (follow) log.scrollTop = log.scrollHeight;
+  }
+
+  write_(text, typed) {
     const answer = element("span", {class: "answer waiting"}, "…");
     const entry = element("li", {}, element("time", {}, clock_time()), element("code", {}, text), answer);
-    this.log_.append(entry);
-    byId("no-commands").hidden = true;
-    while (this.log_.children.length > kMostEntries) this.log_.firstElementChild.remove();
-    this.log_.scrollTop = this.log_.scrollHeight;
+    this.keep_end_(() => {
+      this.log_.append(entry);
+      byId("no-commands").hidden = true;
+      while (this.log_.children.length > kMostEntries) this.log_.firstElementChild.remove();
+    }, typed);
     return {entry, answer};
   }
 
   answer_({entry, answer}, done, text) {
-    answer.className = done ? "answer done" : "answer refused";
-    setText(answer, done ? (text ? `done: ${text}` : "done") : `refused: ${text || "no reason was given"}`);
-    entry.classList.toggle("refused", !done);
-    this.log_.scrollTop = this.log_.scrollHeight;
+    this.keep_end_(() => {
+      answer.className = done ? "answer done" : "answer refused";
+      setText(answer, done ? (text ? `done: ${text}` : "done") : `refused: ${text || "no reason was given"}`);
+      entry.classList.toggle("refused", !done);
+    });
   }
 
   submit_() {
@@ -91,7 +103,7 @@ export class Console {
     this.input_.value = "";
     this.close_();
     this.explain_();
-    this.run(text);
+    this.run(text, {typed: true});
   }
 
   key_(event) {

@@ -3,24 +3,22 @@ import {byId, element, setText, setAttribute, KeyedRows} from "./dom.js";
 import {age, length, norm, number} from "./format.js";
 import {place_in_range} from "./robots.js";
 
-const kMostRows = 40;
+export const kMostRows = 40;
 
 const pair_key = (pair) => `${pair.a}\n${pair.b}`;
 const warned_of = (pair, limit_m) => pair.within_warning ?? pair.distance_m <= (limit_m ?? 0);
-const last_part = (path) => String(path ?? "").split(".").slice(-2).join(".");
+const end = () => element("button", {type: "button", class: "end"});
 
 function pair_row() {
-  const row = {a: element("span", {class: "end"}), b: element("span", {class: "end"}), value: element("span", {class: "value"}),
-    more: element("span", {class: "more"})};
-  row.node = element("li", {class: "pair"}, element("span", {class: "ends"}, row.a, row.b), row.value, row.more);
+  const row = {a: end(), b: end(), value: element("span", {class: "value"}), more: element("span", {class: "more"})};
+  const ends = element("span", {class: "ends"}, row.a, element("span", {"aria-hidden": "true"}, "–"), row.b);
+  row.node = element("li", {class: "pair"}, ends, row.value, row.more);
   return row;
 }
 
-function show_ends(row, pair) {
-  setText(row.a, last_part(pair.a));
-  setText(row.b, last_part(pair.b));
-  setAttribute(row.a, "title", pair.a);
-  setAttribute(row.b, "title", pair.b);
+// What is beside the head of a list of which only the first are shown.
+export function cut_note(shown, all) {
+  return all > shown ? `the first ${shown} of ${all}` : "";
 }
 
 const kOld_s = 0.5;
@@ -36,13 +34,25 @@ export function collisions_in_brief(live) {
   return {text, state: touching ? "lost" : "fresh", title: null};
 }
 
+// How many pairs are within the warning distance: also those that the gateway left out of its list.
+export function warned_count(live) {
+  return live.within_warning_count ?? (live.near ?? []).filter((pair) => warned_of(pair, live.warning_distance_m)).length;
+}
+
 export class Findings {
-  constructor({show_node}) {
+  // `names`: ShortNames.
+  constructor({show_node, names}) {
     const opened = (event) => {
-      const end = event.target.closest?.(".end");
-      if (end) show_node(end.title);
+      const pressed = event.target.closest?.(".end");
+      if (pressed) show_node(pressed.title);
     };
     for (const id of ["touching-list", "near-list"]) byId(id).addEventListener("click", opened);
+    const show_ends = (row, pair) => {
+      for (const side of ["a", "b"]) {
+        setText(row[side], names.of(pair[side]));
+        setAttribute(row[side], "title", pair[side]);
+      }
+    };
     this.touching_ = new KeyedRows(byId("touching-list"), pair_row, (row, pair) => {
       show_ends(row, pair);
       setText(row.value, `${length(pair.depth_m)} deep`);
@@ -53,7 +63,7 @@ export class Findings {
       setText(row.more, Number.isFinite(pair.time_to_contact_s) ? `contact in ${age(pair.time_to_contact_s)}` : "");
       row.node.classList.toggle("warning", warned_of(pair, this.warning_m_));
     });
-    this.ranges_ = new KeyedRows(byId("range-list"), range_row, update_range);
+    this.ranges_ = new KeyedRows(byId("range-list"), range_row, (row, range) => update_range(row, range, names));
     this.forces_ = new KeyedRows(byId("force-list"), force_row, update_force);
   }
 
@@ -61,7 +71,7 @@ export class Findings {
     const touching = live.touching ?? [];
     const near = live.near ?? [];
     this.warning_m_ = live.warning_distance_m;
-    this.tell_counts_(live.touching_count ?? touching.length, near.length, live);
+    this.tell_counts_(live.touching_count ?? touching.length, live.near_count ?? near.length, live);
     if (!visible) return;
     this.touching_.show(touching.slice(0, kMostRows), pair_key);
     this.near_.show(near.slice(0, kMostRows), pair_key);
@@ -74,7 +84,12 @@ export class Findings {
     byId("range-part").hidden = (live.ranges ?? []).length === 0;
     byId("force-part").hidden = (live.forces ?? []).length === 0;
     const warning = Number.isFinite(this.warning_m_) ? `nearest first; warning below ${length(this.warning_m_)}` : "nearest first";
-    setText(byId("near-note"), near.length > kMostRows ? `${warning}; the first ${kMostRows} of ${live.near_count ?? near.length}` : warning);
+    const shown = (list) => Math.min(kMostRows, list?.length ?? 0);
+    const near_cut = cut_note(shown(near), live.near_count ?? near.length);
+    setText(byId("near-note"), near_cut ? `${warning}; ${near_cut}` : warning);
+    setText(byId("touching-note"), cut_note(shown(touching), live.touching_count ?? touching.length));
+    setText(byId("range-note"), cut_note(shown(live.ranges), live.ranges?.length ?? 0));
+    setText(byId("force-note"), cut_note(shown(live.forces), live.forces?.length ?? 0));
   }
 
   tell_counts_(touching, near, live) {
@@ -83,7 +98,7 @@ export class Findings {
     setText(badge, brief.text);
     setAttribute(badge, "data-state", brief.state);
     setAttribute(badge, "title", brief.title);
-    const warned = (live.near ?? []).filter((pair) => warned_of(pair, live.warning_distance_m)).length;
+    const warned = warned_count(live);
     const near_badge = byId("near-badge");
     setText(near_badge, `${warned} near`);
     near_badge.hidden = warned === 0;
@@ -98,10 +113,23 @@ function range_row(range) {
   return row;
 }
 
-function update_range(row, range) {
+// What a reading is worth, and what it hit; `warns` where something nearer may be there, or is.
+export function range_in_words(range, names) {
   const known = Number.isFinite(range.distance_m);
-  setText(row.value, known ? length(range.distance_m) : "no echo");
-  setText(row.object, known && range.object ? last_part(range.object) : "");
+  const words = [known && range.object ? names.of(range.object) : ""];
+  if (range.doubtful) words.push("doubtful, may be nearer");
+  if (known && range.in_blind_zone) words.push("in the blind zone: a real sensor could not tell");
+  return {value: known ? length(range.distance_m) : "no echo", more: words.filter(Boolean).join("; "),
+    warns: Boolean(range.doubtful || (known && range.in_blind_zone))};
+}
+
+function update_range(row, range, names) {
+  const known = Number.isFinite(range.distance_m);
+  const {value, more, warns} = range_in_words(range, names);
+  setText(row.value, value);
+  setText(row.object, more);
+  setAttribute(row.object, "title", range.object || null);
+  row.node.classList.toggle("warning", warns);
   const place = known ? place_in_range(range.distance_m, 0, range.range_m) : 0;
   row.mark.style.setProperty("transform", `translateX(${((place ?? 0) * 100 - 100).toFixed(1)}%)`);
 }

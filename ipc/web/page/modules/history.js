@@ -1,7 +1,8 @@
 // Series over time for the strip charts. All series share the times; a series that had no value then has NaN.
 
 export class History {
-  // At most `capacity` samples, `most_series` series; a series unseen for a whole capacity is dropped.
+  // At most `capacity` samples, `most_series` series; a series unseen for a whole capacity is dropped. What finds no
+  // place is in left_out().
   constructor(capacity = 1300, most_series = 1200) {
     this.capacity_ = capacity;
     this.most_series_ = most_series;
@@ -15,13 +16,14 @@ export class History {
     this.end_ = 0;
     this.added_ = 0;
     this.series_ = new Map();
+    this.left_out_ = new Set();
   }
 
   get length() {
     return this.end_ - this.begin_;
   }
 
-  // `put(key, value)` may be called inside `fill`.
+  // `put(key, value, spare)` may be called inside `fill`; `spare`: places that a new series leaves to others.
   add(time, fill) {
     if (this.end_ === this.times_.length) this.compact_();
     const at = this.end_++;
@@ -29,13 +31,18 @@ export class History {
     ++this.added_;
     this.times_[at] = time;
     for (const series of this.series_.values()) series.values[at] = NaN;
-    fill((key, value) => this.put_(key, value, at));
+    this.left_out_.clear();
+    fill((key, value, spare = 0) => this.put_(key, value, at, spare));
   }
 
-  put_(key, value, at) {
+  put_(key, value, at, spare) {
     let series = this.series_.get(key);
     if (!series) {
-      if (this.series_.size >= this.most_series_ && !this.drop_oldest_()) return;
+      if (value === null || value === undefined || Number.isNaN(value)) return;  // a curve begins with its first value
+      if (this.series_.size >= this.most_series_ - spare && !this.drop_oldest_()) {
+        this.left_out_.add(key);
+        return;
+      }
       series = {values: new Float32Array(this.times_.length).fill(NaN), seen: 0};
       this.series_.set(key, series);
     }
@@ -60,19 +67,30 @@ export class History {
     this.begin_ = 0;
   }
 
-  // [times, values...] of the last `seconds`, plain arrays with null where there is nothing; `scale` for each key.
-  window(keys, seconds, scales = []) {
-    const newest = this.length ? this.times_[this.end_ - 1] : 0;
-    const first = this.first_after_(newest - seconds);
-    const columns = [Array.from(this.times_.subarray(first, this.end_))];
-    keys.forEach((key, i) => columns.push(this.column_(key, first, scales[i] ?? 1)));
+  // Keys of the newest sample that there was no place for.
+  left_out() {
+    return [...this.left_out_];
+  }
+
+  newest_time() {
+    return this.length ? this.times_[this.end_ - 1] : 0;
+  }
+
+  // [times, values...] of the `seconds` up to `until`, plain arrays with null where there is nothing; `scale` for each
+  // key.
+  window(keys, seconds, scales = [], until = this.newest_time()) {
+    const first = this.first_after_(until - seconds);
+    let end = this.first_after_(until);
+    if (end < this.end_ && this.times_[end] === until) ++end;
+    const columns = [Array.from(this.times_.subarray(first, end))];
+    keys.forEach((key, i) => columns.push(this.column_(key, first, end, scales[i] ?? 1)));
     return columns;
   }
 
-  column_(key, first, scale) {
+  column_(key, first, end, scale) {
     const values = this.series_.get(key)?.values;
-    const column = new Array(this.end_ - first);
-    for (let i = first; i < this.end_; ++i) {
+    const column = new Array(end - first);
+    for (let i = first; i < end; ++i) {
       const value = values ? values[i] : NaN;
       column[i - first] = value === value ? value * scale : null;  // NaN is not itself
     }

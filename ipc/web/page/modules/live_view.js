@@ -20,6 +20,31 @@ export function picture_size(width, height, density, most_pixels = kMostPixels) 
   return wanted.map((edge) => Math.max(64, 2 * Math.floor((edge * scale) / 2)));
 }
 
+// Whether the text that is drawn into pictures can be read there: it has a size in the picture's pixels.
+export function text_is_readable(picture_width, area_width) {
+  return picture_width <= 1.25 * area_width;
+}
+
+// Pictures are decoded in no particular order. begin(): a connection counts from the beginning; is_newer(): the one to be
+// drawn, as of the same begin().
+export class PictureOrder {
+  constructor() {
+    this.connection = 0;
+    this.begin();
+  }
+
+  begin() {
+    ++this.connection;
+    this.drawn_ = 0;
+  }
+
+  is_newer(sequence) {
+    if (sequence <= this.drawn_) return false;
+    this.drawn_ = sequence;
+    return true;
+  }
+}
+
 export function wish_of(choice, [width, height]) {
   const wish = {do: "picture", width, height, rate_hz: kRate_hz, quality: 80};
   if (choice.kind === "view") wish.view = choice.id;
@@ -55,13 +80,17 @@ export class LiveView {
     this.before_ = this.choice_;
     this.display_ = null;
     this.shown_ = null;   // {sequence, age_s, at}
+    this.order_ = new PictureOrder();
     this.asked_at_ = 0;
     this.sent_ = "";
     this.size_ = [640, 480];
     watch_gestures(this.canvas_, this.hand_());
     new ResizeObserver(() => this.resized_()).observe(this.area_);
     document.addEventListener("visibilitychange", () => this.ask_());
-    connection.on("opened", () => this.ask_(true));
+    connection.on("opened", () => {
+      this.order_.begin();
+      this.ask_(true);
+    });
     connection.on("picture", (data) => this.draw_(data));
     connection.on("refused", (message) => !/token/.test(message.text) && this.refused_(message));
     connection.on("closed", () => {
@@ -122,6 +151,7 @@ export class LiveView {
   resized_() {
     const [width, height] = [this.area_.clientWidth, this.area_.clientHeight];
     if (width < 2 || height < 2) return;
+    this.width_ = width;
     this.size_ = picture_size(width, height, window.devicePixelRatio || 1);
     this.ask_soon_();
   }
@@ -150,23 +180,30 @@ export class LiveView {
     const picture = decode_picture(data);
     if (!picture) return;
     const at = performance.now();
+    const connection = this.order_.connection;
+    let bitmap = null;
     try {
-      const bitmap = await createImageBitmap(new Blob([picture.jpeg], {type: "image/jpeg"}));
-      performance.mark("cellmirror.picture");
-      if (this.canvas_.width !== bitmap.width || this.canvas_.height !== bitmap.height) {
-        this.canvas_.width = bitmap.width;
-        this.canvas_.height = bitmap.height;
-      }
-      this.pen_.drawImage(bitmap, 0, 0);
-      bitmap.close();
-      performance.clearMarks("cellmirror.picture");
-      this.shown_ = {sequence: picture.sequence, age_s: picture.age_s, at};
-      this.problem_ = null;
-      setAttribute(this.canvas_, "data-sequence", picture.sequence);
+      bitmap = await createImageBitmap(new Blob([picture.jpeg], {type: "image/jpeg"}));
     } catch {
       this.problem_ = "a picture came that cannot be read";
     }
+    if (connection !== this.order_.connection) return;  // the gateway of now never sent it
+    if (bitmap && this.order_.is_newer(picture.sequence)) this.show_(picture, bitmap, at);
+    bitmap?.close();
     this.connection_.send({do: "shown", sequence: picture.sequence});
+  }
+
+  show_(picture, bitmap, at) {
+    performance.mark("cellmirror.picture");
+    if (this.canvas_.width !== bitmap.width || this.canvas_.height !== bitmap.height) {
+      this.canvas_.width = bitmap.width;
+      this.canvas_.height = bitmap.height;
+    }
+    this.pen_.drawImage(bitmap, 0, 0);
+    performance.clearMarks("cellmirror.picture");
+    this.shown_ = {sequence: picture.sequence, age_s: picture.age_s, at, width: bitmap.width};
+    this.problem_ = null;
+    setAttribute(this.canvas_, "data-sequence", picture.sequence);
   }
 
   refused_(message) {
@@ -188,7 +225,9 @@ export class LiveView {
     setText(note, text);
     note.hidden = text === "";
     this.area_.classList.toggle("stale", text !== "" && this.shown_ !== null);
-    const stamp = this.shown_ && text === "" ? `picture ${age(this.shown_.age_s)}` : "";
+    const current = this.shown_ !== null && text === "";
+    this.area_.classList.toggle("speaks", current && text_is_readable(this.shown_.width, this.width_ ?? this.shown_.width));
+    const stamp = current ? `picture ${age(this.shown_.age_s + since)}` : "";
     setText(byId("view-age"), stamp);
   }
 }

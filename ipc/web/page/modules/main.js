@@ -12,6 +12,7 @@ import {PickedLabel} from "./picked_label.js";
 import {Presence} from "./presence.js";
 import {Programs} from "./programs.js";
 import {Robots} from "./robots.js";
+import {ShortNames} from "./short_names.js";
 import {System} from "./system.js";
 import {Tabs} from "./tabs.js";
 import {watch_theme} from "./theme.js";
@@ -29,24 +30,29 @@ live_address.protocol = live_address.protocol === "https:" ? "wss:" : "ws:";
 live_address.hash = "";
 const connection = new Connection(live_address.href, kept_token);
 
-const presence = new Presence(connection);
+const presence = new Presence(connection, {quiet: (whether) => charts.tell_quiet(whether)});
 const script = new Console(connection, {
   may_command: () => presence.may_command, why_not: () => presence.why_not()});
 const command = (text) => script.run(text);
 
-const tabs = new Tabs(byId("side-tabs"), {opened: (id) => id === "tab-messages" && setText(byId("message-count"), "")});
+const tabs = new Tabs(byId("side-tabs"), {opened: (id) => id === "tab-messages" && messages.read()});
 const show_node = (path) => {
   tabs.open("tab-tree");
   tree.show(path);
 };
 const tree = new Tree({command});
-const charts = new Charts();
+const names = new ShortNames();
+const charts = new Charts({names});
 const robots = new Robots({select: (id) => charts.select(id), command});
-const findings = new Findings({show_node});
+const findings = new Findings({show_node, names});
 const programs = new Programs({command});
 const system = new System();
 const messages = new Messages({
-  unread: (n) => tabs.current !== "tab-messages" && setText(byId("message-count"), String(n))});
+  unread: (n) => {
+    if (n > 0 && tabs.current === "tab-messages") messages.read();
+    else setText(byId("message-count"), n ? String(n) : "");
+  }});
+connection.on("welcome", ({run}) => messages.of_run(run));
 const picked = new PickedLabel({show_robot: (id) => robots.highlight(id), show_node});
 const view = new LiveView(connection, {
   changed: (choice) => {

@@ -9,16 +9,30 @@ const kMostKept = 100;
 export class Messages {
   constructor({unread}) {
     this.unread_ = unread;
-    this.last_ = null;
-    this.rung_ = 0;
+    this.last_ = 0;
+    this.run_ = null;
+    this.uptime_s_ = 0;
+    this.unread_count_ = 0;
     this.until_ = 0;
+  }
+
+  // Which run of the gateway the next messages are of: another one counts from the beginning.
+  of_run(run) {
+    if (run !== undefined && run !== this.run_) this.last_ = 0;
+    this.run_ = run ?? this.run_;
+  }
+
+  read() {
+    this.unread_count_ = 0;
+    this.unread_(0);
   }
 
   update(live) {
     const messages = live.messages ?? [];
     const highest = messages.reduce((most, message) => Math.max(most, message.number), 0);
-    // A gateway that was started anew counts from the beginning.
-    if (this.last_ === null || highest < this.last_) this.last_ = messages.length ? highest - messages.length : 0;
+    // Also where a gateway does not say which run it is.
+    if (live.uptime_s < this.uptime_s_ || highest < this.last_) this.last_ = 0;
+    this.uptime_s_ = live.uptime_s ?? 0;
     const fresh = messages.filter((message) => message.number > this.last_);
     if (highest > this.last_) this.last_ = highest;
     for (const message of fresh) this.take_(message);
@@ -40,6 +54,6 @@ export class Messages {
     list.prepend(element("li", {}, element("time", {}, clock_time(when)), element("span", {}, message.text)));
     while (list.children.length > kMostKept) list.lastElementChild.remove();
     byId("no-messages").hidden = true;
-    this.unread_(list.children.length);
+    this.unread_(++this.unread_count_);
   }
 }

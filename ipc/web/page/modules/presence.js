@@ -4,10 +4,14 @@ import {age, clock_time} from "./format.js";
 import {keep_token} from "./token.js";
 
 const kQuiet_s = 2;
+const kLastKnown_s = 3;  // after so long nothing but the picture may look as if it were of now
 
 export class Presence {
-  constructor(connection) {
+  // `quiet(whether)`: all but the picture is what was last known, or no longer.
+  constructor(connection, {quiet = () => {}} = {}) {
     this.connection_ = connection;
+    this.tell_quiet_ = quiet;
+    this.quiet_ = false;
     this.may_command = false;
     this.read_only = false;
     this.token_shown_ = false;
@@ -32,6 +36,8 @@ export class Presence {
 
   live(live) {
     this.heard_ = performance.now();
+    this.heard_at_ = new Date();
+    if (this.quiet_) this.tell_line_();
     setText(byId("cell-name"), live.cell ?? "");
     document.title = live.cell ? `${live.cell} – cellmirror` : "cellmirror";
   }
@@ -89,7 +95,7 @@ export class Presence {
     this.retry_at_ = performance.now() + retry_s * 1000;
     this.may_command = false;
     if (!document.documentElement.classList.contains("gateway-gone")) {
-      setText(byId("gone-since"), this.heard_ === null ? "" : `What the page shows is as of ${clock_time()}.`);
+      setText(byId("gone-since"), this.heard_ === null ? "" : `What the page shows is as of ${clock_time(this.heard_at_)}.`);
     }
     document.documentElement.classList.add("gateway-gone");
     byId("gone").hidden = false;
@@ -105,12 +111,21 @@ export class Presence {
   }
 
   tell_line_() {
+    // Pictures are no news: they come from another part of the gateway, which may go on alone.
     const silent = this.heard_ === null ? null : (performance.now() - this.heard_) / 1000;
+    this.be_quiet_(silent !== null && (!this.connection_.open || silent > kLastKnown_s));
     let [text, state] = ["live", "fresh"];
     if (!this.connection_.open) [text, state] = [this.heard_ === null ? "connecting" : "gateway gone", "lost"];
     else if (silent === null) [text, state] = ["connecting", "none"];
     else if (silent > kQuiet_s) [text, state] = [`no news for ${age(silent)}`, "stale"];
     setText(byId("line-text"), text);
     setAttribute(byId("line-badge"), "data-state", state);
+  }
+
+  be_quiet_(quiet) {
+    if (quiet === this.quiet_) return;
+    this.quiet_ = quiet;
+    document.documentElement.classList.toggle("last-known", quiet);
+    this.tell_quiet_(quiet);
   }
 }

@@ -3,7 +3,8 @@ import {element, setText} from "./dom.js";
 import {number} from "./format.js";
 
 // Okabe and Ito's palette, told apart by colour-blind people; more series repeat it with dashes.
-const kColours = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7", "#8a8f00", "#7f7f7f"];
+// Orange, light blue and purple are darker than theirs: every curve stands out from white and from dark by 3 to 1.
+export const kColours = ["#0072b2", "#b87f00", "#009e73", "#d55e00", "#3a93c9", "#bd6496", "#8a8f00", "#7f7f7f"];
 
 export function colour(i) {
   return kColours[i % kColours.length];
@@ -28,11 +29,12 @@ export class StripChart {
     this.digits_ = digits;
     this.title_ = element("span", {class: "title"}, title);
     this.unit_ = element("span", {class: "unit"});
+    this.until_ = element("span", {class: "unit"});
     this.plot_area_ = element("div", {class: "plot", hidden: true});
     this.legend_ = element("div", {class: "legend"});
     this.empty_ = element("p", {class: "empty"}, "nothing to show");
     this.node = element("figure", {class: "chart", role: "img", "aria-label": title},
-      element("figcaption", {}, this.title_, this.unit_), this.plot_area_, this.empty_, this.legend_);
+      element("figcaption", {}, this.title_, this.unit_, this.until_), this.plot_area_, this.empty_, this.legend_);
     parent.append(this.node);
     this.name_ = title;
     this.labels_ = null;
@@ -40,10 +42,13 @@ export class StripChart {
     new ResizeObserver(() => this.resize_()).observe(this.plot_area_);
   }
 
-  // labels, units: one for each value column of `columns`; times in s. `span`: of the axis. A second unit has the scale
-  // on the right.
-  show(labels, units, columns, span) {
-    const key = `${labels.join("\n")}\n${units.join("\n")}`;
+  // labels, titles, units: one for each value column of `columns`; times in s. A second unit has the scale on the right.
+  // The axis ends `until`, and begins `span` before; `end`: "now", or the time of day.
+  show({labels, titles, units}, columns, {span, until, end}) {
+    const key = `${labels.join("\n")}\n${titles.join("\n")}\n${units.join("\n")}`;
+    const renamed = this.end_ !== end;
+    this.end_ = end;
+    setText(this.until_, end === "now" ? "" : `until ${end}`);
     const kinds = [...new Set(units)];
     setText(this.unit_, kinds.length > 1 ? `${kinds[0]}; right: ${kinds[1]}` : kinds[0] ?? "");
     this.empty_.hidden = labels.length > 0;
@@ -52,13 +57,13 @@ export class StripChart {
     if (labels.length === 0) return;
     if (key !== this.labels_) {
       this.labels_ = key;
-      this.make_(labels, units.map((unit) => (unit === kinds[0] ? "left" : "right")), columns);
+      this.make_({labels, titles}, units.map((unit) => (unit === kinds[0] ? "left" : "right")), columns);
     }
-    const newest = columns[0].length ? columns[0][columns[0].length - 1] : 0;
     this.plot_.batch(() => {
       this.plot_.setData(columns, false);
-      this.plot_.setScale("x", {min: newest - span, max: newest});
+      this.plot_.setScale("x", {min: until - span, max: until});
     });
+    if (renamed) this.plot_.redraw(false, true);  // the same times would keep their names
     this.tell_values_(columns);
   }
 
@@ -66,7 +71,7 @@ export class StripChart {
     this.labels_ = null;
   }
 
-  make_(labels, sides, columns) {
+  make_({labels, titles}, sides, columns) {
     this.plot_?.destroy();
     const text = resolved("--text-soft");
     const grid = {stroke: resolved("--line-soft"), width: 1};
@@ -74,7 +79,7 @@ export class StripChart {
     const axis = {stroke: text, grid, ticks: {show: false}, font: "11px system-ui, sans-serif", labelSize: 0};
     const relative = (plot, splits) => splits.map((time) => {
       const back = Math.round(plot.scales.x.max - time);
-      return back === 0 ? "now" : `\u2212${back} s`;
+      return back === 0 ? (this.end_ === "now" ? "now" : "0 s") : `\u2212${back} s`;
     });
     this.plot_ = new window.uPlot({
       width: Math.max(120, this.plot_area_.clientWidth),
@@ -95,7 +100,7 @@ export class StripChart {
     this.legend_.replaceChildren(...labels.map((label, i) => {
       const swatch = element("i", {class: i < kColours.length ? "swatch" : "swatch dashed"});
       swatch.style.color = colour(i);
-      return element("span", {class: "entry", title: label}, swatch, element("span", {class: "label"}, label), this.values_[i]);
+      return element("span", {class: "entry", title: titles[i]}, swatch, element("span", {class: "label"}, label), this.values_[i]);
     }));
   }
 
@@ -107,9 +112,11 @@ export class StripChart {
       return text;
     });
     const now = Date.now();
-    if (now - (this.told_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
+    if (this.end_ === this.told_end_ && now - (this.told_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
     this.told_ = now;
-    this.node.setAttribute("aria-label", `${this.name_}: ${texts.slice(0, 8).join(", ")}`);
+    this.told_end_ = this.end_;
+    const until = this.end_ === "now" ? "" : `, until ${this.end_}`;
+    this.node.setAttribute("aria-label", `${this.name_}${until}: ${texts.slice(0, 8).join(", ")}`);
   }
 
   resize_() {

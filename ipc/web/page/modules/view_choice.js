@@ -36,11 +36,30 @@ export class ViewChoice {
       if (this.select_.value !== "free") choose(choice_of(this.select_.value));
     });
     byId("view-home").addEventListener("click", () => choose({kind: "display"}));
-    byId("display-choice").addEventListener("change", (event) => command(`STDP ${event.target.value}`));
+    this.display_choice_ = byId("display-choice");
+    this.display_choice_.addEventListener("change", () => this.choose_display_());
     byId("view-full").addEventListener("click", () =>
       command(`STDP ${this.display_?.display ?? 1} ${this.display_?.full_screen ? "FULL_OFF" : "FULL"}`));
     byId("view-keep").addEventListener("click", () => this.keep_());
     this.chosen(current());
+  }
+
+  // While the gateway has not answered, what was chosen stands there; where it refuses, what is so.
+  async choose_display_() {
+    const chosen = this.display_choice_.value;
+    this.display_asked_ = chosen;
+    const done = await this.command_(`STDP ${chosen}`);
+    if (this.display_asked_ !== chosen) return;  // another one was chosen meanwhile
+    this.display_asked_ = null;
+    if (done) this.display_known_ = chosen;
+    else this.display_choice_.value = this.display_known_ ?? "1";
+  }
+
+  // Written only when it changes: a list that is open would be disturbed.
+  show_display_(display) {
+    if ((this.display_asked_ ?? null) !== null || display === this.display_known_) return;
+    this.display_known_ = display;
+    this.display_choice_.value = display;
   }
 
   // The free view becomes view N of the gateway, for everybody.
@@ -67,9 +86,8 @@ export class ViewChoice {
       this.select_.value = value_of(this.current_());
     }
     if (!this.display_) return;
-    const select = byId("display-choice");
-    this.show_displays_(select, this.display_.displays ?? []);
-    if (document.activeElement !== select) select.value = String(this.display_.display ?? 1);
+    this.show_displays_(this.display_choice_, this.display_.displays ?? []);
+    this.show_display_(String(this.display_.display ?? 1));
     setAttribute(byId("view-full"), "aria-pressed", String(this.display_.full_screen === true));
     this.show_views_(this.display_.views ?? []);
     this.show_modes_(this.display_.modes ?? {});

@@ -3,6 +3,7 @@
 const kSteepest = (89 * Math.PI) / 180;
 const kNearest_m = 0.05;
 const kFarthest_m = 500;
+const kVertical = 1e-6;  // of the gateway: below, up in the picture is the world's y axis
 
 export const kHomeView = Object.freeze(
   {viewpoint_m: [6, -9, 6], lookpoint_m: [4, 0, 0.5], twist_rad: 0, opening_angle_rad: 0.7});
@@ -29,11 +30,17 @@ export function sound_view(view) {
   };
 }
 
+// From straight above or below no direction is to be seen: the one in which the picture does not turn when it tilts.
+function azimuth_of(offset, reach) {
+  if (Math.hypot(offset[0], offset[1]) >= kVertical * reach) return Math.atan2(offset[1], offset[0]);
+  return offset[2] > 0 ? -Math.PI / 2 : Math.PI / 2;
+}
+
 // Turns the viewpoint about the lookpoint: `turn` about the world's z axis, `rise` upwards, both in rad.
 export function orbit(view, turn, rise) {
   const offset = minus(view.viewpoint_m, view.lookpoint_m);
   const reach = Math.hypot(...offset);
-  const azimuth = Math.atan2(offset[1], offset[0]) + turn;
+  const azimuth = azimuth_of(offset, reach) + turn;
   const elevation = Math.max(-kSteepest, Math.min(kSteepest, Math.asin(offset[2] / reach) + rise));
   const flat = reach * Math.cos(elevation);
   const turned = [flat * Math.cos(azimuth), flat * Math.sin(azimuth), reach * Math.sin(elevation)];
@@ -45,7 +52,7 @@ export function picture_axes(view) {
   const forward = times(minus(view.lookpoint_m, view.viewpoint_m), 1 / distance(view));
   let right = cross(forward, [0, 0, 1]);
   const size = Math.hypot(...right);
-  right = size < 1e-9 ? [1, 0, 0] : times(right, 1 / size);
+  right = size < kVertical ? [forward[2] < 0 ? 1 : -1, 0, 0] : times(right, 1 / size);
   const up = cross(right, forward);
   const c = Math.cos(view.twist_rad);
   const s = Math.sin(view.twist_rad);
