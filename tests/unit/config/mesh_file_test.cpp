@@ -87,6 +87,12 @@ TEST(MeshFile, reads_the_buffer_beside_a_gltf_and_no_other_file) {
   for (const std::string uri : {"missing.bin", "../t.bin", "/etc/hostname", "buffers"}) {
     EXPECT_FALSE(read(uri)) << uri;
   }
+  const auto missing = read("missing.bin");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().text(),
+            "the mesh t.gltf is refused: its buffer missing.bin is not there; put it beside the mesh");
+  // One that nothing uses need not be there.
+  EXPECT_TRUE(read("buffers/t.bin\",\"byteLength\":72},{\"uri\":\"missing.bin"));
 }
 
 TEST(MeshFile, scales_and_mirrors) {
