@@ -24,12 +24,15 @@ Direction towards(const Vector3d& u, const Vector3d& c) { return {u, u.dot(c)}; 
 
 // The direction in the cone that is nearest to v, of any length. Any where v is zero or points backward.
 Vector3d nearest_direction(const ConeShape& cone, const Vector3d& v) {
-  const double length = v.norm();
-  if (length > 0.0 && v.z() >= cone.cosine * length) return v / length;
-  const double across = std::hypot(v.x(), v.y());
+  // Made about 1 long before it is squared: squares and products of numbers that are nearly too small have lost their
+  // digits.
+  const double size = v.cwiseAbs().maxCoeff();
+  const Vector3d u = size > 0.0 ? Vector3d((v / size).normalized()) : v;
+  if (size > 0.0 && u.z() >= cone.cosine) return u;
+  const double across = v.head<2>().cwiseAbs().maxCoeff();
   if (!(across > 0.0)) return {cone.sine, 0.0, cone.cosine};
-  // Divided first: a product of numbers that are nearly too small has lost its digits.
-  return {cone.sine * (v.x() / across), cone.sine * (v.y() / across), cone.cosine};
+  const Eigen::Vector2d side = (v.head<2>() / across).normalized();
+  return {cone.sine * side.x(), cone.sine * side.y(), cone.cosine};
 }
 
 // Points on the beams with u . c == along: a circle of directions about c, of which as few are tried as show whether

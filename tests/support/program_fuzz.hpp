@@ -2,6 +2,7 @@
 // just where nothing is wrong, findings lie in the text, and what was read is executed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdlib>
@@ -61,10 +62,11 @@ inline std::shared_ptr<const Program> read_fuzzed(const Language& language, std:
   const ParseContext context = {.file = "fuzz", .codes = std::string(codes)};
   const std::shared_ptr<const Program> program = language.parse(text, context, findings);
   require((program != nullptr) == findings.ok());
+  const std::size_t longest = std::max(text.size(), codes.size());  // a finding is in either
   for (const Diagnostic& finding : findings.all()) {
     require(!finding.message.empty());
-    require(finding.place.line >= 0 && static_cast<std::size_t>(finding.place.line) <= text.size() + 1);
-    require(finding.place.column >= 0 && static_cast<std::size_t>(finding.place.column) <= text.size() + 2);
+    require(finding.place.line >= 0 && static_cast<std::size_t>(finding.place.line) <= longest + 1);
+    require(finding.place.column >= 0 && static_cast<std::size_t>(finding.place.column) <= longest + 2);
   }
   if (program == nullptr) return nullptr;
   require(program->places.size() == program->statements.size());
