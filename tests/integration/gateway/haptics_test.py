@@ -116,6 +116,7 @@ class Moving(Trainer):
 
     def test_what_it_touches_pushes_back(self):
         self.assertLess(h.norm(self.device.force()["force_device"]), 0.3)
+        appeared = self.haptic()["contact_model"]["appeared"]
         force = self.touch()
         self.assertTrue(force, self.haptic())
         self.assertLess(h.dot(force["force_device"], INTO), -0.5)
@@ -129,7 +130,7 @@ class Moving(Trainer):
         self.assertEqual(self.scratch.status()["collisions"]["touching_count"], 0)  # the tip stays outside
         self.device.go((0, 0, 0))
         self.assertTrue(g.eventually(lambda: h.norm(self.device.force()["force_device"]) < 0.05, 5))
-        self.assertEqual(self.haptic()["contact_model"]["appeared"], 0)  # what stands still is always felt
+        self.assertEqual(self.haptic()["contact_model"]["appeared"], appeared)  # what stands still is always felt
 
     def largest_force(self, duration):
         end = time.monotonic() + duration
@@ -140,7 +141,7 @@ class Moving(Trainer):
 
     def test_a_body_that_is_put_onto_the_tip_does_not_push(self):
         self.done("SET_FRAME Phantom PLACEMENT 0 0 0 " + " ".join(f"{-1000 * DEEP * x:.1f}" for x in INTO))
-        self.assertEqual(self.largest_force(1.0), 0.0)
+        self.assertLess(self.largest_force(1.0), 0.2)  # the planes of a bent surface differ by some 10 um
         state = self.haptic()
         self.assertGreaterEqual(state["contact_model"]["appeared"], 1)
         self.assertIn(state["phase"], ("engaging", "active"))
@@ -153,7 +154,7 @@ class Moving(Trainer):
         self.done("ROBOT LAP_LEFT offline")
         self.device.go([DEEP * x for x in INTO])
         self.done("ROBOT LAP_LEFT online")
-        self.assertEqual(self.largest_force(1.0), 0.0)
+        self.assertLess(self.largest_force(1.0), 0.2)
         self.assertNotEqual(self.haptic()["phase"], "waiting")
         self.assertTrue(g.eventually(lambda: self.haptic()["force"]["contacts"] >= 1, 5), self.haptic())
         self.device.go((0, 0, 0))
