@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -46,7 +47,7 @@ bool moves_a_robot(std::string_view command) {
 
 class Sender {
  public:
-  enum class Outcome { done, refused, not_answered };
+  enum class Outcome : std::uint8_t { done, refused, not_answered };
 
   Sender(const SendOptions& options, const InstanceInfo& instance) : options_(options), instance_(instance) {}
 
