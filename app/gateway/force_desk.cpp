@@ -70,7 +70,7 @@ void ForceDesk::follow() {
   if (last_message_.known() && now - last_message_ < kMessageEvery) return;
   times_told_ = report.times_beyond;
   last_message_ = now;
-  warn(report.newest);
+  warn(report.beyond);
 }
 
 void ForceDesk::warn(const TcpForce& force) {

@@ -308,7 +308,10 @@ void HapticDesk::follow_cell(Device& device) {
     return;
   }
   if (same_instrument(**instrument, *device.instrument)) return;
-  log_info("haptic.instrument", "{} has changed: its haptic device engages anew", device.config.robot);
+  const Timestamp now = clock_.now();
+  if (!device.exchanged.known() || now - device.exchanged > kSameChange)
+    log_info("haptic.instrument", "{} has changed: its haptic device engages anew", device.config.robot);
+  device.exchanged = now;
   if (auto opened = send_open(device, std::move(*instrument)); !opened)
     log_error("haptic.loop", "{}", opened.error().text());
 }

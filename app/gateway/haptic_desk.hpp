@@ -76,6 +76,7 @@ class HapticDesk {
 
  private:
   static constexpr Nanoseconds kFollowEvery{10'000'000};
+  static constexpr Nanoseconds kSameChange{1'000'000'000};  // a base that moves changes the instrument in every look
 
   struct Device {
     RobotHaptic config;
@@ -87,6 +88,7 @@ class HapticDesk {
     std::shared_ptr<const haptics::Instrument> instrument;
     std::shared_ptr<HapticStream> stream;
     std::uint64_t revision = 0;  // of the cell for which `instrument` is right
+    Timestamp exchanged;         // when the instrument was last found to have changed
     SegmentUsers users;
     ProcessWatch process;
     std::uint64_t samples_seen = 0;

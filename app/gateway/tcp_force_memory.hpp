@@ -14,7 +14,8 @@ namespace cellmirror::app {
 
 struct TcpForceReport {
   TcpForce newest;
-  std::uint64_t times_beyond = 0;  // that a limit of SET_TORQUE_LIMIT was passed
+  TcpForce beyond;                 // the newest beyond a limit of SET_TORQUE_LIMIT; sequence 0: none was
+  std::uint64_t times_beyond = 0;  // that such a limit was passed
 };
 
 class TcpForceMemory {
@@ -29,7 +30,9 @@ class TcpForceMemory {
     write_tcp_force(segment_->memory(), force);
     const std::scoped_lock lock(mutex_);
     const bool was_beyond = (report_.newest.flags & kTcpForceBeyondLimit) != 0;
-    if (!was_beyond && (force.flags & kTcpForceBeyondLimit) != 0) ++report_.times_beyond;
+    const bool is_beyond = (force.flags & kTcpForceBeyondLimit) != 0;
+    if (!was_beyond && is_beyond) ++report_.times_beyond;
+    if (is_beyond) report_.beyond = force;
     report_.newest = force;
   }
 

@@ -1,10 +1,12 @@
 // Haptic devices and the force at the TCP, as other programs and people see them.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
+#include "app/gateway/force_desk.hpp"
 #include "app/gateway/haptic_words.hpp"
 #include "app/gateway/status_haptics.hpp"
 #include "app/gateway/tcp_force_worker.hpp"
@@ -81,6 +83,27 @@ TEST_F(Haptics, TestValuesTakeThePlaceOfTheTruth) {
   const TcpForce sut = tcp_force_of(picture, tick);
   EXPECT_EQ(sut.values, (std::array<float, 4>{9, 0, 0, -1}));
   EXPECT_EQ(sut.flags, kTcpForceValid | kTcpForceTest | kTcpForceBeyondLimit);
+}
+
+TEST(TorqueLimit, MessageTellsTheForceThatWasBeyondItAndNotALaterOne) {
+  ManualClock clock;
+  std::string told;
+  ForceDesk sut({.key = 0x43510000 + static_cast<std::int32_t>(getpid() & 0xFFFF),
+                 .instance = "force-desk-test",
+                 .clock = clock,
+                 .show_message = [&](std::string_view text) { told = text; }});
+  const auto set = sut.set_limits({5, 0});
+  ASSERT_TRUE(set) << set.error().text();
+  TcpForce force;
+  force.robot.assign("LAP");
+  force.values = {0, 0, 7.25F, 0};
+  force.flags = kTcpForceValid | kTcpForceBeyondLimit;
+  sut.memory()->write(force);
+  force.values = {0, 0, 1.5F, 0};
+  force.flags = kTcpForceValid;
+  sut.memory()->write(force);
+  sut.follow();
+  EXPECT_NE(told.find("7.25 N"), std::string::npos) << told;
 }
 
 TEST_F(Haptics, StatusTellsPhaseAgeAndForce) {
