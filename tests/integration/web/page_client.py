@@ -34,7 +34,12 @@ class Page:
         return json.loads(body)
 
     def command(self, text, token=None):
-        status, _, body = self.ask("/api/command", "POST", text, {"Authorization": f"Bearer {token or self.token}"})
+        """Waits for its turn where too many commands came."""
+        for _ in range(100):
+            status, _, body = self.ask("/api/command", "POST", text, {"Authorization": f"Bearer {token or self.token}"})
+            if status != 429:
+                break
+            time.sleep(0.05)
         return status, body.decode()
 
 
