@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import {left_out_in_words, record} from "./modules/charts.js";
 import * as format from "./modules/format.js";
 import {History} from "./modules/history.js";
-import {picture_size, PictureOrder, start_of_free_view, text_is_readable, wish_of} from "./modules/live_view.js";
+import {picture_size, PictureOrder, stamp_of, start_of_free_view, text_is_readable, wish_of} from "./modules/live_view.js";
 import {decode_picture} from "./modules/picture_format.js";
 import {state_text, time_text} from "./modules/programs.js";
 import {place_in_range, state_of} from "./modules/robots.js";
@@ -120,6 +120,10 @@ test("an older picture is not drawn over a newer one", () => {
   sut.begin();
   assert.notEqual(sut.connection, before);
   assert.equal(sut.is_newer(1), true, "each connection counts from the beginning");
+});
+
+test("a picture grows older while no other one comes", () => {
+  assert.deepEqual([0, 1.5].map((since_s) => stamp_of({age_s: 0.05}, since_s)), ["picture 50 ms", "picture 1.6 s"]);
 });
 
 test("text in a picture is readable where its pixels are not much smaller than the page's", () => {

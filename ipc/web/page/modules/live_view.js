@@ -20,6 +20,11 @@ export function picture_size(width, height, density, most_pixels = kMostPixels) 
   return wanted.map((edge) => Math.max(64, 2 * Math.floor((edge * scale) / 2)));
 }
 
+// How old the posture is that is seen now, `since_s` after the picture came.
+export function stamp_of(shown, since_s) {
+  return `picture ${age(shown.age_s + since_s)}`;
+}
+
 // Whether the text that is drawn into pictures can be read there: it has a size in the picture's pixels.
 export function text_is_readable(picture_width, area_width) {
   return picture_width <= 1.25 * area_width;
@@ -227,7 +232,7 @@ export class LiveView {
     this.area_.classList.toggle("stale", text !== "" && this.shown_ !== null);
     const current = this.shown_ !== null && text === "";
     this.area_.classList.toggle("speaks", current && text_is_readable(this.shown_.width, this.width_ ?? this.shown_.width));
-    const stamp = current ? `picture ${age(this.shown_.age_s + since)}` : "";
+    const stamp = current ? stamp_of(this.shown_, since) : "";
     setText(byId("view-age"), stamp);
   }
 }
