@@ -31,6 +31,7 @@
 #include "ipc/control/control_server.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
@@ -392,10 +393,10 @@ std::string Gateway::greeting() const {
   const Parts& parts = *parts_;
   const std::string address = parts.page->report().address;
   const std::string page = address.empty() ? std::string() : fmt::format("; monitor page {}", address);
-  return fmt::format(
-      "cell {} with {} robots runs at {:.0f} Hz ({}); instance {}, SCRIPT messages on key {}{}; Ctrl-C ends it",
-      parts.cell_name, parts.board.look()->robots.size(), parts.loop_settings.rate_hz,
-      parts.loop->scheduling().scheduler, parts.instance->info().name, parts.queues.script_key, page);
+  return fmt::format("cell {} with {} runs at {:.0f} Hz ({}); instance {}, SCRIPT messages on key {}{}; Ctrl-C ends it",
+                     parts.cell_name, number_of(parts.board.look()->robots.size(), "robot"),
+                     parts.loop_settings.rate_hz, parts.loop->scheduling().scheduler, parts.instance->info().name,
+                     parts.queues.script_key, page);
 }
 
 }  // namespace cellmirror::app

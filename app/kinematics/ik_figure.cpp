@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/kinematics/ik_report.hpp"
+#include "rt_core/base/counted.hpp"
 
 namespace cellmirror::app {
 
@@ -78,10 +79,10 @@ plot::Figure figure(const IkReport& report) {
   const IkStatistics& s = report.statistics;
   plot::Figure out;
   out.title = fmt::format("Inverse kinematics of {}: {} → {}", report.robot.name, report.robot.base, report.robot.tip);
-  out.subtitle =
-      fmt::format("method {}, class {}, {} targets, {} solved ({:.6g} %), tolerance {:g}, time limit {:g} ms",
-                  name_of(report.settings.method), report.class_name, s.samples, s.solved, 100.0 * s.rate,
-                  report.settings.tolerance, 1e-3 * static_cast<double>(report.settings.time_limit.count()));
+  out.subtitle = fmt::format("method {}, class {}, {}, {} solved ({:.6g} %), tolerance {:g}, time limit {:g} ms",
+                             name_of(report.settings.method), report.class_name, number_of(s.samples, "target"),
+                             s.solved, 100.0 * s.rate, report.settings.tolerance,
+                             1e-3 * static_cast<double>(report.settings.time_limit.count()));
   out.panels = {
       times_panel(report), share_panel(report),
       error_panel(report, "Error of the position", "position error [m]", "m", &IkOutcome::position_error_m),

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "rt_core/base/counted.hpp"
+
 namespace cellmirror::app {
 
 namespace {
@@ -132,9 +134,9 @@ void print_json(const IkReport& report, std::FILE* out) {
 std::string table(const IkReport& report) {
   const IkStatistics& s = report.statistics;
   std::string out = fmt::format(
-      "{}: {} -> {}, {} joints, class {}\nmethod {}, tolerance {:g}, time limit {:g} ms; set up in {:.1f} ms\n\n",
-      report.robot.name, report.robot.base, report.robot.tip, report.robot.chain.variable_count(), report.class_name,
-      name_of(report.settings.method), report.settings.tolerance,
+      "{}: {} -> {}, {}, class {}\nmethod {}, tolerance {:g}, time limit {:g} ms; set up in {:.1f} ms\n\n",
+      report.robot.name, report.robot.base, report.robot.tip, number_of(report.robot.chain.variable_count(), "joint"),
+      report.class_name, name_of(report.settings.method), report.settings.tolerance,
       1e-3 * static_cast<double>(report.settings.time_limit.count()), report.run.setup_ms);
   if (s.samples <= kListed) {
     out += fmt::format("{:>6} {:<8} {:<12} {:>10} {:>12} {:>12}  joints [rad, m]\n", "target", "solved", "by",

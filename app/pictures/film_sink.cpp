@@ -18,6 +18,7 @@
 #include "app/pictures/picture_file.hpp"
 #include "ipc/runtime/descriptor.hpp"
 #include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/counted.hpp"
 
 namespace cellmirror::app {
 
@@ -44,7 +45,7 @@ class FrameFiles final : public FilmSink {
     std::error_code error;
     for (std::uint64_t behind = frames_ + 1; fs::remove(frame(behind), error); ++behind) {
     }
-    return fmt::format("{} frames in {}", frames_, folder_.string());
+    return fmt::format("{} in {}", number_of(frames_, "frame"), folder_.string());
   }
 
  private:
@@ -61,7 +62,7 @@ class JpegsInOneFile final : public FilmSink {
     ++frames_;
     return write_all(file_.get(), jpeg, name_);
   }
-  Result<std::string> finish() override { return fmt::format("{} frames in {}", frames_, name_); }
+  Result<std::string> finish() override { return fmt::format("{} in {}", number_of(frames_, "frame"), name_); }
 
  private:
   Descriptor file_;
@@ -86,7 +87,7 @@ class Ffmpeg final : public FilmSink {
   }
   Result<std::string> finish() override {
     if (wait() != 0) return refusal();
-    return fmt::format("{} frames in {}", frames_, name_);
+    return fmt::format("{} in {}", number_of(frames_, "frame"), name_);
   }
 
  private:

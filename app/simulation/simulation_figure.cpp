@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/simulation/simulation_report.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -71,12 +72,13 @@ plot::Panel distance_panel(const SimulationResult& result, const plot::Axis& tim
 plot::Figure simulation_figure(const SimulationResult& result) {
   plot::Figure out;
   out.title = fmt::format("{}: {}", printable(result.cell), printable(result.script));
-  out.subtitle = fmt::format("{:.3f} s simulated, {}; {} programs, {} moves", result.simulated_s, end_word(result.end),
-                             result.programs.size(), result.moves.size());
+  out.subtitle = fmt::format("{:.3f} s simulated, {}; {}, {}", result.simulated_s, end_word(result.end),
+                             number_of(result.programs.size(), "program"), number_of(result.moves.size(), "move"));
   if (result.collision.tested)
-    out.subtitle += fmt::format("; {} collisions, tested every {:g} ms",
-                                result.collision.collisions.size() + result.collision.more_collisions,
-                                1e3 * result.collision.period_s);
+    out.subtitle +=
+        fmt::format("; {}, tested every {:g} ms",
+                    number_of(result.collision.collisions.size() + result.collision.more_collisions, "collision"),
+                    1e3 * result.collision.period_s);
   out.columns = 1;
   out.panel_width = 1400;
   out.panel_height = 400;

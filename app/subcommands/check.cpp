@@ -17,6 +17,7 @@
 #include "config/command_line/command_line.hpp"
 #include "config/layout_file.hpp"
 #include "config/view_file.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/lang/reader.hpp"
 #include "scripts/programs/languages/languages.hpp"
@@ -139,7 +140,8 @@ int check(const CheckOptions& options) {
   } else {
     std::fputs(diagnostics.text().c_str(), stderr);
     if (diagnostics.ok())
-      std::printf("%zu files, no errors, %zu warnings\n", options.files.size(), diagnostics.warnings());
+      std::printf("%s, no errors, %s\n", number_of(options.files.size(), "file").c_str(),
+                  number_of(diagnostics.warnings(), "warning").c_str());
   }
   return diagnostics.ok() ? kExitDone : kExitRefused;
 }

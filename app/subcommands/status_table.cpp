@@ -13,6 +13,7 @@
 #include "app/subcommands/status_table_programs.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 #include "app/subcommands/status_table_switches.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -56,9 +57,10 @@ class TableWriter {
     const json& page = status.at("page");
     if (!page.at("on").get<bool>()) return;
     if (page.at("address").is_null()) return line("{}", page.at("problem").get<std::string>());
-    line("page      {}  {} clients, {} pictures sent, {} refused{}", page.at("address").get<std::string>(),
-         page.at("clients").get<std::uint64_t>(), page.at("pictures").get<std::uint64_t>(),
-         page.at("refused").get<std::uint64_t>(), page.at("read_only").get<bool>() ? ", read-only" : "");
+    line("page      {}  {}, {} sent, {} refused{}", page.at("address").get<std::string>(),
+         number_of(page.at("clients").get<std::uint64_t>(), "client"),
+         number_of(page.at("pictures").get<std::uint64_t>(), "picture"), page.at("refused").get<std::uint64_t>(),
+         page.at("read_only").get<bool>() ? ", read-only" : "");
   }
 
   [[nodiscard]] std::string state(const std::string& word) const {
@@ -137,9 +139,9 @@ class TableWriter {
   void write_script(const json& status) {
     const json& script = status.at("script");
     line("");
-    line("SCRIPT  {} received, {} done, {} refused, {} files running, language {}",
+    line("SCRIPT  {} received, {} done, {} refused, {} running, language {}",
          script.at("received").get<std::uint64_t>(), script.at("done").get<std::uint64_t>(),
-         script.at("refused").get<std::uint64_t>(), script.at("running").get<std::uint64_t>(),
+         script.at("refused").get<std::uint64_t>(), number_of(script.at("running").get<std::uint64_t>(), "file"),
          script.at("language").get<std::string>());
     const json& errors = script.at("last_errors");
     const std::size_t first = errors.size() > kCommandErrorsShown ? errors.size() - kCommandErrorsShown : 0;

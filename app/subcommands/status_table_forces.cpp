@@ -1,6 +1,7 @@
 #include "app/subcommands/status_table_forces.hpp"
 
 #include "app/subcommands/status_words.hpp"
+#include "rt_core/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -50,8 +51,8 @@ std::string forces_table(const json& status) {
   const json& median = forces.at("compute_us").at("p50");
   const std::string cost = median.is_number() ? fmt::format("{:.1f}", median.get<double>()) : std::string("-");
   std::string out =
-      fmt::format("\nforces  {:.0f} Hz, computed in p50 {} us; limits passed {} times\n",
-                  forces.at("rate_hz").get<double>(), cost, forces.at("limit_warnings").get<std::uint64_t>());
+      fmt::format("\nforces  {:.0f} Hz, computed in p50 {} us; limits passed {}\n", forces.at("rate_hz").get<double>(),
+                  cost, number_of(forces.at("limit_warnings").get<std::uint64_t>(), "time"));
   for (const json& robot : forces.at("robots")) out += robot_lines(robot);
   for (const json& robot : forces.at("not_computed"))
     out += fmt::format("  {} not computed: {}\n", text(robot.at("id")), text(robot.at("why")));

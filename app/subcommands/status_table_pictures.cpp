@@ -1,6 +1,7 @@
 #include "app/subcommands/status_table_pictures.hpp"
 
 #include "app/subcommands/status_words.hpp"
+#include "rt_core/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -21,11 +22,11 @@ std::string pictures_table(const json& status) {
   };
   std::string out = "\npictures  ";
   if (pictures.at("renderer").is_string()) {
-    out += fmt::format(
-        "{}: {} streams, {} drawn ({} on demand, {} in haste), {} unchanged; drawn in {}, encoded in {}, age {}\n",
-        pictures.at("renderer").get<std::string>(), count(pictures.at("streams")), count(pictures.at("drawn")),
-        count(pictures.at("on_demand")), count(pictures.at("in_haste")), count(pictures.at("unchanged")),
-        pair("draw_ms"), pair("encode_ms"), pair("posture_age_ms"));
+    out +=
+        fmt::format("{}: {}, {} drawn ({} on demand, {} in haste), {} unchanged; drawn in {}, encoded in {}, age {}\n",
+                    pictures.at("renderer").get<std::string>(), number_of(count(pictures.at("streams")), "stream"),
+                    count(pictures.at("drawn")), count(pictures.at("on_demand")), count(pictures.at("in_haste")),
+                    count(pictures.at("unchanged")), pair("draw_ms"), pair("encode_ms"), pair("posture_age_ms"));
   } else {
     out += "none\n";
   }

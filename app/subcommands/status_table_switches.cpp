@@ -1,6 +1,7 @@
 #include "app/subcommands/status_table_switches.hpp"
 
 #include "app/subcommands/status_words.hpp"
+#include "rt_core/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -44,11 +45,12 @@ std::string switches_table(const json& status) {
   const json& switches = status.at("foot_switches");
   if (!switches.at("key").is_number()) return {};
   const bool online = switches.at("online").get<bool>();
-  std::string out =
-      fmt::format("\nfoot switches  {}, key {}, {} inputs, {} attached", online ? "online" : "offline",
-                  count(switches.at("key")), count(switches.at("inputs")), count(switches.at("attached")));
+  std::string out = fmt::format("\nfoot switches  {}, key {}, {}, {} attached", online ? "online" : "offline",
+                                count(switches.at("key")), number_of(count(switches.at("inputs")), "input"),
+                                count(switches.at("attached")));
   if (online) out += fmt::format("; on: {}", inputs_text(switches.at("inputs_on")));
-  out += fmt::format("; {} changes, {} bounces", count(switches.at("edges")), count(switches.at("bounces")));
+  out += fmt::format("; {}, {}", number_of(count(switches.at("edges")), "change"),
+                     number_of(count(switches.at("bounces")), "bounce"));
   if (count(switches.at("edges_dropped")) > 0) out += fmt::format(", {} dropped", count(switches.at("edges_dropped")));
   out += "\n" + script_line(switches);
   for (const json& file : switches.at("missing_files"))

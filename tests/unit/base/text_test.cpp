@@ -5,8 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "rt_core/base/counted.hpp"
+
 namespace cellmirror {
 namespace {
+
+TEST(NumberOf, OneThingIsOne) {
+  EXPECT_EQ(number_of(0, "file"), "0 files");
+  EXPECT_EQ(number_of(1, "file"), "1 file");
+  EXPECT_EQ(number_of(2, "file"), "2 files");
+  EXPECT_EQ(number_of(1, "body", "bodies"), "1 body");
+  EXPECT_EQ(number_of(12, "body", "bodies"), "12 bodies");
+}
 
 TEST(ParseNumber, TakesDecimalAndExponentFormOnly) {
   EXPECT_DOUBLE_EQ(*parse_number("1.507E-03"), 1.507e-3);
