@@ -51,11 +51,15 @@ bool CellReader::read(std::string_view text) {
   description = top.text("description").value_or("");
   root.file = file_;
   root.description = description;
+  root.name = name;
   root.geometry = read_geometry(top, files_);
   NodeReader nodes(root, files_, true);
   for (TableReader& node : top.tables("node", kMaxNodes)) nodes.read(node);
   nodes.finish(findings);
   for (const ComponentNode& node : root.nodes) {
+    if (!root.geometry.empty() && node.parent < 0 && node.name == root.name)
+      findings.error(root.place(node), fmt::format("the node {} has the name of the cell", node.name),
+                     "rename one of them: the cell's own geometry is told by that name");
     if (node.joint)
       findings.error(root.place(node), fmt::format("the joint {} stands in a cell file", node.name),
                      "joints belong to component files with a [robot]");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -15,8 +17,8 @@ constexpr std::size_t kMostRules = 10'000;  // of a kind
 // A rule fits nothing that is no node: without this a slip of the pen would leave a pair tested, or untested.
 void complete_path(const Cell& cell, const Place& place, std::string& path, Diagnostics& diagnostics) {
   if (path.empty()) return;  // everything
-  if (const auto node = cell.find(path)) {
-    path = cell.path(*node);
+  if (auto found = cell.find_branch(path)) {
+    path = std::move(*found);
     return;
   }
   for (std::size_t dot = path.rfind('.'); dot != std::string::npos && dot > 0; dot = path.rfind('.', dot - 1)) {

@@ -15,16 +15,18 @@ constexpr std::uint64_t kContactPeriod = 16;  // postures from one refreshed con
 constexpr Nanoseconds kAhead{10'000'000};     // for closing speeds: short beside the time in which a robot brakes
 
 void log_event(const ProximityEvent& event) {
+  const std::string& a = event.short_a;
+  const std::string& b = event.short_b;
   switch (event.change) {
     case ProximityChange::entered_warning:
-      return log_info("collision.near", "{} and {} are within the warning distance: {:.1f} mm", event.a, event.b,
+      return log_info("collision.near", "{} and {} are within the warning distance: {:.1f} mm", a, b,
                       event.distance_m * 1e3);
     case ProximityChange::touched:
-      return log_warning("collision.touch", "{} touches {}", event.a, event.b);
+      return log_warning("collision.touch", "{} touches {}", a, b);
     case ProximityChange::parted:
-      return log_info("collision.parted", "{} has parted from {}", event.a, event.b);
+      return log_info("collision.parted", "{} has parted from {}", a, b);
     case ProximityChange::left_warning:
-      return log_info("collision.left", "{} and {} have left the warning distance", event.a, event.b);
+      return log_info("collision.left", "{} and {} have left the warning distance", a, b);
   }
 }
 
@@ -60,6 +62,7 @@ void CollisionWorker::show_nothing(const OwnerPicture& picture) {
   nothing->posture_time = last->posture_time;
   nothing->finished = last->finished;
   nothing->names = last->names;
+  nothing->short_names = last->short_names;
   nothing->warning_distance_m = picture.collision->warning_distance_m;
   board_.hang_up(std::move(nothing));
 }

@@ -19,6 +19,7 @@ PathKind path_kind(NameKind kind) {
     case NameKind::sensor:
       return PathKind::sensor;
     case NameKind::frame_node:
+    case NameKind::branch:
     case NameKind::robot:
       return PathKind::any;
   }
@@ -28,7 +29,8 @@ PathKind path_kind(NameKind kind) {
 }  // namespace
 
 bool CellNames::knows(NameKind kind, std::string_view name) const {
-  return kind == NameKind::robot ? cell_.robot(name) != nullptr : cell_.knows(name, path_kind(kind));
+  if (kind == NameKind::robot) return cell_.robot(name) != nullptr;
+  return kind == NameKind::branch ? cell_.find_branch(name).has_value() : cell_.knows(name, path_kind(kind));
 }
 
 Error CellNames::explain(NameKind kind, std::string_view name) const {

@@ -11,10 +11,7 @@ namespace cellmirror::app {
 namespace {
 
 // The rule's path as the cell knows it now; as it was written where it names nothing (any more).
-std::string full_path(const Cell& cell, const std::string& path) {
-  const auto node = cell.find(path);
-  return node ? cell.path(*node) : path;
-}
+std::string full_path(const Cell& cell, const std::string& path) { return cell.find_branch(path).value_or(path); }
 
 bool concerns(const Cell& cell, const collision::PairRule& rule, const std::string& a, const std::string& b) {
   const std::string rule_a = full_path(cell, rule.a);
@@ -53,21 +50,20 @@ Result<void> CellSensing::set_collision_warning(double distance_m) {
 }
 
 Result<void> CellSensing::set_collision_pair(std::string_view a, std::string_view b, PairTreatment treatment) {
-  const auto node_a = cell_.find(a);
-  if (!node_a) return std::unexpected(node_a.error());
-  const auto node_b = cell_.find(b);
-  if (!node_b) return std::unexpected(node_b.error());
-  const std::string path_a = cell_.path(*node_a);
-  const std::string path_b = cell_.path(*node_b);
+  const auto path_a = cell_.find_branch(a);
+  if (!path_a) return std::unexpected(path_a.error());
+  const auto path_b = cell_.find_branch(b);
+  if (!path_b) return std::unexpected(path_b.error());
   auto changed = std::make_shared<collision::Settings>(*collision_);
-  std::erase_if(changed->rules, [&](const collision::PairRule& rule) { return concerns(cell_, rule, path_a, path_b); });
+  std::erase_if(changed->rules,
+                [&](const collision::PairRule& rule) { return concerns(cell_, rule, *path_a, *path_b); });
   if (treatment != PairTreatment::derive) {
     if (changed->rules.size() >= kMostRules)
       return fail(fmt::format("there are {} rules for pairs already", kMostRules), "take some back with `derive`");
     using Kind = collision::PairRule::Kind;
     // The last rule that fits a pair counts, so the newest stands last.
     changed->rules.push_back(
-        {path_a, path_b, treatment == PairTreatment::test ? Kind::test : Kind::ignore, "SET_COLLPAR"});
+        {*path_a, *path_b, treatment == PairTreatment::test ? Kind::test : Kind::ignore, "SET_COLLPAR"});
   }
   collision_ = std::move(changed);
   return {};

@@ -37,6 +37,10 @@ const std::string& name(const ProximityState& state, std::uint32_t body) {
   return state.names && body < state.names->size() ? (*state.names)[body] : unknown;
 }
 
+const std::string& short_name(const ProximityState& state, std::uint32_t body) {
+  return state.names && body < state.names->size() ? state.short_name(body) : name(state, body);
+}
+
 json touching_json(const ProximityState& state, const TouchingPair& pair, Timestamp now) {
   json points = json::array();
   for (const TouchingPoint& point : pair.points) {
@@ -45,6 +49,8 @@ json touching_json(const ProximityState& state, const TouchingPair& pair, Timest
   }
   return {{"a", name(state, pair.a)},
           {"b", name(state, pair.b)},
+          {"a_short", short_name(state, pair.a)},
+          {"b_short", short_name(state, pair.b)},
           {"depth_m", pair.depth_m},
           {"point_m", vector_json(pair.point_m)},
           {"normal", vector_json(pair.normal)},
@@ -56,6 +62,8 @@ json touching_json(const ProximityState& state, const TouchingPair& pair, Timest
 json near_json(const ProximityState& state, const NearPair& pair) {
   return {{"a", name(state, pair.a)},
           {"b", name(state, pair.b)},
+          {"a_short", short_name(state, pair.a)},
+          {"b_short", short_name(state, pair.b)},
           {"distance_m", pair.distance_m},
           {"point_a_m", vector_json(pair.point_a_m)},
           {"point_b_m", vector_json(pair.point_b_m)},
@@ -103,6 +111,8 @@ json events_json(const std::vector<ProximityEvent>& events, Timestamp now) {
                    {"change", word(event.change)},
                    {"a", event.a},
                    {"b", event.b},
+                   {"a_short", event.short_a.empty() ? event.a : event.short_a},
+                   {"b_short", event.short_b.empty() ? event.b : event.short_b},
                    {"distance_m", event.distance_m},
                    {"age_s", seconds(now - event.posture_time)}});
   }

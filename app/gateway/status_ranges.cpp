@@ -30,6 +30,7 @@ json sensor_json(const CompiledSensor& sensor, const std::string& path, const Ra
               {"distance_m", nullptr},
               {"point_m", nullptr},
               {"object", nullptr},
+              {"object_short", nullptr},
               {"in_blind_zone", false},
               {"doubtful", false},
               {"age_s", nullptr}};
@@ -40,6 +41,7 @@ json sensor_json(const CompiledSensor& sensor, const std::string& path, const Ra
   out["distance_m"] = *reading->distance_m;
   out["point_m"] = {reading->point_m.x(), reading->point_m.y(), reading->point_m.z()};
   out["object"] = reading->object;
+  out["object_short"] = reading->short_object.empty() ? reading->object : reading->short_object;
   out["in_blind_zone"] = reading->in_blind_zone;
   return out;
 }

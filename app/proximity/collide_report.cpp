@@ -8,6 +8,7 @@
 #include "app/proximity/for_people.hpp"
 #include "app/proximity/json_writer.hpp"
 #include "app/subcommands/put.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -88,11 +89,11 @@ void CollideJson::end(const CollideTotals& totals) {
 }
 
 CollideText::CollideText(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)
-    : heading_(heading), names_(short_names(*pairs.names)), out_(out) {
+    : heading_(heading), names_(for_people(*pairs.short_names)), out_(out) {
   const std::size_t tested = tested_pairs(pairs);
-  put(out_, "{}: {} bodies, {} triangles; {} pairs tested, {} left out (--pairs says why), {} rigid\n",
-      printable(heading.cell), pairs.bodies.size(), pairs.triangles, tested, pairs.pairs.size() - tested,
-      pairs.rigid_pairs);
+  put(out_, "{}: {}, {}; {} tested, {} left out (--pairs says why), {} rigid\n", printable(heading.cell),
+      number_of(pairs.bodies.size(), "body", "bodies"), number_of(pairs.triangles, "triangle"),
+      number_of(tested, "pair"), pairs.pairs.size() - tested, pairs.rigid_pairs);
   for (const std::string& doubt : pairs.doubts) put(out_, "in doubt: {}\n", printable(doubt, kMostDoubt));
 }
 
@@ -173,7 +174,7 @@ void CollideText::touching_summary(const CollideTotals& totals) {
 plot::Figure figure(const CollideHeading& heading, const CollideTotals& totals) {
   plot::Figure out;
   out.title = "Distances in " + printable(heading.cell);
-  out.subtitle = fmt::format("{} frames, {} with collisions; warning distance {:g} m", totals.frames,
+  out.subtitle = fmt::format("{}, {} with collisions; warning distance {:g} m", number_of(totals.frames, "frame"),
                              totals.frames_touching, heading.warning_distance_m);
   out.columns = 1;
   out.panel_width = 1400;

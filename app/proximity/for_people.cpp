@@ -3,28 +3,23 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "rt_core/base/text.hpp"
+#include "rt_core/cell/short_names.hpp"
 
 namespace cellmirror::app {
 
-std::vector<std::string> short_names(const std::vector<std::string>& paths) {
+std::vector<std::string> for_people(std::vector<std::string> names) {
   constexpr std::size_t kMost = 200;  // characters
-  const auto ends_of = [](const std::string& path) {
-    const std::size_t first = path.find('.');
-    const std::size_t last = path.rfind('.');
-    return first == last ? path : path.substr(0, first) + path.substr(last);
-  };
-  std::map<std::string, int> uses;
-  for (const std::string& path : paths) ++uses[ends_of(path)];
-  std::vector<std::string> names;
-  names.reserve(paths.size());
-  for (const std::string& path : paths) {
-    const std::string ends = ends_of(path);
-    names.push_back(printable(uses[ends] == 1 ? ends : path, kMost));
-  }
+  for (std::string& name : names) name = printable(name, kMost);
   return names;
+}
+
+std::vector<std::string> short_names(const std::vector<std::string>& paths) {
+  const std::set<std::string> different(paths.begin(), paths.end());
+  const std::vector<std::string> all(different.begin(), different.end());
+  return for_people(cellmirror::short_names(paths, all));
 }
 
 std::string point_text(const Eigen::Vector3d& p) {

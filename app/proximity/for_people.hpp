@@ -7,8 +7,11 @@
 
 namespace cellmirror::app {
 
-// One for each of `paths`: its first and last part where no other path has the same two ("Mantec_1.J_4" for
-// "Mantec_1.J_1.J_2.J_3.J_4"), else the whole path; made printable. Commands take such names as well.
+// Printable, and of a length that a line has room for.
+[[nodiscard]] std::vector<std::string> for_people(std::vector<std::string> names);
+
+// One for each of `paths`, which may repeat: as rt_core/cell/short_names.hpp has them, where these are all that is
+// known of the cell; printable.
 [[nodiscard]] std::vector<std::string> short_names(const std::vector<std::string>& paths);
 
 // "1.250 0.000 0.400": to the millimetre, without the sign of a zero.

@@ -9,6 +9,7 @@
 #include "app/proximity/for_people.hpp"
 #include "app/proximity/json_writer.hpp"
 #include "app/subcommands/put.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -51,8 +52,9 @@ std::string_view word_of(PairState state) {
 }
 
 void print_pairs(const std::string& cell, const PairTable& pairs, std::FILE* out) {
-  const std::vector<std::string> names = short_names(*pairs.names);
-  put(out, "{}: {} bodies, {} triangles\n\n", printable(cell), pairs.bodies.size(), pairs.triangles);
+  const std::vector<std::string> names = for_people(*pairs.short_names);
+  put(out, "{}: {}, {}\n\n", printable(cell), number_of(pairs.bodies.size(), "body", "bodies"),
+      number_of(pairs.triangles, "triangle"));
   for (const StateText& text : kStates) {
     if (const std::size_t number = count(pairs, text.state); number > 0)
       put(out, "{:>7}  {:<12} {}\n", number, text.word, text.meaning);

@@ -7,6 +7,7 @@
 #include "app/proximity/for_people.hpp"
 #include "app/proximity/json_writer.hpp"
 #include "app/subcommands/put.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -31,7 +32,7 @@ std::string reading_text(const RangeReading& reading) {
   const char* doubt = reading.doubtful ? ", in doubt" : "";
   if (!reading.distance_m) return fmt::format("  {:<12} nothing up to {:g} m{}\n", id, reading.range_m, doubt);
   return fmt::format("  {:<12} {:.4f} m  {} at {}{}{}\n", id, *reading.distance_m,
-                     printable(reading.object, kMostNames), point_text(reading.point_m),
+                     printable(reading.short_object, kMostNames), point_text(reading.point_m),
                      reading.in_blind_zone ? ", in the blind zone" : "", doubt);
 }
 
@@ -102,7 +103,7 @@ plot::Figure figure(const RangeHeading& heading, const CompiledCell& cell, const
   constexpr std::size_t kMostLines = 16;  // what an eye can tell apart
   plot::Figure out;
   out.title = "Range sensors of " + printable(heading.cell);
-  out.subtitle = fmt::format("{} frames, {} sensors{}", totals.frames, totals.sensors.size(),
+  out.subtitle = fmt::format("{}, {}{}", number_of(totals.frames, "frame"), number_of(totals.sensors.size(), "sensor"),
                              totals.sensors.size() > kMostLines ? fmt::format(", the first {} drawn", kMostLines) : "");
   out.columns = 1;
   out.panel_width = 1400;

@@ -19,7 +19,7 @@ void add_up(SensorTotals& totals, const RangeReading& reading, std::uint64_t fra
   if (totals.seen == 0 || distance < totals.smallest_m) {
     totals.smallest_m = distance;
     totals.smallest_frame = frame;
-    totals.smallest_object = reading.object;
+    totals.smallest_object = reading.short_object;
   }
   totals.largest_m = totals.seen == 0 ? distance : std::max(totals.largest_m, distance);
   ++totals.seen;

@@ -26,7 +26,7 @@ struct SensorTotals {
   double smallest_m = 0;
   double largest_m = 0;
   std::uint64_t smallest_frame = 0;
-  std::string smallest_object;
+  std::string smallest_object;  // its short name
   Envelope distances;
 };
 

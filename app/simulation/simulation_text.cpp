@@ -8,6 +8,7 @@
 
 #include "app/proximity/for_people.hpp"
 #include "app/simulation/simulation_report.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -51,8 +52,8 @@ std::string programs(const SimulationResult& result) {
   if (result.programs.empty()) return {};
   std::string text = "\nprograms\n";
   for (const SimulatedProgram& run : result.programs) {
-    text += fmt::format("  {:9.3f} .. {:9.3f} s  {:9.3f} s  {} {}: {}, {} moves", run.begin_s, run.end_s,
-                        run.end_s - run.begin_s, run.robot, run.name, run.end, run.moves);
+    text += fmt::format("  {:9.3f} .. {:9.3f} s  {:9.3f} s  {} {}: {}, {}", run.begin_s, run.end_s,
+                        run.end_s - run.begin_s, run.robot, run.name, run.end, number_of(run.moves, "move"));
     if (!run.waits_for.empty()) text += ", waits for " + printable(run.waits_for, kLongestText);
     if (!run.error.empty()) text += ": " + printable(run.error, kLongestText);
     text += '\n';
@@ -74,7 +75,7 @@ std::string robots(const SimulationResult& result) {
   std::string text;
   for (const RobotFindings& robot : result.robots) {
     if (robot.moves == 0 && !robot.moved) continue;
-    text += fmt::format("  {}: {} moves, under way for {:.3f} s\n", robot.id, robot.moves, robot.moving_s);
+    text += fmt::format("  {}: {}, under way for {:.3f} s\n", robot.id, number_of(robot.moves, "move"), robot.moving_s);
   }
   return text.empty() ? text : "\nrobots that moved\n" + text;
 }
@@ -137,14 +138,16 @@ std::string limits(const SimulationResult& result) {
 std::string collisions(const SimulationResult& result) {
   const CollisionSummary& found = result.collision;
   if (!found.tested) return fmt::format("\ncollisions were not tested: {}\n", found.why_not);
-  std::string text = fmt::format(
-      "\ncollisions: {} pairs, tested every {:g} ms of simulated time while anything moved: {} tests, {} touch\n",
-      found.pairs, 1e3 * found.period_s, found.tests, found.collisions.size() + found.more_collisions);
+  std::string text =
+      fmt::format("\ncollisions: {}, tested every {:g} ms of simulated time while anything moved: {}, {} touch\n",
+                  number_of(found.pairs, "pair"), 1e3 * found.period_s, number_of(found.tests, "test"),
+                  found.collisions.size() + found.more_collisions);
   std::vector<std::string> paths;
   for (const SimulatedCollision& c : found.collisions) {
     paths.push_back(c.a);
     paths.push_back(c.b);
   }
+  if (found.smallest_distance_m) paths.insert(paths.end(), {found.nearest_a, found.nearest_b});
   const std::vector<std::string> names = short_names(paths);
   const std::size_t shown = std::min(found.collisions.size(), kListedCollisions);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -155,8 +158,8 @@ std::string collisions(const SimulationResult& result) {
   }
   text += more(found.collisions.size() - shown + found.more_collisions);
   if (found.smallest_distance_m)
-    text += fmt::format("  smallest distance {:.4f} m at {:.3f} s\n", *found.smallest_distance_m,
-                        found.smallest_distance_s);
+    text += fmt::format("  smallest distance {:.4f} m at {:.3f} s: {} - {}\n", *found.smallest_distance_m,
+                        found.smallest_distance_s, names[names.size() - 2], names.back());
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/subcommands/status_words.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -27,9 +28,15 @@ std::string age(const json& age_s) {
 
 const char* doubt(const json& finding) { return finding.at("doubtful").get<bool>() ? " (doubtful)" : ""; }
 
+// The short name; the full path where a gateway of an older version tells no other.
+std::string body(const json& finding, const std::string& key) {
+  const std::string short_key = key + "_short";
+  return text(finding.at(finding.contains(short_key) ? short_key : key));
+}
+
 std::string near_line(const json& pair) {
   std::string line =
-      fmt::format("  {} - {}: {}{}", text(pair.at("a")), text(pair.at("b")), mm(pair.at("distance_m")), doubt(pair));
+      fmt::format("  {} - {}: {}{}", body(pair, "a"), body(pair, "b"), mm(pair.at("distance_m")), doubt(pair));
   if (pair.at("time_to_contact_s").is_number())
     line += fmt::format(", contact in {:.2f} s", pair.at("time_to_contact_s").get<double>());
   return line + "\n";
@@ -40,7 +47,7 @@ std::string findings(const json& collisions) {
   const json& touching = collisions.at("touching");
   for (std::size_t i = 0; i < std::min(touching.size(), kPairsShown); ++i) {
     const json& pair = touching[i];
-    out += fmt::format("  TOUCH {} - {}: {} deep{}\n", text(pair.at("a")), text(pair.at("b")), mm(pair.at("depth_m")),
+    out += fmt::format("  TOUCH {} - {}: {} deep{}\n", body(pair, "a"), body(pair, "b"), mm(pair.at("depth_m")),
                        doubt(pair));
   }
   if (touching.size() > kPairsShown) out += fmt::format("  and {} more that touch\n", touching.size() - kPairsShown);
@@ -58,20 +65,21 @@ std::string findings(const json& collisions) {
   const std::size_t first = events.size() > kEventsShown ? events.size() - kEventsShown : 0;
   for (std::size_t i = first; i < events.size(); ++i) {
     const json& event = events[i];
-    out += fmt::format("  {} ago {}: {} - {}\n", age(event.at("age_s")), text(event.at("change")), text(event.at("a")),
-                       text(event.at("b")));
+    out += fmt::format("  {} ago {}: {} - {}\n", age(event.at("age_s")), text(event.at("change")), body(event, "a"),
+                       body(event, "b"));
   }
   return out;
 }
 
 std::string collision_lines(const json& collisions) {
   const json& ages = collisions.at("age_ms");
-  std::string out = fmt::format(
-      "\ncollisions  {} of {} bodies, {} pairs tested; {:.0f} Hz, age {} (p50 {} p99 {} ms), computed in p50 {} us\n",
-      collisions.at("active").get<bool>() ? "on" : "off", collisions.at("bodies").get<std::uint64_t>(),
-      collisions.at("pairs").at("tested").get<std::uint64_t>(), collisions.at("rate_hz").get<double>(),
-      age(collisions.at("age_s")), milliseconds(ages.at("p50"), 2), milliseconds(ages.at("p99"), 2),
-      milliseconds(collisions.at("compute_us").at("p50"), 2));
+  std::string out =
+      fmt::format("\ncollisions  {} of {}, {} tested; {:.0f} Hz, age {} (p50 {} p99 {} ms), computed in p50 {} us\n",
+                  collisions.at("active").get<bool>() ? "on" : "off",
+                  number_of(collisions.at("bodies").get<std::uint64_t>(), "body", "bodies"),
+                  number_of(collisions.at("pairs").at("tested").get<std::uint64_t>(), "pair"),
+                  collisions.at("rate_hz").get<double>(), age(collisions.at("age_s")), milliseconds(ages.at("p50"), 2),
+                  milliseconds(ages.at("p99"), 2), milliseconds(collisions.at("compute_us").at("p50"), 2));
   const std::string note = text(collisions.at("note"));
   if (!note.empty()) out += fmt::format("  note: {}\n", note);
   return out + findings(collisions);
@@ -84,7 +92,7 @@ std::string range_lines(const json& ranges) {
     if (out.empty()) out = fmt::format("ranges  age {}\n", age(ranges.at("age_s")));
     const bool seen = sensor.at("distance_m").is_number();
     const std::string what =
-        seen ? fmt::format("{} to {}", mm(sensor.at("distance_m")), text(sensor.at("object"))) : "nothing in the cone";
+        seen ? fmt::format("{} to {}", mm(sensor.at("distance_m")), body(sensor, "object")) : "nothing in the cone";
     out += fmt::format("  {}: {}{}{}\n", text(sensor.at("id")), what,
                        sensor.at("in_blind_zone").get<bool>() ? " (in the blind zone)" : "", doubt(sensor));
   }

@@ -18,7 +18,7 @@ PointRecord point_record(const Eigen::Vector3d& point) { return {point.x(), poin
 
 std::string name_of(const ProximityState& state, std::uint32_t body) {
   CELLMIRROR_EXPECTS(state.names != nullptr && body < state.names->size());
-  return (*state.names)[body];
+  return state.short_name(body);
 }
 
 std::uint32_t counted(std::size_t count) {
@@ -155,8 +155,8 @@ EventRecord event_record_of(const ProximityEvent& event) {
   record.event = event.sequence;
   record.change = event.change;
   record.distance = event.distance_m;
-  record.a = event.a;
-  record.b = event.b;
+  record.a = event.short_a.empty() ? event.a : event.short_a;
+  record.b = event.short_b.empty() ? event.b : event.short_b;
   return record;
 }
 

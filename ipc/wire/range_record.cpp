@@ -91,7 +91,7 @@ RangeRecord range_record_of(const RangeReading& reading) {
   RangeRecord record;
   record.header.time_ns = reading.posture_time.ns;
   record.id = reading.id;
-  record.object = reading.object;
+  record.object = reading.short_object.empty() ? reading.object : reading.short_object;
   record.distance = reading.distance_m.value_or(kNaN);
   record.range = reading.range_m;
   record.blind_zone = reading.blind_zone_m;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "ipc/wire/little_endian.hpp"
 #include "ipc/wire/utf8.hpp"
@@ -10,34 +11,36 @@
 namespace cellmirror {
 namespace {
 
-constexpr std::string_view kBeginningCut = "...";
+constexpr std::string_view kMiddleCut = "...";
 
 // A NUL within a text would hide the rest from the reader's own check.
 std::string_view before_nul(std::string_view text) { return text.substr(0, text.find('\0')); }
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
-void put_text(std::span<std::byte> bytes, std::size_t offset, std::size_t room, std::string_view first,
-              std::string_view then) {
+void put_text(std::span<std::byte> bytes, std::size_t offset, std::size_t room,
+              std::initializer_list<std::string_view> parts) {
   const auto field = bytes.subspan(offset, room);
   std::fill(field.begin(), field.end(), std::byte{0});
-  const auto as_byte = [](char c) { return static_cast<std::byte>(c); };
-  const auto next = std::transform(first.begin(), first.end(), field.begin(), as_byte);
-  std::transform(then.begin(), then.end(), next, as_byte);
+  auto next = field.begin();
+  for (const std::string_view part : parts)
+    next = std::transform(part.begin(), part.end(), next, [](char c) { return static_cast<std::byte>(c); });
 }
 
 }  // namespace
 
 void put_name(std::span<std::byte> bytes, std::size_t offset, std::size_t room, std::string_view name) {
-  put_text(bytes, offset, room, cut_utf8(before_nul(name), room - 1), {});
+  put_text(bytes, offset, room, {cut_utf8(before_nul(name), room - 1)});
 }
 
 void put_path(std::span<std::byte> bytes, std::size_t offset, std::size_t room, std::string_view path) {
   path = before_nul(path);
   if (path.size() < room) return put_name(bytes, offset, room, path);
-  std::string_view end = path.substr(path.size() - (room - 1 - kBeginningCut.size()));
+  // A name has 63 bytes at most; what is no path may have more.
+  const std::string_view first = cut_utf8(path.substr(0, path.find('.')), room / 2 - 1);
+  std::string_view end = path.substr(path.size() - (room - 1 - kMiddleCut.size() - first.size()));
   while (!end.empty() && continues_character(end.front())) end.remove_prefix(1);
-  put_text(bytes, offset, room, kBeginningCut, end);
+  put_text(bytes, offset, room, {first, kMiddleCut, end});
 }
 
 Result<std::string> get_text(std::span<const std::byte> bytes, std::size_t offset, std::size_t room) {

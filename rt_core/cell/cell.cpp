@@ -111,6 +111,14 @@ Cell::~Cell() = default;
 bool Cell::knows(std::string_view path, PathKind kind) const { return state_->names.find(path, kind) != kNoNode; }
 Result<NodeId> Cell::find(std::string_view path, PathKind kind) const { return state_->find(path, kind); }
 Error Cell::explain(std::string_view path, PathKind kind) const { return state_->names.explain(path, kind); }
+Result<std::string> Cell::find_branch(std::string_view path) const {
+  const Component& root = *state_->root;
+  if (!root.name.empty() && path == root.name && !root.geometry.empty()) return root.name;
+  const Result<NodeId> node = state_->find(path);
+  if (!node) return std::unexpected(node.error());
+  return this->path(*node);
+}
+
 std::vector<std::string> Cell::paths(PathKind kind) const { return state_->names.paths(kind); }
 std::string Cell::path(NodeId node) const { return state_->names.path(node); }
 const Node& Cell::node(NodeId node) const { return state_->at(node); }

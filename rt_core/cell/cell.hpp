@@ -42,6 +42,9 @@ class Cell {
   // An error names the candidates of an ambiguous path or the nearest names.
   [[nodiscard]] Result<NodeId> find(std::string_view path, PathKind kind = PathKind::any) const;
   [[nodiscard]] Error explain(std::string_view path, PathKind kind = PathKind::any) const;
+  // The full path of a node, for rules about bodies. The name of a cell that has geometry of its own stands for that
+  // geometry alone and wins over shortened paths.
+  [[nodiscard]] Result<std::string> find_branch(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> paths(PathKind kind) const;  // full paths of all nodes in memory
   [[nodiscard]] std::string path(NodeId node) const;
   [[nodiscard]] const Node& node(NodeId node) const;

@@ -61,6 +61,7 @@ class Picture {
  public:
   Picture(const Cell::State& state, const PictureOrder& order) : state_(state), order_(order) {
     cell_->revision = state.revision;
+    if (!state.root->name.empty()) cell_->name = state.root->name;
     cell_->paths = order.paths;
     reserve(order.nodes.size());
     cell_->fixed_count = order_.fixed_count;

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "rt_core/cell/short_names.hpp"
+
 namespace cellmirror::collision {
 
 namespace {
@@ -42,7 +44,7 @@ CollectedBodies collect_bodies(const CompiledCell& cell, geometry::SolidLibrary&
     const auto parts = parts_of(*item.geometry, solids);
     if (parts.empty()) {
       found.doubts.push_back(fmt::format("{}: {} cannot be tested for collision, since its triangles are not there",
-                                         (*cell.paths)[static_cast<std::size_t>(item.node)], name_of(*item.geometry)));
+                                         body_name(cell, item.node), name_of(*item.geometry)));
       continue;
     }
     Body& body = by_node[item.node];

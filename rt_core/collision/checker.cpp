@@ -74,6 +74,7 @@ struct Checker::State {
   }
   [[nodiscard]] std::string pair_text(const Found& found) const;
   [[nodiscard]] const std::string& name(std::uint32_t body) const { return (*table->names)[body]; }
+  [[nodiscard]] const std::string& short_name(std::uint32_t body) const { return (*table->short_names)[body]; }
 };
 
 namespace {
@@ -122,7 +123,7 @@ void Checker::State::doubt(std::string text) {
 
 std::string Checker::State::pair_text(const Found& found) const {
   const auto& pair = search.tracker().pairs()[found.pair];
-  return name(pair.a) + " and " + name(pair.b);
+  return short_name(pair.a) + " and " + short_name(pair.b);
 }
 
 void Checker::State::ask(const Found& found, const geometry::Contact* contact, PairHistory& pair,
@@ -140,8 +141,8 @@ void Checker::State::ask(const Found& found, const geometry::Contact* contact, P
 
 void Checker::State::tell(ProximityChange change, const Found& found) {
   const auto& pair = search.tracker().pairs()[found.pair];
-  findings.events.push_back(
-      {next_event++, change, name(pair.a), name(pair.b), found.at.distance, findings.posture_time});
+  findings.events.push_back({next_event++, change, name(pair.a), name(pair.b), found.at.distance, findings.posture_time,
+                             short_name(pair.a), short_name(pair.b)});
 }
 
 // Events nest: a pair that jumps from far to touching has entered the warning distance as well.
@@ -262,6 +263,7 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
   ++findings.sequence;
   findings.posture_time = posture_time;
   findings.names = state.table->names;
+  findings.short_names = state.table->short_names;
   findings.warning_distance_m = state.settings.warning_distance_m;
   findings.pairs = state.settings.active ? state.history.size() : 0;
   findings.touching.clear();
@@ -274,7 +276,7 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     const auto& bodies = state.search.motion().bodies();
     for (std::size_t i = 0; i < bodies.size() && state.search.motion().unusable() > 0; ++i) {
       if (!bodies[i].usable)
-        state.doubt(state.name(static_cast<std::uint32_t>(i)) + ": its place is not known; taken as touching");
+        state.doubt(state.short_name(static_cast<std::uint32_t>(i)) + ": its place is not known; taken as touching");
     }
     state.disputes_left = kMostDisputes;
     state.choose_stale_contacts(found);

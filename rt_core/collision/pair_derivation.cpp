@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "rt_core/cell/short_names.hpp"
 #include "rt_core/collision/bodies.hpp"
 #include "rt_core/collision/bounds.hpp"
 #include "rt_core/collision/mechanism.hpp"
@@ -180,8 +181,13 @@ std::shared_ptr<const PairTable> PairDerivation::derive(const CompiledCell& cell
   table->doubts = std::move(found.doubts);
   table->triangles = found.triangles;
   auto names = std::make_shared<std::vector<std::string>>();
-  for (const Body& body : table->bodies) names->push_back((*cell.paths)[static_cast<std::size_t>(body.node)]);
+  std::vector<std::int32_t> nodes;
+  for (const Body& body : table->bodies) {
+    names->push_back(body_name(cell, body.node));
+    nodes.push_back(body.node);
+  }
   table->names = std::move(names);
+  table->short_names = std::make_shared<const std::vector<std::string>>(short_body_names(cell, nodes));
   PairJudge judge(cell, settings, *table, *memory_);
   const auto count = static_cast<std::uint32_t>(table->bodies.size());
   for (std::uint32_t a = 0; a < count; ++a) {

@@ -52,6 +52,7 @@ struct PairTable {
   std::uint64_t revision = 0;  // of the cell
   std::vector<Body> bodies;
   BodyNames names;          // by body
+  BodyNames short_names;    // by body, for people and records: no other node of the cell is named so
   std::vector<Pair> pairs;  // every pair of bodies that could move against each other or is left out for a reason
                             // other than `rigid`; rigid pairs are only counted
   std::size_t rigid_pairs = 0;

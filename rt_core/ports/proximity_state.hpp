@@ -15,7 +15,7 @@
 
 namespace cellmirror {
 
-// Bodies are named by dotted path: that of the node whose geometry it is.
+// Bodies are named by dotted path: that of the node whose geometry it is; the cell's own geometry by the cell's name.
 using BodyNames = std::shared_ptr<const std::vector<std::string>>;
 
 struct TouchingPoint {
@@ -56,7 +56,9 @@ struct ProximityEvent {
   std::string a;
   std::string b;
   double distance_m = 0;
-  Timestamp posture_time;  // of the posture in which it was seen
+  Timestamp posture_time;    // of the posture in which it was seen
+  std::string short_a = {};  // for people and records, as ProximityState::short_name(); empty: as `a`
+  std::string short_b = {};
 };
 
 // One computation. Everything in it is for the posture of `posture_time`, but for the contacts of bodies that go on
@@ -66,6 +68,7 @@ struct ProximityState {
   Timestamp finished;      // when the computation ended
   std::uint64_t sequence = 0;
   BodyNames names;
+  BodyNames short_names;  // of the same bodies; null: as `names`
   double warning_distance_m = 0;
   std::size_t pairs = 0;               // that are tested
   std::vector<TouchingPair> touching;  // in the order of a, then b
@@ -75,6 +78,11 @@ struct ProximityState {
 
   // The smallest distance of all tested pairs; null where there is no pair. 0 where bodies touch.
   [[nodiscard]] const NearPair* nearest() const { return near.empty() ? nullptr : &near.front(); }
+  // Shorter than the path where that is possible, as different as paths are, and accepted by commands. `body` is one of
+  // the names.
+  [[nodiscard]] const std::string& short_name(std::uint32_t body) const {
+    return short_names ? (*short_names)[body] : (*names)[body];
+  }
 };
 
 struct RangeReading {
@@ -84,6 +92,7 @@ struct RangeReading {
   std::optional<double> distance_m;                   // from the apex; none: nothing in the cone up to the range
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  // on the surface; where there is a distance
   std::string object;                                 // dotted path of the body; empty where nothing is seen
+  std::string short_object = {};                      // its short name; empty: as `object`
   bool in_blind_zone = false;                         // nearer than a real sensor of this kind can tell
   // A pose was not a finite number, or the shape of something in the cell is not known: something nearer may be there.
   bool doubtful = false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rt_core/base/contract.hpp"
+#include "rt_core/cell/short_names.hpp"
 #include "rt_core/ranging/cone_shape.hpp"
 #include "rt_core/ranging/noise.hpp"
 #include "rt_core/ranging/seen_parts.hpp"
@@ -43,10 +44,12 @@ struct RangeFinder::State {
   std::shared_ptr<geometry::SolidLibrary> solids;
   std::shared_ptr<const CompiledCell> cell;
   SeenParts parts;
+  std::vector<std::string> short_names;  // by part
   std::vector<Sensor> sensors;
   std::vector<RangeReading> readings;
   std::vector<Candidate> candidates;
 
+  void name_parts();
   void adopt_sensors();
   void read(Sensor& sensor, const Pose& X_WS, RangeReading& out);
   [[nodiscard]] Nearest nearest(Sensor& sensor, const Pose& X_WS);
@@ -64,7 +67,15 @@ void RangeFinder::adopt(std::shared_ptr<const CompiledCell> cell) {
   CELLMIRROR_EXPECTS(cell != nullptr);
   state_->parts.adopt(*cell, *state_->solids);
   state_->cell = std::move(cell);
+  state_->name_parts();
   state_->adopt_sensors();
+}
+
+void RangeFinder::State::name_parts() {
+  std::vector<std::int32_t> nodes;
+  nodes.reserve(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) nodes.push_back(parts.part(i).node);
+  short_names = short_body_names(*cell, nodes);
 }
 
 void RangeFinder::State::adopt_sensors() {
@@ -113,6 +124,7 @@ void RangeFinder::State::read(Sensor& sensor, const Pose& X_WS, RangeReading& ou
   out.distance_m.reset();
   out.point_m.setZero();
   out.object.clear();
+  out.short_object.clear();
   out.in_blind_zone = false;
   out.doubtful = parts.incomplete() || !sensor.cone || !X_WS.matrix().allFinite();
   // Drawn for every reading, so that what stands in the cell does not shift the sequence.
@@ -125,7 +137,8 @@ void RangeFinder::State::read(Sensor& sensor, const Pose& X_WS, RangeReading& ou
   if (told > settings.range_m) return;  // the echo comes after the sensor has stopped to listen
   out.distance_m = told;
   out.point_m = X_WS * found.p;
-  out.object = (*cell->paths)[static_cast<std::size_t>(parts.part(sensor.part).node)];
+  out.object = body_name(*cell, parts.part(sensor.part).node);
+  out.short_object = short_names[sensor.part];
   out.in_blind_zone = exact < settings.blind_zone_m;
 }
 

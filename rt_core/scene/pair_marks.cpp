@@ -31,6 +31,7 @@ void PairMarks::update(const CompiledCell& cell) {
   mark_of_node_.assign(node_count_, Mark::none);
   if (paths_ == cell.paths) return;
   paths_ = cell.paths;
+  cell_name_ = cell.name;
   names_.reset();
   node_of_path_.clear();
   if (paths_ == nullptr) return;
@@ -44,7 +45,8 @@ void PairMarks::find_nodes(const BodyNames& names) {
   if (names_ == nullptr) return;
   for (const std::string& name : *names_) {
     const auto at = node_of_path_.find(name);
-    node_of_body_.push_back(at == node_of_path_.end() ? -1 : at->second);
+    const std::int32_t own = name == cell_name_ ? 0 : -1;
+    node_of_body_.push_back(at == node_of_path_.end() ? own : at->second);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -32,6 +33,7 @@ class PairMarks {
   void draw_touching(const ProximityState& proximity, std::string_view age, Scene& scene);
 
   std::shared_ptr<const std::vector<std::string>> paths_;
+  std::string cell_name_;  // how findings name the cell's own geometry
   std::size_t node_count_ = 0;
   std::unordered_map<std::string_view, std::int32_t> node_of_path_;  // into *paths_
   BodyNames names_;

@@ -17,7 +17,8 @@ namespace {
 std::string kind_text(const Parameter& parameter) {
   switch (parameter.kind) {
     case ParameterKind::name: {
-      constexpr std::array<std::string_view, 5> kKinds = {"frame or joint", "robot", "camera", "sensor", "workframe"};
+      constexpr std::array<std::string_view, 6> kKinds = {"frame or joint", "robot",     "camera",
+                                                          "sensor",         "workframe", "frame, a joint or the cell"};
       return fmt::format("name of a {}", kKinds[static_cast<std::size_t>(parameter.name_kind)]);
     }
     case ParameterKind::choice: {

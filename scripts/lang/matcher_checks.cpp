@@ -60,7 +60,7 @@ void Matcher::check_active_robot() {
 }
 
 void Matcher::check_name(const Parameter& parameter, const Token& word) {
-  const bool path = parameter.name_kind == NameKind::frame_node;
+  const bool path = parameter.name_kind == NameKind::frame_node || parameter.name_kind == NameKind::branch;
   // Cameras, sensors and workframes may be given by dotted path too.
   const std::size_t longest = parameter.name_kind == NameKind::robot ? kMaxNameLength : kMaxFramePath;
   if (!word.plain || word.text.size() > longest) {

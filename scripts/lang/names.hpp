@@ -13,7 +13,8 @@
 namespace cellmirror {
 
 // What a name in a command must be the name of.
-enum class NameKind : std::uint8_t { frame_node, robot, camera, sensor, workframe };
+// `branch`: a frame_node, or the cell's name for its own geometry.
+enum class NameKind : std::uint8_t { frame_node, robot, camera, sensor, workframe, branch };
 
 // Names and facts that checking a command needs; also offline, for `cellmirror check --cell`.
 class NameDirectory {

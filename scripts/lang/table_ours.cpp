@@ -53,8 +53,8 @@ constexpr Choice kPairTreatments[] = {{"ignore", "they are not tested"},
 constexpr Parameter kCollisionActive[] = {word("active"), choice("0 | 1", "switch", kZeroOne)};
 constexpr Parameter kCollisionWarning[] = {word("warning"),
                                            number("distance", "warning distance", Unit::mm, kWarningDistance)};
-constexpr Parameter kCollisionPair[] = {word("pair"), frame("node_a", "first frame or joint"),
-                                        frame("node_b", "second frame or joint"),
+constexpr Parameter kCollisionPair[] = {word("pair"), named(NameKind::branch, "node_a", "first frame or joint"),
+                                        named(NameKind::branch, "node_b", "second frame or joint"),
                                         choice("ignore | test | derive", "treatment", kPairTreatments)};
 
 constexpr Range kPortNumber{1.0, 1024.0, false, false};
@@ -182,9 +182,9 @@ constexpr Form kForms[] = {
      .help = "says whether bodies of two branches are tested against each other",
      .example = "SET_COLLPAR pair Toolbox.Tool1 Mantec_1.HAND ignore",
      .definition =
-         "a frame stands for itself and everything below it by name; the newest rule that fits a pair counts, "
-         "those of the cell file are older; derive takes back the rules for just these two, also of the cell "
-         "file",
+         "a frame stands for itself and everything below it by name, the cell's name for the cell's own geometry; the "
+         "newest rule that fits a pair counts, those of the cell file are older; derive takes back the rules for just "
+         "these two, also of the cell file",
      .selector = Selector::by_first_word,
      .origin = Origin::ours},
     {.id = FormId::reset_haptic,

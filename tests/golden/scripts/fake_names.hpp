@@ -45,12 +45,11 @@ class FakeNames final : public NameDirectory {
 
   [[nodiscard]] bool knows(NameKind kind, std::string_view name) const override {
     if (kind == NameKind::robot) return robots.contains(name);
-    return names_[static_cast<std::size_t>(kind)].contains(name);
+    return names_[place(kind)].contains(name);
   }
   [[nodiscard]] Error explain(NameKind kind, std::string_view name) const override {
     constexpr std::array<std::string_view, 5> kKinds = {"frame", "robot", "camera", "sensor", "workframe"};
-    return {"there is no " + std::string(kKinds[static_cast<std::size_t>(kind)]) + " " + printable(name),
-            did_you_mean(name, all(kind))};
+    return {"there is no " + std::string(kKinds[place(kind)]) + " " + printable(name), did_you_mean(name, all(kind))};
   }
   [[nodiscard]] std::span<const JointKind> joints(std::string_view robot) const override {
     const auto found = robots.find(robot);
@@ -67,19 +66,24 @@ class FakeNames final : public NameDirectory {
     if (kind == NameKind::robot) {
       for (const auto& [name, kinds] : robots) sorted.push_back(name);
     } else {
-      const auto& set = names_[static_cast<std::size_t>(kind)];
+      const auto& set = names_[place(kind)];
       sorted.assign(set.begin(), set.end());
     }
     std::sort(sorted.begin(), sorted.end());
     return sorted;
   }
 
-  void add(NameKind kind, std::string name) { names_[static_cast<std::size_t>(kind)].insert(std::move(name)); }
+  void add(NameKind kind, std::string name) { names_[place(kind)].insert(std::move(name)); }
 
   std::unordered_map<std::string, std::vector<JointKind>, TextHash, std::equal_to<>> robots;
   std::string active;
 
  private:
+  // Of the cell itself nothing is known here: a branch is that of a frame.
+  static std::size_t place(NameKind kind) {
+    return static_cast<std::size_t>(kind == NameKind::branch ? NameKind::frame_node : kind);
+  }
+
   std::array<std::unordered_set<std::string, TextHash, std::equal_to<>>, 5> names_;
 };
 

@@ -30,6 +30,15 @@ TEST_F(PairDerivationTest, NamesBodiesByTheirNodes) {
   EXPECT_TRUE(table->doubts.empty());
 }
 
+TEST_F(PairDerivationTest, TheCellsOwnGeometryCanBeNamedInRules) {
+  settings.rules = {{"world", "Arm.J_1", PairRule::Kind::ignore, ""}};
+  build(std::string("geometry = [{ name = \"floor\", box_m = [6.0, 6.0, 0.1] }]\n") + kHall);
+  ASSERT_TRUE(has_body("world"));
+  EXPECT_EQ(state("world", "Arm.J_1.J_2"), PairState::rule_ignore);
+  EXPECT_EQ(state("Part", "Arm.J_1.J_2"), PairState::tested);
+  EXPECT_EQ(pair("world", "Arm.J_1")->reason, "ignored by the rule for world and Arm.J_1");
+}
+
 TEST_F(PairDerivationTest, OnlyCountsWhatNoJointMoves) {
   build(kHall);
   EXPECT_EQ(pair("Hall", "Arm"), nullptr);

@@ -19,9 +19,10 @@ struct CollisionConfig : testing::Test {
     home.write("envlib/tetra.stl", tetra_stl());
     home.write("envlib/l.obj", kLObj);
   }
-  std::optional<LoadedCell> load(const std::string& text) {
+  std::optional<LoadedCell> load(const std::string& text) { return load_text("format = 1\nname = \"c\"\n" + text); }
+  std::optional<LoadedCell> load_text(const std::string& text) {
     diagnostics = {};
-    return load_cell(home.write("cell.toml", "format = 1\nname = \"c\"\n" + text), diagnostics);
+    return load_cell(home.write("cell.toml", text), diagnostics);
   }
   [[nodiscard]] std::string finding() const {
     const std::string text = diagnostics.text();
@@ -235,6 +236,32 @@ ignore = [{ a = "B", b = "C.D", reason = "guarded" }, { a = "", b = "C" }]
   EXPECT_EQ(sut->collision.rules[0].reason, "guarded");
   EXPECT_EQ(sut->collision.rules[1].a, "");
   EXPECT_EQ(sut->collision.rules[2].kind, PairRule::Kind::test);
+}
+
+TEST_F(CollisionConfig, a_rule_can_be_about_the_cells_own_geometry) {
+  const std::string cell = R"(format = 1
+name = "bench"
+geometry = [{ box_m = [1.0, 1.0, 0.1] }]
+[[node]]
+name = "A"
+[[node]]
+name = "bench"
+parent = "A"
+)";
+  const auto sut = load_text(cell + "[collision]\nignore = [{ a = \"bench\", b = \"A.bench\" }]\n");
+  ASSERT_TRUE(sut) << diagnostics.text();
+  EXPECT_EQ(sut->collision.rules.at(0).a, "bench");
+  EXPECT_EQ(sut->collision.rules.at(0).b, "A.bench");
+  EXPECT_EQ(sut->cell.compile()->name, "bench");
+}
+
+TEST_F(CollisionConfig, refuses_a_node_with_the_name_of_a_cell_that_has_geometry) {
+  const std::string cell = "format = 1\nname = \"bench\"\n";
+  const std::string node = "[[node]]\nname = \"bench\"\n";
+  EXPECT_TRUE(load_text(cell + node)) << diagnostics.text();
+  EXPECT_FALSE(load_text(cell + "geometry = [{ box_m = [1.0, 1.0, 0.1] }]\n" + node));
+  EXPECT_NE(diagnostics.text().find("the node bench has the name of the cell"), std::string::npos)
+      << diagnostics.text();
 }
 
 TEST_F(CollisionConfig, has_settings_without_a_table) {

@@ -102,12 +102,12 @@ TEST(CameraRecord, OneThatTracksNothingNamesNothing) {
   EXPECT_FALSE(sut->tracking);
 }
 
-TEST(CameraRecord, LongPathsKeepTheirEnd) {
+TEST(CameraRecord, LongPathsKeepBothEnds) {
   CameraState deep = camera();
   deep.tracks = std::string(200, 'a') + ".Hand";
   const auto sut = decode_camera_record(encoded(camera_record_of(deep, {})));
   ASSERT_TRUE(sut) << sut.error().text();
-  EXPECT_EQ(sut->tracks, "..." + std::string(119, 'a') + ".Hand");
+  EXPECT_EQ(sut->tracks, std::string(63, 'a') + "..." + std::string(56, 'a') + ".Hand");
 }
 
 TEST(CameraRecord, RefusesWhatTheEncoderWouldNotWrite) {

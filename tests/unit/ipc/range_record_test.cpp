@@ -164,14 +164,17 @@ TEST(RangeRecord, EncoderRefusesContradictionsAndTooLittleRoom) {
   EXPECT_FALSE(encode_range_record(record, bytes));
 }
 
-TEST(RangeRecord, LongPathsKeepTheirEnd) {
+TEST(RangeRecord, LongPathsKeepBothEnds) {
   RangeReading near = reading("U", 0.25);
-  near.object = std::string(121, 'a') + "\xC3\xA9" + std::string(123, 'b');  // the cut would split the e acute
+  near.object =
+      "Left." + std::string(121, 'a') + "\xC3\xA9" + std::string(119, 'b');  // the cut would split the e acute
   const auto sut = decode_range_record(encoded(range_record_of(near), encode_range_record));
   ASSERT_TRUE(sut) << sut.error().text();
-  EXPECT_EQ(sut->object, "..." + std::string(123, 'b'));
+  EXPECT_EQ(sut->object, "Left..." + std::string(119, 'b'));
   near.object = std::string(127, 'c');
   EXPECT_EQ(decode_range_record(encoded(range_record_of(near), encode_range_record))->object, near.object);
+  near.short_object = "Left.b";
+  EXPECT_EQ(decode_range_record(encoded(range_record_of(near), encode_range_record))->object, "Left.b");
 }
 
 TEST(RangeArray, IsEncodedAndDecodedAsDocumented) {

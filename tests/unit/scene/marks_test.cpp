@@ -114,6 +114,15 @@ TEST_F(MarksTest, ANearPairIsJoinedByItsNearestPoints) {
   EXPECT_TRUE(legend_has("nearer than 100 mm"));
 }
 
+TEST_F(MarksTest, TheCellsOwnGeometryIsMarkedByTheCellsName) {
+  cell_.cell.name = "bench";
+  cell_.add_box(SmallCell::world);
+  proximity_.names = std::make_shared<std::vector<std::string>>(std::vector<std::string>{"Arm.J_1.Hand", "bench"});
+  proximity_.near = {near_pair()};
+  EXPECT_EQ(mark_of(SmallCell::world), Mark::near);
+  EXPECT_EQ(mark_of(SmallCell::hand), Mark::near);
+}
+
 TEST_F(MarksTest, APairBeyondTheWarningDistanceIsLeftAlone) {
   proximity_.near = {near_pair()};
   proximity_.near[0].within_warning = false;
