@@ -225,6 +225,7 @@ const scenarios = {
     await page.keyboard.press("Enter");
     assert.equal(await page.getAttribute("#tab-tree", "aria-selected"), "true");
     await page.waitForFunction((path) => document.getElementById("tree-chosen").textContent.includes(path), whole);
+    assert.equal(await page.evaluate(() => document.activeElement.dataset.path), whole);
     // Who reads further up in the console is not thrown to its end.
     for (let i = 0; i < 20; ++i) await run(page, `ROBACT ROBOT_${1 + i % 2}`);
     await page.evaluate(() => document.getElementById("console-log").scrollTo({top: 0, behavior: "instant"}));

@@ -48,5 +48,7 @@ test("short names tell equal robots apart", () => {
   const deep = ["Cell.Arm_1.J_1.J_2", "Cell.Arm_2.J_1.J_2", "Cell.Arm_2.J_9.J_2"];
   for (const one of deep) sut.of(one);
   assert.deepEqual(deep.map((one) => sut.of(one)), ["Cell.Arm_1\u2026J_2", "Cell.Arm_2.J_1.J_2", "Cell.Arm_2.J_9.J_2"]);
-  for (let i = 0; i < 5000; ++i) assert.equal(sut.of(path(i)), `Mantec_${i}\u2026J_3`);
+  sut.learn_from({touching: null, near: [{a: path(1), a_short: "Mantec_1.J_3", b: "Table"}], ranges: [{object: deep[0], object_short: "Arm_1.J_2"}]});
+  assert.deepEqual([path(1), path(2), deep[0]].map((one) => sut.of(one)), ["Mantec_1.J_3", "Mantec_2\u2026J_3", "Arm_1.J_2"], "the gateway knows best");
+  for (let i = 2; i < 5000; ++i) assert.equal(sut.of(path(i)), `Mantec_${i}\u2026J_3`);
 });

@@ -69,6 +69,7 @@ watch_theme(byId("theme-button"), () => charts.restyle());
 let newest = null;
 connection.on("live", (live) => {
   const start = performance.now();
+  names.learn_from(live);
   charts.record(live);
   presence.live(live);
   messages.update(live);

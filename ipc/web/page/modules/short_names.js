@@ -1,5 +1,5 @@
-// Short names for dotted paths: the first part, which says whose it is, and the last; more from the front only where
-// another known path would be called the same.
+// Short names for dotted paths: those that the gateway gives; else the first part, which says whose it is, and the last,
+// and more from the front only where another known path would be called the same.
 
 const kMostKnown = 2000;
 const kMostAlike = 20;  // beyond, whole paths: telling many apart costs time
@@ -11,13 +11,30 @@ function shortened(parts, front) {
 
 export class ShortNames {
   constructor() {
+    this.given_ = new Map();
     this.names_ = new Map();
     this.alike_ = new Map();  // paths by their shortest name
+  }
+
+  give(path, name) {
+    if (!path || !name || this.given_.get(path) === name) return;
+    if (this.given_.size >= kMostKnown) this.given_.clear();
+    this.given_.set(path, name);
+  }
+
+  // Those of pairs and readings in `live`.
+  learn_from(live) {
+    for (const pair of [...(live.touching ?? []), ...(live.near ?? [])]) {
+      this.give(pair.a, pair.a_short);
+      this.give(pair.b, pair.b_short);
+    }
+    for (const range of live.ranges ?? []) this.give(range.object, range.object_short);
   }
 
   // May grow as further paths become known: ask again whenever it is shown.
   of(path) {
     const whole = String(path ?? "");
+    if (this.given_.has(whole)) return this.given_.get(whole);
     if (!this.names_.has(whole)) this.learn_(whole);
     return this.names_.get(whole);
   }

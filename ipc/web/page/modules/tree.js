@@ -41,7 +41,9 @@ export class Tree {
     this.model_.reveal(below);
     this.choose_(below);
     this.draw_();
-    this.list_.querySelector('[aria-selected="true"]')?.scrollIntoView({block: "nearest"});
+    const row = this.row_of_(below);
+    row?.scrollIntoView({block: "nearest"});
+    row?.focus({preventScroll: true});  // what was pressed may be out of sight now
   }
 
   draw_() {
