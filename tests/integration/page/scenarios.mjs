@@ -1,4 +1,4 @@
-// What a person does with the page, in headless Chromium: node scenarios.mjs SCENARIO ADDRESS [ARGUMENT...]
+// What a person does with the page, in headless Chromium: node scenarios.mjs SCENARIO[,SCENARIO...] ADDRESS [ARGUMENT...]
 import assert from "node:assert/strict";
 import {once} from "node:events";
 import path from "node:path";
@@ -385,7 +385,7 @@ async function pick_something(page) {
 }
 
 try {
-  await scenarios[scenario]();
+  for (const name of scenario.split(",")) await scenarios[name]();
   assert.deepEqual(problems, []);
 } catch (error) {
   console.log(error.stack ?? error);

@@ -43,11 +43,8 @@ class Page(unittest.TestCase):
         for name in ("desk-light", "desk-dark", "tablet-light", "phone-light", "phone-dark"):
             self.assertGreater((browser.ARTEFACTS / f"{name}.png").stat().st_size, 10000)
 
-    def test_views_and_displays_have_the_names_of_the_layout(self):
-        self.run_scenario("layout")
-
-    def test_what_is_old_does_not_look_new(self):
-        self.run_scenario("old")
+    def test_views_have_the_names_of_the_layout_and_what_is_old_does_not_look_new(self):
+        self.run_scenario("layout,old")
 
     def test_it_can_be_used_by_keyboard(self):
         self.run_scenario("keyboard")
