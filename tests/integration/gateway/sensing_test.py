@@ -94,7 +94,8 @@ class Sensing(unittest.TestCase):
         self.assertTrue(1.39 < touch["point_m"][0] < 1.42, touch)
         self.assertFalse(touch["doubtful"])
         self.assertLess(found["age_s"], 1.0)
-        self.assertIn(f"{HAND} touches Wall", self.gateway.output().replace("Wall touches " + HAND, f"{HAND} touches Wall"))
+        self.assertEqual({touch["a_short"], touch["b_short"]}, {"Slider.HAND", "Wall"})
+        self.assertRegex(self.gateway.output(), r"Slider\.HAND touches Wall|Wall touches Slider\.HAND")
         self.move(0.5)
         pair = {HAND, "Wall"}
         self.assertEqual(self.new_events(before), [("entered_warning", pair), ("touched", pair), ("parted", pair),
