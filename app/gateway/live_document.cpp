@@ -89,15 +89,24 @@ std::string_view name(const ProximityState& state, std::uint32_t body) {
   return state.names && body < state.names->size() ? std::string_view((*state.names)[body]) : std::string_view();
 }
 
+// What both kinds of pairs begin with.
+template <class Pair>
+JsonBuilder& begin_pair(JsonBuilder& out, const ProximityState& found, const Pair& pair) {
+  const auto in_short = [&](std::uint32_t body) {
+    return found.names && body < found.names->size() ? std::string_view(found.short_name(body)) : std::string_view();
+  };
+  return out.begin_object()
+      .member("a", name(found, pair.a))
+      .member("b", name(found, pair.b))
+      .member("a_short", in_short(pair.a))
+      .member("b_short", in_short(pair.b));
+}
+
 void add_touching(JsonBuilder& out, const ProximityState& found) {
   out.begin_array();
   for (std::size_t i = 0; i < std::min(kMostPairs, found.touching.size()); ++i) {
     const TouchingPair& pair = found.touching[i];
-    out.begin_object()
-        .member("a", name(found, pair.a))
-        .member("b", name(found, pair.b))
-        .member("depth_m", pair.depth_m)
-        .end_object();
+    begin_pair(out, found, pair).member("depth_m", pair.depth_m).end_object();
   }
   out.end_array();
 }
@@ -106,9 +115,7 @@ void add_near(JsonBuilder& out, const ProximityState& found) {
   out.begin_array();
   for (std::size_t i = 0; i < std::min(kMostPairs, found.near.size()); ++i) {
     const NearPair& pair = found.near[i];
-    out.begin_object()
-        .member("a", name(found, pair.a))
-        .member("b", name(found, pair.b))
+    begin_pair(out, found, pair)
         .member("distance_m", pair.distance_m)
         .member("within_warning", pair.within_warning)
         .member("time_to_contact_s", pair.time_to_contact_s)
@@ -147,6 +154,7 @@ void add_ranges(JsonBuilder& out, const RangeReadings* readings) {
           .member("distance_m", reading.distance_m)
           .member("range_m", reading.range_m)
           .member("object", reading.object)
+          .member("object_short", reading.short_object.empty() ? reading.object : reading.short_object)
           .member("in_blind_zone", reading.in_blind_zone)
           .member("doubtful", reading.doubtful)
           .end_object();

@@ -83,14 +83,16 @@ class Cell:
         pairs = []
         for i in range(min(8, max(0, len(self.ids) - 1))):
             distance = 0.02 + 0.3 * abs(math.sin(0.2 * self.now() + i))
-            pairs.append({"a": f"{self.ids[i]}.J_4.link", "b": f"Cell.Table_{i}.top", "distance_m": distance,
+            pairs.append({"a": f"{self.ids[i]}.J_4.link", "b": f"Cell.Table_{i}.top",
+                          "a_short": f"{self.ids[i]}.link", "b_short": f"Table_{i}.top", "distance_m": distance,
                           "time_to_contact_s": distance / 0.05 if i % 2 else None})
         return sorted(pairs, key=lambda pair: pair["distance_m"])
 
     def live(self):
         now = self.now()
         n = len(self.ids)
-        touching = [{"a": f"{self.ids[0]}.J_6.tool", "b": "Cell.Table_1.top", "depth_m": 0.0031}] if n and int(now / 8) % 2 else []
+        touching = [{"a": f"{self.ids[0]}.J_6.tool", "b": "Cell.Table_1.top", "a_short": f"{self.ids[0]}.tool", "b_short": "Table_1.top",
+                     "depth_m": 0.0031}] if n and int(now / 8) % 2 else []
         forces = [{"robot": robot, "tcp_force_n": [3 * math.sin(now), 1, 9.81] if i == 0 else None,
                    "joints": [{"name": f"J_{k + 1}", "unit": "rad", "effort": 20 * math.cos(now + k), "max_effort": 100,
                                "beyond_limit": False} for k in range(self.joints)]} for i, robot in enumerate(self.ids[:2])]
@@ -102,7 +104,7 @@ class Cell:
             "within_warning_count": sum(pair["distance_m"] <= 0.1 for pair in self.near()),
             "collision_age_s": 0.003,
             "ranges": [{"id": f"USS_{i}", "distance_m": 0.4 + 0.3 * math.sin(now + i) if i < 2 else None, "range_m": 2.0,
-                        "object": "Cell.Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
+                        "object": "Cell.Table_1.top", "object_short": "Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
             "forces": forces,
             "queues": [{"name": name, "dropped": dropped, "high_water": 12, "capacity": 1024} for name, dropped in
                        (("messages (2351)", 0), ("sensor queue (1990)", int(3 * now)), ("ticks to the studio", 0))],

@@ -218,7 +218,7 @@ const scenarios = {
     await page.keyboard.press("Enter");
     await run(page, "hot_message again");
     await unread("1");
-    assert.match(await page.locator("#near-list .end").first().innerText(), /^ROBOT_\d+…link$/);
+    assert.match(await page.locator("#near-list .end").first().innerText(), /^ROBOT_\d+\.link$/);
     const end = page.locator("#near-list .end").nth(1);
     const whole = await end.getAttribute("title");
     await end.focus();

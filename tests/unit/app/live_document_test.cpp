@@ -170,10 +170,16 @@ TEST_F(LiveDocument, PairsAreBoundedAndCounted) {
   EXPECT_EQ(sut["warning_distance_m"], 0.05);
   EXPECT_EQ(sut["near"][0]["a"], "Arm.J_1");
   EXPECT_EQ(sut["near"][0]["b"], "Table");
+  EXPECT_EQ(sut["near"][0]["a_short"], "Arm.J_1") << "none is known";
+  EXPECT_EQ(sut["near"][1]["b_short"], "");
   EXPECT_EQ(sut["near"][0]["distance_m"], 0.25);
   EXPECT_EQ(sut["near"][0]["time_to_contact_s"], 1.5);
   EXPECT_EQ(sut["near"][1]["b"], "");
   EXPECT_TRUE(sut["near"][1]["time_to_contact_s"].is_null());
+  proximity_->short_names =
+      std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"Arm", "Table.top"});
+  EXPECT_EQ(document()["near"][0]["b_short"], "Table.top");
+  EXPECT_EQ(document()["touching"][0]["a_short"], "Arm");
 }
 
 TEST_F(LiveDocument, NobodyKnowsWhatTouchesWhereNothingIsTested) {
@@ -206,6 +212,7 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
   ranges_->readings[0].range_m = 1.5;
   ranges_->readings[1].distance_m = 0.5;
   ranges_->readings[1].object = "Table";
+  ranges_->readings[1].short_object = "T";
   ranges_->readings[1].in_blind_zone = true;
   ranges_->readings[1].doubtful = true;
   forces_ = std::make_shared<ForceState>();
@@ -219,6 +226,8 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
   const json sut = document();
   EXPECT_TRUE(sut["ranges"][0]["distance_m"].is_null());
   EXPECT_EQ(sut["ranges"][0]["range_m"], 1.5);
+  EXPECT_EQ(sut["ranges"][0]["object_short"], "");
+  EXPECT_EQ(sut["ranges"][1]["object_short"], "T");
   EXPECT_EQ(sut["ranges"][1]["distance_m"], 0.5);
   for (const char* key : {"in_blind_zone", "doubtful"}) {
     EXPECT_EQ(sut["ranges"][0][key], false) << key;
