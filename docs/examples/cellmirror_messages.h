@@ -217,7 +217,7 @@ struct cellmirror_robot {
 struct cellmirror_range {
   struct cellmirror_header header;
   char id[CELLMIRROR_NAME_BYTES];
-  char object[CELLMIRROR_PATH_BYTES]; /* dotted path of what is seen */
+  char object[CELLMIRROR_PATH_BYTES]; /* short name of the body that is seen */
   double distance;                    /* m; NaN: nothing is seen */
   double range;                       /* m */
   double blind_zone;                  /* m */
