@@ -173,7 +173,10 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
   command.kind = engine::CommandKind::set_mode;
   command.slot = static_cast<std::uint8_t>(robot.slot);
   command.mode = engine::RobotMode::mirrored;
-  if (const auto config = streams_.find(robot.id); config != streams_.end()) command.ages = ages_of(config->second);
+  if (const auto config = streams_.find(robot.id); config != streams_.end()) {
+    command.ages = ages_of(config->second);
+    command.given = static_cast<std::uint16_t>(joints_given_by(config->second));
+  }
   // The stream first: one that cannot be opened leaves the robot to what it does. Samples wait for the mode in the
   // inlet.
   if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) return opened;

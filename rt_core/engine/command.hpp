@@ -16,7 +16,7 @@ namespace cellmirror::engine {
 enum class CommandKind : std::uint8_t {
   add_robot,      // slot, joint_count, values = positions, lower, upper
   remove_robot,   // slot
-  set_mode,       // slot, mode, ages; a motion ends at once
+  set_mode,       // slot, mode, ages, given; a motion ends at once
   set_positions,  // slot, values; only while the robot is simulated; at once, a motion ends
   set_limits,     // slot, lower, upper
   set_chain,      // slot, chain; only while the robot is simulated
@@ -42,7 +42,8 @@ struct Command {
   std::uint16_t move = 0;   // of add_move: the engine's own
   RobotMode mode = RobotMode::simulated;
   StreamAges ages;
-  JointValues values{};  // rad or m
+  std::uint16_t given = 0xFFFF;  // of set_mode: the joints (bits) whose position the stream gives; 0: as if it gave all
+  JointValues values{};          // rad or m
   JointValues lower{};
   JointValues upper{};
   CoupledJoints coupled{};

@@ -84,6 +84,8 @@ void RobotSlot::set_mode(const Command& command) CELL_RT {
   }
   state_.motion = executor_.state();
   ages_ = command.ages;
+  const auto all = static_cast<std::uint16_t>((1U << state_.joint_count) - 1U);
+  given_ = (command.given & all) != 0 ? command.given : all;
   state_.sequence = 0;
   state_.receive_time = Timestamp{};
   state_.samples = 0;
@@ -261,7 +263,8 @@ void RobotSlot::update(Timestamp now) CELL_RT {
         joint.state = joint.state == DataState::invalid ? DataState::invalid : DataState::stale;
       }
     }
-    if (gravity_of(joint.state) > gravity_of(worst)) worst = joint.state;
+    // One that nothing gives stays as it is for ever: it says nothing about the stream.
+    if (gives(i) && gravity_of(joint.state) > gravity_of(worst)) worst = joint.state;
   }
   state_.state = worst;
 }

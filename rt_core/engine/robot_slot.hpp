@@ -39,10 +39,12 @@ class RobotSlot {
   bool set_chain(const kinematics::Chain* chain) CELL_RT;
   bool follow_joint(const JointTickState& master, std::size_t joint, double max_step, double dt) CELL_RT;
   [[nodiscard]] bool follows(std::size_t joint) const CELL_RT { return ((state_.follow.joints >> joint) & 1U) != 0; }
+  [[nodiscard]] bool gives(std::size_t joint) const CELL_RT { return ((given_ >> joint) & 1U) != 0; }
   [[nodiscard]] bool simulated() const CELL_RT { return state_.mode == RobotMode::simulated; }
 
   RobotTickState state_;
   StreamAges ages_;
+  std::uint16_t given_ = 0xFFFF;  // joints (bits) whose position the stream gives; never 0
   JointValues lower_{};
   JointValues upper_{};
   motion::MoveExecutor executor_;

@@ -41,7 +41,7 @@ struct FollowTickState {
 struct RobotTickState {
   RobotMode mode = RobotMode::absent;
   std::uint8_t joint_count = 0;
-  DataState state = DataState::none;    // the worst of the joints
+  DataState state = DataState::none;    // the worst of the joints whose position the stream gives
   std::uint64_t sequence = 0;           // of the newest sample
   Timestamp receive_time;               // of the newest sample
   std::uint64_t samples = 0;            // taken from the stream's queue since the robot went online

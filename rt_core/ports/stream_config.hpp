@@ -1,5 +1,5 @@
 // What a cell file says about the channel to a robot's controller. Plain data: config/ fills it, drivers/ read it.
-// Paths are absolute and already checked; numbers are SI.
+// Paths are absolute and already checked; numbers are SI. Places are those in the cell file, for what the drivers find.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror {
@@ -58,6 +59,7 @@ struct Cia402NodeConfig {
   std::string eds_file;  // an EDS or DCF with the PDO mapping; may be empty
   std::vector<TpdoConfig> tpdos;  // from the cell file; they win over the EDS
   bool configure = false;         // write the mapping to the drive by SDO before NMT start
+  Place place = {};               // of the node's table
 };
 
 struct Cia402StreamConfig {
@@ -70,6 +72,7 @@ struct Cia402StreamConfig {
       500'000'000};  // no heartbeat for this long: the node is lost; 0: heartbeats are not watched
   Nanoseconds sdo_timeout{500'000'000};
   std::uint16_t heartbeat_producer_ms = 0;  // > 0 and `configure`: written to object 0x1017 of each node
+  Place place = {};                         // of the stream's table
 };
 
 // One signal of a DBC = one quantity of one joint.
@@ -84,6 +87,9 @@ struct DbcSignalConfig {
   // value [SI] = physical * scale + offset; physical = the DBC's own raw * factor + offset.
   double scale = 1.0;
   double offset = 0.0;
+  bool scale_given = false;  // the cell file says the scale, so that 1 is meant
+  Place place = {};          // of the signal's name
+  Place message_place = {};  // of the message's name
 };
 
 struct DbcStreamConfig {
@@ -91,6 +97,7 @@ struct DbcStreamConfig {
   StreamAges ages;
   std::string dbc_file;
   std::vector<DbcSignalConfig> signals;
+  Place place = {};  // of the stream's table
 };
 
 // ROS 2's sensor_msgs/msg/JointState.
@@ -111,6 +118,22 @@ struct DdsStreamConfig {
 };
 
 using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig>;
+
+// The robot's joints (bits) whose position comes with the stream; 0 without a stream.
+[[nodiscard]] inline std::uint32_t joints_given_by(const StreamConfig& config) {
+  std::uint32_t joints = 0;
+  const auto add = [&joints](const auto& items) {
+    for (const auto& item : items) joints |= 1U << item.joint;
+  };
+  if (const auto* drives = std::get_if<Cia402StreamConfig>(&config)) add(drives->nodes);
+  if (const auto* messages = std::get_if<DdsStreamConfig>(&config)) add(messages->joints);
+  if (const auto* dbc = std::get_if<DbcStreamConfig>(&config)) {
+    for (const DbcSignalConfig& signal : dbc->signals) {
+      if (signal.quantity == JointQuantity::position) joints |= 1U << signal.joint;
+    }
+  }
+  return joints;
+}
 
 // Pictures as sensor_msgs/CompressedImage; drawn only while somebody reads them.
 struct DdsPictureConfig {

@@ -36,12 +36,13 @@ class EngineTest : public testing::Test {
     return sut_->send(command);
   }
 
-  void mirror(std::size_t slot = 3) {
+  void mirror(std::size_t slot = 3, std::uint16_t given = 0xFFFF) {
     Command command;
     command.kind = CommandKind::set_mode;
     command.slot = static_cast<std::uint8_t>(slot);
     command.mode = RobotMode::mirrored;
     command.ages = {std::chrono::milliseconds(10), std::chrono::milliseconds(50)};
+    command.given = given;
     sut_->send(command);
   }
 
@@ -104,6 +105,28 @@ TEST_F(EngineTest, SetPointsPassTheLimiterAsAWholeOrNotAtAll) {
   EXPECT_EQ(robot().refused_setpoints, 1U);
   EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
   EXPECT_EQ(sut_->owner_view().commands_done, refused);
+}
+
+TEST_F(EngineTest, AJointThatTheStreamDoesNotGiveSaysNothingAboutTheStream) {
+  add_robot();
+  mirror(3, 0b01);
+  sut_->inlet(3).push(sample(1, 0.3, 0.0, 0b01));
+  tick();
+  EXPECT_EQ(robot().state, DataState::fresh);
+  EXPECT_EQ(robot().joints[1].state, DataState::none);
+  EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.2) << "its start position";
+  tick(std::chrono::milliseconds(20));
+  EXPECT_EQ(robot().state, DataState::stale);
+  tick(std::chrono::milliseconds(50));
+  EXPECT_EQ(robot().state, DataState::lost);
+}
+
+TEST_F(EngineTest, AStreamThatNamesNoJointIsJudgedByAll) {
+  add_robot();
+  mirror(3, 0);
+  sut_->inlet(3).push(sample(1, 0.3, 0.0, 0b01));
+  tick();
+  EXPECT_EQ(robot().state, DataState::none);
 }
 
 TEST_F(EngineTest, MirroredRobotFollowsItsStreamAndRefusesSetPoints) {
