@@ -22,10 +22,10 @@ class Planner {
     const std::size_t before = diagnostics_->errors();
     Cia402Plan result;
     result.config = *config_;
-    if (config_->nodes.empty()) error("a CiA 402 stream needs at least one node");
+    if (config_->nodes.empty()) error(config_->place, "a CiA 402 stream needs at least one node");
     if (config_->sync_period.count() < 0 || config_->heartbeat_timeout.count() < 0 ||
         config_->sdo_timeout.count() <= 0) {
-      error("SYNC period and heartbeat timeout are not negative, the SDO timeout is positive");
+      error(config_->place, "SYNC period and heartbeat timeout are not negative, the SDO timeout is positive");
     }
     for (const Cia402NodeConfig& node : config_->nodes) result.nodes.push_back(plan_node(node));
     if (diagnostics_->errors() != before) return {};
@@ -33,21 +33,24 @@ class Planner {
   }
 
  private:
-  void error(std::string message) { diagnostics_->error({}, std::move(message)); }
+  void error(const Place& place, std::string message, std::string remedy = {}) {
+    diagnostics_->error(place, std::move(message), std::move(remedy));
+  }
 
   Cia402NodePlan plan_node(const Cia402NodeConfig& node) {
     const std::string name = fmt::format("node {} ({})", node.node_id, node.joint_name);
     Cia402NodePlan result;
     result.config = node;
     if (node.node_id < 1 || node.node_id > kMaxNodeId) {
-      error(fmt::format("{}: node numbers go from 1 to {}", name, kMaxNodeId));
+      error(node.place, fmt::format("{}: node numbers go from 1 to {}", name, kMaxNodeId));
       return result;
     }
-    if (!node_ids_.insert(node.node_id).second) error(fmt::format("{}: the node number stands twice", name));
+    if (!node_ids_.insert(node.node_id).second)
+      error(node.place, fmt::format("{}: the node number stands twice", name));
     if (node.joint >= kMaxJointsPerRobot) {
-      error(fmt::format("{}: joint {} is beyond {} joints", name, node.joint, kMaxJointsPerRobot));
+      error(node.place, fmt::format("{}: joint {} is beyond {} joints", name, node.joint, kMaxJointsPerRobot));
     } else if (!joints_.insert(node.joint).second) {
-      error(fmt::format("{}: the joint has two nodes", name));
+      error(node.place, fmt::format("{}: the joint has two nodes", name));
     }
     check_scales(node, name);
     result.tpdos = mapping_of(node, name);
@@ -56,17 +59,18 @@ class Planner {
   }
 
   void check_scales(const Cia402NodeConfig& node, const std::string& name) {
-    if (!std::isfinite(node.scale) || node.scale <= 0) error(fmt::format("{}: the scale has to be positive", name));
-    if (node.sign != 1.0 && node.sign != -1.0) error(fmt::format("{}: the sign is 1 or -1", name));
+    if (!std::isfinite(node.scale) || node.scale <= 0)
+      error(node.place, fmt::format("{}: the scale has to be positive", name));
+    if (node.sign != 1.0 && node.sign != -1.0) error(node.place, fmt::format("{}: the sign is 1 or -1", name));
     if (!std::isfinite(node.offset) || !std::isfinite(node.velocity_scale) || !std::isfinite(node.torque_scale)) {
-      error(fmt::format("{}: offset and scales have to be finite", name));
+      error(node.place, fmt::format("{}: offset and scales have to be finite", name));
     }
   }
 
   std::vector<TpdoConfig> mapping_of(const Cia402NodeConfig& node, const std::string& name) {
     if (!node.tpdos.empty()) {
       std::vector<TpdoConfig> tpdos = node.tpdos;
-      for (TpdoConfig& tpdo : tpdos) fill_cob_id(tpdo, node.node_id, name);
+      for (TpdoConfig& tpdo : tpdos) fill_cob_id(tpdo, node, name);
       return tpdos;
     }
     if (!node.eds_file.empty()) {
@@ -76,17 +80,17 @@ class Planner {
     TpdoConfig tpdo;
     tpdo.transmission_type = config_->sync_period.count() > 0 ? 1 : 255;
     tpdo.entries = {{kStatusword.index, 0, 16}, {kPositionActual.index, 0, 32}};
-    fill_cob_id(tpdo, node.node_id, name);
+    fill_cob_id(tpdo, node, name);
     return {tpdo};
   }
 
-  void fill_cob_id(TpdoConfig& tpdo, std::uint8_t node_id, const std::string& name) {
+  void fill_cob_id(TpdoConfig& tpdo, const Cia402NodeConfig& node, const std::string& name) {
     if (tpdo.cob_id != 0) return;
     if (tpdo.number >= 1 && tpdo.number <= 4) {
-      tpdo.cob_id = tpdo_cob_id(tpdo.number, node_id);
+      tpdo.cob_id = tpdo_cob_id(tpdo.number, node.node_id);
     } else {
-      error(fmt::format("{}: TPDO{} needs a COB-ID of its own; only TPDO1 to TPDO4 have a predefined one", name,
-                        tpdo.number));
+      error(node.place, fmt::format("{}: TPDO{} needs a COB-ID of its own; only TPDO1 to TPDO4 have a predefined one",
+                                    name, tpdo.number));
     }
   }
 
@@ -94,18 +98,20 @@ class Planner {
     bool has_position = false;
     for (const TpdoConfig& tpdo : node.tpdos) {
       if (!is_valid_mapping(tpdo.entries)) {
-        error(fmt::format("{}: the mapping of TPDO{} is empty or beyond 64 bits", name, tpdo.number));
+        error(node.config.place,
+              fmt::format("{}: the mapping of TPDO{} is empty or beyond 64 bits", name, tpdo.number));
       }
       const std::uint32_t id = tpdo.cob_id & (kCobIdExtended | 0x1FFF'FFFF);
       const bool fits = (id & kCobIdExtended) != 0 || id < 0x800;
-      if (!fits) error(fmt::format("{}: 0x{:X} is no COB-ID of 11 bits", name, tpdo.cob_id));
-      if (!cob_ids_.insert(id).second) error(fmt::format("{}: the COB-ID 0x{:X} stands twice", name, id));
+      if (!fits) error(node.config.place, fmt::format("{}: 0x{:X} is no COB-ID of 11 bits", name, tpdo.cob_id));
+      if (!cob_ids_.insert(id).second)
+        error(node.config.place, fmt::format("{}: the COB-ID 0x{:X} stands twice", name, id));
       has_position |= find_in_mapping(tpdo.entries, kPositionActual.index, kPositionActual.subindex).has_value();
     }
     if (!has_position) {
-      diagnostics_->error({node.config.eds_file, 0, 0},
-                          fmt::format("{}: no TPDO holds the position actual value 0x6064", name),
-                          "write the mapping into the cell file (tpdos), with configure = true if the drive lacks it");
+      const std::string of = node.config.eds_file.empty() ? "" : " of " + node.config.eds_file;
+      error(node.config.place, fmt::format("{}: no TPDO{} holds the position actual value 0x6064", name, of),
+            "write the mapping into the cell file (tpdos), with configure = true if the drive lacks it");
     }
   }
 

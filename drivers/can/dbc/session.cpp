@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "drivers/can/dbc/unit.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::can {
 namespace {
+
+constexpr Nanoseconds kToldAgainAfter = std::chrono::seconds(10);
 
 class Planner {
  public:
@@ -21,42 +25,56 @@ class Planner {
 
   std::optional<DbcPlan> plan() {
     const std::size_t before = diagnostics_->errors();
-    if (plan_.config.signals.empty()) error("a DBC stream needs at least one signal");
+    const Place& stream = plan_.config.place;
+    if (plan_.config.signals.empty()) error(stream, "a DBC stream needs at least one signal");
     bool has_position = plan_.config.signals.empty();
     for (const DbcSignalConfig& signal : plan_.config.signals) {
       has_position |= signal.quantity == JointQuantity::position;
       add(signal);
     }
-    if (!has_position) error("none of the signals is a position: nothing would be mirrored");
+    if (!has_position) error(stream, "none of the signals is a position: nothing would be mirrored");
     if (diagnostics_->errors() != before) return {};
     return std::move(plan_);
   }
 
  private:
-  void error(std::string message, std::string remedy = {}) {
-    diagnostics_->error({plan_.config.dbc_file, 0, 0}, std::move(message), std::move(remedy));
+  void error(const Place& place, std::string message, std::string remedy = {}) {
+    diagnostics_->error(place, std::move(message), std::move(remedy));
+  }
+
+  void look_at_unit(const DbcSignalConfig& config, const DbcSignal& signal) {
+    if (config.scale_given) return;
+    const auto scale = si_scale_of(signal.unit);
+    if (!scale) return;
+    diagnostics_->warning(
+        config.place,
+        fmt::format("signal {}.{} is in {} and scale is 1", config.message, config.signal, printable(signal.unit)),
+        fmt::format("write scale = {}", *scale));
   }
 
   void add(const DbcSignalConfig& config) {
     if (config.joint >= kMaxJointsPerRobot) {
-      error(fmt::format("joint {} is beyond {} joints", config.joint, kMaxJointsPerRobot));
+      error(config.place, fmt::format("joint {} is beyond {} joints", config.joint, kMaxJointsPerRobot));
       return;
     }
     if (!std::isfinite(config.scale) || config.scale == 0.0 || !std::isfinite(config.offset)) {
-      error(fmt::format("signal {}: the scale has to be finite and not 0, the offset finite", config.signal));
+      error(config.place,
+            fmt::format("signal {}: the scale has to be finite and not 0, the offset finite", config.signal));
       return;
     }
     const DbcMessage* message = plan_.dbc.find(config.message);
     if (message == nullptr) {
-      error(fmt::format("the DBC has no message {}", printable(config.message)), nearest_message(config.message));
+      error(config.message_place, fmt::format("the DBC has no message {}", printable(config.message)),
+            nearest_message(config.message));
       return;
     }
     const DbcSignal* signal = message->find(config.signal);
     if (signal == nullptr) {
-      error(fmt::format("the message {} has no signal {}", config.message, printable(config.signal)),
+      error(config.place, fmt::format("the message {} has no signal {}", config.message, printable(config.signal)),
             nearest_signal(*message, config.signal));
       return;
     }
+    look_at_unit(config, *signal);
     DbcPlan::Mapped mapped;
     mapped.message = static_cast<std::size_t>(message - plan_.dbc.messages.data());
     mapped.signal = static_cast<std::size_t>(signal - message->signals.data());
@@ -103,7 +121,7 @@ DbcSession::DbcSession(DbcPlan plan, DbcSessionOutput& output) : plan_(std::move
     source.message = &message;
     const DbcSignalConfig& config = mapped.config;
     source.fields.push_back(
-        {&message.signals[mapped.signal], config.joint, config.quantity, config.scale, config.offset});
+        {&message.signals[mapped.signal], config.joint, config.quantity, config.scale, config.offset, false, {}});
   }
 }
 
@@ -111,14 +129,14 @@ void DbcSession::receive(const CanFrame& frame, Timestamp now) {
   if (frame.error || frame.remote) return;
   const auto found = sources_.find({frame.extended, frame.id});
   if (found == sources_.end()) return;
-  const Source& source = found->second;
+  Source& source = found->second;
   if (frame.length < source.message->length) {
     reject(fmt::format("{}: {} bytes, the DBC says {}", source.message->name, frame.length, source.message->length));
     return;
   }
   sample_.present = 0;
   sample_.refused = 0;
-  for (const Field& field : source.fields) take(source, field, frame, now);
+  for (Field& field : source.fields) take(source, field, frame, now);
   if ((sample_.present | sample_.refused) == 0) return;
   sample_.velocity = velocity_.at(now, plan_.config.ages.lost_after);
   sample_.effort = effort_.at(now, plan_.config.ages.lost_after);
@@ -127,10 +145,12 @@ void DbcSession::receive(const CanFrame& frame, Timestamp now) {
   output_->sample(sample_);
 }
 
-void DbcSession::take(const Source& source, const Field& field, const CanFrame& frame, Timestamp now) {
+void DbcSession::take(const Source& source, Field& field, const CanFrame& frame, Timestamp now) {
   if (!is_present(*source.message, *field.signal, frame.payload())) return;
-  const double value = physical_value(*field.signal, frame.payload()) * field.scale + field.offset;
+  const double physical = physical_value(*field.signal, frame.payload());
+  const double value = physical * field.scale + field.offset;
   const bool finite = std::isfinite(value);
+  if (finite) watch_limits(source, field, physical, now);
   if (!finite) reject(fmt::format("{}.{} is not finite", source.message->name, field.signal->name));
   const std::uint32_t bit = 1U << field.joint;
   const auto keep = [&](TimedValues& values) {
@@ -147,6 +167,25 @@ void DbcSession::take(const Source& source, const Field& field, const CanFrame& 
     case JointQuantity::effort:
       return keep(effort_);
   }
+}
+
+void DbcSession::watch_limits(const Source& source, Field& field, double physical, Timestamp now) {
+  const DbcSignal& signal = *field.signal;
+  if (!(signal.minimum < signal.maximum)) return;
+  // Limits are written in decimals: what lies within half a step of one is on it.
+  const double slack =
+      signal.type == DbcValueType::integer ? std::abs(signal.factor) / 2 : (signal.maximum - signal.minimum) * 1e-6;
+  if (physical >= signal.minimum - slack && physical <= signal.maximum + slack) {
+    field.outside = false;
+    return;
+  }
+  ++counters_.outside;
+  if (field.outside || (field.told.known() && now - field.told < kToldAgainAfter)) return;
+  field.outside = true;
+  field.told = now;
+  output_->outside(fmt::format("{}.{} is {:.6g}{}{}, beyond {:.6g} .. {:.6g} of the DBC; it is taken as it is",
+                               source.message->name, signal.name, physical, signal.unit.empty() ? "" : " ",
+                               printable(signal.unit), signal.minimum, signal.maximum));
 }
 
 void DbcSession::reject(const std::string& why) {

@@ -30,7 +30,7 @@ struct DbcPlan {
 };
 
 // Reads the DBC and finds the configured signals in it; unknown names are answered with the nearest ones. All mistakes
-// are told; none where there was one.
+// are told; none where there was one. Warns of signals in a unit that is not SI where the cell file gives no scale.
 [[nodiscard]] std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Diagnostics& diagnostics);
 // The same with a DBC that was read already.
 [[nodiscard]] std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics);
@@ -41,11 +41,15 @@ class DbcSessionOutput {
   virtual void sample(const JointSample& sample) = 0;
   // A frame or a value was refused: "Joint_3: 4 bytes, the DBC says 8".
   virtual void rejected(const std::string& why) = 0;
+  // A signal left the limits that the DBC gives it, and was taken all the same: "Joint_3.Angle is 200 deg, ...". Not
+  // again before it was within them, nor within 10 s.
+  virtual void outside(const std::string& what) = 0;
 };
 
 struct DbcCounters {
   std::uint64_t samples = 0;
   std::uint64_t rejected = 0;
+  std::uint64_t outside = 0;  // values beyond the DBC's limits, which were taken
 };
 
 class DbcSession {
@@ -69,13 +73,16 @@ class DbcSession {
     JointQuantity quantity = JointQuantity::position;
     double scale = 1.0;
     double offset = 0.0;
+    bool outside = false;  // and that was told
+    Timestamp told;
   };
   struct Source {
     const DbcMessage* message = nullptr;
     std::vector<Field> fields;
   };
 
-  void take(const Source& source, const Field& field, const CanFrame& frame, Timestamp now);
+  void take(const Source& source, Field& field, const CanFrame& frame, Timestamp now);
+  void watch_limits(const Source& source, Field& field, double physical, Timestamp now);
   void reject(const std::string& why);
 
   DbcPlan plan_;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/can/cia402/session.hpp"
@@ -73,6 +74,18 @@ class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
 };
 
 }  // namespace
+
+void check_stream(const Cia402StreamConfig& config, Diagnostics& diagnostics) {
+  Cia402StreamConfig sound = config;
+  sound.nodes.clear();
+  for (const Cia402NodeConfig& node : config.nodes) {
+    const bool twice = std::ranges::any_of(sound.nodes, [&](const Cia402NodeConfig& other) {
+      return other.node_id == node.node_id || other.joint == node.joint;
+    });
+    if (node.node_id > 0 && !node.joint_name.empty() && !twice) sound.nodes.push_back(node);
+  }
+  if (!sound.nodes.empty()) static_cast<void>(plan_cia402(sound, diagnostics));
+}
 
 Result<std::unique_ptr<JointStream>> make_cia402_stream(const Cia402StreamConfig& config, const Clock& clock,
                                                         CanStreamOptions options) {

@@ -21,6 +21,8 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
   void describe(JointStreamStatus& status, Timestamp now) const override {
     status.received = session_.counters().samples;
     status.rejected = session_.counters().rejected;
+    if (const std::uint64_t outside = session_.counters().outside; outside > 0)
+      status.details.emplace_back("beyond the DBC's limits", fmt::format("{} values", outside));
     if (!last_sample_.known()) {
       status.condition = fmt::format("no frame of the DBC's messages since {:.1f} s", seconds(now - started_));
     } else if (now - last_sample_ > ages_.stale_after) {
@@ -36,6 +38,7 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
     host_->push(sample);
   }
   void rejected(const std::string& why) override { host_->note(Severity::warning, "rejected", why); }
+  void outside(const std::string& what) override { host_->note(Severity::warning, "limits", what); }
 
   CanProtocolHost* host_;
   StreamAges ages_;
@@ -45,6 +48,14 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
 };
 
 }  // namespace
+
+void check_stream(const DbcStreamConfig& config, Diagnostics& diagnostics) {
+  DbcStreamConfig sound = config;
+  std::erase_if(sound.signals,
+                [](const DbcSignalConfig& signal) { return signal.message.empty() || signal.signal.empty(); });
+  if (sound.dbc_file.empty() || sound.signals.empty()) return;
+  static_cast<void>(plan_dbc(sound, diagnostics));
+}
 
 Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& config, const Clock& clock,
                                                      CanStreamOptions options) {

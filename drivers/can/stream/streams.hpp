@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/can_channel.hpp"
@@ -29,5 +30,11 @@ struct CanStreamOptions {
                                                                       CanStreamOptions options = {});
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& config, const Clock& clock,
                                                                    CanStreamOptions options = {});
+
+// Everything that would keep such a stream from being made, and what makes its values doubtful, at its place in the
+// cell file or in the EDS, DCF or DBC file. What the reader of the cell file refused (empty names, no node, twice the
+// same) is left out: it was told.
+void check_stream(const Cia402StreamConfig& config, Diagnostics& diagnostics);
+void check_stream(const DbcStreamConfig& config, Diagnostics& diagnostics);
 
 }  // namespace cellmirror::can

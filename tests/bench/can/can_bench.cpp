@@ -75,6 +75,7 @@ struct NoOutput : Cia402SessionOutput, DbcSessionOutput {
   }
   void event(const Cia402Event&) override {}
   void rejected(const std::string&) override {}
+  void outside(const std::string&) override {}
 };
 
 void BM_TpdoToSample(benchmark::State& state) {

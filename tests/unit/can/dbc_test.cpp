@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "drivers/can/dbc/session.hpp"
+#include "drivers/can/dbc/unit.hpp"
 #include "tests/unit/can/frames.hpp"
 #include "tests/unit/can/test_data.hpp"
 
@@ -169,11 +170,13 @@ struct Recorder : DbcSessionOutput {
   std::vector<std::string> reasons;
   void sample(const JointSample& s) override { samples.push_back(s); }
   void rejected(const std::string& why) override { reasons.push_back(why); }
+  void outside(const std::string& what) override { beyond.push_back(what); }
+  std::vector<std::string> beyond;
 };
 
 DbcSignalConfig mapped(const char* message, const char* signal, std::size_t joint,
                        JointQuantity quantity = JointQuantity::position, double scale = 1.0, double offset = 0.0) {
-  return {message, signal, joint, "J", quantity, scale, offset};
+  return {message, signal, joint, "J", quantity, scale, offset, scale != 1.0};
 }
 
 struct DbcSessionTest : testing::Test {
@@ -188,7 +191,7 @@ struct DbcSessionTest : testing::Test {
                       mapped("Axes", "Second", 4)};
     Diagnostics diagnostics;
     auto plan = plan_dbc(config, axes(), diagnostics);
-    EXPECT_EQ(diagnostics.text(), "");
+    EXPECT_EQ(diagnostics.errors(), 0U);
     sut = std::make_unique<DbcSession>(std::move(*plan), recorder);
   }
   Recorder recorder;
@@ -276,6 +279,77 @@ TEST(DbcPlan, TellsAllUnknownNamesWithTheNearest) {
   EXPECT_EQ(diagnostics.errors(), 3U);
   EXPECT_THAT(diagnostics.text(), HasSubstr("Axis_1"));
   EXPECT_THAT(diagnostics.text(), HasSubstr("did you mean Position"));
+}
+
+TEST_F(DbcSessionTest, ValuesBeyondTheLimitsOfTheDbcAreTakenAndToldOnceAnOccurrence) {
+  const auto at = [this](std::int32_t thousandths, std::int64_t ms) {
+    const auto raw = static_cast<std::uint32_t>(thousandths);
+    const auto byte = [raw](int i) { return static_cast<std::uint8_t>(raw >> (8 * i)); };
+    sut->receive(frame(0x100, {byte(0), byte(1), byte(2), byte(3), 0, 0, 0, 0}), {1 + ms * 1'000'000});
+  };
+  at(180'000, 0);  // on the limit
+  EXPECT_TRUE(recorder.beyond.empty());
+  at(200'500, 1);
+  at(201'000, 2);
+  ASSERT_EQ(recorder.beyond.size(), 1U);
+  EXPECT_EQ(recorder.beyond[0], "Axis_1.Position is 200.5 deg, beyond -180 .. 180 of the DBC; it is taken as it is");
+  EXPECT_DOUBLE_EQ(recorder.samples.back().position[0], 201.0 * std::numbers::pi / 180 + 0.25);
+  EXPECT_EQ(sut->counters().outside, 2U);
+  EXPECT_EQ(sut->counters().rejected, 0U);
+  for (std::int64_t ms = 3; ms < 1000; ++ms) at(ms % 2 == 0 ? 190'000 : 0, ms);
+  EXPECT_EQ(recorder.beyond.size(), 1U) << "one that swings about its limit fills no log";
+  at(190'000, 20'000);
+  EXPECT_EQ(recorder.beyond.size(), 2U);
+}
+
+TEST_F(DbcSessionTest, EqualLimitsAreNone) {
+  sut->receive(extended_frame(2566844416U - 0x80000000U, {0x7F, 0xFF, 0, 0, 0, 0, 0, 0}), {1});
+  ASSERT_EQ(recorder.samples.size(), 1U);
+  EXPECT_TRUE(recorder.beyond.empty());
+}
+
+TEST(DbcPlan, WarnsOfAUnitThatIsNotSiWhereNoScaleIsGiven) {
+  DbcStreamConfig config;
+  config.signals = {mapped("Axis_1", "Position", 0), mapped("Axis_3", "Position", 1)};
+  config.signals[0].place = {"cell.toml", 12, 10};
+  Diagnostics diagnostics;
+  EXPECT_TRUE(plan_dbc(config, axes(), diagnostics));
+  EXPECT_EQ(diagnostics.text(),
+            "cell.toml:12:10: warning: signal Axis_1.Position is in deg and scale is 1; write scale = "
+            "0.017453292519943295\n");
+  config.signals[0].scale_given = true;
+  diagnostics = {};
+  EXPECT_TRUE(plan_dbc(config, axes(), diagnostics));
+  EXPECT_EQ(diagnostics.text(), "") << "1 is meant where it is written";
+}
+
+TEST(DbcUnit, IsKnownInItsUsualSpellings) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  for (const char* degree : {"deg", "Deg", " degrees ", "\xB0", "\xC2\xB0", "deg/s"})
+    EXPECT_EQ(si_scale_of(degree), kDegree);
+  EXPECT_EQ(si_scale_of("rev"), 2 * std::numbers::pi);
+  EXPECT_EQ(si_scale_of("rpm"), 2 * std::numbers::pi / 60);
+  EXPECT_EQ(si_scale_of("mm"), 1e-3);
+  EXPECT_EQ(si_scale_of("mNm"), 1e-3);
+  EXPECT_EQ(si_scale_of("kNm"), 1e3);
+  for (const char* other : {"", "rad", "rad/s", "m", "Nm", "N", "%", "MNm", "furlong"})
+    EXPECT_EQ(si_scale_of(other), std::nullopt);
+}
+
+TEST(DbcPlan, MistakesStandAtTheirPlaceInTheCellFile) {
+  DbcStreamConfig config;
+  config.place = {"cell.toml", 3, 1};
+  config.signals = {mapped("Axis1", "Position", 0, JointQuantity::velocity),
+                    mapped("Axis_1", "Positon", 1, JointQuantity::velocity)};
+  config.signals[0].message_place = {"cell.toml", 8, 11};
+  config.signals[1].place = {"cell.toml", 13, 10};
+  Diagnostics diagnostics;
+  EXPECT_FALSE(plan_dbc(config, axes(), diagnostics));
+  for (const char* expected : {"cell.toml:8:11: error: the DBC has no message Axis1",
+                               "cell.toml:13:10: error: the message Axis_1 has no signal Positon",
+                               "cell.toml:3:1: error: none of the signals is a position"}) {
+    EXPECT_THAT(diagnostics.text(), HasSubstr(expected));
+  }
 }
 
 TEST(DbcPlan, MissingFileIsTold) {

@@ -464,5 +464,16 @@ TEST(Cia402Plan, TellsAllMistakes) {
   }
 }
 
+TEST(Cia402Plan, MistakesStandAtTheNodeInTheCellFile) {
+  Cia402StreamConfig config;
+  config.nodes = {node(6, 0)};
+  config.nodes[0].place = {"cell.toml", 20, 1};
+  config.nodes[0].tpdos = {{.number = 5, .entries = {{0x6041, 0, 16}}}};
+  Diagnostics diagnostics;
+  EXPECT_FALSE(plan_cia402(config, diagnostics));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:20:1: error: node 6 (J_1): TPDO5 needs a COB-ID"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:20:1: error: node 6 (J_1): no TPDO holds"));
+}
+
 }  // namespace
 }  // namespace cellmirror::can

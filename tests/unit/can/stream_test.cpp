@@ -361,6 +361,60 @@ TEST(DbcStream, MirrorsSignals) {
   EXPECT_EQ((*sut)->status().kind, "can-dbc");
 }
 
+TEST(StreamCheck, LeavesOutWhatTheReaderOfTheCellFileRefused) {
+  DbcStreamConfig dbc;
+  dbc.dbc_file = can_data("axes.dbc");
+  dbc.signals = {{"", "Position", 0, "J_1", JointQuantity::position, 1.0, 0.0},
+                 {"Axis_3", "Angle", 1, "J_2", JointQuantity::position, 1.0, 0.0}};
+  Diagnostics found;
+  check_stream(dbc, found);
+  EXPECT_EQ(found.errors(), 1U) << found.text();
+  EXPECT_THAT(found.text(), HasSubstr("the message Axis_3 has no signal Angle"));
+  dbc.dbc_file.clear();
+  found = {};
+  check_stream(dbc, found);
+  EXPECT_EQ(found.text(), "");
+
+  Cia402StreamConfig drives;
+  Cia402NodeConfig known;
+  known.node_id = 3;
+  known.joint_name = "J_1";
+  Cia402NodeConfig unknown_joint = known;
+  unknown_joint.node_id = 4;
+  unknown_joint.joint_name.clear();
+  Cia402NodeConfig faulty = known;
+  faulty.node_id = 5;
+  faulty.joint = 1;
+  faulty.joint_name = "J_2";
+  faulty.tpdos = {{.number = 1, .entries = {{0x6041, 0, 16}}}};
+  drives.nodes = {known, unknown_joint, known, faulty};
+  check_stream(drives, found);
+  EXPECT_EQ(found.errors(), 1U) << found.text();
+  EXPECT_THAT(found.text(), HasSubstr("node 5 (J_2): no TPDO holds"));
+}
+
+TEST(DbcStream, TellsValuesBeyondTheLimitsOfTheDbc) {
+  VirtualCanBus bus;
+  const auto robot = bus.connect("robot");
+  SystemClock clock;
+  Sink sink;
+  DbcStreamConfig config;
+  config.dbc_file = can_data("axes.dbc");
+  config.signals = {{"Axis_1", "Position", 0, "J_1", JointQuantity::position, 0.01, 0.0}};
+  CanStreamOptions options;
+  options.open_channel = [&bus](const CanChannelConfig&) {
+    return Result<std::unique_ptr<CanChannel>>(bus.connect("dbc"));
+  };
+  auto sut = make_dbc_stream(config, clock, options);
+  ASSERT_TRUE(sut) << sut.error().text();
+  ASSERT_TRUE((*sut)->open(sink));
+  robot->send(frame(0x100, {0x40, 0x0D, 0x03, 0, 0, 0, 0, 0}));  // 200 deg
+  ASSERT_TRUE(becomes_true([&] { return sink.count == 1; }));
+  const JointStreamStatus status = (*sut)->status();
+  EXPECT_THAT(status.last_errors, testing::ElementsAre(HasSubstr("Axis_1.Position is 200 deg, beyond -180 .. 180")));
+  EXPECT_THAT(status.details, testing::Contains(testing::Pair("beyond the DBC's limits", "1 values")));
+}
+
 TEST(RateMeter, CountsTheLastSecond) {
   RateMeter sut;
   for (int i = 0; i < 3000; ++i) sut.note({i * 1'000'000LL});
