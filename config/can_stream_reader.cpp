@@ -74,6 +74,7 @@ double read_scale(TableReader& reader, JointKind kind) {
 
 Cia402NodeConfig read_node(TableReader& reader, const RobotFacts* robot, const FileFinder& files) {
   Cia402NodeConfig node;
+  node.place = reader.place();
   reader.require("id");
   node.node_id = static_cast<std::uint8_t>(reader.integer("id", 1, 127).value_or(0));
   if (node.node_id > 0) {
@@ -122,6 +123,7 @@ void refuse_twice(const TableReader& reader, const Items& items, Member member, 
 
 Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, const FileFinder& files) {
   Cia402StreamConfig config;
+  config.place = reader.place();
   config.channel = read_channel(reader, files);
   config.ages = read_ages(reader);
   config.start_nodes = reader.boolean("start_nodes").value_or(true);
@@ -146,6 +148,7 @@ Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, con
 
 DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const FileFinder& files) {
   DbcStreamConfig config;
+  config.place = reader.place();
   config.channel = read_channel(reader, files);
   config.ages = read_ages(reader);
   reader.require("dbc");
@@ -155,6 +158,8 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
     DbcSignalConfig signal;
     item.require("message");
     item.require("signal");
+    signal.place = item.place("signal");
+    signal.message_place = item.place("message");
     signal.message = item.text("message").value_or("");
     signal.signal = item.text("signal").value_or("");
     if (const auto joint = read_joint_reference(item, robot)) {
@@ -166,7 +171,11 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
                                                               {"effort", JointQuantity::effort}})
                           .value_or(JointQuantity::position);
     signal.scale = item.number("scale").value_or(1.0);
-    if (signal.scale == 0.0) item.error("scale", "scale is 0", "the value would always be the offset");
+    signal.scale_given = item.has("scale");
+    if (signal.scale == 0.0) {
+      item.error("scale", "scale is 0", "the value would always be the offset");
+      signal.scale = 1.0;  // so that it is told once
+    }
     signal.offset = item.number("offset").value_or(0.0);
     item.finish();
     const bool twice = std::ranges::any_of(config.signals, [&](const DbcSignalConfig& other) {

@@ -49,9 +49,22 @@ class ProgressOfFiles {
   MeshLibrary& meshes_;
 };
 
+// What is wrong in the cell file itself is put to its other findings.
+void check_streams(const CellReader& reader, const std::string& file, const StreamCheck& check, Diagnostics& of_cell,
+                   Diagnostics& of_others) {
+  if (!check) return;
+  for (const RobotStream& stream : reader.streams) {
+    Diagnostics found;
+    check(stream, found);
+    for (const Diagnostic& diagnostic : found.all())
+      (diagnostic.place.file == file ? of_cell : of_others).add(diagnostic);
+  }
+}
+
 }  // namespace
 
-std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnostics, const LoadProgress& progress) {
+std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnostics, const LoadProgress& progress,
+                                    const StreamCheck& check_stream) {
   const Place whole_file{path.string(), 0, 0};
   const auto refuse = [&](const Error& error) {
     diagnostics.error(whole_file, error.what, error.remedy);
@@ -67,11 +80,14 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
   const bool readable = reader.read(*text);
   auto source = std::make_shared<ComponentFiles>(files);
   Diagnostics of_components;
+  Diagnostics of_streams;
+  Diagnostics of_bus_files;
   std::optional<Cell> cell;
   if (readable) {
     source->load(reader.root, of_components);
     reader.read_streams(source->robots(), true);
     reader.read_haptics(source->robots(), true);
+    check_streams(reader, path.string(), check_stream, of_streams, of_bus_files);
     // Findings so far keep Cell::build() from giving a cell, but not from looking on.
     Diagnostics building = of_components;
     building.take(reader.findings);
@@ -87,9 +103,11 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
   }
   collision::Settings collision;
   if (cell) collision = reader.collision.settings(*cell, reader.findings);
-  if (!reader.findings.ok() || !of_layout.ok()) cell.reset();
+  reader.findings.take(of_streams);
+  if (!reader.findings.ok() || !of_layout.ok() || !of_bus_files.ok()) cell.reset();
   take_sorted(diagnostics, reader.findings);
   diagnostics.take(of_components);
+  diagnostics.take(of_bus_files);
   diagnostics.take(of_layout);
   source->release();
   if (!cell) return std::nullopt;

@@ -40,6 +40,9 @@ struct LoopSettings {
 struct RobotStream {
   std::string robot;
   StreamConfig config;
+  // Their position comes from nowhere; empty where the table has errors, which may be why.
+  std::vector<std::string> joints_without_position = {};
+  Place place = {};  // of the table
 };
 
 // The haptic device that drives one robot, and the shared memory where its process meets the gateway.
@@ -92,9 +95,13 @@ struct LoadedCell {
 // `what` is the next one's name. The files are counted first; `total` grows where files appear meanwhile.
 using LoadProgress = std::function<void(std::size_t done, std::size_t total, std::string_view what)>;
 
+// Asked about each stream that could be read, also where the cell has errors: what its driver finds wrong with it.
+using StreamCheck = std::function<void(const RobotStream& stream, Diagnostics& diagnostics)>;
+
 // Nothing where there is any error; all findings of all files in `diagnostics`, each with file:line:column.
 [[nodiscard]] std::optional<LoadedCell> load_cell(const std::filesystem::path& path, Diagnostics& diagnostics,
-                                                  const LoadProgress& progress = {});
+                                                  const LoadProgress& progress = {},
+                                                  const StreamCheck& check_stream = {});
 
 // `cellmirror check` of a .toml (with all it refers to), .mpc or .urdf file. The home of a component is $kis_home, else
 // the nearest folder above it that holds a cell.toml, else its own folder. Other extensions are an error.

@@ -89,9 +89,10 @@ void ComponentFiles::visit_node(const Component& component, const ComponentNode&
   const auto path = files_.find(FileUse::component, node.abstract->file);
   if (!path) {
     // Told once for each place in a file, however often that file is used.
-    const std::string place = fmt::format("{}:{}:{}", component.file, node.line, node.column);
-    if (faulty_references_.emplace(place, true).second)
-      diagnostics.error(component.place(node), path.error().what, path.error().remedy);
+    const Place whole_node = component.place(node);
+    const Place named{whole_node.file, node.abstract->line, node.abstract->column};
+    if (faulty_references_.emplace(fmt::format("{}:{}:{}", named.file, named.line, named.column), true).second)
+      diagnostics.error(named.line > 0 ? named : whole_node, path.error().what, path.error().remedy);
     return;
   }
   auto [at, is_new] = entries_.try_emplace(Key(path->string(), node.abstract->collide_as));

@@ -117,6 +117,8 @@ void NodeReader::read_abstract(TableReader& reader, ComponentNode& node) const {
     reader.error("abstract", "a joint cannot have an ABSTRACT file", "give it to a frame below the joint");
   AbstractReference reference;
   reference.file = file.value_or("");
+  reference.line = reader.place("abstract").line;
+  reference.column = reader.place("abstract").column;
   reference.loaded = loaded.value_or(node.shown == Shown::detail);
   if (!reference.loaded && node.shown == Shown::detail) {
     reader.error("loaded", "a component that is not loaded cannot be shown in detail",

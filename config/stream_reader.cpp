@@ -136,6 +136,8 @@ const RobotFacts* find_robot(const TableReader& reader, const std::string& robot
 std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory& robots, bool complete,
                                        const FileFinder& files) {
   RobotStream stream;
+  stream.place = reader.place();
+  const std::size_t errors_before = reader.diagnostics().errors();
   reader.require("robot");
   reader.require("kind");
   const auto robot = reader.text("robot");
@@ -160,6 +162,11 @@ std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory
       break;
   }
   reader.finish();
+  const bool sound = reader.diagnostics().errors() == errors_before;
+  const std::uint32_t given = joints_given_by(stream.config);
+  for (std::size_t i = 0; sound && facts != nullptr && i < facts->joint_names.size(); ++i) {
+    if ((given >> i & 1U) == 0) stream.joints_without_position.push_back(facts->joint_names[i]);
+  }
   return stream;
 }
 

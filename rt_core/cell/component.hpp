@@ -97,6 +97,8 @@ struct AbstractReference {
   std::string robot_flange;
   // Of the component's meshes, where its file does not say otherwise.
   std::optional<CollideAs> collide_as = std::nullopt;
+  int line = 0;  // where the file is named
+  int column = 0;
 };
 
 struct ComponentNode {

@@ -204,6 +204,73 @@ tpdo = [{ number = 1, transmission_type = 1, event_timer_s = 0.01, entries = [{ 
   EXPECT_EQ(stream.nodes.at(1).tpdos.at(0).event_timer_ms, 10);
 }
 
+TEST_F(CellFile, namesJointsThatAStreamGivesNoPositionOf) {
+  home.write("robots/arm.dbc", "VERSION \"\"\n");
+  const std::string head = "[[node]]\nname = \"Arm\"\nabstract = \"arm.mpc\"\n[[stream]]\nrobot = \"ARM\"\n";
+  const std::string dbc = "kind = \"can-dbc\"\nchannel = \"socketcan:can0\"\ndbc = \"arm.dbc\"\n";
+  const std::string position = "[[stream.signal]]\nmessage = \"M\"\nsignal = \"A\"\njoint = \"J_1\"\n";
+  const std::string velocity =
+      "[[stream.signal]]\nmessage = \"M\"\nsignal = \"V\"\njoint = \"J_2\"\nquantity = \"velocity\"\n";
+  const auto missing = [&](const std::string& text) {
+    const auto sut = load(head + text);
+    EXPECT_TRUE(sut) << findings();
+    return sut ? sut->streams.at(0).joints_without_position : std::vector<std::string>{"?"};
+  };
+  EXPECT_THAT(missing(dbc + position + velocity), testing::ElementsAre("J_2"));
+  EXPECT_EQ(diagnostics.text(), "") << "whoever mirrors the robot tells it";
+  EXPECT_THAT(missing("kind = \"can-cia402\"\nchannel = \"socketcan:can0\"\n"
+                      "node = [{ id = 1, joint = \"J_2\", increments_per_m = 1 }]\n"),
+              testing::ElementsAre("J_1"));
+  EXPECT_THAT(missing("kind = \"dds\"\njoint = [{ joint = \"J_2\" }]\n"), testing::ElementsAre("J_1"));
+  EXPECT_THAT(missing("kind = \"dds\"\n"), testing::IsEmpty());
+}
+
+TEST_F(CellFile, knowsWhereTheSignalsAndNodesOfStreamsStand) {
+  home.write("robots/arm.dbc", "VERSION \"\"\n");
+  const std::string head = "[[node]]\nname = \"Arm\"\nabstract = \"arm.mpc\"\n[[stream]]\nrobot = \"ARM\"\n";
+  const auto sut = load(head +
+                        "kind = \"can-dbc\"\nchannel = \"socketcan:can0\"\ndbc = \"arm.dbc\"\n"
+                        "[[stream.signal]]\nmessage = \"M\"\nsignal = \"A\"\njoint = \"J_1\"\nscale = 1\n");
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->streams.at(0).place.line, 6);
+  const auto& dbc = std::get<DbcStreamConfig>(sut->streams.at(0).config);
+  EXPECT_EQ(dbc.place.line, 6);
+  EXPECT_EQ(dbc.signals.at(0).message_place.line, 12);
+  EXPECT_EQ(dbc.signals.at(0).place.line, 13);
+  EXPECT_EQ(dbc.signals.at(0).place.column, 10);
+  EXPECT_TRUE(dbc.signals.at(0).scale_given);
+  const auto drives = load(head +
+                           "kind = \"can-cia402\"\nchannel = \"socketcan:can0\"\n"
+                           "[[stream.node]]\nid = 1\njoint = \"J_1\"\nincrements_per_rad = 1\n");
+  ASSERT_TRUE(drives) << findings();
+  EXPECT_EQ(std::get<Cia402StreamConfig>(drives->streams.at(0).config).nodes.at(0).place.line, 10);
+}
+
+TEST_F(CellFile, streamsAreCheckedBesideOtherErrorsAndTheirFindingsAreSortedIn) {
+  const std::string text = R"(colour = "red"
+[[node]]
+name = "Arm"
+abstract = "arm.mpc"
+[[stream]]
+robot = "ARM"
+kind = "dds"
+[startup]
+script = "missing.spt"
+)";
+  const auto path = home.write("cell.toml", "format = 1\nname = \"c\"\n" + text);
+  diagnostics = {};
+  EXPECT_FALSE(load_cell(path, diagnostics, {}, [&](const RobotStream& stream, Diagnostics& found) {
+    found.error(stream.place, "of the stream of " + stream.robot);
+    found.error({"drive.eds", 1, 1}, "of the bus");
+  }));
+  const std::string told = findings();
+  EXPECT_THAT(told, HasSubstr("cell.toml:7:1: error: of the stream of ARM"));
+  EXPECT_LT(told.find("cell.toml:3:1"), told.find("cell.toml:7:1"));
+  EXPECT_LT(told.find("cell.toml:7:1"), told.find("cell.toml:11:10"));
+  EXPECT_THAT(told, HasSubstr("drive.eds:1:1: error: of the bus"));
+  EXPECT_EQ(diagnostics.errors(), 4U) << told;
+}
+
 TEST_F(CellFile, channelsHaveTheirForms) {
   home.write("run.log", "(1.0) can0 123#00\n");
   const auto channel = [&](const std::string& endpoint, const std::string& more = "") {
@@ -255,7 +322,7 @@ script = "missing.spt"
 )"));
   EXPECT_EQ(diagnostics.errors(), 10U) << findings();
   for (const char* expected :
-       {"cell.toml:4:1: error: the key colour", "cell.toml:11:1: error: the file envlib/gone.mpc",
+       {"cell.toml:4:1: error: the key colour", "cell.toml:13:12: error: the file envlib/gone.mpc",
         "cell.toml:14:1: error: there is no", "cell.toml:18:11: error: [loop]: rate_hz is 5000",
         "cell.toml:19:13: error: [loop]: real_time cannot be \"sometimes\"",
         "cell.toml:21:9: error: stream of ARMM: there is no robot ARMM; did you mean ARM?",
