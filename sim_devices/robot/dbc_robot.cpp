@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "rt_core/base/text.hpp"
 
@@ -92,10 +93,10 @@ void DbcRobot::take_in(const can::DbcMessage& message, const can::DbcSignal& sig
     return frame.start.id == start.id && frame.start.extended == start.extended && frame.start.data == start.data;
   });
   if (same == frames_.end()) {
-    frames_.push_back({message, start, {{signal, config}}, joint});
+    frames_.push_back({message, start, {{signal, config, false}}, joint});
     return;
   }
-  same->entries.push_back({signal, config});
+  same->entries.push_back({signal, config, false});
   if (same->joint != joint) same->joint = 0;
 }
 
@@ -113,20 +114,33 @@ void DbcRobot::work(Timestamp now) {
     std::fill(values_.begin(), values_.end(), JointValue{});
     motion_->at(motion_time_s(now), values_);
     pipeline_.schedule().shape(now, config_.robot, values_);
-    for (const Frame& frame : frames_) send_frame(frame, now);
+    for (Frame& frame : frames_) send_frame(frame, now);
   }
   flush(now);
 }
 
-void DbcRobot::send_frame(const Frame& frame, Timestamp now) {
+void DbcRobot::send_frame(Frame& frame, Timestamp now) {
   const Source source{config_.robot, frame.joint};
   if (!pipeline_.schedule().alive(now, source)) return;
   CanFrame filled = frame.start;
-  for (const Entry& entry : frame.entries) {
+  for (Entry& entry : frame.entries) {
     const double value = quantity_of(values_[entry.config.joint], entry.config.quantity);
-    can::put_physical_value(entry.signal, (value - entry.config.offset) / entry.config.scale, data_of(filled));
+    const double physical = (value - entry.config.offset) / entry.config.scale;
+    can::put_physical_value(entry.signal, physical, data_of(filled));
+    note_fit(frame, entry, physical, filled);
   }
   pipeline_.push(now, {now, source, MessageKind::sample, filled});
+}
+
+void DbcRobot::note_fit(const Frame& frame, Entry& entry, double wanted, const CanFrame& filled) {
+  if (entry.signal.type != can::DbcValueType::integer || !std::isfinite(wanted)) return;
+  const double sent = can::physical_value(entry.signal, filled.payload());
+  if (std::abs(sent - wanted) <= std::abs(entry.signal.factor)) return;
+  ++did_not_fit_;
+  if (entry.too_small) return;
+  entry.too_small = true;
+  fmt::print(stderr, "sim_robot: {:.6g} does not fit into {}.{}, {:.6g} is sent\n", wanted, frame.message.name,
+             entry.signal.name, sent);
 }
 
 void DbcRobot::wait_until(Timestamp t) {
@@ -154,6 +168,7 @@ DeviceStatus DbcRobot::status(Timestamp now) const {
   DeviceStatus status = common_status(now);
   status.missed_periods = pacer_.missed();
   status.details.emplace_back("frames_of_a_sample", frames_.size());
+  status.details.emplace_back("values_that_did_not_fit", did_not_fit_);
   return status;
 }
 

@@ -42,6 +42,7 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
   struct Entry {
     can::DbcSignal signal;
     DbcSignalConfig config;
+    bool too_small = false;  // a value did not fit, and that was told
   };
   // What one frame holds: the signals of a message that can be in it together.
   struct Frame {
@@ -53,7 +54,9 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
 
   DbcRobot(const DbcRobotConfig& config, std::unique_ptr<MotionSource> motion, std::unique_ptr<CanChannel> channel);
   void take_in(const can::DbcMessage& message, const can::DbcSignal& signal, const DbcSignalConfig& config);
-  void send_frame(const Frame& frame, Timestamp now);
+  void send_frame(Frame& frame, Timestamp now);
+  // What is sent instead of a value that the signal cannot hold is told once a signal.
+  void note_fit(const Frame& frame, Entry& entry, double wanted, const CanFrame& filled);
   [[nodiscard]] Result<void> check(const FaultSpec& spec) const override;
   bool transmit(const CanFrame& frame) override { return channel_->send(frame); }
 
@@ -63,6 +66,7 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
   std::vector<Frame> frames_;
   std::vector<JointValue> values_;
   Pacer pacer_;
+  std::uint64_t did_not_fit_ = 0;
 };
 
 }  // namespace cellmirror::sim
