@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
 namespace cellmirror::app {
@@ -21,6 +25,21 @@ constexpr std::chrono::milliseconds kIdleWait{50};    // messages expire from th
 constexpr std::chrono::milliseconds kHapticWait{10};  // how soon a device that has vanished is noticed
 constexpr std::chrono::milliseconds kMovingWait{1};   // how soon an arrival is noticed, and WAIT goes on
 
+constexpr std::string_view kScripts = "scripts";
+constexpr std::string_view kScriptExtension = ".spt";
+
+// Of a name that is no path from where the program was started: a file of the home's scripts/, with or without that
+// folder in front.
+Result<std::filesystem::path> startup_file(const KismetHome& home, const std::string& script) {
+  const std::filesystem::path name(script);
+  if (name.is_absolute()) return fail(fmt::format("the SCRIPT file {} does not exist", printable(script)));
+  auto found = home.file(kScripts, script, kScriptExtension);
+  if (!found && *name.begin() == kScripts) found = home.file("", script, kScriptExtension);
+  if (!found && found.error().remedy.empty())
+    found.error().remedy = "name any path, or a file of the cell's scripts/ as EXEC_SCRIPT does";
+  return found;
+}
+
 }  // namespace
 
 CellOwner::CellOwner(Parts parts)
@@ -31,9 +50,10 @@ CellOwner::CellOwner(Parts parts)
       reply_(std::move(parts.reply)),
       names_(cell_),
       fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
-      display_({cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
-                std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }},
-               parts.views, std::move(parts.layout)),
+      display_(
+          {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
+           std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},
+          parts.views, std::move(parts.layout)),
       motion_(
           cell_, names_, [this] { return display_.screen_axes(); }, *fleet_),
       couplings_(cell_, *fleet_, motion_),
@@ -77,7 +97,9 @@ Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
   if (auto prepared = switches_->prepare(); !prepared) return prepared;
   hang_up_picture();
   if (script.empty()) return {};
-  auto started = is_path ? runner_->start_path(script) : runner_->start_file(script);
+  const auto path = is_path ? Result<std::filesystem::path>(script) : startup_file(home_, script);
+  if (!path) return std::unexpected(path.error());
+  auto started = runner_->start_path(*path);
   if (!started) return std::unexpected(started.error());
   return {};
 }

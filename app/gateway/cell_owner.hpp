@@ -75,6 +75,7 @@ class CellOwner {
     std::function<void(const Diagnostics& findings)> refused = {};  // with each command of a file that is refused
     std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};  // to the tick
     std::function<void(const program::ProgramEvent&)> program_event = {};
+    std::function<void(const ShownText& message)> message_shown = {};
   };
 
   explicit CellOwner(Parts parts);
@@ -84,7 +85,7 @@ class CellOwner {
   CellOwner& operator=(const CellOwner&) = delete;
 
   // Before start(): gives the tick its robots, hangs up the first picture, and begins the startup script, if any
-  // (`script`: a file of the home's scripts/, or any path where `is_path`).
+  // (`script`: any path where `is_path`, else a file of the home's scripts/, with or without that folder in front).
   Result<void> prepare(const std::string& script, bool is_path);
   void start();
   [[nodiscard]] bool running() const { return thread_.joinable(); }

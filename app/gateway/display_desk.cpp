@@ -205,3 +205,4 @@ Result<void> DisplayDesk::show_message(std::string_view text) {
 }
 
 }  // namespace cellmirror::app
+  if (parts_.message_shown) parts_.message_shown(state_.messages.back());

@@ -44,6 +44,7 @@ class DisplayDesk final : public DisplayHost {
     std::function<std::uint64_t()> picture_updates;           // so far; empty: by the clock, at the nominal rate
     std::function<void()> bell;                               // with a message while BEEP is on; empty: none
     std::function<bool(std::size_t slot)> is_online;          // the robot is mirrored now; empty: none ever is
+    std::function<void(const ShownText& message)> message_shown = {};  // with every message; the state keeps the newest
   };
 
   DisplayDesk(Parts parts, std::span<const ViewSetting> settings, DisplayLayout layout = {});

@@ -196,7 +196,7 @@ Result<MotionGoal> MotionDesk::point(const RobotModel& robot, MotionRecord& reco
   if (!answer) return std::unexpected(answer.error());
   if (!answer->solved) {
     const Pose X_ZN = answer->solutions.empty() ? *X_ZG : record.kinematics.X_ZT(answer->solutions.front().q);
-    return std::unexpected(unreachable(robot, *answer, X_ZN));
+    return std::unexpected(unreachable(robot, *answer, *X_ZG, X_ZN));
   }
   return MotionGoal{answer->solutions.front().q, commanded_pose(task, *X_ZG), record.kinematics.chain()};
 }
@@ -221,7 +221,7 @@ Result<PlannedMove> MotionDesk::plan(const RobotModel& robot, MotionRecord& reco
   const bool on_the_way = start == motion::Start::supersede && record.pending.in_flight();
   const JointValues& first = on_the_way ? port_.positions()[robot.slot()] : from.joints;
   auto plan = motion::plan_linear_move(chain, robot.parameters(), first, *X_ZG);
-  if (!plan) return std::unexpected(line_refused(robot, std::move(plan.error())));
+  if (!plan) return std::unexpected(line_refused(robot, std::move(plan.error()), *X_ZG));
   const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
   return PlannedMove{plan->move, {plan->end, commanded_pose(task, *X_ZG), record.kinematics.chain()}};
 }

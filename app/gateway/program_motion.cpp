@@ -138,7 +138,7 @@ Result<PlannedMove> CellProgramMotion::plan_joints(const Scene& scene, const Mov
     if (!answer) return std::unexpected(answer.error());
     if (!answer->solved) {
       const Pose X_ZN = answer->solutions.empty() ? *X_ZG : scene.arm.kinematics.X_ZT(answer->solutions.front().q);
-      return std::unexpected(unreachable(scene.robot, *answer, X_ZN));
+      return std::unexpected(unreachable(scene.robot, *answer, *X_ZG, X_ZN));
     }
     goal.joints = answer->solutions.front().q;
     goal.X_ZT = commanded_pose(task, *X_ZG);
@@ -164,7 +164,7 @@ Result<PlannedMove> CellProgramMotion::plan_path(const Scene& scene, const MoveC
   } else {
     path = motion::plan_linear_move(chain, scene.parameters, scene.from.joints, *X_ZG);
   }
-  if (!path) return std::unexpected(line_refused(scene.robot, std::move(path.error())));
+  if (!path) return std::unexpected(line_refused(scene.robot, std::move(path.error()), *X_ZG));
   const kinematics::Task task = scene.arm.kinematics.task(scene.parameters.inverse_class);
   return PlannedMove{path->move, {path->end, commanded_pose(task, *X_ZG), scene.arm.kinematics.chain()}};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "rt_core/base/units.hpp"
 
@@ -41,9 +42,22 @@ std::string unmet_components(const kinematics::Twist& error) {
   return text;
 }
 
+// A target within a hand's breadth of the robot's own zero point: its lengths were likely written in metres.
+std::string lengths_in_metres(const Pose& X_ZG) {
+  constexpr double kNearZero = 0.01;  // m
+  const Eigen::Vector3d p = X_ZG.translation() / kMPerMm;
+  if (X_ZG.translation().norm() >= kNearZero) return {};
+  return fmt::format("lengths are in mm, and x {:.3g} y {:.3g} z {:.3g} mm is nearly the robot's own zero point", p.x(),
+                     p.y(), p.z());
+}
+
 }  // namespace
 
-Error line_refused(const RobotModel& robot, Error why) {
+Error line_refused(const RobotModel& robot, Error why, const Pose& X_ZG) {
+  if (std::string metres = lengths_in_metres(X_ZG); !metres.empty()) {
+    why.remedy = std::move(metres);
+    return why;
+  }
   if (robot.joint_count() >= kJointsForAnyPose) return why;
   why.what += fmt::format("; {} has {} joints", robot.id(), robot.joint_count());
   why.remedy += why.remedy.empty() ? "" : "; ";
@@ -58,13 +72,15 @@ std::string pose_for_people(const Pose& X) {
                      tidy(p.y()), tidy(p.z()), tidy(rpy.x()), tidy(rpy.y()), tidy(rpy.z()));
 }
 
-Error unreachable(const RobotModel& robot, const inverse_kinematics::Answer& answer, const Pose& X_ZN) {
+Error unreachable(const RobotModel& robot, const inverse_kinematics::Answer& answer, const Pose& X_ZG,
+                  const Pose& X_ZN) {
   std::string what = fmt::format("{} cannot reach this pose", robot.id());
   if (!answer.solutions.empty()) {
     const kinematics::Twist& error = answer.solutions.front().error;
     what += fmt::format("; the nearest that was found is {} mm and {} degrees away: {}",
                         short_number(mm_from_m(error.head<3>().norm())),
                         short_number(deg_from_rad(error.tail<3>().norm())), pose_for_people(X_ZN));
+    if (std::string metres = lengths_in_metres(X_ZG); !metres.empty()) return {std::move(what), std::move(metres)};
     if (robot.joint_count() < kJointsForAnyPose) {
       const std::string unmet = unmet_components(error);
       if (!unmet.empty()) what += fmt::format("; with {} joints it does not meet {}", robot.joint_count(), unmet);

@@ -21,7 +21,8 @@ std::optional<ImageFormat> picture_format(std::string_view file_name) {
 
 Result<void> write_picture_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   const auto failed = [&] {
-    return fail(fmt::format("{} cannot be written: {}", path.string(), std::strerror(errno)));
+    return fail(fmt::format("{} cannot be written: {}", path.string(), std::strerror(errno)),
+                "name a file in a folder of yours");
   };
   // A device or a pipe is written as it is.
   std::error_code error;

@@ -47,7 +47,8 @@ OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
       .let_tick_pass = [this] { tick(); },
       .refused = [this](const Diagnostics& findings) { observer_.refused(findings); },
       .move_given = [this](std::string_view robot, const motion::Move& move) { observer_.move(robot, move); },
-      .program_event = [this](const program::ProgramEvent& event) { observer_.program(event); }});
+      .program_event = [this](const program::ProgramEvent& event) { observer_.program(event); },
+      .message_shown = [this](const ShownText& message) { observer_.message(message); }});
 }
 
 Result<void> OffLineGateway::begin(const std::string& script, bool is_path) {

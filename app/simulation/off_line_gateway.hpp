@@ -17,12 +17,13 @@
 
 namespace cellmirror::app {
 
-// Who looks on. Each call is within tick(), on the one thread.
+// Who looks on. Each call is within begin(), work() or tick(), on the one thread.
 struct OffLineObserver {
   std::function<void(const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick)> tick;
   std::function<void(std::string_view robot, const motion::Move& move)> move;  // that the tick is given
   std::function<void(const Diagnostics& findings)> refused;                    // a command of a SCRIPT file
   std::function<void(const program::ProgramEvent& event)> program;
+  std::function<void(const ShownText& message)> message;
 };
 
 class OffLineGateway {

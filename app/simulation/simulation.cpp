@@ -58,9 +58,9 @@ class Simulation {
     observer.tick = [this](const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick) {
       motion_.observe(picture, tick);
       if (options_.collisions) collisions_.observe(picture, tick);
-      if (picture->display != display_) read_messages(picture->display);
     };
     observer.move = [this](std::string_view robot, const motion::Move& move) { motion_.given(robot, move); };
+    observer.message = [this](const ShownText& message) { keep(message); };
     observer.refused = [this](const Diagnostics& findings) { refused(findings); };
     observer.program = [this](const program::ProgramEvent& event) {
       programs_.hear(event);
@@ -71,17 +71,12 @@ class Simulation {
     return observer;
   }
 
-  void read_messages(const std::shared_ptr<const DisplayState>& display) {
-    display_ = display;
-    for (const ShownText& message : display->messages) {
-      if (message.number <= last_message_) continue;
-      last_message_ = message.number;
-      if (result_.messages.size() == kMostKeptMessages) {
-        ++result_.more_messages;
-        continue;
-      }
-      result_.messages.push_back({seconds(message.time - OffLineGateway::kBegin), message.text});
+  void keep(const ShownText& message) {
+    if (result_.messages.size() == kMostKeptMessages) {
+      ++result_.more_messages;
+      return;
     }
+    result_.messages.push_back({seconds(message.time - OffLineGateway::kBegin), message.text});
   }
 
   void refused(const Diagnostics& findings) {
@@ -142,19 +137,40 @@ class Simulation {
     motion_.finish(result_);
     collisions_.finish(result_.collision);
     if (!options_.collisions) result_.collision.why_not = "--no-collisions";
-    if (result_.end == SimulationEnd::finished) return;
-    for (const program::ProgramStatus& program : status) {
-      if (program.waits_for.empty()) continue;
-      result_.end_note += fmt::format("{}{} of {} waits for {} at {}", result_.end_note.empty() ? "" : "; ",
-                                      program.name, program.robot, program.waits_for, program.step);
+    if (result_.end != SimulationEnd::finished) result_.end_note = end_note(status);
+  }
+
+  // Who has not ended, where, and what could be done about it.
+  [[nodiscard]] std::string end_note(const std::vector<program::ProgramStatus>& programs) const {
+    std::string who;
+    bool computes = false;
+    for (const program::ProgramStatus& program : programs) {
+      const std::string doing = what_it_does(program);
+      if (doing.empty()) continue;
+      computes = computes || program.state == program::ProgramState::running;
+      who += fmt::format("{}{} of {} {}", who.empty() ? "" : "; ", program.name, program.robot, doing);
     }
+    if (result_.end == SimulationEnd::stands_still)
+      return fmt::format(
+          "nothing has happened for {:g} s (--still){}{}; inputs that are waited for are set with SET_INPUT and "
+          "SET_ANALOG_INPUT in the script",
+          gateway_.time_s() - last_event_s_, who.empty() ? "" : ": ", who);
+    return fmt::format("{:g} s are over (--for){}{}{}", options_.longest_s, who.empty() ? "" : ": ", who,
+                       computes ? "; does it end?" : "");
+  }
+
+  // Empty: it has ended, or never began.
+  [[nodiscard]] static std::string what_it_does(const program::ProgramStatus& program) {
+    const std::string at = program.step.empty() ? fmt::format("line {}", program.line) : program.step;
+    if (!program.waits_for.empty()) return fmt::format("waits for {} at {}", program.waits_for, at);
+    if (program.state == program::ProgramState::running) return fmt::format("still runs, at {}", at);
+    if (program.state == program::ProgramState::held) return fmt::format("is held at {}", at);
+    return {};
   }
 
   SimulationOptions options_;
   Nanoseconds period_;
   SimulationResult result_;
-  std::shared_ptr<const DisplayState> display_;
-  std::uint64_t last_message_ = 0;
   double last_event_s_ = 0;  // when anything happened, moved or was about to by itself
   MotionRecorder motion_;
   ProgramRecorder programs_;

@@ -97,7 +97,8 @@ void add_run(cli::Command program, Action& action) {
   auto options = std::make_shared<RunOptions>();
   cli::Command sub = program.subcommand("run", "Start the gateway of a cell; Ctrl-C ends it");
   sub.option("cell", options->cell, "the cell file, e.g. config/cells/transfer_cell/cell.toml").required();
-  sub.option("--script", options->script, "startup SCRIPT, instead of the cell file's own");
+  sub.option("--script", options->script,
+             "startup SCRIPT, instead of the cell file's own: any path, or a name in the scripts/ of the cell");
   sub.option("--for", options->seconds, "end after so many seconds").positive();
   sub.option("--rate", options->rate_hz, "periods of the loop a second, 100 to 4000").between(100.0, 4000.0);
   auto port = sub.option("--port", options->port, "port of the monitor page; 0: a free one").between(0, 65535);

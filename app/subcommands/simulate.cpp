@@ -1,7 +1,9 @@
 // cellmirror simulate: a script and its robot programs off line, faster than real time.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -15,7 +17,9 @@
 #include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
 
@@ -31,6 +35,7 @@ struct SimulateOptions {
 
 constexpr double kLongest = 1e6;         // s of simulated time
 constexpr double kLongestPeriod = 3600;  // s
+constexpr std::size_t kLongestNote = 400;
 
 std::optional<LoadedCell> load(const std::string& file) {
   Diagnostics diagnostics;
@@ -40,13 +45,33 @@ std::optional<LoadedCell> load(const std::string& file) {
   return cell;
 }
 
+// Where nobody sees a line that is written anew: a line now and then, so that a long simulation is known to go on.
+class SlowNews {
+ public:
+  explicit SlowNews(double longest_s) : longest_s_(longest_s) {}
+
+  void tell(double now_s) {
+    constexpr std::chrono::seconds kEvery{10};
+    const auto now = std::chrono::steady_clock::now();
+    if (!needed_ || now - last_ < kEvery) return;
+    last_ = now;
+    fmt::print(stderr, "cellmirror: {:.0f} s simulated, {:g} s at most (--for)\n", now_s, longest_s_);
+  }
+
+ private:
+  double longest_s_;
+  bool needed_ = isatty(STDERR_FILENO) != 1;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 // What a person has to know before the findings are trusted, in one sentence.
 std::string failure(const SimulationResult& result) {
   std::size_t failed = 0;
   for (const SimulatedProgram& run : result.programs) failed += run.end == "failed" ? 1 : 0;
-  return fmt::format("the simulation found faults: {} commands refused, {} programs failed, {} deadlocks; it ended: {}",
-                     result.refusals.size() + result.more_refusals, failed, result.deadlocks.size(),
-                     end_word(result.end));
+  return fmt::format("the simulation found faults: {} refused, {} failed, {}; it ended: {}{}",
+                     number_of(result.refusals.size() + result.more_refusals, "command"), number_of(failed, "program"),
+                     number_of(result.deadlocks.size(), "deadlock"), end_word(result.end),
+                     result.end_note.empty() ? "" : ": " + printable(result.end_note, kLongestNote));
 }
 
 int tell(const SimulateOptions& options, const SimulationResult& result) {
@@ -70,7 +95,9 @@ int run(const SimulateOptions& options) {
   Result<SimulationResult> result;
   {
     ProgressLine line("simulated seconds at most");
+    SlowNews news(simulation.longest_s);
     result = simulate(std::move(*cell), simulation, [&](double now_s) {
+      news.tell(now_s);
       line.tell(static_cast<std::uint64_t>(now_s), static_cast<std::uint64_t>(std::ceil(simulation.longest_s)));
     });
   }
@@ -84,7 +111,7 @@ void add_simulate(cli::Command program, Action& action) {
   cli::Command sub =
       program.subcommand("simulate", "Run a script and its robot programs off line, faster than real time");
   sub.option("--cell", options->cell, "the cell file").required();
-  sub.option("--script", options->simulation.script, "the SCRIPT file: any path, or a name in the cell's scripts/")
+  sub.option("--script", options->simulation.script, "the SCRIPT file: any path, or a name in the scripts/ of the cell")
       .required();
   auto off = sub.flag("--no-collisions", options->no_collisions, "do not test for collisions");
   sub.option("--collision-period", options->simulation.collision_period_s,

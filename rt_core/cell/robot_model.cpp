@@ -124,6 +124,19 @@ std::string conflict(const RobotParameters& p, JointParameter which, JointKind k
   return {};
 }
 
+// What to do about such a conflict where that is not in plain sight: the units of SCRIPT, rad/s beside degrees.
+std::string remedy(const RobotParameters& p, JointParameter which, JointKind kind, std::size_t i) {
+  const bool velocity = which == JointParameter::active_velocity;
+  if (!velocity && which != JointParameter::active_acceleration) return {};
+  const bool length = is_prismatic(kind);
+  const double most = velocity ? p.max_velocity[i] : p.max_acceleration[i];
+  constexpr double kSteps = 1000;  // rounded down, so that what is advised is taken
+  const double shown = std::floor((length ? mm_from_m(most) : most) * kSteps) / kSteps;
+  return fmt::format("in {}{}: give more than 0 and at most {:.10g}, or raise {} before",
+                     length ? (velocity ? "mm/s" : "mm/s2") : (velocity ? "rad/s" : "rad/s2"),
+                     length ? "" : ", not degrees", shown, velocity ? "rob_jnt_max_vel" : "rob_jnt_max_acc");
+}
+
 // A narrowed limit takes along what it bounds, so that the order of the commands of a set-up script does not matter.
 void take_bounded_values_along(RobotParameters& p, std::size_t joints) {
   for (std::size_t i = 0; i < joints; ++i) {
@@ -169,7 +182,8 @@ Result<void> RobotModel::set_joint_parameter(JointParameter which, std::span<con
     const std::string reason = conflict(parameters_, which, joints_[i].kind, i, values[i]);
     if (!reason.empty()) {
       return fail(fmt::format("the {} {} of joint {} ({}) of {} {}", name_of(which),
-                              quantity_text(which, joints_[i].kind, values[i]), i + 1, joints_[i].name, id_, reason));
+                              quantity_text(which, joints_[i].kind, values[i]), i + 1, joints_[i].name, id_, reason),
+                  remedy(parameters_, which, joints_[i].kind, i));
     }
   }
   std::copy(values.begin(), values.end(), (parameters_.*member_of(which)).begin());

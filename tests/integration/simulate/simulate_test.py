@@ -116,12 +116,63 @@ class Findings(Simulation):
         self.assertIn("off line", found["refused"][0]["message"])
 
 
+class Messages(Simulation):
+    def texts(self, script):
+        return [message["text"] for message in self.simulate(script, "--no-collisions")["messages"]]
+
+    def test_the_only_one(self):
+        self.assertEqual(self.texts("HOT_MESSAGE only"), ["only"])
+
+    def test_the_last_one_has_its_instant(self):
+        found = self.simulate(SET_UP + "HOT_MESSAGE first;\nPOS_ROB S1 JOINT_ABS 1000;\nHOT_MESSAGE last", "--no-collisions")
+        first, last = found["messages"]
+        self.assertEqual((first["text"], last["text"]), ("first", "last"))
+        self.assertAlmostEqual(last["time_s"], 1.25, delta=3 * TICK)
+
+    def test_more_at_an_instant_than_the_picture_shows(self):
+        texts = [f"number {i}" for i in range(30)]
+        self.assertEqual(self.texts(";\n".join("HOT_MESSAGE " + text for text in texts)), texts)
+
+
+class Refusals(Simulation):
+    def refusal(self, command):
+        (refused,) = self.simulate("ROBACT S1;\n" + command, "--no-collisions", status=1)["refused"]
+        return refused["message"] + "; " + refused["remedy"]
+
+    def test_a_velocity_in_degrees_a_second_is_told_its_unit_and_what_is_taken(self):
+        said = self.refusal("rob_jnt_act_vel 500 57")
+        self.assertIn("in rad/s, not degrees: give more than 0 and at most 1, or raise rob_jnt_max_vel", said)
+        self.assertIn("in mm/s: give more than 0 and at most 1000", self.refusal("rob_jnt_act_vel 1001 1"))
+
+    def test_a_pose_in_metres_is_told_that_lengths_are_in_mm(self):
+        for command in ("POS_ROB S1 FRAME_ABS 0.4 0 0.5 0 90 0", "MOVE_ROB S1 LIN FRAME_ABS 0.4 0 0.5 0 90 0"):
+            with self.subTest(command=command):
+                said = self.refusal(command)
+                self.assertIn("lengths are in mm, and x 0.4 y 0 z 0.5 mm", said)
+                self.assertNotIn("command that pose", said)
+
+
 class Ends(Simulation):
     def test_a_time_limit(self):
         found = self.simulate(SET_UP + "POS_ROB S1 JOINT_ABS 2900", "--for", "0.5", "--no-collisions", status=1)
         self.assertEqual(found["end"], "time limit")
         self.assertAlmostEqual(found["simulated_s"], 0.5, delta=2 * TICK)
         self.assertEqual(found["moves"][0]["outcome"], "under way")
+        self.assertIn("0.5 s are over (--for)", found["end_note"])
+
+    def test_scripts_are_named_as_with_run_by_any_path_or_by_a_name_in_scripts(self):
+        path = self.script("HOT_MESSAGE here")
+        for name in ("test.spt", "test", "scripts/test.spt", "scripts/test", str(path)):
+            with self.subTest(name=name):
+                done = s.program("simulate", "--cell", self.home.cell, "--script", name, "--no-collisions")
+                self.assertEqual(done.returncode, 0, done.stderr)
+        for name, words in (("gone", r"scripts/gone(\.spt)?"), ("scripts/gone.spt", "scripts/gone.spt"), ("/gone.spt", "/gone.spt")):
+            for command in (("simulate", "--cell", self.home.cell), ("run", self.home.cell, "--headless", "--no-web",
+                                                                     "--instance", f"test{self.home.root.name}")):
+                with self.subTest(name=name, command=command[0]):
+                    done = s.program(*command, "--script", name)
+                    self.assertEqual(done.returncode, 1)
+                    self.assertRegex(done.stderr, f"file {words} does not exist")
 
     def test_scripts_with_faults_are_refused_and_nothing_of_them_runs(self):
         done = s.program("simulate", "--cell", self.home.cell, "--script", self.script("POS_ROB S1 JOINT_ABS x;\nNONSENSE"))
@@ -181,6 +232,16 @@ class Waiting(Simulation):
         found = self.simulate("TF_LOAD waits S1;\nTF_RUN waits S1;\nWAIT", "--still", "2", "--no-collisions", status=1)
         self.assertEqual(found["end"], "stands still")
         self.assertLess(found["simulated_s"], 3)
+        for words in ("waits of S1 waits for input 3 is on at N3", "--still", "SET_INPUT"):
+            self.assertIn(words, found["end_note"])
+
+    def test_a_program_that_never_ends_is_named_with_its_place(self):
+        self.program("turns", "END_HEADER", "LABEL, again", "JUMP, again")
+        self.script("TF_LOAD turns S1;\nTF_RUN turns S1;\nWAIT")
+        done = s.program("simulate", "--cell", self.home.cell, "--script", "test.spt", "--for", "0.05", "--no-collisions")
+        self.assertEqual(done.returncode, 1)
+        for text in (done.stdout, done.stderr):
+            self.assertRegex(text, r"time limit: 0.05 s are over \(--for\): turns of S1 still runs, at N4; does it end\?")
 
     def test_a_robot_that_a_comment_moves_rests_before_the_program_goes_on(self):
         self.program("closes", "END_HEADER", "COMMENT, %MOVE_ROB S1 PTP JOINT_ABS 1000", "DOUT, 4, ON")
