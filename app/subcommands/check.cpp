@@ -10,6 +10,7 @@
 #include "app/gateway/hosts.hpp"
 #include "app/gateway/robot_streams.hpp"
 #include "app/subcommands/check_bus_files.hpp"
+#include "app/subcommands/check_commands.hpp"
 #include "app/subcommands/check_programs.hpp"
 #include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
@@ -19,7 +20,6 @@
 #include "config/view_file.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/home.hpp"
-#include "scripts/lang/reader.hpp"
 #include "scripts/programs/languages/languages.hpp"
 
 namespace cellmirror::app {
@@ -33,18 +33,6 @@ struct CheckOptions {
   std::string robot;     // of the cell, that the programs are for
   bool json = false;
 };
-
-// A text beyond this is no SCRIPT file; the reader has its own, smaller limit and says so.
-constexpr std::size_t kLargestText = std::size_t{256} << 20;
-
-void check_script_file(const std::filesystem::path& path, const NameDirectory* names, Diagnostics& diagnostics) {
-  const auto text = read_text_file(path, kLargestText);
-  if (!text) {
-    diagnostics.error({path.string()}, text.error().what, text.error().remedy);
-    return;
-  }
-  script::check_script(*text, path.string(), names, diagnostics);
-}
 
 // A cell file with everything it names: components, and the bus descriptions of its streams.
 void check_cell_file(const std::filesystem::path& path, Diagnostics& diagnostics, const LoadProgress& progress) {
@@ -70,19 +58,20 @@ void check_view_file(const std::filesystem::path& path, const NameDirectory* nam
 }
 
 struct Checked {
-  const NameDirectory* names = nullptr;
-  const program::Language* language = nullptr;
-  const RobotModel* robot = nullptr;
+  ProgramSurroundings around;
+  const program::Language* language = nullptr;  // null: by the extension
 };
 
 void check_one(const std::filesystem::path& path, const Checked& against, Diagnostics& diagnostics) {
   ProgressLine line("files loaded");
   const program::Language* language = against.language;
+  if (language != nullptr) check_language(path, *language, diagnostics);
   if (language == nullptr) language = program::language_of_extension(path.extension().string());
-  if (language != nullptr) return check_robot_program(path, *language, against.robot, diagnostics);
-  if (path.extension() == ".spt") return check_script_file(path, against.names, diagnostics);
+  if (language != nullptr) return check_robot_program(path, *language, against.around, diagnostics);
+  const auto& [cell, names, robot] = against.around;
+  if (path.extension() == ".spt") return check_script_file(path, cell, names, diagnostics);
   if (path.extension() == ".toml") return check_cell_file(path, diagnostics, load_progress(line));
-  if (path.extension() == kViewExtension) return check_view_file(path, against.names, diagnostics);
+  if (path.extension() == kViewExtension) return check_view_file(path, names, diagnostics);
   if (path.extension() == kLayoutExtension) {
     static_cast<void>(read_layout(path, path.string(), diagnostics));
     return;
@@ -115,10 +104,11 @@ void load_for_check(const CheckOptions& options, std::optional<LoadedCell>& cell
   ProgressLine line("files loaded");
   cell = load_cell(options.cell, diagnostics, load_progress(line));
   if (!cell) return;
-  against.names = &names.emplace(cell->cell);
+  against.around.cell = &*cell;
+  against.around.names = &names.emplace(cell->cell);
   if (options.robot.empty()) return;
-  against.robot = cell->cell.robot(options.robot);
-  if (against.robot != nullptr) return;
+  against.around.robot = cell->cell.robot(options.robot);
+  if (against.around.robot != nullptr) return;
   const Error why = cell->cell.explain_robot(options.robot);
   diagnostics.error({options.cell}, why.what, why.remedy);
 }
@@ -153,9 +143,10 @@ void add_check(cli::Command program, Action& action) {
   cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
   sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .lay .dbc .eds .dcf " + program_extensions())
       .required();
-  auto cell = sub.option("--cell", options->cell, "check the names in SCRIPT and view files against this cell");
+  auto cell = sub.option("--cell", options->cell,
+                         "check names, files and ranges in SCRIPT, view files and programs against this cell");
   sub.option("--language", options->language, "the files are robot programs in this language").one_of(language_names());
-  sub.option("--robot", options->robot, "check that robot programs fit the joints of this robot of the cell")
+  sub.option("--robot", options->robot, "check that robot programs fit the joints and limits of this robot of the cell")
       .needs(cell);
   sub.flag("--json", options->json, "one JSON document: errors, warnings, diagnostics");
   sub.footer(

@@ -1,10 +1,13 @@
 #include "app/subcommands/check_programs.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "app/subcommands/check_program_fit.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/programs/languages/languages.hpp"
 
@@ -42,15 +45,26 @@ std::string program_extensions() {
   return text;
 }
 
-void check_robot_program(const std::filesystem::path& path, const program::Language& language, const RobotModel* robot,
-                         Diagnostics& diagnostics) {
+void check_robot_program(const std::filesystem::path& path, const program::Language& language,
+                         const ProgramSurroundings& around, Diagnostics& diagnostics) {
   const auto text = read_text_file(path, program::kLargestProgramText);
   auto codes = codes_beside(path, language);
   if (!text) diagnostics.error({path.string()}, text.error().what, text.error().remedy);
   if (!codes) diagnostics.error({path.string()}, codes.error().what, codes.error().remedy);
   if (!text || !codes) return;
-  const auto program = language.parse(*text, {path.string(), std::move(*codes)}, diagnostics);
-  if (program && robot != nullptr) program->check_for(robot->joint_kinds(), diagnostics);
+  std::shared_ptr<const program::Program> program;
+  language.parse(*text, {path.string(), std::move(*codes), &program}, diagnostics);
+  if (!program) return;
+  check_program_comments(*program, around.cell, around.names, diagnostics);
+  if (around.robot != nullptr) check_program_fit(*program, *around.robot, diagnostics);
+}
+
+void check_language(const std::filesystem::path& path, const program::Language& language, Diagnostics& diagnostics) {
+  const program::Language* named = program::language_of_extension(path.extension().string());
+  if (named == nullptr || named == &language) return;
+  diagnostics.warning({path.string()},
+                      fmt::format("the file's name says {}, but it is read as {}", named->name, language.name),
+                      fmt::format("`--language {}` reads it as its name says", named->name));
 }
 
 }  // namespace cellmirror::app

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "config/cell_file.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/cell/robot_model.hpp"
+#include "scripts/lang/names.hpp"
 #include "scripts/programs/program/language.hpp"
 
 namespace cellmirror::app {
@@ -16,9 +18,20 @@ namespace cellmirror::app {
 // ".ird .srcl ...": every extension that belongs to one language.
 [[nodiscard]] std::string program_extensions();
 
-// All that is wrong with a program; with `robot` (may be null) also what does not fit its joints. A table of codes of
-// the user is looked for beside the file, as TF_LOAD does.
-void check_robot_program(const std::filesystem::path& path, const program::Language& language, const RobotModel* robot,
-                         Diagnostics& diagnostics);
+// What a program is checked against; null: not.
+struct ProgramSurroundings {
+  const LoadedCell* cell = nullptr;
+  const NameDirectory* names = nullptr;
+  const RobotModel* robot = nullptr;
+};
+
+// All that is wrong with a program and with the SCRIPT commands in its comments; with `around` also what does not go
+// with the cell and its robot. What could be read is checked where other parts are faulty. A table of codes of the user
+// is looked for beside the file, as TF_LOAD does.
+void check_robot_program(const std::filesystem::path& path, const program::Language& language,
+                         const ProgramSurroundings& around, Diagnostics& diagnostics);
+
+// Warns where the extension belongs to another language.
+void check_language(const std::filesystem::path& path, const program::Language& language, Diagnostics& diagnostics);
 
 }  // namespace cellmirror::app

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -60,6 +62,32 @@ class CommandReader {
   bool finished_ = false;
   Lexer lexer_;
   std::array<Token, kMaxWords> words_;  // of the command that is being read; kept to spare their initialisation
+};
+
+// Sees each command that was read without an error. `place_of`: where a word of the command stands.
+using CommandVisitor =
+    std::function<void(const ParsedCommand& command, const std::function<Place(std::string_view word)>& place_of)>;
+
+// Checks whole texts before they are executed, one behind the other as they will be: what a text does to names (ROBACT,
+// commands that load) holds for those behind it. One thread.
+class ScriptChecker {
+ public:
+  // `names` may be null; it outlives the checker.
+  explicit ScriptChecker(const NameDirectory* names, CommandVisitor visit = {});
+  ~ScriptChecker();
+  ScriptChecker(const ScriptChecker&) = delete;
+  ScriptChecker& operator=(const ScriptChecker&) = delete;
+
+  // Adds every finding. Returns the number of commands read, correct or not.
+  std::size_t check(std::string_view text, std::string_view source, TextKind kind, Diagnostics& diagnostics);
+
+ private:
+  class FollowedNames;
+  void visit(const ParsedCommand& command, std::string_view text, std::string_view source) const;
+
+  std::unique_ptr<FollowedNames> names_;  // null: none
+  CommandVisitor visit_;
+  NameCheck name_check_ = NameCheck::ahead;
 };
 
 // Checks a whole text; adds every finding. With `names` ROBACT is followed, so that joint lists are checked against the

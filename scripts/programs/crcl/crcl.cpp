@@ -45,7 +45,7 @@ std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& 
   };
   crcl::read_xml(text, context.file, visitor, found);
   reader.finish({.file = context.file, .line = root_line, .column = root_column});
-  auto made = builder.build(found);
+  auto made = builder.build(found, context.read_part);
   diagnostics.take(found);
   return made;
 }

@@ -34,7 +34,7 @@ std::shared_ptr<const Program> read_program(std::string_view text, const ParseCo
     if (end == std::string_view::npos) break;
     text.remove_prefix(end + 1);
   }
-  return translator.finish();
+  return translator.finish(context.read_part);
 }
 
 std::shared_ptr<const Program> parse_irdata(std::string_view text, const ParseContext& context,

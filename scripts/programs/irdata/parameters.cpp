@@ -1,6 +1,11 @@
 // Parameters of a record, one behind the other.
 #include <fmt/format.h>
 
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
 #include "rt_core/base/text.hpp"
 #include "scripts/programs/irdata/translator.hpp"
 
@@ -42,7 +47,14 @@ void Translator::end_parameter() {
 void Translator::finish_parameters() {
   if (incomplete_ || !next_parameter()) return;
   const OperationRow& row = row_of(operation_);
-  findings_.error(static_cast<std::uint32_t>(parameter_begin_) + 1, fmt::format("{} has too many parameters", row.name),
+  const auto column = static_cast<std::uint32_t>(parameter_begin_) + 1;
+  const std::string_view name = cursor_.name();
+  const std::array<std::string, 1> fly = {"FLY"};
+  if (row.parameters.ends_with("[, FLY]") && !name.empty()) {
+    if (std::string meant = did_you_mean(name, fly); !meant.empty())
+      return findings_.error(column, fmt::format("'{}' is not FLY", printable(name, 20)), std::move(meant));
+  }
+  findings_.error(column, fmt::format("{} has too many parameters", row.name),
                   row.parameters.empty() ? fmt::format("write {} alone", row.name) : "write " + form_of(operation_));
 }
 

@@ -235,7 +235,7 @@ void Translator::read_comment(std::string_view text, std::uint32_t column) {
 
 Spot Translator::spot(std::uint32_t column) const { return {line_, column, block_, scope_}; }
 
-std::shared_ptr<const Program> Translator::finish() {
+std::shared_ptr<const Program> Translator::finish(std::shared_ptr<const Program>* read_part) {
   findings_.at_line(std::max<std::uint32_t>(line_, 1));
   if (!gave_up_) {
     switch (section_) {
@@ -260,7 +260,7 @@ std::shared_ptr<const Program> Translator::finish() {
     }
   }
   jumps_.finish();
-  return builder_.build(diagnostics_);
+  return builder_.build(diagnostics_, read_part);
 }
 
 }  // namespace cellmirror::program::irdata

@@ -38,7 +38,8 @@ class Translator {
   void read_line(std::string_view text);
   // Too many records: the rest of the text is not worth reading.
   [[nodiscard]] bool gave_up() const { return gave_up_; }
-  std::shared_ptr<const Program> finish();
+  // As ProgramBuilder::build().
+  std::shared_ptr<const Program> finish(std::shared_ptr<const Program>* read_part);
 
  private:
   enum class Section : std::uint8_t { before, header, main, behind_end, subprogram };

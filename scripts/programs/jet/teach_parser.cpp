@@ -31,7 +31,8 @@ class TeachParser {
         diagnostics_(diagnostics),
         dialect_(dialect),
         lines_(text),
-        program_(dialect, file_) {}
+        program_(dialect, file_),
+        read_part_(context.read_part) {}
 
   std::shared_ptr<const Program> parse();
 
@@ -74,6 +75,7 @@ class TeachParser {
   TeachDialect dialect_;
   TeachLines lines_;
   TeachProgram program_;
+  std::shared_ptr<const Program>* read_part_;
   int column_ = 1;  // of the statement
   TeachSettings settings_;
   JointPosition target_;  // of the newest check point
@@ -112,7 +114,7 @@ std::shared_ptr<const Program> TeachParser::parse() {
   while (read_line(lines_.next())) {
   }
   finish();
-  return program_.build(diagnostics_);
+  return program_.build(diagnostics_, read_part_);
 }
 
 // False where nothing more is to be read.

@@ -42,7 +42,9 @@ class TeachProgram {
   // One more line could go beyond kMostStatements.
   [[nodiscard]] bool full() const { return builder_.next_statement() + kMostOfALine > kMostStatements; }
   // As ProgramBuilder::build().
-  std::shared_ptr<const Program> build(Diagnostics& diagnostics) { return builder_.build(diagnostics); }
+  std::shared_ptr<const Program> build(Diagnostics& diagnostics, std::shared_ptr<const Program>* read_part = nullptr) {
+    return builder_.build(diagnostics, read_part);
+  }
 
  private:
   static constexpr std::size_t kMostReserved = 250'000;

@@ -18,6 +18,9 @@ struct ParseContext {
   std::string file;  // for diagnostics and for the program's name where the text has none
   // Text of the language's table of codes where the user has one of his own; empty: the built-in one (irdata).
   std::string codes;
+  // Where what could be read goes, also where it has faults and nothing is returned; null: nobody asks for it. Not to
+  // be run: what could not be read is left out. Null is put there where nothing at all could be read.
+  std::shared_ptr<const Program>* read_part = nullptr;
 };
 
 struct Language {

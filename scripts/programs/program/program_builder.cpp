@@ -267,7 +267,8 @@ void ProgramBuilder::patch_jumps() {
   }
 }
 
-std::shared_ptr<const Program> ProgramBuilder::build(Diagnostics& diagnostics) {
+std::shared_ptr<const Program> ProgramBuilder::build(Diagnostics& diagnostics,
+                                                     std::shared_ptr<const Program>* read_part) {
   patch_jumps();
   if (too_long_) {
     diagnostics.error(program_->place(static_cast<StatementId>(program_->statements.size() - 1)),
@@ -276,6 +277,7 @@ std::shared_ptr<const Program> ProgramBuilder::build(Diagnostics& diagnostics) {
   }
   check_program(*program_, diagnostics);
   auto program = std::exchange(program_, nullptr);
+  if (read_part != nullptr) *read_part = program;
   if (!diagnostics.ok()) return nullptr;
   return program;
 }

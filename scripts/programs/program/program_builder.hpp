@@ -83,8 +83,8 @@ class ProgramBuilder {
   void set_reversible() { program_->reversible = true; }
 
   // Reports what is wrong as a whole (labels, sizes). Null where `diagnostics` has errors, also those of the parser.
-  // Ends the builder.
-  std::shared_ptr<const Program> build(Diagnostics& diagnostics);
+  // `read_part`: see ParseContext. Ends the builder.
+  std::shared_ptr<const Program> build(Diagnostics& diagnostics, std::shared_ptr<const Program>* read_part = nullptr);
 
  private:
   void append(const Statement& statement);

@@ -27,7 +27,8 @@ Parser::Parser(std::string_view text, const ParseContext& context)
       faults_(context.file),
       emitter_(program_),
       expressions_(lexer_, emitter_, names_, faults_),
-      blocks_(emitter_, faults_) {
+      blocks_(emitter_, faults_),
+      read_part_(context.read_part) {
   program_.name = stem(context.file);
   program_.language = "srcl";
   program_.file = context.file;
@@ -44,11 +45,14 @@ std::shared_ptr<const Program> Parser::run(Diagnostics& diagnostics) {
   }
   blocks_.finish();
   faults_.hand_over(diagnostics);
-  if (faults_.count() > 0) return nullptr;
+  const bool faulty = faults_.count() > 0;
+  if (faulty && read_part_ == nullptr) return nullptr;
   Diagnostics last;  // bounds that only the whole program shows
-  check_program(program_, last);
+  if (!faulty) check_program(program_, last);
   diagnostics.take(last);
-  return last.ok() ? std::make_shared<const Program>(std::move(program_)) : nullptr;
+  auto program = std::make_shared<const Program>(std::move(program_));
+  if (read_part_ != nullptr) *read_part_ = program;
+  return !faulty && last.ok() ? program : nullptr;
 }
 
 void Parser::read_line() {

@@ -90,6 +90,7 @@ class Parser {
   Names names_;
   ExpressionReader expressions_;
   Blocks blocks_;
+  std::shared_ptr<const Program>* read_part_;
   std::size_t list_elements_ = 0;
   bool statement_seen_ = false;
   bool told_stray_ = false;

@@ -66,6 +66,94 @@ class Goldens(unittest.TestCase):
             self.assertEqual(status, 0, said)
 
 
+class SmallCell(unittest.TestCase):
+    """A robot S1 with a slide from -1000 to 3000 mm and a joint that turns by 172 degrees both ways."""
+
+    def setUp(self):
+        self.home = s.Home()
+        self.addCleanup(self.home.close)
+        for folder in ("scripts", "programs"):
+            (self.home.root / folder).mkdir()
+
+    def findings(self, name, text, *arguments):
+        """[(severity, line, column, message)], and all of it as one text."""
+        path = self.home.root / name
+        path.write_text(text)
+        found = json.loads(check("--cell", self.home.cell, "--json", *arguments, path).stdout)["diagnostics"]
+        return [(d["severity"], d["line"], d["column"], d["message"] + "; " + d["remedy"]) for d in found]
+
+    def assert_found(self, found, expected):
+        self.assertEqual([one[:3] for one in found], [one[:3] for one in expected], found)
+        for (_, _, _, said), (_, _, _, words) in zip(found, expected):
+            self.assertIn(words, said)
+
+
+class Programs(SmallCell):
+    def program(self, *records):
+        lines = ["HEADER, test", "END_HEADER", *records, "END"]
+        return "".join(f"{n}, {line}\n" for n, line in enumerate(lines, start=1))
+
+    def test_commands_in_comments_are_checked_as_in_a_script(self):
+        text = self.program("COMMENT, %hot_mesage done", "COMMENT, %POS_ROB S2 JOINT_ABS 1", "COMMENT, %WAIT",
+                            "COMMENT, %POS_ROB S1 JOINT_ABS 1", "COMMENT, %POS_ROB S1 JOINT_ABS 4000", "COMMENT, %TF_LOAD gone S1")
+        found = self.findings("programs/test.ird", text)
+        self.assert_found([(a, b, 0, d) for a, b, _, d in found], [
+            ("error", 3, 0, "did you mean hot_message"), ("error", 4, 0, "S2"), ("error", 5, 0, "would wait for itself"),
+            ("warning", 7, 0, "upper limit"), ("warning", 8, 0, "no irdata program gone")])
+
+    def test_constant_targets_beyond_the_ranges_and_speeds_above_the_robots_own(self):
+        text = ("1, HEADER, test\n2, JOINTS, far, JOINTS(0, 200)\n3, JOINTS, near, JOINTS(0, 0)\n4, END_HEADER\n"
+                "5, PTP, JOINTS(3500, 190)\n6, PTP, far\n7, PTP, near\n8, VEL_LIN, 250000\n9, VEL_LIN, 900\n10, END\n")
+        found = self.findings("programs/test.ird", text, "--robot", "S1")
+        self.assert_found([(a, b, 0, d) for a, b, _, d in found], [
+            ("warning", 5, 0, "3.5 m (3500 mm) is above"), ("warning", 5, 0, "(190 deg) is above"),
+            ("warning", 6, 0, "(200 deg) is above"), ("note", 8, 0, "250000 mm/s, but S1 goes at 1000 mm/s at most")])
+
+    def test_what_does_not_fit_is_told_beside_other_faults(self):
+        irdata = self.program("PTP, JOINTS(1, 2, 3)", "NONSENSE")
+        srcl = "PROGRAMM T\nPTP STELLUNG(1, 2, 3)\nNONSENSE\n"
+        boom = "JET_BOOM 1\nJOINTS 3\nPOINT P1 1 2 3\nNONSENSE\nEND\n"
+        for name, text in (("test.ird", irdata), ("test.src", srcl), ("test.boom", boom)):
+            with self.subTest(name=name):
+                said = [d for _, _, _, d in self.findings("programs/" + name, text, "--robot", "S1")]
+                self.assertTrue(any("NONSENSE" in d for d in said), said)
+                self.assertTrue(any("3 joint values, the robot has 2 joints" in d for d in said), said)
+
+    def test_a_word_that_is_nearly_fly(self):
+        found = self.findings("programs/test.ird", self.program("PTP, JOINTS(1, 2), FLYY"))
+        self.assert_found(found, [("error", 3, 23, "'FLYY' is not FLY; did you mean FLY?")])
+
+    def test_a_name_that_says_another_language(self):
+        found = self.findings("programs/test.src", "PROGRAMM T\n", "--language", "irdata")
+        self.assertEqual(found[0][:2], ("warning", 0))
+        self.assertIn("the file's name says srcl", found[0][3])
+        self.assertIn("--language srcl", found[0][3])
+
+
+class Scripts(SmallCell):
+    def test_files_that_do_not_exist(self):
+        found = self.findings("scripts/test.spt", "TF_LOAD gone S1;\nEXEC_SCRIPT gone;\nLOAD_VIEWS gone")
+        self.assert_found(found, [("warning", 1, 9, "no irdata program gone"), ("warning", 2, 13, "scripts/gone"),
+                                  ("warning", 3, 12, "scripts/gone")])
+
+    def test_files_that_an_earlier_command_makes(self):
+        (self.home.root / "programs/there.src").write_text("")
+        text = ("TF_RECORD taught S1 START;\nTF_RECORD taught S1 STOP;\nTF_LOAD taught S1;\nSAVE_VIEWS made;\n"
+                "LOAD_VIEWS made.vws;\nROBOT_LANGUAGE srcl;\nTF_LOAD there S1")
+        self.assertEqual(self.findings("scripts/test.spt", text), [])
+
+    def test_values_beyond_the_ranges_that_hold_there(self):
+        (self.home.root / "scripts/wide.spt").write_text("ROBACT S1;\nrob_jnt_max_range 9000 100\n")
+        text = ("POS_ROB S1 JOINT_ABS 4000 0;\nMOVE_ROB S1 PTP JOINT_ABS 0\n 190;\nEXEC_SCRIPT wide;\n"
+                "POS_ROB S1 JOINT_ABS 4000 101;\nROBACT S1;\nrob_jnt_act_vel 1 90")
+        self.assert_found(self.findings("scripts/test.spt", text), [
+            ("warning", 1, 22, "4 m (4000 mm) is above its upper limit 3 m"), ("warning", 3, 2, "(190 deg) is above"),
+            ("warning", 5, 27, "(101 deg) is above its upper limit 1.74533 rad"), ("warning", 7, 17, "not degrees")])
+
+    def test_a_file_that_calls_itself_is_followed_once(self):
+        self.assertEqual(self.findings("scripts/test.spt", "EXEC_SCRIPT test"), [])
+
+
 class Robots(unittest.TestCase):
     def test_the_programs_of_the_transfer_cell_without_naming_their_language(self):
         programs = sorted(PROGRAMS.glob("*.ird"))
