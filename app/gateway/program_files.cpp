@@ -49,9 +49,14 @@ Result<fs::path> find_program_file(const KismetHome& home, const program::Langua
   }
   std::string tried;
   for (const std::string& candidate : names) tried += (tried.empty() ? "" : ", ") + printable(candidate);
+  std::string near;
+  for (const std::string_view folder : kProgramFolders) {
+    if (near.empty()) near = home.nearest_files(folder, name, language.extensions);
+  }
+  if (!near.empty()) near += " ";
   return fail(fmt::format("there is no {} program {} in the folders programs and scripts of the cell's home {}",
                           language.name, printable(name), home.root().string()),
-              fmt::format("looked for {}; ROBOT_LANGUAGE sets the language", tried));
+              fmt::format("{}looked for {}; ROBOT_LANGUAGE sets the language", near, tried));
 }
 
 ProgramText read_program(const KismetHome& home, const program::Language& language, const fs::path& path) {

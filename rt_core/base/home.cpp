@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "rt_core/base/text.hpp"
 
@@ -38,6 +40,28 @@ Result<void> check_name(std::string_view name) {
   return {};
 }
 
+// Names of the files in `folder`, as `name` is written: with its folders, and without an extension where it has none.
+std::vector<std::string> files_beside(const fs::path& folder, const fs::path& name,
+                                      std::span<const std::string_view> extensions) {
+  constexpr std::size_t kMost = 512;  // entries that are looked at: a refusal stays cheap in a folder of any size
+  const bool bare = name.extension().empty() && !extensions.empty();
+  std::vector<std::string> names;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (std::size_t seen = 0; !error && entry != fs::directory_iterator() && seen < kMost; ++seen) {
+    const fs::path file = entry->path().filename();
+    const bool fits =
+        extensions.empty() || std::ranges::find(extensions, file.extension().string()) != extensions.end();
+    std::error_code unknown_kind;
+    if (fits && entry->is_regular_file(unknown_kind))
+      names.push_back(printable((name.parent_path() / (bare ? file.stem() : file)).string()));
+    entry.increment(error);
+  }
+  std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
+  return names;
+}
+
 }  // namespace
 
 Result<KismetHome> KismetHome::open(const fs::path& root) {
@@ -59,11 +83,14 @@ Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name
   if (auto named = check_name(name); !named) return std::unexpected(named.error());
   std::error_code error;
   fs::path wanted = root_ / folder / name;
-  if (!extension.empty() && wanted.extension().empty() && !fs::exists(wanted, error)) wanted += extension;
+  const bool extended = !extension.empty() && wanted.extension().empty() && !fs::exists(wanted, error);
+  if (extended) wanted += extension;
   const fs::path found = fs::canonical(wanted, error);
-  const std::string shown = (fs::path(folder) / printable(name)).string();
+  const std::string shown = (fs::path(folder) / printable(name)).string() + std::string(extended ? extension : "");
   if (error == std::errc::no_such_file_or_directory) {
-    return fail(fmt::format("the file {} does not exist in the cell's home {}", shown, root_.string()));
+    const std::span<const std::string_view> extensions(&extension, extension.empty() ? 0 : 1);
+    return fail(fmt::format("the file {} does not exist in the cell's home {}", shown, root_.string()),
+                nearest_files(folder, name, extensions));
   }
   if (error) return fail(fmt::format("the file {} cannot be opened: {}", shown, error.message()));
   if (!is_inside(found, root_)) {
@@ -75,6 +102,15 @@ Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name
   if (access(found.c_str(), R_OK) != 0)
     return fail(fmt::format("the file {} is not readable: {}", shown, std::strerror(errno)));
   return found;
+}
+
+std::string KismetHome::nearest_files(std::string_view folder, std::string_view name,
+                                      std::span<const std::string_view> extensions) const {
+  if (!check_name(name)) return {};
+  std::error_code error;
+  const fs::path place = fs::canonical((root_ / folder / name).parent_path(), error);
+  if (error || !is_inside(place, root_)) return {};
+  return did_you_mean(name, files_beside(place, name, extensions));
 }
 
 Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_view name) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,9 +20,14 @@ class KismetHome {
 
   // The regular, readable file `name` in `folder` ("scripts", "envlib", "robots", "" for the home itself), with
   // `extension` (".spt") added where the name has none and no file without it exists. Refused: absolute names, names
-  // that leave the home (also through links), folders, missing and unreadable files; the message says which.
+  // that leave the home (also through links), folders, missing and unreadable files; the message says which, and of
+  // missing ones which files a person may have meant.
   [[nodiscard]] Result<std::filesystem::path> file(std::string_view folder, std::string_view name,
                                                    std::string_view extension = {}) const;
+  // "did you mean a or b?" of the files in `folder` with one of `extensions` (none given: with any), or empty where
+  // none is near. Looks at 512 entries at most.
+  [[nodiscard]] std::string nearest_files(std::string_view folder, std::string_view name,
+                                          std::span<const std::string_view> extensions) const;
   // A path for a file that will be written; the same rules, but the file need not exist. Makes `folder` where missing.
   [[nodiscard]] Result<std::filesystem::path> file_to_write(std::string_view folder, std::string_view name) const;
 

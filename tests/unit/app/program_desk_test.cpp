@@ -137,6 +137,12 @@ class ProgramDeskTest : public testing::Test {
   std::unique_ptr<Gateway> parts_;
 };
 
+TEST_F(ProgramDeskTest, AnUnknownProgramIsAnsweredWithTheNearestOnes) {
+  const auto refused = sut().load_program("shrot", kArm);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text().find("did you mean short?"), std::string::npos) << refused.error().text();
+}
+
 TEST_F(ProgramDeskTest, RunsALongProgramWhenItIsRead) {
   const auto loaded = load("long");
   const auto begun = run("long");

@@ -63,6 +63,24 @@ TEST_F(Home, RefusesWhatIsNoReadableFile) {
   EXPECT_NE(refusal(std::string(5000, 'x')).find("too long"), std::string::npos);
 }
 
+TEST_F(Home, TellsTheFileThatItLookedForAndWhichAreNear) {
+  for (const char* name : {"trs_demo.spt", "trs_demo.vws", "view1.vws"})
+    write("cell/scripts/" + std::string(name), "A");
+  fs::create_directories(root_ / "cell/scripts/trs_dame.spt");
+  write("cell/scripts/more.spt", "A");
+  EXPECT_NE(refusal("trs_dem").find("the file scripts/trs_dem.spt does not exist"), std::string::npos);
+  EXPECT_NE(refusal("trs_dem").find("did you mean trs_demo?"), std::string::npos) << refusal("trs_dem");
+  EXPECT_NE(refusal("trs_dem.spt").find("did you mean trs_demo.spt?"), std::string::npos) << refusal("trs_dem.spt");
+  EXPECT_EQ(refusal("nothing_like_it").find("did you mean"), std::string::npos);
+  const auto views = sut().file("scripts", "view1.VWS", ".vws");
+  ASSERT_FALSE(views);
+  EXPECT_EQ(views.error().remedy, "did you mean view1.vws?");
+  fs::create_directories(root_ / "cell/scripts/below");
+  write("cell/scripts/below/one.spt", "A");
+  EXPECT_NE(refusal("below/ones").find("did you mean below/one?"), std::string::npos) << refusal("below/ones");
+  EXPECT_EQ(refusal("../../outsid").find("did you mean"), std::string::npos) << "nothing is told of what is outside";
+}
+
 TEST_F(Home, RefusesAFileThatMayNotBeRead) {
   if (geteuid() == 0) GTEST_SKIP() << "skipped: root reads every file";
   write("cell/scripts/closed.spt", "A");
