@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,39 @@ bool is_unique(const CompiledCell& cell, std::string_view name) {
 std::optional<std::size_t> place_in(const std::vector<std::string>& paths, std::string_view path) {
   const auto at = std::ranges::find(paths, path);
   return at == paths.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - paths.begin()));
+}
+
+constexpr double kNowhere = 1e-9;  // m; nearer than that there is no direction (scene::camera_state)
+
+double distance(const Cell& cell, NodeId a, NodeId b, std::span<const JointValues> q) {
+  return (cell.world_pose(a, q).translation() - cell.world_pose(b, q).translation()).norm();
+}
+
+// Hang on one frame that is not the world, so that what carries the one carries the other.
+bool have_one_carrier(const Cell& cell, NodeId a, NodeId b) {
+  for (NodeId carrier = a; carrier != kRootNode; carrier = cell.node(carrier).predecessor) {
+    for (NodeId node = b; node != kRootNode; node = cell.node(node).predecessor) {
+      if (node == carrier) return true;
+    }
+  }
+  return false;
+}
+
+// Whatever the joints do: at postures that bring nothing together by chance.
+bool always_in_one_place(const Cell& cell, NodeId a, NodeId b, std::span<const JointValues> q) {
+  constexpr int kPostures = 3;
+  std::vector<JointValues> posture(q.begin(), q.end());
+  for (int i = 0; i < kPostures; ++i) {
+    if (distance(cell, a, b, posture) > kNowhere) return false;
+    for (JointValues& joints : posture) {
+      double step = 0.37;  // rad or m
+      for (double& joint : joints) {
+        joint += step;
+        step += 0.11;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -89,12 +123,44 @@ void DisplayDesk::follow_carriers() {
   }
 }
 
+bool DisplayDesk::is_elsewhere(NodeId camera, NodeId target) const {
+  return distance(parts_.cell, camera, target, parts_.positions()) > kNowhere;
+}
+
+void DisplayDesk::follow_targets() {
+  for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
+    CameraSetting& setting = state_.cameras[i];
+    bool tracking = false;
+    if (!setting.tracks.empty()) {
+      const auto target = parts_.cell.find(setting.tracks);
+      const auto camera = parts_.cell.find(camera_paths_[i], PathKind::camera);
+      tracking = target && camera && is_elsewhere(*camera, *target);
+    }
+    if (setting.tracking == tracking) continue;
+    setting.tracking = tracking;
+    changed();
+  }
+}
+
 Result<void> DisplayDesk::connect_view(int id, std::string_view camera) {
   if (auto known = check_view_id(id); !known) return known;
   if (auto opened = open_camera(camera); !opened) return std::unexpected(opened.error());
   view(id).camera = state_.current_camera;
+  view(id).front_plane_set = false;
   view(id).sequence.reset();
   return {};
+}
+
+// At once, whatever the pace: a view at a camera is on no way.
+Result<void> DisplayDesk::set_planes_at_camera(int id, const ViewChange& change) {
+  const DisplayView before = view(id);
+  view(id).view = changed_by(before.view, change);
+  view(id).front_plane_set = before.front_plane_set || change.near_distance.has_value();
+  auto checked = check_view(id, view(id).view);
+  if (checked) checked = check_view(id, view_now(id));
+  if (!checked) view(id) = before;
+  if (checked) changed();
+  return checked;
 }
 
 Result<void> DisplayDesk::set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) {
@@ -113,10 +179,16 @@ Result<void> DisplayDesk::track(std::string_view camera, std::optional<std::stri
     if (itself && *itself == *node) {
       return fail(fmt::format("the camera {} cannot look at itself", camera), "give another frame to look at");
     }
+    if (itself && have_one_carrier(parts_.cell, *itself, *node) &&
+        always_in_one_place(parts_.cell, *itself, *node, parts_.positions())) {
+      return fail(fmt::format("{} lies where the camera {} is, and goes along with it", target, camera),
+                  "give another frame to look at");
+    }
   }
   const auto setting = open_camera(camera);
   if (!setting) return std::unexpected(setting.error());
   (*setting)->tracks = std::move(target);
+  follow_targets();
   return {};
 }
 

@@ -18,6 +18,10 @@ bool is_below(std::string_view path, std::string_view branch) {
   return path.starts_with(branch) && (path.size() == branch.size() || path[branch.size()] == '.');
 }
 
+bool names_planes_alone(const ViewChange& change) {
+  return !change.viewpoint && !change.lookpoint && !change.twist && !change.opening_angle;
+}
+
 }  // namespace
 
 DisplayModes first_modes() {
@@ -80,6 +84,7 @@ bool DisplayDesk::has_ended(const ViewSequence& sequence) const {
 void DisplayDesk::follow() {
   follow_cell();
   follow_carriers();
+  follow_targets();
   for (DisplayView& shown : state_.views) {
     if (!shown.sequence || !has_ended(*shown.sequence)) continue;
     shown.sequence.reset();
@@ -119,6 +124,7 @@ Result<void> DisplayDesk::set_display(int display, bool full_screen) {
 
 Result<void> DisplayDesk::set_view(int id, const ViewChange& change, const ViewPace& pace) {
   if (auto known = check_view_id(id); !known) return known;
+  if (!view(id).camera.empty() && names_planes_alone(change)) return set_planes_at_camera(id, change);
   ViewSequence sequence;
   sequence.from = view_now(id);
   if (!view(id).camera.empty()) {
@@ -141,6 +147,7 @@ Result<void> DisplayDesk::set_view(int id, const ViewChange& change, const ViewP
   const bool at_once = sequence.steps == 0 && sequence.duration <= Nanoseconds(0);
   view(id).view = sequence.to;
   view(id).camera.clear();
+  view(id).front_plane_set = false;
   view(id).sequence.reset();
   if (!at_once) view(id).sequence = sequence;
   changed();
@@ -165,7 +172,7 @@ Result<void> DisplayDesk::set_legend(bool on) {
 }
 
 // Older rules that the new one covers wholly are forgotten, so that there are never more than nodes.
-Result<void> DisplayDesk::set_draw_mode(std::string_view node, bool branch, DrawMode mode) {
+Result<std::string> DisplayDesk::set_draw_mode(std::string_view node, bool branch, DrawMode mode) {
   const auto found = parts_.cell.find(node);
   if (!found) return std::unexpected(found.error());
   DrawRule rule{parts_.cell.path(*found), branch, mode};
@@ -174,12 +181,26 @@ Result<void> DisplayDesk::set_draw_mode(std::string_view node, bool branch, Draw
   });
   state_.draw_rules.push_back(std::move(rule));
   changed();
-  return {};
+  if (branch || has_own_geometry(*found)) return std::string();
+  return fmt::format("{} has no geometry of its own; SET_ABSTRACT reaches what is below it", node);
+}
+
+bool DisplayDesk::has_own_geometry(NodeId node) const {
+  if (!parts_.cell.node(node).definition->geometry.empty()) return true;
+  const auto cell = parts_.cell.compile();
+  const std::string path = parts_.cell.path(node);
+  return std::ranges::any_of(cell->geometry, [&](const CompiledGeometry& part) {
+    return (*cell->paths)[static_cast<std::size_t>(part.node)] == path;
+  });
 }
 
 Result<void> DisplayDesk::set_tag_length(double length_m) {
-  if (!(length_m > 0.0 && length_m <= kFarthestView))
-    return fail(fmt::format("workframes cannot be drawn with a length of {:g} m", length_m));
+  if (length_m > kFarthestView) {
+    return fail(fmt::format("workframes cannot be drawn with a length of {:.10g} mm, at most with {:.10g} mm",
+                            1e3 * length_m, 1e3 * kFarthestView));
+  }
+  if (!(length_m > 0.0))
+    return fail(fmt::format("workframes cannot be drawn with a length of {:g} mm", 1e3 * length_m));
   state_.tag_length_m = length_m;
   changed();
   return {};
@@ -197,6 +218,7 @@ Result<void> DisplayDesk::set_arc(bool on) {
 Result<void> DisplayDesk::show_message(std::string_view text) {
   const bool bell = state_.on(DisplayMode::bell);
   state_.messages.push_back({std::string(text), parts_.clock.now(), ++messages_shown_, bell});
+  if (parts_.message_shown) parts_.message_shown(state_.messages.back());
   if (state_.messages.size() > kKeptMessages) state_.messages.erase(state_.messages.begin());
   changed();
   log_warning("hot_message", "{}", text);
@@ -205,4 +227,3 @@ Result<void> DisplayDesk::show_message(std::string_view text) {
 }
 
 }  // namespace cellmirror::app
-  if (parts_.message_shown) parts_.message_shown(state_.messages.back());

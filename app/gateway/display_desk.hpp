@@ -56,7 +56,7 @@ class DisplayDesk final : public DisplayHost {
   Result<void> save_views(std::string_view file) override;
   Result<void> set_mode(DisplayMode mode, bool on) override;
   Result<void> set_legend(bool on) override;
-  Result<void> set_draw_mode(std::string_view node, bool branch, DrawMode mode) override;
+  Result<std::string> set_draw_mode(std::string_view node, bool branch, DrawMode mode) override;
   Result<void> set_tag_length(double length_m) override;
   Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) override;
   Result<void> track(std::string_view camera, std::optional<std::string_view> frame) override;
@@ -88,6 +88,10 @@ class DisplayDesk final : public DisplayHost {
   // It is the current camera from now on.
   [[nodiscard]] Result<CameraSetting*> open_camera(std::string_view camera);
   void follow_carriers();
+  void follow_targets();
+  [[nodiscard]] bool is_elsewhere(NodeId camera, NodeId target) const;
+  Result<void> set_planes_at_camera(int id, const ViewChange& change);
+  [[nodiscard]] bool has_own_geometry(NodeId node) const;
 
   Parts parts_;
   DisplayState state_;

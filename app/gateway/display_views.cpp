@@ -37,7 +37,12 @@ Result<void> DisplayDesk::load_views(std::string_view file) {
   if (!path) return std::unexpected(path.error());
   Diagnostics findings;
   const auto stored = read_views(*path, path->filename().string(), findings);
-  if (!stored) return std::unexpected(first_finding(findings));
+  if (!stored) {
+    Error why = first_finding(findings);
+    if (path->extension() != kViewExtension)
+      why.what = fmt::format("{} is no view file ({}): {}", printable(file), kViewExtension, why.what);
+    return std::unexpected(std::move(why));
+  }
   follow_cell();
   std::array<DisplayView, kViews> views = state_.views;
   for (const StoredView& row : stored->views) {
@@ -46,6 +51,7 @@ Result<void> DisplayDesk::load_views(std::string_view file) {
     shown.view.orthogonal = row.orthogonal.value_or(shown.view.orthogonal);
     shown.sequence.reset();
     shown.camera.clear();
+    shown.front_plane_set = false;
     if (const auto checked = check_view(row.id, shown.view); !checked) return at(row.place, checked.error());
     if (row.camera.empty()) continue;
     auto camera = camera_name(row.camera);

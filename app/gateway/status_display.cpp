@@ -49,11 +49,8 @@ json displays_json(const DisplayLayout& layout) {
 }
 
 json camera_json(const CameraSetting& camera) {
-  json out = {{"id", camera.name},
-              {"pyramid", camera.pyramid},
-              {"online", camera.online},
-              {"mirrored", camera.mirrored},
-              {"tracks", nullptr}};
+  json out = {{"id", camera.name},           {"pyramid", camera.pyramid}, {"online", camera.online},
+              {"mirrored", camera.mirrored}, {"tracks", nullptr},         {"tracking", camera.tracking}};
   if (!camera.tracks.empty()) out["tracks"] = camera.tracks;
   return out;
 }

@@ -10,7 +10,8 @@ namespace cellmirror {
 
 namespace {
 
-constexpr double kFarthest = 1e6;  // m; beyond it a double no longer resolves a nanometre
+constexpr double kFarthest = 1e6;     // m; beyond it a double no longer resolves a nanometre
+constexpr double kMillimetres = 1e3;  // of a metre: refusals speak in the unit of the command
 
 // What part and predecessor must be for the one to hang on the other.
 Result<void> check_connection(const Cell::State& state, NodeId part, NodeId predecessor) {
@@ -43,8 +44,12 @@ Result<void> Cell::set_placement(std::string_view path, const Pose& X_PF) {
     return fail(fmt::format("{} is a joint; its place follows from its mechanism", state_->names.path(*id)),
                 "POS_ROB moves joints");
   }
-  if (!X_PF.matrix().allFinite() || X_PF.translation().norm() > kFarthest)
-    return fail(fmt::format("the placement of {} is not finite or too far away", state_->names.path(*id)));
+  if (!X_PF.matrix().allFinite())
+    return fail(fmt::format("the placement of {} is not finite", state_->names.path(*id)));
+  if (const double distance = X_PF.translation().norm(); distance > kFarthest) {
+    return fail(fmt::format("the placement of {} is {:.10g} mm away from its predecessor, but at most {:.10g} mm",
+                            state_->names.path(*id), distance * kMillimetres, kFarthest * kMillimetres));
+  }
   node.X_PF = X_PF;
   state_->changed();
   return {};
@@ -84,7 +89,11 @@ Result<void> Cell::attach_at_workframe(std::string_view part, std::string_view p
 Result<void> Cell::set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) {
   const auto id = state_->find(camera, PathKind::camera);
   if (!id) return std::unexpected(id.error());
-  if (!std::isfinite(focal_distance_m) || focal_distance_m <= 0.0 || focal_distance_m > kFarthest)
+  if (focal_distance_m > kFarthest) {
+    return fail(fmt::format("the viewing distance of {} is {:.10g} m, but at most {:.10g} m", camera, focal_distance_m,
+                            kFarthest));
+  }
+  if (!(focal_distance_m > 0.0))
     return fail(fmt::format("the viewing distance of {} is {:g} m, but must be positive", camera, focal_distance_m));
   if (!std::isfinite(fovy_rad) || fovy_rad <= 0.0 || fovy_rad >= std::numbers::pi)
     return fail(fmt::format("the opening angle of {} is {:g} rad, but must lie between 0 and pi", camera, fovy_rad));
@@ -105,8 +114,17 @@ Result<void> Cell::set_sensor_active(std::string_view sensor, bool active) {
 Result<void> Cell::set_sensor_range(std::string_view sensor, double range_m) {
   const auto id = state_->find(sensor, PathKind::sensor);
   if (!id) return std::unexpected(id.error());
-  if (!std::isfinite(range_m) || range_m <= 0.0 || range_m > kFarthest)
-    return fail(fmt::format("the range of {} is {:g} m, but must be positive", sensor, range_m));
+  const double range_mm = range_m * kMillimetres;
+  if (range_m > kFarthest) {
+    return fail(fmt::format("the range of {} is {:.10g} mm, but at most {:.10g} mm", sensor, range_mm,
+                            kFarthest * kMillimetres));
+  }
+  if (!(range_m > 0.0)) return fail(fmt::format("the range of {} is {:g} mm, but must be positive", sensor, range_mm));
+  if (const double blind_mm = state_->at(*id).sensor.blind_zone_m * kMillimetres; range_mm <= blind_mm) {
+    return fail(
+        fmt::format("the range of {} is {:.10g} mm, within its blind zone of {:.10g} mm", sensor, range_mm, blind_mm),
+        fmt::format("give more than {:.10g} mm", blind_mm));
+  }
   double& present = state_->at(*id).sensor.range_m;
   if (present != range_m) state_->changed();
   present = range_m;

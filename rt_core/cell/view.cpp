@@ -128,7 +128,8 @@ Result<void> check_view(int id, const View& view) {
     return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthestView;
   };
   if (!near_enough(view.viewpoint) || !near_enough(view.lookpoint))
-    return fail(fmt::format("the viewpoint or lookpoint of view {} lies beyond {:g} m", id, kFarthestView));
+    return fail(fmt::format("the viewpoint or lookpoint of view {} lies beyond {:.10g} m ({:.10g} mm)", id,
+                            kFarthestView, 1e3 * kFarthestView));
   if ((view.viewpoint - view.lookpoint).norm() < kNearestLookpoint)
     return fail(fmt::format("the viewpoint of view {} is its lookpoint", id), "give VP and LP apart from each other");
   if (!std::isfinite(view.twist)) return fail(fmt::format("the twist angle of view {} is no number", id));

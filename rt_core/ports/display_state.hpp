@@ -52,6 +52,7 @@ struct CameraSetting {
   bool online = false;    // CAM_ONLINE
   bool mirrored = false;  // its workframe is moved by a robot that is online: it is shown as that robot holds it
   std::string tracks;     // dotted path of the frame it looks at (CAM_TRACKING on); empty: none
+  bool tracking = false;  // there is a direction to look; false where the frame lies where the camera is
 };
 
 // A view on its way (STVW with STEPS or TIME): the parameters go from `from` to `to` at once and evenly.
@@ -65,8 +66,9 @@ struct ViewSequence {
 };
 
 struct DisplayView {
-  View view;           // where no sequence runs: as it is; else as it will be
-  std::string camera;  // COVW: the view is this camera's; empty: its own
+  View view;                     // where no sequence runs: as it is; else as it will be
+  std::string camera;            // COVW: the view is this camera's; empty: its own
+  bool front_plane_set = false;  // STVW has set it since COVW: it cuts at the camera as far as it says
   std::optional<ViewSequence> sequence;
 };
 

@@ -63,8 +63,11 @@ View view_now(const PaneInput& input, int id) {
   const auto index = static_cast<std::size_t>(std::clamp(id, 0, static_cast<int>(kViews) - 1));
   const DisplayView& shown = input.display.views[index];
   if (!shown.camera.empty()) {
-    if (const auto camera = camera_now(input.cell, input.poses, input.display, shown.camera))
-      return view_of_camera(*camera, shown.view);
+    if (const auto camera = camera_now(input.cell, input.poses, input.display, shown.camera)) {
+      View view = view_of_camera(*camera, shown.view);
+      if (shown.front_plane_set) view.near_distance = std::max(view.near_distance, shown.view.near_distance);
+      return view;
+    }
   }
   if (!shown.sequence) return shown.view;
   return between(shown.sequence->from, shown.sequence->to, part_of(*shown.sequence, input.now, input.updates));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -33,8 +34,9 @@ class DisplayHost {
   virtual Result<void> save_views(std::string_view file) = 0;                                   // SAVE_VIEWS, ours
   virtual Result<void> set_mode(DisplayMode mode, bool on) = 0;  // SET_MODE, BFRM, FLDR, SHAD
   virtual Result<void> set_legend(bool on) = 0;                  // ours
-  virtual Result<void> set_draw_mode(std::string_view node, bool branch, DrawMode mode) = 0;  // RENDER
-  virtual Result<void> set_tag_length(double length_m) = 0;                                   // TAG_DRAWLEN
+  // RENDER. Done with a remark where nothing is seen of it.
+  virtual Result<std::string> set_draw_mode(std::string_view node, bool branch, DrawMode mode) = 0;
+  virtual Result<void> set_tag_length(double length_m) = 0;  // TAG_DRAWLEN
   virtual Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) = 0;  // SET_CAMPAR
   virtual Result<void> track(std::string_view camera,
                              std::optional<std::string_view> frame) = 0;         // CAM_TRACKING; none: off

@@ -26,11 +26,18 @@ struct Outcome {
   Error error;
   std::string_view script;  // points into the command's text
   ActivityHandle activity;
+  std::string remark;  // of what is done, for whoever asked; empty: there is nothing to say
 
   static Outcome done() { return {}; }
-  static Outcome refused(Error why) { return {Kind::refused, std::move(why), {}, {}}; }
-  static Outcome pending(ActivityHandle activity) { return {Kind::pending, {}, {}, std::move(activity)}; }
+  static Outcome refused(Error why) { return {Kind::refused, std::move(why), {}, {}, {}}; }
+  static Outcome pending(ActivityHandle activity) { return {Kind::pending, {}, {}, std::move(activity), {}}; }
   static Outcome of(Result<void> result) { return result ? done() : refused(std::move(result.error())); }
+  static Outcome with_remark(Result<std::string> result) {
+    if (!result) return refused(std::move(result.error()));
+    Outcome outcome;
+    outcome.remark = *std::move(result);
+    return outcome;
+  }
 };
 
 // The command must have been parsed with host.names. Commands whose subsystem is not there yet are refused with

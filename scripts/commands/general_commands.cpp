@@ -79,10 +79,10 @@ DrawMode draw_mode(const ParsedCommand& command, std::size_t slot) {
 }
 
 Outcome set_frame_render(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_draw_mode(command.text(0), false, draw_mode(command, 1)));
+  return Outcome::with_remark(host.display.set_draw_mode(command.text(0), false, draw_mode(command, 1)));
 }
 Outcome set_abstract_render(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_draw_mode(command.text(0), true, draw_mode(command, 1)));
+  return Outcome::with_remark(host.display.set_draw_mode(command.text(0), true, draw_mode(command, 1)));
 }
 
 Outcome load_views(const ParsedCommand& command, CommandHost& host) {

@@ -22,9 +22,24 @@ constexpr std::size_t kPlausibilityTokenSlot = 0;
 constexpr std::size_t kEffectorJointSlot = 0;
 constexpr std::size_t kTrackingSwitchSlot = 1;
 constexpr std::size_t kTrackingFrameParameter = 2;
+constexpr std::size_t kTestSwitchSlot = 0;
+constexpr std::size_t kFirstTestValue = 1;  // parameters of SET_EXT_TCP_TEST
+constexpr std::size_t kLastTestValue = 4;
+constexpr std::size_t kFirstViewParameter = 1;  // parameters of STVW: VP to BCP
+constexpr std::size_t kLastViewParameter = 6;
 
 bool has_empty_part(std::string_view path) {
   return path.empty() || path.starts_with('.') || path.ends_with('.') || path.find("..") != std::string_view::npos;
+}
+
+// Synopses have names in brackets: <name>, (name), [name].
+std::string_view without_brackets(std::string_view text) {
+  constexpr std::string_view kOpening = "([<";
+  constexpr std::string_view kClosing = ")]>";
+  if (text.size() < 3) return text;
+  const std::size_t kind = kOpening.find(text.front());
+  if (kind == std::string_view::npos || text.back() != kClosing[kind]) return text;
+  return text.substr(1, text.size() - 2);
 }
 
 bool has_control_byte(std::string_view text) {
@@ -72,7 +87,12 @@ void Matcher::check_name(const Parameter& parameter, const Token& word) {
     return;
   }
   if (names_ == nullptr || parameter.checked_by_host || names_->knows(parameter.name_kind, word.text)) return;
-  const Error why = names_->explain(parameter.name_kind, word.text);
+  const std::string_view bare = without_brackets(word.text);
+  Error why = names_->explain(parameter.name_kind, bare);
+  if (bare.size() < word.text.size() && names_->knows(parameter.name_kind, bare)) {
+    why = {fmt::format("{} stands in brackets, which belong to the synopsis alone", printable(word.text)),
+           fmt::format("write {}", printable(bare))};
+  }
   if (check_ == NameCheck::ahead_after_loading && path) {
     findings_.warning(word.begin, why.what, why.remedy);
   } else {
@@ -147,6 +167,17 @@ void Matcher::check_dependencies() {
     const bool given = out_.given(kTrackingFrameParameter);
     if (on && !given) findings_.error(end_, "the target frame <frame_id> is missing", expected());
     if (!on && given) findings_.error(words_.back().begin, "a target frame is given only with on", "leave it away");
+  }
+  if (form_.id == FormId::stvw) {
+    bool any = false;
+    for (std::size_t i = kFirstViewParameter; i <= kLastViewParameter; ++i) any = any || out_.given(i);
+    if (!any) findings_.error(end_, "it names nothing that is to change", "give VP, LP, TW, VA, FCP or BCP");
+  }
+  if (form_.id == FormId::set_ext_tcp_test) {
+    const bool off_alone = out_.choice(kTestSwitchSlot) != 0 && !out_.given(kFirstTestValue);
+    std::size_t value = kFirstTestValue;
+    while (value <= kLastTestValue && out_.given(value)) ++value;
+    if (value <= kLastTestValue && !off_alone) missing(form_.parameters[value]);
   }
   if (form_.id == FormId::rob_ela_interact && names_ != nullptr) {
     const std::size_t joints = joint_kinds().size();

@@ -18,9 +18,11 @@ constexpr Parameter kForceArrow[] = {choice("int_1", "arrows of joint forces", k
                                      choice("int_3", "arrow of the TCP force", kArrows)};
 constexpr Parameter kTorqueLimit[] = {number("max_force", "force limit", Unit::newton, kNotNegative),
                                       number("max_torque", "torque limit", Unit::newton_metre, kNotNegative)};
-constexpr Parameter kTcpTest[] = {
-    on_off("test mode"), number("v1", "force along x", Unit::newton), number("v2", "force along y", Unit::newton),
-    number("v3", "force along z", Unit::newton), number("v4", "torque about the tool axis", Unit::newton_metre)};
+// With off alone they may be left out; the matcher sees to it.
+constexpr Parameter kTcpTest[] = {on_off("test mode"), optional(number("v1", "force along x", Unit::newton)),
+                                  optional(number("v2", "force along y", Unit::newton)),
+                                  optional(number("v3", "force along z", Unit::newton)),
+                                  optional(number("v4", "torque about the tool axis", Unit::newton_metre))};
 constexpr Parameter kSpecial[] = {on_off()};
 constexpr Parameter kMasterSlave[] = {on_off("coupling"), robot("master_robot", "master"),
                                       integer("n_slaves", "number of slaves", {1, kMaxSlaves}),
@@ -48,7 +50,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kTcpTest,
      .help = "writes test values to shared memory 1313 in place of simulated ones, or not",
-     .definition = "force x, y, z [N] and torque about the tool axis [Nm]",
+     .definition = "force x, y, z [N] and torque about the tool axis [Nm]; off needs no values",
      .effect = LoopEffect::queued},
     {.id = FormId::set_frc_arr_special,
      .name = "SET_FRC_ARR_SPECIAL",

@@ -122,7 +122,7 @@ Result<std::string> ScriptRunner::accept_message(const Outcome& outcome) {
   switch (outcome.kind) {
     case Outcome::Kind::done:
     case Outcome::Kind::pending:
-      return std::string{};
+      return outcome.remark;
     case Outcome::Kind::refused:
       return std::unexpected(outcome.error);
     case Outcome::Kind::wait:

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "scripts/commands/host.hpp"
@@ -104,8 +105,9 @@ class QuietHost final : public WorldHost,
   Result<void> save_views(std::string_view /*file*/) override { return called(); }
   Result<void> set_mode(DisplayMode /*mode*/, bool /*on*/) override { return called(); }
   Result<void> set_legend(bool /*on*/) override { return called(); }
-  Result<void> set_draw_mode(std::string_view /*node*/, bool /*branch*/, DrawMode /*mode*/) override {
-    return called();
+  Result<std::string> set_draw_mode(std::string_view /*node*/, bool /*branch*/, DrawMode /*mode*/) override {
+    ++calls;
+    return std::string();
   }
   Result<void> set_tag_length(double /*length_m*/) override { return called(); }
   Result<void> track(std::string_view /*camera*/, std::optional<std::string_view> /*frame*/) override {

@@ -204,8 +204,10 @@ class RecordingHost final : public WorldHost,
     return record("set_mode {} {}", kNames[static_cast<std::size_t>(mode)], on);
   }
   Result<void> set_legend(bool on) override { return record("set_legend {}", on); }
-  Result<void> set_draw_mode(std::string_view node, bool branch, DrawMode mode) override {
-    return record("set_draw_mode {}{} {}", node, branch ? " and below" : "", static_cast<int>(mode));
+  std::string draw_mode_remark;  // the answer to RENDER
+  Result<std::string> set_draw_mode(std::string_view node, bool branch, DrawMode mode) override {
+    auto done = record("set_draw_mode {}{} {}", node, branch ? " and below" : "", static_cast<int>(mode));
+    return done ? Result<std::string>(draw_mode_remark) : std::unexpected(std::move(done.error()));
   }
   Result<void> set_tag_length(double length_m) override { return record("set_tag_length {:.9g}", length_m); }
   Result<void> track(std::string_view camera, std::optional<std::string_view> frame) override {

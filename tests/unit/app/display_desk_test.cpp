@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "rt_core/base/log.hpp"
+#include "rt_core/scene/panes.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
 
 namespace cellmirror::app {
@@ -61,7 +62,10 @@ class DisplayDeskTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  std::string refusal(const Result<void>& result) { return result ? "done" : result.error().text(); }
+  template <typename T>
+  std::string refusal(const Result<T>& result) {
+    return result ? "done" : result.error().text();
+  }
   const DisplayView& view(int id) {
     state_ = sut_->state();
     return state_->views[static_cast<std::size_t>(id)];
@@ -194,6 +198,27 @@ TEST_F(DisplayDeskTest, AViewThatLeavesItsCameraProjectsAndClipsAsBefore) {
   EXPECT_EQ(view(1).view.far_distance, before.far_distance);
 }
 
+TEST_F(DisplayDeskTest, ClippingPlanesAloneLeaveAViewAtItsCamera) {
+  ASSERT_TRUE(sut_->connect_view(0, "CAM"));
+  ViewChange planes;
+  planes.near_distance = 1.5;
+  planes.far_distance = 2.5;
+  ASSERT_TRUE(sut_->set_view(0, planes, AtOnce{}));
+  EXPECT_EQ(view(0).camera, "CAM");
+  CellPoses poses;
+  const auto cell = cell_->compile();
+  compute_poses(*cell, q_, poses);
+  const View shown = scene::view_now({*cell, poses, *sut_->state(), clock_.now(), updates_}, 0);
+  EXPECT_EQ(shown.near_distance, 1.5);
+  EXPECT_EQ(shown.far_distance, 2.5);
+  planes.near_distance = 3.0;
+  EXPECT_NE(refusal(sut_->set_view(0, planes, AtOnce{})).find("leave nothing between them"), std::string::npos);
+  EXPECT_EQ(view(0).view.near_distance, 1.5);
+  EXPECT_EQ(view(0).camera, "CAM");
+  ASSERT_TRUE(sut_->connect_view(0, "CAM"));
+  EXPECT_LT(scene::view_now({*cell, poses, *sut_->state(), clock_.now(), updates_}, 0).near_distance, 0.1);
+}
+
 TEST_F(DisplayDeskTest, TheScreensAxesGoAlongWithASequence) {
   ViewChange upright = looking_from({0, -5, 0});
   upright.twist = 0.0;
@@ -269,6 +294,30 @@ TEST_F(DisplayDeskTest, SwitchesWhatConcernsOneCamera) {
   EXPECT_EQ(cell_->compile()->cameras[0].fovy_rad, 0.25);
 }
 
+TEST_F(DisplayDeskTest, ACameraCannotTrackWhatLiesInItsOwnAxis) {
+  ASSERT_TRUE(cell_->connect("Left", "Arm.BEND", q_));
+  ASSERT_TRUE(cell_->set_placement("Left", Pose::Identity()));
+  EXPECT_NE(refusal(sut_->track("Left.EYE", "Left")).find("lies where the camera Left.EYE is"), std::string::npos);
+  EXPECT_NE(refusal(sut_->track("Left.EYE", "Arm.BEND")).find("lies where the camera Left.EYE is"), std::string::npos);
+  EXPECT_EQ(camera("Left.EYE").tracks, "");
+  EXPECT_TRUE(sut_->track("Left.EYE", "Arm.TURN"));
+  EXPECT_TRUE(camera("Left.EYE").tracking);
+}
+
+TEST_F(DisplayDeskTest, TheStateTellsWhetherATargetIsSomewhereToLookAt) {
+  ASSERT_TRUE(sut_->track("Left.EYE", "Part"));  // both at the origin, but either may go
+  EXPECT_EQ(camera("Left.EYE").tracks, "Lab.Table.Part");
+  EXPECT_FALSE(camera("Left.EYE").tracking);
+  Pose aside = Pose::Identity();
+  aside.translation().x() = 1.0;
+  ASSERT_TRUE(cell_->set_placement("Part", aside));
+  sut_->follow();
+  EXPECT_TRUE(camera("Left.EYE").tracking);
+  ASSERT_TRUE(cell_->set_placement("Part", Pose::Identity()));
+  sut_->follow();
+  EXPECT_FALSE(camera("Left.EYE").tracking);
+}
+
 TEST_F(DisplayDeskTest, ShadowsNeedTheFloorAndTheCamerasViewACamera) {
   ASSERT_TRUE(sut_->set_mode(DisplayMode::shadows, false));
   ASSERT_TRUE(sut_->set_mode(DisplayMode::floor, false));
@@ -305,6 +354,17 @@ TEST_F(DisplayDeskTest, OfDrawModesTheLastCounts) {
   ASSERT_EQ(rules.size(), 3U);
   EXPECT_EQ(rules.back().mode, DrawMode::wireframe);
   EXPECT_FALSE(sut_->set_draw_mode("Nobody", true, DrawMode::flat));
+}
+
+TEST_F(DisplayDeskTest, RemarksWhereADrawModeShowsNothing) {
+  EXPECT_EQ(*sut_->set_draw_mode("Table", false, DrawMode::wireframe),
+            "Table has no geometry of its own; SET_ABSTRACT reaches what is below it");
+  EXPECT_EQ(*sut_->set_draw_mode("Lab", false, DrawMode::wireframe), "");
+  EXPECT_EQ(*sut_->set_draw_mode("Table", true, DrawMode::wireframe), "");
+}
+
+TEST_F(DisplayDeskTest, LimitsOfLengthsAreToldInTheUnitOfTheCommand) {
+  EXPECT_NE(refusal(sut_->set_tag_length(1e6)).find("1000000000 mm, at most with 10000000 mm"), std::string::npos);
 }
 
 TEST_F(DisplayDeskTest, MessagesAreShownForFiveSecondsAndRingWhereBeepIsOn) {
@@ -367,6 +427,10 @@ TEST_F(DisplayDeskTest, AViewFileWithAnyErrorSetsNothing) {
   write("clip.vws", "format = 1\n[[view]]\nid = 0\nnear_m = 1e6\n");
   EXPECT_NE(refusal(sut_->load_views("clip")), "done");
   EXPECT_NE(refusal(sut_->load_views("missing")), "done");
+  EXPECT_NE(refusal(sut_->load_views("clap")).find("scripts/clap.vws does not exist"), std::string::npos);
+  EXPECT_NE(refusal(sut_->load_views("clap")).find("did you mean clip?"), std::string::npos);
+  write("startup.spt", "DRAW_SCENE;");
+  EXPECT_TRUE(refusal(sut_->load_views("startup.spt")).starts_with("startup.spt is no view file (.vws): "));
   EXPECT_NE(refusal(sut_->load_views("../outside")), "done");
   EXPECT_EQ(sut_->state(), before);
 }

@@ -128,6 +128,9 @@ TEST_F(Places, attachingPutsThePartAtTheWorkframe) {
 
 TEST_F(Places, cameraParametersAreChecked) {
   EXPECT_FALSE(sut->set_camera("Cam", 0.0, 0.5));
+  EXPECT_THAT(sut->set_camera("Cam", -1.0, 0.5).error().what, HasSubstr("must be positive"));
+  EXPECT_THAT(sut->set_camera("Cam", 1e7, 0.5).error().what, HasSubstr("is 10000000 m, but at most 1000000 m"));
+  EXPECT_FALSE(sut->set_camera("Cam", std::nan(""), 0.5));
   EXPECT_FALSE(sut->set_camera("Cam", 1.0, 3.2));
   EXPECT_FALSE(sut->set_camera("Box", 1.0, 0.5));
   ASSERT_TRUE(sut->set_camera("Cam", 4.85, 0.27));
@@ -139,6 +142,7 @@ TEST_F(Places, sensorParametersAreCheckedAndShowInThePicture) {
   EXPECT_THAT(sut->set_sensor_range("Earr", 1.0).error().text(), HasSubstr("Ear"));
   for (const double range : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
     EXPECT_FALSE(sut->set_sensor_range("Ear", range)) << range;
+  EXPECT_THAT(sut->set_sensor_range("Ear", 1e9).error().what, HasSubstr("but at most 1000000000 mm"));
   const auto before = sut->compile();
   EXPECT_FALSE(before->sensors.front().sensor.active);
   ASSERT_TRUE(sut->set_sensor_active("Ear", true));
@@ -149,6 +153,23 @@ TEST_F(Places, sensorParametersAreCheckedAndShowInThePicture) {
   EXPECT_FALSE(before->sensors.front().sensor.active) << "a picture stays as it is";
   ASSERT_TRUE(sut->set_sensor_active("Ear", true));
   EXPECT_EQ(sut->revision(), after->revision) << "nothing changed";
+}
+
+TEST_F(Places, aSensorSeesBeyondItsBlindZone) {
+  const double blind_zone = sut->compile()->sensors.front().sensor.blind_zone_m;
+  const auto refused = sut->set_sensor_range("Ear", blind_zone);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().text(), HasSubstr("within its blind zone of 100 mm; give more than 100 mm"));
+  EXPECT_TRUE(sut->set_sensor_range("Ear", blind_zone + 0.001));
+}
+
+TEST_F(Places, aPlacementTooFarNamesTheLimit) {
+  Pose far = Pose::Identity();
+  far.translation().x() = 2e6;
+  EXPECT_THAT(sut->set_placement("Box", far).error().what,
+              HasSubstr("2000000000 mm away from its predecessor, but at most 1000000000 mm"));
+  far.translation().x() = std::nan("");
+  EXPECT_THAT(sut->set_placement("Box", far).error().what, HasSubstr("is not finite"));
 }
 
 TEST_F(Places, aPictureStaysAsItIsAndTheRevisionTellsOfChanges) {

@@ -115,6 +115,9 @@ TEST(Views, RefusesThoseThatShowNothing) {
   refused([](View& view) { view.opening_angle = 3.2; });
   refused([](View& view) { view.near_distance = view.far_distance; });
   refused([](View& view) { view.near_distance = -1; });
+  View far = good;
+  far.viewpoint.x() = 2e4;
+  EXPECT_NE(check_view(2, far).error().what.find("10000 m (10000000 mm)"), std::string::npos);
   EXPECT_FALSE(check_view(7, good));
   EXPECT_FALSE(check_view(-1, good));
 }

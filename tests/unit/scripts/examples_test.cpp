@@ -166,6 +166,7 @@ const Example kExamples[] = {
     {"SET_FORCE_ARROW 4 0 1", FormId::set_force_arrow, {}, {4, 0, 1}},
     {"SET_TORQUE_LIMIT 0 1.5", FormId::set_torque_limit, {}, {0, 1.5}},
     {"SET_EXT_TCP_TEST on 1 2 3 0.25", FormId::set_ext_tcp_test, {}, {0, 1, 2, 3, 0.25}},
+    {"SET_EXT_TCP_TEST off", FormId::set_ext_tcp_test, {}, {1}},
     {"SET_FRC_ARR_SPECIAL on", FormId::set_frc_arr_special, {}, {0}},
     {"eladyn_geo_def ALL 0x1f", FormId::eladyn_geo_def_flags, {"ALL"}, {31}},
     {"eladyn_geo_def liver.mpo 3 1 2 3 4.5", FormId::eladyn_geo_def_flags, {"liver.mpo"}, {3, 1, 2, 3, 4.5}},

@@ -79,6 +79,13 @@ TEST_F(ScriptRunnerTest, PassesOnTheGatewaysRefusal) {
   EXPECT_NE(sut_->last_errors()[0].find("message:1:1: error: the test refuses connect"), std::string::npos);
 }
 
+TEST_F(ScriptRunnerTest, AnswersWithTheGatewaysRemark) {
+  gateway_.draw_mode_remark = "nothing is seen of it";
+  const auto answer = sut_->execute_message("SET_FRAME Toolbox.Tool1 RENDER 2");
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_EQ(*answer, "nothing is seen of it");
+}
+
 TEST_F(ScriptRunnerTest, RefusesWaitAsAMessageWithTheReason) {
   const auto answer = sut_->execute_message("WAIT");
   ASSERT_FALSE(answer);
