@@ -22,6 +22,7 @@
 #include "app/gateway/picture.hpp"
 #include "app/gateway/publisher.hpp"
 #include "app/gateway/ranging_worker.hpp"
+#include "app/gateway/robot_streams.hpp"
 #include "app/gateway/status_document.hpp"
 #include "app/gateway/studio.hpp"
 #include "app/gateway/tcp_force_worker.hpp"
@@ -45,16 +46,28 @@ namespace {
 constexpr std::chrono::milliseconds kLoopStandsStillAfter{100};
 constexpr std::int32_t kIdleWakeLimitUs = 10;  // keeps idle processors out of states that cost the loop its phase
 
+// Numbered, so that none falls to the log's rate limit by kind.
+void log_findings(const Diagnostics& diagnostics) {
+  std::size_t number = 0;
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    ++number;
+    log_text(diagnostic.severity == Severity::note ? LogLevel::info : LogLevel::warning,
+             fmt::format("cell {}/{}", number, diagnostics.all().size()), diagnostic.text());
+  }
+}
+
 Result<LoadedCell> load(const GatewayOptions& options) {
   Diagnostics diagnostics;
   std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics, options.progress);
   if (!loaded) {
     const std::string count = diagnostics.errors() == 1 ? "an error" : fmt::format("{} errors", diagnostics.errors());
     return fail(fmt::format("the cell {} has {}:\n{}nothing was started", options.cell_file.string(), count,
-                            diagnostics.text()),
+                            diagnostics.text(Severity::warning)),
                 fmt::format("mend the cell and look again with: cellmirror check {}", options.cell_file.string()));
   }
-  for (const Diagnostic& diagnostic : diagnostics.all()) log_warning("cell", "{}", diagnostic.text());
+  // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same findings.
+  for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
+  log_findings(diagnostics);
   if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
   return std::move(*loaded);
 }

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <utility>
 
+#include "rt_core/base/log.hpp"
 #include "rt_core/rt/scheduling.hpp"
 #include "rt_core/scene/camera_mount.hpp"
 
@@ -104,7 +105,10 @@ Timestamp Publisher::publish_due(Timestamp now) {
   if (any_due) {
     const std::shared_ptr<const OwnerPicture> picture = board_.look();
     const engine::TickState& state = engine_.publisher_view();
-    select_sending(*picture, builder_.build(*picture, state));
+    const std::span<const RobotState> robots = builder_.build(*picture, state);
+    for (const std::string& text : range_watch_.look(now, robots, picture->robots))
+      log_warning("joint.range", "{}", text);
+    select_sending(*picture, robots);
     const std::shared_ptr<const ForceState> forces = forces_.look();
     if (forces) take_efforts(*forces, sending_);
     const std::span<const FramePose> frames = builder_.frames(*picture, wanted_);

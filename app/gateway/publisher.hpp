@@ -10,6 +10,7 @@
 #include "app/gateway/findings_board.hpp"
 #include "app/gateway/force_board.hpp"
 #include "app/gateway/picture.hpp"
+#include "app/gateway/range_watch.hpp"
 #include "app/gateway/robot_states.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/engine.hpp"
@@ -76,6 +77,7 @@ class Publisher {
   std::vector<FindingsPublisher> findings_;  // one an output
   std::vector<Timestamp> due_;
   RobotStateBuilder builder_;
+  RangeWatch range_watch_;
   std::vector<RobotState> sending_;
   std::vector<bool> wanted_;
   std::jthread thread_;  // last: it uses everything above

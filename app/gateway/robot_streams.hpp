@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "config/cell_file.hpp"
+#include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -15,5 +17,10 @@ namespace cellmirror::app {
 // that the cell names.
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
                                                        int fifo_priority);
+
+// Reads the EDS, DCF or DBC files of the stream and tells what is wrong with them and with what the cell file takes
+// from them, each at its place; warns of joints without a source. What the reader of the cell file told is not told
+// again.
+void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics);
 
 }  // namespace cellmirror::app

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "app/gateway/range_watch.hpp"
 #include "app/gateway/status_collisions.hpp"
 #include "app/gateway/status_couplings.hpp"
 #include "app/gateway/status_display.hpp"
@@ -107,14 +108,19 @@ json stream_json(const RobotPicture& robot, const engine::RobotTickState& tick, 
           {"last_errors", status.last_errors}};
 }
 
-json joints_json(const RobotState& robot, Timestamp now) {
+json joints_json(const RobotState& robot, const RobotParameters& parameters, Timestamp now) {
   json out = json::array();
-  for (const RobotJointState& joint : robot.joints) {
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const RobotJointState& joint = robot.joints[i];
+    const double lower = parameters.min_range[i];
+    const double upper = parameters.max_range[i];
     out.push_back({{"name", joint.name},
                    {"position", joint.position},
                    {"unit", joint.kind == JointKind::prismatic ? "m" : "rad"},
                    {"velocity", joint.velocity},
                    {"effort", joint.effort},
+                   {"range", {lower, upper}},
+                   {"beyond_range", is_beyond(joint.position, lower, upper)},
                    {"state", word(joint.state)},
                    {"age_s", age_json(now, joint.receive_time)}});
   }
@@ -198,7 +204,7 @@ json robots_json(const StatusSources& sources) {
                    {"active", picture.id == sources.picture.active_robot},
                    {"sending", picture.sending},
                    {"stream", stream_json(picture, tick, sources.now)},
-                   {"joints", joints_json(state, sources.now)},
+                   {"joints", joints_json(state, picture.parameters, sources.now)},
                    {"tcp", pose_json(state.X_WT)},
                    {"motion", motion_json(picture, tick.motion, state.joints.size())},
                    {"parameters", parameters_json(picture.parameters, state.joints.size())},

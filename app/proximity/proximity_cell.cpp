@@ -14,7 +14,7 @@ std::optional<ProximityCell> load_proximity_cell(const std::string& file) {
     ProgressLine line("files loaded");
     loaded = load_cell(file, diagnostics, load_progress(line));
   }
-  std::fputs(diagnostics.text().c_str(), stderr);
+  std::fputs(diagnostics.text(Severity::warning).c_str(), stderr);
   if (!loaded) return std::nullopt;
   auto compiled = loaded->cell.compile();
   return ProximityCell{std::move(*loaded), std::move(compiled)};

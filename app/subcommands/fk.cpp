@@ -98,7 +98,7 @@ int show(const FkOptions& options) {
   Diagnostics diagnostics;
   const auto robot = choose_robot(options.robot, diagnostics);
   if (!robot) {
-    std::fputs(diagnostics.text().c_str(), stderr);
+    std::fputs(diagnostics.text(Severity::warning).c_str(), stderr);
     return kExitRefused;
   }
   const auto q = parse_joints(options.joints, "--joints", robot->chain);

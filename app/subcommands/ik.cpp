@@ -155,7 +155,7 @@ int solve(const IkOptions& options) {
   const auto robot = choose_robot(options.robot, diagnostics);
   const auto targets = robot ? targets_of(options, robot->chain, diagnostics) : std::nullopt;
   if (!robot || !targets) {
-    std::fputs(diagnostics.text().c_str(), stderr);
+    std::fputs(diagnostics.text(Severity::warning).c_str(), stderr);
     return kExitRefused;
   }
   if (options.all && targets->size() > kMaxTargetsForAll)

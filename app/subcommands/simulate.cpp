@@ -41,7 +41,7 @@ std::optional<LoadedCell> load(const std::string& file) {
   Diagnostics diagnostics;
   ProgressLine line("files loaded");
   auto cell = load_cell(file, diagnostics, load_progress(line));
-  std::fputs(diagnostics.text().c_str(), stderr);
+  std::fputs(diagnostics.text(Severity::warning).c_str(), stderr);
   return cell;
 }
 

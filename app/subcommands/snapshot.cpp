@@ -87,7 +87,7 @@ int of_cell(const SnapshotOptions& options) {
     ProgressLine line("files loaded");
     loaded = load_cell(options.cell, diagnostics, load_progress(line));
   }
-  std::fputs(diagnostics.text().c_str(), stderr);
+  std::fputs(diagnostics.text(Severity::warning).c_str(), stderr);
   if (!loaded) return kExitRefused;
   auto picture = cell_snapshot(*loaded, options.wanted);
   if (!picture) return refuse(picture.error().text());

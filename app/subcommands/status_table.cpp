@@ -113,27 +113,55 @@ class TableWriter {
     marks += motion_text(robot);
     line("");
     line("{}  {}{}", robot.at("id").get<std::string>(), robot.at("mode").get<std::string>(), marks);
-    if (robot.at("mode").get<std::string>() == "mirrored") {
+    const bool mirrored = robot.at("mode").get<std::string>() == "mirrored";
+    if (mirrored) {
       line("  {} {}: {}, age {}, {:.1f} Hz, {} received, {} lost, {} rejected; {}",
            stream.at("kind").get<std::string>(), stream.at("endpoint").get<std::string>(),
            state(stream.at("state").get<std::string>()), age(stream.at("age_s")), stream.at("rate_hz").get<double>(),
            stream.at("received").get<std::uint64_t>(), stream.at("lost").get<std::uint64_t>(),
            stream.at("rejected").get<std::uint64_t>(), stream.at("condition").get<std::string>());
+      write_trouble(stream);
     }
     std::string joints;
-    for (const json& joint : robot.at("joints")) joints += joint_text(joint);
+    for (const json& joint : robot.at("joints")) joints += joint_text(joint, mirrored);
     line("  {}", joints);
   }
 
-  [[nodiscard]] std::string joint_text(const json& joint) const {
+  // What is behind the counters: the newest error, and how the nodes of a bus are.
+  void write_trouble(const json& stream) {
+    const bool counted = stream.at("rejected").get<std::uint64_t>() + stream.at("lost").get<std::uint64_t>() > 0;
+    if (!counted && stream.at("condition").get<std::string>() == "operational") return;
+    const json details = stream.value("details", json::object());
+    for (const auto& [key, value] : details.items()) {
+      const bool of_node = key.starts_with("node ") || key.starts_with("last EMCY");
+      if (of_node) line("    {}: {}", key, value.get<std::string>());
+    }
+    if (!counted) return;
+    const json errors = stream.value("last_errors", json::array());
+    const std::string newest =
+        errors.empty() ? details.value("last channel error", std::string()) : errors.back().get<std::string>();
+    if (!newest.empty()) line("    newest error: {}", newest);
+  }
+
+  // " (beyond -110 .. 110 deg)" of a joint that is; empty for the others and from an older gateway.
+  static std::string beyond_text(const json& joint, bool angle) {
+    if (!joint.value("beyond_range", false)) return {};
+    const auto bound = [&](std::size_t i) {
+      const double value = joint.at("range").at(i).get<double>();
+      return angle ? deg_from_rad(value) : mm_from_m(value);
+    };
+    return fmt::format(" (beyond {:.6g} .. {:.6g} {})", bound(0), bound(1), angle ? "deg" : "mm");
+  }
+
+  [[nodiscard]] std::string joint_text(const json& joint, bool mirrored) const {
     const double position = joint.at("position").get<double>();
     const bool angle = joint.at("unit").get<std::string>() == "rad";
     const std::string value =
         angle ? fmt::format("{:.2f} deg", deg_from_rad(position)) : fmt::format("{:.1f} mm", mm_from_m(position));
     const std::string word = joint.at("state").get<std::string>();
-    const bool remarkable = word == "stale" || word == "lost" || word == "invalid";
-    return fmt::format("{} {}{}   ", joint.at("name").get<std::string>(), value,
-                       remarkable ? " (" + state(word) + ")" : "");
+    const bool remarkable = word == "stale" || word == "lost" || word == "invalid" || (mirrored && word == "none");
+    return fmt::format("{} {}{}{}   ", joint.at("name").get<std::string>(), value,
+                       remarkable ? " (" + state(word) + ")" : "", beyond_text(joint, angle));
   }
 
   void write_script(const json& status) {

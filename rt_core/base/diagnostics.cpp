@@ -58,9 +58,11 @@ void Diagnostics::take(const Diagnostics& other) {
   warnings_ += other.warnings_ - kept_warnings;
 }
 
-std::string Diagnostics::text() const {
+std::string Diagnostics::text(Severity least) const {
   std::string out;
-  for (const Diagnostic& diagnostic : kept_) out += diagnostic.text() + "\n";
+  for (const Diagnostic& diagnostic : kept_) {
+    if (diagnostic.severity >= least) out += diagnostic.text() + "\n";
+  }
   if (dropped_ > 0) out += fmt::format("... and {} more\n", dropped_);
   return out;
 }

@@ -44,8 +44,8 @@ class Diagnostics {
   [[nodiscard]] std::size_t errors() const { return errors_; }
   [[nodiscard]] std::size_t warnings() const { return warnings_; }
   [[nodiscard]] bool ok() const { return errors_ == 0; }
-  // One diagnostic a line, and a last line for those that were only counted.
-  [[nodiscard]] std::string text() const;
+  // One diagnostic a line, from `least` on, and a last line for those that were only counted.
+  [[nodiscard]] std::string text(Severity least = Severity::note) const;
 
  private:
   std::vector<Diagnostic> kept_;

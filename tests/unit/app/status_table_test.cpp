@@ -46,6 +46,42 @@ TEST(StatusTable, ShowsWhatIsStaleLateRefusedAndDropped) {
   EXPECT_THAT(*table, HasSubstr("sensor 4"));
 }
 
+TEST(StatusTable, TellsJointsThatNothingGivesAndThoseBeyondTheirRange) {
+  std::string text(kDocument);
+  const std::string_view joint = R"({"name":"J_2","position":0.25,"unit":"m","state":"fresh"})";
+  text.replace(text.find(joint), joint.size(),
+               R"({"name":"J_2","position":0.25,"unit":"m","state":"fresh","range":[0,0.2],"beyond_range":true},
+                  {"name":"J_3","position":0,"unit":"rad","state":"none","range":[-1,1],"beyond_range":false})");
+  EXPECT_THAT(*status_table(text, false), HasSubstr("J_2 250.0 mm (beyond 0 .. 200 mm)"));
+  EXPECT_THAT(*status_table(text, false), HasSubstr("J_3 0.00 deg (none)"));
+  text.replace(text.find("mirrored"), 8, "simulated");
+  EXPECT_THAT(*status_table(text, false), Not(HasSubstr("(none)")));
+  EXPECT_THAT(*status_table(text, false), HasSubstr("(beyond 0 .. 200 mm)"));
+}
+
+TEST(StatusTable, TellsTheNewestErrorAndTheNodesOfAStreamInTrouble) {
+  std::string text(kDocument);
+  const std::string_view condition = R"("condition":"no publisher")";
+  const auto with = [&](const std::string& counters, const std::string& is, const std::string& more) {
+    std::string out = text;
+    out.replace(out.find(condition), condition.size(), "\"condition\":\"" + is + "\"" + more);
+    const std::string_view counted = R"("lost":1,"rejected":2)";
+    return *status_table(out.replace(out.find(counted), counted.size(), counters), false);
+  };
+  const std::string details = R"x(,"details":{"bus":"active","node 3 (J_1)":"fault","last channel error":"broken"},)x"
+                              R"("last_errors":["first","newest of all"])";
+  const std::string bad = with(R"("lost":0,"rejected":2)", "node 3 (J_1): fault", details);
+  EXPECT_THAT(bad, HasSubstr("    node 3 (J_1): fault\n    newest error: newest of all\n"));
+  EXPECT_THAT(bad, Not(HasSubstr("first")));
+  EXPECT_THAT(bad, Not(HasSubstr("bus: active")));
+  EXPECT_THAT(
+      with(R"("lost":1,"rejected":0)", "operational", R"(,"details":{"last channel error":"broken"},"last_errors":[])"),
+      HasSubstr("    newest error: broken\n"));
+  const std::string good = with(R"("lost":0,"rejected":0)", "operational", details);
+  EXPECT_THAT(good, Not(HasSubstr("newest")));
+  EXPECT_THAT(good, Not(HasSubstr("    node 3")));
+}
+
 TEST(StatusTable, ShowsRobotProgramsWithWhatTheyWaitForTheirTimesSignalsAndADeadlock) {
   std::string text(kDocument);
   text.insert(text.rfind('}'), R"(,"programs":{"loaded":[

@@ -31,5 +31,14 @@ TEST(Diagnostics, TakesOverWhatAnotherPassFoundWithItsCounts) {
   EXPECT_FALSE(sut.ok());
 }
 
+TEST(Diagnostics, TextBeginsWithTheSeverityThatIsAskedFor) {
+  Diagnostics sut;
+  sut.add({Severity::note, {"a.stl", 0, 0}, "it was repaired", ""});
+  sut.warning({"a.toml", 1, 0}, "doubtful");
+  sut.error({"a.toml", 2, 0}, "wrong");
+  EXPECT_EQ(sut.text(Severity::warning), "a.toml:1: warning: doubtful\na.toml:2: error: wrong\n");
+  EXPECT_EQ(sut.text(), "a.stl: note: it was repaired\n" + sut.text(Severity::warning));
+}
+
 }  // namespace
 }  // namespace cellmirror
