@@ -150,13 +150,15 @@ class Simulation {
       computes = computes || program.state == program::ProgramState::running;
       who += fmt::format("{}{} of {} {}", who.empty() ? "" : "; ", program.name, program.robot, doing);
     }
-    if (result_.end == SimulationEnd::stands_still)
-      return fmt::format(
-          "nothing has happened for {:g} s (--still){}{}; inputs that are waited for are set with SET_INPUT and "
-          "SET_ANALOG_INPUT in the script",
-          gateway_.time_s() - last_event_s_, who.empty() ? "" : ": ", who);
-    return fmt::format("{:g} s are over (--for){}{}{}", options_.longest_s, who.empty() ? "" : ": ", who,
-                       computes ? "; does it end?" : "");
+    if (result_.end == SimulationEnd::time_limit) {
+      if (who.empty() && gateway_.robots_move()) who = "a robot still moves";
+      return fmt::format("{:g} s are over (--for){}{}{}", options_.longest_s, who.empty() ? "" : ": ", who,
+                         computes ? "; does it end?" : "");
+    }
+    // A deadlock is told by itself, and lasts whatever the options say.
+    if (gateway_.owner().programs().controllers().deadlock()) return who;
+    return fmt::format("nothing has happened for {:g} s (--still){}{}", options_.still_s, who.empty() ? "" : ": ",
+                       who.empty() ? "" : who + "; SET_INPUT and SET_ANALOG_INPUT in the script set inputs");
   }
 
   // Empty: it has ended, or never began.

@@ -110,6 +110,7 @@ class Pictures(WithGateway):
     def test_folder_that_is_not_there_is_told(self):
         done = self.snapshot("-o", self.path("no") / "where.png", expect=1)
         self.assertIn("cannot be written", done.stderr)
+        self.assertIn("name a file in a folder of yours", done.stderr)
 
     def test_hostile_requests_are_refused(self):
         def ask(text):

@@ -158,7 +158,7 @@ class Ends(Simulation):
         self.assertEqual(found["end"], "time limit")
         self.assertAlmostEqual(found["simulated_s"], 0.5, delta=2 * TICK)
         self.assertEqual(found["moves"][0]["outcome"], "under way")
-        self.assertIn("0.5 s are over (--for)", found["end_note"])
+        self.assertEqual(found["end_note"], "0.5 s are over (--for): a robot still moves")
 
     def test_scripts_are_named_as_with_run_by_any_path_or_by_a_name_in_scripts(self):
         path = self.script("HOT_MESSAGE here")
@@ -257,6 +257,7 @@ class Waiting(Simulation):
         found = self.simulate("TF_LOAD stuck S1;\nTF_LOAD waits S2;\nTF_RUN stuck S1;\nTF_RUN waits S2",
                               "--no-collisions", status=1)
         self.assertEqual(found["end"], "stands still")
+        self.assertEqual(found["end_note"], "stuck of S1 waits for semaphore nobody_releases at N4")
         ends = {program["program"]: program["end"] for program in found["programs"]}
         self.assertEqual(ends["waits"], "ended")
 
