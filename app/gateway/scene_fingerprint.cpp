@@ -121,6 +121,7 @@ void add_panes(Hash& hash, std::span<const Pane> panes) {
     }
     hash.add(pane.eye.X_WE);
     hash.add(static_cast<std::uint64_t>(pane.view));
+    hash.add(std::uint64_t{pane.camera});
     hash.add(pane.title);
   }
 }

@@ -7,6 +7,7 @@
 #include "drivers/display/internal/gl_context.hpp"
 #include "drivers/display/internal/marks.hpp"
 #include "drivers/display/internal/mesh_store.hpp"
+#include "drivers/display/internal/reach.hpp"
 #include "drivers/display/internal/render_target.hpp"
 #include "drivers/display/internal/ribbon_pass.hpp"
 #include "drivers/display/internal/words.hpp"
@@ -27,6 +28,14 @@ Result<void> check_size(int width, int height) {
 }
 
 bool is_on(const Scene& scene, DisplayMode mode) { return scene.modes.test(static_cast<std::size_t>(mode)); }
+
+// Those that are drawn, with the clipping planes that suit the scene.
+std::vector<Pane> bounded_panes(std::span<const Pane> panes, const Box& reach) {
+  const std::span<const Pane> drawn = panes.first(std::min(panes.size(), kMostPanes));
+  std::vector<Pane> bounded(drawn.begin(), drawn.end());
+  for (Pane& pane : bounded) pane.eye = bounded_by(reach, pane.eye);
+  return bounded;
+}
 
 std::string text_of(const GlApi& gl, GLenum what) {
   const GLubyte* const text = gl.GetString(what);
@@ -51,7 +60,7 @@ struct Renderer::Impl {
   Result<void> prepare();
   Result<void> begin(int width, int height);
   Result<void> end(int width, int height);
-  void draw_pane(const Scene& scene, const ViewTransform& view, std::vector<DrawnBody>& drawn);
+  void draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn);
   void draw_words(const Scene& scene, std::span<const Pane> panes, Image& picture);
   void clip_to(const PixelRect& pixels) const {
     gl.Viewport(pixels.x, pixels.y, pixels.width, pixels.height);
@@ -116,8 +125,7 @@ Result<void> Renderer::Impl::end(int width, int height) {
               "ask for a smaller one");
 }
 
-void Renderer::Impl::draw_pane(const Scene& scene, const ViewTransform& view, std::vector<DrawnBody>& drawn) {
-  const Frame frame{scene, view};
+void Renderer::Impl::draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn) {
   const BodyCounts counts = BodyPass::examine(frame, drawn);
   counters.bodies_drawn += counts.drawn;
   counters.bodies_left_out += counts.left_out;
@@ -125,7 +133,7 @@ void Renderer::Impl::draw_pane(const Scene& scene, const ViewTransform& view, st
   bodies.draw_opaque(frame, drawn);
   bodies.draw_extra(frame, marks.solids);
   background.draw();
-  if (is_on(scene, DisplayMode::floor)) floor.draw(frame, ribbons);
+  if (is_on(frame.scene, DisplayMode::floor)) floor.draw(frame, ribbons);
   bodies.draw_see_through(frame, drawn);
   gl.Enable(GL_BLEND);
   gl.DepthMask(GL_FALSE);
@@ -139,7 +147,7 @@ void Renderer::Impl::draw_pane(const Scene& scene, const ViewTransform& view, st
 void Renderer::Impl::draw_words(const Scene& scene, std::span<const Pane> panes, Image& picture) {
   for (const Pane& pane : panes) {
     if (const auto view = ViewTransform::of(pane, picture.width, picture.height))
-      words.draw_pane({scene, *view}, picture);
+      words.draw_pane({scene, *view, pane.camera}, picture);
     words.draw_title(pane, picture.width, picture.height, picture);
   }
   draw_borders(panes, picture);
@@ -167,11 +175,13 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
                             bool smooth) {
   Impl& impl = *impl_;
   if (Result<void> begun = impl.begin(width, height); !begun) return begun;
-  const std::span<const Pane> drawn_panes = panes.first(std::min(panes.size(), kMostPanes));
   std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
+  Box reach = reach_of(scene, drawn);
   if (is_on(scene, DisplayMode::floor)) {
     if (Result<void> prepared = impl.floor.prepare(scene, drawn); !prepared) return prepared;
+    reach.extend(impl.floor.reach(scene));
   }
+  const std::vector<Pane> drawn_panes = bounded_panes(panes, reach);
   const Pixels pixels = smooth && is_on(scene, DisplayMode::antialiasing) ? Pixels::smooth_colours : Pixels::colours;
   if (Result<void> begun = impl.target.begin(pixels, width, height); !begun) return begun;
   impl.gl.ClearColor(0.80F, 0.82F, 0.85F, 1);
@@ -181,7 +191,7 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
     if (!rect) continue;
     impl.clip_to(*rect);
     if (const auto view = ViewTransform::of(pane, width, height))
-      impl.draw_pane(scene, *view, drawn);
+      impl.draw_pane({scene, *view, pane.camera}, drawn);
     else
       impl.background.draw();
   }
@@ -202,7 +212,7 @@ Result<void> Renderer::objects(const Scene& scene, std::span<const Pane> panes, 
   impl.gl.ClearBufferuiv(GL_COLOR, 0, kNone.data());
   impl.gl.Clear(GL_DEPTH_BUFFER_BIT);
   std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
-  for (const Pane& pane : panes.first(std::min(panes.size(), kMostPanes))) {
+  for (const Pane& pane : bounded_panes(panes, reach_of(scene, drawn))) {
     const auto view = ViewTransform::of(pane, width, height);
     if (!view) continue;
     impl.clip_to(view->pixels());

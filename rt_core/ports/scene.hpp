@@ -59,7 +59,8 @@ struct SceneLine {
   Colour rgba{0, 0, 0, 1};
   float width_px = 1.5F;
   bool dashed = false;
-  bool on_top = false;  // not hidden by bodies before it
+  bool on_top = false;       // not hidden by bodies before it
+  std::uint32_t camera = 0;  // as Pane::camera; not 0: left out where this camera looks
 };
 
 // A curve through `points`, oldest first, older parts paler.
@@ -94,6 +95,7 @@ struct SceneLabel {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   std::string text;  // UTF-8, one line
   Mark mark = Mark::none;
+  std::uint32_t camera = 0;  // as SceneLine::camera
 };
 
 // The level top of a slab that the cell itself stands on: shadows fall on it as on the floor (SHAD, FLDR), which it
@@ -136,8 +138,9 @@ struct Pane {
   double top = 0;
   double width = 1;
   double height = 1;
-  int view = 0;       // 0 to 6; -1: a free one
-  std::string title;  // drawn in its corner; may be empty
+  int view = 0;              // 0 to 6; -1: a free one
+  std::string title;         // drawn in its corner; may be empty
+  std::uint32_t camera = 0;  // that it looks through: index of its node in the cell, plus 1; 0: none
   Eye eye;
 };
 

@@ -21,9 +21,9 @@ struct View {
 // As a renderer takes it. The eye's frame E: x to the right of the picture, y up, z out of it towards the viewer.
 struct Eye {
   Pose X_WE = Pose::Identity();
-  double opening_angle = 0.7;  // rad, vertical; of a perspective projection
-  double height_m = 0;         // of what is seen; more than 0: parallel projection
-  double near_distance = 0.05;
+  double opening_angle = 0.7;   // rad, vertical; of a perspective projection
+  double height_m = 0;          // of what is seen; more than 0: parallel projection
+  double near_distance = 0.05;  // 0 and above; a renderer may begin up to 10 mm before the eye
   double far_distance = 100;
 };
 

@@ -73,6 +73,10 @@ std::optional<CameraNow> camera_now(const CompiledCell& cell, const CellPoses& p
   return now_of(cell, poses, display, *camera);
 }
 
+std::uint32_t object_of_camera(const CompiledCell& cell, const CameraNow& camera) {
+  return static_cast<std::uint32_t>(cell.cameras[camera.camera].node) + 1;
+}
+
 std::vector<CameraNow> cameras_now(const CompiledCell& cell, const CellPoses& poses, const DisplayState& display) {
   std::vector<CameraNow> cameras;
   cameras.reserve(cell.cameras.size());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,8 @@ struct CameraNow {
 // workframe, or the full path. No camera of that name: none.
 [[nodiscard]] std::optional<CameraNow> camera_now(const CompiledCell& cell, const CellPoses& poses,
                                                   const DisplayState& display, std::string_view name);
+// As Pane::camera names it.
+[[nodiscard]] std::uint32_t object_of_camera(const CompiledCell& cell, const CameraNow& camera);
 // Of all cameras, in the order of the cell.
 [[nodiscard]] std::vector<CameraNow> cameras_now(const CompiledCell& cell, const CellPoses& poses,
                                                  const DisplayState& display);

@@ -24,19 +24,21 @@ std::span<const LayoutPane> panes_of_layout(const DisplayState& display) {
   return display.layout.displays[static_cast<std::size_t>(known - 1)].panes;
 }
 
-std::string title_of(const PaneInput& input, int id) {
-  const auto index = static_cast<std::size_t>(id);
-  const DisplayView& shown = input.display.views[index];
-  if (!shown.camera.empty() && camera_now(input.cell, input.poses, input.display, shown.camera))
-    return fmt::format("{} {}", id, last_name(shown.camera));
-  return fmt::format("{} {}", id, input.display.layout.views[index].name);
-}
-
 Pane pane_of(const PaneInput& input, int id) {
+  const DisplayView& shown = input.display.views[static_cast<std::size_t>(id)];
   Pane pane;
   pane.view = id;
   pane.eye = eye_of(view_now(input, id));
+  if (shown.camera.empty()) return pane;
+  if (const auto camera = camera_now(input.cell, input.poses, input.display, shown.camera))
+    pane.camera = object_of_camera(input.cell, *camera);
   return pane;
+}
+
+std::string title_of(const PaneInput& input, const Pane& pane) {
+  const auto index = static_cast<std::size_t>(pane.view);
+  if (pane.camera != 0) return fmt::format("{} {}", pane.view, last_name(input.display.views[index].camera));
+  return fmt::format("{} {}", pane.view, input.display.layout.views[index].name);
 }
 
 std::optional<Pane> pane_of_current_camera(const PaneInput& input) {
@@ -45,6 +47,7 @@ std::optional<Pane> pane_of_current_camera(const PaneInput& input) {
   if (!camera) camera = cameras_now(input.cell, input.poses, input.display).front();
   Pane pane;
   pane.view = kBirdsEye;
+  pane.camera = object_of_camera(input.cell, *camera);
   pane.eye = eye_of(view_of_camera(*camera, input.display.views[kBirdsEye].view));
   if (!input.display.full_screen) pane.title = input.cell.cameras[camera->camera].name;
   return pane;
@@ -58,7 +61,6 @@ std::vector<Pane> panes_of_display(const PaneInput& input) {
   }
   const std::span<const LayoutPane> placed = panes_of_layout(input.display);
   CELLMIRROR_EXPECTS(!placed.empty());
-  if (input.display.full_screen) return {pane_of(input, placed.front().view)};
   std::vector<Pane> panes;
   for (const LayoutPane& area : placed) {
     Pane pane = pane_of(input, area.view);
@@ -66,7 +68,7 @@ std::vector<Pane> panes_of_display(const PaneInput& input) {
     pane.top = area.top;
     pane.width = area.width;
     pane.height = area.height;
-    pane.title = title_of(input, area.view);
+    if (!input.display.full_screen) pane.title = title_of(input, pane);
     panes.push_back(std::move(pane));
   }
   return panes;
@@ -86,6 +88,7 @@ Result<std::vector<Pane>> panes_of_camera(const PaneInput& input, std::string_vi
   }
   Pane pane;
   pane.view = -1;
+  pane.camera = object_of_camera(input.cell, *now);
   pane.eye = eye_of(view_of_camera(*now, input.display.views[0].view));
   return std::vector<Pane>{std::move(pane)};
 }

@@ -27,13 +27,12 @@ struct PaneInput {
 // they are those of `clipped_as`, the nearer one not farther than 50 mm, or than
 // its own housing needs.
 [[nodiscard]] View view_of_camera(const CameraNow& camera, const View& clipped_as);
-// The near plane is at least 1e-5 of the way to the far one: a depth buffer needs a distance above 0.
 [[nodiscard]] Eye eye_of(const View& view);
 [[nodiscard]] bool ended(const ViewSequence& sequence, Timestamp now, std::uint64_t updates);
 // At `part` 0 to 1 of the way: all parameters evenly.
 [[nodiscard]] View between(const View& from, const View& to, double part);
 
-// Of the current display, as the layout has it: its views with their titles. FULL: its first view alone, without title.
+// Of the current display, as the layout has it: its views with their titles. FULL: the same without titles.
 // CAM_MAINVIEW: the current camera (the first where none was named) with the clipping planes of the bird's eye view,
 // whose number the pane carries; without any camera the display as is.
 [[nodiscard]] std::vector<Pane> panes_of_display(const PaneInput& input);

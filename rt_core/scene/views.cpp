@@ -12,7 +12,6 @@ namespace cellmirror::scene {
 namespace {
 
 constexpr double kOnTheSpot = 1e-9;      // m
-constexpr double kNearestPart = 1e-5;    // of the far distance: a depth buffer tells no more apart
 constexpr double kCameraNearest = 0.05;  // m: what is in front of a camera is not cut away by a view made for the cell
 
 constexpr double kBeforeHousing = 1.02;
@@ -85,7 +84,7 @@ Eye eye_of(const View& view) {
   if (seen.orthogonal)
     eye.height_m = 2.0 * (seen.viewpoint - seen.lookpoint).norm() * std::tan(0.5 * seen.opening_angle);
   eye.far_distance = seen.far_distance;
-  eye.near_distance = std::max(seen.near_distance, kNearestPart * seen.far_distance);
+  eye.near_distance = seen.near_distance;
   return eye;
 }
 

@@ -58,7 +58,7 @@ constexpr Form kForms[] = {
      .example = "STDP 1 FULL",
      .definition =
          "without FULL or FULL_OFF: FULL_OFF. Its first view is the current one, whose axes SCREEN_INC takes; "
-         "FULL shows this one alone, without title and legend"},
+         "FULL shows its views without titles and legend"},
     {.id = FormId::stvw,
      .name = "STVW",
      .syntax = "STVW <view_id> [VP x y z] [LP x y z] [TW twist] [VA angle] [FCP d] [BCP d] [STEPS n | TIME s]",

@@ -92,6 +92,13 @@ Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> b
   return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(shadow_level_, 2 * inner_, bodies) : Result<void>{};
 }
 
+Eigen::AlignedBox3d FloorPass::reach(const Scene& scene) const {
+  if (!std::isfinite(scene.floor_z_m)) return {};
+  const Eigen::Vector3d centre(centre_.x(), centre_.y(), scene.floor_z_m);
+  const Eigen::Vector3d half(outer_, outer_, 0);
+  return {centre - half, centre + half};
+}
+
 void FloorPass::make_disc(const Scene& scene) {
   std::vector<float> vertices;
   std::vector<std::uint32_t> indices;

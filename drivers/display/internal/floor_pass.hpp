@@ -2,6 +2,8 @@
 // Private to this folder.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "drivers/display/internal/frame.hpp"
 #include "drivers/display/internal/ribbon_pass.hpp"
 #include "drivers/display/internal/shadow_map.hpp"
@@ -19,6 +21,8 @@ class FloorPass {
   Result<void> build();
   // Once a picture, before its target is bound: shadows are the same from everywhere.
   Result<void> prepare(const Scene& scene, std::span<const DrawnBody> bodies);
+  // As prepared, at the height of the floor.
+  [[nodiscard]] Eigen::AlignedBox3d reach(const Scene& scene) const;
   // After what is opaque. From below, the floor is not drawn, so that one can look into the cell.
   void draw(const Frame& frame, RibbonPass& ribbon_pass);
 

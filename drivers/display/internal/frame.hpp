@@ -10,6 +10,9 @@ namespace cellmirror::display {
 struct Frame {
   const Scene& scene;
   const ViewTransform& view;
+  std::uint32_t camera = 0;  // as Pane::camera
+  // Whether something belongs to the camera that this pane looks through.
+  [[nodiscard]] bool own(std::uint32_t of_camera) const { return of_camera != 0 && of_camera == camera; }
 };
 
 // The light that casts the shadow comes from here (unit vector towards it, W): from the upper left of who looks

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kMost = 5000;         // of each kind
 constexpr std::size_t kMostPoints = 20000;  // of all traces together
 constexpr double kFarthest = 1e5;           // m
+constexpr double kHeadRadius = 0.38;        // of an arrow's head, of its length
 
 bool sensible(const Eigen::Vector3d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < kFarthest; }
 bool sensible(const Pose& X) { return X.matrix().allFinite() && X.matrix().cwiseAbs().maxCoeff() < kFarthest; }
@@ -21,6 +22,19 @@ bool sensible(const Pose& X) { return X.matrix().allFinite() && X.matrix().cwise
 Colour faded(Colour colour, float alpha) {
   colour[3] *= alpha;
   return colour;
+}
+
+// The edges of a cone as it is seen: from its tip, its base lies back along `direction`.
+void outline_head(const Frame& frame, const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, double length,
+                  const Ribbons::Style& style, Ribbons& ribbons) {
+  const Eigen::Vector4d eye = frame.view.eye();
+  Eigen::Vector3d side = direction.cross(eye.head<3>() - eye.w() * tip);
+  if (!(side.norm() > 0)) side = frame.view.X_WE().linear().col(0);
+  const Eigen::Vector3d base = tip - length * direction;
+  const Eigen::Vector3d across = kHeadRadius * length * side.normalized();
+  ribbons.line(frame.view, base + across, tip, style);
+  ribbons.line(frame.view, base - across, tip, style);
+  ribbons.line(frame.view, base - across, base + across, style);
 }
 
 // A solid of unit size with its z axis along `along`, its origin at `from`.
@@ -47,7 +61,7 @@ void Marks::gather(const Frame& frame, MeshStore& meshes) {
   const auto some = [](const auto& all) { return std::span(all).first(std::min(all.size(), kMost)); };
   for (const SceneAxes& axes : some(scene.axes)) add_axes(frame, meshes, axes);
   for (const SceneLine& line : some(scene.lines)) {
-    if (!sensible(line.from) || !sensible(line.to)) continue;
+    if (frame.own(line.camera) || !sensible(line.from) || !sensible(line.to)) continue;
     (line.on_top ? on_top : hidden_by_bodies)
         .line(frame.view, line.from, line.to, {line.rgba, line.rgba, line.width_px, line.dashed});
   }
@@ -131,9 +145,17 @@ void Marks::add_arrow(const Frame& frame, MeshStore& meshes, const SceneArrow& a
   solids.push_back(body);
   StoredMesh& cone = meshes.solid(Solid::cone);
   const Eigen::Vector3d tip = arrow.from + arrow.along;
-  solids.push_back(solid_along(cone, tip - head * direction, direction, 0.38 * head, head, arrow.rgba));
-  if (arrow.torque)
-    solids.push_back(solid_along(cone, tip - heads * direction, direction, 0.38 * head, head, arrow.rgba));
+  // Forces act at frames within links: what bodies hide of an arrow shines through them, paler.
+  const Colour pale = faded(arrow.rgba, 0.45F);
+  const Ribbons::Style style{pale, pale, 2.0F};
+  on_top.line(frame.view, arrow.from, tip - heads * direction, style);
+  const auto add_head = [&](double behind_tip) {
+    const Eigen::Vector3d end = tip - behind_tip * direction;
+    solids.push_back(solid_along(cone, end - head * direction, direction, kHeadRadius * head, head, arrow.rgba));
+    outline_head(frame, end, direction, head, style, on_top);
+  };
+  add_head(0);
+  if (arrow.torque) add_head(heads - head);
 }
 
 void Marks::add_spark(const Frame& frame, const SceneSpark& spark) {

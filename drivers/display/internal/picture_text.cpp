@@ -12,9 +12,11 @@ namespace {
 
 constexpr std::size_t kMostKept = 512;
 constexpr std::size_t kLongestLabel = 80;  // characters
-constexpr std::size_t kLongestMessage = 160;
+constexpr std::size_t kLongestMessage = 600;
+constexpr double kWidestMessage = 1200;  // pixels: longer lines are hard to read
 constexpr std::size_t kMostEntries = 24;
-constexpr double kLabelSize = 13;  // pixels
+constexpr const char* kEllipsis = "\xE2\x80\xA6";  // in UTF-8
+constexpr double kLabelSize = 13;                  // pixels
 constexpr double kTitleSize = 12.5;
 constexpr double kHalo = 3.2;  // width of its line, pixels
 
@@ -161,23 +163,6 @@ Sticker draw_legend(const std::vector<std::string>& texts, std::span<const Legen
   return sheet.sticker();
 }
 
-Sticker draw_message(const std::string& text) {
-  constexpr double kSize = 15;
-  const TextSize size = size_of(text, kSize, false);
-  const double width = std::ceil(size.width + 28);
-  const double height = std::ceil(size.ascent + size.descent + 14);
-  const Sheet sheet(static_cast<int>(width), static_cast<int>(height));
-  cairo_t* const context = sheet.context();
-  rounded_rectangle(context, 0, 0, width, height, 8);
-  cairo_set_source_rgba(context, 0.11, 0.14, 0.20, 0.86);
-  cairo_fill(context);
-  choose_font(context, kSize, false);
-  cairo_set_source_rgba(context, 0.97, 0.98, 1, 1);
-  cairo_move_to(context, 14, std::round(7 + size.ascent));
-  cairo_show_text(context, text.c_str());
-  return sheet.sticker();
-}
-
 // How many bytes the character of UTF-8 has that begins there (RFC 3629); 0: none does.
 std::size_t character_at(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
@@ -198,13 +183,78 @@ std::size_t character_at(std::string_view text, std::size_t at) {
   return length;
 }
 
+constexpr double kMessageSize = 15;
+constexpr double kMessageMargin = 14;  // beside its lines
+constexpr std::size_t kMostLines = 4;
+
+bool fits(std::string_view text, double width) {
+  return size_of(std::string(text), kMessageSize, false).width <= width;
+}
+
+// How many bytes of the text have room in a line: whole characters, one at least.
+std::size_t fitting(std::string_view text, double width) {
+  std::vector<std::size_t> ends;
+  for (std::size_t at = 0; at < text.size();) ends.push_back(at += std::max<std::size_t>(character_at(text, at), 1));
+  const auto beyond = std::partition_point(ends.begin() + 1, ends.end(),
+                                           [&](std::size_t end) { return fits(text.substr(0, end), width); });
+  return *(beyond - 1);
+}
+
+// The text as far as it fits, with an ellipsis behind it.
+std::string shortened(std::string_view text, double width) {
+  const double dots = size_of(kEllipsis, kMessageSize, false).width;
+  return std::string(text.substr(0, fitting(text, std::max(width - dots, 1.0)))) + kEllipsis;
+}
+
+std::vector<std::string> lines_of(std::string_view text, double width) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    std::size_t end = fitting(text, width);
+    if (end < text.size() && lines.size() + 1 == kMostLines) {
+      lines.push_back(shortened(text, width));
+      break;
+    }
+    if (end < text.size()) {
+      const std::size_t blank = text.rfind(' ', end);
+      if (blank != std::string_view::npos && blank > 0) end = blank;
+    }
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(text.find_first_not_of(' ', end), text.size()));
+  }
+  return lines;
+}
+
+Sticker draw_message(const std::string& text, double most) {
+  const std::vector<std::string> lines = lines_of(text, std::max(most - 2 * kMessageMargin, 1.0));
+  const TextSize size = size_of(text, kMessageSize, false);
+  const double line_height = std::ceil(size.ascent + size.descent);
+  double widest = 0;
+  for (const std::string& line : lines) widest = std::max(widest, size_of(line, kMessageSize, false).width);
+  const double width = std::ceil(widest + 2 * kMessageMargin);
+  const double height = line_height * static_cast<double>(lines.size()) + 14;
+  const Sheet sheet(static_cast<int>(width), static_cast<int>(height));
+  cairo_t* const context = sheet.context();
+  rounded_rectangle(context, 0, 0, width, height, 8);
+  cairo_set_source_rgba(context, 0.11, 0.14, 0.20, 0.86);
+  cairo_fill(context);
+  choose_font(context, kMessageSize, false);
+  cairo_set_source_rgba(context, 0.97, 0.98, 1, 1);
+  double baseline = std::round(7 + size.ascent);
+  for (const std::string& line : lines) {
+    cairo_move_to(context, kMessageMargin, baseline);
+    cairo_show_text(context, line.c_str());
+    baseline += line_height;
+  }
+  return sheet.sticker();
+}
+
 }  // namespace
 
 std::string drawable_text(std::string_view text, std::size_t most_characters) {
   std::string out;
   std::size_t count = 0;
   for (std::size_t at = 0; at < text.size(); ++count) {
-    if (count == most_characters) return out + "\xE2\x80\xA6";  // ...
+    if (count == most_characters) return out + kEllipsis;
     const std::size_t length = character_at(text, at);
     out += length > 0 ? text.substr(at, length) : "?";
     at += std::max<std::size_t>(length, 1);
@@ -271,11 +321,11 @@ const Sticker& TextPress::legend(std::span<const LegendEntry> entries) {
   return keep(std::move(key), draw_legend(texts, shown));
 }
 
-const Sticker& TextPress::message(std::string_view text) {
+const Sticker& TextPress::message(std::string_view text, int width) {
   const std::string words = drawable_text(text, kLongestMessage);
-  std::string key = "message" + words;
+  std::string key = "message " + std::to_string(width) + ' ' + words;
   if (const Sticker* const before = kept(key)) return *before;
-  return keep(std::move(key), draw_message(words));
+  return keep(std::move(key), draw_message(words, std::min<double>(width, kWidestMessage)));
 }
 
 }  // namespace cellmirror::display

@@ -42,7 +42,9 @@ class TextPress {
   // Dark letters on a pale halo, readable on anything. The reference holds until the next call.
   const Sticker& label(std::string_view text, TextLook look);
   const Sticker& legend(std::span<const LegendEntry> entries);
-  const Sticker& message(std::string_view text);
+  // In lines of no more than `width` pixels, frame included, broken at blanks, else within words; what is beyond the
+  // fourth line is an ellipsis.
+  const Sticker& message(std::string_view text, int width);
 
  private:
   const Sticker& keep(std::string key, Sticker sticker);

@@ -68,7 +68,9 @@ void Words::place(const PixelRect& within, const Wanted& label, Image& picture) 
 void Words::draw_pane(const Frame& frame, Image& picture) {
   wanted_.clear();
   taken_.clear();
-  for (const SceneLabel& label : frame.scene.labels) want(frame, label.at, label.text, look_of(label.mark));
+  for (const SceneLabel& label : frame.scene.labels) {
+    if (!frame.own(label.camera)) want(frame, label.at, label.text, look_of(label.mark));
+  }
   for (const SceneAxes& axes : frame.scene.axes) want(frame, axes.X_WF.translation(), axes.name, TextLook::plain);
   std::stable_sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) {
     return std::pair(importance(a.look), a.distance) < std::pair(importance(b.look), b.distance);
@@ -99,12 +101,20 @@ void Words::draw_messages(const Scene& scene, Image& picture) {
   constexpr std::size_t kMostMessages = 6;
   constexpr int kGap = 6;
   const PixelRect all{0, 0, picture.width, picture.height};
-  const std::span<const std::string> messages = scene.messages;
+  constexpr int kMargin = 4;
   int top = std::min(28, picture.height / 10);
-  for (const std::string& text : messages.last(std::min(messages.size(), kMostMessages))) {
+  std::vector<const std::string*> shown;  // the newest first: older ones go where there is no room for all
+  int room = picture.height - top;
+  for (std::size_t i = scene.messages.size(); i > 0 && shown.size() < kMostMessages; --i) {
+    const std::string& text = scene.messages[i - 1];
     if (text.empty()) continue;
-    const Sticker& sticker = press_.message(text);
-    stick(picture, all, sticker, std::max(4, (picture.width - sticker.width) / 2), top);
+    room -= press_.message(text, picture.width - 2 * kMargin).height + kGap;
+    if (room < 0 && !shown.empty()) break;
+    shown.push_back(&text);
+  }
+  for (auto text = shown.rbegin(); text != shown.rend(); ++text) {
+    const Sticker& sticker = press_.message(**text, picture.width - 2 * kMargin);
+    stick(picture, all, sticker, std::max(kMargin, (picture.width - sticker.width) / 2), top);
     top += sticker.height + kGap;
   }
 }

@@ -106,6 +106,49 @@ TEST_F(DisplayMarks, AnArrowPointsWhereItShould) {
   EXPECT_GT(change(kAll, arrow(true)), change(kAll, arrow(false)) + 4);
 }
 
+TEST_F(DisplayMarks, AnArrowInsideOfABodyShinesThroughPaler) {
+  Scene scene;
+  add_box(scene, {2, 2, 2}, at(0, 0, 0));
+  const auto arrow = [](bool torque) {
+    return [torque](Scene& s) { s.arrows.push_back({{0, 0, -0.6}, {0, 0, 1.2}, {0, 0.5F, 0.3F, 1}, torque}); };
+  };
+  constexpr Region kShaft{97, 96, 7, 30};
+  constexpr Region kHead{90, 69, 21, 10};
+  EXPECT_GT(change(kShaft, arrow(false), scene), 50);
+  EXPECT_GT(change(kHead, arrow(false), scene), 40) << "as wide as its base";
+  EXPECT_GT(change(kAll, arrow(true), scene), change(kAll, arrow(false), scene) + 10) << "the second head";
+  const Image inside = [&] {
+    Scene with = scene;
+    arrow(false)(with);
+    return picture(with);
+  }();
+  scene.bodies.clear();
+  arrow(false)(scene);
+  const Image bare = picture(scene);
+  EXPECT_GT(brightness(inside.pixel(100, 110)), brightness(bare.pixel(100, 110)) + 20);
+}
+
+TEST_F(DisplayMarks, AnArrowTowardsTheViewerHasNoEdgesBesideItsHead) {
+  Scene scene;
+  scene.arrows.push_back({{0, 0, 0}, {0, -1.2, 0}, {0, 0.5F, 0.3F, 1}, false});
+  const Image sut = picture(scene);
+  EXPECT_EQ(count_different(sut, picture(Scene{}), {0, 0, kEdge, 85}), 0);
+  EXPECT_GT(count_different(sut, picture(Scene{}), around(100, 100)), 10);
+}
+
+TEST_F(DisplayMarks, WhatBelongsToACameraIsNotInItsOwnPicture) {
+  Scene scene;
+  scene.lines.push_back({.from = {-1, 0, 0}, .to = {1, 0, 0}, .camera = 7});
+  scene.labels.push_back({{0, 0, 1}, "CAM", Mark::none, 7});
+  const Image none = picture(Scene{});
+  Pane pane = level();
+  pane.camera = 7;
+  EXPECT_EQ(count_different(picture(scene, pane), none), 0);
+  pane.camera = 8;
+  EXPECT_GT(count_different(picture(scene, pane), none, {0, 90, kEdge, 20}), 80);
+  EXPECT_GT(count_different(picture(scene), none, {0, 20, kEdge, 60}), 60);
+}
+
 TEST_F(DisplayMarks, OlderPartsOfATraceArePaler) {
   Scene scene;
   SceneTrace& trace = scene.traces.emplace_back();
@@ -167,6 +210,68 @@ TEST_F(DisplayMarks, MessagesAreAboveInTheMiddle) {
   const auto messages = [](Scene& s) { s.messages = {"ready"}; };
   EXPECT_GT(change({50, 0, 100, 80}, messages), 300);
   EXPECT_EQ(change({0, 100, kEdge, 100}, messages), 0);
+}
+
+class DisplayMessages : public DisplayMarks {
+ protected:
+  static Image with(const std::string& text, int width = kEdge) {
+    Scene scene;
+    scene.messages = {text};
+    Image image;
+    EXPECT_TRUE(shared()->draw(scene, std::vector<Pane>{level()}, width, kEdge, image));
+    return image;
+  }
+  static Image without(int width = kEdge) {
+    Image image;
+    EXPECT_TRUE(shared()->draw({}, std::vector<Pane>{level()}, width, kEdge, image));
+    return image;
+  }
+  // Rows that the message takes.
+  static int height_of(const Image& picture) {
+    const Image empty = without(picture.width);
+    int rows = 0;
+    for (int y = 0; y < kEdge; ++y) rows += count_different(picture, empty, {0, y, picture.width, 1}) > 0 ? 1 : 0;
+    return rows;
+  }
+};
+
+TEST_F(DisplayMessages, ALongOneIsBrokenAtBlanksAndSeenAsAWhole) {
+  const std::string text = "the joint J_4 of the arm gives more than";
+  const Image sut = with(text);
+  for (const int x : {0, kEdge - 3}) EXPECT_EQ(count_different(sut, without(), {x, 0, 3, kEdge}), 0) << x;
+  EXPECT_GT(count_different(sut, with("the joint J_4 of the arm gives less than")), 10) << "in its second line";
+  EXPECT_GT(height_of(sut), height_of(with("ready")) + 10);
+}
+
+TEST_F(DisplayMessages, AWordLongerThanALineIsBroken) {
+  const std::string word(60, 'w');
+  EXPECT_EQ(count_different(with(word), without(), {kEdge - 3, 0, 3, kEdge}), 0);
+  EXPECT_GT(height_of(with(word)), 2 * height_of(with("w")));
+}
+
+TEST_F(DisplayMessages, BeyondTheFourthLineIsAnEllipsis) {
+  std::string text;
+  for (int i = 0; i < 40; ++i) text += "many words ";
+  const Image sut = with(text);
+  EXPECT_EQ(count_different(sut, with(text + "and more")), 0);
+  EXPECT_LT(height_of(sut), 5 * height_of(with("ready")));
+  EXPECT_EQ(count_different(sut, without(), {kEdge - 3, 0, 3, kEdge}), 0);
+}
+
+TEST_F(DisplayMessages, AWiderPictureHasFewerLines) {
+  const std::string text = "the joint J_4 of the arm gives more than it may";
+  EXPECT_LT(height_of(with(text, 640)), height_of(with(text)));
+  EXPECT_EQ(height_of(with(text, 640)), height_of(with("joint", 640)));
+}
+
+TEST_F(DisplayMessages, WhereThereIsNoRoomForAllTheNewestIsSeen) {
+  Scene scene;
+  for (int i = 0; i < 6; ++i) scene.messages.emplace_back("of these messages the older ones are left out, not this");
+  const Image same = picture(scene);
+  scene.messages.back() = "the newest";
+  EXPECT_GT(count_different(same, picture(scene)), 100);
+  scene.messages.assign(1, std::string(400, 'i'));
+  EXPECT_GT(height_of(picture(scene)), 40) << "one that is too high is seen as far as there is room";
 }
 
 TEST_F(DisplayMarks, PanesHaveTheirOwnEyesTitlesAndBorders) {

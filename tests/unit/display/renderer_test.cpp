@@ -129,6 +129,44 @@ TEST_F(DisplayRenderer, NonsenseIsLeftOut) {
   picture(scene);
 }
 
+TEST_F(DisplayRenderer, AFarPlaneFarBeyondTheSceneHidesNothing) {
+  Scene scene;
+  add_box(scene, {0.4, 0.4, 0.4}, at(0, -9, 0));  // 1 m before the eye
+  Pane pane = level();
+  pane.eye.near_distance = 0.2;
+  pane.eye.far_distance = 1e6;
+  EXPECT_EQ(objects(scene, pane)[100 * kEdge + 100], 1U) << "parallel";
+  pane.eye.height_m = 0;
+  EXPECT_EQ(objects(scene, pane)[100 * kEdge + 100], 1U);
+  add_box(scene, {10, 10, 10}, at(0, 9e4, 0));  // a stray one
+  EXPECT_EQ(objects(scene, pane)[100 * kEdge + 100], 1U);
+  EXPECT_EQ(objects(scene, pane)[10 * kEdge + 100], 0U);
+}
+
+TEST_F(DisplayRenderer, ANearPlaneInTheEyeLeavesDepthsApart) {
+  Scene scene;
+  add_box(scene, {2, 1, 2}, at(0, 0.5, 0));
+  add_box(scene, {1, 1, 1}, at(0, 0.49, 0));  // 10 mm before the other
+  Pane pane = level();
+  pane.eye.height_m = 0;
+  pane.eye.opening_angle = 0.1;
+  pane.eye.near_distance = 0;
+  pane.eye.far_distance = 60;
+  pane.eye.X_WE.linear() =
+      Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ()).toRotationMatrix() * pane.eye.X_WE.linear();
+  const auto sut = objects(scene, pane);
+  int others = 0;
+  int seen = 0;
+  for (std::size_t i = 0; i < sut.size(); ++i) {
+    const int x = static_cast<int>(i) % kEdge;
+    const int y = static_cast<int>(i) / kEdge;
+    if (x < 80 || x > 120 || y < 80 || y > 120) continue;
+    (sut[i] == 2U ? seen : others) += 1;
+  }
+  EXPECT_EQ(others, 0);
+  EXPECT_EQ(seen, 41 * 41);
+}
+
 TEST_F(DisplayRenderer, HostileEyesAndPanesDoNoHarm) {
   Scene scene = gallery_scene();
   const double nan = std::nan("");

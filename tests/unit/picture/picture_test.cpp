@@ -93,14 +93,20 @@ TEST_F(Displays, EachShowsTheCellFromWhereItSays) {
   }
 }
 
-TEST_F(Displays, FullShowsTheMainViewWithoutTitleAndLegend) {
+TEST_F(Displays, FullShowsTheLayoutWithoutTitlesAndLegend) {
   const Image normal = picture();
   state_.full_screen = true;
   const Image full = picture();
   EXPECT_GT(count_different(normal, full, {0, 0, 90, 16}), 30) << "the title";
   EXPECT_EQ(count_different(normal, full, {100, 30, 140, 60}), 0) << "the same view";
   state_.display = 2;
-  EXPECT_EQ(panes().size(), 1U);
+  const Mask both = mask(kArm);
+  state_.full_screen = false;
+  EXPECT_EQ(both.in, mask(kArm).in) << "top and side";
+  const Image titled = picture();
+  state_.full_screen = true;
+  const Image untitled = picture();
+  for (const int top : {0, kHeight / 2}) EXPECT_GT(count_different(titled, untitled, {0, top, 90, 16}), 30) << top;
 }
 
 class ViewsInPictures : public PictureTest {
@@ -152,6 +158,30 @@ TEST_F(ViewsInPictures, ClippingPlanesCutAwayWhatIsBeyondThem) {
   EXPECT_EQ(mask("Testlab_1").count, 0U) << "the bench behind";
   state_.views[0].view.near_distance = distance + 0.5;
   EXPECT_EQ(mask(kArm).count, 0U);
+}
+
+TEST_F(ViewsInPictures, AFarPlaneBeyondTheCellClipsNothingBeforeIt) {
+  const std::size_t arm = mask(kArm).count;
+  View& view = state_.views[0].view;
+  view.near_distance = 0.2;
+  view.far_distance = 1e6;  // STVW 0 FCP 200 BCP 1e9
+  EXPECT_EQ(mask(kArm).count, arm);
+  view.orthogonal = true;
+  const std::size_t parallel = mask(kArm).count;
+  view.far_distance = 50;
+  EXPECT_GT(parallel, 1500U);
+  EXPECT_EQ(mask(kArm).count, parallel);
+}
+
+TEST_F(ViewsInPictures, ACamerasOwnPyramidIsNotAcrossItsPicture) {
+  state_.views[0].camera = state_.cameras[0].name;
+  const Image before = picture();
+  state_.cameras[0].pyramid = true;
+  EXPECT_EQ(count_different(before, picture()), 0);
+  state_.cameras[0].tracks = "Mantec_2.J_1";
+  const Image tracking = picture();
+  state_.cameras[0].pyramid = false;
+  EXPECT_EQ(count_different(tracking, picture()), 0);
 }
 
 TEST_F(ViewsInPictures, ASequenceBySteps) {
@@ -390,6 +420,9 @@ TEST_F(Marks, PyramidConeArrowSparkAndMessage) {
   input_.arrows = arrows;
   const Image arrow = picture();
   EXPECT_GT(count(arrow, kWhole, greenish), count(before, kWhole, greenish) + 10);
+  const std::vector<ForceArrow> within = {{hand, {0, 0, 40}, false}};
+  input_.arrows = within;
+  EXPECT_GT(different(before, picture(), mask("Mantec_2.J_1"), true), 30U) << "shines through its link";
   input_.arrows = {};
   state_.arcs = {"MANTEC_R3"};
   const CompiledRobot& robot = *std::ranges::find(cell_->robots, "MANTEC_R3", &CompiledRobot::id);

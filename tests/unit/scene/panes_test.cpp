@@ -57,18 +57,32 @@ TEST_F(Panes, StandWhereTheLayoutHasThemUnderItsNames) {
   EXPECT_EQ(sut[0].height, 0.75);
   EXPECT_EQ(sut[1].title, "0 perspective");
   cell_.display.full_screen = true;
-  EXPECT_EQ(views(), std::vector<int>{5});
-  EXPECT_EQ(panes_of_display(input())[0].width, 1);
+  EXPECT_EQ(views(), (std::vector<int>{5, 0}));
+  EXPECT_EQ(panes_of_display(input())[0].width, 0.5);
 }
 
-TEST_F(Panes, FullIsTheMainViewAloneWithoutTitle) {
+TEST_F(Panes, FullIsTheSameLayoutWithoutTitles) {
   cell_.display.display = 2;
   cell_.display.full_screen = true;
   const auto sut = panes_of_display(input());
-  ASSERT_EQ(sut.size(), 1U);
+  ASSERT_EQ(sut.size(), 2U);
   EXPECT_EQ(sut[0].view, 1);
-  EXPECT_EQ(sut[0].height, 1);
-  EXPECT_TRUE(sut[0].title.empty());
+  EXPECT_EQ(sut[1].view, 2);
+  EXPECT_EQ(sut[1].top, 0.5);
+  for (const Pane& pane : sut) EXPECT_TRUE(pane.title.empty());
+}
+
+TEST_F(Panes, TellThroughWhichCameraTheyLook) {
+  constexpr std::uint32_t kCamera = SmallCell::camera + 1;
+  EXPECT_EQ(panes_of_display(input())[0].camera, 0U);
+  EXPECT_EQ((*panes_of_camera(input(), "CAM"))[0].camera, kCamera);
+  cell_.display.views[3].camera = "Table.CAM";
+  EXPECT_EQ(panes_of_view(input(), 3)[0].camera, kCamera);
+  EXPECT_EQ(panes_of_view(input(), 4)[0].camera, 0U);
+  cell_.display.views[3].camera = "gone";
+  EXPECT_EQ(panes_of_view(input(), 3)[0].camera, 0U);
+  cell_.display.modes.set(static_cast<std::size_t>(DisplayMode::camera_main_view));
+  EXPECT_EQ(panes_of_display(input())[0].camera, kCamera);
 }
 
 TEST_F(Panes, OfAnUnknownDisplayThePerspective) {

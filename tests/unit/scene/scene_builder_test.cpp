@@ -183,11 +183,13 @@ TEST_F(BuilderTest, APyramidReachesToTheViewingDistance) {
   for (const SceneLine& line : build().lines) {
     from_apex += line.from == apex ? 1U : 0U;
     farthest = std::max(farthest, (line.to - apex).z());
+    EXPECT_EQ(line.camera, SmallCell::camera + 1U) << "it is not drawn across the camera's own picture";
   }
   EXPECT_EQ(from_apex, 4U);
   EXPECT_NEAR(farthest, 2.0, 1e-12);
   ASSERT_EQ(scene_.labels.size(), 1U);
   EXPECT_EQ(scene_.labels[0].text, "CAM");
+  EXPECT_EQ(scene_.labels[0].camera, SmallCell::camera + 1U);
   cell_.display.cameras[0].pyramid = false;
   EXPECT_TRUE(build().lines.empty());
 }
