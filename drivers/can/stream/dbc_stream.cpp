@@ -4,6 +4,7 @@
 
 #include "drivers/can/dbc/session.hpp"
 #include "drivers/can/stream/can_stream.hpp"
+#include "rt_core/base/counted.hpp"
 
 namespace cellmirror::can {
 namespace {
@@ -22,7 +23,7 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
     status.received = session_.counters().samples;
     status.rejected = session_.counters().rejected;
     if (const std::uint64_t outside = session_.counters().outside; outside > 0)
-      status.details.emplace_back("beyond the DBC's limits", fmt::format("{} values", outside));
+      status.details.emplace_back("beyond the DBC's limits", number_of(outside, "value"));
     if (!last_sample_.known()) {
       status.condition = fmt::format("no frame of the DBC's messages since {:.1f} s", seconds(now - started_));
     } else if (now - last_sample_ > ages_.stale_after) {

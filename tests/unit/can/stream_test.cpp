@@ -412,7 +412,7 @@ TEST(DbcStream, TellsValuesBeyondTheLimitsOfTheDbc) {
   ASSERT_TRUE(becomes_true([&] { return sink.count == 1; }));
   const JointStreamStatus status = (*sut)->status();
   EXPECT_THAT(status.last_errors, testing::ElementsAre(HasSubstr("Axis_1.Position is 200 deg, beyond -180 .. 180")));
-  EXPECT_THAT(status.details, testing::Contains(testing::Pair("beyond the DBC's limits", "1 values")));
+  EXPECT_THAT(status.details, testing::Contains(testing::Pair("beyond the DBC's limits", "1 value")));
 }
 
 TEST(RateMeter, CountsTheLastSecond) {
