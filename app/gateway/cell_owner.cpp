@@ -67,7 +67,7 @@ CellOwner::CellOwner(Parts parts)
       haptics_({cell_, *fleet_, parts.engine, clock_, parts.instance, std::move(parts.haptics)}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
                [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
-      interaction_(names_, haptics_, forces_),
+      interaction_(cell_, names_, haptics_, forces_),
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},

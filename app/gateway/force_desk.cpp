@@ -4,11 +4,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
+
+namespace {
+
+bool is_moved(const CompiledCell& cell, std::int32_t node) {
+  for (; node > 0; node = cell.parent[static_cast<std::size_t>(node)]) {
+    if (cell.joint_of[static_cast<std::size_t>(node)] >= 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string unseen_arrows(const ForceArrowSettings& settings, const CompiledCell& cell, bool has_haptic_devices) {
+  const bool of_joints =
+      settings.joint_forces != ArrowComponent::none || settings.joint_torques != ArrowComponent::none;
+  const auto moves = [&](const CompiledInertia& body) { return is_moved(cell, body.node); };
+  std::string remark;
+  if (of_joints && std::ranges::none_of(cell.inertia, moves))
+    remark = "no joint of the cell moves a part whose mass is known, so joints have no arrows";
+  if (settings.tcp_force != ArrowComponent::none && !has_haptic_devices) {
+    if (!remark.empty()) remark += "; ";
+    remark += "the cell has no haptic device, so TCPs have no arrows";
+  }
+  return remark;
+}
 
 Result<void> ForceDesk::make_memory() {
   if (memory_) return {};

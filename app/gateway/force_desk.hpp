@@ -12,8 +12,14 @@
 #include "app/gateway/tcp_force_memory.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/cell/compiled_cell.hpp"
 
 namespace cellmirror::app {
+
+// What SET_FORCE_ARROW answers where the cell has nothing of what it is to draw: joints bear something by masses that
+// they move, and the force at a TCP is known of haptic devices only. Empty: there is nothing to say.
+[[nodiscard]] std::string unseen_arrows(const ForceArrowSettings& settings, const CompiledCell& cell,
+                                        bool has_haptic_devices);
 
 class ForceDesk {
  public:

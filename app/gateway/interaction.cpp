@@ -1,5 +1,7 @@
 #include "app/gateway/interaction.hpp"
 
+#include <utility>
+
 namespace cellmirror::app {
 
 Result<void> CellInteraction::set_force_memory(std::uint64_t /*send_type*/, std::int32_t key, std::size_t bytes) {
@@ -16,8 +18,9 @@ Result<void> CellInteraction::set_switches_online(bool online) {
   return off_line_ ? Result<void>() : switches_->set_online(online);
 }
 
-Result<void> CellInteraction::set_force_arrows(const ForceArrowSettings& settings) {
-  return forces_.set_arrows(settings);
+Result<std::string> CellInteraction::set_force_arrows(const ForceArrowSettings& settings) {
+  if (auto set = forces_.set_arrows(settings); !set) return std::unexpected(std::move(set.error()));
+  return unseen_arrows(settings, *cell_.compile(), haptics_.used());
 }
 Result<void> CellInteraction::set_motor_forces_only(bool on) { return forces_.set_motors_only(on); }
 Result<void> CellInteraction::set_force_limits(const ForceLimits& limits) { return forces_.set_limits(limits); }

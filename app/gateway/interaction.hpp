@@ -2,10 +2,13 @@
 // that it concerns. Belongs to the thread that owns the cell.
 #pragma once
 
+#include <string>
+
 #include "app/gateway/coupling_desk.hpp"
 #include "app/gateway/force_desk.hpp"
 #include "app/gateway/haptic_desk.hpp"
 #include "app/gateway/switch_desk.hpp"
+#include "rt_core/cell/cell.hpp"
 #include "scripts/commands/interaction_host.hpp"
 #include "scripts/lang/names.hpp"
 
@@ -13,8 +16,8 @@ namespace cellmirror::app {
 
 class CellInteraction final : public InteractionHost {
  public:
-  CellInteraction(const NameDirectory& names, HapticDesk& haptics, ForceDesk& forces)
-      : names_(names), haptics_(haptics), forces_(forces) {}
+  CellInteraction(const Cell& cell, const NameDirectory& names, HapticDesk& haptics, ForceDesk& forces)
+      : cell_(cell), names_(names), haptics_(haptics), forces_(forces) {}
   // Before the first command. The desks outlive this.
   void set_desks(SwitchDesk& switches, CouplingDesk& couplings) {
     switches_ = &switches;
@@ -29,7 +32,7 @@ class CellInteraction final : public InteractionHost {
   Result<void> reset_haptic(std::string_view robot) override;
   Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
   Result<void> set_switches_online(bool online) override;
-  Result<void> set_force_arrows(const ForceArrowSettings& settings) override;
+  Result<std::string> set_force_arrows(const ForceArrowSettings& settings) override;
   Result<void> set_motor_forces_only(bool on) override;
   Result<void> set_force_limits(const ForceLimits& limits) override;
   Result<void> set_tcp_test(bool on, const std::array<double, 4>& values) override;
@@ -37,6 +40,7 @@ class CellInteraction final : public InteractionHost {
   Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override;
 
  private:
+  const Cell& cell_;
   const NameDirectory& names_;
   HapticDesk& haptics_;
   ForceDesk& forces_;

@@ -17,7 +17,7 @@ Outcome set_force_arrows(const ParsedCommand& command, CommandHost& host) {
   settings.joint_forces = static_cast<ArrowComponent>(command.choice(0));
   settings.joint_torques = static_cast<ArrowComponent>(command.choice(1));
   settings.tcp_force = static_cast<ArrowComponent>(command.choice(2));
-  return Outcome::of(host.interaction.set_force_arrows(settings));
+  return Outcome::with_remark(host.interaction.set_force_arrows(settings));
 }
 
 Outcome set_force_limits(const ParsedCommand& command, CommandHost& host) {

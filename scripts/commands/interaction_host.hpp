@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -25,10 +26,11 @@ class InteractionHost {
   virtual Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
   virtual Result<void> reset_haptic(std::string_view robot) = 0;  // RESET_HAPTIC, ours
   virtual Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
-  virtual Result<void> set_switches_online(bool online) = 0;                      // BIN_ELA
-  virtual Result<void> set_force_arrows(const ForceArrowSettings& settings) = 0;  // the first three count
-  virtual Result<void> set_motor_forces_only(bool on) = 0;                        // SET_FRC_ARR_SPECIAL
-  virtual Result<void> set_force_limits(const ForceLimits& limits) = 0;           // SET_TORQUE_LIMIT
+  virtual Result<void> set_switches_online(bool online) = 0;  // BIN_ELA
+  // The first three settings count. Done with a remark where nothing can be seen of them.
+  virtual Result<std::string> set_force_arrows(const ForceArrowSettings& settings) = 0;
+  virtual Result<void> set_motor_forces_only(bool on) = 0;               // SET_FRC_ARR_SPECIAL
+  virtual Result<void> set_force_limits(const ForceLimits& limits) = 0;  // SET_TORQUE_LIMIT
   // SET_EXT_TCP_TEST: force x, y, z [N] and torque about the tool axis [Nm].
   virtual Result<void> set_tcp_test(bool on, const std::array<double, 4>& values) = 0;
   // MASTER_SLAVE: all slaves or none.

@@ -137,7 +137,10 @@ class QuietHost final : public WorldHost,
     return called();
   }
   Result<void> set_switches_online(bool /*online*/) override { return called(); }
-  Result<void> set_force_arrows(const ForceArrowSettings& /*settings*/) override { return called(); }
+  Result<std::string> set_force_arrows(const ForceArrowSettings& /*settings*/) override {
+    ++calls;
+    return std::string();
+  }
   Result<void> set_motor_forces_only(bool /*on*/) override { return called(); }
   Result<void> set_force_limits(const ForceLimits& /*limits*/) override { return called(); }
   Result<void> set_tcp_test(bool /*on*/, const std::array<double, 4>& /*values*/) override { return called(); }

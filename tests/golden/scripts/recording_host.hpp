@@ -250,11 +250,12 @@ class RecordingHost final : public WorldHost,
     return record("set_switch_memory {} {:#x} {}", send_type, static_cast<std::uint32_t>(key), bytes);
   }
   Result<void> set_switches_online(bool online) override { return record("set_switches_online {}", online); }
-  Result<void> set_force_arrows(const ForceArrowSettings& settings) override {
+  Result<std::string> set_force_arrows(const ForceArrowSettings& settings) override {
     constexpr std::array<std::string_view, 5> kNames = {"none", "x", "y", "z", "resultant"};
-    return record("set_force_arrows {} {} {}", kNames[static_cast<std::size_t>(settings.joint_forces)],
-                  kNames[static_cast<std::size_t>(settings.joint_torques)],
-                  kNames[static_cast<std::size_t>(settings.tcp_force)]);
+    auto done = record("set_force_arrows {} {} {}", kNames[static_cast<std::size_t>(settings.joint_forces)],
+                       kNames[static_cast<std::size_t>(settings.joint_torques)],
+                       kNames[static_cast<std::size_t>(settings.tcp_force)]);
+    return done ? Result<std::string>(std::string()) : std::unexpected(std::move(done.error()));
   }
   Result<void> set_motor_forces_only(bool on) override { return record("set_motor_forces_only {}", on); }
   Result<void> set_force_limits(const ForceLimits& limits) override {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/gateway/force_desk.hpp"
 #include "app/gateway/publisher.hpp"
 #include "app/gateway/status_forces.hpp"
 #include "app/subcommands/status_table_forces.hpp"
@@ -194,6 +195,23 @@ TEST_F(ForceComputationTest, IsToldInStatus) {
   EXPECT_NE(text.find("BIG not computed: too many joints"), std::string::npos) << text;
   EXPECT_EQ(forces_table({{"forces", forces_json({}, {}, tick.time)}}), "");
   EXPECT_EQ(forces_table(nlohmann::json::object()), "");
+}
+
+TEST(UnseenArrows, AreToldWhereTheCellHasNothingToDraw) {
+  CompiledCell cell;
+  cell.parent = {-1, 0, 1, 0};
+  cell.joint_of = {-1, 0, -1, -1};
+  cell.inertia = {{.node = 3, .inertia = {}}};  // stands in the world
+  ForceArrowSettings sut;
+  EXPECT_EQ(unseen_arrows(sut, cell, false), "");
+  sut.joint_torques = ArrowComponent::resultant;
+  EXPECT_EQ(unseen_arrows(sut, cell, false),
+            "no joint of the cell moves a part whose mass is known, so joints have no arrows");
+  cell.inertia.push_back({.node = 2, .inertia = {}});  // behind the joint
+  EXPECT_EQ(unseen_arrows(sut, cell, false), "");
+  sut.tcp_force = ArrowComponent::x;
+  EXPECT_EQ(unseen_arrows(sut, cell, false), "the cell has no haptic device, so TCPs have no arrows");
+  EXPECT_EQ(unseen_arrows(sut, cell, true), "");
 }
 
 }  // namespace
