@@ -41,6 +41,8 @@ class Hash {
     add(static_cast<std::uint64_t>(list.size()));
     return list;
   }
+  template <class List>
+  const List& sized(const List&& list) = delete;
 
   [[nodiscard]] std::uint64_t state() const { return state_; }
 
