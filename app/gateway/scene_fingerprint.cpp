@@ -37,12 +37,10 @@ class Hash {
   }
   // The size first, so that what ends one list does not begin the next.
   template <class List>
-  const List& sized(const List& list) {
+  auto sized(const List& list) {
     add(static_cast<std::uint64_t>(list.size()));
-    return list;
+    return std::span(list);
   }
-  template <class List>
-  const List& sized(const List&& list) = delete;
 
   [[nodiscard]] std::uint64_t state() const { return state_; }
 
