@@ -1,6 +1,7 @@
 #include "app/gateway/scene_fingerprint.hpp"
 
 #include <bit>
+#include <span>
 #include <string_view>
 
 namespace cellmirror::app {
