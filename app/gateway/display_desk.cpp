@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/units.hpp"
 #include "rt_core/scene/panes.hpp"
 
 namespace cellmirror::app {
@@ -197,10 +198,10 @@ bool DisplayDesk::has_own_geometry(NodeId node) const {
 Result<void> DisplayDesk::set_tag_length(double length_m) {
   if (length_m > kFarthestView) {
     return fail(fmt::format("workframes cannot be drawn with a length of {:.10g} mm, at most with {:.10g} mm",
-                            1e3 * length_m, 1e3 * kFarthestView));
+                            mm_from_m(length_m), mm_from_m(kFarthestView)));
   }
   if (!(length_m > 0.0))
-    return fail(fmt::format("workframes cannot be drawn with a length of {:g} mm", 1e3 * length_m));
+    return fail(fmt::format("workframes cannot be drawn with a length of {:g} mm", mm_from_m(length_m)));
   state_.tag_length_m = length_m;
   changed();
   return {};

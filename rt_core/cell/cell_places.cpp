@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "rt_core/base/units.hpp"
 #include "rt_core/cell/cell_state.hpp"
 
 namespace cellmirror {
 
 namespace {
 
-constexpr double kFarthest = 1e6;     // m; beyond it a double no longer resolves a nanometre
-constexpr double kMillimetres = 1e3;  // of a metre: refusals speak in the unit of the command
+constexpr double kFarthest = 1e6;  // m; beyond it a double no longer resolves a nanometre
 
 // What part and predecessor must be for the one to hang on the other.
 Result<void> check_connection(const Cell::State& state, NodeId part, NodeId predecessor) {
@@ -48,7 +48,7 @@ Result<void> Cell::set_placement(std::string_view path, const Pose& X_PF) {
     return fail(fmt::format("the placement of {} is not finite", state_->names.path(*id)));
   if (const double distance = X_PF.translation().norm(); distance > kFarthest) {
     return fail(fmt::format("the placement of {} is {:.10g} mm away from its predecessor, but at most {:.10g} mm",
-                            state_->names.path(*id), distance * kMillimetres, kFarthest * kMillimetres));
+                            state_->names.path(*id), mm_from_m(distance), mm_from_m(kFarthest)));
   }
   node.X_PF = X_PF;
   state_->changed();
@@ -114,13 +114,13 @@ Result<void> Cell::set_sensor_active(std::string_view sensor, bool active) {
 Result<void> Cell::set_sensor_range(std::string_view sensor, double range_m) {
   const auto id = state_->find(sensor, PathKind::sensor);
   if (!id) return std::unexpected(id.error());
-  const double range_mm = range_m * kMillimetres;
+  const double range_mm = mm_from_m(range_m);
   if (range_m > kFarthest) {
-    return fail(fmt::format("the range of {} is {:.10g} mm, but at most {:.10g} mm", sensor, range_mm,
-                            kFarthest * kMillimetres));
+    return fail(
+        fmt::format("the range of {} is {:.10g} mm, but at most {:.10g} mm", sensor, range_mm, mm_from_m(kFarthest)));
   }
   if (!(range_m > 0.0)) return fail(fmt::format("the range of {} is {:g} mm, but must be positive", sensor, range_mm));
-  if (const double blind_mm = state_->at(*id).sensor.blind_zone_m * kMillimetres; range_mm <= blind_mm) {
+  if (const double blind_mm = mm_from_m(state_->at(*id).sensor.blind_zone_m); range_mm <= blind_mm) {
     return fail(
         fmt::format("the range of {} is {:.10g} mm, within its blind zone of {:.10g} mm", sensor, range_mm, blind_mm),
         fmt::format("give more than {:.10g} mm", blind_mm));

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "rt_core/base/units.hpp"
+
 namespace cellmirror {
 
 namespace {
@@ -129,7 +131,7 @@ Result<void> check_view(int id, const View& view) {
   };
   if (!near_enough(view.viewpoint) || !near_enough(view.lookpoint))
     return fail(fmt::format("the viewpoint or lookpoint of view {} lies beyond {:.10g} m ({:.10g} mm)", id,
-                            kFarthestView, 1e3 * kFarthestView));
+                            kFarthestView, mm_from_m(kFarthestView)));
   if ((view.viewpoint - view.lookpoint).norm() < kNearestLookpoint)
     return fail(fmt::format("the viewpoint of view {} is its lookpoint", id), "give VP and LP apart from each other");
   if (!std::isfinite(view.twist)) return fail(fmt::format("the twist angle of view {} is no number", id));
