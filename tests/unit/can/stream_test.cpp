@@ -335,30 +335,41 @@ TEST_F(StreamTest, AWrongConfigurationIsRefusedWithAllMistakes) {
   EXPECT_THAT(made.error().what, HasSubstr("the sign is 1 or -1"));
 }
 
-TEST(DbcStream, MirrorsSignals) {
+class DbcStream : public testing::Test {
+ protected:
+  // The position of the first joint, from axes.dbc.
+  void open(const std::string& message, double scale) {
+    DbcStreamConfig config;
+    config.dbc_file = can_data("axes.dbc");
+    config.signals = {{message, "Position", 0, "J_1", JointQuantity::position, scale, 0.0}};
+    CanStreamOptions options;
+    options.open_channel = [this](const CanChannelConfig&) {
+      return Result<std::unique_ptr<CanChannel>>(bus.connect("dbc"));
+    };
+    auto made = make_dbc_stream(config, clock, options);
+    ASSERT_TRUE(made) << made.error().text();
+    sut = std::move(*made);
+    ASSERT_TRUE(sut->open(sink));
+  }
+
   VirtualCanBus bus;
-  const auto robot = bus.connect("robot");
+  std::unique_ptr<CanChannel> robot = bus.connect("robot");
   SystemClock clock;
   Sink sink;
-  DbcStreamConfig config;
-  config.dbc_file = can_data("axes.dbc");
-  config.signals = {{"Axis_3", "Position", 0, "J_1", JointQuantity::position, 1.0, 0.0}};
-  CanStreamOptions options;
-  options.open_channel = [&bus](const CanChannelConfig&) {
-    return Result<std::unique_ptr<CanChannel>>(bus.connect("dbc"));
-  };
-  auto sut = make_dbc_stream(config, clock, options);
-  ASSERT_TRUE(sut) << sut.error().text();
-  ASSERT_TRUE((*sut)->open(sink));
-  EXPECT_THAT((*sut)->status().condition, HasSubstr("no frame of the DBC's messages"));
+  std::unique_ptr<JointStream> sut;
+};
+
+TEST_F(DbcStream, MirrorsSignals) {
+  ASSERT_NO_FATAL_FAILURE(open("Axis_3", 1.0));
+  EXPECT_THAT(sut->status().condition, HasSubstr("no frame of the DBC's messages"));
   robot->send(frame(0x101, {0, 0, 0}));
   CanFrame good = frame(0x101, {0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 0, 0, 0, 0});
   good.fd = true;
   robot->send(good);
   ASSERT_TRUE(becomes_true([&] { return sink.count == 1; }));
   EXPECT_DOUBLE_EQ(sink.newest().position[0], 1.5);
-  EXPECT_EQ((*sut)->status().rejected, 1U);
-  EXPECT_EQ((*sut)->status().kind, "can-dbc");
+  EXPECT_EQ(sut->status().rejected, 1U);
+  EXPECT_EQ(sut->status().kind, "can-dbc");
 }
 
 TEST(StreamCheck, LeavesOutWhatTheReaderOfTheCellFileRefused) {
@@ -393,24 +404,11 @@ TEST(StreamCheck, LeavesOutWhatTheReaderOfTheCellFileRefused) {
   EXPECT_THAT(found.text(), HasSubstr("node 5 (J_2): no TPDO holds"));
 }
 
-TEST(DbcStream, TellsValuesBeyondTheLimitsOfTheDbc) {
-  VirtualCanBus bus;
-  const auto robot = bus.connect("robot");
-  SystemClock clock;
-  Sink sink;
-  DbcStreamConfig config;
-  config.dbc_file = can_data("axes.dbc");
-  config.signals = {{"Axis_1", "Position", 0, "J_1", JointQuantity::position, 0.01, 0.0}};
-  CanStreamOptions options;
-  options.open_channel = [&bus](const CanChannelConfig&) {
-    return Result<std::unique_ptr<CanChannel>>(bus.connect("dbc"));
-  };
-  auto sut = make_dbc_stream(config, clock, options);
-  ASSERT_TRUE(sut) << sut.error().text();
-  ASSERT_TRUE((*sut)->open(sink));
+TEST_F(DbcStream, TellsValuesBeyondTheLimitsOfTheDbc) {
+  ASSERT_NO_FATAL_FAILURE(open("Axis_1", 0.01));
   robot->send(frame(0x100, {0x40, 0x0D, 0x03, 0, 0, 0, 0, 0}));  // 200 deg
   ASSERT_TRUE(becomes_true([&] { return sink.count == 1; }));
-  const JointStreamStatus status = (*sut)->status();
+  const JointStreamStatus status = sut->status();
   EXPECT_THAT(status.last_errors, testing::ElementsAre(HasSubstr("Axis_1.Position is 200 deg, beyond -180 .. 180")));
   EXPECT_THAT(status.details, testing::Contains(testing::Pair("beyond the DBC's limits", "1 value")));
 }
