@@ -189,7 +189,9 @@ TEST(Shots, TakeNoMoreMemoryThanThereAreThatLook) {
     EXPECT_FALSE(shot.drawn.known()) << i;
     shot.image.rgba.resize(100);
     shot.drawn = Timestamp{1};
-    if (turned != nullptr) EXPECT_EQ(shot.image.rgba.data(), turned) << i;
+    if (turned != nullptr) {
+      EXPECT_EQ(shot.image.rgba.data(), turned) << i;
+    }
     turned = shot.image.rgba.data();
     EXPECT_EQ(sut.images(), 2U) << i;
   }
