@@ -8,6 +8,7 @@ set(CELLMIRROR_LAYERS
   "ipc/wire: rt_core/base rt_core/ports"
   "rt_core/kinematics: rt_core/base rt_core/ports"
   "rt_core/inverse_kinematics: rt_core/base rt_core/ports rt_core/kinematics"
+  "rt_core/planning: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/inverse_kinematics rt_core/cell"
   "rt_core/motion: rt_core/base rt_core/ports rt_core/kinematics"
   "rt_core/geometry: rt_core/base"
   "rt_core/cell: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry"
@@ -47,16 +48,29 @@ set(CELLMIRROR_LAYERS
   "sim_devices/camera: sim_devices/camera sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "sim_devices: sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
   "app/plot: rt_core/base"
+  "app/console: rt_core/base rt_core/cell config"
+  "app/snapshot: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/motion rt_core/collision rt_core/haptics rt_core/dynamics rt_core/engine ipc/wire scripts/lang scripts/commands scripts/runner scripts/programs/program scripts/programs/controller"
+  "app/io: app/snapshot rt_core/base rt_core/rt rt_core/ports rt_core/cell rt_core/engine rt_core/scene config drivers/can drivers/dds drivers/haptic ipc/wire ipc/sysv"
+  "app/owner: app/snapshot app/io rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/motion rt_core/inverse_kinematics rt_core/planning rt_core/collision rt_core/haptics rt_core/engine rt_core/scene config drivers/footswitch ipc/wire ipc/sysv scripts/lang scripts/commands scripts/runner scripts/programs/program scripts/programs/jet scripts/programs/languages scripts/programs/controller"
+  "app/workers: app/snapshot rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/engine ipc/wire"
+  "app/render: app/snapshot rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine config drivers/display"
+  "app/report: app/snapshot rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/haptics rt_core/dynamics rt_core/collision rt_core/engine rt_core/scene ipc/wire ipc/sysv ipc/control ipc/web"
+  "app/kinematics: app/console app/plot rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/inverse_kinematics config config/command_line"
+  "app/proximity: app/console app/plot rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging config"
+  "app/pictures: app/snapshot app/owner app/render rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/scene config drivers/display ipc/runtime ipc/control ipc/web"
+  "app/simulation: app/console app/snapshot app/owner app/plot rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/motion rt_core/collision rt_core/engine rt_core/scene config scripts/lang scripts/commands scripts/runner scripts/programs/program scripts/programs/controller"
+  "app/gateway: app/snapshot app/io app/owner app/workers app/render app/report app/pictures rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/engine rt_core/scene config drivers/dds ipc/runtime ipc/wire ipc/sysv ipc/control ipc/web scripts/lang scripts/commands scripts/runner"
   "app: *"
   "tests: *")
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
-  rt_core/motion rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/scene
+  rt_core/motion rt_core/geometry rt_core/cell rt_core/planning rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/scene
   rt_core/engine config/mesh_message config/mesh_reader config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web
   scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
-  sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot app tests)
+  sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot
+  app/console app/snapshot app/io app/owner app/workers app/render app/report app/kinematics app/proximity app/pictures app/simulation app/gateway app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

@@ -57,6 +57,7 @@ target_compile_options(cellmirror_flags INTERFACE -Wall -Wextra -Wpedantic -Wsha
 target_compile_options(cellmirror_flags INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-deprecated-declarations>)
 target_include_directories(cellmirror_flags INTERFACE ${CMAKE_SOURCE_DIR})
 
+
 if(CELLMIRROR_SANITIZE)
   add_compile_options(-fsanitize=${CELLMIRROR_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${CELLMIRROR_SANITIZE})

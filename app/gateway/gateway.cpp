@@ -10,23 +10,24 @@
 #include <utility>
 #include <vector>
 
-#include "app/gateway/cell_owner.hpp"
-#include "app/gateway/collision_worker.hpp"
-#include "app/gateway/contact_worker.hpp"
-#include "app/gateway/fault_monitor.hpp"
-#include "app/gateway/flight_file.hpp"
-#include "app/gateway/force_worker.hpp"
-#include "app/gateway/live_document.hpp"
 #include "app/gateway/monitor_page.hpp"
-#include "app/gateway/outputs.hpp"
-#include "app/gateway/picture.hpp"
-#include "app/gateway/publisher.hpp"
-#include "app/gateway/ranging_worker.hpp"
-#include "app/gateway/robot_streams.hpp"
-#include "app/gateway/status_document.hpp"
-#include "app/gateway/studio.hpp"
-#include "app/gateway/tcp_force_worker.hpp"
+#include "app/gateway/picture_outputs.hpp"
+#include "app/io/flight_file.hpp"
+#include "app/io/outputs.hpp"
+#include "app/io/publisher.hpp"
+#include "app/io/robot_streams.hpp"
+#include "app/owner/cell_owner.hpp"
 #include "app/pictures/snapshot_request.hpp"
+#include "app/render/render_service.hpp"
+#include "app/report/live_document.hpp"
+#include "app/report/status_document.hpp"
+#include "app/snapshot/cell_state.hpp"
+#include "app/workers/collision_worker.hpp"
+#include "app/workers/contact_worker.hpp"
+#include "app/workers/fault_monitor.hpp"
+#include "app/workers/force_worker.hpp"
+#include "app/workers/ranging_worker.hpp"
+#include "app/workers/tcp_force_worker.hpp"
 #include "config/cell_file.hpp"
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
@@ -87,8 +88,8 @@ struct Gateway::Parts {
   std::optional<Instance> instance;
   Watchdog watchdog{kLoopStandsStillAfter, {}};
   std::unique_ptr<engine::Engine> engine;
-  PictureBoard board;
-  PictureUpdates picture_updates;
+  Board<CellState> board;
+  PictureCounter picture_counter;
   std::unique_ptr<ScriptMessageReceiver> messages;
   PageCommands page_commands;
   std::unique_ptr<CellOwner> owner;
@@ -99,7 +100,7 @@ struct Gateway::Parts {
   std::unique_ptr<ForceWorker> forces;
   std::unique_ptr<TcpForceWorker> tcp_force;
   std::unique_ptr<Publisher> publisher;
-  std::unique_ptr<Studio> studio;
+  std::unique_ptr<RenderService> renderer;
   std::unique_ptr<FaultMonitor> faults;
   std::mutex answering;  // of the engine's view for status and of what follows: several threads answer questions
   RobotStateBuilder status_builder;
@@ -111,7 +112,7 @@ struct Gateway::Parts {
     // It stays until the end: its threads ask it for its report until it is closed.
     if (page) page->close();
     faults.reset();
-    studio.reset();
+    renderer.reset();
     publisher.reset();
     forces.reset();
     tcp_force.reset();
@@ -134,7 +135,7 @@ struct Gateway::Parts {
   void start_sensing(const Eigen::Vector3d& gravity_W);
   Result<void> start_messages();
   Result<void> start_outputs(const DdsOutputConfig& dds);
-  Result<void> start_studio(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
+  Result<void> start_renderer(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
   void start_fault_monitor();
   Result<void> start_control();
   void make_page(const GatewayOptions& options, const WebSettings& settings);
@@ -143,7 +144,7 @@ struct Gateway::Parts {
   void answer(std::string_view request, ControlReply reply);
   void answer_snapshot(const ControlRequest& request, ControlReply reply);
   std::string status();
-  [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const OwnerPicture& picture) const;
+  [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;
   void look_at(const std::function<void(const LiveSources&)>& look);
 };
 
@@ -182,7 +183,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
       std::move(loaded.cell), loaded.home, std::move(streams), std::move(loaded.haptics), std::move(loaded.views),
       std::move(loaded.layout), std::move(loaded.collision), loaded.foot_switches, *engine, board, clock,
       stream_priority, instance->info().name, queues.tcp_force_key, queues.mode, save, reply,
-      [this] { return picture_updates.count(); }, options.bell});
+      [this] { return picture_counter.count(); }, options.bell});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -228,13 +229,14 @@ Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
 }
 
 // Makes no pictures yet: the renderer is made when somebody looks.
-Result<void> Gateway::Parts::start_studio(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds) {
+Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, bool headless,
+                                            const DdsOutputConfig& dds) {
   auto outputs = make_picture_outputs(dds);
   if (!outputs) return std::unexpected(outputs.error());
-  studio = std::make_unique<Studio>(
-      Studio::Options{settings, headless, std::move(*outputs), {}},
+  renderer = std::make_unique<RenderService>(
+      RenderService::Options{settings, headless, std::move(*outputs), {}},
       SceneSource::Boards{*engine, board, collisions->board(), ranging->board(), forces->board(), clock},
-      picture_updates);
+      picture_counter);
   return {};
 }
 
@@ -258,7 +260,7 @@ Result<std::string> Gateway::Parts::write_flight_record(const std::string& file_
   auto path = home->file_to_write("records", file_name);
   if (!path) return std::unexpected(path.error());
   FlightFileHeader header{reason, cell_name, instance->info().name, loop_settings.rate_hz, {}};
-  for (const RobotPicture& robot : board.look()->robots) {
+  for (const RobotSnapshot& robot : board.latest()->robots) {
     if (header.robots.size() <= robot.slot) header.robots.resize(robot.slot + 1);
     header.robots[robot.slot] = robot.id;
   }
@@ -278,14 +280,14 @@ void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
 void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply reply) {
   const auto wanted = snapshot_request(request);
   if (!wanted) return reply(control_error(wanted.error()));
-  const PictureSettings& settings = studio->settings();
+  const PictureSettings& settings = renderer->settings();
   // A function that is copied holds what can be moved only.
   const auto later = std::make_shared<ControlReply>(std::move(reply));
-  studio->ask_picture(wish_of(*wanted, settings.width, settings.height), wanted->format,
-                      [this, later](const Result<EncodedImage>& picture) {
-                        if (!picture) return (*later)(control_error(picture.error()));
-                        (*later)(answer_text(*picture, seconds(clock.now() - picture->posture_time)));
-                      });
+  renderer->ask_picture(picture_request_of(*wanted, settings.width, settings.height), wanted->format,
+                        [this, later](const Result<EncodedImage>& picture) {
+                          if (!picture) return (*later)(control_error(picture.error()));
+                          (*later)(answer_text(*picture, seconds(clock.now() - picture->posture_time)));
+                        });
 }
 
 // Serves nobody yet: whoever answers for the gateway asks it for its report.
@@ -295,7 +297,7 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.board = &board;
   parts.owner = owner.get();
   parts.commands = &page_commands;
-  parts.studio = studio.get();
+  parts.renderer = renderer.get();
   parts.status = [this] { return status(); };
   parts.at = [this](const std::function<void(const LiveSources&)>& look) { look_at(look); };
   page = std::make_unique<MonitorPage>(
@@ -303,9 +305,9 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
       std::move(parts));
 }
 
-std::vector<engine::QueueStatus> Gateway::Parts::thread_queues(const OwnerPicture& picture) const {
+std::vector<engine::QueueStatus> Gateway::Parts::thread_queues(const CellState& cell_state) const {
   std::vector<engine::QueueStatus> queues_now{engine->command_queue(), owner->command_queue()};
-  for (const RobotPicture& robot : picture.robots) {
+  for (const RobotSnapshot& robot : cell_state.robots) {
     if (!robot.stream) continue;
     queues_now.push_back(engine->sample_queue(robot.slot));
     queues_now.back().name = "samples " + robot.id;
@@ -314,32 +316,32 @@ std::vector<engine::QueueStatus> Gateway::Parts::thread_queues(const OwnerPictur
 }
 
 void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look) {
-  const std::shared_ptr<const OwnerPicture> picture = board.look();
-  const std::vector<engine::QueueStatus> queues_now = thread_queues(*picture);
+  const std::shared_ptr<const CellState> cell_state = board.latest();
+  const std::vector<engine::QueueStatus> queues_now = thread_queues(*cell_state);
   const std::scoped_lock lock(answering);
   const engine::TickState& tick = engine->status_view();
-  const std::span<const RobotState> robots = status_builder.build(*picture, tick);
+  const std::span<const RobotState> robots = status_builder.build(*cell_state, tick);
   const Timestamp now = clock.now();
-  look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *picture, tick,
-        robots, status_builder.poses(), picture_updates.count(), collisions->board().look(), ranging->board().look(),
-        forces->board().look(), queues_now});
+  look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *cell_state, tick,
+        robots, status_builder.poses(), picture_counter.count(), collisions->board().latest(),
+        ranging->board().latest(), forces->board().latest(), queues_now});
 }
 
 std::string Gateway::Parts::status() {
-  const std::shared_ptr<const OwnerPicture> picture = board.look();
+  const std::shared_ptr<const CellState> cell_state = board.latest();
   const std::scoped_lock lock(answering);
   const engine::TickState& tick = engine->status_view();
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
   for (const PublishedOutput& output : publisher->outputs())
     outputs.emplace_back(output.output->name(), output.output->counters());
-  for (const ImageOutput* output : studio->outputs()) outputs.emplace_back(output->name(), output->counters());
+  for (const ImageOutput* output : renderer->outputs()) outputs.emplace_back(output->name(), output->counters());
   const FaultStatus fault_status = faults->status();
   const ScriptMessageStatus message_status = messages->status();
   const CollisionReport collision_report = collisions->report();
   const RangeReport range_report = ranging->report();
   const ContactReport contact_report = contacts->report();
   const ForceReport force_report = forces->report();
-  const PictureReport picture_report = studio->report();
+  const RenderReport render_report = renderer->report();
   const PageReport page_report = page->report();
   const Timestamp now = clock.now();
   return status_document({instance->info().name,
@@ -351,17 +353,17 @@ std::string Gateway::Parts::status() {
                           *loop,
                           memory,
                           fault_status,
-                          *picture,
+                          *cell_state,
                           tick,
-                          status_builder.build(*picture, tick),
+                          status_builder.build(*cell_state, tick),
                           message_status,
                           collision_report,
                           range_report,
                           contact_report,
                           force_report,
-                          picture_report,
+                          render_report,
                           page_report,
-                          thread_queues(*picture),
+                          thread_queues(*cell_state),
                           std::move(outputs)});
 }
 
@@ -391,7 +393,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->start_loop();
   if (step) parts->start_sensing(gravity_W);
   if (step) step = parts->start_outputs(dds);
-  if (step) step = parts->start_studio(pictures, options.headless, dds);
+  if (step) step = parts->start_renderer(pictures, options.headless, dds);
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();
   parts->make_page(options, web);
@@ -407,7 +409,7 @@ std::string Gateway::greeting() const {
   const std::string address = parts.page->report().address;
   const std::string page = address.empty() ? std::string() : fmt::format("; monitor page {}", address);
   return fmt::format("cell {} with {} runs at {:.0f} Hz ({}); instance {}, SCRIPT messages on key {}{}; Ctrl-C ends it",
-                     parts.cell_name, number_of(parts.board.look()->robots.size(), "robot"),
+                     parts.cell_name, number_of(parts.board.latest()->robots.size(), "robot"),
                      parts.loop_settings.rate_hz, parts.loop->scheduling().scheduler, parts.instance->info().name,
                      parts.queues.script_key, page);
 }

@@ -8,20 +8,12 @@
 #include <string>
 
 #include "app/gateway/web_backend.hpp"
+#include "app/report/page_report.hpp"
 #include "config/web_settings.hpp"
 #include "ipc/web/page_address.hpp"
 #include "ipc/web/web_server.hpp"
 
 namespace cellmirror::app {
-
-// All that status tells of it, as of one moment.
-struct PageReport {
-  bool on = false;
-  std::string address;  // "http://127.0.0.1:8420/", without the token; empty: there is no page
-  std::string problem;  // why there is none although it is wanted; empty: nothing is wrong
-  bool read_only = false;
-  web::ServerStatus server;
-};
 
 class MonitorPage {
  public:

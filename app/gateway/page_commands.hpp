@@ -19,14 +19,14 @@ namespace cellmirror::app {
 class PageCommands {
  public:
   using Reply = std::function<void(const web::CommandReply&)>;
-  static constexpr std::size_t kMostWaiting = 512;
+  static constexpr std::size_t kMaxWaiting = 512;
 
   [[nodiscard]] static bool owns(std::int64_t tag) { return tag < 0; }
 
   // None, and `reply` as it was, where too many wait.
   [[nodiscard]] std::optional<std::int64_t> add(Reply& reply) {
     const std::scoped_lock lock(mutex_);
-    if (waiting_.size() >= kMostWaiting) return std::nullopt;
+    if (waiting_.size() >= kMaxWaiting) return std::nullopt;
     waiting_.emplace(--last_, std::move(reply));
     return last_;
   }

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "app/gateway/metrics.hpp"
-#include "app/gateway/tree_document.hpp"
+#include "app/report/metrics.hpp"
+#include "app/report/tree_document.hpp"
 #include "ipc/wire/script_message.hpp"
 #include "scripts/lang/help.hpp"
 
@@ -12,7 +12,7 @@ namespace cellmirror::app {
 namespace {
 
 std::unexpected<Error> no_pictures() {
-  return fail("this gateway takes no pictures", "start it without --headless, and with [display] on in the cell file");
+  return fail("this gateway draws no pictures", "start it without --headless, and with [display] on in the cell file");
 }
 
 }  // namespace
@@ -21,19 +21,19 @@ std::string WebBackend::live_json() {
   std::string out;
   parts_.at([&](const LiveSources& sources) {
     const std::scoped_lock lock(mutex_);
-    out = live_document(sources, window_, tree_revision_.of(sources.picture.cell));
+    out = live_document(sources, window_, tree_revision_.of(sources.cell_state.cell));
   });
   return out;
 }
 
 std::string WebBackend::tree_json() {
-  const auto picture = parts_.board->look();
-  return tree_document(*picture, tree_revision_.of(picture->cell));
+  const auto cell_state = parts_.board->latest();
+  return tree_document(*cell_state, tree_revision_.of(cell_state->cell));
 }
 
 std::string WebBackend::commands_json() { return script::commands_as_json(); }
 
-std::string WebBackend::names_json() { return names_document(*parts_.board->look(), parts_.home); }
+std::string WebBackend::names_json() { return names_document(*parts_.board->latest(), parts_.home); }
 
 std::string WebBackend::metrics_text() {
   std::string out;
@@ -57,22 +57,22 @@ void WebBackend::execute(std::string_view command, std::function<void(const web:
 }
 
 void WebBackend::expect_pictures() {
-  if (parts_.studio != nullptr) parts_.studio->expect_pictures();
+  if (parts_.renderer != nullptr) parts_.renderer->expect_pictures();
 }
 
-Result<std::unique_ptr<web::PictureStream>> WebBackend::open_pictures(const web::PictureWish& wish) {
-  if (parts_.studio == nullptr) return no_pictures();
-  return parts_.studio->open_pictures(wish);
+Result<std::unique_ptr<PictureStream>> WebBackend::open_pictures(const PictureRequest& request) {
+  if (parts_.renderer == nullptr) return no_pictures();
+  return parts_.renderer->open_pictures(request);
 }
 
-void WebBackend::ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) {
-  if (parts_.studio == nullptr) return reply(no_pictures());
-  parts_.studio->ask_picture(wish, format, std::move(reply));
+void WebBackend::ask_picture(const PictureRequest& request, ImageFormat format, PictureReply reply) {
+  if (parts_.renderer == nullptr) return reply(no_pictures());
+  parts_.renderer->ask_picture(request, format, std::move(reply));
 }
 
-void WebBackend::ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) {
-  if (parts_.studio == nullptr) return reply(no_pictures());
-  parts_.studio->ask_pick(wish, x, y, std::move(reply));
+void WebBackend::ask_pick(const PictureRequest& request, int x, int y, PickReply reply) {
+  if (parts_.renderer == nullptr) return reply(no_pictures());
+  parts_.renderer->ask_pick(request, x, y, std::move(reply));
 }
 
 }  // namespace cellmirror::app

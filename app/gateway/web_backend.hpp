@@ -8,11 +8,11 @@
 #include <string>
 #include <string_view>
 
-#include "app/gateway/cell_owner.hpp"
-#include "app/gateway/live_document.hpp"
 #include "app/gateway/page_commands.hpp"
-#include "app/gateway/picture.hpp"
-#include "app/gateway/studio.hpp"
+#include "app/owner/cell_owner.hpp"
+#include "app/render/render_service.hpp"
+#include "app/report/live_document.hpp"
+#include "app/snapshot/cell_state.hpp"
 #include "ipc/web/web_backend.hpp"
 #include "ipc/web/web_server.hpp"
 
@@ -23,10 +23,10 @@ class WebBackend final : public web::Backend {
   // None of what is pointed to is owned; all of it outlives the backend.
   struct Parts {
     std::filesystem::path home;
-    const PictureBoard* board = nullptr;
+    const Board<CellState>* board = nullptr;
     CellOwner* owner = nullptr;
     PageCommands* commands = nullptr;
-    Studio* studio = nullptr;                                                // null: no pictures
+    RenderService* renderer = nullptr;                                       // null: no pictures
     std::function<std::string()> status;                                     // as `cellmirror status --json`
     std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
     std::function<web::ServerStatus()> server_status;
@@ -42,9 +42,9 @@ class WebBackend final : public web::Backend {
   [[nodiscard]] std::string metrics_text() override;
   void execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) override;
   void expect_pictures() override;
-  Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish) override;
-  void ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) override;
-  void ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) override;
+  Result<std::unique_ptr<PictureStream>> open_pictures(const PictureRequest& request) override;
+  void ask_picture(const PictureRequest& request, ImageFormat format, PictureReply reply) override;
+  void ask_pick(const PictureRequest& request, int x, int y, PickReply reply) override;
 
  private:
   Parts parts_;

@@ -1,9 +1,9 @@
 #include "app/pictures/cell_snapshot.hpp"
 
-#include "app/gateway/display_desk.hpp"
-#include "app/gateway/picture_wish.hpp"
-#include "app/gateway/scene_source.hpp"
-#include "app/pictures/renderer_options.hpp"
+#include "app/owner/display/display_service.hpp"
+#include "app/render/picture_request.hpp"
+#include "app/render/renderer_options.hpp"
+#include "app/render/scene_source.hpp"
 #include "drivers/display/image_codec.hpp"
 #include "drivers/display/renderer.hpp"
 #include "rt_core/cell/view.hpp"
@@ -12,14 +12,14 @@
 namespace cellmirror::app {
 
 Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotRequest& wanted) {
-  const web::PictureWish wish = wish_of(wanted, loaded.pictures.width, loaded.pictures.height);
+  const PictureRequest request = picture_request_of(wanted, loaded.pictures.width, loaded.pictures.height);
   const auto cell = loaded.cell.compile();
-  if (const auto checked = check_wish(wish); !checked) return std::unexpected(checked.error());
-  if (const auto checked = check_camera(wish, *cell); !checked) return std::unexpected(checked.error());
+  if (const auto checked = check_request(request); !checked) return std::unexpected(checked.error());
+  if (const auto checked = check_camera(request, *cell); !checked) return std::unexpected(checked.error());
   const auto positions = loaded.cell.start_positions();
   CellPoses poses;
   compute_poses(*cell, positions, poses);
-  const DisplayState display = first_display(*cell, extent_of(*cell, positions), loaded.views, loaded.layout);
+  const DisplayState display = initial_display(*cell, extent_of(*cell, positions), loaded.views, loaded.layout);
   const Timestamp now = SystemClock().now();
   Scene scene;
   scene::SceneBuilder builder;
@@ -29,23 +29,23 @@ Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotReques
   input.display = &display;
   input.posture_time = input.now = now;
   builder.build(input, scene);
-  const auto panes = panes_of({*cell, poses, display, now, 0}, wish);
+  const auto panes = panes_of({*cell, poses, display, now, 0}, request);
   if (!panes) return std::unexpected(panes.error());
   const auto renderer = display::Renderer::create(renderer_options(loaded.pictures));
   if (!renderer) return std::unexpected(renderer.error());
   Image drawing;
-  if (const auto drawn = (*renderer)->draw(scene, *panes, wish.width, wish.height, drawing); !drawn)
+  if (const auto drawn = (*renderer)->draw(scene, *panes, request.width, request.height, drawing); !drawn)
     return std::unexpected(drawn.error());
   CellPicture picture;
   picture.renderer = (*renderer)->name();
   picture.image.format = wanted.format;
-  picture.image.width = wish.width;
-  picture.image.height = wish.height;
+  picture.image.width = request.width;
+  picture.image.height = request.height;
   picture.image.posture_time = now;
   picture.image.sequence = 1;
   display::ImageEncoder encoder;
-  const auto encoded = encoder.encode(drawing, {.format = wanted.format, .jpeg_quality = wish.quality, .png_level = 6},
-                                      picture.image.bytes);
+  const auto encoded = encoder.encode(
+      drawing, {.format = wanted.format, .jpeg_quality = request.quality, .png_level = 6}, picture.image.bytes);
   if (!encoded) return std::unexpected(encoded.error());
   return picture;
 }

@@ -70,14 +70,14 @@ Result<SnapshotRequest> snapshot_request(const ControlRequest& request) {
   return wanted;
 }
 
-web::PictureWish wish_of(const SnapshotRequest& wanted, int width, int height) {
-  web::PictureWish wish;
-  wish.view = wanted.view;
-  wish.camera = wanted.camera;
-  wish.width = wanted.width.value_or(width);
-  wish.height = wanted.height.value_or(height);
-  wish.quality = wanted.quality;
-  return wish;
+PictureRequest picture_request_of(const SnapshotRequest& wanted, int width, int height) {
+  PictureRequest request;
+  request.view = wanted.view;
+  request.camera = wanted.camera;
+  request.width = wanted.width.value_or(width);
+  request.height = wanted.height.value_or(height);
+  request.quality = wanted.quality;
+  return request;
 }
 
 std::string answer_text(const EncodedImage& picture, double posture_age_s) {

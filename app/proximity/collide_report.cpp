@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/proximity/for_people.hpp"
+#include "app/console/display_names.hpp"
+#include "app/console/put.hpp"
 #include "app/proximity/json_writer.hpp"
-#include "app/subcommands/put.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -89,7 +89,7 @@ void CollideJson::end(const CollideTotals& totals) {
 }
 
 CollideText::CollideText(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)
-    : heading_(heading), names_(for_people(*pairs.short_names)), out_(out) {
+    : heading_(heading), names_(display_names(*pairs.short_names)), out_(out) {
   const std::size_t tested = tested_pairs(pairs);
   put(out_, "{}: {}, {}; {} tested, {} left out (--pairs says why), {} rigid\n", printable(heading.cell),
       number_of(pairs.bodies.size(), "body", "bodies"), number_of(pairs.triangles, "triangle"),

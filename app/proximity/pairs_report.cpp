@@ -6,9 +6,9 @@
 #include <array>
 #include <vector>
 
-#include "app/proximity/for_people.hpp"
+#include "app/console/display_names.hpp"
+#include "app/console/put.hpp"
 #include "app/proximity/json_writer.hpp"
-#include "app/subcommands/put.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -52,7 +52,7 @@ std::string_view word_of(PairState state) {
 }
 
 void print_pairs(const std::string& cell, const PairTable& pairs, std::FILE* out) {
-  const std::vector<std::string> names = for_people(*pairs.short_names);
+  const std::vector<std::string> names = display_names(*pairs.short_names);
   put(out, "{}: {}, {}\n\n", printable(cell), number_of(pairs.bodies.size(), "body", "bodies"),
       number_of(pairs.triangles, "triangle"));
   for (const StateText& text : kStates) {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "app/subcommands/load_progress.hpp"
+#include "app/console/load_progress.hpp"
 
 namespace cellmirror::app {
 
@@ -26,7 +26,7 @@ std::unique_ptr<Postures> open_postures(const std::string& file, const Proximity
   {
     ProgressLine line("bytes of postures checked");
     postures = Postures::open(file, cell.loaded.cell, diagnostics,
-                              [&line](std::uint64_t done, std::uint64_t total) { line.tell(done, total); });
+                              [&line](std::uint64_t done, std::uint64_t total) { line.update(done, total); });
   }
   std::fputs(diagnostics.text().c_str(), stderr);
   return postures;

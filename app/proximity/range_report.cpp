@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "app/proximity/for_people.hpp"
+#include "app/console/display_names.hpp"
+#include "app/console/put.hpp"
 #include "app/proximity/json_writer.hpp"
-#include "app/subcommands/put.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 

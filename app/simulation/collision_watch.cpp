@@ -26,10 +26,10 @@ CollisionWatch::CollisionWatch(Timestamp begin, Nanoseconds period)
   summary_.why_not = "no tick has passed";
 }
 
-void CollisionWatch::adopt(const OwnerPicture& picture) {
-  const bool news = follower_.take_cell(picture.cell);
-  if (!news && settings_ == picture.collision) return;
-  settings_ = picture.collision;
+void CollisionWatch::adopt(const CellState& cell_state) {
+  const bool news = follower_.take_cell(cell_state.cell);
+  if (!news && settings_ == cell_state.collision) return;
+  settings_ = cell_state.collision;
   summary_.warning_distance_m = settings_->warning_distance_m;
   if (!settings_->active) return;
   const auto pairs = derivation_.derive(*follower_.cell(), *settings_);
@@ -53,13 +53,13 @@ bool CollisionWatch::same_posture(const engine::TickState& tick) {
   return same;
 }
 
-void CollisionWatch::observe(const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick) {
+void CollisionWatch::observe(const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick) {
   if (tick.time < next_) return;
   next_ = tick.time + period_;
   const auto begin = std::chrono::steady_clock::now();
-  if (picture != picture_) {
-    picture_ = picture;
-    adopt(*picture);
+  if (cell_state != picture_) {
+    picture_ = cell_state;
+    adopt(*cell_state);
   }
   if (settings_->active && !same_posture(tick) && follower_.take_posture(tick)) {
     const ProximityState& found = checker_.check(follower_.poses(), tick.time);

@@ -1,4 +1,4 @@
-// Collision tests of the off-line simulation: the code of the gateway's worker (CellFollower, PairDerivation, Checker),
+// Collision tests of the off-line simulation: the code of the gateway's worker (CellPoser, PairDerivation, Checker),
 // a test every so often of simulated time instead of as often as a thread can.
 #pragma once
 
@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/gateway/cell_follower.hpp"
-#include "app/gateway/picture.hpp"
 #include "app/simulation/simulation_result.hpp"
+#include "app/snapshot/cell_poser.hpp"
+#include "app/snapshot/cell_state.hpp"
 #include "rt_core/collision/checker.hpp"
 #include "rt_core/collision/pairs.hpp"
 #include "rt_core/engine/tick_state.hpp"
@@ -22,12 +22,12 @@ class CollisionWatch {
   // A test at the first tick after each `period`; postures that are those of the test before are passed over.
   CollisionWatch(Timestamp begin, Nanoseconds period);
 
-  void observe(const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick);
+  void observe(const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick);
   // Nothing more may be observed.
   void finish(CollisionSummary& summary);
 
  private:
-  void adopt(const OwnerPicture& picture);
+  void adopt(const CellState& cell_state);
   [[nodiscard]] bool same_posture(const engine::TickState& tick);
   void take_events(const ProximityState& found, double now_s);
   void take_depths(const ProximityState& found, double now_s);
@@ -38,8 +38,8 @@ class CollisionWatch {
   Timestamp next_;
   collision::PairDerivation derivation_;
   collision::Checker checker_;
-  CellFollower follower_{false};
-  std::shared_ptr<const OwnerPicture> picture_;
+  CellPoser follower_{false};
+  std::shared_ptr<const CellState> picture_;
   std::shared_ptr<const collision::Settings> settings_;
   bool tested_ = false;                                                      // the posture below
   std::vector<JointValues> posture_ = std::vector<JointValues>(kMaxRobots);  // by slot

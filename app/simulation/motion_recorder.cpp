@@ -86,11 +86,11 @@ SimulatedMove* MotionRecorder::find(std::string_view robot, std::uint32_t id) {
   return place == places_.end() ? nullptr : &moves_[place->second];
 }
 
-void MotionRecorder::observe(const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick) {
+void MotionRecorder::observe(const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick) {
   now_s_ = seconds(tick.time - begin_);
-  if (picture != picture_) {
-    picture_ = picture;
-    adopt(*picture);
+  if (cell_state != picture_) {
+    picture_ = cell_state;
+    adopt(*cell_state);
   }
   for (auto& [id, track] : tracks_) {
     if (track.slot == kGone) continue;
@@ -110,10 +110,10 @@ void MotionRecorder::observe(const std::shared_ptr<const OwnerPicture>& picture,
 }
 
 // Parameters may have changed, robots come and gone.
-void MotionRecorder::adopt(const OwnerPicture& picture) {
+void MotionRecorder::adopt(const CellState& cell_state) {
   for (auto& [id, track] : tracks_) track.slot = kGone;
-  for (const RobotPicture& robot : picture.robots) {
-    const CompiledRobot* compiled = picture.cell->robot(robot.slot);
+  for (const RobotSnapshot& robot : cell_state.robots) {
+    const CompiledRobot* compiled = cell_state.cell->robot(robot.slot);
     if (compiled == nullptr) continue;
     Track& track = tracks_[robot.id];
     track.slot = robot.slot;

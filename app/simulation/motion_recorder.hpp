@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/gateway/picture.hpp"
 #include "app/simulation/simulation_result.hpp"
+#include "app/snapshot/cell_state.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/motion/move.hpp"
 
@@ -26,7 +26,7 @@ class MotionRecorder {
 
   // A move that was given to the tick.
   void given(std::string_view robot, const motion::Move& move);
-  void observe(const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick);
+  void observe(const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick);
 
   // Moves that have not ended are told as under way. Nothing more may be observed.
   void finish(SimulationResult& result);
@@ -47,7 +47,7 @@ class MotionRecorder {
     std::map<std::uint32_t, std::size_t> open;  // moves that were given and have not ended: places in moves_
   };
 
-  void adopt(const OwnerPicture& picture);
+  void adopt(const CellState& cell_state);
   void begin_track(Track& track, const CompiledRobot& robot);
   void follow_moves(Track& track, const motion::MotionState& motion);
   void begin_move(Track& track, std::uint32_t id, double time_s);
@@ -58,7 +58,7 @@ class MotionRecorder {
   Timestamp begin_;
   Nanoseconds period_;
   double now_s_ = 0;
-  std::shared_ptr<const OwnerPicture> picture_;
+  std::shared_ptr<const CellState> picture_;
   std::map<std::string, Track, std::less<>> tracks_;
   std::vector<SimulatedMove> moves_;
   std::map<std::pair<std::string, std::uint32_t>, std::size_t> places_;  // in moves_

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kNeverWatched{100};
 
-bool any_moves(const engine::TickState& tick, const OwnerPicture& picture) {
-  return std::ranges::any_of(picture.robots, [&](const RobotPicture& robot) {
+bool any_moves(const engine::TickState& tick, const CellState& cell_state) {
+  return std::ranges::any_of(cell_state.robots, [&](const RobotSnapshot& robot) {
     const engine::RobotTickState& state = tick.robots[robot.slot];
     return state.motion.moving || state.follow.follows();
   });
@@ -72,11 +72,11 @@ void OffLineGateway::tick() {
   context_.scheduled = context_.now;
   engine_.run(context_);
   ++context_.cycle;
-  const std::shared_ptr<const OwnerPicture> picture = board_.look();
-  if (!picture) return;
+  const std::shared_ptr<const CellState> cell_state = board_.latest();
+  if (!cell_state) return;
   const engine::TickState& state = engine_.owner_view();
-  robots_move_ = any_moves(state, *picture);
-  observer_.tick(picture, state);
+  robots_move_ = any_moves(state, *cell_state);
+  observer_.tick(cell_state, state);
 }
 
 }  // namespace cellmirror::app

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "app/gateway/cell_owner.hpp"
-#include "app/gateway/picture.hpp"
+#include "app/owner/cell_owner.hpp"
+#include "app/snapshot/cell_state.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -19,7 +19,7 @@ namespace cellmirror::app {
 
 // Who looks on. Each call is within begin(), work() or tick(), on the one thread.
 struct OffLineObserver {
-  std::function<void(const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick)> tick;
+  std::function<void(const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick)> tick;
   std::function<void(std::string_view robot, const motion::Move& move)> move;  // that the tick is given
   std::function<void(const Diagnostics& findings)> refused;                    // a command of a SCRIPT file
   std::function<void(const program::ProgramEvent& event)> program;
@@ -42,7 +42,7 @@ class OffLineGateway {
   void tick();
 
   [[nodiscard]] const CellOwner& owner() const { return *owner_; }
-  [[nodiscard]] const OwnerPicture& picture() const { return *board_.look(); }
+  [[nodiscard]] const CellState& cell_state() const { return *board_.latest(); }
   [[nodiscard]] double time_s() const { return seconds(clock_.now() - kBegin); }
   [[nodiscard]] Nanoseconds period() const { return period_; }
   [[nodiscard]] std::uint64_t ticks() const { return context_.cycle; }
@@ -55,7 +55,7 @@ class OffLineGateway {
   ManualClock clock_;
   Watchdog watchdog_;
   engine::Engine engine_;
-  PictureBoard board_;
+  Board<CellState> board_;
   Nanoseconds period_;
   CycleContext context_;
   bool robots_move_ = false;

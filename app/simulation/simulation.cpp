@@ -55,9 +55,9 @@ class Simulation {
  private:
   OffLineObserver observer() {
     OffLineObserver observer;
-    observer.tick = [this](const std::shared_ptr<const OwnerPicture>& picture, const engine::TickState& tick) {
-      motion_.observe(picture, tick);
-      if (options_.collisions) collisions_.observe(picture, tick);
+    observer.tick = [this](const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick) {
+      motion_.observe(cell_state, tick);
+      if (options_.collisions) collisions_.observe(cell_state, tick);
     };
     observer.move = [this](std::string_view robot, const motion::Move& move) { motion_.given(robot, move); };
     observer.message = [this](const ShownText& message) { keep(message); };
@@ -126,12 +126,12 @@ class Simulation {
 
   void finish() {
     const double now = gateway_.time_s();
-    const OwnerPicture& picture = gateway_.picture();
+    const CellState& cell_state = gateway_.cell_state();
     result_.script = options_.script;
     result_.simulated_s = now;
     result_.tick_s = seconds(period_);
     result_.ticks = gateway_.ticks();
-    result_.commands = picture.script.file.received;
+    result_.commands = cell_state.script.file.received;
     const std::vector<program::ProgramStatus> status = gateway_.owner().programs().controllers().status();
     programs_.finish(status, now, result_);
     motion_.finish(result_);

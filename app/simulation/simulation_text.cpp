@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/proximity/for_people.hpp"
+#include "app/console/display_names.hpp"
 #include "app/simulation/simulation_report.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"

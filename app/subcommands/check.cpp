@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "app/gateway/hosts.hpp"
-#include "app/gateway/robot_streams.hpp"
+#include "app/console/load_progress.hpp"
+#include "app/io/robot_streams.hpp"
+#include "app/owner/hosts.hpp"
 #include "app/subcommands/check_bus_files.hpp"
 #include "app/subcommands/check_commands.hpp"
 #include "app/subcommands/check_programs.hpp"
-#include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
 #include "config/command_line/command_line.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "app/gateway/program_files.hpp"
+#include "app/owner/programs/program_files.hpp"
 #include "config/view_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/programs/languages/languages.hpp"

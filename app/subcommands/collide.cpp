@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
+#include "app/console/progress_line.hpp"
 #include "app/proximity/collide_report.hpp"
 #include "app/proximity/collide_run.hpp"
 #include "app/proximity/pairs_report.hpp"
 #include "app/proximity/proximity_cell.hpp"
-#include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "rt_core/base/text.hpp"
@@ -69,7 +69,7 @@ int tell_frames(const CollideOptions& options, const CollideInput& input, const 
     totals = run_collide(input, postures, [&](std::uint64_t frame, const ProximityState& state) {
       if (json) json->frame(state);
       if (text) text->frame(frame, state);
-      line.tell(frame, heading.frames);
+      line.update(frame, heading.frames);
     });
   }
   if (!totals) return refuse(totals.error().text());

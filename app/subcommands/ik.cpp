@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "app/console/progress_line.hpp"
 #include "app/kinematics/ik_report.hpp"
 #include "app/kinematics/ik_run.hpp"
 #include "app/kinematics/robot_choice.hpp"
 #include "app/kinematics/targets.hpp"
-#include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "config/target_file.hpp"
@@ -126,7 +126,7 @@ Result<IkSettings> settings_of(const IkOptions& options, const kinematics::Chain
 Result<IkRun> run_with_progress(const kinematics::Chain& chain, const IkSettings& settings,
                                 std::span<const Pose> targets) {
   ProgressLine line("targets");
-  return run_ik(chain, settings, targets, [&](std::size_t done) { line.tell(done, targets.size()); });
+  return run_ik(chain, settings, targets, [&](std::size_t done) { line.update(done, targets.size()); });
 }
 
 // Prints what was found, and gives the exit status: one target that is not reached is a failure, of many it is a

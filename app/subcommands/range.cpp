@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "app/console/progress_line.hpp"
 #include "app/proximity/proximity_cell.hpp"
 #include "app/proximity/range_report.hpp"
 #include "app/proximity/range_run.hpp"
-#include "app/subcommands/progress_line.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 
@@ -40,7 +40,7 @@ int tell(const RangeOptions& options, const ProximityCell& cell, Postures& postu
                        [&](std::uint64_t frame, std::span<const RangeReading> readings) {
                          if (json) json->frame(readings);
                          if (text) text->frame(frame, readings);
-                         line.tell(frame, heading.frames);
+                         line.update(frame, heading.frames);
                        });
   }
   if (!totals) return refuse(totals.error().text());

@@ -9,8 +9,8 @@
 #include <memory>
 #include <optional>
 
+#include "app/console/load_progress.hpp"
 #include "app/gateway/gateway.hpp"
-#include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "rt_core/base/log.hpp"

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/gateway/json_builder.hpp"
+#include "app/report/json_builder.hpp"
 #include "app/subcommands/command_texts.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
@@ -70,10 +70,10 @@ class Sender {
 
  private:
   static void print_json(const std::string& command, bool done, bool answered, const std::string& text) {
-    JsonBuilder json;
-    json.begin_object().member("command", command).member("done", done).member("answered", answered);
-    json.member("text", text).end_object();
-    std::printf("%s\n", json.take().c_str());
+    JsonBuilder document;
+    document.begin_object().member("command", command).member("done", done).member("answered", answered);
+    document.member("text", text).end_object();
+    std::printf("%s\n", document.take().c_str());
   }
 
   const SendOptions& options_;

@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
+#include "app/console/load_progress.hpp"
 #include "app/simulation/simulation.hpp"
 #include "app/simulation/simulation_report.hpp"
-#include "app/subcommands/load_progress.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "rt_core/base/counted.hpp"
@@ -98,7 +98,7 @@ int run(const SimulateOptions& options) {
     SlowNews news(simulation.longest_s);
     result = simulate(std::move(*cell), simulation, [&](double now_s) {
       news.tell(now_s);
-      line.tell(static_cast<std::uint64_t>(now_s), static_cast<std::uint64_t>(std::ceil(simulation.longest_s)));
+      line.update(static_cast<std::uint64_t>(now_s), static_cast<std::uint64_t>(std::ceil(simulation.longest_s)));
     });
   }
   return result ? tell(options, *result) : refuse(result.error().text());

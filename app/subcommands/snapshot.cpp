@@ -8,13 +8,13 @@
 #include <optional>
 #include <string>
 
+#include "app/console/load_progress.hpp"
+#include "app/console/put.hpp"
 #include "app/pictures/cell_snapshot.hpp"
 #include "app/pictures/film.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/snapshot_request.hpp"
 #include "app/proximity/json_writer.hpp"
-#include "app/subcommands/load_progress.hpp"
-#include "app/subcommands/put.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/control/control_client.hpp"
@@ -24,7 +24,7 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{20};
+constexpr std::chrono::seconds kObserverTimeout{20};
 
 struct SnapshotOptions {
   SnapshotRequest wanted;
@@ -62,7 +62,7 @@ std::string wrong_size(const std::string& text) {
 volatile std::sig_atomic_t film_is_over = 0;
 
 Result<SnapshotAnswer> ask(const SnapshotOptions& options) {
-  const auto text = control_request(options.instance, control_request_line(question(options.wanted)), kPatience);
+  const auto text = control_request(options.instance, control_request_line(question(options.wanted)), kObserverTimeout);
   if (!text) return std::unexpected(text.error());
   return snapshot_answer(*text);
 }

@@ -22,7 +22,7 @@ struct StatusOptions {
   std::string instance{kDefaultInstance};
 };
 
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kObserverTimeout{5};
 
 // "name: what it is" for the other gateways that run, for somebody who asked for the wrong one.
 std::string others() {
@@ -34,7 +34,7 @@ std::string others() {
 }
 
 int print_once(const StatusOptions& options) {
-  const auto document = control_request(options.instance, R"({"request":"status"})", kPatience);
+  const auto document = control_request(options.instance, R"({"request":"status"})", kObserverTimeout);
   if (!document) return refuse(document.error().text() + others());
   if (options.json) {
     std::printf("%s\n", document->c_str());

@@ -10,6 +10,7 @@
 
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/image.hpp"
+#include "rt_core/ports/renderer_counters.hpp"
 #include "rt_core/ports/scene.hpp"
 
 namespace cellmirror::display {
@@ -19,17 +20,6 @@ enum class Backend : std::uint8_t { automatic, osmesa, egl };  // automatic: OSM
 struct RendererOptions {
   Backend backend = Backend::automatic;
   int threads = 1;  // of a software renderer beside the calling one; 0: it draws in the calling thread alone
-};
-
-struct RendererCounters {
-  std::uint64_t frames = 0;
-  std::uint64_t meshes = 0;           // uploaded now
-  std::uint64_t uploads = 0;          // since the start: a mesh is uploaded once as long as it is in use
-  std::uint64_t textures = 0;         // pictures of meshes, uploaded now
-  std::uint64_t texture_uploads = 0;  // since the start: a picture is uploaded once as long as a mesh that uses it is
-  std::uint64_t texture_bytes = 0;    // of those that are uploaded, with their smaller copies
-  std::uint64_t bodies_drawn = 0;     // in the newest frame
-  std::uint64_t bodies_left_out = 0;  // in the newest frame, by the visibility test
 };
 
 // Belongs to the thread that made it. Not real time.

@@ -17,6 +17,10 @@ PRIVATE_LIBRARIES = re.compile(r"^(fcl|ccd|coin|Ip[A-Z]|GL/|GLES|EGL|fastdds|fas
 PROGRAM_FOLDERS = ("app", "sim_devices", "tests")
 
 
+def is_program(folder: str | None) -> bool:
+    return folder is not None and folder.split("/")[0] in PROGRAM_FOLDERS
+
+
 def layers() -> dict[str, set[str]]:
     text = (ROOT / "cmake/Layers.cmake").read_text()
     table = text[text.index("set(CELLMIRROR_LAYERS"):]
@@ -89,16 +93,16 @@ def check_leaks(table, sources) -> list[str]:
     errors = []
     for path, includes in sources.items():
         home = folder_of(path, table)
-        if home in PROGRAM_FOLDERS:
+        if is_program(home):
             continue
         for _, name, line in includes:
             if name in sources and folder_of(name, table) != home and (through := way_in(name, set())):
                 errors.append(f"{path}:{line}: a private library leaks out of {folder_of(name, table)}: {through}")
     # Programs and tests may use the libraries themselves, but a library's header must not force one on them.
     for path, includes in sources.items():
-        if folder_of(path, table) == "app":
+        if path.startswith("app/"):
             for _, name, line in includes:
-                if name in sources and folder_of(name, table) not in PROGRAM_FOLDERS and (through := way_in(name, set())):
+                if name in sources and not is_program(folder_of(name, table)) and (through := way_in(name, set())):
                     errors.append(f"{path}:{line}: a private library leaks out of {folder_of(name, table)}: {through}")
     return errors
 

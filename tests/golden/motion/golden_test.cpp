@@ -13,14 +13,14 @@
 #include <string_view>
 #include <vector>
 
-#include "app/gateway/coupling_desk.hpp"
-#include "app/gateway/display_desk.hpp"
-#include "app/gateway/fleet.hpp"
-#include "app/gateway/hosts.hpp"
-#include "app/gateway/motion_desk.hpp"
-#include "app/gateway/program_desk.hpp"
-#include "app/gateway/program_motion.hpp"
-#include "app/gateway/sensing.hpp"
+#include "app/owner/display/display_service.hpp"
+#include "app/owner/fleet.hpp"
+#include "app/owner/hosts.hpp"
+#include "app/owner/motion/coupling_service.hpp"
+#include "app/owner/motion/motion_service.hpp"
+#include "app/owner/programs/program_motion.hpp"
+#include "app/owner/programs/program_service.hpp"
+#include "app/owner/sensing.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/log.hpp"
@@ -68,20 +68,20 @@ class Stage {
         names_(cell_),
         home_(home),
         display_({cell_, names_, home_, clock_, [this] { return port.positions(); }, {}, {}, {}}, {}),
-        desk_(
+        motion_(
             cell_, names_, [this] { return display_.screen_axes(); }, port),
-        couplings_(cell_, fleet_, desk_),
-        program_motion_(cell_, desk_, port),
-        programs_({cell_, home_, fleet_, desk_, display_, program_motion_, clock_}),
-        world_(cell_, fleet_, desk_, programs_, [] {}),
-        robots_(cell_, fleet_, desk_, couplings_, programs_, names_),
+        couplings_(cell_, fleet_, motion_),
+        program_motion_(cell_, motion_, port),
+        programs_({cell_, home_, fleet_, motion_, display_, program_motion_, clock_}),
+        world_(cell_, fleet_, motion_, programs_, [] {}),
+        robots_(cell_, fleet_, motion_, couplings_, programs_, names_),
         sensing_(cell_, {}),
         diagnosis_([](std::string_view) { return Result<void>(); }) {
     EXPECT_TRUE(fleet_.follow_cell());
   }
 
   std::string run(const std::string& name) {
-    script::ScriptRunner runner({names_, world_, robots_, desk_, programs_, display_, sensing_, quiet_, diagnosis_},
+    script::ScriptRunner runner({names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, diagnosis_},
                                 home_, clock_);
     std::string end = "still waiting\n";
     runner.on_run_ended([&](const script::RunReport& report) {
@@ -91,7 +91,7 @@ class Stage {
     Diagnostics findings;
     if (!runner.start_file(name, &findings)) return "nothing of it ran\n" + findings.text();
     do {
-      desk_.follow();
+      motion_.follow();
     } while (runner.step(1000) != 0);
     if (!runner.idle()) {
       for (const std::string& error : runner.last_errors()) end += error.substr(error.find(' ') + 1) + "\n";
@@ -112,11 +112,11 @@ class Stage {
  private:
   app::CellNames names_;
   const KismetHome& home_;
-  app::DisplayDesk display_;
-  app::MotionDesk desk_;
-  app::CouplingDesk couplings_;
+  app::DisplayService display_;
+  app::MotionService motion_;
+  app::CouplingService couplings_;
   app::CellProgramMotion program_motion_;
-  app::ProgramDesk programs_;
+  app::ProgramService programs_;
   app::CellWorld world_;
   app::CellRobots robots_;
   app::CellSensing sensing_;

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/gateway/fleet.hpp"
-#include "app/gateway/motion_port.hpp"
+#include "app/owner/fleet.hpp"
+#include "app/owner/motion/motion_port.hpp"
 #include "rt_core/motion/move_text.hpp"
 
 namespace cellmirror::testing {

@@ -11,12 +11,12 @@
 
 namespace cellmirror::dds::test {
 
-inline constexpr std::chrono::seconds kPatience{20};
+inline constexpr std::chrono::seconds kObserverTimeout{20};
 
 // Asks every few milliseconds until `done()` holds; false where patience ended first.
 template <class Done>
 bool eventually(Done done) {
-  const auto end = std::chrono::steady_clock::now() + kPatience;
+  const auto end = std::chrono::steady_clock::now() + kObserverTimeout;
   while (!done()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

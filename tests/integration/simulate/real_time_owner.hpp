@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/gateway/cell_owner.hpp"
+#include "app/owner/cell_owner.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
 #include "rt_core/rt/watchdog.hpp"
@@ -36,8 +36,8 @@ using Reply = std::function<void(std::int64_t tag, const ScriptReply& reply)>;
 using ProgramEvents = std::function<void(const program::ProgramEvent& event)>;
 
 // Both functions are called on the owner's thread.
-inline CellOwner::Parts owner_parts(LoadedCell loaded, engine::Engine& engine, PictureBoard& board, const Clock& clock,
-                                    Reply reply, ProgramEvents event) {
+inline CellOwner::Parts owner_parts(LoadedCell loaded, engine::Engine& engine, Board<CellState>& board,
+                                    const Clock& clock, Reply reply, ProgramEvents event) {
   return {.cell = std::move(loaded.cell),
           .home = loaded.home,
           .streams = {},
@@ -81,15 +81,15 @@ class RealTimeOwner {
   SystemClock clock_;
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
-  PictureBoard board_;
+  Board<CellState> board_;
   CellOwner owner_;
   CyclicThread loop_{*engine_, {.name = "tick", .period = Nanoseconds(1'000'000), .policy = RealTimePolicy::prefer}};
 };
 
 // False: it did not come. How long it takes is the machine's affair.
 inline bool await(const std::function<bool()>& condition) {
-  constexpr std::chrono::seconds kPatience{120};
-  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  constexpr std::chrono::seconds kObserverTimeout{120};
+  const auto give_up = std::chrono::steady_clock::now() + kObserverTimeout;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > give_up) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

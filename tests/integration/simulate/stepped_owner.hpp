@@ -64,7 +64,7 @@ class SteppedOwner {
   SteppedClock clock_;
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
-  PictureBoard board_;
+  Board<CellState> board_;
   CellOwner owner_;
   std::jthread tick_;  // ends before what it uses
 };

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/gateway/fault_monitor.hpp"
+#include "app/workers/fault_monitor.hpp"
 
 namespace cellmirror::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <thread>
 #include <vector>
 
-#include "app/gateway/age_keeper.hpp"
-#include "app/gateway/findings_board.hpp"
-#include "app/gateway/publisher.hpp"
-#include "app/gateway/recycler.hpp"
+#include "app/io/publisher.hpp"
+#include "app/snapshot/object_pool.hpp"
+#include "app/snapshot/proximity_board.hpp"
+#include "app/workers/result_age.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -46,7 +46,7 @@ struct RecordingOutput final : FindingsOutput {
 
 struct FindingsPublisherTest : testing::Test {
   ProximityBoard proximity;
-  RangeBoard ranges;
+  Board<RangeReadings> ranges;
   RecordingOutput output;
   FindingsPublisher sut{proximity, ranges};
   void publish() { sut.publish_news(output, RangeSendMode::one_message_for_all); }
@@ -62,14 +62,14 @@ TEST_F(FindingsPublisherTest, GivesNothingWhereNothingWasFoundYet) {
 
 // The output has to hear of an old state too, or it could not tell that nothing new comes.
 TEST_F(FindingsPublisherTest, GivesTheNewestStateAgainButEveryEventOnce) {
-  proximity.hang_up(state(1, {1, 2}));
-  proximity.hang_up(state(2, {}));
-  proximity.hang_up(state(3, {3}));
+  proximity.publish(state(1, {1, 2}));
+  proximity.publish(state(2, {}));
+  proximity.publish(state(3, {3}));
   publish();
   publish();
   EXPECT_EQ(output.states, (Numbers{3, 3}));
   EXPECT_EQ(output.events, (Numbers{1, 2, 3}));
-  proximity.hang_up(state(4, {4}));
+  proximity.publish(state(4, {4}));
   publish();
   EXPECT_EQ(output.states, (Numbers{3, 3, 4}));
   EXPECT_EQ(output.events, (Numbers{1, 2, 3, 4}));
@@ -79,7 +79,7 @@ TEST_F(FindingsPublisherTest, EachOutputGetsAllEventsAtItsOwnRate) {
   FindingsPublisher slow(proximity, ranges);
   RecordingOutput slow_output;
   for (std::uint64_t i = 1; i <= 10; ++i) {
-    proximity.hang_up(state(i, {i}));
+    proximity.publish(state(i, {i}));
     publish();
   }
   slow.publish_news(slow_output, RangeSendMode::one_message_a_sensor);
@@ -88,10 +88,10 @@ TEST_F(FindingsPublisherTest, EachOutputGetsAllEventsAtItsOwnRate) {
 }
 
 TEST_F(FindingsPublisherTest, GivesNewReadingsWithTheSendMode) {
-  ranges.hang_up(readings(1));
+  ranges.publish(readings(1));
   publish();
   publish();
-  ranges.hang_up(readings(2));
+  ranges.publish(readings(2));
   publish();
   EXPECT_EQ(output.ranges, (std::vector<std::size_t>{2, 2}));
   EXPECT_EQ(output.modes.front(), RangeSendMode::one_message_for_all);
@@ -99,9 +99,9 @@ TEST_F(FindingsPublisherTest, GivesNewReadingsWithTheSendMode) {
 
 TEST(ProximityBoard, KeepsTheNewestEventsOfMany) {
   ProximityBoard sut;
-  EXPECT_EQ(sut.look(), nullptr);
+  EXPECT_EQ(sut.latest(), nullptr);
   constexpr std::uint64_t kMany = ProximityBoard::kKeptEvents + 10;
-  for (std::uint64_t i = 1; i <= kMany; ++i) sut.hang_up(state(i, {i}));
+  for (std::uint64_t i = 1; i <= kMany; ++i) sut.publish(state(i, {i}));
   const auto all = sut.events_after(0);
   ASSERT_EQ(all.size(), ProximityBoard::kKeptEvents);
   EXPECT_EQ(all.front().sequence, 11U);
@@ -110,8 +110,8 @@ TEST(ProximityBoard, KeepsTheNewestEventsOfMany) {
   EXPECT_TRUE(sut.events_after(kMany).empty());
 }
 
-TEST(Recycler, UsesWhatNobodyReadsAnyMoreAgain) {
-  Recycler<std::vector<int>> sut;
+TEST(ObjectPool, UsesWhatNobodyReadsAnyMoreAgain) {
+  ObjectPool<std::vector<int>> sut;
   std::shared_ptr<std::vector<int>> first = sut.take();
   first->assign(1000, 7);
   const std::vector<int>* place = first.get();
@@ -122,18 +122,18 @@ TEST(Recycler, UsesWhatNobodyReadsAnyMoreAgain) {
   EXPECT_GE(again->capacity(), 1000U);
 }
 
-TEST(Recycler, ItsObjectsMayOutliveIt) {
+TEST(ObjectPool, ItsObjectsMayOutliveIt) {
   std::shared_ptr<std::string> object;
   {
-    Recycler<std::string> sut;
+    ObjectPool<std::string> sut;
     object = sut.take();
   }
   *object = "still here";
   EXPECT_EQ(*object, "still here");
 }
 
-TEST(Recycler, ObjectsComeBackFromOtherThreads) {
-  Recycler<std::vector<int>> sut;
+TEST(ObjectPool, ObjectsComeBackFromOtherThreads) {
+  ObjectPool<std::vector<int>> sut;
   for (int i = 0; i < 200; ++i) {
     auto object = sut.take();
     object->assign(10, i);
@@ -142,9 +142,9 @@ TEST(Recycler, ObjectsComeBackFromOtherThreads) {
   }
 }
 
-TEST(AgeKeeper, RecordsTheAgeAtWhichAResultIsReplacedAndForgivesPauses) {
+TEST(ResultAge, RecordsTheAgeAtWhichAResultIsReplacedAndForgivesPauses) {
   constexpr std::int64_t kMs = 1'000'000;
-  AgeKeeper sut;
+  ResultAge sut;
   sut.shown(Timestamp{1 * kMs}, Timestamp{2 * kMs});
   EXPECT_TRUE(sut.age().snapshot().empty());
   sut.shown(Timestamp{3 * kMs}, Timestamp{5 * kMs});

@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "app/gateway/collision_worker.hpp"
-#include "app/gateway/contact_worker.hpp"
-#include "app/gateway/force_worker.hpp"
-#include "app/gateway/haptic_instrument.hpp"
+#include "app/owner/haptics/haptic_instrument.hpp"
+#include "app/workers/collision_worker.hpp"
+#include "app/workers/contact_worker.hpp"
+#include "app/workers/force_worker.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
 
 namespace cellmirror::app {
@@ -57,15 +57,15 @@ struct FindingsWorkersTest : testing::Test {
     command.lower.fill(-1.0);
     command.upper.fill(1.0);
     engine.send(command);
-    hang_up(settings);
+    publish(settings);
   }
 
-  void hang_up(const collision::Settings& with) {
-    auto picture = std::make_shared<OwnerPicture>();
-    picture->cell = cell->compile();
-    picture->collision = std::make_shared<const collision::Settings>(with);
-    picture->haptics = devices;
-    pictures.hang_up(picture);
+  void publish(const collision::Settings& with) {
+    auto cell_state = std::make_shared<CellState>();
+    cell_state->cell = cell->compile();
+    cell_state->collision = std::make_shared<const collision::Settings>(with);
+    cell_state->haptics = devices;
+    cell_states.publish(cell_state);
   }
 
   // Lets ticks pass until the condition holds; false: it never does.
@@ -89,45 +89,45 @@ struct FindingsWorkersTest : testing::Test {
   std::uint64_t cycle = 0;
   std::optional<Cell> cell;
   collision::Settings settings;
-  std::vector<HapticPicture> devices;
-  PictureBoard pictures;
+  std::vector<HapticSnapshot> devices;
+  Board<CellState> cell_states;
 };
 
 struct CollisionWorkerTest : FindingsWorkersTest {
   bool touches() {
-    const auto found = sut.board().look();
+    const auto found = sut.board().latest();
     return found && found->pairs == 1 && found->touching.size() == 1;
   }
   bool shows_nothing() {
-    const auto found = sut.board().look();
+    const auto found = sut.board().latest();
     return found && found->pairs == 0 && found->touching.empty() && found->near.empty();
   }
-  CollisionWorker sut{engine, pictures, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
+  CollisionWorker sut{engine, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
 };
 
 TEST_F(CollisionWorkerTest, ShowsNothingWhileTestsAreSwitchedOff) {
   ASSERT_TRUE(comes([this] { return touches(); }));
-  const auto last = sut.board().look();
+  const auto last = sut.board().latest();
   settings.active = false;
-  hang_up(settings);
+  publish(settings);
   ASSERT_TRUE(comes([this] { return shows_nothing(); }));
-  EXPECT_GT(sut.board().look()->sequence, last->sequence) << "whoever follows the numbers hears of it";
-  EXPECT_GE(sut.board().look()->posture_time, last->posture_time);
+  EXPECT_GT(sut.board().latest()->sequence, last->sequence) << "whoever follows the numbers hears of it";
+  EXPECT_GE(sut.board().latest()->posture_time, last->posture_time);
   settings.active = true;
-  hang_up(settings);
+  publish(settings);
   EXPECT_TRUE(comes([this] { return touches(); }));
 }
 
 TEST_F(CollisionWorkerTest, ShowsNothingWhenTheLastPairIsTestedNoMore) {
   ASSERT_TRUE(comes([this] { return touches(); }));
   settings.rules = {{"Post", "Sledge", collision::PairRule::Kind::ignore, ""}};
-  hang_up(settings);
+  publish(settings);
   EXPECT_TRUE(comes([this] { return shows_nothing(); }));
   settings.rules.clear();
-  hang_up(settings);
+  publish(settings);
   ASSERT_TRUE(comes([this] { return touches(); }));
   ASSERT_TRUE(cell->delete_node("Sledge"));
-  hang_up(settings);
+  publish(settings);
   EXPECT_TRUE(comes([this] { return shows_nothing(); }));
 }
 
@@ -146,39 +146,39 @@ struct ContactWorkerTest : FindingsWorkersTest {
     open.instrument = instrument.get();
     open.device = &device;
     engine.send(open);
-    HapticPicture haptic;
+    HapticSnapshot haptic;
     haptic.slot = instrument->slot;
     haptic.online = true;
     haptic.reach_m = 0.01;
     devices.push_back(haptic);
-    hang_up(settings);
+    publish(settings);
   }
   haptics::ContactModel newest() { return sut.report().newest[0]; }
 
   SilentDevice device;
   std::shared_ptr<const haptics::Instrument> instrument;
-  ContactWorker sut{engine, pictures, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
+  ContactWorker sut{engine, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
 };
 
 TEST_F(ContactWorkerTest, FindsThePlanesForTheNewToolCentrePoint) {
   ASSERT_TRUE(comes([this] { return newest().sequence > 0; }));
   const Eigen::Vector3d expected = newest().x_ref + Eigen::Vector3d(0, 0, 0.02);
   ASSERT_TRUE(cell->edit_robot("SLEDGE")->set_tool_center_point(pose_from_xyz_rpy({0, 0, 0.02}, {0, 0, 0})));
-  hang_up(settings);
+  publish(settings);
   EXPECT_TRUE(comes([&] { return (newest().x_ref - expected).norm() < 1e-9; })) << newest().x_ref.transpose();
 }
 
 TEST_F(FindingsWorkersTest, ForcesOfTheLastRobotGoWithIt) {
-  ForceWorker sut(engine, pictures, clock, kTick, Eigen::Vector3d(0, 0, -9.80665));
+  ForceWorker sut(engine, cell_states, clock, kTick, Eigen::Vector3d(0, 0, -9.80665));
   ASSERT_TRUE(comes([&] {
-    const auto found = sut.board().look();
+    const auto found = sut.board().latest();
     return found && found->robots.size() == 1;
   }));
-  const auto last = sut.board().look();
+  const auto last = sut.board().latest();
   ASSERT_TRUE(cell->delete_node("Sledge"));
-  hang_up(settings);
-  ASSERT_TRUE(comes([&] { return sut.board().look()->robots.empty(); }));
-  EXPECT_GT(sut.board().look()->sequence, last->sequence);
+  publish(settings);
+  ASSERT_TRUE(comes([&] { return sut.board().latest()->robots.empty(); }));
+  EXPECT_GT(sut.board().latest()->sequence, last->sequence);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "app/gateway/flight_file.hpp"
+#include "app/io/flight_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

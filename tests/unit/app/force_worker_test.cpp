@@ -1,14 +1,15 @@
 // The forces of a cell at one tick after the other, and what becomes of them.
-#include "app/gateway/force_worker.hpp"
+#include "app/workers/force_worker.hpp"
+#include "app/workers/robot_motions.hpp"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/gateway/force_desk.hpp"
-#include "app/gateway/publisher.hpp"
-#include "app/gateway/status_forces.hpp"
+#include "app/io/publisher.hpp"
+#include "app/owner/tcp_force_service.hpp"
+#include "app/report/status_forces.hpp"
 #include "app/subcommands/status_table_forces.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
 
@@ -63,11 +64,16 @@ abstract = "weight.mpc"
       robot.mode = engine::RobotMode::simulated;
       robot.joint_count = static_cast<std::uint8_t>(cell->robot(id)->joints().size());
     }
-    sut.take_cell(cell->compile());
+    take_cell();
+  }
+  bool take_cell() {
+    compiled = cell->compile();
+    return sut.take_cell(compiled);
   }
   engine::RobotTickState& lift() { return tick.robots[cell->robot("LIFTER")->slot()]; }
   const RobotForces& computed() {
-    EXPECT_TRUE(sut.compute(tick, state));
+    EXPECT_TRUE(read_motions(*compiled, tick, motions));
+    sut.compute(tick.time, motions, tick.haptics, state);
     return state.robots.at(0);
   }
   void next(std::int64_t ms) { tick.time = tick.time + Nanoseconds(ms * 1'000'000); }
@@ -75,7 +81,9 @@ abstract = "weight.mpc"
   std::optional<Cell> cell;
   engine::TickState tick;
   ForceState state;
-  ForceComputation sut{Eigen::Vector3d(0, 0, -kG)};
+  std::shared_ptr<const CompiledCell> compiled;
+  std::vector<dynamics::RobotMotion> motions;
+  dynamics::ForceComputation sut{Eigen::Vector3d(0, 0, -kG)};
 };
 
 TEST_F(ForceComputationTest, TellsOfRobotsWithMasses) {
@@ -96,17 +104,17 @@ TEST_F(ForceComputationTest, TellsOfRobotsWithMasses) {
 
 TEST_F(ForceComputationTest, CountsLimitsThatArePassedOnce) {
   ASSERT_TRUE(cell->connect("Weight", "TOP", cell->start_positions()));
-  EXPECT_TRUE(sut.take_cell(cell->compile()));
+  EXPECT_TRUE(take_cell());
   EXPECT_EQ(computed().payload_kg, 7.0);
   EXPECT_TRUE(state.robots[0].joints[0].beyond_limit);
   next(1);
   computed();
   EXPECT_EQ(sut.limit_warnings(), 1U);
   ASSERT_TRUE(cell->deactivate("Weight"));
-  sut.take_cell(cell->compile());
+  take_cell();
   EXPECT_FALSE(computed().joints[0].beyond_limit);
   ASSERT_TRUE(cell->activate("Weight"));
-  sut.take_cell(cell->compile());
+  take_cell();
   computed();
   EXPECT_EQ(sut.limit_warnings(), 2U);
 }
@@ -156,7 +164,7 @@ TEST_F(ForceComputationTest, TakesTheForceAtTheTipOfAnInstrument) {
 
 TEST_F(ForceComputationTest, WaitsForRobotsThatTheTickDoesNotKnowYet) {
   lift().mode = engine::RobotMode::absent;
-  EXPECT_FALSE(sut.compute(tick, state));
+  EXPECT_FALSE(read_motions(*compiled, tick, motions));
 }
 
 // What is computed goes out as the effort of robots that nobody measures.
@@ -203,15 +211,15 @@ TEST(UnseenArrows, AreToldWhereTheCellHasNothingToDraw) {
   cell.joint_of = {-1, 0, -1, -1};
   cell.inertia = {{.node = 3, .inertia = {}}};  // stands in the world
   ForceArrowSettings sut;
-  EXPECT_EQ(unseen_arrows(sut, cell, false), "");
+  EXPECT_EQ(arrows_without_effect(sut, cell, false), "");
   sut.joint_torques = ArrowComponent::resultant;
-  EXPECT_EQ(unseen_arrows(sut, cell, false),
+  EXPECT_EQ(arrows_without_effect(sut, cell, false),
             "no joint of the cell moves a part whose mass is known, so joints have no arrows");
   cell.inertia.push_back({.node = 2, .inertia = {}});  // behind the joint
-  EXPECT_EQ(unseen_arrows(sut, cell, false), "");
+  EXPECT_EQ(arrows_without_effect(sut, cell, false), "");
   sut.tcp_force = ArrowComponent::x;
-  EXPECT_EQ(unseen_arrows(sut, cell, false), "the cell has no haptic device, so TCPs have no arrows");
-  EXPECT_EQ(unseen_arrows(sut, cell, true), "");
+  EXPECT_EQ(arrows_without_effect(sut, cell, false), "the cell has no haptic device, so TCPs have no arrows");
+  EXPECT_EQ(arrows_without_effect(sut, cell, true), "");
 }
 
 }  // namespace

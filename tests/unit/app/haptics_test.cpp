@@ -6,11 +6,11 @@
 #include <set>
 #include <string>
 
-#include "app/gateway/force_desk.hpp"
-#include "app/gateway/haptic_words.hpp"
-#include "app/gateway/status_haptics.hpp"
-#include "app/gateway/tcp_force_worker.hpp"
+#include "app/owner/tcp_force_service.hpp"
+#include "app/report/status_haptics.hpp"
+#include "app/snapshot/haptic_names.hpp"
 #include "app/subcommands/status_table_haptics.hpp"
+#include "app/workers/tcp_force_worker.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -20,12 +20,12 @@ constexpr std::uint8_t kChannel = 1;
 
 struct Haptics : testing::Test {
   Haptics() {
-    RobotPicture robot;
+    RobotSnapshot robot;
     robot.id = "LAP";
     robot.slot = kSlot;
-    picture.robots.push_back(robot);
-    picture.active_robot = "LAP";
-    HapticPicture haptic;
+    cell_state.robots.push_back(robot);
+    cell_state.active_robot = "LAP";
+    HapticSnapshot haptic;
     haptic.robot = "LAP";
     haptic.slot = kSlot;
     haptic.channel = kChannel;
@@ -33,7 +33,7 @@ struct Haptics : testing::Test {
     haptic.key = 4711;
     haptic.bytes = 512;
     haptic.meter = std::make_shared<HapticMeter>();
-    picture.haptics.push_back(haptic);
+    cell_state.haptics.push_back(haptic);
     tick.time = Timestamp{2'000'000'000};
     HapticState& state = tick.haptics[kChannel];
     state.phase = HapticPhase::active;
@@ -44,13 +44,13 @@ struct Haptics : testing::Test {
     state.device_time = Timestamp{1'999'000'000};
   }
 
-  OwnerPicture picture;
+  CellState cell_state;
   engine::TickState tick;
   ContactReport contacts;
 };
 
 TEST_F(Haptics, ForceAtTheTcpIsThatOfTheActiveRobotsDevice) {
-  const TcpForce sut = tcp_force_of(picture, tick);
+  const TcpForce sut = tcp_force_of(cell_state, tick);
   EXPECT_EQ(sut.values, (std::array<float, 4>{1, 2, -2, 0.25F}));
   EXPECT_EQ(sut.flags, kTcpForceValid);
   EXPECT_EQ(sut.robot.view(), "LAP");
@@ -59,28 +59,28 @@ TEST_F(Haptics, ForceAtTheTcpIsThatOfTheActiveRobotsDevice) {
 
 TEST_F(Haptics, NothingIsKnownOfOtherRobotsAndClosedDevices) {
   tick.haptics[kChannel].slot = kSlot + 1;
-  EXPECT_EQ(tcp_force_of(picture, tick).flags, 0U);
-  EXPECT_EQ(tcp_force_of(picture, tick).values, (std::array<float, 4>{}));
+  EXPECT_EQ(tcp_force_of(cell_state, tick).flags, 0U);
+  EXPECT_EQ(tcp_force_of(cell_state, tick).values, (std::array<float, 4>{}));
   tick.haptics[kChannel].slot = kSlot;
   tick.haptics[kChannel].phase = HapticPhase::closed;
-  EXPECT_EQ(tcp_force_of(picture, tick).flags, 0U);
-  picture.active_robot.clear();
-  EXPECT_EQ(tcp_force_of(picture, tick).robot.view(), "");
+  EXPECT_EQ(tcp_force_of(cell_state, tick).flags, 0U);
+  cell_state.active_robot.clear();
+  EXPECT_EQ(tcp_force_of(cell_state, tick).robot.view(), "");
 }
 
 TEST_F(Haptics, LimitsCountOnlyWhereTheyAreSet) {
-  picture.forces.limits = {2.9, 0};  // the force is 3 N
-  EXPECT_NE(tcp_force_of(picture, tick).flags & kTcpForceBeyondLimit, 0U);
-  picture.forces.limits = {3.1, 0};
-  EXPECT_EQ(tcp_force_of(picture, tick).flags & kTcpForceBeyondLimit, 0U);
-  picture.forces.limits = {0, 0.2};
-  EXPECT_NE(tcp_force_of(picture, tick).flags & kTcpForceBeyondLimit, 0U);
+  cell_state.forces.limits = {2.9, 0};  // the force is 3 N
+  EXPECT_NE(tcp_force_of(cell_state, tick).flags & kTcpForceBeyondLimit, 0U);
+  cell_state.forces.limits = {3.1, 0};
+  EXPECT_EQ(tcp_force_of(cell_state, tick).flags & kTcpForceBeyondLimit, 0U);
+  cell_state.forces.limits = {0, 0.2};
+  EXPECT_NE(tcp_force_of(cell_state, tick).flags & kTcpForceBeyondLimit, 0U);
 }
 
 TEST_F(Haptics, TestValuesTakeThePlaceOfTheTruth) {
-  picture.forces.test = std::array<double, 4>{9, 0, 0, -1};
-  picture.forces.limits = {5, 0};
-  const TcpForce sut = tcp_force_of(picture, tick);
+  cell_state.forces.test = std::array<double, 4>{9, 0, 0, -1};
+  cell_state.forces.limits = {5, 0};
+  const TcpForce sut = tcp_force_of(cell_state, tick);
   EXPECT_EQ(sut.values, (std::array<float, 4>{9, 0, 0, -1}));
   EXPECT_EQ(sut.flags, kTcpForceValid | kTcpForceTest | kTcpForceBeyondLimit);
 }
@@ -88,10 +88,10 @@ TEST_F(Haptics, TestValuesTakeThePlaceOfTheTruth) {
 TEST(TorqueLimit, MessageTellsTheForceThatWasBeyondItAndNotALaterOne) {
   ManualClock clock;
   std::string told;
-  ForceDesk sut({.key = 0x43510000 + static_cast<std::int32_t>(getpid() & 0xFFFF),
-                 .instance = "force-desk-test",
-                 .clock = clock,
-                 .show_message = [&](std::string_view text) { told = text; }});
+  TcpForceService sut({.key = 0x43510000 + static_cast<std::int32_t>(getpid() & 0xFFFF),
+                       .instance = "force-desk-test",
+                       .clock = clock,
+                       .show_message = [&](std::string_view text) { told = text; }});
   const auto set = sut.set_limits({5, 0});
   ASSERT_TRUE(set) << set.error().text();
   TcpForce force;
@@ -107,7 +107,7 @@ TEST(TorqueLimit, MessageTellsTheForceThatWasBeyondItAndNotALaterOne) {
 }
 
 TEST_F(Haptics, StatusTellsPhaseAgeAndForce) {
-  const nlohmann::json sut = haptics_json(picture, tick, contacts, tick.time);
+  const nlohmann::json sut = haptics_json(cell_state, tick, contacts, tick.time);
   const nlohmann::json& device = sut.at("devices").at(0);
   EXPECT_EQ(device.at("phase"), "active");
   EXPECT_EQ(device.at("fault"), "none");
@@ -120,14 +120,16 @@ TEST_F(Haptics, StatusTellsPhaseAgeAndForce) {
 TEST_F(Haptics, TableTellsAFaultAndWhatToDo) {
   tick.haptics[kChannel].phase = HapticPhase::faulted;
   tick.haptics[kChannel].fault = HapticFault::two_writers;
-  const std::string sut = haptics_table({{"haptics", haptics_json(picture, tick, contacts, tick.time)}});
+  const std::string sut = haptics_table({{"haptics", haptics_json(cell_state, tick, contacts, tick.time)}});
   EXPECT_NE(sut.find("FAULT two_writers"), std::string::npos) << sut;
   EXPECT_NE(sut.find("end one of the two processes; then RESET_HAPTIC LAP"), std::string::npos) << sut;
   EXPECT_EQ(haptics_table(nlohmann::json::object()), "");
 }
 
 TEST_F(Haptics, TableTellsThatTheSurroundingsAreAwaited) {
-  const auto table = [this] { return haptics_table({{"haptics", haptics_json(picture, tick, contacts, tick.time)}}); };
+  const auto table = [this] {
+    return haptics_table({{"haptics", haptics_json(cell_state, tick, contacts, tick.time)}});
+  };
   EXPECT_EQ(table().find("waits for the surroundings"), std::string::npos);
   tick.haptics[kChannel].phase = HapticPhase::waiting;
   tick.haptics[kChannel].awaits_surroundings = true;
@@ -135,9 +137,9 @@ TEST_F(Haptics, TableTellsThatTheSurroundingsAreAwaited) {
 }
 
 TEST_F(Haptics, DeviceWithoutMemoryIsShownAsSuch) {
-  picture.haptics.front().key.reset();
-  picture.haptics.front().online = false;
-  const nlohmann::json sut = haptics_json(picture, tick, contacts, tick.time);
+  cell_state.haptics.front().key.reset();
+  cell_state.haptics.front().online = false;
+  const nlohmann::json sut = haptics_json(cell_state, tick, contacts, tick.time);
   EXPECT_TRUE(sut.at("devices").at(0).at("memory").is_null());
   EXPECT_NE(haptics_table({{"haptics", sut}}).find("offline  no shared memory"), std::string::npos);
 }

@@ -1,6 +1,6 @@
 // What the monitor page is sent several times a second: the keys that docs/monitor-page.md names, whatever the cell is
 // in.
-#include "app/gateway/live_document.hpp"
+#include "app/report/live_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,9 +29,9 @@ class LiveDocument : public testing::Test {
   LiveDocument() {
     small_.cell.robots.front().min_range = {};
     small_.cell.robots.front().max_range = {};
-    RobotPicture picture;
-    picture.id = "ARM";
-    picture_.robots = {picture};
+    RobotSnapshot cell_state;
+    cell_state.id = "ARM";
+    picture_.robots = {cell_state};
     RobotState state;
     state.id = "ARM";
     state.joints.resize(1);
@@ -51,7 +51,7 @@ class LiveDocument : public testing::Test {
                               .rate_hz = 1000,
                               .now = kNow,
                               .loop = loop_,
-                              .picture = picture_,
+                              .cell_state = picture_,
                               .tick = tick_,
                               .robots = robots_,
                               .poses = small_.poses,
@@ -66,7 +66,7 @@ class LiveDocument : public testing::Test {
   scene::SmallCell small_;
   Idle idle_;
   CyclicThread loop_{idle_, {}};
-  OwnerPicture picture_;
+  CellState picture_;
   engine::TickState tick_;
   std::vector<RobotState> robots_;
   std::shared_ptr<ProximityState> proximity_;

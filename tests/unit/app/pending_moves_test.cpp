@@ -1,9 +1,9 @@
 // Who waits for a move learns its end once, whatever the tick shows in between.
-#include "app/gateway/pending_moves.hpp"
+#include "app/owner/motion/pending_moves.hpp"
 
 #include <gtest/gtest.h>
 
-#include "app/gateway/chain_keeper.hpp"
+#include "app/owner/chain_cache.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -86,12 +86,12 @@ TEST(PendingMoves, GivenUpMovesStayEndedWhateverTheTickShowsAndIdsGoOn) {
 
 class ChainKeeperTest : public ::testing::Test {
  protected:
-  static ChainKeeper::Chain chain() {
+  static ChainCache::Chain chain() {
     kinematics::ChainJoint joint;
     auto made = kinematics::Chain::make({{"J", JointKind::revolute, -1, 1}}, std::span(&joint, 1), Pose::Identity());
     return std::make_shared<const kinematics::Chain>(std::move(made.value()));
   }
-  ChainKeeper sut_;
+  ChainCache sut_;
   engine::TickState tick_;
 };
 

@@ -7,16 +7,16 @@
 #include <limits>
 #include <string>
 
-#include "app/gateway/picked_object.hpp"
-#include "app/gateway/picture_rate.hpp"
-#include "app/gateway/picture_streams.hpp"
-#include "app/gateway/picture_wish.hpp"
-#include "app/gateway/scene_fingerprint.hpp"
-#include "app/gateway/shots.hpp"
 #include "app/pictures/base64.hpp"
 #include "app/pictures/film.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/snapshot_request.hpp"
+#include "app/render/picked_object.hpp"
+#include "app/render/picture_rate.hpp"
+#include "app/render/picture_request.hpp"
+#include "app/render/picture_streams.hpp"
+#include "app/render/render_cache.hpp"
+#include "app/render/scene_fingerprint.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -61,9 +61,9 @@ TEST(SnapshotRequest, ArrivesAsItWasAsked) {
   EXPECT_EQ(sut->quality, 70);
   EXPECT_EQ(sut->format, ImageFormat::jpeg);
   EXPECT_FALSE(sut->view);
-  const web::PictureWish wish = wish_of(*sut, 640, 480);
-  EXPECT_EQ(wish.width, 320);
-  EXPECT_TRUE(check_wish(wish));
+  const PictureRequest request = picture_request_of(*sut, 640, 480);
+  EXPECT_EQ(request.width, 320);
+  EXPECT_TRUE(check_request(request));
 }
 
 TEST(SnapshotRequest, UnknownMembersAndOtherThanNumbersAreRefused) {
@@ -91,9 +91,9 @@ TEST(SnapshotAnswer, BringsTheFile) {
 
 TEST(PictureWish, OutOfRangeIsRefused) {
   const auto refused = [](auto change) {
-    web::PictureWish wish;
-    change(wish);
-    return !check_wish(wish).has_value();
+    PictureRequest request;
+    change(request);
+    return !check_request(request).has_value();
   };
   EXPECT_FALSE(refused([](auto&) {}));
   EXPECT_TRUE(refused([](auto& w) { w.view = 7; }));
@@ -113,9 +113,9 @@ TEST(PictureWish, OutOfRangeIsRefused) {
 }
 
 TEST(PictureWish, OneDrawingServesOtherRatesAndQualities) {
-  web::PictureWish a;
+  PictureRequest a;
   a.free_view = View();
-  web::PictureWish b = a;
+  PictureRequest b = a;
   b.rate_hz = 1;
   b.quality = 5;
   EXPECT_TRUE(same_drawing(a, b));
@@ -138,9 +138,9 @@ TEST(PictureStreams, NewestWinsAndIsGivenOnce) {
   PictureStreams sut(clock);
   const auto stream = sut.open({});
   EXPECT_EQ(stream->newest(0), nullptr);
-  const auto looker = sut.all().at(0);
-  looker->show(numbered(1), {});
-  looker->show(numbered(2), {});
+  const auto observer = sut.all().at(0);
+  observer->show(numbered(1), {});
+  observer->show(numbered(2), {});
   ASSERT_NE(stream->newest(0), nullptr);
   EXPECT_EQ(stream->newest(0)->sequence, 2U);
   EXPECT_EQ(stream->newest(2), nullptr);
@@ -150,49 +150,49 @@ TEST(PictureStreams, PictureOfAnEarlierWishIsNotShown) {
   ManualClock clock;
   PictureStreams sut(clock);
   const auto stream = sut.open({});
-  const auto looker = sut.all().at(0);
-  looker->show(numbered(1), {});
-  web::PictureWish other;
+  const auto observer = sut.all().at(0);
+  observer->show(numbered(1), {});
+  PictureRequest other;
   other.view = 3;
   stream->change(other);
   EXPECT_EQ(stream->newest(0), nullptr);
-  looker->show(numbered(2), {});
+  observer->show(numbered(2), {});
   EXPECT_EQ(stream->newest(0), nullptr);
-  looker->show(numbered(3), other);
+  observer->show(numbered(3), other);
   EXPECT_EQ(stream->newest(0)->sequence, 3U);
   other.width = 1;
   stream->change(other);
-  EXPECT_EQ(looker->wish().width, 640) << "a wish that nobody can fulfil changes nothing";
+  EXPECT_EQ(observer->request().width, 640) << "a wish that nobody can fulfil changes nothing";
 }
 
-web::PictureWish seen_from(double x) {
-  web::PictureWish wish;
-  wish.free_view = View();
-  wish.free_view->viewpoint.x() = x;
-  return wish;
+PictureRequest seen_from(double x) {
+  PictureRequest request;
+  request.free_view = View();
+  request.free_view->viewpoint.x() = x;
+  return request;
 }
 
-// A view that is turned by hand is another wish with every picture.
-TEST(Shots, TakeNoMoreMemoryThanThereAreThatLook) {
-  Shots sut;
-  const web::PictureWish stays;
+// A view that is turned by hand is another request with every picture.
+TEST(RenderCache, TakeNoMoreMemoryThanThereAreThatLook) {
+  RenderCache sut;
+  const PictureRequest stays;
   const std::uint8_t* const kept = [&] {
-    Shot& shot = sut.of(stays);
-    shot.image.rgba.resize(100);
-    return shot.image.rgba.data();
+    RenderedPicture& rendered = sut.of(stays);
+    rendered.image.rgba.resize(100);
+    return rendered.image.rgba.data();
   }();
   const std::uint8_t* turned = nullptr;
   for (int i = 0; i < 20; ++i) {
-    const std::vector<web::PictureWish> wishes = {stays, seen_from(i)};
-    sut.keep(wishes);
-    Shot& shot = sut.of(wishes[1]);
-    EXPECT_FALSE(shot.drawn.known()) << i;
-    shot.image.rgba.resize(100);
-    shot.drawn = Timestamp{1};
+    const std::vector<PictureRequest> requests = {stays, seen_from(i)};
+    sut.keep(requests);
+    RenderedPicture& rendered = sut.of(requests[1]);
+    EXPECT_FALSE(rendered.drawn.known()) << i;
+    rendered.image.rgba.resize(100);
+    rendered.drawn = Timestamp{1};
     if (turned != nullptr) {
-      EXPECT_EQ(shot.image.rgba.data(), turned) << i;
+      EXPECT_EQ(rendered.image.rgba.data(), turned) << i;
     }
-    turned = shot.image.rgba.data();
+    turned = rendered.image.rgba.data();
     EXPECT_EQ(sut.images(), 2U) << i;
   }
   EXPECT_EQ(sut.of(stays).image.rgba.data(), kept);
@@ -226,17 +226,17 @@ TEST(PictureStreams, PictureThatWasDrawnEarlierIsShownToo) {
   ManualClock clock;
   PictureStreams sut(clock);
   const auto stream = sut.open({});
-  const auto looker = sut.all().at(0);
-  looker->show(numbered(9), {});
+  const auto observer = sut.all().at(0);
+  observer->show(numbered(9), {});
   EXPECT_EQ(stream->newest(0)->sequence, 9U);
-  web::PictureWish other;
+  PictureRequest other;
   other.view = 3;
   stream->change(other);
-  looker->show(numbered(4), other);
+  observer->show(numbered(4), other);
   ASSERT_NE(stream->newest(9), nullptr);
   EXPECT_EQ(stream->newest(9)->sequence, 4U);
   stream->change({});
-  looker->show(numbered(9), {});
+  observer->show(numbered(9), {});
   ASSERT_NE(stream->newest(4), nullptr);
 }
 
@@ -244,19 +244,19 @@ TEST(PictureStreams, TellWhyThereIsNoPictureOfWhatIsWishedNow) {
   ManualClock clock;
   PictureStreams sut(clock);
   const auto stream = sut.open({});
-  const auto looker = sut.all().at(0);
+  const auto observer = sut.all().at(0);
   EXPECT_EQ(stream->problem(), "");
-  looker->tell(Error{"gone", ""}, {});
+  observer->tell(Error{"gone", ""}, {});
   EXPECT_EQ(stream->problem(), "gone");
-  web::PictureWish other;
+  PictureRequest other;
   other.camera = "C";
   stream->change(other);
   EXPECT_EQ(stream->problem(), "");
-  looker->tell(Error{"late", ""}, {});
+  observer->tell(Error{"late", ""}, {});
   EXPECT_EQ(stream->problem(), "") << "of what was wished before";
-  looker->tell(Error{"no camera C", ""}, other);
+  observer->tell(Error{"no camera C", ""}, other);
   EXPECT_EQ(stream->problem(), "no camera C");
-  looker->show(numbered(2), other);
+  observer->show(numbered(2), other);
   EXPECT_EQ(stream->problem(), "");
 }
 
@@ -266,18 +266,18 @@ TEST(PictureStreams, WhoDoesNotAskDoesNotLook) {
   clock.set(Timestamp{1});
   PictureStreams sut(clock);
   const auto stream = sut.open({});
-  const auto looker = sut.all().at(0);
-  EXPECT_TRUE(looker->looks(clock.now()));
-  clock.advance(Looker::kPatience);
-  EXPECT_FALSE(looker->looks(clock.now()));
+  const auto observer = sut.all().at(0);
+  EXPECT_TRUE(observer->looks(clock.now()));
+  clock.advance(PictureObserver::kObserverTimeout);
+  EXPECT_FALSE(observer->looks(clock.now()));
   static_cast<void>(stream->newest(0));
-  EXPECT_TRUE(looker->looks(clock.now()));
+  EXPECT_TRUE(observer->looks(clock.now()));
 }
 
 TEST(PictureStreams, AreBoundedAndEndWithTheirClients) {
   ManualClock clock;
   PictureStreams sut(clock);
-  std::vector<std::unique_ptr<web::PictureStream>> streams;
+  std::vector<std::unique_ptr<PictureStream>> streams;
   for (std::size_t i = 0; i < PictureStreams::kMost; ++i) streams.push_back(sut.open({}));
   EXPECT_EQ(sut.open({}), nullptr);
   streams.pop_back();

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "app/gateway/program_files.hpp"
-#include "app/gateway/program_loads.hpp"
+#include "app/owner/programs/program_files.hpp"
+#include "app/owner/programs/program_loads.hpp"
 #include "scripts/programs/languages/languages.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
@@ -59,7 +59,7 @@ class ProgramLoadsConcurrency : public testing::Test {
       for (const ProgramLoads::Run& run : ended->runs) finish(run);
     }
   }
-  // What the desk does for a command, in any order.
+  // What the service does for a command, in any order.
   void act(std::string_view program, std::string_view robot) {
     const Error why{"told so", {}};
     switch (random_() % 10) {
@@ -100,7 +100,7 @@ TEST_F(ProgramLoadsConcurrency, WhateverIsDoneWhileProgramsAreReadEverybodyIsAns
   for (int turn = 0; turn < kTurns; ++turn) {
     act(kPrograms[random_() % kPrograms.size()], kRobots[random_() % kRobots.size()]);
     ASSERT_TRUE(read_program(*home_, irdata_, path("short")).program);  // the owner reads short ones itself
-    static_cast<void>(loads_->pictures());
+    static_cast<void>(loads_->snapshots());
     take();
   }
   // Some are read to their end, however fast the owner was.

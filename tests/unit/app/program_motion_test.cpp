@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "app/gateway/fleet.hpp"
-#include "app/gateway/motion_desk.hpp"
-#include "app/gateway/move_settings.hpp"
-#include "app/gateway/program_motion.hpp"
+#include "app/owner/fleet.hpp"
+#include "app/owner/motion/motion_service.hpp"
+#include "app/owner/programs/move_settings.hpp"
+#include "app/owner/programs/program_motion.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/motion/planner.hpp"
 #include "rt_core/rt/watchdog.hpp"
@@ -47,7 +47,7 @@ class ProgramMotionTest : public testing::Test {
       context.cycle = cycle_++;
       context.period = kPeriod;
       engine_->run(context);
-      desk_.follow();
+      motion_.follow();
     }
   }
   MotionProgress run(int most = 60'000) {
@@ -87,8 +87,8 @@ class ProgramMotionTest : public testing::Test {
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
   Fleet fleet_{cell_, *engine_, {}, clock_, 0};
   NoNames names_;
-  MotionDesk desk_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_};
-  CellProgramMotion sut_{cell_, desk_, fleet_};
+  MotionService motion_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_};
+  CellProgramMotion sut_{cell_, motion_, fleet_};
   RobotParameters settings_;
   JointValues start_{};
   std::uint64_t cycle_ = 0;
@@ -267,7 +267,7 @@ TEST_F(ProgramMotionTest, RobotThatWasDeletedIsRefusedBeforeTheTickHasLetGoOfItT
   EXPECT_FALSE(sut_.move(kRobot, joints(TargetKind::joints_relative, {0.1}, 1), {}));
   EXPECT_FALSE(sut_.room(kRobot));
   EXPECT_FALSE(sut_.progress(kRobot).moving);
-  desk_.follow_cell();
+  motion_.follow_cell();
   ASSERT_TRUE(fleet_.follow_cell());
   tick();
   EXPECT_FALSE(sut_.stop(kRobot));

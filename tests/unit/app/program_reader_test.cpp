@@ -1,5 +1,5 @@
 // What goes wrong beside the owner of the cell refuses a program; it does not end the gateway.
-#include "app/gateway/program_reader.hpp"
+#include "app/owner/programs/program_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -17,8 +17,8 @@ namespace {
 const program::Language& any_language() { return program::languages()[0]; }
 
 ProgramReader::Read await_read(ProgramReader& reader) {
-  constexpr std::chrono::seconds kPatience{60};
-  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  constexpr std::chrono::seconds kObserverTimeout{60};
+  const auto give_up = std::chrono::steady_clock::now() + kObserverTimeout;
   while (std::chrono::steady_clock::now() < give_up) {
     if (auto read = reader.take()) return *std::move(read);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

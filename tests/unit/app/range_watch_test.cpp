@@ -1,4 +1,4 @@
-#include "app/gateway/range_watch.hpp"
+#include "app/io/range_watch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ struct RangeWatchTest : testing::Test {
     return sut.look(Timestamp{1} + Nanoseconds(static_cast<std::int64_t>(s * 1e9)), robots, pictures);
   }
   std::vector<RobotState> robots = std::vector<RobotState>(1);
-  std::vector<RobotPicture> pictures = std::vector<RobotPicture>(1);
+  std::vector<RobotSnapshot> pictures = std::vector<RobotSnapshot>(1);
   RangeWatch sut;
 };
 

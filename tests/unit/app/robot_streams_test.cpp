@@ -1,5 +1,5 @@
 // What check and start say about the streams of a cell.
-#include "app/gateway/robot_streams.hpp"
+#include "app/io/robot_streams.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/gateway/status_collisions.hpp"
-#include "app/gateway/status_ranges.hpp"
+#include "app/report/status_collisions.hpp"
+#include "app/report/status_ranges.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 
 namespace cellmirror::app {
@@ -119,8 +119,8 @@ struct StatusOfRanges : testing::Test {
     SensorDefinition on;
     on.active = true;
     cell->sensors = {{"USS", 1, on}, {"USS", 2, SensorDefinition{}}};
-    picture.cell = cell;
-    picture.range_send_mode = RangeSendMode::one_message_for_all;
+    cell_state.cell = cell;
+    cell_state.range_send_mode = RangeSendMode::one_message_for_all;
     auto readings = std::make_shared<RangeReadings>();
     readings->posture_time = kPosture;
     RangeReading reading;
@@ -135,12 +135,12 @@ struct StatusOfRanges : testing::Test {
     readings->readings.push_back(reading);
     ranges.readings = readings;
   }
-  OwnerPicture picture;
+  CellState cell_state;
   RangeReport ranges;
 };
 
 TEST_F(StatusOfRanges, TellsTheReadingsOfActiveSensorsByPath) {
-  const json sut = ranges_json(ranges, picture, kNow);
+  const json sut = ranges_json(ranges, cell_state, kNow);
   EXPECT_EQ(sut["sendmode"], 1);
   ASSERT_EQ(sut["sensors"].size(), 2U);
   EXPECT_EQ(sut["sensors"][0]["path"], "Arm.USS");
@@ -153,7 +153,8 @@ TEST_F(StatusOfRanges, TellsTheReadingsOfActiveSensorsByPath) {
 }
 
 TEST_F(StatusOfRanges, TableShowsTouchesNearPairsAndReadings) {
-  const json status = {{"collisions", collisions_json(report(), kNow)}, {"ranges", ranges_json(ranges, picture, kNow)}};
+  const json status = {{"collisions", collisions_json(report(), kNow)},
+                       {"ranges", ranges_json(ranges, cell_state, kNow)}};
   const std::string sut = sensing_table(status);
   EXPECT_THAT(sut, HasSubstr("on of 3 bodies, 2 pairs tested"));
   EXPECT_THAT(sut, HasSubstr("TOUCH Arm.J1 - Box: 12.5 mm deep"));

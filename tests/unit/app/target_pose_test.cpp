@@ -1,5 +1,5 @@
 // The Cartesian modes of POS_ROB, worked out by hand.
-#include "app/gateway/target_pose.hpp"
+#include "app/owner/motion/target_pose.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Workers follow the tick: always the newest, none twice, and they rest where there is nothing to do.
-#include "app/gateway/tick_worker.hpp"
+#include "app/workers/tick_worker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,16 +17,16 @@ namespace {
 // A tick by hand: the test publishes, the job tells what it saw.
 struct TickWorkerTest : testing::Test, TickJob {
   TickWorkerTest() {
-    auto picture = std::make_shared<OwnerPicture>();
-    board.hang_up(picture);
+    auto cell_state = std::make_shared<CellState>();
+    board.publish(cell_state);
   }
-  bool wanted(const OwnerPicture& /*picture*/) override {
+  bool wanted(const CellState& /*cell_state*/) override {
     const std::scoped_lock lock(mutex);
     ++asked;
     news.notify_all();
     return want;
   }
-  void run(const OwnerPicture& /*picture*/, const engine::TickState& tick) override {
+  void run(const CellState& /*cell_state*/, const engine::TickState& tick) override {
     std::unique_lock lock(mutex);
     seen.push_back(tick.tick);
     news.notify_all();
@@ -55,7 +55,7 @@ struct TickWorkerTest : testing::Test, TickJob {
   }
 
   SystemClock clock;
-  PictureBoard board;
+  Board<CellState> board;
   Latest<engine::TickState> ticks;
   std::mutex mutex;
   std::condition_variable news;

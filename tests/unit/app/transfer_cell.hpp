@@ -1,4 +1,4 @@
-// The transfer cell for tests of the desks, which need none of SCRIPT's names.
+// The transfer cell for tests of the service, which need none of SCRIPT's names.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The names that the page offers.
-#include "app/gateway/tree_document.hpp"
+#include "app/report/tree_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,10 +27,10 @@ class NamesDocument : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(home_); }
 
   [[nodiscard]] json document() {
-    OwnerPicture picture;
-    picture.cell = std::make_shared<const CompiledCell>(small_.cell);
-    picture.display = std::make_shared<const DisplayState>(small_.display);
-    return json::parse(names_document(picture, home_));
+    CellState cell_state;
+    cell_state.cell = std::make_shared<const CompiledCell>(small_.cell);
+    cell_state.display = std::make_shared<const DisplayState>(small_.display);
+    return json::parse(names_document(cell_state, home_));
   }
 
   std::filesystem::path home_;

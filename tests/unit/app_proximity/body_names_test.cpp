@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/gateway/status_collisions.hpp"
+#include "app/report/status_collisions.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "rt_core/collision/pairs.hpp"

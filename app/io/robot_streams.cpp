@@ -1,0 +1,74 @@
+#include "app/io/robot_streams.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <variant>
+
+#include "drivers/can/stream/streams.hpp"
+#include "drivers/dds/dds_stream.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+struct StreamMaker {
+  const Clock& clock;
+  int fifo_priority;
+
+  Result<std::unique_ptr<JointStream>> operator()(const std::monostate&) const {
+    return fail("the cell file names no stream");
+  }
+  Result<std::unique_ptr<JointStream>> operator()(const Cia402StreamConfig& config) const {
+    return can::make_cia402_stream(config, clock,
+                                   {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = {}});
+  }
+  Result<std::unique_ptr<JointStream>> operator()(const DbcStreamConfig& config) const {
+    return can::make_dbc_stream(config, clock,
+                                {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = {}});
+  }
+  Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
+    return dds::make_dds_stream(config, clock);
+  }
+};
+
+struct TableOfAJoint {
+  const char* operator()(const std::monostate&) const { return ""; }
+  const char* operator()(const DdsStreamConfig&) const { return "joint"; }
+  const char* operator()(const Cia402StreamConfig&) const { return "node"; }
+  const char* operator()(const DbcStreamConfig&) const { return "signal"; }
+};
+
+struct StreamChecker {
+  Diagnostics& found;
+
+  void operator()(const std::monostate&) const {}
+  void operator()(const DdsStreamConfig&) const {}
+  void operator()(const Cia402StreamConfig& config) const { can::check_stream(config, found); }
+  void operator()(const DbcStreamConfig& config) const { can::check_stream(config, found); }
+};
+
+}  // namespace
+
+void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
+  Diagnostics found;
+  if (const auto& joints = stream.joints_without_position; !joints.empty()) {
+    const bool one = joints.size() == 1;
+    found.warning(stream.place,
+                  fmt::format("nothing gives the position of {}; {}", fmt::join(joints, ", "),
+                              one ? "it stays at its start position" : "they stay at their start positions"),
+                  fmt::format("add a [[stream.{}]]", std::visit(TableOfAJoint{}, stream.config)));
+  }
+  std::visit(StreamChecker{found}, stream.config);
+  for (Diagnostic diagnostic : found.all()) {
+    diagnostic.message = fmt::format("stream of {}: {}", stream.robot, diagnostic.message);
+    diagnostics.add(std::move(diagnostic));
+  }
+}
+
+Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
+                                                       int fifo_priority) {
+  return std::visit(StreamMaker{clock, fifo_priority}, config);
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,254 @@
+#include "app/owner/cell_owner.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
+#include "rt_core/rt/scheduling.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+// Commands of files before messages have their turn, and how long they may take: inverse kinematics takes a while.
+constexpr std::size_t kScriptBudget = 256;
+constexpr std::size_t kScriptSlice = 32;
+constexpr Nanoseconds kScriptTime{5'000'000};
+constexpr int kMessageBudget = 64;
+constexpr Nanoseconds kPublishPeriod{20'000'000};     // at most so old while commands keep coming
+constexpr std::chrono::milliseconds kIdleWait{50};    // messages expire from the cell_state
+constexpr std::chrono::milliseconds kHapticWait{10};  // how soon a device that has vanished is noticed
+constexpr std::chrono::milliseconds kMovingWait{1};   // how soon an arrival is noticed, and WAIT goes on
+
+constexpr std::string_view kScripts = "scripts";
+constexpr std::string_view kScriptExtension = ".spt";
+
+// Of a name that is no path from where the program was started: a file of the home's scripts/, with or without that
+// folder in front.
+Result<std::filesystem::path> startup_file(const KismetHome& home, const std::string& script) {
+  const std::filesystem::path name(script);
+  if (name.is_absolute()) return fail(fmt::format("the SCRIPT file {} does not exist", printable(script)));
+  auto found = home.file(kScripts, script, kScriptExtension);
+  if (!found && *name.begin() == kScripts) found = home.file("", script, kScriptExtension);
+  if (!found && found.error().remedy.empty())
+    found.error().remedy = "name any path, or a file of the cell's scripts/ as EXEC_SCRIPT does";
+  return found;
+}
+
+}  // namespace
+
+CellOwner::CellOwner(Parts parts)
+    : cell_(std::move(parts.cell)),
+      home_(std::move(parts.home)),
+      board_(parts.board),
+      clock_(parts.clock),
+      reply_(std::move(parts.reply)),
+      names_(cell_),
+      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
+      display_(
+          {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
+           std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},
+          parts.views, std::move(parts.layout)),
+      motion_(
+          cell_, names_, [this] { return display_.screen_axes(); }, *fleet_),
+      couplings_(cell_, *fleet_, motion_),
+      program_motion_(cell_, motion_, *fleet_),
+      programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_, std::move(parts.program_event),
+                 !parts.let_tick_pass}),
+      guarded_motion_(motion_, programs_),
+      world_(cell_, *fleet_, motion_, programs_, [this] { publish_state(); }),
+      robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
+      sensing_(cell_, std::move(parts.collision)),
+      haptics_({cell_, *fleet_, parts.engine, clock_, parts.instance, std::move(parts.haptics)}),
+      forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
+               [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
+      interaction_(cell_, names_, haptics_, forces_),
+      diagnosis_(std::move(parts.save_flight_record)) {
+  runner_ = std::make_unique<script::ScriptRunner>(
+      CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
+      home_, clock_);
+  programs_.set_runner(*runner_);
+  switches_ = std::make_unique<FootSwitchService>(
+      FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
+      *runner_, home_, clock_);
+  interaction_.set_services(*switches_, couplings_);
+  motion_.set_coupled(&couplings_);
+  if (parts.refused) runner_->on_refused(std::move(parts.refused));
+  fleet_->on_move(std::move(parts.move_given));
+  if (!parts.let_tick_pass) return;
+  fleet_->set_off_line(std::move(parts.let_tick_pass));
+  interaction_.set_off_line();
+}
+
+CellOwner::~CellOwner() { stop(); }
+
+Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
+  if (auto followed = fleet_->follow_cell(); !followed) return followed;
+  if (auto made = haptics_.prepare(); !made) return made;
+  if (haptics_.used()) {
+    // Not what anybody has asked for in so many words: the gateway goes on without.
+    if (const auto made = forces_.make_memory(); !made) log_warning("force.memory", "{}", made.error().text());
+  }
+  if (auto prepared = switches_->prepare(); !prepared) return prepared;
+  publish_state();
+  if (script.empty()) return {};
+  const auto path = is_path ? Result<std::filesystem::path>(script) : startup_file(home_, script);
+  if (!path) return std::unexpected(path.error());
+  auto started = runner_->start_path(*path);
+  if (!started) return std::unexpected(started.error());
+  return {};
+}
+
+void CellOwner::start() {
+  thread_ = std::thread([this] { loop(stopping_.get_token()); });
+}
+
+void CellOwner::stop() {
+  stopping_.request_stop();
+  if (!thread_.joinable()) return;
+  wake_.wake();
+  thread_.join();
+}
+
+bool CellOwner::put(const ScriptMessage& message) {
+  QueuedCommand queued;
+  queued.text.assign(message.text);
+  queued.tag = message.tag;
+  queued.sender_pid = message.sender_pid;
+  const std::scoped_lock lock(producers_);
+  return !queue_.full() && queue_.push(queued);
+}
+
+void CellOwner::submit(const ScriptMessage& message) {
+  while (!put(message) && !stopping_.stop_requested()) {
+    room_.wait(std::chrono::milliseconds(10));
+  }
+  wake_.wake();
+}
+
+bool CellOwner::offer(const ScriptMessage& message) {
+  const bool taken = put(message);
+  wake_.wake();
+  return taken;
+}
+
+engine::QueueStatus CellOwner::command_queue() const {
+  return {"script", kCommandQueue, queue_.high_water(), queue_.pushed(), queue_.dropped()};
+}
+
+void CellOwner::execute(const QueuedCommand& queued) {
+  const std::string source = queued.tag < 0          ? std::string("monitor page")
+                             : queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid)
+                                                     : std::string("message");
+  if (queued.tag == 0) {
+    // Nobody is answered, and nobody waits for a robot to arrive. What was refused stands in the status.
+    [[maybe_unused]] const auto unanswered = runner_->execute_message(queued.text.view(), source);
+    return;
+  }
+  runner_->execute_message(queued.text.view(), source, [this, tag = queued.tag](const Result<std::string>& result) {
+    reply_(tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
+  });
+}
+
+bool CellOwner::execute_messages() {
+  QueuedCommand queued;
+  int executed = 0;
+  while (executed < kMessageBudget && queue_.pop(queued)) {
+    execute(queued);
+    ++executed;
+  }
+  if (executed > 0) room_.wake();
+  return executed > 0;
+}
+
+bool CellOwner::execute_files() {
+  const Timestamp end = clock_.now() + kScriptTime;
+  bool any = false;
+  for (std::size_t budget = 0; budget < kScriptBudget; budget += kScriptSlice) {
+    const bool begun = switches_->follow();
+    if (runner_->step(kScriptSlice) == 0 && !begun) break;
+    any = true;
+    if (clock_.now() > end) break;
+  }
+  return any;
+}
+
+bool CellOwner::turn() {
+  turns_.fetch_add(1, std::memory_order_acq_rel);
+  motion_.follow();
+  couplings_.follow();
+  haptics_.follow();
+  forces_.follow();
+  // Not a reason to come back at once: a program that computes without end would keep this thread from ever waiting.
+  changed_ = programs_.follow() || changed_;
+  // Files first: what a foot switch begins does not wait behind a flood of messages.
+  bool busy = execute_files();
+  busy = execute_messages() || busy;
+  changed_ = changed_ || busy;
+  const bool due = clock_.now() - last_publication_ > kPublishPeriod;
+  if (changed_ && (due || !busy)) {
+    publish_state();
+    changed_ = false;
+  }
+  return busy;
+}
+
+bool CellOwner::quiet() const {
+  return runner_->idle() && !motion_.moving() && !switches_->busy() && !programs_.needs_turns();
+}
+
+void CellOwner::loop(const std::stop_token& stop) {
+  set_thread_name("cell");
+  changed_ = true;
+  while (!stop.stop_requested()) {
+    if (turn()) continue;
+    wake_.wait(!quiet() ? kMovingWait : haptics_.any_online() ? kHapticWait : kIdleWait);
+    changed_ = changed_ || clock_.now() - last_publication_ > kPublishPeriod;
+  }
+  programs_.shut_down();
+  runner_->stop_all();
+  haptics_.shut_down();
+}
+
+bool CellOwner::is_online(std::size_t slot) const {
+  const RobotModel* robot = cell_.robot(slot);
+  const FleetRobot* fleet = robot == nullptr ? nullptr : fleet_->find(robot->id());
+  return fleet != nullptr && fleet->online;
+}
+
+void CellOwner::publish_state() {
+  auto cell_state = std::make_shared<CellState>();
+  cell_state->cell = cell_.compile();
+  cell_state->levels = levels_.of(cell_, cell_state->cell);
+  cell_state->collision = sensing_.collision();
+  cell_state->range_send_mode = sensing_.send_mode();
+  for (const CompiledRobot& compiled : cell_state->cell->robots) {
+    const FleetRobot* robot = fleet_->find(compiled.id);
+    if (robot == nullptr) continue;
+    cell_state->robots.push_back({robot->id, robot->slot, robot->online, robot->sending, robot->stream,
+                                  cell_.robot(robot->id)->parameters(), motion_.target(robot->id),
+                                  motion_.positioning(robot->id)});
+  }
+  cell_state->haptics = haptics_.snapshots();
+  cell_state->forces = forces_.settings();
+  cell_state->tcp_force = forces_.memory();
+  cell_state->active_robot = names_.active_robot();
+  cell_state->language = programs_.language();
+  cell_state->script = runner_->counters();
+  cell_state->runs = runner_->runs();
+  cell_state->script_errors = runner_->last_errors();
+  cell_state->programs = programs_.snapshot();
+  cell_state->switches = switches_->snapshot();
+  cell_state->couplings = couplings_.snapshots();
+  display_.follow();
+  cell_state->display = display_.state();
+  board_.publish(std::move(cell_state));
+  last_publication_ = clock_.now();
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,157 @@
+// The owner of the cell: it executes SCRIPT from messages and files, and nobody else changes the model. In the gateway
+// it has a thread; the off-line simulation gives it turns between ticks.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/owner/display/display_service.hpp"
+#include "app/owner/fleet.hpp"
+#include "app/owner/foot_switch_service.hpp"
+#include "app/owner/haptics/haptic_service.hpp"
+#include "app/owner/hosts.hpp"
+#include "app/owner/interaction.hpp"
+#include "app/owner/motion/coupling_service.hpp"
+#include "app/owner/motion/guarded_motion.hpp"
+#include "app/owner/motion/motion_service.hpp"
+#include "app/owner/node_levels.hpp"
+#include "app/owner/programs/program_motion.hpp"
+#include "app/owner/programs/program_service.hpp"
+#include "app/owner/sensing.hpp"
+#include "app/owner/tcp_force_service.hpp"
+#include "app/snapshot/cell_state.hpp"
+#include "ipc/sysv/script_message_receiver.hpp"
+#include "rt_core/base/capacity.hpp"
+#include "rt_core/base/fixed_text.hpp"
+#include "rt_core/base/home.hpp"
+#include "rt_core/rt/fifo.hpp"
+#include "rt_core/rt/wake_signal.hpp"
+#include "scripts/runner/script_runner.hpp"
+
+namespace cellmirror::app {
+
+// A command on its way from the receiver's thread to the owner.
+struct QueuedCommand {
+  FixedText<8192> text;
+  std::int64_t tag = 0;
+  std::int32_t sender_pid = 0;
+};
+
+class CellOwner {
+ public:
+  static constexpr std::size_t kCommandQueue = 64;  // beside what waits in the System V queue
+
+  struct Parts {
+    Cell cell;
+    KismetHome home;
+    std::map<std::string, StreamConfig, std::less<>> streams;
+    std::vector<RobotHaptic> haptics;
+    std::vector<ViewSetting> views;
+    DisplayLayout layout = {};
+    collision::Settings collision;
+    FootSwitchSettings foot_switches;
+    engine::Engine& engine;
+    Board<CellState>& board;
+    const Clock& clock;
+    int stream_priority = 0;  // SCHED_FIFO priority of the streams' threads; 0: none
+    std::string instance;
+    std::int32_t tcp_force_key = kTcpForceKey;
+    std::uint32_t memory_mode = 0600;
+    std::function<Result<void>(std::string_view file_name)> save_flight_record;
+    std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
+    std::function<std::uint64_t()> picture_updates = {};  // so far; empty: counted by the clock
+    std::function<void()> bell = {};                      // with a message while BEEP is on
+    // Off line nothing runs beside the owner: where it waits for the tick it lets one pass with this. Robots cannot be
+    // mirrored then, and shared memories are not made. Empty: the gateway, where the tick has its own thread.
+    std::function<void()> let_tick_pass = {};
+    std::function<void(const Diagnostics& findings)> refused = {};  // with each command of a file that is refused
+    std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};  // to the tick
+    std::function<void(const program::ProgramEvent&)> program_event = {};
+    std::function<void(const ShownText& message)> message_shown = {};
+  };
+
+  explicit CellOwner(Parts parts);
+  // Closes the streams. The loop has to stand still by then: it looks into chains that end with this.
+  ~CellOwner();
+  CellOwner(const CellOwner&) = delete;
+  CellOwner& operator=(const CellOwner&) = delete;
+
+  // Before start(): gives the tick its robots, hangs up the first cell_state, and begins the startup script, if any
+  // (`script`: any path where `is_path`, else a file of the home's scripts/, with or without that folder in front).
+  Result<void> prepare(const std::string& script, bool is_path);
+  void start();
+  [[nodiscard]] bool running() const { return thread_.joinable(); }
+  // Ends the thread; submit() waits no longer.
+  void stop();
+
+  // Instead of start(), for whoever has no thread for it: all that can be done now, bounded. True where there may be
+  // more to do at once; else it has to come back after the next tick.
+  bool turn();
+  // No script, no move, no robot program and no script of a foot switch is under way.
+  [[nodiscard]] bool quiet() const;
+
+  // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up.
+  void submit(const ScriptMessage& message);
+  // From any other thread: false, at once, where the queue is full.
+  [[nodiscard]] bool offer(const ScriptMessage& message);
+  [[nodiscard]] engine::QueueStatus command_queue() const;
+  // For whoever sets the clock by hand, from any thread: has the owner take a turn at once instead of within a
+  // millisecond, and tells how many it has begun. Once that has risen by two, what lay before the owner then has been
+  // seen to.
+  void wake() { wake_.wake(); }
+  [[nodiscard]] std::uint64_t turns() const { return turns_.load(std::memory_order_acquire); }
+  // For whoever gives turns.
+  [[nodiscard]] const ProgramService& programs() const { return programs_; }
+
+ private:
+  void loop(const std::stop_token& stop);
+  [[nodiscard]] bool put(const ScriptMessage& message);
+  bool execute_messages();
+  bool execute_files();
+  void execute(const QueuedCommand& queued);
+  void publish_state();
+  [[nodiscard]] bool is_online(std::size_t slot) const;
+
+  Cell cell_;
+  KismetHome home_;
+  Board<CellState>& board_;
+  const Clock& clock_;
+  std::function<void(std::int64_t tag, const ScriptReply& reply)> reply_;
+  CellNames names_;
+  std::unique_ptr<Fleet> fleet_;
+  DisplayService display_;
+  MotionService motion_;
+  CouplingService couplings_;
+  CellProgramMotion program_motion_;
+  ProgramService programs_;
+  GuardedMotion guarded_motion_;
+  CellWorld world_;
+  CellRobots robots_;
+  CellSensing sensing_;
+  HapticService haptics_;
+  TcpForceService forces_;
+  CellInteraction interaction_;
+  CellDiagnosis diagnosis_;
+  std::unique_ptr<script::ScriptRunner> runner_;
+  std::mutex producers_;  // of the queue, which takes one at a time
+  Fifo<QueuedCommand, kCommandQueue> queue_;
+  NodeLevels levels_;
+  WakeSignal wake_;
+  std::unique_ptr<FootSwitchService> switches_;  // its thread wakes the owner's
+  WakeSignal room_;                              // wakes the receiver's thread when the queue has room again
+  Timestamp last_publication_;
+  bool changed_ = true;  // since the last cell_state
+  std::atomic<std::uint64_t> turns_{0};
+  std::stop_source stopping_;  // apart from the thread, so that submit() may ask before the thread is there
+  std::thread thread_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,302 @@
+#include "app/owner/fleet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "app/io/robot_streams.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+// The tick empties its queue in a few periods unless it stands still.
+constexpr std::chrono::milliseconds kTickPatience{200};
+constexpr std::chrono::microseconds kTickPoll{200};
+
+Error tick_stands_still() {
+  return {"the loop does not take commands", "see cellmirror status; a fault record says why it stands still"};
+}
+
+StreamAges ages_of(const StreamConfig& config) {
+  return std::visit(
+      [](const auto& stream) -> StreamAges {
+        if constexpr (requires { stream.ages; }) {
+          return stream.ages;
+        } else {
+          return {};
+        }
+      },
+      config);
+}
+
+}  // namespace
+
+Fleet::Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
+             const Clock& clock, int stream_priority)
+    : cell_(cell),
+      engine_(engine),
+      streams_(std::move(streams)),
+      clock_(clock),
+      stream_priority_(stream_priority),
+      positions_(cell.start_positions()) {
+  cell_.set_online_query([this](std::string_view id) {
+    const FleetRobot* robot = find(id);
+    return robot != nullptr && robot->online;
+  });
+}
+
+Fleet::~Fleet() {
+  cell_.set_online_query({});
+  for (auto& [id, robot] : robots_) {
+    if (robot.online) robot.stream->close();
+  }
+}
+
+const FleetRobot* Fleet::find(std::string_view id) const {
+  const auto found = robots_.find(id);
+  return found == robots_.end() ? nullptr : &found->second;
+}
+
+Result<std::uint64_t> Fleet::send(const engine::Command& command) {
+  return patiently([&] { return engine_.send(command); });
+}
+
+Result<std::uint64_t> Fleet::patiently(const std::function<std::uint64_t()>& give) {
+  const Timestamp give_up = clock_.now() + kTickPatience;
+  for (;;) {
+    const std::uint64_t id = give();
+    if (id != 0) {
+      last_command_ = id;
+      return id;
+    }
+    if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
+    wait_for_tick();
+  }
+}
+
+void Fleet::wait_for_tick() const {
+  if (let_tick_pass_) return let_tick_pass_();
+  std::this_thread::sleep_for(kTickPoll);
+}
+
+Result<void> Fleet::settle() {
+  const Timestamp give_up = clock_.now() + kTickPatience;
+  while (engine_.owner_view().commands_done < last_command_) {
+    if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
+    wait_for_tick();
+  }
+  return {};
+}
+
+Result<void> Fleet::follow_cell() {
+  for (auto robot = robots_.begin(); robot != robots_.end();) {
+    if (cell_.robot(robot->first) != nullptr) {
+      ++robot;
+      continue;
+    }
+    engine::Command command;
+    command.kind = engine::CommandKind::remove_robot;
+    command.slot = static_cast<std::uint8_t>(robot->second.slot);
+    const auto sent = send(command);
+    if (!sent) return std::unexpected(sent.error());
+    chains_.removed(robot->second.slot, *sent);
+    robot = robots_.erase(robot);
+  }
+  for (const std::string& id : cell_.robot_ids()) {
+    if (robots_.contains(id)) continue;
+    if (auto added = add(*cell_.robot(id)); !added) return added;
+  }
+  return {};
+}
+
+Result<void> Fleet::add(const RobotModel& robot) {
+  engine::Command command;
+  command.kind = engine::CommandKind::add_robot;
+  command.slot = static_cast<std::uint8_t>(robot.slot());
+  command.joint_count = static_cast<std::uint8_t>(robot.joint_count());
+  command.values = robot.parameters().start_position;
+  command.lower = robot.parameters().min_range;
+  command.upper = robot.parameters().max_range;
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  FleetRobot added;
+  added.id = robot.id();
+  added.slot = robot.slot();
+  added.put_at = robot.parameters().start_position;
+  added.put_command = *sent;
+  robots_.emplace(robot.id(), std::move(added));
+  return {};
+}
+
+Result<void> Fleet::update_limits(const RobotModel& robot) {
+  engine::Command command;
+  command.kind = engine::CommandKind::set_limits;
+  command.slot = static_cast<std::uint8_t>(robot.slot());
+  command.lower = robot.parameters().min_range;
+  command.upper = robot.parameters().max_range;
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  return {};
+}
+
+Result<void> Fleet::set_online(std::string_view id, bool online) {
+  const auto found = robots_.find(id);
+  if (found == robots_.end()) return std::unexpected(cell_.explain_robot(id));
+  FleetRobot& robot = found->second;
+  if (robot.online == online) return {};
+  return online ? bring_online(robot) : take_offline(robot);
+}
+
+Result<void> Fleet::make_stream(FleetRobot& robot) {
+  if (let_tick_pass_) return fail(fmt::format("off line there is no controller that {} could follow", robot.id));
+  const auto config = streams_.find(robot.id);
+  if (config == streams_.end()) {
+    robot.stream = device_streams_ ? device_streams_(robot.id) : nullptr;
+    if (robot.stream) return {};
+    return fail(
+        fmt::format("the cell file names no stream and no haptic device for the robot {}", robot.id),
+        fmt::format("add a [[stream]] or [[haptic]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
+  }
+  auto made = make_robot_stream(config->second, clock_, stream_priority_);
+  if (!made) return std::unexpected(made.error());
+  robot.stream = std::move(*made);
+  return {};
+}
+
+Result<void> Fleet::bring_online(FleetRobot& robot) {
+  if (!robot.stream) {
+    if (auto made = make_stream(robot); !made) return made;
+  }
+  engine::Command command;
+  command.kind = engine::CommandKind::set_mode;
+  command.slot = static_cast<std::uint8_t>(robot.slot);
+  command.mode = engine::RobotMode::mirrored;
+  if (const auto config = streams_.find(robot.id); config != streams_.end()) {
+    command.ages = ages_of(config->second);
+    command.given = static_cast<std::uint16_t>(joints_given_by(config->second));
+  }
+  // The stream first: one that cannot be opened leaves the robot to what it does. Samples wait for the mode in the
+  // inlet.
+  if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) return opened;
+  if (auto sent = send(command); !sent) {
+    robot.stream->close();
+    return std::unexpected(sent.error());
+  }
+  robot.online = true;
+  return {};
+}
+
+Result<void> Fleet::take_offline(FleetRobot& robot) {
+  robot.stream->close();
+  robot.online = false;
+  engine::Command command;
+  command.kind = engine::CommandKind::set_mode;
+  command.slot = static_cast<std::uint8_t>(robot.slot);
+  command.mode = engine::RobotMode::simulated;
+  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  // The model stays where the real robot was seen last: once this is carried out, no sample moves it any more.
+  return settle();
+}
+
+Result<void> Fleet::set_sending(std::string_view id, bool sending) {
+  const auto found = robots_.find(id);
+  if (found == robots_.end()) return std::unexpected(cell_.explain_robot(id));
+  found->second.sending = sending;
+  return {};
+}
+
+Result<void> Fleet::check_simulated(std::string_view id) const {
+  const FleetRobot* robot = find(id);
+  if (robot == nullptr) return std::unexpected(cell_.explain_robot(id));
+  if (!robot->online) return {};
+  return fail(fmt::format("the robot {} is online and follows its controller", id),
+              fmt::format("command it after ROBOT {} offline", id));
+}
+
+motion::MotionState Fleet::motion(std::string_view id) {
+  const FleetRobot* robot = find(id);
+  return robot == nullptr ? motion::MotionState() : engine_.owner_view().robots[robot->slot].motion;
+}
+
+bool Fleet::knows_position(std::string_view id) {
+  const FleetRobot* robot = find(id);
+  if (robot == nullptr) return false;
+  return !robot->online || engine_.owner_view().robots[robot->slot].state == DataState::fresh;
+}
+
+std::span<const JointValues> Fleet::positions() {
+  const engine::TickState& view = engine_.owner_view();
+  for (const auto& [id, robot] : robots_) {
+    JointValues& out = positions_[robot.slot];
+    if (view.commands_done < robot.put_command) {
+      out = robot.put_at;
+      continue;
+    }
+    const engine::RobotTickState& state = view.robots[robot.slot];
+    for (std::size_t i = 0; i < state.joint_count; ++i) out[i] = state.joints[i].position;
+  }
+  return positions_;
+}
+
+Result<void> Fleet::set_chain(std::string_view id, std::shared_ptr<const kinematics::Chain> chain) {
+  engine::Command command = command_for(id, engine::CommandKind::set_chain);
+  command.chain = chain.get();
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  chains_.replaced(command.slot, std::move(chain), *sent, find(id)->newest_move);
+  chains_.release(engine_.owner_view());
+  return {};
+}
+
+Result<void> Fleet::add_move(std::string_view id, const motion::Move& move) {
+  FleetRobot& robot = robots_.find(id)->second;
+  const auto sent = patiently([&] { return engine_.send_move(robot.slot, move); });
+  if (!sent) return std::unexpected(sent.error());
+  robot.newest_move = move.id;
+  if (move_given_) move_given_(id, move);
+  return {};
+}
+
+Result<void> Fleet::stop_motion(std::string_view id) {
+  const auto sent = send(command_for(id, engine::CommandKind::stop_motion));
+  if (!sent) return std::unexpected(sent.error());
+  return {};
+}
+
+Result<void> Fleet::set_pace(std::string_view id, double pace) {
+  engine::Command command = command_for(id, engine::CommandKind::set_pace);
+  command.pace = pace;
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  return {};
+}
+
+Result<void> Fleet::hold_behind(std::string_view id, std::uint32_t move) {
+  engine::Command command = command_for(id, engine::CommandKind::hold_behind);
+  command.last_move = move;
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  return {};
+}
+
+engine::Command Fleet::command_for(std::string_view id, engine::CommandKind kind) const {
+  engine::Command command;
+  command.kind = kind;
+  command.slot = static_cast<std::uint8_t>(find(id)->slot);
+  return command;
+}
+
+Result<void> Fleet::jump(std::string_view id, const JointValues& positions) {
+  engine::Command command = command_for(id, engine::CommandKind::set_positions);
+  command.values = positions;
+  const auto sent = send(command);
+  if (!sent) return std::unexpected(sent.error());
+  FleetRobot& robot = robots_.find(id)->second;
+  robot.put_at = positions;
+  robot.put_command = *sent;
+  return {};
+}
+
+}  // namespace cellmirror::app

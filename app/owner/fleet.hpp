@@ -1,0 +1,120 @@
+// The robots of the running cell: where the model, the tick and the streams of the real robots meet.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/owner/chain_cache.hpp"
+#include "app/owner/motion/motion_port.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/cell/cell.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror::app {
+
+// One robot of the fleet, beside its RobotModel in the cell.
+struct FleetRobot {
+  std::string id;
+  std::size_t slot = 0;
+  bool online = false;
+  bool sending = false;
+  // rad or m: where the tick was told to put it, and the command that told it.
+  JointValues put_at{};
+  std::uint64_t put_command = 0;
+  std::uint32_t newest_move = 0;        // id of the move that was given last
+  std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
+};
+
+// Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.
+class Fleet final : public MotionPort {
+ public:
+  // `stream_priority`: SCHED_FIFO priority of the streams' threads; 0: none.
+  Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
+        const Clock& clock, int stream_priority);
+  // Closes all streams.
+  ~Fleet() override;
+  Fleet(const Fleet&) = delete;
+  Fleet& operator=(const Fleet&) = delete;
+
+  // Off line: whoever waits for the tick lets one pass with this, and streams are refused.
+  void set_off_line(std::function<void()> let_tick_pass) { let_tick_pass_ = std::move(let_tick_pass); }
+
+  // Told of every move that is given to the tick.
+  void on_move(std::function<void(std::string_view robot, const motion::Move& move)> callback) {
+    move_given_ = std::move(callback);
+  }
+
+  // Adds robots that came with a component to the tick, and removes those that were deleted. After every change of the
+  // tree.
+  Result<void> follow_cell();
+  // Tells the tick the robot's present limits.
+  Result<void> update_limits(const RobotModel& robot);
+
+  [[nodiscard]] const FleetRobot* find(std::string_view id) const;
+  // Whether positions() tells where the robot really is: of a mirrored one only while its values are fresh.
+  [[nodiscard]] bool knows_position(std::string_view id);
+  [[nodiscard]] const std::map<std::string, FleetRobot, std::less<>>& robots() const { return robots_; }
+
+  Result<void> set_online(std::string_view id, bool online);
+  Result<void> set_sending(std::string_view id, bool sending);
+
+  Result<void> check_simulated(std::string_view id) const override;
+  [[nodiscard]] motion::MotionState motion(std::string_view id) override;
+  // As the tick published them last; a jump that it has not carried out yet counts as done.
+  [[nodiscard]] std::span<const JointValues> positions() override;
+  Result<void> jump(std::string_view id, const JointValues& positions) override;
+  Result<void> set_chain(std::string_view id, std::shared_ptr<const kinematics::Chain> chain) override;
+  Result<void> add_move(std::string_view id, const motion::Move& move) override;
+  Result<void> stop_motion(std::string_view id) override;
+  Result<void> set_pace(std::string_view id, double pace) override;
+  Result<void> hold_behind(std::string_view id, std::uint32_t move) override;
+
+  // For robots without a stream in the cell file: what they follow when they go online; gives null for robots that have
+  // nothing of the kind. Empty: none has.
+  void set_device_streams(std::function<std::shared_ptr<JointStream>(std::string_view robot)> streams) {
+    device_streams_ = std::move(streams);
+  }
+  [[nodiscard]] bool has_stream(std::string_view id) const { return streams_.find(id) != streams_.end(); }
+
+  // Any command but add_move; waits while the tick's queue is full. Its id.
+  Result<std::uint64_t> send(const engine::Command& command);
+  // Waits until the tick has carried out everything that was sent so far.
+  Result<void> settle();
+
+ private:
+  // A moment, for the tick to take commands.
+  void wait_for_tick() const;
+  // Asks `give` for the id of a command again while the tick's queue is full.
+  Result<std::uint64_t> patiently(const std::function<std::uint64_t()>& give);
+  Result<void> add(const RobotModel& robot);
+  Result<void> bring_online(FleetRobot& robot);
+  // The stream of the cell file, else that of the robot's device.
+  Result<void> make_stream(FleetRobot& robot);
+  Result<void> take_offline(FleetRobot& robot);
+  // A command for a robot of the fleet.
+  [[nodiscard]] engine::Command command_for(std::string_view id, engine::CommandKind kind) const;
+
+  Cell& cell_;
+  engine::Engine& engine_;
+  std::map<std::string, StreamConfig, std::less<>> streams_;
+  std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_streams_;
+  const Clock& clock_;
+  int stream_priority_;
+  std::function<void()> let_tick_pass_;  // empty: the tick has its own thread
+  std::function<void(std::string_view robot, const motion::Move& move)> move_given_;
+  std::map<std::string, FleetRobot, std::less<>> robots_;
+  std::vector<JointValues> positions_;
+  std::uint64_t last_command_ = 0;
+  ChainCache chains_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,171 @@
+#include "app/owner/hosts.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "rt_core/base/log.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+PathKind path_kind(NameKind kind) {
+  switch (kind) {
+    case NameKind::workframe:
+      return PathKind::workframe;
+    case NameKind::camera:
+      return PathKind::camera;
+    case NameKind::sensor:
+      return PathKind::sensor;
+    case NameKind::frame_node:
+    case NameKind::branch:
+    case NameKind::robot:
+      return PathKind::any;
+  }
+  return PathKind::any;
+}
+
+}  // namespace
+
+bool CellNames::knows(NameKind kind, std::string_view name) const {
+  if (kind == NameKind::robot) return cell_.robot(name) != nullptr;
+  return kind == NameKind::branch ? cell_.find_branch(name).has_value() : cell_.knows(name, path_kind(kind));
+}
+
+Error CellNames::explain(NameKind kind, std::string_view name) const {
+  return kind == NameKind::robot ? cell_.explain_robot(name) : cell_.explain(name, path_kind(kind));
+}
+
+std::span<const JointKind> CellNames::joints(std::string_view robot) const {
+  const RobotModel* model = cell_.robot(robot);
+  return model == nullptr ? std::span<const JointKind>() : model->joint_kinds();
+}
+
+std::vector<std::string> CellNames::joint_names(std::string_view robot) const {
+  const RobotModel* model = cell_.robot(robot);
+  return model == nullptr ? std::vector<std::string>() : model->joint_names();
+}
+
+std::string_view CellNames::active_robot() const {
+  // A robot that was deleted with its component is active no longer.
+  return cell_.robot(active_) == nullptr ? std::string_view() : std::string_view(active_);
+}
+
+std::vector<std::string> CellNames::all(NameKind kind) const {
+  return kind == NameKind::robot ? cell_.robot_ids() : cell_.paths(path_kind(kind));
+}
+
+Result<void> CellWorld::followed(Result<void> changed) {
+  if (!changed) return changed;
+  programs_.follow_cell();
+  motion_.follow_cell();
+  return fleet_.follow_cell();
+}
+
+Result<void> CellWorld::activate(std::string_view node) { return followed(cell_.activate(node)); }
+Result<void> CellWorld::deactivate(std::string_view node) { return cell_.deactivate(node); }
+Result<void> CellWorld::delete_node(std::string_view node) { return followed(cell_.delete_node(node)); }
+Result<void> CellWorld::swap_node(std::string_view node) { return followed(cell_.swap_node(node)); }
+Result<void> CellWorld::level_down(std::string_view node) { return followed(cell_.level_down(node)); }
+Result<void> CellWorld::level_up(std::string_view node) { return cell_.level_up(node); }
+
+Result<void> CellWorld::set_placement(std::string_view node, const Pose& X_PF) {
+  return cell_.set_placement(node, X_PF);
+}
+
+Result<void> CellWorld::connect(std::string_view part, std::string_view predecessor) {
+  return cell_.connect(part, predecessor, fleet_.positions());
+}
+
+Result<void> CellWorld::attach_at_workframe(std::string_view part, std::string_view predecessor,
+                                            std::string_view workframe) {
+  return cell_.attach_at_workframe(part, predecessor, workframe);
+}
+
+Result<void> CellWorld::draw_scene() {
+  auto settled = fleet_.settle();
+  if (settled) draw_();
+  return settled;
+}
+
+Result<void> CellRobots::set_active_robot(std::string_view robot) {
+  if (cell_.robot(robot) == nullptr) return std::unexpected(cell_.explain_robot(robot));
+  names_.set_active(robot);
+  return {};
+}
+
+// Whatever a robot does ends where it goes online, and what it was commanded to before counts no more when it comes
+// back.
+Result<void> CellRobots::set_online(std::string_view robot, bool online) {
+  const FleetRobot* known = fleet_.find(robot);
+  const bool changes = known != nullptr && known->online != online;
+  if (online && changes && !couplings_.master_of(robot).empty()) {
+    return fail(fmt::format("{} follows {}, so it cannot follow its stream", robot, couplings_.master_of(robot)),
+                "free it first with MASTER_SLAVE off");
+  }
+  auto set = fleet_.set_online(robot, online);
+  if (!set || !changes) return set;
+  const Error why{fmt::format("the robot {} went {}", robot, online ? "online" : "offline"), {}};
+  programs_.give_up(robot, why);
+  motion_.give_up(robot, why);
+  return set;
+}
+
+Result<RobotModel*> CellRobots::active() {
+  RobotModel* robot = names_.active_robot().empty() ? nullptr : cell_.edit_robot(names_.active_robot());
+  if (robot == nullptr) return fail("no robot is active", "make one active with ROBACT <robot>");
+  return robot;
+}
+
+Result<void> CellRobots::set_joint_parameter(JointParameter which, std::span<const double> values) {
+  auto robot = active();
+  if (!robot) return std::unexpected(robot.error());
+  if (auto set = (*robot)->set_joint_parameter(which, values); !set) return set;
+  if (which == JointParameter::max_velocity) return couplings_.update_velocities(**robot);
+  const bool is_limit = which == JointParameter::max_range || which == JointParameter::min_range;
+  return is_limit ? fleet_.update_limits(**robot) : Result<void>();
+}
+
+Result<void> CellRobots::set_scalar_parameter(ScalarParameter which, double value) {
+  auto robot = active();
+  return robot ? (*robot)->set_scalar_parameter(which, value) : std::unexpected(robot.error());
+}
+
+Result<void> CellRobots::set_fly(FlyType type, double parameter) {
+  auto robot = active();
+  return robot ? (*robot)->set_fly(type, parameter) : std::unexpected(robot.error());
+}
+
+Result<void> CellRobots::set_ptp_mode(PtpMode mode) {
+  auto robot = active();
+  if (!robot) return std::unexpected(robot.error());
+  (*robot)->set_ptp_mode(mode);
+  return {};
+}
+
+Result<void> CellRobots::set_velocity_profile(VelocityProfile profile) {
+  auto robot = active();
+  if (!robot) return std::unexpected(robot.error());
+  (*robot)->set_velocity_profile(profile);
+  return {};
+}
+
+Result<void> CellRobots::set_inverse_class(InverseClass inverse_class) {
+  auto robot = active();
+  if (!robot) return std::unexpected(robot.error());
+  (*robot)->set_inverse_class(inverse_class);
+  return {};
+}
+
+Result<void> CellRobots::set_point_of_reference(const Pose& X_FP) {
+  auto robot = active();
+  return robot ? (*robot)->set_point_of_reference(X_FP) : std::unexpected(robot.error());
+}
+
+Result<void> CellRobots::set_tool_center_point(const Pose& X_PT) {
+  auto robot = active();
+  return robot ? (*robot)->set_tool_center_point(X_PT) : std::unexpected(robot.error());
+}
+
+}  // namespace cellmirror::app

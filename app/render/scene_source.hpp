@@ -1,0 +1,64 @@
+// Joins the newest model of the cell, the newest tick and what the workers have found into the scene of a picture.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "app/snapshot/board.hpp"
+#include "app/snapshot/cell_state.hpp"
+#include "app/snapshot/proximity_board.hpp"
+#include "app/snapshot/range_readings.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/picture_request.hpp"
+#include "rt_core/scene/panes.hpp"
+#include "rt_core/scene/scene_builder.hpp"
+
+namespace cellmirror::app {
+
+// Of the cell at `poses`, as `request` says; also used without a gateway.
+[[nodiscard]] Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const PictureRequest& request);
+
+// One thread, which alone reads the engine's picture_view().
+class SceneSource {
+ public:
+  // Not owned; they outlive the source.
+  struct Boards {
+    engine::Engine& engine;
+    const Board<CellState>& pictures;
+    const ProximityBoard& proximity;
+    const Board<RangeReadings>& ranges;
+    const Board<ForceState>& forces;
+    const Clock& clock;
+  };
+
+  explicit SceneSource(const Boards& boards) : boards_(boards) {}
+
+  // Takes the newest of everything. False, with the scene as it was, where the tick does not know all robots of the
+  // cell yet: a component was just loaded.
+  bool refresh();
+  // As of the last refresh() that was true.
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const CompiledCell& cell() const { return *cell_; }
+  [[nodiscard]] bool has_scene() const { return cell_ != nullptr; }
+  [[nodiscard]] Timestamp refreshed() const { return now_; }
+  [[nodiscard]] Result<std::vector<Pane>> panes(const PictureRequest& request, std::uint64_t updates) const;
+
+ private:
+  bool take_posture(const CompiledCell& cell, const engine::TickState& tick);
+  void take_conditions(const engine::TickState& tick, Timestamp now);
+
+  Boards boards_;
+  std::shared_ptr<const CellState> picture_;
+  std::shared_ptr<const CompiledCell> cell_;
+  std::vector<JointValues> positions_ = std::vector<JointValues>(kMaxRobots);
+  CellPoses poses_;
+  std::vector<scene::RobotCondition> conditions_;
+  scene::SceneBuilder builder_;
+  Scene scene_;
+  Timestamp now_;
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,346 @@
+#include "app/report/live_document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "app/report/json_builder.hpp"
+#include "rt_core/scene/panes.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::size_t kMostPairs = 50;  // touching, and near: keeps the document small
+constexpr std::size_t kMostPrograms = 50;
+
+std::string_view word(DataState state) {
+  constexpr std::array<std::string_view, 5> kWords = {"none", "fresh", "stale", "lost", "invalid"};
+  return kWords.at(static_cast<std::size_t>(state));
+}
+
+std::string_view word(JointKind kind) {
+  constexpr std::array<std::string_view, 3> kWords = {"revolute", "continuous", "prismatic"};
+  return kWords.at(static_cast<std::size_t>(kind));
+}
+
+std::string_view unit(JointKind kind) { return kind == JointKind::prismatic ? "m" : "rad"; }
+
+// In the order of the enumeration; the words of SET_MODE.
+constexpr std::array<std::string_view, kDisplayModes> kModeWords = {
+    "WFRM_display", "smear", "BFRM",         "CPU_BFRM", "CAM_MAINVIEW", "LGT_TWOSIDE", "TCP_DRAW",
+    "ZPF_DRAW",     "FLDR",  "GEO_VIS_TEST", "SHAD",     "BEEP",         "TEXTURES",    "ANTIALIAS"};
+
+std::optional<double> age_s(Timestamp now, Timestamp then) {
+  return then.known() ? std::optional(seconds(now - then)) : std::nullopt;
+}
+
+void add_joints(JsonBuilder& out, const RobotState& robot, const CompiledRobot* compiled) {
+  out.key("joints").begin_array();
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const RobotJointState& joint = robot.joints[i];
+    const bool limited = compiled != nullptr && joint.kind != JointKind::continuous && i < kMaxJointsPerRobot &&
+                         compiled->min_range.at(i) < compiled->max_range.at(i);
+    out.begin_object()
+        .member("name", joint.name)
+        .member("kind", word(joint.kind))
+        .member("unit", unit(joint.kind))
+        .member("position", joint.position)
+        .member("velocity", joint.velocity)
+        .member("state", word(joint.state))
+        .member("lower", limited ? std::optional(compiled->min_range.at(i)) : std::nullopt)
+        .member("upper", limited ? std::optional(compiled->max_range.at(i)) : std::nullopt)
+        .end_object();
+  }
+  out.end_array();
+}
+
+void add_robots(JsonBuilder& out, const LiveSources& sources) {
+  out.key("robots").begin_array();
+  for (std::size_t i = 0; i < sources.robots.size() && i < sources.cell_state.robots.size(); ++i) {
+    const RobotSnapshot& robot_snapshot = sources.cell_state.robots[i];
+    const RobotState& state = sources.robots[i];
+    const engine::RobotTickState& tick = sources.tick.robots.at(robot_snapshot.slot);
+    out.begin_object()
+        .member("id", robot_snapshot.id)
+        .member("mode", state.online ? "mirrored" : "simulated")
+        .member("state", state.online ? word(state.state) : "off")
+        .member("age_s", state.online ? age_s(sources.now, tick.receive_time) : std::nullopt)
+        .member("active", robot_snapshot.id == sources.cell_state.active_robot)
+        .member("moving", tick.motion.moving)
+        .member("condition", robot_snapshot.stream ? robot_snapshot.stream->status().condition : std::string());
+    add_joints(out, state, sources.cell_state.cell->robot(robot_snapshot.slot));
+    out.end_object();
+  }
+  out.end_array();
+}
+
+void add_loop(JsonBuilder& out, const LiveSources& sources, const LoopWindow::Figures& figures) {
+  out.key("loop")
+      .begin_object()
+      .member("rate_hz", sources.rate_hz)
+      .member("latency_p99_us", figures.latency_p99_us)
+      .member("compute_p99_us", figures.compute_p99_us)
+      .member("missed", sources.loop.missed())
+      .end_object();
+}
+
+std::string_view name(const ProximityState& state, std::uint32_t body) {
+  return state.names && body < state.names->size() ? std::string_view((*state.names)[body]) : std::string_view();
+}
+
+// What both kinds of pairs begin with.
+template <class Pair>
+JsonBuilder& begin_pair(JsonBuilder& out, const ProximityState& found, const Pair& pair) {
+  const auto in_short = [&](std::uint32_t body) {
+    return found.names && body < found.names->size() ? std::string_view(found.short_name(body)) : std::string_view();
+  };
+  return out.begin_object()
+      .member("a", name(found, pair.a))
+      .member("b", name(found, pair.b))
+      .member("a_short", in_short(pair.a))
+      .member("b_short", in_short(pair.b));
+}
+
+void add_touching(JsonBuilder& out, const ProximityState& found) {
+  out.begin_array();
+  for (std::size_t i = 0; i < std::min(kMostPairs, found.touching.size()); ++i) {
+    const TouchingPair& pair = found.touching[i];
+    begin_pair(out, found, pair).member("depth_m", pair.depth_m).end_object();
+  }
+  out.end_array();
+}
+
+void add_near(JsonBuilder& out, const ProximityState& found) {
+  out.begin_array();
+  for (std::size_t i = 0; i < std::min(kMostPairs, found.near.size()); ++i) {
+    const NearPair& pair = found.near[i];
+    begin_pair(out, found, pair)
+        .member("distance_m", pair.distance_m)
+        .member("within_warning", pair.within_warning)
+        .member("time_to_contact_s", pair.time_to_contact_s)
+        .end_object();
+  }
+  out.end_array();
+}
+
+// Where nothing is tested, nobody knows what touches: an empty list would say that nothing does.
+void add_proximity(JsonBuilder& out, const LiveSources& sources) {
+  const ProximityState* state = sources.proximity.get();
+  const bool known = state != nullptr && state->pairs > 0 && sources.cell_state.collision->active;
+  const ProximityState nothing;
+  const ProximityState& found = known ? *state : nothing;
+  out.key("touching");
+  if (known) {
+    add_touching(out, found);
+  } else {
+    out.null();
+  }
+  out.member("touching_count", found.touching.size()).key("near");
+  add_near(out, found);
+  out.member("near_count", found.near.size())
+      .member("within_warning_count", std::ranges::count_if(found.near, &NearPair::within_warning))
+      .member("warning_distance_m", sources.cell_state.collision->warning_distance_m)
+      .member("collision_age_s", known ? age_s(sources.now, found.posture_time) : std::nullopt);
+}
+
+void add_ranges(JsonBuilder& out, const RangeReadings* readings) {
+  out.key("ranges").begin_array();
+  if (readings != nullptr) {
+    for (const RangeReading& reading : readings->readings) {
+      out.begin_object()
+          .member("id", reading.id)
+          .member("path", reading.path)
+          .member("distance_m", reading.distance_m)
+          .member("range_m", reading.range_m)
+          .member("object", reading.object)
+          .member("object_short", reading.short_object.empty() ? reading.object : reading.short_object)
+          .member("in_blind_zone", reading.in_blind_zone)
+          .member("doubtful", reading.doubtful)
+          .end_object();
+    }
+  }
+  out.end_array();
+}
+
+void add_forces(JsonBuilder& out, const ForceState* state) {
+  out.key("forces").begin_array();
+  for (std::size_t i = 0; state != nullptr && i < state->robots.size(); ++i) {
+    const RobotForces& robot = state->robots[i];
+    out.begin_object().member("robot", robot.id).key("tcp_force_n");
+    if (robot.tcp_known) {
+      out.value(robot.tcp_T.force);
+    } else {
+      out.null();
+    }
+    out.key("joints").begin_array();
+    for (const JointForce& joint : robot.joints) {
+      out.begin_object()
+          .member("name", joint.name)
+          .member("unit", joint.kind == JointKind::prismatic ? "N" : "Nm")
+          .member("effort", joint.effort)
+          .member("max_effort", joint.max_effort > 0.0 ? std::optional(joint.max_effort) : std::nullopt)
+          .member("beyond_limit", joint.beyond_limit)
+          .end_object();
+    }
+    out.end_array().end_object();
+  }
+  out.end_array();
+}
+
+void add_queues(JsonBuilder& out, std::span<const engine::QueueStatus> queues) {
+  out.key("queues").begin_array();
+  for (const engine::QueueStatus& queue : queues) {
+    out.begin_object()
+        .member("name", queue.name)
+        .member("dropped", queue.dropped)
+        .member("high_water", queue.high_water)
+        .member("capacity", queue.capacity)
+        .end_object();
+  }
+  out.end_array();
+}
+
+void add_programs(JsonBuilder& out, const ProgramsSnapshot& programs) {
+  out.key("programs").begin_array();
+  const std::size_t count = std::min(programs.programs.size(), kMostPrograms);
+  for (std::size_t i = 0; i < count; ++i) {
+    const program::ProgramStatus& status = programs.programs[i];
+    out.begin_object()
+        .member("robot", status.robot)
+        .member("program", status.name)
+        .member("state", program::name_of(status.state))
+        .member("waits_for", status.waits_for)
+        .member("step", status.step)
+        .member("direction", status.direction == program::Direction::backward ? "backward" : "forward")
+        .member("elapsed_s", status.elapsed_s)
+        .member("expected_s", status.expected_s)
+        .member("runs", status.runs)
+        .member("error", status.error)
+        .end_object();
+  }
+  out.end_array().member("deadlock", programs.deadlock ? programs.deadlock->text() : std::string());
+}
+
+void add_messages(JsonBuilder& out, const DisplayState& display, Timestamp now) {
+  out.key("messages").begin_array();
+  for (const ShownText& message : display.messages) {
+    out.begin_object()
+        .member("number", message.number)
+        .member("text", message.text)
+        .member("bell", message.bell)
+        .member("age_s", age_s(now, message.time))
+        .end_object();
+  }
+  out.end_array().member("bell", display.on(DisplayMode::bell));
+}
+
+void add_views(JsonBuilder& out, const LiveSources& sources) {
+  const DisplayState& display = *sources.cell_state.display;
+  const scene::PaneInput input{*sources.cell_state.cell, sources.poses, display, sources.now, sources.picture_updates};
+  out.key("views").begin_array();
+  for (std::size_t id = 0; id < kViews; ++id) {
+    const DisplayView& view = display.views.at(id);
+    const View now = scene::view_now(input, static_cast<int>(id));
+    const bool moving = view.sequence && !scene::ended(*view.sequence, sources.now, sources.picture_updates);
+    out.begin_object()
+        .member("id", id)
+        .member("name", display.layout.views.at(id).name)
+        .member("viewpoint_m", now.viewpoint)
+        .member("lookpoint_m", now.lookpoint)
+        .member("twist_rad", now.twist)
+        .member("opening_angle_rad", now.opening_angle)
+        .member("camera", view.camera)
+        .member("moving", moving)
+        .end_object();
+  }
+  out.end_array();
+}
+
+// The main view first.
+void add_displays(JsonBuilder& out, const DisplayLayout& layout) {
+  out.key("displays").begin_array();
+  for (std::size_t i = 0; i < kDisplays; ++i) {
+    out.begin_object().member("id", i + 1).member("name", layout.displays.at(i).name).key("views").begin_array();
+    for (const LayoutPane& pane : layout.displays.at(i).panes) out.value(pane.view);
+    out.end_array().end_object();
+  }
+  out.end_array();
+}
+
+void add_display(JsonBuilder& out, const LiveSources& sources) {
+  const DisplayState& display = *sources.cell_state.display;
+  out.key("display").begin_object().member("display", display.display).member("full_screen", display.full_screen);
+  add_views(out, sources);
+  add_displays(out, display.layout);
+  out.key("modes").begin_object();
+  for (std::size_t i = 0; i < kDisplayModes; ++i) out.member(kModeWords.at(i), display.modes.test(i));
+  out.member("LEGEND", display.legend).end_object().end_object();
+  out.key("cameras").begin_array();
+  for (const CameraSetting& camera : display.cameras) out.value(camera.name);
+  out.end_array();
+}
+
+// The smallest bucket that at most a hundredth of what was recorded between `before` and `after` lies above.
+double recent_p99_us(const HistogramSnapshot& before, const HistogramSnapshot& after) {
+  const std::uint64_t all = after.count() - std::min(after.count(), before.count());
+  if (all == 0) return 0.0;
+  std::size_t low = 0;
+  std::size_t high = LatencyBuckets::kCount - 1;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    const Nanoseconds limit = LatencyBuckets::upper_bound(middle);
+    const std::uint64_t above =
+        after.count_above(limit) - std::min(after.count_above(limit), before.count_above(limit));
+    if (above * 100 <= all) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return static_cast<double>(LatencyBuckets::upper_bound(low).count()) * 1e-3;
+}
+
+}  // namespace
+
+LoopWindow::Figures LoopWindow::look(const CyclicThread& loop) {
+  const HistogramSnapshot latency = loop.wakeup_latency().snapshot();
+  const HistogramSnapshot compute = loop.compute_time().snapshot();
+  const Figures figures{recent_p99_us(latency_, latency), recent_p99_us(compute_, compute)};
+  latency_ = latency;
+  compute_ = compute;
+  return figures;
+}
+
+std::uint64_t TreeRevision::of(const std::shared_ptr<const CompiledCell>& cell) {
+  const std::scoped_lock lock(mutex_);
+  const bool same = last_ && (last_ == cell || (last_->paths == cell->paths && last_->visible == cell->visible));
+  last_ = cell;
+  if (!same) ++revision_;
+  return revision_;
+}
+
+std::string live_document(const LiveSources& sources, LoopWindow& window, std::uint64_t tree_revision) {
+  const std::int64_t time_ms = to_wall_clock_ns(sources.now) / 1'000'000;
+  JsonBuilder out;
+  out.begin_object()
+      .key("time_s")
+      .fixed(1e-3 * static_cast<double>(time_ms), 3)
+      .member("uptime_s", sources.uptime_s)
+      .member("cell", sources.cell)
+      .member("instance", sources.instance)
+      .member("revision", sources.cell_state.cell->revision)
+      .member("tree_revision", tree_revision);
+  add_loop(out, sources, window.look(sources.loop));
+  add_robots(out, sources);
+  add_proximity(out, sources);
+  add_ranges(out, sources.ranges.get());
+  add_forces(out, sources.forces.get());
+  add_programs(out, sources.cell_state.programs);
+  add_queues(out, sources.queues);
+  add_messages(out, *sources.cell_state.display, sources.now);
+  add_display(out, sources);
+  return out.end_object().take();
+}
+
+}  // namespace cellmirror::app

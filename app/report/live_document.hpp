@@ -1,0 +1,69 @@
+// What the monitor page shows several times a second (docs/monitor-page.md, `live`).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/snapshot/cell_state.hpp"
+#include "app/snapshot/proximity_board.hpp"
+#include "app/snapshot/range_readings.hpp"
+#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_state.hpp"
+#include "rt_core/ports/force_state.hpp"
+#include "rt_core/ports/robot_state.hpp"
+#include "rt_core/rt/cyclic_thread.hpp"
+
+namespace cellmirror::app {
+
+// As of one moment.
+struct LiveSources {
+  std::string instance;
+  std::string cell;
+  double uptime_s = 0;
+  double rate_hz = 0;
+  Timestamp now;
+  const CyclicThread& loop;
+  const CellState& cell_state;
+  const engine::TickState& tick;
+  std::span<const RobotState> robots;  // of the same tick
+  const CellPoses& poses;              // of the same tick
+  std::uint64_t picture_updates = 0;
+  std::shared_ptr<const ProximityState> proximity;
+  std::shared_ptr<const RangeReadings> ranges;
+  std::shared_ptr<const ForceState> forces;
+  std::span<const engine::QueueStatus> queues;
+};
+
+// Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at
+// a time.
+class LoopWindow {
+ public:
+  struct Figures {
+    double latency_p99_us = 0;
+    double compute_p99_us = 0;
+  };
+  [[nodiscard]] Figures look(const CyclicThread& loop);
+
+ private:
+  HistogramSnapshot latency_;
+  HistogramSnapshot compute_;
+};
+
+// Counts changes of what the tree of names looks like, which are fewer than those of the cell. Any thread.
+class TreeRevision {
+ public:
+  [[nodiscard]] std::uint64_t of(const std::shared_ptr<const CompiledCell>& cell);
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const CompiledCell> last_;
+  std::uint64_t revision_ = 0;
+};
+
+[[nodiscard]] std::string live_document(const LiveSources& sources, LoopWindow& window, std::uint64_t tree_revision);
+
+}  // namespace cellmirror::app

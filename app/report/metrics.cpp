@@ -1,0 +1,178 @@
+#include "app/report/metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr double kNanosecond = 1e-9;
+
+std::string number(double value) {
+  if (std::isnan(value)) return "NaN";
+  if (std::isinf(value)) return value > 0 ? "+Inf" : "-Inf";
+  return fmt::format("{:.15g}", value);
+}
+
+// A label's value: backslash, quote and line feed are escaped.
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\' || c == '"') out += '\\';
+    out += c == '\n' ? std::string_view("\\n") : std::string_view(&c, 1);
+  }
+  return out;
+}
+
+void add_loop(MetricsText& out, const LiveSources& sources) {
+  out.one("cellmirror_uptime_seconds", "gauge", "Since the start.", sources.uptime_s);
+  out.one("cellmirror_loop_rate_hertz", "gauge", "Periods a second that the loop was told to keep.", sources.rate_hz);
+  out.one("cellmirror_loop_ticks_total", "counter", "Periods run.", static_cast<double>(sources.loop.cycles()));
+  out.one("cellmirror_loop_missed_total", "counter", "Periods that were skipped because the loop was late.",
+          static_cast<double>(sources.loop.missed()));
+  out.latency("cellmirror_loop_wakeup_latency_seconds", "How late the loop woke.",
+              sources.loop.wakeup_latency().snapshot());
+  out.latency("cellmirror_loop_compute_seconds", "How long a tick took.", sources.loop.compute_time().snapshot());
+}
+
+// One sample a robot, where `value` has one.
+template <class Value>
+void for_robots(MetricsText& out, const LiveSources& sources, Value value) {
+  for (std::size_t i = 0; i < sources.robots.size() && i < sources.cell_state.robots.size(); ++i) {
+    const RobotSnapshot& robot = sources.cell_state.robots[i];
+    if (const std::optional<double> found = value(robot, sources.robots[i])) out.sample(*found, {{"robot", robot.id}});
+  }
+}
+
+template <class Value>
+void for_streams(MetricsText& out, const LiveSources& sources, std::string_view name, std::string_view help,
+                 Value value) {
+  out.family(name, "counter", help);
+  for_robots(out, sources, [&](const RobotSnapshot& robot, const RobotState&) -> std::optional<double> {
+    if (!robot.stream) return std::nullopt;
+    return static_cast<double>(value(robot.stream->status()));
+  });
+}
+
+void add_robots(MetricsText& out, const LiveSources& sources) {
+  out.family("cellmirror_robot_mirrored", "gauge", "1: the robot follows its real one; 0: it is moved by commands.");
+  for_robots(out, sources,
+             [](const RobotSnapshot&, const RobotState& state) { return std::optional(state.online ? 1.0 : 0.0); });
+  out.family("cellmirror_robot_fresh", "gauge", "1: what a mirrored robot shows is fresh.");
+  for_robots(out, sources, [](const RobotSnapshot&, const RobotState& state) -> std::optional<double> {
+    if (!state.online) return std::nullopt;
+    return state.state == DataState::fresh ? 1.0 : 0.0;
+  });
+  out.family("cellmirror_robot_age_seconds", "gauge", "Since the newest sample of a mirrored robot.");
+  for_robots(out, sources, [&](const RobotSnapshot& robot, const RobotState& state) -> std::optional<double> {
+    const Timestamp received = sources.tick.robots.at(robot.slot).receive_time;
+    if (!state.online || !received.known()) return std::nullopt;
+    return seconds(sources.now - received);
+  });
+  for_streams(out, sources, "cellmirror_stream_received_total", "Samples received.",
+              [](const JointStreamStatus& status) { return status.received; });
+  for_streams(out, sources, "cellmirror_stream_lost_total", "Samples known to be missing.",
+              [](const JointStreamStatus& status) { return status.lost; });
+  for_streams(out, sources, "cellmirror_stream_rejected_total", "Messages or values refused.",
+              [](const JointStreamStatus& status) { return status.rejected; });
+}
+
+void add_findings(MetricsText& out, const LiveSources& sources) {
+  if (sources.proximity) {
+    const ProximityState& state = *sources.proximity;
+    const auto warned = std::ranges::count(state.near, true, &NearPair::within_warning);
+    out.one("cellmirror_pairs_tested", "gauge", "Pairs of bodies that are tested for collision.",
+            static_cast<double>(state.pairs));
+    out.one("cellmirror_pairs_touching", "gauge", "Pairs of bodies that touch.",
+            static_cast<double>(state.touching.size()));
+    out.one("cellmirror_pairs_near", "gauge", "Pairs within the warning distance.", static_cast<double>(warned));
+    if (state.nearest() != nullptr)
+      out.one("cellmirror_nearest_meters", "gauge", "The smallest distance of all tested pairs; 0 where bodies touch.",
+              state.nearest()->distance_m);
+    out.one("cellmirror_collision_age_seconds", "gauge", "Since the tick for which collisions are known.",
+            seconds(sources.now - state.posture_time));
+  }
+  if (!sources.ranges) return;
+  out.family("cellmirror_range_meters", "gauge", "What an ultrasonic sensor reads; +Inf: nothing up to its range.");
+  for (const RangeReading& reading : sources.ranges->readings)
+    out.sample(reading.distance_m.value_or(HUGE_VAL), {{"sensor", reading.path}});
+}
+
+void add_traffic(MetricsText& out, const LiveSources& sources, const web::ServerStatus& web) {
+  out.family("cellmirror_queue_dropped_total", "counter", "Values that a queue between threads refused.");
+  for (const engine::QueueStatus& queue : sources.queues)
+    out.sample(static_cast<double>(queue.dropped), {{"queue", queue.name}});
+  out.family("cellmirror_queue_passed_total", "counter", "Values that went into a queue between threads.");
+  for (const engine::QueueStatus& queue : sources.queues)
+    out.sample(static_cast<double>(queue.passed), {{"queue", queue.name}});
+  const script::SourceCounters script = sources.cell_state.script.all();
+  out.one("cellmirror_script_done_total", "counter", "SCRIPT commands carried out.", static_cast<double>(script.done));
+  out.one("cellmirror_script_refused_total", "counter", "SCRIPT commands refused.",
+          static_cast<double>(script.refused));
+  out.one("cellmirror_page_clients", "gauge", "Monitor pages that are open.", static_cast<double>(web.clients));
+  out.one("cellmirror_page_requests_total", "counter", "HTTP requests.", static_cast<double>(web.requests));
+  out.one("cellmirror_page_refused_total", "counter", "Requests and messages refused.",
+          static_cast<double>(web.refused));
+  out.one("cellmirror_page_cut_total", "counter", "Connections ended for being too slow or silent.",
+          static_cast<double>(web.cut));
+  out.one("cellmirror_page_commands_total", "counter", "Commands from monitor pages.",
+          static_cast<double>(web.commands));
+  out.one("cellmirror_pictures_sent_total", "counter", "Pictures sent to monitor pages.",
+          static_cast<double>(web.pictures));
+  out.one("cellmirror_pictures_left_out_total", "counter", "Pictures that came while a page was not ready for them.",
+          static_cast<double>(web.pictures_left_out));
+}
+
+}  // namespace
+
+void MetricsText::family(std::string_view name, std::string_view type, std::string_view help) {
+  name_ = name;
+  fmt::format_to(std::back_inserter(text_), "# HELP {0} {1}\n# TYPE {0} {2}\n", name, help, type);
+}
+
+void MetricsText::sample(double value, Labels labels, std::string_view suffix) {
+  text_ += name_;
+  text_ += suffix;
+  if (labels.size() > 0) {
+    std::string list;
+    for (const auto& [name, of] : labels)
+      list += fmt::format("{}{}=\"{}\"", list.empty() ? "" : ",", name, escaped(of));
+    text_ += "{" + list + "}";
+  }
+  text_ += " " + number(value) + "\n";
+}
+
+void MetricsText::one(std::string_view name, std::string_view type, std::string_view help, double value) {
+  family(name, type, help);
+  sample(value);
+}
+
+void MetricsText::latency(std::string_view name, std::string_view help, const HistogramSnapshot& histogram) {
+  family(name, "summary", help);
+  const auto quantile = [&](std::string_view which, double percent) {
+    sample(static_cast<double>(histogram.percentile(percent).count()) * kNanosecond, {{"quantile", which}});
+  };
+  quantile("0.5", 50);
+  quantile("0.99", 99);
+  quantile("0.999", 99.9);
+  const auto count = static_cast<double>(histogram.count());
+  sample(static_cast<double>(histogram.mean().count()) * kNanosecond * count, {}, "_sum");
+  sample(count, {}, "_count");
+}
+
+std::string metrics_document(const LiveSources& sources, const web::ServerStatus& web) {
+  MetricsText out;
+  out.family("cellmirror_info", "gauge", "Which gateway this is.");
+  out.sample(1, {{"version", CELLMIRROR_VERSION}, {"instance", sources.instance}, {"cell", sources.cell}});
+  add_loop(out, sources);
+  add_robots(out, sources);
+  add_findings(out, sources);
+  add_traffic(out, sources, web);
+  return out.take();
+}
+
+}  // namespace cellmirror::app

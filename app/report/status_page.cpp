@@ -1,0 +1,23 @@
+#include "app/report/status_page.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace cellmirror::app {
+
+nlohmann::json page_json(const PageReport& report) {
+  using nlohmann::json;
+  const web::ServerStatus& server = report.server;
+  return {{"on", report.on},
+          {"address", report.address.empty() ? json(nullptr) : json(report.address)},
+          {"problem", report.problem},
+          {"read_only", report.read_only},
+          {"clients", server.clients},
+          {"requests", server.requests},
+          {"pictures", server.pictures},
+          {"pictures_left_out", server.pictures_left_out},
+          {"refused", server.refused},
+          {"cut", server.cut},
+          {"commands", server.commands}};
+}
+
+}  // namespace cellmirror::app

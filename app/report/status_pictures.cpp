@@ -1,0 +1,37 @@
+#include "app/report/status_pictures.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "app/report/status_collisions.hpp"
+
+namespace cellmirror::app {
+
+nlohmann::json pictures_json(const RenderReport& report) {
+  using nlohmann::json;
+  constexpr Nanoseconds kMillisecond{1'000'000};
+  return {{"on", report.on},
+          {"renderer", report.renderer.empty() ? json(nullptr) : json(report.renderer)},
+          {"problem", report.problem},
+          {"rate_hz", report.rate_hz},
+          {"size", {report.width, report.height}},
+          {"streams", report.streams},
+          {"updates", report.updates},
+          {"drawn", report.drawn},
+          {"unchanged", report.unchanged},
+          {"on_demand", report.on_demand},
+          {"in_haste", report.in_haste},
+          {"failed", report.failed},
+          {"bodies_drawn", report.counters.bodies_drawn},
+          {"bodies_left_out", report.counters.bodies_left_out},
+          {"meshes", report.counters.meshes},
+          {"mesh_uploads", report.counters.uploads},
+          {"textures", report.counters.textures},
+          {"texture_uploads", report.counters.texture_uploads},
+          {"texture_bytes", report.counters.texture_bytes},
+          {"scene_ms", percentiles_json(report.scene, kMillisecond)},
+          {"draw_ms", percentiles_json(report.draw, kMillisecond)},
+          {"encode_ms", percentiles_json(report.encode, kMillisecond)},
+          {"posture_age_ms", percentiles_json(report.age, kMillisecond)}};
+}
+
+}  // namespace cellmirror::app

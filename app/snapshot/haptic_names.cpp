@@ -1,0 +1,107 @@
+#include "app/snapshot/haptic_names.hpp"
+
+namespace cellmirror::app {
+
+const char* word(HapticPhase phase) {
+  switch (phase) {
+    case HapticPhase::closed:
+      return "closed";
+    case HapticPhase::waiting:
+      return "waiting";
+    case HapticPhase::clutched:
+      return "clutched";
+    case HapticPhase::engaging:
+      return "engaging";
+    case HapticPhase::active:
+      return "active";
+    case HapticPhase::faulted:
+      return "faulted";
+  }
+  return "closed";
+}
+
+const char* word(HapticFault fault) {
+  switch (fault) {
+    case HapticFault::none:
+      return "none";
+    case HapticFault::stale:
+      return "stale";
+    case HapticFault::vanished:
+      return "vanished";
+    case HapticFault::not_finite:
+      return "not_finite";
+    case HapticFault::invalid:
+      return "invalid";
+    case HapticFault::jump:
+      return "jump";
+    case HapticFault::two_writers:
+      return "two_writers";
+    case HapticFault::torn:
+      return "torn";
+    case HapticFault::late_tick:
+      return "late_tick";
+    case HapticFault::stale_model:
+      return "stale_model";
+    case HapticFault::not_passive:
+      return "not_passive";
+  }
+  return "none";
+}
+
+const char* explanation(HapticFault fault) {
+  switch (fault) {
+    case HapticFault::none:
+      return "";
+    case HapticFault::stale:
+      return "the device gave no new sample in time";
+    case HapticFault::vanished:
+      return "the device's process has ended or has let go of the memory";
+    case HapticFault::not_finite:
+      return "a value of the device was no number, or its quaternion no rotation";
+    case HapticFault::invalid:
+      return "the device itself says that its values are not good";
+    case HapticFault::jump:
+      return "the device's pose jumped faster than a hand can be";
+    case HapticFault::two_writers:
+      return "two processes write into the device's memory";
+    case HapticFault::torn:
+      return "the device's samples could not be read whole";
+    case HapticFault::late_tick:
+      return "the loop missed more periods than are allowed";
+    case HapticFault::stale_model:
+      return "the surroundings of the instrument were not computed in time";
+    case HapticFault::not_passive:
+      return "the contact gave out energy faster than damping could take it";
+  }
+  return "";
+}
+
+const char* remedy(HapticFault fault) {
+  switch (fault) {
+    case HapticFault::none:
+      return "";
+    case HapticFault::stale:
+      return "see that the device's process writes at the loop's rate, with the time of CLOCK_MONOTONIC; else "
+             "stale_after_s";
+    case HapticFault::vanished:
+      return "start the device's process again";
+    case HapticFault::not_finite:
+    case HapticFault::invalid:
+      return "look at the device's process";
+    case HapticFault::jump:
+      return "calibrate the device again; else max_speed_m_s";
+    case HapticFault::two_writers:
+      return "end one of the two processes";
+    case HapticFault::torn:
+      return "the device's process has to end each write: docs/shared-memory.md";
+    case HapticFault::late_tick:
+      return "see cellmirror doctor for real-time scheduling; else allowed_missed_periods";
+    case HapticFault::stale_model:
+      return "see the rate of contact models in the status; else model_stale_after_s";
+    case HapticFault::not_passive:
+      return "lower stiffness_n_m, or raise damping_n_s_m or max_passivity_damping_n_s_m";
+  }
+  return "";
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,61 @@
+#include "app/workers/tcp_force_worker.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cellmirror::app {
+
+namespace {
+
+// The one whose instrument is the active robot; null: nothing tells of a force there.
+const HapticState* haptic_of_active(const CellState& cell_state, const engine::TickState& tick) {
+  const auto robot = std::ranges::find(cell_state.robots, cell_state.active_robot, &RobotSnapshot::id);
+  if (robot == cell_state.robots.end()) return nullptr;
+  const auto state = std::ranges::find_if(tick.haptics, [&](const HapticState& haptic) {
+    return haptic.phase != HapticPhase::closed && haptic.slot == robot->slot;
+  });
+  return state == tick.haptics.end() ? nullptr : &*state;
+}
+
+bool is_beyond(const TcpForce& force, const ForceLimits& limits) {
+  const double newton = std::hypot(force.values[0], force.values[1], force.values[2]);
+  const double newton_metres = std::abs(static_cast<double>(force.values[3]));
+  return (limits.max_force > 0 && newton > limits.max_force) ||
+         (limits.max_torque > 0 && newton_metres > limits.max_torque);
+}
+
+}  // namespace
+
+TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick) {
+  TcpForce out;
+  out.time = tick.time;
+  out.process = static_cast<std::uint32_t>(getpid());
+  out.robot.assign(cell_state.active_robot);
+  if (cell_state.forces.test) {
+    std::ranges::transform(*cell_state.forces.test, out.values.begin(), [](double v) { return static_cast<float>(v); });
+    out.flags = kTcpForceValid | kTcpForceTest;
+  } else if (const HapticState* haptic = haptic_of_active(cell_state, tick)) {
+    for (std::size_t i = 0; i < 3; ++i)
+      out.values[i] = static_cast<float>(haptic->force_E[static_cast<Eigen::Index>(i)]);
+    out.values[3] = static_cast<float>(haptic->axis_torque);
+    out.flags = kTcpForceValid;
+  }
+  if (is_beyond(out, cell_state.forces.limits)) out.flags |= kTcpForceBeyondLimit;
+  return out;
+}
+
+TcpForceWorker::TcpForceWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+                               Nanoseconds tick_period)
+    : worker_(
+          "tcp-force", *this, [&engine]() -> const engine::TickState& { return engine.tcp_force_view(); }, cell_states,
+          clock, tick_period) {}
+
+void TcpForceWorker::run(const CellState& cell_state, const engine::TickState& tick) {
+  TcpForce force = tcp_force_of(cell_state, tick);
+  force.sequence = ++sequence_;
+  cell_state.tcp_force->write(force);
+}
+
+}  // namespace cellmirror::app

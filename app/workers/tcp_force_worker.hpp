@@ -1,0 +1,30 @@
+// Writes the force at the TCP of the active robot into the shared memory of key 1313, every tick.
+#pragma once
+
+#include <cstdint>
+
+#include "app/snapshot/cell_state.hpp"
+#include "app/workers/tick_worker.hpp"
+#include "ipc/wire/tcp_force_block.hpp"
+#include "rt_core/engine/engine.hpp"
+
+namespace cellmirror::app {
+
+// As the cell_state and the tick tell; without sequence.
+[[nodiscard]] TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick);
+
+class TcpForceWorker final : private TickJob {
+ public:
+  // All are not owned and outlive the worker.
+  TcpForceWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+                 Nanoseconds tick_period);
+
+ private:
+  bool wanted(const CellState& cell_state) override { return cell_state.tcp_force != nullptr; }
+  void run(const CellState& cell_state, const engine::TickState& tick) override;
+
+  std::uint64_t sequence_ = 0;
+  TickWorker worker_;  // last: it uses everything above
+};
+
+}  // namespace cellmirror::app

@@ -1,0 +1,87 @@
+#include "app/workers/tick_worker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rt_core/rt/scheduling.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+// So long after a tick woke, its state is usually published.
+constexpr Nanoseconds kBehindTick{60'000};
+constexpr int kMostDoublings = 4;
+
+}  // namespace
+
+TickWorker::TickWorker(std::string name, TickJob& job, std::function<const engine::TickState&()> view,
+                       const Board<CellState>& board, const Clock& clock, Nanoseconds tick_period)
+    : name_(std::move(name)),
+      job_(job),
+      view_(std::move(view)),
+      board_(board),
+      clock_(clock),
+      tick_period_(tick_period),
+      thread_([this](const std::stop_token& stop) { loop(stop); }) {}
+
+TickWorker::~TickWorker() {
+  thread_.request_stop();
+  wake_.wake();
+  thread_.join();
+}
+
+void TickWorker::wait_for_tick(const engine::TickState& tick, int tries) {
+  const Timestamp now = clock_.now();
+  const Nanoseconds again = kBehindTick * (1 << std::min(tries, kMostDoublings));
+  const Timestamp next = tick.time.known() ? tick.time + tick_period_ + kBehindTick : now;
+  wake_.wait(std::clamp(next - now, again, kIdle));
+}
+
+void TickWorker::count_run() {
+  constexpr Nanoseconds kWindow{1'000'000'000};
+  const Timestamp now = clock_.now();
+  if (!window_start_.known()) window_start_ = now;
+  ++runs_in_window_;
+  if (now - window_start_ < kWindow) return;
+  const double rate = static_cast<double>(runs_in_window_) / seconds(now - window_start_);
+  rate_mhz_.store(static_cast<std::uint64_t>(1e3 * rate), std::memory_order_relaxed);
+  window_start_ = now;
+  runs_in_window_ = 0;
+}
+
+void TickWorker::rest() {
+  window_start_ = Timestamp();
+  runs_in_window_ = 0;
+  rate_mhz_.store(0, std::memory_order_relaxed);
+  wake_.wait(kIdle);
+}
+
+void TickWorker::loop(const std::stop_token& stop) {
+  set_thread_name(name_);
+  std::uint64_t done = 0;
+  bool first = true;
+  int tries = 0;
+  while (!stop.stop_requested()) {
+    const std::shared_ptr<const CellState> cell_state = board_.latest();
+    const bool wanted = cell_state && job_.wanted(*cell_state);
+    if (!wanted) {
+      first = true;
+      rest();
+      continue;
+    }
+    const engine::TickState& tick = view_();
+    if (!tick.time.known() || (!first && tick.tick == done)) {
+      wait_for_tick(tick, tries++);
+      continue;
+    }
+    if (!first) skipped_.fetch_add(tick.tick - done - 1, std::memory_order_relaxed);
+    job_.run(*cell_state, tick);
+    count_run();
+    done = tick.tick;
+    first = false;
+    tries = 0;
+  }
+}
+
+}  // namespace cellmirror::app

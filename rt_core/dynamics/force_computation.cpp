@@ -1,0 +1,166 @@
+#include "rt_core/dynamics/force_computation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "rt_core/base/contract.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/kinematics/joint_motion.hpp"
+
+namespace cellmirror::dynamics {
+
+namespace {
+
+// After a warning the effort must fall below this part of the limit before there is another.
+constexpr double kBackWithin = 0.95;
+
+const HapticState* haptic_of(std::span<const HapticState> haptics, std::size_t slot) {
+  const auto found = std::ranges::find_if(
+      haptics, [&](const HapticState& haptic) { return haptic.phase != HapticPhase::closed && haptic.slot == slot; });
+  return found == haptics.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+bool ForceComputation::take_cell(const std::shared_ptr<const CompiledCell>& cell) {
+  if (cell == cell_) return false;
+  const bool same = cell_ && dynamics::same_masses(*cell_, *cell);
+  cell_ = cell;
+  if (same) return false;
+  mechanisms_ = dynamics::robot_mechanisms(*cell);
+  poses_.reserve(cell->size());
+  has_mechanisms_ = false;
+  not_computed_.clear();
+  for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
+    has_mechanisms_ = has_mechanisms_ || mechanisms_[i].mechanism.has_value();
+    if (!mechanisms_[i].why_not.empty()) not_computed_.push_back({cell->robots[i].id, mechanisms_[i].why_not});
+  }
+  return true;
+}
+
+ForceComputation::SlotState& ForceComputation::slot_state(std::size_t slot) {
+  if (slots_.size() <= slot) {
+    slots_.resize(slot + 1);
+    positions_.resize(slot + 1);
+  }
+  return slots_[slot];
+}
+
+void ForceComputation::update_motions(std::span<const RobotMotion> motions) {
+  for (std::size_t i = 0; i < cell_->robots.size(); ++i) {
+    const CompiledRobot& robot = cell_->robots[i];
+    const RobotMotion& from = motions[i];
+    const std::size_t n = robot.joint_names.size();
+    MotionEstimate& motion = slot_state(robot.slot).motion;
+    positions_[robot.slot] = from.position;
+    if (from.fresh) {
+      motion.take(from.time, std::span(from.position).first(n), std::span(from.velocity).first(n), from.mirrored);
+    } else {
+      motion.stand_still();
+    }
+  }
+}
+
+void ForceComputation::place_links(const Mechanism& mechanism, std::span<const double> q) {
+  const auto links = mechanism.links();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Link& link = links[i];
+    const int parent = link.parent;
+    X_WJ_[i] = parent < 0 ? link.X_PJ : X_WJ_[static_cast<std::size_t>(parent)] * link.X_PJ;
+    kinematics::apply_joint(link.kind, link.axis, link.multiplier * q[link.variable] + link.offset, X_WJ_[i]);
+  }
+}
+
+void ForceComputation::compute_robot(const RobotMechanism& robot, RobotForces& out) {
+  const Mechanism& mechanism = *robot.mechanism;
+  const CompiledRobot& compiled = *cell_->robot(robot.slot);
+  JointValues q{};
+  JointValues qd{};
+  JointValues qdd{};
+  for (std::size_t i = 0; i < robot.variables.size(); ++i) {
+    const auto [slot, joint] = robot.variables[i];
+    q[i] = positions_[slot][joint];
+    qd[i] = slots_[slot].motion.velocity()[joint];
+    qdd[i] = slots_[slot].motion.acceleration()[joint];
+  }
+  inverse_dynamics(mechanism, {q, qd, qdd, gravity_W_, out.tcp_T.force, out.tcp_T.torque}, output_);
+  place_links(mechanism, q);
+  out.model_kg = robot.model_kg;
+  out.payload_kg = robot.payload_kg;
+  out.joints.resize(compiled.joint_names.size());
+  for (std::size_t i = 0; i < out.joints.size(); ++i) {
+    JointForce& joint = out.joints[i];
+    joint.name = compiled.joint_names[i];
+    joint.kind = compiled.joint_kinds[i];
+    joint.position = q[i];
+    joint.velocity = qd[i];
+    joint.acceleration = qdd[i];
+    joint.effort = output_.effort[i];
+    joint.max_effort = mechanism.drive(i).max_effort;
+    joint.beyond_limit = joint.max_effort > 0.0 && std::abs(joint.effort) > joint.max_effort;
+    const auto link = static_cast<std::size_t>(robot.joint_links[i]);
+    joint.wrench_J = output_.joint_wrench[link];
+    joint.X_WJ = X_WJ_[link];
+    joint.axis_J = mechanism.links()[link].axis;
+  }
+  if (mechanism.tip_link() >= 0) out.X_WT = X_WJ_[static_cast<std::size_t>(mechanism.tip_link())] * mechanism.X_LT();
+}
+
+void ForceComputation::check_limits(const RobotForces& robot) {
+  auto& beyond = slots_[robot.slot].beyond_limit;
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const JointForce& joint = robot.joints[i];
+    bool& was = beyond[i];
+    if (joint.beyond_limit && !was) {
+      ++limit_warnings_;
+      const char* unit = joint.kind == JointKind::prismatic ? "N" : "Nm";
+      log_warning("forces.limit", "{} {} needs {:.1f} {}, beyond its {:.1f} {}", robot.id, joint.name, joint.effort,
+                  unit, joint.max_effort, unit);
+    }
+    was = joint.beyond_limit || (was && std::abs(joint.effort) > kBackWithin * joint.max_effort);
+  }
+}
+
+void ForceComputation::compute_tcp(const HapticState* haptic, std::size_t robot, RobotForces& out) {
+  out.tcp_known = haptic != nullptr;
+  out.tcp_T = {};
+  out.X_WT = Pose::Identity();
+  if (haptic == nullptr) return;
+  // The force on the hand is the force on the tip.
+  out.tcp_T = {haptic->force_E, Eigen::Vector3d(0, 0, haptic->axis_torque)};
+  const std::optional<Mechanism>& mechanism = mechanisms_[robot].mechanism;
+  if (mechanism && mechanism->tip_link() >= 0) return;  // place_links() gave the pose
+  compute_poses(*cell_, positions_, poses_);
+  out.X_WT = tcp_poses(cell_->robots[robot], poses_).X_WT;
+}
+
+void ForceComputation::compute(Timestamp time, std::span<const RobotMotion> motions,
+                               std::span<const HapticState> haptics, ForceState& state) {
+  CELLMIRROR_EXPECTS(cell_ && motions.size() == cell_->robots.size());
+  update_motions(motions);
+  state.posture_time = time;
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
+    const CompiledRobot& robot = cell_->robots[i];
+    const bool has_masses = mechanisms_[i].mechanism.has_value();
+    const HapticState* haptic = haptic_of(haptics, robot.slot);
+    if (!has_masses && haptic == nullptr) continue;
+    if (state.robots.size() == used) state.robots.emplace_back();
+    RobotForces& out = state.robots[used++];
+    out.id = robot.id;
+    out.slot = static_cast<std::uint8_t>(robot.slot);
+    out.computed = has_masses;
+    compute_tcp(haptic, i, out);
+    if (has_masses) {
+      compute_robot(mechanisms_[i], out);
+      check_limits(out);
+    } else {
+      out.joints.clear();
+      out.model_kg = out.payload_kg = 0;
+    }
+  }
+  state.robots.resize(used);
+}
+
+}  // namespace cellmirror::dynamics

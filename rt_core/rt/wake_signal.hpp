@@ -1,0 +1,24 @@
+// Wakes a waiting worker thread from another one. Not for the tick: both sides make system calls.
+#pragma once
+
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror {
+
+// Any number of wakers, one waiter. A wake before the wait is not lost.
+class WakeSignal {
+ public:
+  WakeSignal();
+  ~WakeSignal();
+  WakeSignal(const WakeSignal&) = delete;
+  WakeSignal& operator=(const WakeSignal&) = delete;
+
+  void wake() noexcept;
+  // True where it was woken, false where `timeout` ran out.
+  bool wait(Nanoseconds timeout) noexcept;
+
+ private:
+  int event_fd_;
+};
+
+}  // namespace cellmirror
