@@ -39,7 +39,7 @@ Result<std::vector<Studio::Output>> make_picture_outputs(const DdsOutputConfig& 
   if (!config.enabled || config.pictures.topic.empty()) return outputs;
   auto output = dds::make_image_output(config);
   if (!output) return std::unexpected(output.error());
-  web::PictureWish wish;
+  PictureRequest wish;
   wish.view = config.pictures.view;
   if (!config.pictures.camera.empty()) wish.camera = config.pictures.camera;
   wish.width = config.pictures.width;

@@ -8,10 +8,10 @@ namespace cellmirror::app {
 
 namespace {
 
-class Stream final : public web::PictureStream {
+class Stream final : public PictureStream {
  public:
   explicit Stream(std::shared_ptr<Looker> looker) : looker_(std::move(looker)) {}
-  void change(const web::PictureWish& wish) override { looker_->change(wish); }
+  void change(const PictureRequest& wish) override { looker_->change(wish); }
   [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has) const override {
     return looker_->newest(has);
   }
@@ -23,12 +23,12 @@ class Stream final : public web::PictureStream {
 
 }  // namespace
 
-web::PictureWish Looker::wish() const {
+PictureRequest Looker::wish() const {
   const std::scoped_lock lock(mutex_);
   return wish_;
 }
 
-void Looker::change(const web::PictureWish& wish) {
+void Looker::change(const PictureRequest& wish) {
   if (!check_wish(wish)) return;  // whoever speaks with the client has told it
   asked_now();
   const std::scoped_lock lock(mutex_);
@@ -50,14 +50,14 @@ std::string Looker::problem() const {
   return problem_;
 }
 
-void Looker::show(std::shared_ptr<const EncodedImage> picture, const web::PictureWish& wish) {
+void Looker::show(std::shared_ptr<const EncodedImage> picture, const PictureRequest& wish) {
   const std::scoped_lock lock(mutex_);
   if (!same_drawing(wish_, wish)) return;
   problem_.clear();
   newest_.swap(picture);  // the one before is let go by the argument, without the lock
 }
 
-void Looker::tell(const Error& problem, const web::PictureWish& wish) {
+void Looker::tell(const Error& problem, const PictureRequest& wish) {
   const std::scoped_lock lock(mutex_);
   if (same_drawing(wish_, wish)) problem_ = problem.text();
 }
@@ -66,7 +66,7 @@ bool Looker::looks(Timestamp now) const {
   return now - Timestamp{asked_ns_.load(std::memory_order_relaxed)} < kPatience;
 }
 
-std::unique_ptr<web::PictureStream> PictureStreams::open(const web::PictureWish& wish) {
+std::unique_ptr<PictureStream> PictureStreams::open(const PictureRequest& wish) {
   const std::scoped_lock lock(mutex_);
   std::erase_if(lookers_, [](const auto& looker) { return looker.expired(); });
   if (lookers_.size() >= kMost) return nullptr;

@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "ipc/web/web_backend.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/ports/picture_request.hpp"
 
 namespace cellmirror::app {
 
 // Shared by a client and the picture thread.
 class Looker {
  public:
-  Looker(const web::PictureWish& wish, const Clock& clock) : clock_(clock), wish_(wish) { asked_now(); }
+  Looker(const PictureRequest& wish, const Clock& clock) : clock_(clock), wish_(wish) { asked_now(); }
 
   // Any thread.
-  [[nodiscard]] web::PictureWish wish() const;
-  void change(const web::PictureWish& wish);
+  [[nodiscard]] PictureRequest wish() const;
+  void change(const PictureRequest& wish);
   // The picture of its wish, if that is not the one it has already (`has`: its sequence). It may be an older one: what
   // somebody else looks at was drawn before.
   [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has);
@@ -29,8 +29,8 @@ class Looker {
 
   // The picture thread's.
   // Not where it has changed its wish from `wish` meanwhile.
-  void show(std::shared_ptr<const EncodedImage> picture, const web::PictureWish& wish);
-  void tell(const Error& problem, const web::PictureWish& wish);
+  void show(std::shared_ptr<const EncodedImage> picture, const PictureRequest& wish);
+  void tell(const Error& problem, const PictureRequest& wish);
   // Whether it has asked within kPatience: for a client that stands still nothing is drawn.
   [[nodiscard]] bool looks(Timestamp now) const;
   // When the next one is due by its rate.
@@ -44,7 +44,7 @@ class Looker {
   const Clock& clock_;
   std::atomic<std::int64_t> asked_ns_{0};  // relaxed: only tells about when
   mutable std::mutex mutex_;               // of what follows
-  web::PictureWish wish_;
+  PictureRequest wish_;
   std::shared_ptr<const EncodedImage> newest_;
   std::string problem_;  // why there is no picture of the wish; empty: there is one, or it is being drawn
 };
@@ -57,7 +57,7 @@ class PictureStreams {
   explicit PictureStreams(const Clock& clock) : clock_(clock) {}
 
   // Null where kMost are open.
-  [[nodiscard]] std::unique_ptr<web::PictureStream> open(const web::PictureWish& wish);
+  [[nodiscard]] std::unique_ptr<PictureStream> open(const PictureRequest& wish);
   [[nodiscard]] std::vector<std::shared_ptr<Looker>> all() const;
   [[nodiscard]] std::size_t size() const;
 

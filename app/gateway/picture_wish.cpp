@@ -42,7 +42,7 @@ bool same_view(const View& a, const View& b) {
 
 }  // namespace
 
-Result<void> check_wish(const web::PictureWish& wish) {
+Result<void> check_wish(const PictureRequest& wish) {
   if ((wish.view ? 1 : 0) + (wish.camera ? 1 : 0) + (wish.free_view ? 1 : 0) > 1)
     return fail("a picture is of a view, of a camera or of a free view", "name one of them");
   if (wish.view && (*wish.view < 0 || *wish.view >= static_cast<int>(kViews)))
@@ -61,7 +61,7 @@ Result<void> check_wish(const web::PictureWish& wish) {
   return wish.free_view ? check_free_view(*wish.free_view) : Result<void>();
 }
 
-Result<void> check_camera(const web::PictureWish& wish, const CompiledCell& cell) {
+Result<void> check_camera(const PictureRequest& wish, const CompiledCell& cell) {
   if (!wish.camera) return {};
   std::vector<std::string> names;
   for (const CompiledCamera& camera : cell.cameras) {
@@ -74,7 +74,7 @@ Result<void> check_camera(const web::PictureWish& wish, const CompiledCell& cell
   return fail(fmt::format("there is no camera {}", printable(*wish.camera)), remedy);
 }
 
-bool same_drawing(const web::PictureWish& a, const web::PictureWish& b) {
+bool same_drawing(const PictureRequest& a, const PictureRequest& b) {
   if (a.view != b.view || a.camera != b.camera || a.width != b.width || a.height != b.height) return false;
   if (a.free_view.has_value() != b.free_view.has_value()) return false;
   return !a.free_view || same_view(*a.free_view, *b.free_view);

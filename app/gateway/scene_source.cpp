@@ -6,7 +6,7 @@
 
 namespace cellmirror::app {
 
-Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const web::PictureWish& wish) {
+Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const PictureRequest& wish) {
   if (wish.camera) return scene::panes_of_camera(input, *wish.camera);
   if (wish.view) return scene::panes_of_view(input, *wish.view);
   if (!wish.free_view) return scene::panes_of_display(input);
@@ -68,7 +68,7 @@ bool SceneSource::refresh() {
   return true;
 }
 
-Result<std::vector<Pane>> SceneSource::panes(const web::PictureWish& wish, std::uint64_t updates) const {
+Result<std::vector<Pane>> SceneSource::panes(const PictureRequest& wish, std::uint64_t updates) const {
   return panes_of({*cell_, poses_, *picture_->display, now_, updates}, wish);
 }
 

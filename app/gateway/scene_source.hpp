@@ -8,17 +8,17 @@
 #include "app/gateway/findings_board.hpp"
 #include "app/gateway/force_board.hpp"
 #include "app/gateway/picture.hpp"
-#include "ipc/web/web_backend.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/picture_request.hpp"
 #include "rt_core/scene/panes.hpp"
 #include "rt_core/scene/scene_builder.hpp"
 
 namespace cellmirror::app {
 
 // Of the cell at `poses`, as `wish` says; also used without a gateway.
-[[nodiscard]] Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const web::PictureWish& wish);
+[[nodiscard]] Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const PictureRequest& wish);
 
 // One thread, which alone reads the engine's picture_view().
 class SceneSource {
@@ -43,7 +43,7 @@ class SceneSource {
   [[nodiscard]] const CompiledCell& cell() const { return *cell_; }
   [[nodiscard]] bool has_scene() const { return cell_ != nullptr; }
   [[nodiscard]] Timestamp refreshed() const { return now_; }
-  [[nodiscard]] Result<std::vector<Pane>> panes(const web::PictureWish& wish, std::uint64_t updates) const;
+  [[nodiscard]] Result<std::vector<Pane>> panes(const PictureRequest& wish, std::uint64_t updates) const;
 
  private:
   bool take_posture(const CompiledCell& cell, const engine::TickState& tick);

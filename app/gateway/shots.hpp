@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "app/gateway/picture_wish.hpp"
-#include "ipc/web/web_backend.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
+#include "rt_core/ports/picture_request.hpp"
 
 namespace cellmirror::app {
 
 struct Shot {
-  web::PictureWish wish;
+  PictureRequest wish;
   std::uint64_t fingerprint = 0;
   Timestamp drawn;
   Image image;
@@ -30,10 +30,10 @@ struct Shot {
 class Shots {
  public:
   // Forgets what none of these wishes any more; with no wishes, everything.
-  void keep(std::span<const web::PictureWish> wishes) {
+  void keep(std::span<const PictureRequest> wishes) {
     std::vector<Shot> kept;
     for (Shot& shot : shots_) {
-      const auto same = [&](const web::PictureWish& wish) { return same_drawing(wish, shot.wish); };
+      const auto same = [&](const PictureRequest& wish) { return same_drawing(wish, shot.wish); };
       if (std::ranges::any_of(wishes, same)) {
         kept.push_back(std::move(shot));
       } else {
@@ -46,7 +46,7 @@ class Shots {
   }
 
   // What there is for `wish`, or a new one. Until the next call of either.
-  Shot& of(const web::PictureWish& wish) {
+  Shot& of(const PictureRequest& wish) {
     const auto found = std::ranges::find_if(shots_, [&](const Shot& shot) { return same_drawing(shot.wish, wish); });
     if (found != shots_.end()) return *found;
     Shot& shot = shots_.emplace_back();

@@ -52,7 +52,7 @@ Studio::~Studio() {
   thread_.join();
 }
 
-Result<void> Studio::refusal(const web::PictureWish& wish) const {
+Result<void> Studio::refusal(const PictureRequest& wish) const {
   if (options_.headless)
     return fail("the gateway takes no pictures: it was started with --headless", "start it without --headless");
   if (!options_.settings.on) {
@@ -71,14 +71,14 @@ void Studio::expect_pictures() {
     if (std::exchange(expected_, true)) return;
   }
   add_job([this](bool given_up) {
-    web::PictureWish small;
+    PictureRequest small;
     small.width = 160;
     small.height = 120;
     if (!given_up && !renderer_) static_cast<void>(take(small, ImageFormat::jpeg));
   });
 }
 
-Result<std::unique_ptr<web::PictureStream>> Studio::open_pictures(const web::PictureWish& wish) {
+Result<std::unique_ptr<PictureStream>> Studio::open_pictures(const PictureRequest& wish) {
   if (const auto refused = refusal(wish); !refused) return std::unexpected(refused.error());
   auto stream = streams_.open(wish);
   if (!stream) {
@@ -98,21 +98,21 @@ bool Studio::add_job(Job job) {
   return true;
 }
 
-void Studio::ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) {
+void Studio::ask_picture(const PictureRequest& wish, ImageFormat format, PictureReply reply) {
   if (const auto refused = refusal(wish); !refused) return reply(std::unexpected(refused.error()));
-  const auto shared = std::make_shared<web::PictureReply>(std::move(reply));
+  const auto shared = std::make_shared<PictureReply>(std::move(reply));
   const bool added = add_job([this, wish, format, shared](bool given_up) {
     (*shared)(given_up ? Result<EncodedImage>(fail(kEnding)) : take(wish, format));
   });
   if (!added) (*shared)(too_many());
 }
 
-void Studio::ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) {
-  using Picked = Result<std::optional<web::PickedObject>>;
+void Studio::ask_pick(const PictureRequest& wish, int x, int y, PickReply reply) {
+  using Picked = Result<std::optional<PickedObject>>;
   if (const auto refused = refusal(wish); !refused) return reply(std::unexpected(refused.error()));
   if (x < 0 || y < 0 || x >= wish.width || y >= wish.height)
     return reply(fail(fmt::format("the pixel {}, {} is not in the picture", x, y)));
-  const auto shared = std::make_shared<web::PickReply>(std::move(reply));
+  const auto shared = std::make_shared<PickReply>(std::move(reply));
   const bool added = add_job(
       [this, wish, x, y, shared](bool given_up) { (*shared)(given_up ? Picked(fail(kEnding)) : look_at(wish, x, y)); });
   if (!added) (*shared)(too_many());
@@ -166,7 +166,7 @@ std::vector<Studio::Guest> Studio::guests(Timestamp now) {
   std::vector<Guest> out;
   for (auto& looker : streams_.all()) {
     if (!looker->looks(now)) continue;
-    const web::PictureWish wish = looker->wish();
+    const PictureRequest wish = looker->wish();
     if (picture_is_due(looker->due, wish.rate_hz, now, half)) out.push_back({std::move(looker), nullptr, wish});
   }
   for (std::size_t i = 0; i < options_.outputs.size(); ++i) {
@@ -177,8 +177,8 @@ std::vector<Studio::Guest> Studio::guests(Timestamp now) {
   return out;
 }
 
-std::vector<web::PictureWish> Studio::wishes(Timestamp now) const {
-  std::vector<web::PictureWish> out;
+std::vector<PictureRequest> Studio::wishes(Timestamp now) const {
+  std::vector<PictureRequest> out;
   for (const auto& looker : streams_.all()) {
     if (looker->looks(now)) out.push_back(looker->wish());
   }
@@ -188,12 +188,12 @@ std::vector<web::PictureWish> Studio::wishes(Timestamp now) const {
   return out;
 }
 
-double Studio::wished_hz(std::span<const web::PictureWish> wishes) const {
+double Studio::wished_hz(std::span<const PictureRequest> wishes) const {
   double sum = 0;
   for (std::size_t i = 0; i < wishes.size(); ++i) {
     const auto before = wishes.first(i);
     const bool shared =
-        std::ranges::any_of(before, [&](const web::PictureWish& other) { return same_drawing(other, wishes[i]); });
+        std::ranges::any_of(before, [&](const PictureRequest& other) { return same_drawing(other, wishes[i]); });
     if (!shared) sum += std::min(wishes[i].rate_hz, options_.settings.rate_hz);
   }
   return sum;
@@ -202,7 +202,7 @@ double Studio::wished_hz(std::span<const web::PictureWish> wishes) const {
 void Studio::round(Timestamp now) {
   if (!report_.on) return;
   follow_traces();
-  const std::vector<web::PictureWish> all = wishes(now);
+  const std::vector<PictureRequest> all = wishes(now);
   shots_.keep(all);
   const std::vector<Guest> wanted = guests(now);
   if (wanted.empty()) return;
@@ -293,7 +293,7 @@ Result<std::shared_ptr<const EncodedImage>> Studio::encode(Shot& shot, int quali
   return picture;
 }
 
-Result<EncodedImage> Studio::take(const web::PictureWish& wish, ImageFormat format) {
+Result<EncodedImage> Studio::take(const PictureRequest& wish, ImageFormat format) {
   if (const auto renderer = need_renderer(); !renderer) return std::unexpected(renderer.error());
   const auto panes = prepare(wish);
   if (!panes) return std::unexpected(panes.error());
@@ -314,7 +314,7 @@ Result<EncodedImage> Studio::take(const web::PictureWish& wish, ImageFormat form
   return picture;
 }
 
-Result<std::optional<web::PickedObject>> Studio::look_at(const web::PictureWish& wish, int x, int y) {
+Result<std::optional<PickedObject>> Studio::look_at(const PictureRequest& wish, int x, int y) {
   if (const auto renderer = need_renderer(); !renderer) return std::unexpected(renderer.error());
   const auto panes = prepare(wish);
   if (!panes) return std::unexpected(panes.error());
@@ -328,7 +328,7 @@ Result<std::optional<web::PickedObject>> Studio::look_at(const web::PictureWish&
   return picked_object(source_.cell(), objects.at(at));
 }
 
-Result<std::vector<Pane>> Studio::prepare(const web::PictureWish& wish) {
+Result<std::vector<Pane>> Studio::prepare(const PictureRequest& wish) {
   const Timestamp start = boards_.clock.now();
   const bool fresh = source_.has_scene() && start - source_.refreshed() < kFreshEnough;
   if (!fresh && !source_.refresh() && !source_.has_scene())

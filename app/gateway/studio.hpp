@@ -24,9 +24,9 @@
 #include "config/picture_settings.hpp"
 #include "drivers/display/image_codec.hpp"
 #include "drivers/display/renderer.hpp"
-#include "ipc/web/web_backend.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/image.hpp"
+#include "rt_core/ports/picture_request.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
 namespace cellmirror::app {
@@ -58,7 +58,7 @@ class Studio {
   // Pictures for somebody within the process, at his rate, as long as output->watched().
   struct Output {
     std::unique_ptr<ImageOutput> output;
-    web::PictureWish wish;
+    PictureRequest wish;
   };
   struct Options {
     PictureSettings settings;
@@ -78,10 +78,10 @@ class Studio {
   // sooner. Does not wait.
   void expect_pictures();
   // Any thread, as web::Backend. Does not wait.
-  Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish);
+  Result<std::unique_ptr<PictureStream>> open_pictures(const PictureRequest& wish);
   // `reply` is called once, by the picture's thread, or at once where the wish is refused.
-  void ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply);
-  void ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply);
+  void ask_picture(const PictureRequest& wish, ImageFormat format, PictureReply reply);
+  void ask_pick(const PictureRequest& wish, int x, int y, PickReply reply);
 
   [[nodiscard]] PictureReport report() const;
   // The names and counters of the outputs; they are there as long as the studio.
@@ -95,10 +95,10 @@ class Studio {
   struct Guest {
     std::shared_ptr<Looker> looker;  // null: an output
     Output* output = nullptr;
-    web::PictureWish wish;
+    PictureRequest wish;
   };
 
-  [[nodiscard]] Result<void> refusal(const web::PictureWish& wish) const;
+  [[nodiscard]] Result<void> refusal(const PictureRequest& wish) const;
   bool add_job(Job job);
   void loop(const std::stop_token& stop);
   // One of them. False: there is none.
@@ -109,19 +109,19 @@ class Studio {
   void follow_traces();
   [[nodiscard]] std::vector<Guest> guests(Timestamp now);
   // Of all who look, also of those who get no picture in this round.
-  [[nodiscard]] std::vector<web::PictureWish> wishes(Timestamp now) const;
+  [[nodiscard]] std::vector<PictureRequest> wishes(Timestamp now) const;
   // Different pictures a second that are wished for.
-  [[nodiscard]] double wished_hz(std::span<const web::PictureWish> wishes) const;
+  [[nodiscard]] double wished_hz(std::span<const PictureRequest> wishes) const;
   void serve(const std::vector<Guest>& guests);
   void give(const Guest& guest, Shot& shot);
   static void tell(const std::vector<Guest>& guests, const Error& problem);
   Result<void> bring_up_to_date(Shot& shot);
   Result<std::shared_ptr<const EncodedImage>> encode(Shot& shot, int quality);
 
-  Result<EncodedImage> take(const web::PictureWish& wish, ImageFormat format);
-  Result<std::optional<web::PickedObject>> look_at(const web::PictureWish& wish, int x, int y);
+  Result<EncodedImage> take(const PictureRequest& wish, ImageFormat format);
+  Result<std::optional<PickedObject>> look_at(const PictureRequest& wish, int x, int y);
   // The newest scene, and the renderer; fails where there is none.
-  Result<std::vector<Pane>> prepare(const web::PictureWish& wish);
+  Result<std::vector<Pane>> prepare(const PictureRequest& wish);
   Result<void> need_renderer();
   Result<void> draw(std::span<const Pane> panes, int width, int height, Image& image, bool smooth);
   void note_problem(const Error& error);

@@ -60,17 +60,17 @@ void WebBackend::expect_pictures() {
   if (parts_.studio != nullptr) parts_.studio->expect_pictures();
 }
 
-Result<std::unique_ptr<web::PictureStream>> WebBackend::open_pictures(const web::PictureWish& wish) {
+Result<std::unique_ptr<PictureStream>> WebBackend::open_pictures(const PictureRequest& wish) {
   if (parts_.studio == nullptr) return no_pictures();
   return parts_.studio->open_pictures(wish);
 }
 
-void WebBackend::ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) {
+void WebBackend::ask_picture(const PictureRequest& wish, ImageFormat format, PictureReply reply) {
   if (parts_.studio == nullptr) return reply(no_pictures());
   parts_.studio->ask_picture(wish, format, std::move(reply));
 }
 
-void WebBackend::ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) {
+void WebBackend::ask_pick(const PictureRequest& wish, int x, int y, PickReply reply) {
   if (parts_.studio == nullptr) return reply(no_pictures());
   parts_.studio->ask_pick(wish, x, y, std::move(reply));
 }

@@ -42,9 +42,9 @@ class WebBackend final : public web::Backend {
   [[nodiscard]] std::string metrics_text() override;
   void execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) override;
   void expect_pictures() override;
-  Result<std::unique_ptr<web::PictureStream>> open_pictures(const web::PictureWish& wish) override;
-  void ask_picture(const web::PictureWish& wish, ImageFormat format, web::PictureReply reply) override;
-  void ask_pick(const web::PictureWish& wish, int x, int y, web::PickReply reply) override;
+  Result<std::unique_ptr<PictureStream>> open_pictures(const PictureRequest& wish) override;
+  void ask_picture(const PictureRequest& wish, ImageFormat format, PictureReply reply) override;
+  void ask_pick(const PictureRequest& wish, int x, int y, PickReply reply) override;
 
  private:
   Parts parts_;

@@ -12,7 +12,7 @@
 namespace cellmirror::app {
 
 Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotRequest& wanted) {
-  const web::PictureWish wish = wish_of(wanted, loaded.pictures.width, loaded.pictures.height);
+  const PictureRequest wish = wish_of(wanted, loaded.pictures.width, loaded.pictures.height);
   const auto cell = loaded.cell.compile();
   if (const auto checked = check_wish(wish); !checked) return std::unexpected(checked.error());
   if (const auto checked = check_camera(wish, *cell); !checked) return std::unexpected(checked.error());

@@ -16,7 +16,7 @@ struct CellPicture {
 };
 
 // All robots at their start positions, detail levels and views as the cell file says; the startup script is not run,
-// nothing is tested for collision. Refused as web::PictureWish would be, and where there is no renderer.
+// nothing is tested for collision. Refused as PictureRequest would be, and where there is no renderer.
 [[nodiscard]] Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotRequest& wanted);
 
 }  // namespace cellmirror::app

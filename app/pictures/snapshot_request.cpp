@@ -70,8 +70,8 @@ Result<SnapshotRequest> snapshot_request(const ControlRequest& request) {
   return wanted;
 }
 
-web::PictureWish wish_of(const SnapshotRequest& wanted, int width, int height) {
-  web::PictureWish wish;
+PictureRequest wish_of(const SnapshotRequest& wanted, int width, int height) {
+  PictureRequest wish;
   wish.view = wanted.view;
   wish.camera = wanted.camera;
   wish.width = wanted.width.value_or(width);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "ipc/control/control_request.hpp"
-#include "ipc/web/web_backend.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/image.hpp"
+#include "rt_core/ports/picture_request.hpp"
 
 namespace cellmirror::app {
 
@@ -27,7 +27,7 @@ struct SnapshotRequest {
 [[nodiscard]] ControlRequest question(const SnapshotRequest& wanted);
 // Refused: a member that is unknown or no number. What the numbers may be is the studio's to check.
 [[nodiscard]] Result<SnapshotRequest> snapshot_request(const ControlRequest& request);
-[[nodiscard]] web::PictureWish wish_of(const SnapshotRequest& wanted, int width, int height);
+[[nodiscard]] PictureRequest wish_of(const SnapshotRequest& wanted, int width, int height);
 
 struct SnapshotAnswer {
   ImageFormat format = ImageFormat::png;

@@ -105,8 +105,8 @@ std::optional<View> read_free_view(Fields& fields) {
   return out;
 }
 
-PictureWish read_wish(Fields& fields) {
-  PictureWish wish;
+PictureRequest read_wish(Fields& fields) {
+  PictureRequest wish;
   if (fields.has("view")) wish.view = static_cast<int>(fields.whole("view", 0, 0, 6));
   if (fields.has("camera")) wish.camera = fields.text("camera", kLongestName);
   wish.free_view = read_free_view(fields);
@@ -164,7 +164,7 @@ Result<void> check_free_view(const View& view) {
 
 }  // namespace
 
-Result<void> check_picture_wish(const PictureWish& wish) {
+Result<void> check_picture_wish(const PictureRequest& wish) {
   if (int{wish.view.has_value()} + int{wish.camera.has_value()} + int{wish.free_view.has_value()} > 1)
     return fail("more than one of view, camera and free is given");
   const bool size_good = wish.width >= kSmallestPictureEdge && wish.width <= kLargestPictureWidth &&
@@ -192,10 +192,10 @@ std::expected<ClientMessage, BadMessage> read_client_message(std::string_view te
   return message;
 }
 
-Result<PictureWish> read_picture_query(std::string_view query) {
+Result<PictureRequest> read_picture_query(std::string_view query) {
   const auto parts = query_parts(query);
   if (!parts) return fail("the address is malformed behind the question mark");
-  PictureWish wish;
+  PictureRequest wish;
   for (const auto& [name, value] : *parts) {
     const auto number = parse_integer(value);
     const bool small = number && *number >= 0 && *number <= kLargestImageEdge;

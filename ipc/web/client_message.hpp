@@ -22,7 +22,7 @@ struct HelloMessage {
   std::string token;  // may be empty
 };
 struct PictureMessage {
-  PictureWish wish;
+  PictureRequest wish;
 };
 struct NoPictureMessage {};
 struct ShownMessage {
@@ -51,9 +51,9 @@ struct BadMessage {
 
 // Refused where sizes, rate, quality or the free view are out of bounds, or more than one of view, camera and free
 // view is given.
-[[nodiscard]] Result<void> check_picture_wish(const PictureWish& wish);
+[[nodiscard]] Result<void> check_picture_wish(const PictureRequest& wish);
 
 // "view=3&width=640&height=480" of /snapshot.png and /snapshot.jpg.
-[[nodiscard]] Result<PictureWish> read_picture_query(std::string_view query);
+[[nodiscard]] Result<PictureRequest> read_picture_query(std::string_view query);
 
 }  // namespace cellmirror::web

@@ -55,7 +55,7 @@ class LiveSession {
   std::size_t commands_waiting_ = 0;
   std::size_t picks_waiting_ = 0;
   std::unique_ptr<PictureStream> stream_;
-  PictureWish wish_;
+  PictureRequest wish_;
   PictureCredit credit_;
   std::uint64_t newest_ = 0;  // sequence of the stream
   std::string told_;          // problem of the stream

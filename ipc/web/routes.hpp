@@ -15,7 +15,7 @@ namespace cellmirror::web {
 using Work = std::function<Answer()>;
 // One picture, drawn by another thread.
 struct TakeSnapshot {
-  PictureWish wish;
+  PictureRequest wish;
   ImageFormat format = ImageFormat::png;
 };
 // The body is a SCRIPT command.

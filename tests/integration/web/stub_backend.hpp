@@ -19,7 +19,7 @@ class StubStream final : public PictureStream {
  public:
   StubStream(std::atomic<int>& open, const std::atomic<bool>& fails) : open_(open), fails_(fails) { ++open_; }
   ~StubStream() override { --open_; }
-  void change(const PictureWish& /*wish*/) override {}
+  void change(const PictureRequest& /*wish*/) override {}
   [[nodiscard]] std::string problem() const override { return fails_ ? "there is no camera C" : ""; }
   [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has) const override {
     if (fails_) return nullptr;
@@ -65,17 +65,17 @@ class StubBackend final : public Backend {
     }
   }
   void expect_pictures() override { ++expected; }
-  Result<std::unique_ptr<PictureStream>> open_pictures(const PictureWish& /*wish*/) override {
+  Result<std::unique_ptr<PictureStream>> open_pictures(const PictureRequest& /*wish*/) override {
     return std::make_unique<StubStream>(open_streams, pictures_fail);
   }
-  void ask_picture(const PictureWish& wish, ImageFormat format, PictureReply reply) override {
+  void ask_picture(const PictureRequest& wish, ImageFormat format, PictureReply reply) override {
     const auto give = [reply = std::move(reply),
                        picture = EncodedImage{format, wish.width, wish.height, {1, 2, 3}, {}, 1}] { reply(picture); };
     const std::scoped_lock lock(mutex);
     pictures.push_back(give);
     if (!keep_waiting) give();
   }
-  void ask_pick(const PictureWish& /*wish*/, int x, int /*y*/, PickReply reply) override {
+  void ask_pick(const PictureRequest& /*wish*/, int x, int /*y*/, PickReply reply) override {
     const auto give = [x, reply = std::move(reply)] {
       reply(x == 0 ? std::nullopt : std::optional(PickedObject{"Robot.J_1", "ROBOT"}));
     };

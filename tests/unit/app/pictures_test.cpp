@@ -61,7 +61,7 @@ TEST(SnapshotRequest, ArrivesAsItWasAsked) {
   EXPECT_EQ(sut->quality, 70);
   EXPECT_EQ(sut->format, ImageFormat::jpeg);
   EXPECT_FALSE(sut->view);
-  const web::PictureWish wish = wish_of(*sut, 640, 480);
+  const PictureRequest wish = wish_of(*sut, 640, 480);
   EXPECT_EQ(wish.width, 320);
   EXPECT_TRUE(check_wish(wish));
 }
@@ -89,9 +89,9 @@ TEST(SnapshotAnswer, BringsTheFile) {
     EXPECT_FALSE(snapshot_answer(text)) << text;
 }
 
-TEST(PictureWish, OutOfRangeIsRefused) {
+TEST(PictureRequest, OutOfRangeIsRefused) {
   const auto refused = [](auto change) {
-    web::PictureWish wish;
+    PictureRequest wish;
     change(wish);
     return !check_wish(wish).has_value();
   };
@@ -112,10 +112,10 @@ TEST(PictureWish, OutOfRangeIsRefused) {
   EXPECT_TRUE(refused([](auto& w) { w.free_view = View(), w.free_view->far_distance = 0; }));
 }
 
-TEST(PictureWish, OneDrawingServesOtherRatesAndQualities) {
-  web::PictureWish a;
+TEST(PictureRequest, OneDrawingServesOtherRatesAndQualities) {
+  PictureRequest a;
   a.free_view = View();
-  web::PictureWish b = a;
+  PictureRequest b = a;
   b.rate_hz = 1;
   b.quality = 5;
   EXPECT_TRUE(same_drawing(a, b));
@@ -152,7 +152,7 @@ TEST(PictureStreams, PictureOfAnEarlierWishIsNotShown) {
   const auto stream = sut.open({});
   const auto looker = sut.all().at(0);
   looker->show(numbered(1), {});
-  web::PictureWish other;
+  PictureRequest other;
   other.view = 3;
   stream->change(other);
   EXPECT_EQ(stream->newest(0), nullptr);
@@ -165,8 +165,8 @@ TEST(PictureStreams, PictureOfAnEarlierWishIsNotShown) {
   EXPECT_EQ(looker->wish().width, 640) << "a wish that nobody can fulfil changes nothing";
 }
 
-web::PictureWish seen_from(double x) {
-  web::PictureWish wish;
+PictureRequest seen_from(double x) {
+  PictureRequest wish;
   wish.free_view = View();
   wish.free_view->viewpoint.x() = x;
   return wish;
@@ -175,7 +175,7 @@ web::PictureWish seen_from(double x) {
 // A view that is turned by hand is another wish with every picture.
 TEST(Shots, TakeNoMoreMemoryThanThereAreThatLook) {
   Shots sut;
-  const web::PictureWish stays;
+  const PictureRequest stays;
   const std::uint8_t* const kept = [&] {
     Shot& shot = sut.of(stays);
     shot.image.rgba.resize(100);
@@ -183,7 +183,7 @@ TEST(Shots, TakeNoMoreMemoryThanThereAreThatLook) {
   }();
   const std::uint8_t* turned = nullptr;
   for (int i = 0; i < 20; ++i) {
-    const std::vector<web::PictureWish> wishes = {stays, seen_from(i)};
+    const std::vector<PictureRequest> wishes = {stays, seen_from(i)};
     sut.keep(wishes);
     Shot& shot = sut.of(wishes[1]);
     EXPECT_FALSE(shot.drawn.known()) << i;
@@ -229,7 +229,7 @@ TEST(PictureStreams, PictureThatWasDrawnEarlierIsShownToo) {
   const auto looker = sut.all().at(0);
   looker->show(numbered(9), {});
   EXPECT_EQ(stream->newest(0)->sequence, 9U);
-  web::PictureWish other;
+  PictureRequest other;
   other.view = 3;
   stream->change(other);
   looker->show(numbered(4), other);
@@ -248,7 +248,7 @@ TEST(PictureStreams, TellWhyThereIsNoPictureOfWhatIsWishedNow) {
   EXPECT_EQ(stream->problem(), "");
   looker->tell(Error{"gone", ""}, {});
   EXPECT_EQ(stream->problem(), "gone");
-  web::PictureWish other;
+  PictureRequest other;
   other.camera = "C";
   stream->change(other);
   EXPECT_EQ(stream->problem(), "");
@@ -277,7 +277,7 @@ TEST(PictureStreams, WhoDoesNotAskDoesNotLook) {
 TEST(PictureStreams, AreBoundedAndEndWithTheirClients) {
   ManualClock clock;
   PictureStreams sut(clock);
-  std::vector<std::unique_ptr<web::PictureStream>> streams;
+  std::vector<std::unique_ptr<PictureStream>> streams;
   for (std::size_t i = 0; i < PictureStreams::kMost; ++i) streams.push_back(sut.open({}));
   EXPECT_EQ(sut.open({}), nullptr);
   streams.pop_back();

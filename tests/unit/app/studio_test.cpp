@@ -25,7 +25,7 @@ class StudioTest : public testing::Test {
     };
     return options;
   }
-  static Result<EncodedImage> picture_of(Studio& studio, const web::PictureWish& wish) {
+  static Result<EncodedImage> picture_of(Studio& studio, const PictureRequest& wish) {
     const auto answer = std::make_shared<std::promise<Result<EncodedImage>>>();
     studio.ask_picture(wish, ImageFormat::png,
                        [answer](Result<EncodedImage> taken) { answer->set_value(std::move(taken)); });
@@ -103,7 +103,7 @@ TEST_F(StudioTest, OnceSomebodyIsExpectedTheRendererIsMade) {
 
 TEST_F(StudioTest, WishesThatNobodyCanFulfilAreRefusedAtOnce) {
   Studio sut(broken(), boards_, updates_);
-  web::PictureWish wish;
+  PictureRequest wish;
   wish.view = 9;
   EXPECT_FALSE(sut.open_pictures(wish));
   EXPECT_FALSE(picture_of(sut, wish));
