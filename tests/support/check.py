@@ -128,7 +128,7 @@ class Check:
             self.tests("threads", "build-tsan", "-L", "^(stress|concurrency)$", **SANITIZER_OPTIONS)
 
     def tidy(self) -> None:
-        self.stage("clang-tidy", lambda: clang_tidy.run(ROOT / "build-fuzz"))
+        self.stage("clang-tidy", lambda: clang_tidy.run(ROOT / "build-fuzz", full=self.options.full))
 
     def finish(self) -> int:
         print()
@@ -148,6 +148,7 @@ class Check:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="./check", description="Sets up, builds and runs every test.")
     parser.add_argument("--quick", action="store_true", help="release build only: lint and the tests that need no clock")
+    parser.add_argument("--full", action="store_true", help="clang-tidy over every source, however long it takes")
     parser.add_argument("--label", help="only the release tests with this label: unit, integration, golden, fuzz, stress, lint, docs, bench")
     check = Check(parser.parse_args())
     check.release()

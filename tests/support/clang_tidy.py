@@ -1,8 +1,9 @@
 """clang-tidy over every source of ours that the clang build compiles, on all cores.
 
 What was clean is remembered by the content of the source and of all headers of ours that it includes, so that a second run
-looks only at what changed. TIDY_SECONDS bounds the time; what was committed last comes first, so that the bound leaves out what
-has been clean for longest. Sources that were not reached count as skipped."""
+checks only what changed. The sources that the change touches (since CHECK_BASE, by default the newest commit that is twelve hours
+older than HEAD) come first and have TIDY_CHANGE_SECONDS; the others, what was committed last first, have TIDY_SECONDS together.
+`./check --full` has no bound. Sources that were not reached count as skipped."""
 
 import hashlib
 import json
@@ -19,6 +20,8 @@ from test_report import Report
 ROOT = Path(__file__).resolve().parents[2]
 TIDY = "clang-tidy-19"
 SECONDS = float(os.environ.get("TIDY_SECONDS", "40"))
+CHANGE_SECONDS = float(os.environ.get("TIDY_CHANGE_SECONDS", "420"))
+CHANGE_AGE = 12 * 3600  # s
 CLEAN = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cellmirror/clang-tidy"
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.MULTILINE)
 
@@ -39,6 +42,19 @@ def newest_first() -> dict[str, int]:
     for path in log.splitlines():
         order.setdefault(path, len(order))
     return order
+
+
+def git(*arguments: str) -> str:
+    return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True).stdout
+
+
+def touched() -> set[str]:
+    """Paths that differ from the base of the change, also where that is not committed; empty where git does not know."""
+    base = os.environ.get("CHECK_BASE", "")
+    if not base:
+        head = git("log", "-1", "--format=%ct").strip()
+        base = git("rev-list", "-1", f"--before={int(head) - CHANGE_AGE}", "HEAD").strip() if head else ""
+    return set(git("diff", "--name-only", base).splitlines()) if base else set()
 
 
 def each_source(commands: list[dict[str, str]]) -> list[dict[str, str]]:
@@ -92,7 +108,7 @@ def check(build: Path, unit: Path, command: str, end: float) -> str | None:
     return result.stdout.strip() or result.stderr.strip()
 
 
-def run(build: Path) -> Report:
+def run(build: Path, full: bool = False) -> Report:
     report = Report()
     for entry in empty_entries():
         report.fail(".clang-tidy", f"'{entry}' names no check")
@@ -101,22 +117,29 @@ def run(build: Path) -> Report:
         return report
     CLEAN.mkdir(parents=True, exist_ok=True)
     units = sources(build)
-    end = time.monotonic() + SECONDS
+    changed = touched()
+    first = [unit for unit in units if str(unit.relative_to(ROOT)) in changed]
+    check_all(report, build, {unit: units[unit] for unit in first}, None if full else CHANGE_SECONDS)
+    check_all(report, build, {unit: command for unit, command in units.items() if unit not in set(first)}, None if full else SECONDS)
+    return report
+
+
+def check_all(report: Report, build: Path, units: dict[Path, str], bound: float | None) -> None:
+    end = time.monotonic() + (bound if bound is not None else float("inf"))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         results = pool.map(lambda unit: check(build, unit, units[unit], end), units)
         for unit, findings in zip(units, results):
             name = str(unit.relative_to(ROOT))
             if findings is None:
-                report.skip(name, f"not reached within TIDY_SECONDS={SECONDS:g}")
+                report.skip(name, f"not reached by clang-tidy within {bound:g} s; ./check --full reaches all")
             elif findings:
                 report.fail(name, findings)
             else:
                 report.passed += 1
-    return report
 
 
 if __name__ == "__main__":
-    outcome = run(Path(sys.argv[1]).resolve())
+    outcome = run(Path(sys.argv[1]).resolve(), full="--full" in sys.argv)
     for case in outcome.failed:
         print(f"{case.name}\n{case.detail}\n")
     print(outcome)
