@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "app/pictures/base64.hpp"
+#include "rt_core/base/base64.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {

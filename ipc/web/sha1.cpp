@@ -2,6 +2,8 @@
 
 #include <bit>
 #include <cstddef>
+#include <span>
+#include <string>
 
 namespace cellmirror::web {
 
@@ -55,18 +57,6 @@ std::array<std::uint8_t, 20> sha1(std::string_view bytes) {
   }
   std::array<std::uint8_t, 20> out{};
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<std::uint8_t>(state[i / 4] >> (24 - 8 * (i % 4)));
-  return out;
-}
-
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    const std::size_t here = std::min<std::size_t>(3, bytes.size() - at);
-    std::uint32_t group = 0;
-    for (std::size_t i = 0; i < 3; ++i) group = (group << 8U) | (i < here ? bytes[at + i] : 0U);
-    for (std::size_t i = 0; i < 4; ++i) out += i <= here ? kDigits[(group >> (18 - 6 * i)) & 63U] : '=';
-  }
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "ipc/web/sha1.hpp"
+#include "rt_core/base/base64.hpp"
 
 namespace cellmirror::web {
 

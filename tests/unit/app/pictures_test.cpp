@@ -7,7 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "app/pictures/base64.hpp"
 #include "app/pictures/film.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/snapshot_request.hpp"
@@ -22,27 +21,6 @@ namespace cellmirror::app {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
-
-// RFC 4648, section 10.
-TEST(Base64, IsThatOfTheRfc) {
-  for (const auto& [plain, text] : std::vector<std::pair<std::string, std::string>>{{"", ""},
-                                                                                    {"f", "Zg=="},
-                                                                                    {"fo", "Zm8="},
-                                                                                    {"foo", "Zm9v"},
-                                                                                    {"foob", "Zm9vYg=="},
-                                                                                    {"fooba", "Zm9vYmE="},
-                                                                                    {"foobar", "Zm9vYmFy"}}) {
-    EXPECT_EQ(base64(bytes_of(plain)), text);
-    EXPECT_EQ(from_base64(text), bytes_of(plain));
-  }
-}
-
-TEST(Base64, WhatIsNoneIsRefused) {
-  for (const char* text : {"Z", "Zg=", "Zg", "Z===", "Zh==", "Zm9=", "Zm 9", "=Zg=", "Zg==Zg=="})
-    EXPECT_FALSE(from_base64(text)) << text;
-}
 
 TEST(SnapshotRequest, ArrivesAsItWasAsked) {
   SnapshotRequest wanted;

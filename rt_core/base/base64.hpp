@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-namespace cellmirror::app {
+namespace cellmirror {
 
 [[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
-// Nothing where the text is not what base64() gives: other characters, wrong length or padding.
+// None where the text is nothing that base64() returns: other characters, wrong length or padding.
 [[nodiscard]] std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text);
 
-}  // namespace cellmirror::app
+}  // namespace cellmirror

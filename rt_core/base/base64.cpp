@@ -1,9 +1,9 @@
-#include "app/pictures/base64.hpp"
+#include "rt_core/base/base64.hpp"
 
 #include <algorithm>
 #include <array>
 
-namespace cellmirror::app {
+namespace cellmirror {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
   return out;
 }
 
-}  // namespace cellmirror::app
+}  // namespace cellmirror
