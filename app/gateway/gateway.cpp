@@ -293,6 +293,7 @@ void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply
 // Serves nobody yet: whoever answers for the gateway asks it for its report.
 void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings& settings) {
   WebBackend::Parts parts;
+  parts.clock = &clock;
   parts.home = home->root();
   parts.board = &board;
   parts.owner = owner.get();

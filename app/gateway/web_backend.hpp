@@ -22,6 +22,7 @@ class WebBackend final : public web::Backend {
  public:
   // None of what is pointed to is owned; all of it outlives the backend.
   struct Parts {
+    const Clock* clock = nullptr;
     std::filesystem::path home;
     const Board<CellState>* board = nullptr;
     CellOwner* owner = nullptr;
@@ -34,6 +35,7 @@ class WebBackend final : public web::Backend {
 
   explicit WebBackend(Parts parts) : parts_(std::move(parts)) {}
 
+  [[nodiscard]] const Clock& clock() const override { return *parts_.clock; }
   [[nodiscard]] std::string live_json() override;
   [[nodiscard]] std::string status_json() override { return parts_.status(); }
   [[nodiscard]] std::string tree_json() override;

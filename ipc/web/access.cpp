@@ -95,4 +95,18 @@ std::string_view bearer_token(const HttpRequest& request) {
                                                                       : std::string_view();
 }
 
+bool offers_subprotocol(const HttpRequest& request) {
+  return request.header_has("sec-websocket-protocol", kSubprotocol);
+}
+
+std::string opening_token(const HttpRequest& request) {
+  constexpr std::string_view kMark = "cellmirror.token.";
+  if (const std::string_view bearer = bearer_token(request); !bearer.empty()) return std::string(bearer);
+  const std::string* offered = request.header("sec-websocket-protocol");
+  const std::size_t at = offered == nullptr ? std::string::npos : offered->find(kMark);
+  if (at == std::string::npos) return {};
+  const std::size_t begin = at + kMark.size();
+  return offered->substr(begin, offered->find_first_of(", ", begin) - begin);
+}
+
 }  // namespace cellmirror::web

@@ -40,4 +40,11 @@ class AccessRules {
 // Of "Authorization: Bearer TOKEN"; empty: there is none.
 [[nodiscard]] std::string_view bearer_token(const HttpRequest& request);
 
+// Scripts in browsers cannot add headers to the opening of a WebSocket, but they can name subprotocols: this one, and
+// next to it "cellmirror.token." with the token. The server selects the first one.
+inline constexpr std::string_view kSubprotocol = "cellmirror.live";
+[[nodiscard]] bool offers_subprotocol(const HttpRequest& request);
+// The bearer token, or that of the subprotocols; empty: there is none.
+[[nodiscard]] std::string opening_token(const HttpRequest& request);
+
 }  // namespace cellmirror::web

@@ -55,10 +55,10 @@ std::string_view reason(int status) {
   }
 }
 
-std::string http_date() {
-  const std::time_t now = std::time(nullptr);
+std::string http_date(Timestamp now) {
+  const std::time_t wall = to_wall_clock_ns(now) / 1'000'000'000;
   std::tm parts{};
-  gmtime_r(&now, &parts);
+  gmtime_r(&wall, &parts);
   std::array<char, 64> text{};
   const std::size_t length = std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
   return {text.data(), length};
@@ -120,9 +120,9 @@ Answer file_answer(const PageFile& file, const HttpRequest& request) {
   return out;
 }
 
-std::string head_of(const Answer& answer) {
+std::string head_of(const Answer& answer, Timestamp now) {
   std::string out = fmt::format("HTTP/1.1 {} {}\r\nDate: {}\r\n{}Connection: close\r\n", answer.status,
-                                reason(answer.status), http_date(), kSecurityHeaders);
+                                reason(answer.status), http_date(now), kSecurityHeaders);
   bool cached = false;
   for (const auto& [name, value] : answer.headers) {
     out += fmt::format("{}: {}\r\n", name, value);

@@ -10,6 +10,7 @@
 #include "ipc/web/outgoing.hpp"
 #include "ipc/web/page_files.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
 
 namespace cellmirror::web {
@@ -28,7 +29,7 @@ struct Answer {
 // 304 where the client has the file already; compressed where it takes that.
 [[nodiscard]] Answer file_answer(const PageFile& file, const HttpRequest& request);
 
-// The status line and all headers. The connection is closed behind every answer.
-[[nodiscard]] std::string head_of(const Answer& answer);
+// The status line and all headers. Every answer ends its connection.
+[[nodiscard]] std::string head_of(const Answer& answer, Timestamp now);
 
 }  // namespace cellmirror::web

@@ -1,5 +1,6 @@
 #include "ipc/web/connection.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -9,6 +10,7 @@
 #include <exception>
 #include <utility>
 
+#include "ipc/web/peer.hpp"
 #include "ipc/web/server_message.hpp"
 
 namespace cellmirror::web {
@@ -221,9 +223,12 @@ void Connection::do_route(ExecuteBody& /*execute*/, Timestamp now) {
 }
 
 void Connection::do_route(OpenWebSocket& open, Timestamp now) {
-  if (context_.counters.clients.load(std::memory_order_relaxed) >= kMaxClients) {
+  place_ = context_.places.take(peer_of(fd()), open.has_token);
+  if (place_ == nullptr) {
     count(context_.counters.refused);
-    return answer(text_answer(503, "too many pages look at this gateway already"));
+    return answer(text_answer(503,
+                              "too many pages of this gateway are open already; close one of yours, or open the page "
+                              "by the address that this prints: cellmirror page"));
   }
   count(context_.counters.clients);
   // A picture that waits in the kernel is an old one: room for about two.
@@ -231,8 +236,10 @@ void Connection::do_route(OpenWebSocket& open, Timestamp now) {
   ::setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
   stage_ = Stage::live;
   session_.emplace(context_, number_);
-  out_.push("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: " +
-            open.accept + "\r\n\r\n");
+  out_.push(
+      fmt::format("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
+                  "Upgrade\r\nSec-WebSocket-Accept: {}\r\n{}\r\n",
+                  open.accept, open.subprotocol ? fmt::format("Sec-WebSocket-Protocol: {}\r\n", kSubprotocol) : ""));
   session_->welcome(out_);
   write_some(now);
   if (!in_.empty() && !over()) {
@@ -258,12 +265,15 @@ void Connection::execute_body(Timestamp now) {
 }
 
 void Connection::take_frames(Timestamp now) {
-  while (const auto message = frames_.next()) {
-    if (closing_ && message->opcode != Opcode::close) continue;
-    if (!closing_ && !session_->may_say_more(now)) {
+  for (;;) {
+    const auto message = frames_.next();
+    // Frames are counted, not messages: a message may have any number of empty parts.
+    if (!closing_ && !session_->may_say_more(frames_.take_count(), now)) {
       end(CloseCode::policy, "too much");
       break;
     }
+    if (!message) break;
+    if (closing_ && message->opcode != Opcode::close) continue;
     switch (message->opcode) {
       case Opcode::text:
         if (!session_->receive(message->payload, now, out_)) end(CloseCode::policy, "wrong tokens");
@@ -312,7 +322,7 @@ void Connection::answer(const Answer& answer) {
   if (stage_ != Stage::head && stage_ != Stage::body && stage_ != Stage::waiting) return;
   stage_ = Stage::answering;
   since_ = now_;
-  out_.push(head_of(answer));
+  out_.push(head_of(answer, now_));
   if (!head_only_) out_.push(answer.body);
   write_some(now_);
 }

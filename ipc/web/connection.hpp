@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -78,6 +79,7 @@ class Connection {
   bool head_only_ = false;
   Outgoing out_;
   std::optional<LiveSession> session_;
+  std::shared_ptr<void> place_;  // of a WebSocket
   FrameReader frames_{kMaxMessageBytes};
   bool closing_ = false;     // of a WebSocket: a close frame is on its way
   std::size_t drained_ = 0;  // bytes

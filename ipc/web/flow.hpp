@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "rt_core/base/time.hpp"
@@ -31,11 +32,14 @@ class RateLimit {
  public:
   explicit RateLimit(double per_second) : per_second_(per_second), left_(2.0 * per_second) {}
 
-  [[nodiscard]] bool allows(Timestamp now) {
+  [[nodiscard]] bool allows(Timestamp now) { return allows(1, now); }
+  // That many at once; all or none of them.
+  [[nodiscard]] bool allows(std::size_t number, Timestamp now) {
     if (last_.known()) left_ = std::min(2.0 * per_second_, left_ + per_second_ * std::max(0.0, seconds(now - last_)));
     last_ = now;
-    if (left_ < 1.0) return false;
-    left_ -= 1.0;
+    const auto cost = static_cast<double>(number);
+    if (left_ < cost) return false;
+    left_ -= cost;
     return true;
   }
 

@@ -22,8 +22,8 @@ class LiveSession {
   LiveSession(ServerContext& context, std::uint64_t connection) : context_(context), connection_(connection) {}
 
   void welcome(Outgoing& out) const;
-  // Counts a message, also pings and pongs. False: there were too many, the client is to be cut.
-  [[nodiscard]] bool may_say_more(Timestamp now) { return messages_.allows(now); }
+  // Counts frames: messages, their parts, pings and pongs. False: there were too many; the connection is to be closed.
+  [[nodiscard]] bool may_say_more(std::size_t frames, Timestamp now) { return frames_.allows(frames, now); }
   // False: the client is to be cut.
   [[nodiscard]] bool receive(std::string_view text, Timestamp now, Outgoing& out);
   void command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out);
@@ -50,7 +50,7 @@ class LiveSession {
   Timestamp now_;  // of the message that is followed
   bool may_command_ = false;
   int wrong_tokens_ = 0;
-  RateLimit messages_{kMessagesPerSecond};
+  RateLimit frames_{kFramesPerSecond};
   RateLimit commands_{kCommandsPerSecond};
   std::size_t commands_waiting_ = 0;
   std::size_t picks_waiting_ = 0;
@@ -61,7 +61,7 @@ class LiveSession {
   std::string told_;          // problem of the stream
   std::optional<Timestamp> no_credit_since_;
 
-  static constexpr double kMessagesPerSecond = 500;  // no person and no page sends more
+  static constexpr double kFramesPerSecond = 500;  // no person and no page sends more
 };
 
 }  // namespace cellmirror::web

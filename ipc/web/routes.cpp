@@ -68,7 +68,10 @@ Route command(const HttpRequest& request, ServerContext& context) {
 
 Route live(const HttpRequest& request, ServerContext& context) {
   auto accept = websocket_accept(request);
-  if (accept) return OpenWebSocket{std::move(*accept)};
+  if (accept) {
+    const bool has_token = token_matches(opening_token(request), context.options.token);
+    return OpenWebSocket{std::move(*accept), has_token, offers_subprotocol(request)};
+  }
   Answer answer = refused(context, 426, "this address speaks WebSocket, version 13");
   answer.headers.emplace_back("Upgrade", "websocket");
   answer.headers.emplace_back("Sec-WebSocket-Version", "13");

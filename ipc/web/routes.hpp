@@ -20,9 +20,11 @@ struct TakeSnapshot {
 };
 // The body is a SCRIPT command.
 struct ExecuteBody {};
-// The connection becomes a WebSocket; its header Sec-WebSocket-Accept.
+// The connection becomes a WebSocket.
 struct OpenWebSocket {
-  std::string accept;
+  std::string accept;  // the header Sec-WebSocket-Accept
+  bool has_token = false;
+  bool subprotocol = false;  // to be selected
 };
 using Route = std::variant<Answer, Work, TakeSnapshot, ExecuteBody, OpenWebSocket>;
 

@@ -10,6 +10,7 @@
 #include "ipc/web/flow.hpp"
 #include "ipc/web/inbox.hpp"
 #include "ipc/web/job_pool.hpp"
+#include "ipc/web/places.hpp"
 #include "ipc/web/web_backend.hpp"
 #include "ipc/web/web_server.hpp"
 
@@ -39,6 +40,7 @@ struct ServerContext {
   Counters& counters;
   // Of POST /api/command: of all clients together, since each command has a connection of its own. Server's thread.
   RateLimit posted_commands{kCommandsPerSecond};
+  Places places{};  // of WebSockets; server's thread
   // Snapshots that are being drawn or wait for that, also for clients that are gone; whoever brings one counts it down,
   // maybe after the end of the server.
   std::shared_ptr<std::atomic<std::uint64_t>> snapshots = std::make_shared<std::atomic<std::uint64_t>>(0);

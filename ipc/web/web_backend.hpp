@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
 #include "rt_core/ports/picture_request.hpp"
 
@@ -21,6 +22,8 @@ struct CommandReply {
 class Backend {
  public:
   virtual ~Backend() = default;
+  // The time of everything that the server does; outlives it.
+  [[nodiscard]] virtual const Clock& clock() const = 0;
   // JSON documents, made anew. What the page shows a few times a second: small, the same keys as `status --json` where
   // they are the same thing (docs/monitor-page.md).
   [[nodiscard]] virtual std::string live_json() = 0;

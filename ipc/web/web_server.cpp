@@ -36,8 +36,6 @@ constexpr Nanoseconds kNoDescriptorWait{100'000'000};
 constexpr std::size_t kWorkers = 2;
 constexpr int kBacklog = 128;
 
-Timestamp clock_now() { return SystemClock().now(); }
-
 struct SocketAddress {
   sockaddr_storage bytes{};
   socklen_t length = 0;
@@ -157,16 +155,17 @@ int Server::Impl::poll_timeout_ms(Timestamp now) const {
 
 void Server::Impl::serve() {
   set_thread_name("web");
+  const Clock& clock = context->backend.clock();
   std::vector<pollfd> polled;
   for (;;) {
     polled.clear();
     polled.push_back({inbox->fd(), POLLIN, 0});
-    const Timestamp before = clock_now();
+    const Timestamp before = clock.now();
     polled.push_back({listener.get(), static_cast<short>(before < accept_again ? 0 : POLLIN), 0});
     for (const auto& connection : connections) polled.push_back({connection->fd(), connection->wanted_events(), 0});
     const int ready = ::poll(polled.data(), polled.size(), poll_timeout_ms(before));
     if (ready < 0 && errno != EINTR) return;
-    const Timestamp now = clock_now();
+    const Timestamp now = clock.now();
     if (stopping.load(std::memory_order_acquire)) break;
     for (std::size_t i = 0; ready > 0 && i < connections.size(); ++i) {
       if (polled[i + 2].revents != 0) connections[i]->go_on(polled[i + 2].revents, now);
@@ -264,7 +263,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Back
     if (!token) return std::unexpected(token.error());
     settled.token = std::move(*token);
   }
-  if (settled.run.empty()) settled.run = std::to_string(to_wall_clock_ns(clock_now()));
+  if (settled.run.empty()) settled.run = std::to_string(to_wall_clock_ns(backend.clock().now()));
   auto listener = listen_at(options.address, options.port);
   if (!listener) return std::unexpected(listener.error());
   Descriptor wake_up(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));

@@ -14,7 +14,8 @@
 namespace cellmirror::web {
 
 inline constexpr int kDefaultPort = 8420;
-inline constexpr std::size_t kMaxClients = 16;              // WebSockets at once
+inline constexpr std::size_t kMaxWebSockets = 16;           // at once; one of them is kept for the token
+inline constexpr std::size_t kMaxWebSocketsPerUser = 8;     // of this machine, or per address; without the token
 inline constexpr std::size_t kMaxConnections = 64;          // with those of requests
 inline constexpr std::size_t kMaxSnapshotsWaiting = 8;      // of all clients; the gateway's pictures have other uses
 inline constexpr std::size_t kMaxMessageBytes = 16 * 1024;  // from a client

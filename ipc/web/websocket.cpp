@@ -187,6 +187,7 @@ std::optional<WebSocketMessage> FrameReader::next() {
   while (!error_) {
     const auto header = read_header();
     if (!header) return std::nullopt;
+    ++count_;
     if (auto message = take(*header)) return message;
   }
   return std::nullopt;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "ipc/web/http_request.hpp"
 
@@ -53,6 +54,8 @@ class FrameReader {
   // The next whole message; none: more bytes are needed, or there is an error.
   [[nodiscard]] std::optional<WebSocketMessage> next();
   [[nodiscard]] std::optional<CloseCode> error() const { return error_; }
+  // Frames read since the last call, parts of messages included.
+  [[nodiscard]] std::size_t take_count() { return std::exchange(count_, 0); }
 
  private:
   struct Header;
@@ -64,6 +67,7 @@ class FrameReader {
   std::string bytes_;  // not yet taken
   std::string parts_;  // of a message that is not complete
   std::optional<Opcode> opcode_;
+  std::size_t count_ = 0;  // of frames
   std::optional<CloseCode> error_;
 };
 

@@ -300,8 +300,10 @@ class Server:
     async def upgrade(self, headers, reader, writer):
         key = headers["sec-websocket-key"] + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
         accept = base64.b64encode(hashlib.sha1(key.encode()).digest()).decode()
+        offered = "sec-websocket-protocol" in headers  # a browser ends the connection where none of them is selected
+        selected = "Sec-WebSocket-Protocol: cellmirror.live\r\n" if offered else ""
         writer.write(f"HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                     f"Sec-WebSocket-Accept: {accept}\r\n\r\n".encode())
+                     f"Sec-WebSocket-Accept: {accept}\r\n{selected}\r\n".encode())
         await Client(reader, writer, self.cell, self.options).serve()
 
     def file(self, path, writer):

@@ -23,6 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static_cast<void>(rules.host_allowed(*request.header("host")));
   static_cast<void>(rules.origin_allowed(request.header("origin")));
   static_cast<void>(token_matches(bearer_token(request), "0123456789abcdef"));
+  if (opening_token(request).size() > size) std::abort();
   static_cast<void>(websocket_accept(request));
   if (const auto wish = read_picture_query(request.query); wish && !check_picture_wish(*wish)) std::abort();
   return 0;

@@ -32,11 +32,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_message(bytes);
     return 0;
   }
+  constexpr std::size_t kShortestFrame = 6;
   FrameReader reader(kMost);
   reader.push(bytes);
   while (const auto message = reader.next()) {
+    if (reader.take_count() == 0) std::abort();
     if (message->payload.size() > kMost) std::abort();
     if (message->opcode == Opcode::text) read_message(message->payload);
   }
+  if (reader.take_count() > size / kShortestFrame) std::abort();
   return 0;
 }

@@ -28,6 +28,7 @@ class RawClient {
     connected_ = ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
   }
 
+  [[nodiscard]] int socket() const { return socket_.get(); }
   [[nodiscard]] bool connected() const { return connected_; }
 
   // False where the server has ended the connection.

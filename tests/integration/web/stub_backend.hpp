@@ -39,6 +39,7 @@ class StubStream final : public PictureStream {
 
 class StubBackend final : public Backend {
  public:
+  [[nodiscard]] const Clock& clock() const override { return clock_; }
   [[nodiscard]] std::string live_json() override {
     ++lives;
     return R"({"time_s":1})";
@@ -96,6 +97,9 @@ class StubBackend final : public Backend {
   std::vector<std::function<void()>> picks;
   std::vector<std::string> commands;
   std::vector<std::function<void(const CommandReply&)>> held;
+
+ private:
+  SystemClock clock_;
 };
 
 }  // namespace cellmirror::web

@@ -1,12 +1,13 @@
 // The connection against a socket that does what the test says.
 import test from "node:test";
 import assert from "node:assert/strict";
-import {Connection, pause_after} from "./modules/connection.js";
+import {Connection, pause_after, subprotocols} from "./modules/connection.js";
 
 class FakeSocket {
   static made = [];
-  constructor(address) {
+  constructor(address, protocols) {
     this.address = address;
+    this.protocols = protocols;
     this.sent = [];
     FakeSocket.made.push(this);
   }
@@ -30,6 +31,12 @@ test("it says hello with the token when it opens", (context) => {
   const {socket} = started(context);
   socket.onopen();
   assert.deepEqual(socket.sent, [{do: "hello", token: "secret"}]);
+});
+
+test("it opens with the token where there is one", (context) => {
+  const token = "0123456789abcdef0123456789abcdef";
+  assert.deepEqual(started(context, token).socket.protocols, ["cellmirror.live", `cellmirror.token.${token}`]);
+  for (const none of [null, "", "secret", "a b", token.toUpperCase()]) assert.deepEqual(subprotocols(none), []);
 });
 
 test("an answer finds the one who asked", async (context) => {

@@ -202,8 +202,17 @@ TEST(RateLimit, LetsABurstThroughAndThenTheRate) {
   EXPECT_FALSE(sut.allows(start + Nanoseconds(100'000'000)));
 }
 
+TEST(RateLimit, LetsAllOfANumberThroughOrNone) {
+  RateLimit sut(10);
+  const Timestamp start{1'000'000'000};
+  EXPECT_FALSE(sut.allows(21, start));
+  EXPECT_TRUE(sut.allows(20, start));
+  EXPECT_FALSE(sut.allows(1, start));
+  EXPECT_TRUE(sut.allows(0, start));
+}
+
 TEST(Answers, CarryWhatKeepsThePageApart) {
-  const std::string head = head_of(text_answer(200, "x"));
+  const std::string head = head_of(text_answer(200, "x"), Timestamp{1});
   for (const char* part :
        {"HTTP/1.1 200 OK\r\n", "Content-Security-Policy: default-src 'none'", "nosniff", "X-Frame-Options: DENY",
         "Cache-Control: no-store", "Connection: close", "Content-Length: 2\r\n"})

@@ -81,6 +81,18 @@ TEST(FrameReader, JoinsPartsAroundAPing) {
   EXPECT_EQ(message->payload, "Hello");
 }
 
+TEST(FrameReader, CountsPartsThatAreEmpty) {
+  FrameReader sut(100);
+  sut.push("\x01\x80\x00\x00\x00\x00"s);
+  for (int i = 0; i < 50; ++i) sut.push("\x00\x80\x00\x00\x00\x00"s);
+  EXPECT_FALSE(sut.next());
+  EXPECT_EQ(sut.take_count(), 51u);
+  EXPECT_EQ(sut.take_count(), 0u);
+  sut.push(kParts.substr(kParts.size() - 8));
+  EXPECT_EQ(sut.next().value_or(WebSocketMessage{}).payload, "lo");
+  EXPECT_EQ(sut.take_count(), 1u);
+}
+
 void expect_error(const std::string& bytes, CloseCode code) {
   FrameReader sut(100);
   sut.push(bytes);
