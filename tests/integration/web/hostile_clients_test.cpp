@@ -120,7 +120,7 @@ TEST_F(HostileClients, InGreatNumberLeaveRoomForOthers) {
 
 TEST_F(HostileClients, MayNotOpenMoreWebSocketsThanThereAre) {
   std::vector<std::unique_ptr<RawClient>> live;
-  for (std::size_t i = 0; i < kMaxClients; ++i) {
+  for (std::size_t i = 0; i < kMaxWebSocketsPerUser; ++i) {
     live.push_back(std::make_unique<RawClient>(sut->port()));
     ASSERT_TRUE(starts(live.back()->open_live(sut->port()), 101)) << i;
   }
