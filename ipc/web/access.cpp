@@ -55,7 +55,7 @@ bool AccessRules::host_allowed(std::string_view host) const {
 }
 
 bool AccessRules::is_own_host(std::string_view host) const {
-  // Port 80 is left out by clients.
+  // Clients omit port 80.
   if (host.ends_with(port_)) {
     host.remove_suffix(port_.size());
   } else if (port_ != ":80") {
@@ -76,7 +76,7 @@ bool AccessRules::origin_allowed(const std::string* origin) const {
 
 bool token_matches(std::string_view given, std::string_view token) {
   if (token.empty()) return false;
-  // Volatile, so that no compiler ends the loop as soon as it knows the answer.
+  // Volatile, so that the compiler cannot leave the loop early.
   volatile unsigned difference = given.size() == token.size() ? 0U : 1U;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const auto a = static_cast<unsigned char>(given[i]);

@@ -1,5 +1,5 @@
-// Who may ask: against other pages in the same browser (origin), names that were bent to this machine (DNS rebinding),
-// and everybody who does not know the token. Pure.
+// Access checks: the header Origin (pages of other sites in the same browser), the header Host (DNS rebinding), and
+// the token. Pure.
 #pragma once
 
 #include <string>
@@ -12,14 +12,14 @@ namespace cellmirror::web {
 
 class AccessRules {
  public:
-  // `address`: a numeric address where the server listens; `origins`: e.g. "https://monitor.example.org", of pages that
-  // may ask beside its own, as those behind a proxy.
+  // `address`: the numeric address on which the server listens; `origins`: further allowed origins, such as
+  // "https://monitor.example.org" of a proxy.
   AccessRules(std::string address, int port, std::vector<std::string> origins);
 
   // Whether the header Host names this server. On loopback: 127.0.0.1, localhost, [::1]; elsewhere any numeric address;
-  // the hosts of `origins` in both cases. A name that somebody else made point to this machine is none of them.
+  // in both cases the hosts of `origins`. A host name that an attacker resolves to this machine is not allowed.
   [[nodiscard]] bool host_allowed(std::string_view host) const;
-  // Programs that are no browsers send no Origin: null is allowed.
+  // Null (no such header) is allowed: programs other than browsers send none.
   [[nodiscard]] bool origin_allowed(const std::string* origin) const;
 
  private:
@@ -32,10 +32,10 @@ class AccessRules {
 
 // Whether only this machine can reach the address.
 [[nodiscard]] bool is_loopback(std::string_view address);
-// "http://host[:port]" or "https://...", nothing behind it.
+// "http://host[:port]" or "https://host[:port]", without a path.
 [[nodiscard]] bool is_origin(std::string_view text);
 
-// In a time that depends on the length of `given` alone. An empty token is never right.
+// Takes a time that depends on the length of `given` alone. An empty token never matches.
 [[nodiscard]] bool token_matches(std::string_view given, std::string_view token);
 // Of "Authorization: Bearer TOKEN"; empty: there is none.
 [[nodiscard]] std::string_view bearer_token(const HttpRequest& request);

@@ -64,7 +64,7 @@ std::string http_date(Timestamp now) {
   return {text.data(), length};
 }
 
-// Nothing is loaded from elsewhere, nobody frames the page, nothing is guessed.
+// No resources from other hosts, no framing of the page, no guessing of content types.
 constexpr std::string_view kSecurityHeaders =
     "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
@@ -107,7 +107,7 @@ Answer file_answer(const PageFile& file, const HttpRequest& request) {
   Answer out;
   out.content_type = file.content_type;
   out.headers.emplace_back("ETag", std::string(file.etag));
-  // Asked for again each time, so that a newer gateway's page is seen at once.
+  // Revalidated each time, so that the page of a newer gateway is shown at once.
   out.headers.emplace_back("Cache-Control", "no-cache");
   out.headers.emplace_back("Vary", "Accept-Encoding");
   if (request.header_has("if-none-match", file.etag)) {

@@ -19,14 +19,14 @@ struct Answer {
   int status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   Chunk body;
-  std::vector<std::pair<std::string_view, std::string>> headers;  // beside those that every answer has
+  std::vector<std::pair<std::string_view, std::string>> headers;  // in addition to those of every answer
 };
 
 [[nodiscard]] Answer text_answer(int status, std::string text);
 [[nodiscard]] Answer json_answer(std::string text);
-// 503 with the reason where there is none.
+// 503 with the reason where there is no picture.
 [[nodiscard]] Answer picture_answer(Result<EncodedImage> picture);
-// 304 where the client has the file already; compressed where it takes that.
+// 304 where the client has this version; compressed where the client accepts it.
 [[nodiscard]] Answer file_answer(const PageFile& file, const HttpRequest& request);
 
 // The status line and all headers. Every answer ends its connection.

@@ -20,7 +20,7 @@ using nlohmann::json;
 constexpr double kFarthest = 1e4;                // m
 constexpr std::size_t kLongestName = 16 * 1024;  // a dotted path
 
-// Collects the first mistake of a message.
+// Reads members of an object and keeps the first error.
 class Fields {
  public:
   explicit Fields(const json& object) : object_(object) {}
@@ -35,16 +35,16 @@ class Fields {
     const auto found = object_.find(name);
     if (found == object_.end()) return otherwise;
     if (found->is_number_unsigned() && found->get<std::uint64_t>() > static_cast<std::uint64_t>(max)) {
-      refuse(fmt::format("{} is not within {} and {}", name, min, max));
+      refuse(fmt::format("{} is not between {} and {}", name, min, max));
       return otherwise;
     }
     if (!found->is_number_integer()) {
-      refuse(fmt::format("{} is no whole number", name));
+      refuse(fmt::format("{} is not an integer", name));
       return otherwise;
     }
     const auto value = found->get<std::int64_t>();
     if (value >= min && value <= max) return value;
-    refuse(fmt::format("{} is not within {} and {}", name, min, max));
+    refuse(fmt::format("{} is not between {} and {}", name, min, max));
     return otherwise;
   }
 
@@ -52,7 +52,7 @@ class Fields {
     const auto found = object_.find(name);
     if (found == object_.end()) return otherwise;
     if (!found->is_number()) {
-      refuse(fmt::format("{} is no number", name));
+      refuse(fmt::format("{} is not a number", name));
       return otherwise;
     }
     return found->get<double>();
@@ -62,7 +62,7 @@ class Fields {
     const auto found = object_.find(name);
     if (found == object_.end()) return {};
     if (!found->is_string() || found->get_ref<const std::string&>().size() > most) {
-      refuse(fmt::format("{} is no text of at most {} bytes", name, most));
+      refuse(fmt::format("{} is not a string of at most {} bytes", name, most));
       return {};
     }
     return found->get<std::string>();
@@ -74,7 +74,7 @@ class Fields {
     const bool good = found != object_.end() && found->is_array() && found->size() == 3 && (*found)[0].is_number() &&
                       (*found)[1].is_number() && (*found)[2].is_number();
     if (!good) {
-      refuse(fmt::format("{} is no list of three numbers", name));
+      refuse(fmt::format("{} is not an array of three numbers", name));
       return out;
     }
     for (int i = 0; i < 3; ++i) out[i] = (*found)[static_cast<std::size_t>(i)].get<double>();
@@ -92,7 +92,7 @@ std::optional<View> read_free_view(Fields& fields) {
   if (!fields.has("free")) return std::nullopt;
   const json& object = fields["free"];
   if (!object.is_object()) {
-    fields.refuse("free is no object");
+    fields.refuse("free is not an object");
     return std::nullopt;
   }
   Fields view(object);
@@ -105,22 +105,22 @@ std::optional<View> read_free_view(Fields& fields) {
   return out;
 }
 
-PictureRequest read_wish(Fields& fields) {
-  PictureRequest wish;
-  if (fields.has("view")) wish.view = static_cast<int>(fields.whole("view", 0, 0, 6));
-  if (fields.has("camera")) wish.camera = fields.text("camera", kLongestName);
-  wish.free_view = read_free_view(fields);
-  wish.width = static_cast<int>(fields.whole("width", wish.width, 1, kLargestImageEdge));
-  wish.height = static_cast<int>(fields.whole("height", wish.height, 1, kLargestImageEdge));
-  wish.rate_hz = fields.number("rate_hz", wish.rate_hz);
-  wish.quality = static_cast<int>(fields.whole("quality", wish.quality, 1, 100));
-  return wish;
+PictureRequest read_picture(Fields& fields) {
+  PictureRequest request;
+  if (fields.has("view")) request.view = static_cast<int>(fields.whole("view", 0, 0, 6));
+  if (fields.has("camera")) request.camera = fields.text("camera", kLongestName);
+  request.free_view = read_free_view(fields);
+  request.width = static_cast<int>(fields.whole("width", request.width, 1, kLargestImageEdge));
+  request.height = static_cast<int>(fields.whole("height", request.height, 1, kLargestImageEdge));
+  request.rate_hz = fields.number("rate_hz", request.rate_hz);
+  request.quality = static_cast<int>(fields.whole("quality", request.quality, 1, 100));
+  return request;
 }
 
 CommandMessage read_command(Fields& fields, std::int64_t id) {
   CommandMessage out{id, fields.text("text", kMaxCommandBytes)};
-  if (trimmed(out.text).empty()) fields.refuse("there is no command in text");
-  if (out.text.find('\0') != std::string::npos) fields.refuse("the command holds a NUL");
+  if (trimmed(out.text).empty()) fields.refuse("text contains no command");
+  if (out.text.find('\0') != std::string::npos) fields.refuse("the command contains a NUL");
   return out;
 }
 
@@ -133,8 +133,8 @@ ClientMessage read_by_name(Fields& fields, std::string_view name, std::int64_t i
   constexpr std::size_t kLongestToken = 128;
   if (name == "hello") return HelloMessage{fields.text("token", kLongestToken)};
   if (name == "picture") {
-    const PictureMessage message{read_wish(fields)};
-    if (const auto good = check_picture_wish(message.wish); !good) fields.refuse(good.error().text());
+    const PictureMessage message{read_picture(fields)};
+    if (const auto good = check_picture_request(message.request); !good) fields.refuse(good.error().text());
     return message;
   }
   if (name == "shown") {
@@ -144,8 +144,8 @@ ClientMessage read_by_name(Fields& fields, std::string_view name, std::int64_t i
   if (name == "command") return read_command(fields, id);
   if (name == "pick") return read_pick(fields, id);
   if (name != "no_picture")
-    fields.refuse(fmt::format("do is \"{}\"; known are hello, picture, no_picture, shown, command and pick",
-                              printable(name, 32)));
+    fields.refuse(
+        fmt::format("do is \"{}\"; expected hello, picture, no_picture, shown, command or pick", printable(name, 32)));
   return NoPictureMessage{};
 }
 
@@ -154,35 +154,37 @@ bool within(const Eigen::Vector3d& p) { return p.allFinite() && p.cwiseAbs().max
 Result<void> check_free_view(const View& view) {
   constexpr double kNarrowest = 1e-3;  // rad
   constexpr double kWidest = 3.1;
-  if (!within(view.viewpoint) || !within(view.lookpoint)) return fail("the free view is too far away");
-  if ((view.viewpoint - view.lookpoint).norm() < 1e-6) return fail("the free view's viewpoint is its lookpoint");
-  if (!std::isfinite(view.twist) || std::abs(view.twist) > 100.0) return fail("twist_rad is out of bounds");
+  if (!within(view.viewpoint) || !within(view.lookpoint))
+    return fail("the free view is more than 10 km from the origin");
+  if ((view.viewpoint - view.lookpoint).norm() < 1e-6)
+    return fail("viewpoint and lookpoint of the free view are the same");
+  if (!std::isfinite(view.twist) || std::abs(view.twist) > 100.0) return fail("twist_rad is out of range");
   if (!(view.opening_angle >= kNarrowest && view.opening_angle <= kWidest))
-    return fail(fmt::format("opening_angle_rad is not within {} and {}", kNarrowest, kWidest));
+    return fail(fmt::format("opening_angle_rad is not between {} and {}", kNarrowest, kWidest));
   return {};
 }
 
 }  // namespace
 
-Result<void> check_picture_wish(const PictureRequest& wish) {
-  if (int{wish.view.has_value()} + int{wish.camera.has_value()} + int{wish.free_view.has_value()} > 1)
-    return fail("more than one of view, camera and free is given");
-  const bool size_good = wish.width >= kSmallestPictureEdge && wish.width <= kLargestPictureWidth &&
-                         wish.height >= kSmallestPictureEdge && wish.height <= kLargestPictureHeight;
+Result<void> check_picture_request(const PictureRequest& request) {
+  if (int{request.view.has_value()} + int{request.camera.has_value()} + int{request.free_view.has_value()} > 1)
+    return fail("only one of view, camera and free may be given");
+  const bool size_good = request.width >= kSmallestPictureEdge && request.width <= kLargestPictureWidth &&
+                         request.height >= kSmallestPictureEdge && request.height <= kLargestPictureHeight;
   if (!size_good)
     return fail(fmt::format("pictures have {} to {} by {} to {} pixels", kSmallestPictureEdge, kLargestPictureWidth,
                             kSmallestPictureEdge, kLargestPictureHeight));
-  if (wish.view && (*wish.view < 0 || *wish.view > 6)) return fail("views are 0 to 6");
-  if (!(wish.rate_hz >= kFewestPicturesPerSecond && wish.rate_hz <= kMostPicturesPerSecond)) {
-    return fail(fmt::format("rate_hz is not within {} and {}", kFewestPicturesPerSecond, kMostPicturesPerSecond));
+  if (request.view && (*request.view < 0 || *request.view > 6)) return fail("views are 0 to 6");
+  if (!(request.rate_hz >= kFewestPicturesPerSecond && request.rate_hz <= kMostPicturesPerSecond)) {
+    return fail(fmt::format("rate_hz is not between {} and {}", kFewestPicturesPerSecond, kMostPicturesPerSecond));
   }
-  if (wish.quality < 1 || wish.quality > 100) return fail("quality is not within 1 and 100");
-  return wish.free_view ? check_free_view(*wish.free_view) : Result<void>{};
+  if (request.quality < 1 || request.quality > 100) return fail("quality is not between 1 and 100");
+  return request.free_view ? check_free_view(*request.free_view) : Result<void>{};
 }
 
 std::expected<ClientMessage, BadMessage> read_client_message(std::string_view text) {
   const json document = json::parse(text, nullptr, false);
-  if (!document.is_object()) return std::unexpected(BadMessage{0, "the message is no JSON object"});
+  if (!document.is_object()) return std::unexpected(BadMessage{0, "the message is not a JSON object"});
   Fields fields(document);
   constexpr std::int64_t kGreatestId = std::int64_t{1} << 53U;  // what JavaScript counts exactly
   const std::int64_t id = fields.whole("id", 0, 0, kGreatestId);
@@ -194,25 +196,28 @@ std::expected<ClientMessage, BadMessage> read_client_message(std::string_view te
 
 Result<PictureRequest> read_picture_query(std::string_view query) {
   const auto parts = query_parts(query);
-  if (!parts) return fail("the address is malformed behind the question mark");
-  PictureRequest wish;
+  if (!parts) return fail("the query of the URL is malformed");
+  PictureRequest request;
   for (const auto& [name, value] : *parts) {
     const auto number = parse_integer(value);
     const bool small = number && *number >= 0 && *number <= kLargestImageEdge;
     if (name == "camera") {
-      wish.camera = value;
+      request.camera = value;
     } else if (name != "view" && name != "width" && name != "height" && name != "quality") {
-      return fail(fmt::format("{} is not known", printable(name, 32)), "known: view, camera, width, height, quality");
+      return fail(fmt::format("unknown parameter {}", printable(name, 32)),
+                  "expected: view, camera, width, height, quality");
     } else if (!small) {
-      return fail(fmt::format("{} is no number in range", name));
+      return fail(fmt::format("{} is not a number in range", name));
     } else if (name == "view") {
-      wish.view = static_cast<int>(*number);
+      request.view = static_cast<int>(*number);
     } else {
-      (name == "width" ? wish.width : name == "height" ? wish.height : wish.quality) = static_cast<int>(*number);
+      (name == "width"    ? request.width
+       : name == "height" ? request.height
+                          : request.quality) = static_cast<int>(*number);
     }
   }
-  if (const auto good = check_picture_wish(wish); !good) return std::unexpected(good.error());
-  return wish;
+  if (const auto good = check_picture_request(request); !good) return std::unexpected(good.error());
+  return request;
 }
 
 }  // namespace cellmirror::web

@@ -1,4 +1,4 @@
-// What clients say over /live (docs/monitor-page.md). Pure: text in, values out.
+// Messages of clients over /live (docs/monitor-page.md). Pure: text in, values out.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct HelloMessage {
   std::string token;  // may be empty
 };
 struct PictureMessage {
-  PictureRequest wish;
+  PictureRequest request;
 };
 struct NoPictureMessage {};
 struct ShownMessage {
@@ -45,13 +45,13 @@ struct BadMessage {
   std::string why;
 };
 
-// Never throws; bounded by the length of the text. Members that are not known are passed over, so that a newer page can
-// talk to an older gateway.
+// Never throws; its cost is bounded by the length of the text. Unknown members are ignored, so that a newer page works
+// with an older gateway.
 [[nodiscard]] std::expected<ClientMessage, BadMessage> read_client_message(std::string_view text);
 
-// Refused where sizes, rate, quality or the free view are out of bounds, or more than one of view, camera and free
+// Refused if sizes, rate, quality or the free view are out of bounds, or more than one of view, camera and free
 // view is given.
-[[nodiscard]] Result<void> check_picture_wish(const PictureRequest& wish);
+[[nodiscard]] Result<void> check_picture_request(const PictureRequest& request);
 
 // "view=3&width=640&height=480" of /snapshot.png and /snapshot.jpg.
 [[nodiscard]] Result<PictureRequest> read_picture_query(std::string_view query);

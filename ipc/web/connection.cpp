@@ -22,7 +22,7 @@ constexpr Nanoseconds kCloseTime{2'000'000'000};
 constexpr std::size_t kMostDrained = 256 * 1024;
 constexpr std::size_t kReadBytes = 16 * 1024;
 
-// Nothing that one request asks for may end the gateway.
+// No request may end the gateway.
 Answer guarded(const Work& work) {
   try {
     return work();
@@ -88,13 +88,14 @@ void Connection::check_time(Timestamp now) {
     case Stage::head:
     case Stage::body:
       if (in_.empty() && stage_ == Stage::head) {
-        stage_ = Stage::over;  // browsers open connections that they may need
+        stage_ = Stage::over;  // browsers open spare connections
         return;
       }
       count(context_.counters.cut);
       return answer(text_answer(408, "the request took too long"));
     case Stage::waiting:
-      return answer(text_answer(504, "there is no answer yet; cellmirror status shows what goes on"));
+      return answer(
+          text_answer(504, "no answer within the time limit; cellmirror status shows the state of the gateway"));
     case Stage::draining:
       stage_ = Stage::over;
       return;
@@ -110,7 +111,7 @@ void Connection::check_time(Timestamp now) {
   write_some(now);
 }
 
-void Connection::go_on(short events, Timestamp now) {
+void Connection::handle_events(short events, Timestamp now) {
   now_ = now;
   if ((events & POLLIN) != 0) {
     read_some(now);
@@ -195,19 +196,19 @@ void Connection::do_route(Work& work, Timestamp now) {
   const bool taken = context_.jobs.submit([inbox = context_.inbox, number = number_, work = std::move(work)] {
     inbox->post(number, [answer = guarded(work)](Connection* client) { client->answer(answer); });
   });
-  if (!taken) answer(text_answer(503, "too much is asked at once; try again"));
+  if (!taken) answer(text_answer(503, "too many requests at once; try again"));
 }
 
-// No thread waits for it: many of these must not hold up the news of the pages.
+// No thread waits for the picture, so that many of these do not delay the live messages.
 void Connection::do_route(TakeSnapshot& snapshot, Timestamp now) {
   std::atomic<std::uint64_t>& waiting = *context_.snapshots;
   if (waiting.load(std::memory_order_relaxed) >= kMaxSnapshotsWaiting)
-    return answer_busy(503, "too many snapshots are waited for already; ask again in a moment");
+    return answer_busy(503, "too many snapshots are pending; try again");
   stage_ = Stage::waiting;
   since_ = now;
   waiting.fetch_add(1, std::memory_order_relaxed);
   context_.backend.ask_picture(
-      snapshot.wish, snapshot.format,
+      snapshot.request, snapshot.format,
       [inbox = context_.inbox, number = number_, snapshots = context_.snapshots](Result<EncodedImage> picture) {
         snapshots->fetch_sub(1, std::memory_order_relaxed);
         inbox->post(number, [made = picture_answer(std::move(picture))](Connection* client) { client->answer(made); });
@@ -227,11 +228,11 @@ void Connection::do_route(OpenWebSocket& open, Timestamp now) {
   if (place_ == nullptr) {
     count(context_.counters.refused);
     return answer(text_answer(503,
-                              "too many pages of this gateway are open already; close one of yours, or open the page "
-                              "by the address that this prints: cellmirror page"));
+                              "too many pages of this gateway are open; close one of yours, or open the page by "
+                              "the address that this prints: cellmirror page"));
   }
   count(context_.counters.clients);
-  // A picture that waits in the kernel is an old one: room for about two.
+  // Pictures in the send buffer of the kernel get old: room for about two.
   const int bytes = 128 * 1024;
   ::setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
   stage_ = Stage::live;
@@ -253,7 +254,7 @@ void Connection::execute_body(Timestamp now) {
   if (text.size() > kMaxCommandBytes || text.find_first_not_of(" \t\r\n") == std::string::npos ||
       text.find('\0') != std::string::npos) {
     count(context_.counters.refused);
-    return answer(text_answer(400, "the body is no SCRIPT command"));
+    return answer(text_answer(400, "the body is not a SCRIPT command"));
   }
   if (!context_.posted_commands.allows(now)) return answer_busy(429, "too many commands; wait a second");
   stage_ = Stage::waiting;
@@ -267,8 +268,8 @@ void Connection::execute_body(Timestamp now) {
 void Connection::take_frames(Timestamp now) {
   for (;;) {
     const auto message = frames_.next();
-    // Frames are counted, not messages: a message may have any number of empty parts.
-    if (!closing_ && !session_->may_say_more(frames_.take_count(), now)) {
+    // Frames count, not messages: a message may have any number of empty parts.
+    if (!closing_ && !session_->within_rate(frames_.take_count(), now)) {
       end(CloseCode::policy, "too much");
       break;
     }
@@ -291,7 +292,7 @@ void Connection::take_frames(Timestamp now) {
         end(close_code_of(message->payload), {});  // section 5.5.1: its code is echoed
         break;
       default:
-        end(CloseCode::unsupported, "only text is understood");
+        end(CloseCode::unsupported, "only text messages are supported");
         break;
     }
   }
@@ -327,7 +328,7 @@ void Connection::answer(const Answer& answer) {
   write_some(now_);
 }
 
-void Connection::show_live(const Chunk& frame) {
+void Connection::send_live(const Chunk& frame) {
   if (!live() || closing_ || !out_.empty()) return;
   out_.push(frame);
   write_some(now_);

@@ -1,4 +1,4 @@
-// One client's socket, from its request to its end. Belongs to the server's thread; never waits.
+// One client connection, from its request to its end. Server's thread; never waits.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace cellmirror::web {
 class Connection {
  public:
   enum class Stage : std::uint8_t {
-    head,       // its request comes
-    body,       // the rest of it
-    waiting,    // for its answer from another thread
-    answering,  // its answer goes
-    draining,   // the answer is gone; what still comes is thrown away, so that the answer is not lost to a reset
+    head,       // receives the head of the request
+    body,       // receives the body
+    waiting,    // for the answer from another thread
+    answering,  // sends the answer
+    draining,   // the answer is sent; further input is discarded: closing with unread input would reset the connection
     live,       // a WebSocket
     over,
   };
@@ -35,17 +35,17 @@ class Connection {
   [[nodiscard]] bool live() const { return stage_ == Stage::live; }
   [[nodiscard]] bool over() const { return stage_ == Stage::over; }
   [[nodiscard]] short wanted_events() const;
-  // When check_time() has something to do, unless anything happens before.
+  // When check_time() is to be called at the latest.
   [[nodiscard]] Timestamp deadline() const;
 
-  void go_on(short events, Timestamp now);
+  void handle_events(short events, Timestamp now);
   void check_time(Timestamp now);
-  // Says goodbye, as far as that goes without waiting.
+  // Starts the closing handshake of a WebSocket.
   void end(CloseCode code, std::string_view why);
 
   // --- From the server.
   void answer(const Answer& answer);
-  void show_live(const Chunk& frame);  // passed over where the client has not read what it got before
+  void send_live(const Chunk& frame);  // skipped while earlier output is pending
   [[nodiscard]] bool ready_for_picture() const { return live() && session_->ready_for_picture(out_); }
   void send_picture(Timestamp now);
 
@@ -66,7 +66,7 @@ class Connection {
   void execute_body(Timestamp now);
   void take_frames(Timestamp now);
   void cut();
-  // With the header that says when to ask again.
+  // With the header Retry-After.
   void answer_busy(int status, std::string why);
   [[nodiscard]] const Patience& patience() const { return context_.options.patience; }
 
@@ -81,13 +81,13 @@ class Connection {
   std::optional<LiveSession> session_;
   std::shared_ptr<void> place_;  // of a WebSocket
   FrameReader frames_{kMaxMessageBytes};
-  bool closing_ = false;     // of a WebSocket: a close frame is on its way
+  bool closing_ = false;     // of a WebSocket: a close frame was sent
   std::size_t drained_ = 0;  // bytes
   Timestamp since_;          // of the stage
   Timestamp last_received_;
-  std::optional<Timestamp> blocked_since_;  // the socket takes nothing
+  std::optional<Timestamp> blocked_since_;  // the socket accepts no more output
   Timestamp last_ping_;
-  Timestamp now_;  // of the call that is running
+  Timestamp now_;  // of the current call
 };
 
 }  // namespace cellmirror::web

@@ -1,4 +1,4 @@
-// How much a client gets and may ask. Pure: time is handed in.
+// Flow control of one client. Pure: time is passed in.
 #pragma once
 
 #include <algorithm>
@@ -9,15 +9,15 @@
 
 namespace cellmirror::web {
 
-// A client has at most two pictures on the way: one that it draws and one that comes meanwhile.
+// A client has at most two pictures under way: one that it draws and one that is sent meanwhile.
 class PictureCredit {
  public:
   static constexpr std::uint32_t kMostUnderWay = 2;
 
   [[nodiscard]] bool may_send() const { return sent_ - shown_ < kMostUnderWay; }
-  // Of the picture that is sent now; counts from 1 for each client.
+  // The sequence of the picture that is sent now; counts from 1 for each client.
   std::uint32_t next() { return ++sent_; }
-  // All up to `sequence` were shown. What was never sent is passed over.
+  // All pictures up to `sequence` were shown. A sequence that was never sent is ignored.
   void shown(std::uint32_t sequence) {
     if (sequence > shown_ && sequence <= sent_) shown_ = sequence;
   }
@@ -27,13 +27,13 @@ class PictureCredit {
   std::uint32_t shown_ = 0;
 };
 
-// Lets so many through a second, and a burst of twice as many.
+// A token bucket: `per_second` on average, twice as many at once.
 class RateLimit {
  public:
   explicit RateLimit(double per_second) : per_second_(per_second), left_(2.0 * per_second) {}
 
   [[nodiscard]] bool allows(Timestamp now) { return allows(1, now); }
-  // That many at once; all or none of them.
+  // Allows all of `number`, or none.
   [[nodiscard]] bool allows(std::size_t number, Timestamp now) {
     if (last_.known()) left_ = std::min(2.0 * per_second_, left_ + per_second_ * std::max(0.0, seconds(now - last_)));
     last_ = now;

@@ -41,7 +41,7 @@ ReadHead refuse(int status, std::string why) {
   return out;
 }
 
-// Splits off the part before `separator`, which is taken away too.
+// Removes and returns the part before `separator`; the separator is removed too.
 std::string_view take_until(std::string_view& text, std::string_view separator) {
   const std::size_t end = text.find(separator);
   if (end == std::string_view::npos) return std::exchange(text, {});
@@ -59,13 +59,13 @@ bool leaves_its_folder(std::string_view path) {
 }
 
 std::optional<RefusedRequest> read_target(std::string_view target, HttpRequest& request) {
-  if (target.size() > kMaxTargetBytes) return RefusedRequest{414, "the address is too long"};
+  if (target.size() > kMaxTargetBytes) return RefusedRequest{414, "the URL is too long"};
   const bool visible = std::ranges::all_of(target, [](char c) { return c > 0x20 && c < 0x7F; });
-  if (!target.starts_with('/') || !visible) return RefusedRequest{400, "the address does not begin with /"};
+  if (!target.starts_with('/') || !visible) return RefusedRequest{400, "the path does not begin with /"};
   request.query = target;
   std::string_view rest = request.query;
   const auto path = percent_decoded(take_until(rest, "?"));
-  if (!path || leaves_its_folder(*path)) return RefusedRequest{400, "the address is malformed"};
+  if (!path || leaves_its_folder(*path)) return RefusedRequest{400, "the URL is malformed"};
   request.path = *path;
   request.query = std::string(rest);
   return std::nullopt;
@@ -74,9 +74,9 @@ std::optional<RefusedRequest> read_target(std::string_view target, HttpRequest& 
 std::optional<RefusedRequest> read_request_line(std::string_view line, HttpRequest& request) {
   const std::string_view method = take_until(line, " ");
   const std::string_view target = take_until(line, " ");
-  if (!is_token(method) || target.empty()) return RefusedRequest{400, "this is no HTTP request"};
+  if (!is_token(method) || target.empty()) return RefusedRequest{400, "not an HTTP request"};
   request.method = method;
-  if (line != "HTTP/1.1" && line != "HTTP/1.0") return RefusedRequest{505, "only HTTP/1.1 is spoken here"};
+  if (line != "HTTP/1.1" && line != "HTTP/1.0") return RefusedRequest{505, "only HTTP/1.1 is supported"};
   return read_target(target, request);
 }
 
@@ -84,10 +84,10 @@ std::optional<RefusedRequest> read_headers(std::string_view lines, HttpRequest& 
   while (!lines.empty()) {
     std::string_view line = take_until(lines, "\r\n");
     const std::size_t colon = line.find(':');
-    // A line that goes on from the one before (obs-fold) begins with a blank and is no name.
+    // A folded line (obs-fold) begins with a space, which is not a token.
     if (colon == std::string_view::npos || !is_token(line.substr(0, colon)) || !is_field_value(line.substr(colon + 1)))
       return RefusedRequest{400, "a header is malformed"};
-    if (request.headers.size() == kMaxHeaders) return RefusedRequest{431, "there are too many headers"};
+    if (request.headers.size() == kMaxHeaders) return RefusedRequest{431, "too many headers"};
     request.headers.emplace_back(lower_case(line.substr(0, colon)), trimmed(line.substr(colon + 1)));
   }
   return std::nullopt;
@@ -99,8 +99,8 @@ std::size_t count(const HttpRequest& request, std::string_view name) {
 }
 
 std::optional<RefusedRequest> read_framing(HttpRequest& request, std::size_t most_body) {
-  if (count(request, "host") != 1) return RefusedRequest{400, "a request has one header Host"};
-  if (request.header("transfer-encoding") != nullptr) return RefusedRequest{501, "bodies in chunks are not taken"};
+  if (count(request, "host") != 1) return RefusedRequest{400, "a request needs exactly one header Host"};
+  if (request.header("transfer-encoding") != nullptr) return RefusedRequest{501, "chunked bodies are not supported"};
   const std::size_t lengths = count(request, "content-length");
   if (lengths == 0) return std::nullopt;
   const std::string& text = *request.header("content-length");
@@ -137,10 +137,10 @@ ReadHead read_http_head(std::string_view bytes, std::size_t most_body) {
   const std::size_t end = bytes.substr(0, kMaxHeadBytes).find("\r\n\r\n");
   if (end == std::string_view::npos) {
     if (bytes.size() >= kMaxHeadBytes) return refuse(431, "the head of the request is too long");
-    // What cannot become a request is not waited for: its first line is no such line.
+    // Refused early where the first line cannot be a request line.
     const std::string_view first = bytes.substr(0, bytes.find("\r\n"));
     if (!std::ranges::all_of(first, [](char c) { return c >= 0x20 && c < 0x7F; }) && !first.ends_with('\r'))
-      return refuse(400, "this is no HTTP request");
+      return refuse(400, "not an HTTP request");
     return {};
   }
   std::string_view head = bytes.substr(0, end + 2);

@@ -1,4 +1,4 @@
-// The head of an HTTP/1.1 request (RFC 9112), strictly read. Pure: bytes in, no I/O.
+// A strict parser for the head of an HTTP/1.1 request (RFC 9112). Pure: bytes in, no I/O.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +17,14 @@ inline constexpr std::size_t kMaxTargetBytes = 2048;
 
 struct HttpRequest {
   std::string method;
-  std::string path;   // decoded; begins with '/', holds no "..", no NUL and no backslash
-  std::string query;  // as it came, without '?'
-  std::vector<std::pair<std::string, std::string>> headers;  // names in lower case; values without blanks around them
+  std::string path;   // decoded; begins with '/', contains no "..", no NUL and no backslash
+  std::string query;  // as received, without '?'
+  std::vector<std::pair<std::string, std::string>> headers;  // names in lower case; values trimmed
   std::size_t body_bytes = 0;                                // Content-Length
 
   // The value of the first header of that name (in lower case); null: there is none.
   [[nodiscard]] const std::string* header(std::string_view name) const;
-  // Whether a comma-separated header holds that word, without regard to case.
+  // Whether a comma-separated header contains that word, ignoring case.
   [[nodiscard]] bool header_has(std::string_view name, std::string_view word) const;
 };
 
@@ -34,17 +34,17 @@ struct RefusedRequest {
 };
 
 struct ReadHead {
-  std::size_t bytes = 0;                  // of the head; 0: it is not complete yet
-  std::optional<RefusedRequest> refused;  // then nothing else counts
+  std::size_t bytes = 0;                  // of the head; 0: incomplete
+  std::optional<RefusedRequest> refused;  // then the request is not valid
   HttpRequest request;
 };
 
-// `most_body`: larger bodies are refused. Bodies in chunks are refused.
+// Larger bodies than `most_body` and chunked bodies are refused.
 [[nodiscard]] ReadHead read_http_head(std::string_view bytes, std::size_t most_body);
 
-// %XX decoded; none where a % has no two hexadecimal digits behind it.
+// Decodes %XX; none where % is not followed by two hexadecimal digits.
 [[nodiscard]] std::optional<std::string> percent_decoded(std::string_view text);
-// "a=1&b=x%20y", in order; '+' is a blank. None where it is malformed or has more than 32 parts.
+// "a=1&b=x%20y", in order; '+' means a space. None where it is malformed or has more than 32 parts.
 [[nodiscard]] std::optional<std::vector<std::pair<std::string, std::string>>> query_parts(std::string_view query);
 
 }  // namespace cellmirror::web

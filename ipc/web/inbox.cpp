@@ -6,7 +6,7 @@ namespace cellmirror::web {
 
 void Inbox::wake() {
   const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t written = ::write(wake_up_.get(), &one, sizeof one);  // full: it is awake already
+  [[maybe_unused]] const ssize_t written = ::write(wake_up_.get(), &one, sizeof one);  // full: it is signalled already
 }
 
 void Inbox::post(std::uint64_t connection, std::function<void(Connection*)> receive) {

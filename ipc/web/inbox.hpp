@@ -1,5 +1,4 @@
-// How other threads tell the server's thread something. Outlives the server where somebody still holds it: what comes
-// then is forgotten.
+// Calls from other threads to the server's thread. May outlive the server: calls that come then are dropped.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@ class Connection;
 
 struct Posted {
   std::uint64_t connection = 0;              // 0: for the server itself
-  std::function<void(Connection*)> receive;  // null for the server's own, and never called where the client is gone
+  std::function<void(Connection*)> receive;  // null for the server itself; not called where the connection is gone
 };
 
 // Any thread.

@@ -1,4 +1,4 @@
-// Threads for what takes longer than the server's thread may be held up.
+// Threads for work that would block the server's thread for too long.
 #pragma once
 
 #include <condition_variable>
@@ -16,14 +16,14 @@ class JobPool {
   static constexpr std::size_t kMostWaiting = 32;
 
   explicit JobPool(std::size_t threads);
-  // Jobs that wait are forgotten; those under way end first.
+  // Drops waiting jobs; waits for those that run.
   ~JobPool();
   JobPool(const JobPool&) = delete;
   JobPool& operator=(const JobPool&) = delete;
 
-  // False, at once, where too many wait.
+  // False, at once, if too many wait.
   [[nodiscard]] bool submit(std::function<void()> job);
-  // Before all that wait, however many these are: for the one job that everybody waits for. False: the pool ends.
+  // Ahead of all waiting jobs, however many there are: for the live document. False: the pool ends.
   [[nodiscard]] bool submit_first(std::function<void()> job);
 
  private:

@@ -34,31 +34,31 @@ bool LiveSession::receive(std::string_view text, Timestamp now, Outgoing& out) {
     send_text(out, refused_message(message.error().id, message.error().why));
     return true;
   }
-  std::visit([&](const auto& one) { follow(one, out); }, *message);
+  std::visit([&](const auto& one) { handle(one, out); }, *message);
   return wrong_tokens_ < kMostWrongTokens;
 }
 
-void LiveSession::follow(const HelloMessage& message, Outgoing& out) {
+void LiveSession::handle(const HelloMessage& message, Outgoing& out) {
   const bool right = token_matches(message.token, context_.options.token);
   may_command_ = right && !context_.options.read_only;
   if (!right && !message.token.empty()) {
     ++wrong_tokens_;
     count(context_.counters.refused);
     send_text(out, refused_message(0,
-                                   "the token is another gateway's or an older one; cellmirror page prints the "
-                                   "address with the token of the one that runs"));
+                                   "wrong token: it belongs to another gateway or an older run; cellmirror page prints "
+                                   "the address with the current one"));
   }
   welcome(out);
 }
 
-void LiveSession::follow(const PictureMessage& message, Outgoing& out) {
-  wish_ = message.wish;
-  told_.clear();
+void LiveSession::handle(const PictureMessage& message, Outgoing& out) {
+  request_ = message.request;
+  reported_problem_.clear();
   if (stream_) {
-    stream_->change(wish_);
+    stream_->change(request_);
     return;
   }
-  auto stream = context_.backend.open_pictures(wish_);
+  auto stream = context_.backend.open_pictures(request_);
   if (!stream) {
     send_text(out, refused_message(0, stream.error().text()));
     return;
@@ -67,35 +67,35 @@ void LiveSession::follow(const PictureMessage& message, Outgoing& out) {
   newest_ = 0;
 }
 
-void LiveSession::follow(const NoPictureMessage& /*message*/, Outgoing& /*out*/) {
+void LiveSession::handle(const NoPictureMessage& /*message*/, Outgoing& /*out*/) {
   count_left_out(now_);
   stream_.reset();
 }
 
-void LiveSession::follow(const ShownMessage& message, Outgoing& /*out*/) {
+void LiveSession::handle(const ShownMessage& message, Outgoing& /*out*/) {
   credit_.shown(message.sequence);
   if (credit_.may_send()) count_left_out(now_);
 }
 
 void LiveSession::count_left_out(Timestamp now) {
   if (!no_credit_since_) return;
-  const double periods = seconds(now - *no_credit_since_) * wish_.rate_hz;
+  const double periods = seconds(now - *no_credit_since_) * request_.rate_hz;
   count(context_.counters.pictures_left_out, static_cast<std::uint64_t>(std::max(0.0, periods)));
   no_credit_since_.reset();
 }
 
-void LiveSession::follow(const CommandMessage& message, Outgoing& out) {
+void LiveSession::handle(const CommandMessage& message, Outgoing& out) {
   const auto refuse = [&](std::string_view why) {
     count(context_.counters.refused);
     send_text(out, reply_message(message.id, {false, std::string(why)}));
   };
-  if (context_.options.read_only) return refuse("this page only shows: the gateway was started read-only");
+  if (context_.options.read_only) return refuse("commands are disabled: the gateway was started read-only");
   if (!may_command_) {
-    return refuse("commands need the token; open the page by the address that this prints: cellmirror page");
+    return refuse("commands need the token: open the page by the address that this prints: cellmirror page");
   }
   if (!commands_.allows(now_)) return refuse("too many commands; wait a second");
   if (commands_waiting_ >= kMaxCommandsWaiting)
-    return refuse(fmt::format("{} commands wait for their acknowledgement already", commands_waiting_));
+    return refuse(fmt::format("{} commands are waiting for their acknowledgement", commands_waiting_));
   ++commands_waiting_;
   count(context_.counters.commands);
   context_.backend.execute(
@@ -104,15 +104,15 @@ void LiveSession::follow(const CommandMessage& message, Outgoing& out) {
       });
 }
 
-void LiveSession::follow(const PickMessage& message, Outgoing& out) {
+void LiveSession::handle(const PickMessage& message, Outgoing& out) {
   if (!stream_) return send_text(out, refused_message(message.id, "there is no picture to pick from"));
-  if (message.x >= wish_.width || message.y >= wish_.height)
-    return send_text(out, refused_message(message.id, "that pixel is outside of the picture"));
+  if (message.x >= request_.width || message.y >= request_.height)
+    return send_text(out, refused_message(message.id, "that pixel is outside the picture"));
   if (picks_waiting_ >= kMostPicksWaiting)
-    return send_text(out, refused_message(message.id, "too much is asked at once; try again"));
+    return send_text(out, refused_message(message.id, "too many requests at once; try again"));
   ++picks_waiting_;
   context_.backend.ask_pick(
-      wish_, message.x, message.y,
+      request_, message.x, message.y,
       [inbox = context_.inbox, connection = connection_, id = message.id](Result<std::optional<PickedObject>> object) {
         inbox->post(connection, [id, object = std::move(object)](Connection* client) { client->picked(id, object); });
       });
@@ -128,20 +128,20 @@ void LiveSession::picked(std::int64_t id, const Result<std::optional<PickedObjec
   send_text(out, object ? picked_message(id, *object) : refused_message(id, object.error().text()));
 }
 
-void LiveSession::tell_problem(Outgoing& out) {
+void LiveSession::report_problem(Outgoing& out) {
   std::string problem = stream_->problem();
-  if (problem.empty() || problem == told_) return;
-  told_ = std::move(problem);
-  send_text(out, refused_message(0, told_));
+  if (problem.empty() || problem == reported_problem_) return;
+  reported_problem_ = std::move(problem);
+  send_text(out, refused_message(0, reported_problem_));
 }
 
 bool LiveSession::ready_for_picture(const Outgoing& out) const { return stream_ && credit_.may_send() && out.empty(); }
 
 void LiveSession::send_picture(Timestamp now, Outgoing& out) {
   const std::shared_ptr<const EncodedImage> picture = stream_->newest(newest_);
-  if (!picture) return tell_problem(out);
+  if (!picture) return report_problem(out);
   newest_ = picture->sequence;
-  told_.clear();
+  reported_problem_.clear();
   const std::string_view bytes(reinterpret_cast<const char*>(picture->bytes.data()), picture->bytes.size());
   out.push(frame_header(Opcode::binary, kPictureHeaderBytes + bytes.size()) +
            picture_header(credit_.next(), *picture, now));

@@ -1,4 +1,4 @@
-// One client of /live: what it asked for, and what it gets. Belongs to the server's thread.
+// The protocol of one WebSocket: its requests, its pictures, its commands. Server's thread.
 #pragma once
 
 #include <cstddef>
@@ -18,36 +18,36 @@ namespace cellmirror::web {
 
 class LiveSession {
  public:
-  // `connection`: its number, for what comes back from other threads.
+  // `connection`: its number, for replies from other threads.
   LiveSession(ServerContext& context, std::uint64_t connection) : context_(context), connection_(connection) {}
 
   void welcome(Outgoing& out) const;
-  // Counts frames: messages, their parts, pings and pongs. False: there were too many; the connection is to be closed.
-  [[nodiscard]] bool may_say_more(std::size_t frames, Timestamp now) { return frames_.allows(frames, now); }
-  // False: the client is to be cut.
+  // Counts frames: messages, their parts, pings and pongs. False: too many; the connection is to be closed.
+  [[nodiscard]] bool within_rate(std::size_t frames, Timestamp now) { return frames_.allows(frames, now); }
+  // False: the connection is to be closed.
   [[nodiscard]] bool receive(std::string_view text, Timestamp now, Outgoing& out);
   void command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out);
   void picked(std::int64_t id, const Result<std::optional<PickedObject>>& object, Outgoing& out);
 
-  // Whether the client would be sent a picture now if there were one.
+  // Whether a new picture would be sent now.
   [[nodiscard]] bool ready_for_picture(const Outgoing& out) const;
   void send_picture(Timestamp now, Outgoing& out);
 
  private:
-  // Once for each wish, since the client sees only that no picture comes.
-  void tell_problem(Outgoing& out);
-  // Pictures that would have come while the client was not ready for them.
+  // Once for each request: why no picture comes.
+  void report_problem(Outgoing& out);
+  // Pictures that were skipped while the client had no credit.
   void count_left_out(Timestamp now);
-  void follow(const HelloMessage& message, Outgoing& out);
-  void follow(const PictureMessage& message, Outgoing& out);
-  void follow(const NoPictureMessage& message, Outgoing& out);
-  void follow(const ShownMessage& message, Outgoing& out);
-  void follow(const CommandMessage& message, Outgoing& out);
-  void follow(const PickMessage& message, Outgoing& out);
+  void handle(const HelloMessage& message, Outgoing& out);
+  void handle(const PictureMessage& message, Outgoing& out);
+  void handle(const NoPictureMessage& message, Outgoing& out);
+  void handle(const ShownMessage& message, Outgoing& out);
+  void handle(const CommandMessage& message, Outgoing& out);
+  void handle(const PickMessage& message, Outgoing& out);
 
   ServerContext& context_;
   std::uint64_t connection_;
-  Timestamp now_;  // of the message that is followed
+  Timestamp now_;  // of the message that is handled
   bool may_command_ = false;
   int wrong_tokens_ = 0;
   RateLimit frames_{kFramesPerSecond};
@@ -55,13 +55,13 @@ class LiveSession {
   std::size_t commands_waiting_ = 0;
   std::size_t picks_waiting_ = 0;
   std::unique_ptr<PictureStream> stream_;
-  PictureRequest wish_;
+  PictureRequest request_;
   PictureCredit credit_;
-  std::uint64_t newest_ = 0;  // sequence of the stream
-  std::string told_;          // problem of the stream
+  std::uint64_t newest_ = 0;      // sequence of the stream
+  std::string reported_problem_;  // of the stream
   std::optional<Timestamp> no_credit_since_;
 
-  static constexpr double kFramesPerSecond = 500;  // no person and no page sends more
+  static constexpr double kFramesPerSecond = 500;  // more than any page sends
 };
 
 }  // namespace cellmirror::web

@@ -1,4 +1,4 @@
-// What waits to be sent on one socket. Sending never waits. Belongs to the server's thread.
+// The output queue of one socket. Sending never waits. Server's thread.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace cellmirror::web {
 
-// Bytes and what keeps them; shared where several clients get the same.
+// Bytes and their owner; shared between clients that get the same.
 struct Chunk {
   std::shared_ptr<const void> owner;
   std::string_view bytes;
 };
 [[nodiscard]] Chunk chunk_of(std::string text);
-// Of bytes that are part of the program.
+// Of bytes with static storage.
 [[nodiscard]] inline Chunk chunk_of_constant(std::string_view bytes) { return {nullptr, bytes}; }
 
 class Outgoing {
@@ -28,7 +28,7 @@ class Outgoing {
   [[nodiscard]] bool empty() const { return pending_ == 0; }
   // Whether the last write_some() sent anything.
   [[nodiscard]] bool progressed() const { return progressed_; }
-  // As much as the socket takes now.
+  // Sends as much as the socket accepts now.
   [[nodiscard]] Progress write_some(int socket);
 
  private:

@@ -33,7 +33,7 @@ Result<void> write_private(const std::filesystem::path& file, const std::string&
   return {};
 }
 
-// Empty where the file is not this user's own, or holds anything else.
+// Empty where the file is not this user's own or contains anything else.
 std::string read_token(const std::filesystem::path& file) {
   const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   struct stat facts{};
@@ -49,7 +49,7 @@ std::string read_token(const std::filesystem::path& file) {
 }  // namespace
 
 std::string PageAddress::url() const {
-  // A server that listens everywhere is reached from here by loopback.
+  // A server on all addresses is reached by loopback.
   const std::string host = address == "0.0.0.0" ? "127.0.0.1" : address == "::" ? "::1" : address;
   const bool six = host.find(':') != std::string::npos;
   return fmt::format(fmt::runtime(six ? "http://[{}]:{}/" : "http://{}:{}/"), host, port);
@@ -79,7 +79,7 @@ Result<std::string> kept_token(const std::filesystem::path& file) {
   if (!token.empty()) return token;
   auto made = make_token();
   if (!made) return made;
-  // Where it cannot be kept, it holds as long as this gateway.
+  // If it cannot be stored, it is valid for this run alone.
   static_cast<void>(write_private(file, *made));
   return made;
 }
@@ -94,7 +94,7 @@ Result<PageAddress> read_page_address(const std::filesystem::path& folder) {
   };
   if (!document.is_object() || !is("address", json::value_t::string) || !is("port", json::value_t::number_unsigned) ||
       !is("token", json::value_t::string) || !is("read_only", json::value_t::boolean))
-    return fail(fmt::format("{} cannot be read", file.native()), "restart that gateway with this version");
+    return fail(fmt::format("{} is not valid", file.native()), "restart that gateway with this version");
   return PageAddress{document.at("address").get<std::string>(), document.at("port").get<int>(),
                      document.at("token").get<std::string>(), document.at("read_only").get<bool>()};
 }

@@ -1,5 +1,5 @@
-// Where the page of a running gateway is, and the token that lets its owner command: a file in the instance's runtime
-// folder that nobody else can read.
+// The address of a running gateway's page and the token for commands: a file in the runtime folder of the instance that
+// only its owner can read.
 #pragma once
 
 #include <filesystem>
@@ -20,15 +20,15 @@ struct PageAddress {
 
   // "http://127.0.0.1:8420/"
   [[nodiscard]] std::string url() const;
-  // With the token behind '#', where browsers keep it to themselves.
+  // With the token in the fragment, which browsers do not send.
   [[nodiscard]] std::string url_with_token() const;
 };
 
 // 128 random bits of the kernel, as 32 hexadecimal digits.
 [[nodiscard]] Result<std::string> make_token();
 
-// The token that `file` holds, so that a page that waits for its gateway to come back may still command; where there is
-// none, or others may read it, it is made anew. Its folder is there.
+// The token in `file`, so that a page keeps its rights over a restart of the gateway. A new one is made where there is
+// none or others can read it. The folder exists.
 [[nodiscard]] Result<std::string> kept_token(const std::filesystem::path& file);
 
 // Mode 0600.

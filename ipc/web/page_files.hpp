@@ -1,4 +1,4 @@
-// The files of the page, part of the program (page/, embed_page.cmake).
+// The files of the page, embedded in the program (page/, embed_page.cmake).
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 namespace cellmirror::web {
 
 struct PageFile {
-  std::string_view path;  // as asked for: "/" or "/page/modules/main.js"
+  std::string_view path;  // of the URL: "/" or "/page/modules/main.js"
   std::string_view content_type;
   std::string_view etag;  // with its quotes
   std::string_view bytes;

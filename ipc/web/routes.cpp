@@ -17,13 +17,13 @@ Answer refused(ServerContext& context, int status, std::string text) {
   return text_answer(status, std::move(text));
 }
 
-std::optional<Answer> stranger(const HttpRequest& request, ServerContext& context) {
+std::optional<Answer> check_access(const HttpRequest& request, ServerContext& context) {
   if (!context.access.host_allowed(*request.header("host")))
     return refused(context, 421,
-                   "this server is not known by that name; ask for it by its address, or name the page's origin in "
-                   "[web] origins of the cell file");
+                   "unknown host name; use the address of the server, or add the origin of the page to [web] "
+                   "origins of the cell file");
   if (!context.access.origin_allowed(request.header("origin")))
-    return refused(context, 403, "pages of that origin may not ask here; [web] origins of the cell file names others");
+    return refused(context, 403, "this origin is not allowed; [web] origins of the cell file adds origins");
   return std::nullopt;
 }
 
@@ -48,13 +48,13 @@ std::optional<Route> document(const HttpRequest& request, ServerContext& context
 std::optional<Route> snapshot(const HttpRequest& request, ServerContext& context) {
   const bool png = request.path == "/snapshot.png";
   if (!png && request.path != "/snapshot.jpg") return std::nullopt;
-  const auto wish = read_picture_query(request.query);
-  if (!wish) return refused(context, 400, wish.error().text());
-  return TakeSnapshot{*wish, png ? ImageFormat::png : ImageFormat::jpeg};
+  const auto picture = read_picture_query(request.query);
+  if (!picture) return refused(context, 400, picture.error().text());
+  return TakeSnapshot{*picture, png ? ImageFormat::png : ImageFormat::jpeg};
 }
 
 Route command(const HttpRequest& request, ServerContext& context) {
-  if (request.method != "POST") return refused(context, 405, "commands are sent with POST");
+  if (request.method != "POST") return refused(context, 405, "commands need POST");
   if (context.options.read_only) return refused(context, 403, "this gateway was started read-only");
   if (!token_matches(bearer_token(request), context.options.token)) {
     Answer answer = refused(context, 401,
@@ -72,7 +72,7 @@ Route live(const HttpRequest& request, ServerContext& context) {
     const bool has_token = token_matches(opening_token(request), context.options.token);
     return OpenWebSocket{std::move(*accept), has_token, offers_subprotocol(request)};
   }
-  Answer answer = refused(context, 426, "this address speaks WebSocket, version 13");
+  Answer answer = refused(context, 426, "this URL is a WebSocket, version 13");
   answer.headers.emplace_back("Upgrade", "websocket");
   answer.headers.emplace_back("Sec-WebSocket-Version", "13");
   return answer;
@@ -81,11 +81,11 @@ Route live(const HttpRequest& request, ServerContext& context) {
 }  // namespace
 
 Route route(const HttpRequest& request, ServerContext& context) {
-  if (auto answer = stranger(request, context)) return std::move(*answer);
+  if (auto answer = check_access(request, context)) return std::move(*answer);
   if (request.path == "/live") return live(request, context);
   if (request.path == "/api/command") return command(request, context);
   if (request.method != "GET" && request.method != "HEAD") {
-    Answer answer = refused(context, 405, "only GET is known here");
+    Answer answer = refused(context, 405, "only GET and HEAD are allowed");
     answer.headers.emplace_back("Allow", "GET, HEAD");
     return answer;
   }
@@ -93,7 +93,7 @@ Route route(const HttpRequest& request, ServerContext& context) {
   if (const PageFile* file = find_page_file(request.path)) return file_answer(*file, request);
   if (auto found = document(request, context)) return std::move(*found);
   if (auto found = snapshot(request, context)) return std::move(*found);
-  return text_answer(404, "there is nothing of that name");
+  return text_answer(404, "not found");
 }
 
 }  // namespace cellmirror::web

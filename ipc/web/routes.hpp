@@ -1,4 +1,4 @@
-// What an HTTP request asks for. Private to this folder.
+// Routes of HTTP requests. Private to this folder.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace cellmirror::web {
 
-// Done by another thread.
+// Run by another thread.
 using Work = std::function<Answer()>;
-// One picture, drawn by another thread.
+// One picture, rendered by another thread.
 struct TakeSnapshot {
-  PictureRequest wish;
+  PictureRequest request;
   ImageFormat format = ImageFormat::png;
 };
 // The body is a SCRIPT command.
@@ -28,7 +28,7 @@ struct OpenWebSocket {
 };
 using Route = std::variant<Answer, Work, TakeSnapshot, ExecuteBody, OpenWebSocket>;
 
-// Looks at the head alone; whoever may not ask is told so here, before any of the body is taken.
+// Decides by the head alone, access checks included, before any of the body is read.
 [[nodiscard]] Route route(const HttpRequest& request, ServerContext& context);
 
 }  // namespace cellmirror::web

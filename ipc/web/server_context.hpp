@@ -1,4 +1,4 @@
-// What the connections of one server share. Private to this folder.
+// Shared by the connections of one server. Private to this folder.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 namespace cellmirror::web {
 
-// For status(), from any thread; relaxed, because they publish nothing but themselves.
+// For status(), from any thread; relaxed, because no other data depends on them.
 struct Counters {
   std::atomic<std::uint64_t> clients{0};
   std::atomic<std::uint64_t> requests{0};
@@ -38,11 +38,11 @@ struct ServerContext {
   JobPool& jobs;
   std::shared_ptr<Inbox> inbox;
   Counters& counters;
-  // Of POST /api/command: of all clients together, since each command has a connection of its own. Server's thread.
+  // POST /api/command, all clients together, since each of these commands has its own connection. Server's thread.
   RateLimit posted_commands{kCommandsPerSecond};
   Places places{};  // of WebSockets; server's thread
-  // Snapshots that are being drawn or wait for that, also for clients that are gone; whoever brings one counts it down,
-  // maybe after the end of the server.
+  // Snapshots that are pending, those of closed connections included; counted down by the reply, possibly after the end
+  // of the server.
   std::shared_ptr<std::atomic<std::uint64_t>> snapshots = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 

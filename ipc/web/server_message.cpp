@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-// Text from outside may hold bytes that are no UTF-8.
+// Text from outside may contain bytes that are not UTF-8.
 std::string text_of(const json& document) { return document.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 void append_little_endian(std::string& out, std::uint64_t value, int bytes) {

@@ -1,4 +1,4 @@
-// What the server says over /live (docs/monitor-page.md). Pure.
+// Messages of the server over /live (docs/monitor-page.md). Pure.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct Welcome {
   std::string version;
   std::string cell;
   std::string instance;
-  std::string run;  // another one after a restart
+  std::string run;  // changes with a restart
   bool may_command = false;
   bool read_only = false;
 };
@@ -25,14 +25,14 @@ struct Welcome {
 [[nodiscard]] std::string reply_message(std::int64_t id, const CommandReply& reply);
 [[nodiscard]] std::string picked_message(std::int64_t id, const std::optional<PickedObject>& picked);
 [[nodiscard]] std::string refused_message(std::int64_t id, std::string_view why);
-// `live`: the backend's object; the member that says what it is is put in front of its others.
+// `live`: the object of the backend; the member "is" is put before its others.
 [[nodiscard]] std::string live_message(std::string_view live);
 
 // {"done": true, "text": "..."}
 [[nodiscard]] std::string command_answer(const CommandReply& reply);
 
 inline constexpr std::size_t kPictureHeaderBytes = 32;
-// In front of the bytes of a picture: "CMP1", u32 sequence, u16 width, u16 height, u32 0, f64 age of the posture in s,
+// Precedes the bytes of a picture: "CMP1", u32 sequence, u16 width, u16 height, u32 0, f64 age of the posture in s,
 // f64 0; little-endian.
 [[nodiscard]] std::string picture_header(std::uint32_t sequence, const EncodedImage& picture, Timestamp now);
 

@@ -30,7 +30,7 @@ namespace cellmirror::web {
 namespace {
 
 constexpr Nanoseconds kLivePeriod{100'000'000};
-constexpr Nanoseconds kPicturePeriod{5'000'000};  // how often it is looked for a newer picture
+constexpr Nanoseconds kPicturePeriod{5'000'000};  // how often newer pictures are looked up
 constexpr Nanoseconds kLongestWait{1'000'000'000};
 constexpr Nanoseconds kNoDescriptorWait{100'000'000};
 constexpr std::size_t kWorkers = 2;
@@ -61,7 +61,7 @@ Result<SocketAddress> socket_address(const std::string& address, int port) {
     std::memcpy(&out.bytes, &six, sizeof six);
     return out;
   }
-  return fail(fmt::format("{} is no numeric address", address), "e.g. 127.0.0.1");
+  return fail(fmt::format("{} is not a numeric address", address), "e.g. 127.0.0.1");
 }
 
 Result<Descriptor> listen_at(const std::string& address, int port) {
@@ -74,16 +74,17 @@ Result<Descriptor> listen_at(const std::string& address, int port) {
     return listener;
   const int why = errno;
   return fail(fmt::format("no monitor page: cannot listen at {} port {}: {}", address, port, system_error_text(why)),
-              why == EADDRINUSE ? "another program has that port: choose another one with --port N, or leave it out "
-                                  "with --no-web"
-                                : "choose another --port N (1024 to 65535), or [web] address in the cell file");
+              why == EADDRINUSE
+                  ? "another program uses that port: choose another one with --port N, or switch the page "
+                    "off with --no-web"
+                  : "choose another --port N (1024 to 65535), or [web] address in the cell file");
 }
 
 int port_of(int listener) {
   SocketAddress own;
   own.length = sizeof own.bytes;
   if (::getsockname(listener, own.get(), &own.length) != 0) return 0;
-  // The port lies at the same place in both kinds of addresses.
+  // The port has the same offset in both address families.
   sockaddr_in four{};
   std::memcpy(&four, &own.bytes, sizeof four);
   return ntohs(four.sin_port);
@@ -121,7 +122,7 @@ struct Server::Impl {
   void take_inbox();
   void accept_some(Timestamp now);
   bool make_room();
-  void ask_for_live(Timestamp now);
+  void request_live(Timestamp now);
   void send_pictures(Timestamp now);
 };
 
@@ -149,7 +150,7 @@ int Server::Impl::poll_timeout_ms(Timestamp now) const {
   if (any_live && !live_under_way) next = std::min(next, next_live);
   if (wants_pictures()) next = std::min(next, next_picture);
   if (now < accept_again) next = std::min(next, accept_again);
-  // Rounded up: poll() would come back a little too early and be called again.
+  // Rounded up, else poll() returns slightly early and is called again.
   return static_cast<int>(std::max<std::int64_t>(0, ((next - now).count() + 999'999) / 1'000'000));
 }
 
@@ -168,16 +169,16 @@ void Server::Impl::serve() {
     const Timestamp now = clock.now();
     if (stopping.load(std::memory_order_acquire)) break;
     for (std::size_t i = 0; ready > 0 && i < connections.size(); ++i) {
-      if (polled[i + 2].revents != 0) connections[i]->go_on(polled[i + 2].revents, now);
+      if (polled[i + 2].revents != 0) connections[i]->handle_events(polled[i + 2].revents, now);
     }
     take_inbox();
     for (const auto& connection : connections) connection->check_time(now);
-    ask_for_live(now);
+    request_live(now);
     send_pictures(now);
     std::erase_if(connections, [](const auto& connection) { return connection->over(); });
     if (ready > 0 && (polled[1].revents & POLLIN) != 0) accept_some(now);
   }
-  for (const auto& connection : connections) connection->end(CloseCode::going_away, "the gateway ends");
+  for (const auto& connection : connections) connection->end(CloseCode::going_away, "the gateway is shutting down");
 }
 
 void Server::Impl::take_inbox() {
@@ -197,8 +198,8 @@ void Server::Impl::accept_some(Timestamp now) {
     Descriptor socket(::accept4(listener.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!socket.valid()) {
       if (errno == EMFILE || errno == ENFILE) {
-        log_error("web.descriptors", "no descriptor left for a client of the monitor page");
-        accept_again = now + kNoDescriptorWait;  // else poll would come back at once
+        log_error("web.descriptors", "no file descriptor left for a client of the monitor page");
+        accept_again = now + kNoDescriptorWait;  // else poll() returns at once
       }
       return;
     }
@@ -212,7 +213,7 @@ void Server::Impl::accept_some(Timestamp now) {
   }
 }
 
-// Takes the oldest connection whose request has not come yet.
+// Closes the oldest connection whose request is not complete.
 bool Server::Impl::make_room() {
   const auto found = std::ranges::find_if(connections, [](const auto& connection) {
     using enum Connection::Stage;
@@ -224,8 +225,8 @@ bool Server::Impl::make_room() {
   return true;
 }
 
-// One document for all of them, made by another thread; documents that clients ask for do not take its place.
-void Server::Impl::ask_for_live(Timestamp now) {
+// One document for all of them, made by another thread, ahead of documents that clients requested.
+void Server::Impl::request_live(Timestamp now) {
   if (live_under_way || now < next_live) return;
   if (std::ranges::none_of(connections, [](const auto& connection) { return connection->live(); })) return;
   next_live = now + kLivePeriod;
@@ -234,12 +235,12 @@ void Server::Impl::ask_for_live(Timestamp now) {
     try {
       text = frame(Opcode::text, live_message(backend.live_json()));
     } catch (const std::exception& error) {
-      log_error("web.live", "what the page shows could not be made: {}", error.what());
+      log_error("web.live", "the live document could not be made: {}", error.what());
     }
     box->post(0, [this, chunk = chunk_of(std::move(text))](Connection*) {
       live_under_way = false;
       if (chunk.bytes.empty()) return;
-      for (const auto& connection : connections) connection->show_live(chunk);
+      for (const auto& connection : connections) connection->send_live(chunk);
     });
   });
 }

@@ -1,4 +1,4 @@
-// WebSocket as RFC 6455 defines it, the server's side: opening and frames, without extensions. Pure: bytes in, messages
+// The server side of WebSocket (RFC 6455): opening handshake and frames, without extensions. Pure: bytes in, messages
 // out.
 #pragma once
 
@@ -22,20 +22,20 @@ enum class CloseCode : std::uint16_t {
   protocol_error = 1002,
   unsupported = 1003,
   none_given = 1005,  // never on the wire
-  bad_text = 1007,    // no UTF-8
+  bad_text = 1007,    // not UTF-8
   policy = 1008,
   too_big = 1009,
 };
 
-// The header Sec-WebSocket-Accept for an opening; none where the request is no opening of version 13.
+// The header Sec-WebSocket-Accept for an opening; none if the request is not an opening handshake of version 13.
 [[nodiscard]] std::optional<std::string> websocket_accept(const HttpRequest& request);
 
-// The header of an unmasked frame, as servers send them; the payload follows it.
+// The header of an unmasked frame, as servers send it; the payload follows.
 [[nodiscard]] std::string frame_header(Opcode opcode, std::size_t payload_bytes);
 [[nodiscard]] std::string frame(Opcode opcode, std::string_view payload);
 // Without code and reason for `none_given`.
 [[nodiscard]] std::string close_frame(CloseCode code, std::string_view reason);
-// The code in the payload of a close frame that FrameReader let through, any that clients may send (section 7.4).
+// The code in the payload of a close frame that FrameReader accepted (section 7.4).
 [[nodiscard]] CloseCode close_code_of(std::string_view payload);
 
 struct WebSocketMessage {
@@ -43,15 +43,15 @@ struct WebSocketMessage {
   std::string payload;
 };
 
-// Puts a client's frames together to messages. A message, with all its parts, has at most `most_bytes`: a frame that
-// says it is longer is refused by its header, before any of it is taken.
+// Assembles messages from the frames of a client. A message, with all its parts, has at most `most_bytes`: a frame that
+// exceeds this is refused by its header, before any of its payload is read.
 class FrameReader {
  public:
   explicit FrameReader(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  // Bytes as they came. Nothing is taken any more after an error.
+  // Bytes as received. Ignored after an error.
   void push(std::string_view bytes);
-  // The next whole message; none: more bytes are needed, or there is an error.
+  // The next complete message; none: more bytes are needed, or there is an error.
   [[nodiscard]] std::optional<WebSocketMessage> next();
   [[nodiscard]] std::optional<CloseCode> error() const { return error_; }
   // Frames read since the last call, parts of messages included.

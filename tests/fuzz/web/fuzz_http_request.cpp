@@ -25,6 +25,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static_cast<void>(token_matches(bearer_token(request), "0123456789abcdef"));
   if (opening_token(request).size() > size) std::abort();
   static_cast<void>(websocket_accept(request));
-  if (const auto wish = read_picture_query(request.query); wish && !check_picture_wish(*wish)) std::abort();
+  if (const auto picture = read_picture_query(request.query); picture && !check_picture_request(*picture)) std::abort();
   return 0;
 }

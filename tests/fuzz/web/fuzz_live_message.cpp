@@ -17,7 +17,7 @@ constexpr std::size_t kMost = 4096;
 void read_message(std::string_view text) {
   const auto message = read_client_message(text);
   if (!message) return;
-  if (const auto* picture = std::get_if<PictureMessage>(&*message); picture && !check_picture_wish(picture->wish))
+  if (const auto* picture = std::get_if<PictureMessage>(&*message); picture && !check_picture_request(picture->request))
     std::abort();
   if (const auto* command = std::get_if<CommandMessage>(&*message); command && command->text.size() > kMaxCommandBytes)
     std::abort();

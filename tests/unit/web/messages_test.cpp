@@ -47,16 +47,16 @@ TEST(ClientMessages, AreRead) {
 }
 
 TEST(ClientMessages, WishPictures) {
-  const auto plain = expect<PictureMessage>(R"({"do": "picture"})").wish;
+  const auto plain = expect<PictureMessage>(R"({"do": "picture"})").request;
   EXPECT_EQ(plain.width, 640);
   EXPECT_FALSE(plain.view || plain.camera || plain.free_view);
-  EXPECT_EQ(expect<PictureMessage>(R"({"do": "picture", "view": 6, "width": 320, "height": 200})").wish.view, 6);
-  EXPECT_EQ(expect<PictureMessage>(R"({"do": "picture", "camera": "C", "rate_hz": 7.5})").wish.rate_hz, 7.5);
+  EXPECT_EQ(expect<PictureMessage>(R"({"do": "picture", "view": 6, "width": 320, "height": 200})").request.view, 6);
+  EXPECT_EQ(expect<PictureMessage>(R"({"do": "picture", "camera": "C", "rate_hz": 7.5})").request.rate_hz, 7.5);
   const auto free = expect<PictureMessage>(
       R"({"do": "picture", "free": {"viewpoint_m": [1, 2, 3], "lookpoint_m": [0, 0, 0.5], "opening_angle_rad": 0.9}})");
-  ASSERT_TRUE(free.wish.free_view);
-  EXPECT_EQ(free.wish.free_view->viewpoint, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(free.wish.free_view->opening_angle, 0.9);
+  ASSERT_TRUE(free.request.free_view);
+  EXPECT_EQ(free.request.free_view->viewpoint, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(free.request.free_view->opening_angle, 0.9);
 }
 
 TEST(ClientMessages, AreRefusedWithAReason) {
@@ -99,10 +99,10 @@ TEST(ClientMessages, AreRefusedWithAReason) {
 }
 
 TEST(PictureQuery, IsRead) {
-  const auto wish = read_picture_query("view=3&width=800&height=600");
-  ASSERT_TRUE(wish) << wish.error().text();
-  EXPECT_EQ(wish->view, 3);
-  EXPECT_EQ(wish->width, 800);
+  const auto picture = read_picture_query("view=3&width=800&height=600");
+  ASSERT_TRUE(picture) << picture.error().text();
+  EXPECT_EQ(picture->view, 3);
+  EXPECT_EQ(picture->width, 800);
   EXPECT_EQ(read_picture_query("camera=A%20B")->camera, "A B");
   for (const char* query : {"view=9", "width=abc", "width=-5", "size=3", "view=1&camera=x", "a=%"})
     EXPECT_FALSE(read_picture_query(query)) << query;
