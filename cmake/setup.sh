@@ -1,5 +1,5 @@
-# Sourced by ./run and ./check: installs missing Debian packages, configures and builds. Quiet where nothing is to be
-# done, so that a start with everything in place costs milliseconds.
+# Sourced by ./run and ./check: installs missing Debian packages, configures and builds. Silent if there is nothing to
+# do, so that a start of a complete tree takes milliseconds.
 
 say() { printf '%s\n' "$*" >&2; }
 die() {
@@ -7,10 +7,10 @@ die() {
   exit "${2:-1}"
 }
 
-# The lines of the given files that say something.
+# The lines of the given files without comments and blank lines.
 lines_of() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@"; }
 
-# The packages in the given files. A line "PACKAGE unless COMMAND" asks for it only where there is no such command yet.
+# The packages in the given files. A line "PACKAGE unless COMMAND" requires it only if there is no such command.
 listed() {
   lines_of "$@" | while read -r package unless command; do
     [ "$unless" = unless ] && command -v "$command" >/dev/null || printf '%s\n' "$package"
@@ -29,7 +29,7 @@ ensure_packages() {
   local wanted missing as_root=() install log
   mapfile -t wanted < <(listed "$@")
   if ! command -v dpkg-query >/dev/null; then
-    command -v cmake >/dev/null || die "This is not a Debian system, so nothing is installed here by itself. Needed: ${wanted[*]}"
+    command -v cmake >/dev/null || die "This is not a Debian system, so packages are not installed automatically. Required: ${wanted[*]}"
     return 0
   fi
   mapfile -t missing < <(missing_packages "${wanted[@]}")
@@ -38,7 +38,7 @@ ensure_packages() {
   install="apt-get install -y --no-install-recommends ${missing[*]}"
   if [ "$(id -u)" != 0 ]; then
     if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || { [ -t 0 ] && sudo true; }; }; then
-      die "${#missing[@]} packages are missing and only root may install them. Have this run as root, then start again:
+      die "${#missing[@]} packages are missing and only root may install them. Run this as root, then start again:
   apt-get update && $install"
     fi
     as_root=(sudo)
@@ -49,7 +49,7 @@ ensure_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive $install; } >"$log" 2>&1 </dev/null; then
     tail -n 20 "$log" >&2
     rm -f "$log"
-    die "The packages could not be installed. Mend what apt-get says above, or run it by hand:
+    die "The packages could not be installed. Fix the error of apt-get above, or run it by hand:
   ${as_root[*]} apt-get update && ${as_root[*]} $install"
   fi
   rm -f "$log"
@@ -70,11 +70,11 @@ configure() {
   log=$folder/configure.log
   cmake --preset "$preset" "$@" >"$log" 2>&1 </dev/null || {
     tail -n 30 "$log" >&2
-    die "CMake could not configure $folder (all of its output: $log)"
+    die "CMake could not configure $folder (full output: $log)"
   }
 }
 
-# build FOLDER [target...]: tells what it does only where something is to be done.
+# build FOLDER [target...]: prints progress only if there is something to do.
 build() {
   local folder=$1 steps log jobs watcher status=0
   shift
@@ -83,7 +83,7 @@ build() {
   if [[ $steps = *"Re-running CMake"* ]]; then  # which steps there are shows only afterwards
     ninja -C "$folder" build.ninja >"$log" 2>&1 </dev/null || {
       tail -n 30 "$log" >&2
-      die "CMake could not configure $folder again (all of its output: $log)"
+      die "CMake could not configure $folder again (full output: $log)"
     }
     steps=$(ninja -C "$folder" -n "$@" 2>/dev/null | tail -n 1)
   fi
@@ -109,6 +109,6 @@ build() {
   wait "$watcher" 2>/dev/null
   if [ $status != 0 ]; then
     grep -a -A 40 -m 1 -E '^FAILED|^ninja: error' "$log" >&2 || tail -n 40 "$log" >&2
-    die "The build of $folder failed (all of its output: $log)"
+    die "The build of $folder failed (full output: $log)"
   fi
 }

@@ -32,8 +32,8 @@ def shell(command: str) -> bool:
 
 
 class EarlyBuild:
-    """Builds with what the processors have left: the idle class is preempted at once by every other program, and a good part
-    of the tests waits for clocks. What becomes of it shows in the build that follows, which goes on where this one ends."""
+    """Builds in the idle class, which every other program preempts at once, while many tests wait for time to pass. The build
+    that follows continues from here and reports failures."""
 
     def __init__(self, command: str):
         idle = ["chrt", "-i", "0"] if shutil.which("chrt") else ["nice", "-n", "19"]
@@ -47,7 +47,7 @@ class EarlyBuild:
 
 
 class LaterPackages:
-    """Installs what the tests run, but nothing of the release is built with, while the release is built."""
+    """Installs packages that only the tests need, while the release is built."""
 
     def __init__(self):
         self.process = subprocess.Popen(["bash", "-uc", ". cmake/setup.sh; ensure_packages cmake/packages-later.txt"], cwd=ROOT,
@@ -70,7 +70,7 @@ class Check:
         self.packages = LaterPackages()
 
     def stage(self, name: str, action) -> bool:
-        """Runs `action`, which gives a Report; False when something in it failed."""
+        """Runs `action`, which returns a Report; False if anything in it failed."""
         print(f"== {name}", file=sys.stderr, flush=True)
         start = time.monotonic()
         report = action()
@@ -146,9 +146,9 @@ class Check:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="./check", description="Sets up, builds and runs every test.")
-    parser.add_argument("--quick", action="store_true", help="release build only: lint and the tests that need no clock")
-    parser.add_argument("--full", action="store_true", help="clang-tidy over every source, however long it takes")
+    parser = argparse.ArgumentParser(prog="./check", description="Installs missing packages, builds, and runs every test.")
+    parser.add_argument("--quick", action="store_true", help="release build only: lint and tests without timing")
+    parser.add_argument("--full", action="store_true", help="clang-tidy over every source, without a time limit")
     parser.add_argument("--label", help="only the release tests with this label: unit, integration, golden, fuzz, stress, lint, docs, bench")
     check = Check(parser.parse_args())
     check.release()

@@ -1,4 +1,4 @@
-"""House rules that a compiler does not know. Arguments: the source root, then which check: format, files, docs."""
+"""House rules that a compiler cannot check. Arguments: the source root, then which check: format, files, docs."""
 
 import re
 import subprocess
@@ -10,16 +10,15 @@ CODE = {".cpp", ".hpp", ".h", ".c"}
 MAX_LINES = 600
 MARKS = re.compile(r"\b(TO" r"DO|FIX" r"ME|X" r"XX|HA" r"CK)\b")
 HOME_PATHS = re.compile(r"(?<![\w.$}])/(root|home/[a-z]+|work)/")
-# Flags and counters are everybody's; lock-free structures live in rt_core/rt, where they are stressed under
-# ThreadSanitizer, and the words of shared memory in ipc/wire/shared_words.hpp, stressed likewise. C programs have them
-# from a header of their own.
+# Flags and counters are allowed everywhere; lock-free structures are in rt_core/rt, with stress tests under ThreadSanitizer,
+# and the words of shared memory in ipc/wire/shared_words.hpp, tested likewise. C programs have a header of their own.
 HOMES_OF_LOCK_FREE = ("rt_core/rt", "tests", "ipc/wire/shared_words.hpp", "docs/examples/cellmirror_haptic.h")
 LOCK_FREE = re.compile(r"std::atomic<(?!bool>|int>|std::u?int(?:32|64)_t>)[^>]*>|std::atomic_ref"
                        r"|compare_exchange\w+|atomic_thread_fence|__atomic_\w+|__sync_\w+")
 
 
 def tracked_files() -> list[Path]:
-    """What git knows or would take; all files outside of build folders where this is not a checkout."""
+    """Files known to git or not ignored; without a checkout, all files outside build folders."""
     listing = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT,
                              capture_output=True, text=True)
     if listing.returncode == 0:
@@ -36,7 +35,7 @@ def check_format() -> list[str]:
     if result.returncode == 0:
         return []
     wrong = sorted(set(re.findall(r"^([^\s:]+):\d+:\d+: error", result.stderr, re.MULTILINE)))
-    return [f"{path}: mend it by clang-format-19 -i {path}" for path in wrong] or [result.stderr]
+    return [f"{path}: fix it by clang-format-19 -i {path}" for path in wrong] or [result.stderr]
 
 
 def is_shell(path: Path) -> bool:
@@ -56,8 +55,7 @@ def check_files() -> list[str]:
                 errors.append(f"{path}: no #pragma once")
             home_of_lock_free = any(path.is_relative_to(home) for home in HOMES_OF_LOCK_FREE)
             if not home_of_lock_free and (match := LOCK_FREE.search(text)):
-                errors.append(f"{path}: {match[0]} belongs in rt_core/rt: use Fifo, Latest, Ring, shared_words or what else "
-                              "is there")
+                errors.append(f"{path}: {match[0]} belongs in rt_core/rt: use Fifo, Latest, Ring or shared_words")
         if is_shell(path):
             result = subprocess.run(["bash", "-n", str(ROOT / path)], capture_output=True, text=True)
             errors += [f"{path}: {result.stderr.strip()}"] if result.returncode else []
@@ -83,7 +81,7 @@ def check_docs() -> list[str]:
                 continue
             goal = (ROOT / page).parent / target.split("#")[0]
             if not goal.exists():
-                errors.append(f"{page}: the link to {target} leads nowhere")
+                errors.append(f"{page}: the link to {target} has no target")
             else:
                 linked.add(goal.resolve())
     errors += [f"{page}: no page links to it" for page in pages
