@@ -27,14 +27,16 @@ def names(folders: list[str]) -> str:
 
 
 def purpose(folder: str) -> str:
-    """The first sentence of the README, without links."""
+    """What the README's title says behind its colon, else its first sentence; without links."""
     readme = ROOT / folder / "README.md"
     if not readme.exists():
         return ""
-    body = readme.read_text().split("\n", 1)[1].strip()
-    paragraph = " ".join(body.split("\n\n")[0].split())
+    title, body = readme.read_text().split("\n", 1)
+    if ": " in title:
+        return title.split(": ", 1)[1]
+    paragraph = " ".join(body.strip().split("\n\n")[0].split())
     paragraph = re.sub(r"^- (\*\*Purpose\*\*: )?", "", re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", paragraph))
-    return re.split(r"(?<=[.:]) ", paragraph)[0].rstrip(".:").replace("|", "/")
+    return re.split(r"(?<=[.]) ", paragraph)[0].rstrip(".:").replace("|", "/")
 
 
 def table(rows: dict[str, list[str]]) -> str:
