@@ -1,4 +1,4 @@
-// A line on the terminal that is written anew a few times a second; nothing where standard error is no terminal. One
+// A line on the terminal that is rewritten a few times a second; nothing where standard error is no terminal. One
 // thread.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Formatted output to a stream. What cannot be written is told by ferror() in the end: fmt::print() would throw.
+// Formatted output to a stream. A failure to write shows in ferror() at the end; fmt::print() would throw.
 #pragma once
 
 #include <fmt/core.h>

@@ -64,9 +64,9 @@ Result<LoadedCell> load(const GatewayOptions& options) {
     const std::string count = diagnostics.errors() == 1 ? "an error" : fmt::format("{} errors", diagnostics.errors());
     return fail(fmt::format("the cell {} has {}:\n{}nothing was started", options.cell_file.string(), count,
                             diagnostics.text(Severity::warning)),
-                fmt::format("mend the cell and look again with: cellmirror check {}", options.cell_file.string()));
+                fmt::format("fix the cell and check it with: cellmirror check {}", options.cell_file.string()));
   }
-  // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same findings.
+  // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same diagnostics.
   for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
   log_findings(diagnostics);
   if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
@@ -228,7 +228,7 @@ Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
   return {};
 }
 
-// Makes no pictures yet: the renderer is made when somebody looks.
+// Draws nothing yet: the renderer is created with the first request.
 Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, bool headless,
                                             const DdsOutputConfig& dds) {
   auto outputs = make_picture_outputs(dds);
@@ -290,7 +290,7 @@ void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply
                         });
 }
 
-// Serves nobody yet: whoever answers for the gateway asks it for its report.
+// Does not serve yet: status needs its report before that.
 void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings& settings) {
   WebBackend::Parts parts;
   parts.clock = &clock;

@@ -24,7 +24,7 @@ class HapticStream final : public JointStream {
   void close() override;
   [[nodiscard]] JointStreamStatus status() const override;
 
-  // Whoever carries out open() and close() ends.
+  // The owner of open() and close() ends.
   void detach();
   // The memory that the device's process shares with us now.
   void set_memory(std::string endpoint, std::shared_ptr<const HapticMeter> meter);

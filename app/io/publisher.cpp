@@ -28,7 +28,7 @@ void FindingsPublisher::publish_news(FindingsOutput& output, RangeSendMode mode)
   if (state && state->sequence != newest_proximity_) {
     outgoing_ = *state;
     outgoing_.events = proximity_.events_after(newest_event_);
-    // The worker may have hung up newer results meanwhile: their events go with the next ones.
+    // The worker may have published newer results meanwhile: their events are published with the next ones.
     std::erase_if(outgoing_.events,
                   [&](const ProximityEvent& event) { return event.posture_time > state->posture_time; });
     if (!outgoing_.events.empty()) newest_event_ = outgoing_.events.back().sequence;

@@ -19,7 +19,7 @@ namespace cellmirror::app {
 // One thread.
 class RangeWatch {
  public:
-  // What is to be told about the robots now, one text a joint that went beyond its range with a fresh value: not again
+  // Warnings about the robots now, one for each joint that went beyond its range with a fresh value: not again
   // before it was back, nor within 10 s. `robots` and `snapshots` are in the same order.
   [[nodiscard]] std::vector<std::string> look(Timestamp now, std::span<const RobotState> robots,
                                               std::span<const RobotSnapshot> snapshots);
@@ -27,7 +27,7 @@ class RangeWatch {
  private:
   struct Watched {
     bool told = false;  // and still beyond
-    Timestamp at;       // when it was told last
+    Timestamp at;       // of the last warning
   };
   std::map<std::string, std::array<Watched, kMaxJointsPerRobot>, std::less<>> robots_;
 };

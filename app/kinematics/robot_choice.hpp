@@ -38,7 +38,7 @@ void add_robot_options(cli::Command sub, RobotChoice& choice);
 // What is missing or contradicts itself, as one sentence; empty: nothing. Wrong usage.
 [[nodiscard]] std::string misuse(const RobotChoice& choice);
 
-// Nothing, and all findings, where a file is wrong or the chain cannot be made.
+// Nothing, and all diagnostics, where a file is wrong or the chain cannot be made.
 [[nodiscard]] std::optional<ChosenRobot> choose_robot(const RobotChoice& choice, Diagnostics& diagnostics);
 
 // One value a joint, separated by blanks or commas. Refused: another count than the chain has, what is no finite

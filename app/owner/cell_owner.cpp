@@ -21,7 +21,7 @@ constexpr std::size_t kScriptSlice = 32;
 constexpr Nanoseconds kScriptTime{5'000'000};
 constexpr int kMessageBudget = 64;
 constexpr Nanoseconds kPublishPeriod{20'000'000};     // at most so old while commands keep coming
-constexpr std::chrono::milliseconds kIdleWait{50};    // messages expire from the cell_state
+constexpr std::chrono::milliseconds kIdleWait{50};    // expired messages are removed from the display
 constexpr std::chrono::milliseconds kHapticWait{10};  // how soon a device that has vanished is noticed
 constexpr std::chrono::milliseconds kMovingWait{1};   // how soon an arrival is noticed, and WAIT goes on
 

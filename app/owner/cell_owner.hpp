@@ -84,7 +84,7 @@ class CellOwner {
   CellOwner(const CellOwner&) = delete;
   CellOwner& operator=(const CellOwner&) = delete;
 
-  // Before start(): gives the tick its robots, hangs up the first cell_state, and begins the startup script, if any
+  // Before start(): gives the tick its robots, publishes the first state, and starts the startup script, if any
   // (`script`: any path where `is_path`, else a file of the home's scripts/, with or without that folder in front).
   Result<void> prepare(const std::string& script, bool is_path);
   void start();
@@ -92,7 +92,7 @@ class CellOwner {
   // Ends the thread; submit() waits no longer.
   void stop();
 
-  // Instead of start(), for whoever has no thread for it: all that can be done now, bounded. True where there may be
+  // Instead of start(), where the owner has no thread: all that can be done now, bounded. True where there may be
   // more to do at once; else it has to come back after the next tick.
   bool turn();
   // No script, no move, no robot program and no script of a foot switch is under way.
@@ -103,12 +103,12 @@ class CellOwner {
   // From any other thread: false, at once, where the queue is full.
   [[nodiscard]] bool offer(const ScriptMessage& message);
   [[nodiscard]] engine::QueueStatus command_queue() const;
-  // For whoever sets the clock by hand, from any thread: has the owner take a turn at once instead of within a
+  // For tests with a manual clock, from any thread: makes the owner take a turn at once instead of within a
   // millisecond, and tells how many it has begun. Once that has risen by two, what lay before the owner then has been
   // seen to.
   void wake() { wake_.wake(); }
   [[nodiscard]] std::uint64_t turns() const { return turns_.load(std::memory_order_acquire); }
-  // For whoever gives turns.
+  // For the off-line gateway.
   [[nodiscard]] const ProgramService& programs() const { return programs_; }
 
  private:
@@ -148,7 +148,7 @@ class CellOwner {
   std::unique_ptr<FootSwitchService> switches_;  // its thread wakes the owner's
   WakeSignal room_;                              // wakes the receiver's thread when the queue has room again
   Timestamp last_publication_;
-  bool changed_ = true;  // since the last cell_state
+  bool changed_ = true;  // since the last publication
   std::atomic<std::uint64_t> turns_{0};
   std::stop_source stopping_;  // apart from the thread, so that submit() may ask before the thread is there
   std::thread thread_;

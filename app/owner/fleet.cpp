@@ -65,14 +65,14 @@ Result<std::uint64_t> Fleet::send(const engine::Command& command) {
 }
 
 Result<std::uint64_t> Fleet::patiently(const std::function<std::uint64_t()>& give) {
-  const Timestamp give_up = clock_.now() + kTickPatience;
+  const Timestamp deadline = clock_.now() + kTickPatience;
   for (;;) {
     const std::uint64_t id = give();
     if (id != 0) {
       last_command_ = id;
       return id;
     }
-    if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
+    if (clock_.now() > deadline) return std::unexpected(tick_stands_still());
     wait_for_tick();
   }
 }
@@ -83,9 +83,9 @@ void Fleet::wait_for_tick() const {
 }
 
 Result<void> Fleet::settle() {
-  const Timestamp give_up = clock_.now() + kTickPatience;
+  const Timestamp deadline = clock_.now() + kTickPatience;
   while (engine_.owner_view().commands_done < last_command_) {
-    if (clock_.now() > give_up) return std::unexpected(tick_stands_still());
+    if (clock_.now() > deadline) return std::unexpected(tick_stands_still());
     wait_for_tick();
   }
   return {};

@@ -27,7 +27,7 @@ struct FleetRobot {
   std::size_t slot = 0;
   bool online = false;
   bool sending = false;
-  // rad or m: where the tick was told to put it, and the command that told it.
+  // rad or m: where a command to the tick puts it, and the id of that command.
   JointValues put_at{};
   std::uint64_t put_command = 0;
   std::uint32_t newest_move = 0;        // id of the move that was given last
@@ -45,7 +45,7 @@ class Fleet final : public MotionPort {
   Fleet(const Fleet&) = delete;
   Fleet& operator=(const Fleet&) = delete;
 
-  // Off line: whoever waits for the tick lets one pass with this, and streams are refused.
+  // Off line: a call that waits for the tick runs one with this, and streams are refused.
   void set_off_line(std::function<void()> let_tick_pass) { let_tick_pass_ = std::move(let_tick_pass); }
 
   // Told of every move that is given to the tick.

@@ -117,7 +117,7 @@ void FootSwitchService::check_memory() {
     return;
   }
   trouble_.clear();
-  log_warning(kLogKind, "the memory of the foot switches was removed by somebody and is made anew");
+  log_warning(kLogKind, "the memory of the foot switches was removed by another process and is created again");
 }
 
 FootSwitchSnapshot FootSwitchService::snapshot() const {

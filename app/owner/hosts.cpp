@@ -107,8 +107,8 @@ Result<void> CellRobots::set_online(std::string_view robot, bool online) {
   auto set = fleet_.set_online(robot, online);
   if (!set || !changes) return set;
   const Error why{fmt::format("the robot {} went {}", robot, online ? "online" : "offline"), {}};
-  programs_.give_up(robot, why);
-  motion_.give_up(robot, why);
+  programs_.cancel(robot, why);
+  motion_.cancel(robot, why);
   return set;
 }
 

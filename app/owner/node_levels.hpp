@@ -13,7 +13,7 @@ namespace cellmirror::app {
 
 class NodeLevels {
  public:
-  // Made anew only where the tree or what is visible of it has changed.
+  // Created again only where the tree or what is visible of it has changed.
   [[nodiscard]] std::shared_ptr<const LevelList> of(const Cell& cell,
                                                     const std::shared_ptr<const CompiledCell>& compiled) {
     const bool same = compiled_ && (compiled_ == compiled ||

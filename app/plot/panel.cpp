@@ -15,7 +15,7 @@ constexpr double kTitleSize = 17;
 constexpr double kLabelSize = 15;
 constexpr double kTickSize = 13;
 
-// Okabe and Ito, Color Universal Design: eight colours that people of every colour vision can tell apart; without
+// Okabe and Ito, Color Universal Design: eight colours that people with any colour vision can distinguish; without
 // black, which is the ink, and yellow, which is weak on white.
 constexpr std::array<Colour, 6> kPalette = {{{0.000, 0.447, 0.698},
                                              {0.835, 0.369, 0.000},
@@ -25,7 +25,7 @@ constexpr std::array<Colour, 6> kPalette = {{{0.000, 0.447, 0.698},
                                              {0.902, 0.624, 0.000}}};
 
 Colour colour_of(std::size_t series) { return kPalette[series % kPalette.size()]; }
-// Whoever comes after the last colour gets the first again, dashed.
+// After the last colour the first is used again, dashed.
 double dash_of(std::size_t series) {
   const std::size_t round = series / kPalette.size();
   return 4.0 * static_cast<double>(round);

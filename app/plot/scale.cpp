@@ -56,7 +56,7 @@ void Scale::fit_linear(const Axis& axis, std::span<const double> values, std::si
     high_ = std::max(high_, std::min(value, kLargest));
   }
   if (low_ > high_) low_ = 0.0, high_ = 1.0;
-  // A range that vanishes beside the numbers themselves would have ticks that cannot be told apart.
+  // A range that vanishes beside the numbers themselves would have ticks with equal labels.
   const double narrowest = std::max(1e-9 * std::max(std::abs(low_), std::abs(high_)), kSmallest);
   if (high_ - low_ < narrowest) {
     const double half = low_ == 0.0 && high_ == 0.0 ? 1.0 : std::max(narrowest, 0.05 * std::abs(low_));

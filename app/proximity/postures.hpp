@@ -22,7 +22,7 @@ using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)
 
 class Postures {
  public:
-  // Reads the whole of `file` once, so that all its findings are told before anything is computed; the rows are not
+  // Reads the whole of `file` once, so that all errors are reported before anything is computed; the rows are not
   // kept. An empty name: one posture, the start. Nothing where there is an error.
   static std::unique_ptr<Postures> open(const std::string& file, const Cell& cell, Diagnostics& diagnostics,
                                         const ReadProgress& progress = {});

@@ -1,5 +1,5 @@
-// A cell file and its postures, loaded for `collide` and `range`. Both tell their progress on a terminal, and print all
-// findings on standard error.
+// A cell file and its postures, loaded for `collide` and `range`. Both show their progress on a terminal, and print all
+// diagnostics on standard error.
 #pragma once
 
 #include <memory>

@@ -100,7 +100,7 @@ void RangeText::end(const RangeTotals& totals) {
 }
 
 plot::Figure figure(const RangeHeading& heading, const CompiledCell& cell, const RangeTotals& totals) {
-  constexpr std::size_t kMostLines = 16;  // what an eye can tell apart
+  constexpr std::size_t kMostLines = 16;  // that an eye can distinguish
   plot::Figure out;
   out.title = "Range sensors of " + printable(heading.cell);
   out.subtitle = fmt::format("{}, {}{}", number_of(totals.frames, "frame"), number_of(totals.sensors.size(), "sensor"),

@@ -1,4 +1,4 @@
-// When the next picture is due for somebody who wishes so many a second. Pure: time is handed in.
+// When the next picture is due for a client with a requested rate. Pure: time is passed in.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What somebody wants to see, checked and compared.
+// Validation and comparison of requests for pictures.
 #pragma once
 
 #include "rt_core/base/result.hpp"

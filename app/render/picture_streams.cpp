@@ -29,7 +29,7 @@ PictureRequest PictureObserver::request() const {
 }
 
 void PictureObserver::change(const PictureRequest& request) {
-  if (!check_request(request)) return;  // whoever speaks with the client has told it
+  if (!check_request(request)) return;  // refused to the client by the caller
   asked_now();
   const std::scoped_lock lock(mutex_);
   if (!same_drawing(request_, request)) {
@@ -57,7 +57,7 @@ void PictureObserver::show(std::shared_ptr<const EncodedImage> picture, const Pi
   newest_.swap(picture);  // the one before is let go by the argument, without the lock
 }
 
-void PictureObserver::tell(const Error& problem, const PictureRequest& request) {
+void PictureObserver::report_problem(const Error& problem, const PictureRequest& request) {
   const std::scoped_lock lock(mutex_);
   if (same_drawing(request_, request)) problem_ = problem.text();
 }

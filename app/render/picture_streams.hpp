@@ -23,14 +23,14 @@ class PictureObserver {
   [[nodiscard]] PictureRequest request() const;
   void change(const PictureRequest& request);
   // The picture of its request, if that is not the one it has already (`has`: its sequence). It may be an older one:
-  // what somebody else looks at was drawn before.
+  // a picture for another client may have been drawn before.
   [[nodiscard]] std::shared_ptr<const EncodedImage> newest(std::uint64_t has);
   [[nodiscard]] std::string problem() const;
 
   // The picture thread's.
   // Not where it has changed its request from `request` meanwhile.
   void show(std::shared_ptr<const EncodedImage> picture, const PictureRequest& request);
-  void tell(const Error& problem, const PictureRequest& request);
+  void report_problem(const Error& problem, const PictureRequest& request);
   // Whether it has asked within kObserverTimeout: for a client that stands still nothing is drawn.
   [[nodiscard]] bool looks(Timestamp now) const;
   // When the next one is due by its rate.

@@ -1,4 +1,4 @@
-// What was drawn last for each kind of request, as long as somebody has it. The memory of a picture goes on to the next
+// What was drawn last for each kind of request, as long as it is requested. The memory of a picture goes on to the next
 // one: a view that is turned by hand is another request with every picture, and each takes megabytes that stay locked.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Whether there is time for anti-aliasing, which is two thirds of the work where a processor draws: pictures that
-// somebody looks at continuously are drawn without it while they would otherwise come less often than was wished. One
+// are requested continuously are drawn without it while they would otherwise come less often than requested. One
 // thread: the pictures'.
 #pragma once
 

@@ -17,7 +17,7 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr Nanoseconds kAnew{950'000'000};              // an unchanged picture is drawn anew after so long
+constexpr Nanoseconds kRedrawAfter{950'000'000};       // an unchanged picture is drawn again after this time
 constexpr Nanoseconds kRendererAgain{10'000'000'000};  // a renderer that could not be had is tried again after so long
 constexpr Nanoseconds kFreshEnough{5'000'000};         // a scene serves several drawings of one round for so long
 
@@ -59,7 +59,7 @@ Result<void> RenderService::refusal(const PictureRequest& request) const {
     return fail("the gateway takes no pictures: it was started with --headless", "start it without --headless");
   if (!options_.settings.on) {
     return fail("the gateway takes no pictures: the cell file says `on = false` in [display]",
-                "take that line away and start the gateway anew");
+                "remove that line and restart the gateway");
   }
   if (auto checked = check_request(request); !checked) return checked;
   const auto picture = boards_.pictures.latest();
@@ -210,7 +210,7 @@ void RenderService::round(Timestamp now) {
   cache_.keep(all);
   const std::vector<Recipient> wanted = recipients(now);
   if (wanted.empty()) return;
-  if (const auto renderer = need_renderer(); !renderer) return tell(wanted, renderer.error());
+  if (const auto renderer = need_renderer(); !renderer) return report_problem(wanted, renderer.error());
   effort_.begin_cycle(requested_hz(all));
   serve(wanted);
 }
@@ -229,16 +229,16 @@ void RenderService::serve(const std::vector<Recipient>& recipients) {
     const std::vector<Recipient> same(left.begin(), others.begin());
     left.erase(left.begin(), others.begin());
     if (const auto drawn = bring_up_to_date(rendered); !drawn) {
-      tell(same, drawn.error());
+      report_problem(same, drawn.error());
       continue;
     }
     for (const Recipient& recipient : same) give(recipient, rendered);
   }
 }
 
-void RenderService::tell(const std::vector<Recipient>& recipients, const Error& problem) {
+void RenderService::report_problem(const std::vector<Recipient>& recipients, const Error& problem) {
   for (const Recipient& recipient : recipients) {
-    if (recipient.observer) recipient.observer->tell(problem, recipient.request);
+    if (recipient.observer) recipient.observer->report_problem(problem, recipient.request);
   }
 }
 
@@ -250,7 +250,7 @@ Result<void> RenderService::bring_up_to_date(RenderedPicture& rendered) {
   }
   const std::uint64_t print = fingerprint(source_.scene(), *panes);
   const Timestamp now = boards_.clock.now();
-  if (rendered.drawn.known() && rendered.fingerprint == print && now - rendered.drawn < kAnew) {
+  if (rendered.drawn.known() && rendered.fingerprint == print && now - rendered.drawn < kRedrawAfter) {
     count(&RenderReport::unchanged);
     effort_.unchanged();
     return {};
@@ -271,7 +271,7 @@ void RenderService::give(const Recipient& recipient, RenderedPicture& rendered) 
   const auto picture = encode(rendered, recipient.request.quality);
   if (!picture) {
     note_problem(picture.error());
-    return tell({recipient}, picture.error());
+    return report_problem({recipient}, picture.error());
   }
   if (recipient.observer) recipient.observer->show(*picture, recipient.request);
   if (recipient.output != nullptr) recipient.output->output->publish_image(**picture);

@@ -36,7 +36,7 @@ class RenderService {
  public:
   using RendererMaker = std::function<Result<std::unique_ptr<display::Renderer>>()>;
 
-  // Pictures for somebody within the process, at his rate, as long as output->watched().
+  // Pictures for an output of this process, at its rate, as long as output->watched().
   struct Output {
     std::unique_ptr<ImageOutput> output;
     PictureRequest request;
@@ -72,7 +72,7 @@ class RenderService {
  private:
   using Job = std::function<void(bool given_up)>;
 
-  // Somebody who gets a picture in this round.
+  // A client or output whose picture is due in this round.
   struct Recipient {
     std::shared_ptr<PictureObserver> observer;  // null: an output
     Output* output = nullptr;
@@ -95,7 +95,7 @@ class RenderService {
   [[nodiscard]] double requested_hz(std::span<const PictureRequest> requests) const;
   void serve(const std::vector<Recipient>& recipients);
   void give(const Recipient& recipient, RenderedPicture& rendered);
-  static void tell(const std::vector<Recipient>& recipients, const Error& problem);
+  static void report_problem(const std::vector<Recipient>& recipients, const Error& problem);
   Result<void> bring_up_to_date(RenderedPicture& rendered);
   Result<std::shared_ptr<const EncodedImage>> encode(RenderedPicture& rendered, int quality);
 

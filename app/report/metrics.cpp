@@ -30,7 +30,7 @@ std::string escaped(std::string_view text) {
 
 void add_loop(MetricsText& out, const LiveSources& sources) {
   out.one("cellmirror_uptime_seconds", "gauge", "Since the start.", sources.uptime_s);
-  out.one("cellmirror_loop_rate_hertz", "gauge", "Periods a second that the loop was told to keep.", sources.rate_hz);
+  out.one("cellmirror_loop_rate_hertz", "gauge", "Configured rate of the loop.", sources.rate_hz);
   out.one("cellmirror_loop_ticks_total", "counter", "Periods run.", static_cast<double>(sources.loop.cycles()));
   out.one("cellmirror_loop_missed_total", "counter", "Periods that were skipped because the loop was late.",
           static_cast<double>(sources.loop.missed()));

@@ -28,10 +28,10 @@ class MotionRecorder {
   void given(std::string_view robot, const motion::Move& move);
   void observe(const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick);
 
-  // Moves that have not ended are told as under way. Nothing more may be observed.
+  // Moves that have not ended are recorded as under way. No observation may follow.
   void finish(SimulationResult& result);
 
-  // Where a move of a robot stands in the list, for whoever knows more about it; null: it is not kept.
+  // Where a move of a robot stands in the list, for a caller that adds to it; null: it is not kept.
   [[nodiscard]] SimulatedMove* find(std::string_view robot, std::uint32_t id);
 
  private:

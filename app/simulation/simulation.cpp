@@ -155,7 +155,7 @@ class Simulation {
       return fmt::format("{:g} s are over (--for){}{}{}", options_.longest_s, who.empty() ? "" : ": ", who,
                          computes ? "; does it end?" : "");
     }
-    // A deadlock is told by itself, and lasts whatever the options say.
+    // A deadlock is reported separately, and lasts whatever the options say.
     if (gateway_.owner().programs().controllers().deadlock()) return who;
     return fmt::format("nothing has happened for {:g} s (--still){}{}", options_.still_s, who.empty() ? "" : ": ",
                        who.empty() ? "" : who + "; SET_INPUT and SET_ANALOG_INPUT in the script set inputs");

@@ -161,7 +161,7 @@ struct SimulationResult {
   std::vector<Refusal> refusals;
   std::uint64_t more_refusals = 0;
   std::vector<std::string> deadlocks;
-  bool deadlock_was_stopped = false;  // one of them ended since somebody stopped a program that waited in it
+  bool deadlock_was_stopped = false;  // one of them ended because a program that waited in it was stopped
   std::vector<SimulatedMessage> messages;
   std::uint64_t more_messages = 0;
   CollisionSummary collision;

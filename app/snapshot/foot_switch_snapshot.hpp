@@ -28,7 +28,7 @@ struct FootSwitchSnapshot {
   std::uint64_t attached = 0;              // by others
   std::int32_t last_process = 0;
   std::uint64_t renewed = 0;
-  std::string trouble;  // the memory was lost and could not be made anew
+  std::string trouble;  // the memory was lost and could not be created again
   HistogramSnapshot first_command;
 };
 

@@ -1,4 +1,4 @@
-// What SCRIPT has set about forces: what is shown, what is too much, what is told instead of the truth for a test.
+// The settings of SCRIPT for forces: arrows, limits, and a test value in place of the computed one.
 #pragma once
 
 #include <array>

@@ -22,7 +22,7 @@ struct HapticSnapshot {
   std::optional<std::int32_t> key;  // of its memory; none: it has none yet
   std::size_t bytes = 0;
   std::uint64_t attached = 0;  // processes that share it, ourselves included
-  std::uint64_t renewed = 0;   // times that the memory was taken away and made anew
+  std::uint64_t renewed = 0;   // times that the memory was removed and created again
   bool device_gone = false;
   std::shared_ptr<const HapticMeter> meter;
 };

@@ -1,4 +1,4 @@
-// Objects that are made again and again and read by other threads: when the last reader lets one go, it is used anew
+// Objects that are created repeatedly and read by other threads: when the last reader releases one, it is reused
 // with the memory that it holds.
 #pragma once
 
@@ -18,13 +18,14 @@ class ObjectPool {
 
   // With whatever it held when it was let go.
   [[nodiscard]] std::shared_ptr<T> take() {
-    std::unique_ptr<T> object = shelf_->take();
+    std::unique_ptr<T> object = free_list_->take();
     if (!object) object = std::make_unique<T>();
-    return std::shared_ptr<T>(object.release(), [shelf = shelf_](T* used) { shelf->put(std::unique_ptr<T>(used)); });
+    return std::shared_ptr<T>(object.release(),
+                              [free_list = free_list_](T* used) { free_list->put(std::unique_ptr<T>(used)); });
   }
 
  private:
-  class Shelf {
+  class FreeList {
    public:
     std::unique_ptr<T> take() {
       const std::scoped_lock lock(mutex_);
@@ -48,7 +49,7 @@ class ObjectPool {
     }();
   };
 
-  std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
+  std::shared_ptr<FreeList> free_list_ = std::make_shared<FreeList>();
 };
 
 }  // namespace cellmirror::app

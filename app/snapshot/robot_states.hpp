@@ -15,10 +15,10 @@ namespace cellmirror::app {
 // Keeps its buffers from call to call. One thread.
 class RobotStateBuilder {
  public:
-  // All robots of the cell_state at that tick, in the order of the slots; valid until the next call.
+  // All robots of the cell at that tick, in the order of the slots; valid until the next call.
   std::span<const RobotState> build(const CellState& cell_state, const engine::TickState& state);
   // After build(): the frames of the robots' chains for /tf, from "world" over the base and the joints to the TCP.
-  // `wanted` says for each robot of the cell_state whether it is in.
+  // `wanted` says for each robot of the cell whether it is in.
   std::span<const FramePose> frames(const CellState& cell_state, const std::vector<bool>& wanted);
   // Of all nodes, at the tick of the last build().
   [[nodiscard]] const CellPoses& poses() const { return poses_; }

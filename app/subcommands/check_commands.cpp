@@ -50,14 +50,14 @@ std::string views_name(std::string_view name) {
 }  // namespace
 
 void check_joint_values(const RobotModel& robot, std::span<const double> values,
-                        const std::function<void(std::size_t joint, const Error& why)>& tell) {
+                        const std::function<void(std::size_t joint, const Error& why)>& report) {
   JointValues tried = robot.parameters().start_position;
   const std::size_t joints = std::min(values.size(), robot.joint_count());
   for (std::size_t i = 0; i < joints; ++i) {
     const double start = std::exchange(tried[i], values[i]);
     const auto fits = robot.positions_to(std::span(tried).first(i + 1), robot.parameters().start_position);
     if (fits) continue;
-    tell(i, fits.error());
+    report(i, fits.error());
     tried[i] = start;  // so that the joints behind it are looked at
   }
 }

@@ -22,7 +22,7 @@ namespace cellmirror::app {
 using PlaceOf = std::function<Place(std::string_view word)>;
 
 // Follows the commands of a text in their order, and into the files that it calls: what they make (TF_RECORD,
-// SAVE_VIEWS) and set (ROBACT, ROBOT_LANGUAGE, rob_jnt_*) holds for those behind. All findings are warnings, since
+// SAVE_VIEWS) and set (ROBACT, ROBOT_LANGUAGE, rob_jnt_*) holds for those behind. All diagnostics are warnings, since
 // other scripts may have run before. One thread.
 class CommandChecks {
  public:
@@ -54,10 +54,10 @@ class CommandChecks {
   std::set<std::filesystem::path> called_;  // and not ended yet
 };
 
-// Joints beyond their ranges of `robot`, each told to `tell` with its index and why. `values`: rad or m, of the first
-// joints.
+// Joints beyond their ranges of `robot`, each passed to `report` with its index and why. `values`: rad or m, of the
+// first joints.
 void check_joint_values(const RobotModel& robot, std::span<const double> values,
-                        const std::function<void(std::size_t joint, const Error& why)>& tell);
+                        const std::function<void(std::size_t joint, const Error& why)>& report);
 
 // A SCRIPT file as a whole. `cell` and `names` may be null: names, files and ranges are not looked at then.
 void check_script_file(const std::filesystem::path& path, const LoadedCell* cell, const NameDirectory* names,

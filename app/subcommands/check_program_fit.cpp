@@ -87,7 +87,7 @@ class Fit {
       const auto* joints = value == nullptr ? nullptr : std::get_if<program::JointPosition>(value);
       if (joints == nullptr) continue;
       const auto values = program::joint_values_si(*joints, robot_.joint_kinds());
-      if (!values) continue;  // too many of them, which is told
+      if (!values) continue;  // too many of them, which is reported
       check_joint_values(robot_, std::span(*values).first(joints->count), [&](std::size_t, const Error& why) {
         diagnostics_.warning(place, why.what, "the program fails there");
       });

@@ -45,7 +45,7 @@ bool flushed(const std::string& what) {
   return false;
 }
 
-int tell_pairs(const CollideOptions& options, const std::string& cell, const collision::PairTable& pairs) {
+int print_pairs(const CollideOptions& options, const std::string& cell, const collision::PairTable& pairs) {
   if (options.json) {
     print_pairs_json(cell, pairs, stdout);
   } else {
@@ -54,7 +54,8 @@ int tell_pairs(const CollideOptions& options, const std::string& cell, const col
   return flushed("standard output") ? kExitDone : kExitRefused;
 }
 
-int tell_frames(const CollideOptions& options, const CollideInput& input, const std::string& cell, Postures& postures) {
+int print_frames(const CollideOptions& options, const CollideInput& input, const std::string& cell,
+                 Postures& postures) {
   const CollideHeading heading{cell, input.settings.warning_distance_m, postures.count()};
   std::optional<CollideJson> json;
   std::optional<CollideText> text;
@@ -92,8 +93,8 @@ int collide(const CollideOptions& options) {
   if (!options.warning.empty()) input.settings.warning_distance_m = *parse_number(options.warning);
   collision::PairDerivation derivation(std::make_shared<geometry::SolidLibrary>());
   input.pairs = derivation.derive(*input.cell, input.settings);
-  if (options.pairs) return tell_pairs(options, cell->loaded.name, *input.pairs);
-  return tell_frames(options, input, cell->loaded.name, *postures);
+  if (options.pairs) return print_pairs(options, cell->loaded.name, *input.pairs);
+  return print_frames(options, input, cell->loaded.name, *postures);
 }
 
 }  // namespace
@@ -113,7 +114,7 @@ void add_collide(cli::Command program, Action& action) {
       .excludes(plot);
   sub.flag("--json", options->json, "one JSON document (docs/collisions.md)");
   sub.footer(
-      "Collisions are findings, no failure: the exit status is 0.\n"
+      "Collisions are results, not failures: the exit status is 0.\n"
       "Example: cellmirror collide --cell config/cells/transfer_cell/cell.toml --poses day.csv --plot day.png");
   sub.when_named([options, &action] { action = [options] { return collide(*options); }; });
 }

@@ -11,7 +11,7 @@ namespace cellmirror::app {
 
 // A command ends with ';' and may run over several lines; `#` in column 1 makes a comment line; the last command may
 // lack its ';'; a first line `RBv01r01` and a byte order mark are passed over (docs/script.md). What is wrong with a
-// command is told by who executes it.
+// command is reported by its executor.
 class CommandTexts {
  public:
   // `text` outlives it. It is read no further than to the end of a command, so that what comes through a pipe is sent

@@ -1,4 +1,4 @@
-// cellmirror doctor: what this machine allows, and the command that mends what it does not.
+// cellmirror doctor: what this machine allows, and the command that fixes what it does not.
 #include <net/if.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -138,7 +138,7 @@ int doctor(bool json) {
   }
   for (const Finding& finding : findings) {
     std::printf("%-4s %-22s %s\n", finding.ok ? "ok" : "--", finding.name.c_str(), finding.value.c_str());
-    if (!finding.ok && !finding.remedy.empty()) std::printf("     mend: %s\n", finding.remedy.c_str());
+    if (!finding.ok && !finding.remedy.empty()) std::printf("     fix: %s\n", finding.remedy.c_str());
   }
   return kExitDone;
 }
@@ -147,7 +147,7 @@ int doctor(bool json) {
 
 void add_doctor(cli::Command program, Action& action) {
   auto json = std::make_shared<bool>(false);
-  cli::Command sub = program.subcommand("doctor", "Tell what this machine allows, and how to mend what it does not");
+  cli::Command sub = program.subcommand("doctor", "Show what this machine allows, and how to fix what it does not");
   sub.flag("--json", *json, "one JSON document");
   sub.when_named([json, &action] { action = [json] { return doctor(*json); }; });
 }

@@ -131,7 +131,7 @@ Result<IkRun> run_with_progress(const kinematics::Chain& chain, const IkSettings
 
 // Prints what was found, and gives the exit status: one target that is not reached is a failure, of many it is a
 // figure.
-int tell(const IkOptions& options, const IkReport& report) {
+int print(const IkOptions& options, const IkReport& report) {
   if (options.json) {
     print_json(report, stdout);
   } else {
@@ -168,7 +168,7 @@ int solve(const IkOptions& options) {
   const auto run = run_with_progress(robot->chain, *settings, *targets);
   if (!run) return refuse(run.error().text());
   const std::string word(classes()[static_cast<std::size_t>(inverse_class)].word);
-  return tell(options, {*robot, *settings, word, *run, statistics_of(*run)});
+  return print(options, {*robot, *settings, word, *run, statistics_of(*run)});
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct RangeOptions {
   bool json = false;
 };
 
-int tell(const RangeOptions& options, const ProximityCell& cell, Postures& postures) {
+int print(const RangeOptions& options, const ProximityCell& cell, Postures& postures) {
   const RangeHeading heading{cell.loaded.name, postures.count()};
   std::optional<RangeJson> json;
   std::optional<RangeText> text;
@@ -57,7 +57,7 @@ int range(const RangeOptions& options) {
   auto cell = load_proximity_cell(options.cell);
   auto postures = cell ? open_postures(options.postures, *cell) : nullptr;
   if (!postures) return kExitRefused;
-  return tell(options, *cell, *postures);
+  return print(options, *cell, *postures);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// cellmirror run CELL.toml: the gateway until it is told to end.
+// cellmirror run CELL.toml: the gateway until a signal ends it.
 #include <unistd.h>
 
 #include <cerrno>

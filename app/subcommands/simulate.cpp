@@ -45,12 +45,12 @@ std::optional<LoadedCell> load(const std::string& file) {
   return cell;
 }
 
-// Where nobody sees a line that is written anew: a line now and then, so that a long simulation is known to go on.
+// Where standard error is no terminal: a line now and then shows that a long simulation goes on.
 class SlowNews {
  public:
   explicit SlowNews(double longest_s) : longest_s_(longest_s) {}
 
-  void tell(double now_s) {
+  void update(double now_s) {
     constexpr std::chrono::seconds kEvery{10};
     const auto now = std::chrono::steady_clock::now();
     if (!needed_ || now - last_ < kEvery) return;
@@ -64,7 +64,7 @@ class SlowNews {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// What a person has to know before the findings are trusted, in one sentence.
+// What limits the trust in the results, in one sentence.
 std::string failure(const SimulationResult& result) {
   std::size_t failed = 0;
   for (const SimulatedProgram& run : result.programs) failed += run.end == "failed" ? 1 : 0;
@@ -74,7 +74,7 @@ std::string failure(const SimulationResult& result) {
                      result.end_note.empty() ? "" : ": " + printable(result.end_note, kLongestNote));
 }
 
-int tell(const SimulateOptions& options, const SimulationResult& result) {
+int print(const SimulateOptions& options, const SimulationResult& result) {
   const std::string text = options.json ? simulation_json(result) : simulation_text(result);
   std::fputs(text.c_str(), stdout);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
@@ -97,11 +97,11 @@ int run(const SimulateOptions& options) {
     ProgressLine line("simulated seconds at most");
     SlowNews news(simulation.longest_s);
     result = simulate(std::move(*cell), simulation, [&](double now_s) {
-      news.tell(now_s);
+      news.update(now_s);
       line.update(static_cast<std::uint64_t>(now_s), static_cast<std::uint64_t>(std::ceil(simulation.longest_s)));
     });
   }
-  return result ? tell(options, *result) : refuse(result.error().text());
+  return result ? print(options, *result) : refuse(result.error().text());
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ void add_simulate(cli::Command program, Action& action) {
   sub.option("--plot", options->plot, "draw programs, joints and distances over time: a PNG file");
   sub.flag("--json", options->json, "one JSON document (docs/simulate.md)");
   sub.footer(
-      "Collisions and limits are findings, no failure. The exit status is 1 where a command was refused, a program "
+      "Collisions and limits are results, not failures. The exit status is 1 where a command was refused, a program "
       "failed,\n"
       "programs wait for each other, or the script did not come to its end.\n"
       "Example: cellmirror simulate --cell config/cells/transfer_cell/cell.toml --script trs_demo.spt --plot demo.png");

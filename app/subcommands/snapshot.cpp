@@ -67,7 +67,7 @@ Result<SnapshotAnswer> ask(const SnapshotOptions& options) {
   return snapshot_answer(*text);
 }
 
-int tell(const SnapshotOptions& options, const SnapshotAnswer& picture, const std::string& more) {
+int print(const SnapshotOptions& options, const SnapshotAnswer& picture, const std::string& more) {
   if (options.json) {
     put(stdout,
         "{{\"file\": {}, \"format\": \"{}\", \"width\": {}, \"height\": {}, \"bytes\": {}, \"posture_age_s\": "
@@ -94,8 +94,8 @@ int of_cell(const SnapshotOptions& options) {
   const auto written = write_picture_file(options.output, picture->image.bytes);
   if (!written) return refuse(written.error().text());
   const EncodedImage& image = picture->image;
-  return tell(options, {image.format, image.width, image.height, 1, 0.0, std::move(picture->image.bytes)},
-              fmt::format(", \"renderer\": {}", json_text(picture->renderer)));
+  return print(options, {image.format, image.width, image.height, 1, 0.0, std::move(picture->image.bytes)},
+               fmt::format(", \"renderer\": {}", json_text(picture->renderer)));
 }
 
 int of_gateway(const SnapshotOptions& options) {
@@ -103,7 +103,7 @@ int of_gateway(const SnapshotOptions& options) {
   if (!picture) return refuse(picture.error().text());
   const auto written = write_picture_file(options.output, picture->bytes);
   if (!written) return refuse(written.error().text());
-  return tell(options, *picture, fmt::format(", \"sequence\": {}", picture->sequence));
+  return print(options, *picture, fmt::format(", \"sequence\": {}", picture->sequence));
 }
 
 int film(const SnapshotOptions& options) {

@@ -24,7 +24,7 @@ struct StatusOptions {
 
 constexpr std::chrono::seconds kObserverTimeout{5};
 
-// "name: what it is" for the other gateways that run, for somebody who asked for the wrong one.
+// "name: what it is" for the other gateways that run, for the message about an unknown instance.
 std::string others() {
   const auto running = running_instances();
   if (!running || running->empty()) return {};

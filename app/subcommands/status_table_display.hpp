@@ -6,7 +6,7 @@
 
 namespace cellmirror::app {
 
-// Lines, each with its end; nothing where the document does not tell.
+// Lines, each with its end; nothing where the document has no such section.
 [[nodiscard]] std::string display_table(const nlohmann::json& status);
 
 }  // namespace cellmirror::app

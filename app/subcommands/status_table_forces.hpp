@@ -6,7 +6,7 @@
 
 namespace cellmirror::app {
 
-// Empty where there is nothing to tell. Throws nlohmann's exceptions where the document is another one than ours.
+// Empty where there is nothing to show. Throws nlohmann's exceptions where the document is another one than ours.
 [[nodiscard]] std::string forces_table(const nlohmann::json& status);
 
 }  // namespace cellmirror::app

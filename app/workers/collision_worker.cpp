@@ -51,7 +51,7 @@ bool CollisionWorker::wanted(const CellState& cell_state) {
   return wanted;
 }
 
-// When tests were switched off or the last pair to test went: whoever shows findings takes them away. The posture's
+// When tests were switched off or the last pair to test went: readers remove what they show. The posture's
 // time stays, so that nobody takes it for news that nothing touches.
 void CollisionWorker::show_nothing(const CellState& cell_state) {
   const auto last = board_.latest();

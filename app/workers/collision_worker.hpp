@@ -35,7 +35,7 @@ class CollisionWorker final : private TickJob {
   bool wanted(const CellState& cell_state) override;
   void run(const CellState& cell_state, const engine::TickState& tick) override;
   void show_nothing(const CellState& cell_state);
-  // Derives the pairs anew; up to a second for kinds of robots that were not seen before.
+  // Derives the pairs again; up to a second for kinds of robots that were not seen before.
   void adopt(const CellState& cell_state);
   void check(const engine::TickState& tick);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr Nanoseconds kLongestRest{4'000'000};
 
 // For which posture it was found: who moves another instrument sees that it is not for it.
-void tell_posture(const engine::RobotTickState& robot, haptics::ContactModel& found) {
+void set_posture(const engine::RobotTickState& robot, haptics::ContactModel& found) {
   found.joint_count = robot.joint_count;
   for (std::size_t i = 0; i < robot.joint_count; ++i) found.q[i] = robot.joints[i].position;
 }
@@ -71,7 +71,7 @@ void ContactWorker::run(const CellState& cell_state, const engine::TickState& ti
     Finder& finder = finder_for(haptic);
     finder.finder->find(follower_.poses(), tick.time, finder.found);
     finder.found.cell = cells_;
-    tell_posture(tick.robots[haptic.slot], finder.found);
+    set_posture(tick.robots[haptic.slot], finder.found);
     Latest<haptics::ContactModel>& inlet = engine_.contact_inlet(haptic.channel);
     inlet.writable() = finder.found;
     inlet.publish();

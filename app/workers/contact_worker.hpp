@@ -50,7 +50,7 @@ class ContactWorker final : private TickJob {
 
   // The worker's own.
   collision::PairDerivation derivation_;
-  CellPoser follower_{false, true};  // planes are told for the tool centre point
+  CellPoser follower_{false, true};  // planes are given at the tool centre point
   std::shared_ptr<const collision::Settings> settings_;
   std::shared_ptr<const collision::PairTable> pairs_;
   std::array<Finder, kMaxHapticDevices> finders_;

@@ -68,7 +68,7 @@ void FaultMonitor::watch(const std::stop_token& stop) {
 
 void FaultMonitor::fault(Timestamp now, const std::string& reason) {
   last_fault_ = now;
-  // A latched fault is told once; it stays latched for as long as the loop is not healthy.
+  // A latched fault is reported once; it stays latched for as long as the loop is not healthy.
   if (status().latched) return;
   std::string told = reason;
   const bool record_due = records_ < kMaxRecords && (!last_record_.known() || now - last_record_ > kRecordEvery);

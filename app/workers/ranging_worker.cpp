@@ -24,7 +24,7 @@ bool RangingWorker::wanted(const CellState& cell_state) {
   return wanted;
 }
 
-// When the last sensor was switched off: whoever draws readings takes them away.
+// When the last sensor was switched off: readers remove what they draw.
 void RangingWorker::show_nothing() {
   const auto last = board_.latest();
   if (!last || last->readings.empty()) return;

@@ -10,7 +10,7 @@
 
 namespace cellmirror::app {
 
-// As the cell_state and the tick tell; without sequence.
+// From the state of the cell and the tick; without sequence.
 [[nodiscard]] TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick);
 
 class TcpForceWorker final : private TickJob {

@@ -1,4 +1,4 @@
-// What people are told of a pose that inverse kinematics cannot reach.
+// Error messages for poses that inverse kinematics cannot reach.
 #pragma once
 
 #include "rt_core/base/pose.hpp"

@@ -1,4 +1,4 @@
-// Keeps what SCRIPT has set of the picture, views and cameras (manual 1.2.1, 1.2.3, 1.2.6) and lets everybody see it as
+// Keeps what SCRIPT has set of the picture, views and cameras (manual 1.2.1, 1.2.3, 1.2.6) and publishes it as
 // an immutable DisplayState. Draws nothing. Belongs to the thread that owns the cell. docs/script.md, "The picture",
 // says what the commands mean.
 #pragma once

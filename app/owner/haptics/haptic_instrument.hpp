@@ -15,7 +15,7 @@ namespace cellmirror::app {
 [[nodiscard]] Result<std::shared_ptr<const haptics::Instrument>> make_instrument(
     const Cell& cell, const RobotModel& robot, const haptics::HapticSettings& settings, std::span<const JointValues> q);
 
-// Whether a channel that was opened with the one need not be opened anew for the other. Settings are not compared.
+// Whether a channel that was opened with the one need not be reopened for the other. Settings are not compared.
 [[nodiscard]] bool same_instrument(const haptics::Instrument& a, const haptics::Instrument& b);
 
 }  // namespace cellmirror::app

@@ -154,7 +154,7 @@ Result<void> HapticService::make_memory(Device& device, std::int32_t key, std::s
   device.stream->set_memory("shared memory " + key_text(key), device.meter);
   if (bytes < haptic_block_offset::kSize) {
     log_warning("haptic.memory",
-                "the memory of {} has {} bytes: its forces stay zero, a device needs {} to tell where the hand is",
+                "the memory of {} has {} bytes: its forces stay zero, a device needs {} to write its position",
                 device.config.robot, bytes, haptic_block_offset::kSize);
   }
   return {};
@@ -255,9 +255,10 @@ void HapticService::follow_memory(Device& device) {
     log_error("haptic.memory", "the memory of {} was removed: {}", device.config.robot, renewed.error().text());
     return;
   }
-  log_warning("haptic.memory",
-              "the memory of {} was removed by somebody and is made anew: the device has to attach anew",
-              device.config.robot);
+  log_warning(
+      "haptic.memory",
+      "the memory of {} was removed by another process and is created again: the device has to attach to it again",
+      device.config.robot);
   device.users = device.segment->users();
 }
 
@@ -310,7 +311,7 @@ void HapticService::follow_cell(Device& device) {
   if (same_instrument(**instrument, *device.instrument)) return;
   const Timestamp now = clock_.now();
   if (!device.exchanged.known() || now - device.exchanged > kSameChange)
-    log_info("haptic.instrument", "{} has changed: its haptic device engages anew", device.config.robot);
+    log_info("haptic.instrument", "{} has changed: its haptic device engages again", device.config.robot);
   device.exchanged = now;
   if (auto opened = send_open(device, std::move(*instrument)); !opened)
     log_error("haptic.loop", "{}", opened.error().text());

@@ -106,7 +106,7 @@ class HapticService {
   const Clock& clock_;
   std::string instance_;
   std::map<std::string, Device, std::less<>> devices_;
-  // What the tick may still look into, where it did not tell that it has let go.
+  // What the tick may still use, where it has not confirmed its release.
   std::vector<std::shared_ptr<const void>> kept_;
   std::vector<std::unique_ptr<SharedSegment>> kept_segments_;
   std::vector<std::unique_ptr<MeteredDevice>> kept_ports_;  // before the segments in destruction

@@ -119,7 +119,7 @@ Result<void> CouplingService::couple(std::string_view master_name, std::span<con
   for (const std::string& name : changed) {
     if (auto sent = send(name, all[name]); !sent) return sent;
     by_slave_[name] = all[name];
-    motion_.give_up(name, {fmt::format("{} follows {} now", name, master->id()), {}});
+    motion_.cancel(name, {fmt::format("{} follows {} now", name, master->id()), {}});
   }
   return {};
 }
@@ -153,7 +153,7 @@ Result<void> CouplingService::uncouple(std::string_view master_name, std::span<c
   }
   for (auto& [name, rest] : changed) {
     if (auto sent = rest.joints.empty() ? send_free(name) : send(name, rest); !sent) return sent;
-    motion_.give_up(name, {fmt::format("{} follows {} no longer", name, master->id()), {}});
+    motion_.cancel(name, {fmt::format("{} follows {} no longer", name, master->id()), {}});
     if (rest.joints.empty()) {
       by_slave_.erase(name);
     } else {
@@ -184,7 +184,7 @@ Result<void> CouplingService::send_free(std::string_view slave) {
   return {};
 }
 
-// The tick has forgotten the couplings when it was told that the robot is gone.
+// The tick has forgotten the couplings when the robot was removed.
 void CouplingService::follow() {
   for (auto entry = by_slave_.begin(); entry != by_slave_.end();) {
     const bool there = cell_.robot(entry->first) != nullptr && cell_.robot(entry->second.master) != nullptr;
@@ -192,8 +192,8 @@ void CouplingService::follow() {
       ++entry;
       continue;
     }
-    motion_.give_up(entry->first,
-                    {fmt::format("{} was deleted, whom {} followed", entry->second.master, entry->first), {}});
+    motion_.cancel(entry->first,
+                   {fmt::format("{} was deleted, whom {} followed", entry->second.master, entry->first), {}});
     entry = by_slave_.erase(entry);
   }
 }

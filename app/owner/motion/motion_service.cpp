@@ -58,17 +58,17 @@ void MotionService::follow() {
   }
 }
 
-void MotionService::give_up(std::string_view robot, const Error& why) {
+void MotionService::cancel(std::string_view robot, const Error& why) {
   const auto found = records_.find(robot);
   if (found == records_.end()) return;
-  found->second.pending.give_up(why);
+  found->second.pending.cancel(why);
   found->second.goal.reset();
   found->second.chain_of_tick.reset();
 }
 
 void MotionService::follow_cell() {
   for (auto& [id, record] : records_) {
-    if (cell_.robot(id) == nullptr) give_up(id, {fmt::format("the robot {} was deleted", id), {}});
+    if (cell_.robot(id) == nullptr) cancel(id, {fmt::format("the robot {} was deleted", id), {}});
   }
 }
 
@@ -253,7 +253,7 @@ Result<void> MotionService::jump(const RobotModel& robot, MotionRecord& record, 
   if (!goal) return std::unexpected(goal.error());
   if (auto free = check_coupled(robot, from.joints, goal->joints); !free) return free;
   if (auto jumped = port_.jump(robot.id(), goal->joints); !jumped) return jumped;
-  record.pending.give_up({fmt::format("{} was put elsewhere before it arrived", robot.id()), {}});
+  record.pending.cancel({fmt::format("{} was put elsewhere before it arrived", robot.id()), {}});
   record.goal = std::move(*goal);
   return {};
 }
@@ -288,7 +288,7 @@ Result<void> MotionService::check_free(const RobotModel& robot) const {
 }
 
 // The tick refuses a posture as a whole, so a joint that was not commanded but stands beyond its limit (the limit was
-// narrowed, or the real robot was there) has to be told here, where somebody is answered.
+// narrowed, or the real robot was there) has to be refused here, where the caller gets the answer.
 Result<void> MotionService::check_limits(const RobotModel& robot, const JointValues& joints) const {
   const RobotParameters& limits = robot.parameters();
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {

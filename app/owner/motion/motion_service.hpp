@@ -39,8 +39,8 @@ class MotionService final : public MotionHost {
   void follow();
   // The robot has stopped to take motion commands, or stands elsewhere than it was commanded to: waiting activities are
   // refused with `why`. Unknown robots and those that were never commanded are passed over.
-  void give_up(std::string_view robot, const Error& why);
-  // give_up() for robots that the cell does not have any more. After every change of the tree.
+  void cancel(std::string_view robot, const Error& why);
+  // cancel() for robots that the cell does not have any more. After every change of the tree.
   void follow_cell();
 
   // Rad or m: where the newest commanded move ends. Nothing for a robot that was not commanded since it was loaded or

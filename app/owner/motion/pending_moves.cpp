@@ -24,7 +24,7 @@ bool PendingMoves::follow(const motion::MotionState& state) {
   ended_ = std::min(state.finished, sent_);
   const auto first_open = std::ranges::find_if(watched_, [&](const Watched& w) { return w.id > ended_; });
   for (auto watched = watched_.begin(); watched != first_open; ++watched) {
-    // Of what ended longer ago the tick does not tell the outcome; a later move began, so they were gone to their
+    // The tick does not keep the outcome of older moves; a later move began, so they were gone to their
     // end.
     end(*watched, watched->id >= state.finished_from ? state.outcome : motion::Outcome::arrived);
   }
@@ -32,7 +32,7 @@ bool PendingMoves::follow(const motion::MotionState& state) {
   return !in_flight() && state.outcome != motion::Outcome::arrived;
 }
 
-void PendingMoves::give_up(const Error& why) {
+void PendingMoves::cancel(const Error& why) {
   for (const Watched& watched : watched_) watched.activity->refuse(why);
   watched_.clear();
   ended_ = sent_;

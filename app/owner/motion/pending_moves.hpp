@@ -37,7 +37,7 @@ class PendingMoves {
   // robot stands elsewhere than it was commanded to.
   bool follow(const motion::MotionState& state);
   // All moves end here and now.
-  void give_up(const Error& why);
+  void cancel(const Error& why);
 
  private:
   struct Watched {

@@ -15,7 +15,7 @@ bool is(const LoadSnapshot& load, std::string_view program, std::string_view rob
   return load.program == program && load.robot == robot;
 }
 
-// Whoever is not answered finds this in the log, without the command.
+// For the log, where nobody waits for an answer: without the command.
 void refuse_run(const ProgramLoads::Run& run, const Error& why) {
   run.activity->refuse({fmt::format("{} was not started: {}", run.program, why.what), why.remedy});
 }
@@ -71,8 +71,8 @@ void ProgramLoads::refuse(const Load& load, const Error& why) {
   for (const Run& run : load.runs) refuse_run(run, why);
 }
 
-std::vector<ProgramLoads::Run> ProgramLoads::give_up(std::string_view program, std::string_view robot,
-                                                     const Error& why) {
+std::vector<ProgramLoads::Run> ProgramLoads::cancel(std::string_view program, std::string_view robot,
+                                                    const Error& why) {
   std::vector<Run> free;
   for (std::size_t i = 0; i < loads_.size();) {
     if (!is(loads_[i].what, program, robot)) {

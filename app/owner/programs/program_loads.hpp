@@ -49,7 +49,7 @@ class ProgramLoads {
   Result<ActivityHandle> add_run(std::string_view program, std::string_view robot, ProgramBegin begin);
   // Loads of that name, and runs that wait for them, are refused with that reason. Runs of other programs that waited
   // behind these keep their places behind loads that came before; returns those that need not wait any longer.
-  std::vector<Run> give_up(std::string_view program, std::string_view robot, const Error& why);
+  std::vector<Run> cancel(std::string_view program, std::string_view robot, const Error& why);
   bool give_up_runs(std::string_view robot, const Error& why);  // false: none waits
   // Those that would begin behind what the robot runs now, which has failed: exec_wait, up to the first without.
   void give_up_queued_runs(std::string_view robot, const Error& why);
@@ -57,7 +57,7 @@ class ProgramLoads {
   void give_up_all(const Error& why);
   // Whether the runs of the robot that wait begin held. False: they would have anyway.
   bool hold_runs(std::string_view robot, bool held);
-  // The next that has been read; whoever takes it ends its activities. In the order in which they began.
+  // The next that has been read; the caller ends its activities. In the order in which they began.
   [[nodiscard]] std::optional<Ended> take();
 
   [[nodiscard]] bool empty() const { return loads_.empty(); }

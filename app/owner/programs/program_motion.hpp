@@ -29,7 +29,7 @@ class CellProgramMotion final : public program::ProgramMotion {
   [[nodiscard]] bool room(std::string_view robot) const override;
   Result<std::uint32_t> move(std::string_view robot, const program::MoveCommand& command, Timestamp begin) override;
   Result<std::uint32_t> delay(std::string_view robot, double seconds, Timestamp begin) override;
-  // For the moves of programs and position() only: rob_tcp_def, and what SCRIPT and others are told, stay. Refused
+  // For the moves of programs and position() only: rob_tcp_def, and what SCRIPT reports, stay. Refused
   // for robots that are gone, whose tool is forgotten.
   Result<void> set_tool(std::string_view robot, const std::optional<Pose>& X_PT) override;
   [[nodiscard]] program::MotionProgress progress(std::string_view robot) const override;

@@ -22,7 +22,7 @@ std::string_view extension_of(program::TeachDialect dialect) {
   return dialect == program::TeachDialect::boom ? ".boom" : ".tarm";
 }
 
-// Under another name first: whoever loads the program meanwhile finds the old file or the new one, whole.
+// Under another name first: a load of the program meanwhile finds the old file or the new one, whole.
 Result<void> write_teach_file(const fs::path& path, const std::string& text) {
   const fs::path temporary = path.string() + ".new";
   {

@@ -137,7 +137,7 @@ Result<void> ProgramService::delete_program(std::string_view program, std::strin
   // One that is being loaded for the first time is not there yet. What is refused changes nothing.
   const bool there = loaded(program, robot) || !loads_.under_way(program, robot);
   if (auto removed = controllers_.remove(robot, program); !removed && there) return removed;
-  for (const ProgramLoads::Run& run : loads_.give_up(program, robot, {"given up by TF_DELETE", {}}))
+  for (const ProgramLoads::Run& run : loads_.cancel(program, robot, {"cancelled by TF_DELETE", {}}))
     begin_waiting_run(run, robot);
   return {};
 }
@@ -205,7 +205,7 @@ Result<void> ProgramService::set_analogue_input(std::string_view robot, std::siz
   return controllers_.set_analogue_input(robot, number, value);
 }
 
-// Programs in a deadlock wait for ever: WAIT shall tell so and not wait with them.
+// Programs in a deadlock wait for ever: WAIT reports it and does not wait with them.
 bool ProgramService::busy() const {
   return parts_.motion.moving() || parts_.display.busy() || loads_.runs_wait() ||
          (controllers_.busy() && !controllers_.deadlock());
@@ -243,14 +243,14 @@ void ProgramService::follow_cell() {
       gone.push_back(status.robot);
   }
   const auto why = [](std::string_view robot) { return Error{fmt::format("the robot {} was deleted", robot), {}}; };
-  // First, so that what waits for a load is told this reason and not that a program before it has failed.
+  // First, so that waiters for a load get this reason and not that a program before it has failed.
   for (const LoadSnapshot& load : loads_.snapshots()) {
     if (parts_.cell.robot(load.robot) == nullptr) loads_.give_up_robot(load.robot, why(load.robot));
   }
   for (const std::string& robot : gone) controllers_.give_up(robot, why(robot), true);
 }
 
-void ProgramService::give_up(std::string_view robot, const Error& why) {
+void ProgramService::cancel(std::string_view robot, const Error& why) {
   give_up_waiting(robot, why);
   controllers_.give_up(robot, why, false);
 }
@@ -265,7 +265,7 @@ void ProgramService::shut_down() {
 void ProgramService::note(const program::ProgramEvent& event) {
   using Kind = program::ProgramEvent::Kind;
   if (event.kind == Kind::failed || event.kind == Kind::deadlock) log_warning(kProgramLog, "{}", event.text);
-  // A deadlock fails those who wait while it lasts (verdict()): somebody may end it, and then all has gone well.
+  // A deadlock fails those who wait while it lasts (verdict()): once it is ended, the verdict is good.
   if (event.kind == Kind::failed) {
     ++failures_;
     failed_.push_back(event.text);

@@ -78,10 +78,10 @@ class ProgramService final : public ProgramHost, public program::ProgramScripts 
   // loaded too, so that they do not run on a robot that gets the same name later.
   void follow_cell();
   // The robot takes no motion commands any more: what it runs fails with this reason.
-  void give_up(std::string_view robot, const Error& why);
+  void cancel(std::string_view robot, const Error& why);
   // TF_RUN that waits until its program is loaded is refused with this reason.
   void give_up_waiting(std::string_view robot, const Error& why) { loads_.give_up_runs(robot, why); }
-  // All programs end; whoever waits is refused.
+  // All programs end; waiters are refused.
   void shut_down();
 
   // The program that moves the robot now; empty: none.

@@ -73,7 +73,7 @@ TEST(PendingMoves, GivenUpMovesStayEndedWhateverTheTickShowsAndIdsGoOn) {
   PendingMoves sut("R");
   sut.superseded_all_by_next();
   const ActivityHandle first = sut.watch();
-  sut.give_up({"went online", {}});
+  sut.cancel({"went online", {}});
   EXPECT_EQ(first->state(), State::refused);
   EXPECT_FALSE(sut.in_flight());
   EXPECT_FALSE(sut.follow(ended(1, 1, Outcome::arrived)));

@@ -224,15 +224,15 @@ TEST(PictureStreams, TellWhyThereIsNoPictureOfWhatIsWishedNow) {
   const auto stream = sut.open({});
   const auto observer = sut.all().at(0);
   EXPECT_EQ(stream->problem(), "");
-  observer->tell(Error{"gone", ""}, {});
+  observer->report_problem(Error{"gone", ""}, {});
   EXPECT_EQ(stream->problem(), "gone");
   PictureRequest other;
   other.camera = "C";
   stream->change(other);
   EXPECT_EQ(stream->problem(), "");
-  observer->tell(Error{"late", ""}, {});
+  observer->report_problem(Error{"late", ""}, {});
   EXPECT_EQ(stream->problem(), "") << "of what was wished before";
-  observer->tell(Error{"no camera C", ""}, other);
+  observer->report_problem(Error{"no camera C", ""}, other);
   EXPECT_EQ(stream->problem(), "no camera C");
   observer->show(numbered(2), other);
   EXPECT_EQ(stream->problem(), "");

@@ -64,7 +64,7 @@ class ProgramLoadsConcurrency : public testing::Test {
     const Error why{"told so", {}};
     switch (random_() % 10) {
       case 0:
-        for (const ProgramLoads::Run& run : loads_->give_up(program, robot, why)) finish(run);
+        for (const ProgramLoads::Run& run : loads_->cancel(program, robot, why)) finish(run);
         return;
       case 1:
         loads_->give_up_runs(robot, why);
@@ -104,8 +104,8 @@ TEST_F(ProgramLoadsConcurrency, WhateverIsDoneWhileProgramsAreReadEverybodyIsAns
     take();
   }
   // Some are read to their end, however fast the owner was.
-  for (const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60); read_ < 3;) {
-    ASSERT_LT(std::chrono::steady_clock::now(), give_up);
+  for (const auto cancel = std::chrono::steady_clock::now() + std::chrono::seconds(60); read_ < 3;) {
+    ASSERT_LT(std::chrono::steady_clock::now(), cancel);
     if (loads_->empty()) keep(loads_->begin("good", "A", irdata_, path("good")));
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     take();

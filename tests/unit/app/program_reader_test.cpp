@@ -18,8 +18,8 @@ const program::Language& any_language() { return program::languages()[0]; }
 
 ProgramReader::Read await_read(ProgramReader& reader) {
   constexpr std::chrono::seconds kObserverTimeout{60};
-  const auto give_up = std::chrono::steady_clock::now() + kObserverTimeout;
-  while (std::chrono::steady_clock::now() < give_up) {
+  const auto cancel = std::chrono::steady_clock::now() + kObserverTimeout;
+  while (std::chrono::steady_clock::now() < cancel) {
     if (auto read = reader.take()) return *std::move(read);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

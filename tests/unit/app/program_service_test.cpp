@@ -65,9 +65,9 @@ class ProgramDeskTest : public testing::Test {
   void follow() { parts_->follow(); }
   void follow_until_all_is_read() {
     constexpr std::chrono::seconds kObserverTimeout{60};
-    const auto give_up = std::chrono::steady_clock::now() + kObserverTimeout;
+    const auto cancel = std::chrono::steady_clock::now() + kObserverTimeout;
     while (!sut().snapshot().loading.empty()) {
-      ASSERT_LT(std::chrono::steady_clock::now(), give_up);
+      ASSERT_LT(std::chrono::steady_clock::now(), cancel);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       follow();
     }
@@ -238,7 +238,7 @@ TEST_F(ProgramDeskTest, TfResumeTakesTfHoldBackBeforeTheProgramBegins) {
 TEST_F(ProgramDeskTest, ARobotThatGoesOnlineEndsWhatWaitsUntilItIsLoaded) {
   const auto loaded = load("long");
   const auto begun = run("long");
-  sut().give_up(kArm, {"the robot PUMA_762 went online", {}});
+  sut().cancel(kArm, {"the robot PUMA_762 went online", {}});
   expect_refused(begun, "went online");
   follow_until_all_is_read();
   expect_done(loaded);
