@@ -53,7 +53,7 @@ test("an answer finds the one who asked", async (context) => {
 
 test("who asks a gateway that is not there is told so", async (context) => {
   const {sut} = started(context);
-  assert.match((await sut.ask({do: "command", text: "A"})).text, /not there/);
+  assert.match((await sut.ask({do: "command", text: "A"})).text, /no connection/);
 });
 
 test("when the gateway goes away, open questions are answered and it tries again", async (context) => {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import {left_out_in_words, record} from "./modules/charts.js";
 import * as format from "./modules/format.js";
 import {History} from "./modules/history.js";
-import {picture_size, PictureOrder, stamp_of, start_of_free_view, text_is_readable, wish_of} from "./modules/live_view.js";
+import {picture_size, PictureOrder, stamp_of, start_of_free_view, text_is_readable, request_of} from "./modules/live_view.js";
 import {decode_picture} from "./modules/picture_format.js";
 import {state_text, time_text} from "./modules/programs.js";
 import {place_in_range, state_of} from "./modules/robots.js";
@@ -45,11 +45,11 @@ test("pictures are as large as the room, within what is worth drawing", () => {
   assert.deepEqual(picture_size(1, 1, 1), [64, 64]);
 });
 
-test("a wish names what is to be seen, and nothing else", () => {
-  const wish = (choice) => wish_of(choice, [640, 480]);
-  assert.deepEqual([wish({kind: "display"}).view, wish({kind: "display"}).camera], [undefined, undefined]);
-  assert.equal(wish({kind: "view", id: 0}).view, 0);
-  assert.equal(wish({kind: "camera", name: "CAMERA_5"}).camera, "CAMERA_5");
+test("a request names what is to be seen, and nothing else", () => {
+  const request = (choice) => request_of(choice, [640, 480]);
+  assert.deepEqual([request({kind: "display"}).view, request({kind: "display"}).camera], [undefined, undefined]);
+  assert.equal(request({kind: "view", id: 0}).view, 0);
+  assert.equal(request({kind: "camera", name: "CAMERA_5"}).camera, "CAMERA_5");
   assert.deepEqual(choice_of(value_of({kind: "camera", name: "a:b"})), {kind: "camera", name: "a:b"});
 });
 

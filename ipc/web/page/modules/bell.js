@@ -1,4 +1,4 @@
-// A bell without a sound file. Browsers let a page sound only after somebody touched it.
+// A bell without a sound file. Browsers allow sound only after the first interaction with a page.
 
 let context = null;
 

@@ -90,13 +90,13 @@ export class Charts {
     const passed = time - (this.last_time_ ?? -Infinity);
     if (passed < -1) this.history_.clear();  // the clock was set back
     else if (passed <= 0) return;
-    else if (passed > kGap_s) this.history_.add(time - 0.001, () => {});  // curves do not bridge what nobody saw
+    else if (passed > kGap_s) this.history_.add(time - 0.001, () => {});  // curves do not bridge gaps
     this.last_time_ = time;
     record(this.history_, live);
     this.robots_ = live.robots ?? [];
   }
 
-  // Whether news has stopped coming: the newest that is shown is not of now.
+  // Whether live messages have stopped: the newest value shown is old.
   tell_quiet(quiet) {
     if (this.quiet_ === quiet) return;
     this.quiet_ = quiet;

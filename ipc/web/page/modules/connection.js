@@ -1,17 +1,17 @@
-// The WebSocket to the gateway: comes back by itself, with growing pauses. Tells what happens through `on(kind, f)`:
-// opened, closed({retry_s}), welcome, live, reply, picked, refused (the messages), picture (an ArrayBuffer).
+// The WebSocket to the gateway: reconnects by itself, with growing pauses. Events, through `on(kind, f)`: opened,
+// closed({retry_s}), welcome, live, reply, picked, refused (the messages), picture (an ArrayBuffer).
 
 const kFirstPause_s = 0.5;
 const kLongestPause_s = 8;
-const kSilent_s = 8;  // live comes ten times a second: nothing at all for so long is a dead line
+const kSilent_s = 8;  // `live` comes ten times a second: after so long the connection is dead
 
 export function pause_after(failures, random = Math.random) {
   const pause = Math.min(kLongestPause_s, kFirstPause_s * 2 ** Math.min(failures, 10));
-  return pause * (0.8 + 0.4 * random());  // many pages must not come back in the same moment
+  return pause * (0.8 + 0.4 * random());  // so that many pages do not reconnect in the same moment
 }
 
-// The token goes with the opening, so that a place is found for its holder where all others are taken. Browsers have no
-// other way to send it there than the names of subprotocols; the server selects the first one.
+// The token is sent with the opening, so that its holder gets the place that is kept for the token. Browsers can send it
+// there only as the name of a subprotocol; the server selects the first one.
 export function subprotocols(token) {
   return /^[0-9a-f]{32}$/.test(token ?? "") ? ["cellmirror.live", `cellmirror.token.${token}`] : [];
 }
@@ -51,7 +51,7 @@ export class Connection {
     socket.onmessage = (event) => this.received_(event.data);
     socket.onclose = () => this.closed_(socket);
     socket.onerror = () => {};  // close follows
-    this.watch_ ??= setInterval(() => this.look_for_silence_(), 1000);
+    this.watch_ ??= setInterval(() => this.check_silence_(), 1000);
   }
 
   hello() {
@@ -69,7 +69,7 @@ export class Connection {
     const id = this.next_id_++;
     return new Promise((resolve) => {
       if (!this.send({...message, id})) {
-        resolve({done: false, text: "the gateway is not there: nothing was sent"});
+        resolve({done: false, text: "no connection to the gateway: nothing was sent"});
         return;
       }
       this.waiting_.set(id, resolve);
@@ -80,13 +80,13 @@ export class Connection {
     this.open_ = true;
     this.failures_ = 0;
     this.hello();
-    this.tell_("opened", {});
+    this.emit_("opened", {});
   }
 
   received_(data) {
     this.heard_ = Date.now();
     if (data instanceof ArrayBuffer) {
-      this.tell_("picture", data);
+      this.emit_("picture", data);
       return;
     }
     let message;
@@ -100,7 +100,7 @@ export class Connection {
       this.waiting_.delete(message.id);
       asked(message.is === "refused" ? {done: false, ...message} : message);
     } else {
-      this.tell_(message.is, message);
+      this.emit_(message.is, message);
     }
   }
 
@@ -109,23 +109,23 @@ export class Connection {
     this.socket_ = null;
     this.open_ = false;
     for (const resolve of this.waiting_.values()) {
-      resolve({done: false, text: "the gateway went away before it answered: whether this was done is not known"});
+      resolve({done: false, text: "the connection ended before the gateway answered: whether this was done is not known"});
     }
     this.waiting_.clear();
     const retry_s = pause_after(this.failures_++);
     this.timer_ = setTimeout(() => this.start(), retry_s * 1000);
-    this.tell_("closed", {retry_s, failures: this.failures_});
+    this.emit_("closed", {retry_s, failures: this.failures_});
   }
 
-  look_for_silence_() {
+  check_silence_() {
     if (this.socket_ && Date.now() - this.heard_ > kSilent_s * 1000) {
       const socket = this.socket_;
       socket.close();
-      this.closed_(socket);  // close of a dead line takes a minute to be confirmed
+      this.closed_(socket);  // a dead connection confirms close only after a minute
     }
   }
 
-  tell_(kind, what) {
+  emit_(kind, what) {
     for (const handler of this.handlers_.get(kind) ?? []) handler(what);
   }
 }

@@ -49,7 +49,7 @@ export class Console {
     this.names_ = names;
   }
 
-  // Executes a command and writes down what became of it. Where somebody reads further up, the log stays there, unless
+  // Executes a command and logs its result. While the user has scrolled up, the log stays there, unless
   // the command was typed.
   async run(text, {typed = false} = {}) {
     const entry = this.write_(text, typed);

@@ -18,7 +18,7 @@ export function element(tag, attributes = {}, ...children) {
 const kText = Symbol("text");
 
 // Writes only what changed: unchanged text costs no layout. What was written is remembered, since reading it back from
-// the document costs more than all the rest; so nobody else may write into that node.
+// the document costs more than all the rest; so no other code may write into that node.
 export function setText(node, text) {
   if (node[kText] === text) return;
   node[kText] = text;
@@ -33,7 +33,7 @@ export function setAttribute(node, name, value) {
   }
 }
 
-// True while the element takes room on the screen, as of the last change that the browser told.
+// True while the element takes room on the screen, as of the last change that the browser reported.
 export class Visibility {
   constructor(root = null) {
     this.visible_ = new WeakMap();

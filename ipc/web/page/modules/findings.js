@@ -23,7 +23,7 @@ export function cut_note(shown, all) {
 
 const kOld_s = 0.5;
 
-// What the head says of collisions. Nobody knows what touches where nothing is tested, and what is old is said.
+// The collisions in the head. Untested and outdated are shown as such.
 export function collisions_in_brief(live) {
   if (!Array.isArray(live.touching)) return {text: "collisions not known", state: "none", title: null};
   const touching = live.touching_count ?? live.touching.length;
@@ -118,7 +118,7 @@ export function range_in_words(range, names) {
   const known = Number.isFinite(range.distance_m);
   const words = [known && range.object ? names.of(range.object) : ""];
   if (range.doubtful) words.push("doubtful, may be nearer");
-  if (known && range.in_blind_zone) words.push("in the blind zone: a real sensor could not tell");
+  if (known && range.in_blind_zone) words.push("in the blind zone: a real sensor could not measure it");
   return {value: known ? length(range.distance_m) : "no echo", more: words.filter(Boolean).join("; "),
     warns: Boolean(range.doubtful || (known && range.in_blind_zone))};
 }

@@ -50,12 +50,12 @@ export class PictureOrder {
   }
 }
 
-export function wish_of(choice, [width, height]) {
-  const wish = {do: "picture", width, height, rate_hz: kRate_hz, quality: 80};
-  if (choice.kind === "view") wish.view = choice.id;
-  if (choice.kind === "camera") wish.camera = choice.name;
-  if (choice.kind === "free") wish.free = choice.view;
-  return wish;
+export function request_of(choice, [width, height]) {
+  const request = {do: "picture", width, height, rate_hz: kRate_hz, quality: 80};
+  if (choice.kind === "view") request.view = choice.id;
+  if (choice.kind === "camera") request.camera = choice.name;
+  if (choice.kind === "free") request.free = choice.view;
+  return request;
 }
 
 // Where a free view begins when the hand first moves what is shown.
@@ -161,7 +161,7 @@ export class LiveView {
     this.ask_soon_();
   }
 
-  // Not more often than the gateway draws: the newest wish is what counts.
+  // Not more often than the gateway draws: only the newest request counts.
   ask_soon_() {
     if (this.timer_) return;
     const wait = Math.max(0, this.asked_at_ + kWishEvery_ms - performance.now());
@@ -171,12 +171,12 @@ export class LiveView {
     }, wait);
   }
 
-  ask_(anew = false) {
-    const wish = document.hidden ? {do: "no_picture"} : wish_of(this.choice_, this.size_);
-    const text = JSON.stringify(wish);
-    if (text === this.sent_ && !anew) return;
-    if (!this.connection_.send(wish)) return;
-    if (document.hidden || this.sent_ === "" || anew) this.waiting_since_ = performance.now();
+  ask_(again = false) {
+    const request = document.hidden ? {do: "no_picture"} : request_of(this.choice_, this.size_);
+    const text = JSON.stringify(request);
+    if (text === this.sent_ && !again) return;
+    if (!this.connection_.send(request)) return;
+    if (document.hidden || this.sent_ === "" || again) this.waiting_since_ = performance.now();
     this.sent_ = text;
     this.asked_at_ = performance.now();
   }
@@ -216,7 +216,7 @@ export class LiveView {
     this.tell_age();
   }
 
-  // Says plainly what is not as it should be; a picture without a word beside it is a picture of now.
+  // Shows every problem as text; a picture without text beside it is current.
   tell_age() {
     const note = byId("view-note");
     const now = performance.now();

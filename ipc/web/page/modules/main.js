@@ -94,7 +94,7 @@ function draw() {
   measured("cellmirror.update", start);
 }
 
-// Seen by whoever observes them (the developer tools, the browser test); not kept.
+// For observers (developer tools, the browser test); not stored.
 function measured(name, start) {
   performance.measure(name, {start});
   performance.clearMeasures(name);

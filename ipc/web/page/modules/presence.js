@@ -4,7 +4,7 @@ import {age, clock_time} from "./format.js";
 import {keep_token} from "./token.js";
 
 const kQuiet_s = 2;
-const kLastKnown_s = 3;  // after so long nothing but the picture may look as if it were of now
+const kLastKnown_s = 3;  // after so long nothing but the picture is shown as current
 
 export class Presence {
   // `quiet(whether)`: all but the picture is what was last known, or no longer.
@@ -29,15 +29,15 @@ export class Presence {
   }
 
   why_not() {
-    if (!this.connection_.open) return "the gateway is not there: nothing was sent";
-    if (this.read_only) return "this gateway is read-only: its page can look, not command (--read-only, or read_only in [web] of the cell file)";
-    return "this page may only look. To command, open the address that `cellmirror page` prints, or give its token (key button above)";
+    if (!this.connection_.open) return "no connection to the gateway: nothing was sent";
+    if (this.read_only) return "this gateway is read-only: the page cannot send commands (--read-only, or read_only in [web] of the cell file)";
+    return "this page can only view. To send commands, open the address that `cellmirror page` prints, or enter its token (key button above)";
   }
 
   live(live) {
     this.heard_ = performance.now();
     this.heard_at_ = new Date();
-    if (this.quiet_) this.tell_line_();
+    if (this.quiet_) this.show_line_();
     setText(byId("cell-name"), live.cell ?? "");
     document.title = live.cell ? `${live.cell} – cellmirror` : "cellmirror";
   }
@@ -49,17 +49,17 @@ export class Presence {
     this.version_ ??= message.version;
     setText(byId("version"), message.version ? `cellmirror ${message.version}` : "");
     document.documentElement.classList.toggle("looking-only", !this.may_command);
-    this.tell_right_();
+    this.show_right_();
   }
 
-  // Once told, the token is forgotten: the gateway hangs up on those who go on guessing.
+  // A refused token is dropped: the gateway closes the connection after repeated wrong ones.
   token_refused_(text) {
     keep_token("");
     this.token_problem_ = text;
     if (this.token_shown_) this.open_dialog_();
   }
 
-  tell_right_() {
+  show_right_() {
     const text = this.may_command ? "may command" : this.read_only ? "read-only" : "looking only";
     setText(byId("right-text"), text);
     setAttribute(byId("token-button"), "data-state", this.may_command ? "fresh" : "none");
@@ -88,7 +88,7 @@ export class Presence {
     this.retry_at_ = null;
     byId("gone").hidden = true;
     document.documentElement.classList.remove("gateway-gone");
-    this.tell_line_();
+    this.show_line_();
   }
 
   gone_(retry_s) {
@@ -107,11 +107,11 @@ export class Presence {
       const left = Math.max(0, Math.ceil((this.retry_at_ - performance.now()) / 1000));
       setText(byId("gone-retry"), left > 0 ? `Trying again in ${left} s.` : "Trying again now.");
     }
-    this.tell_line_();
+    this.show_line_();
   }
 
-  tell_line_() {
-    // Pictures are no news: they come from another part of the gateway, which may go on alone.
+  show_line_() {
+    // Pictures do not count: they come from another part of the gateway, which may continue alone.
     const silent = this.heard_ === null ? null : (performance.now() - this.heard_) / 1000;
     this.be_quiet_(silent !== null && (!this.connection_.open || silent > kLastKnown_s));
     let [text, state] = ["live", "fresh"];

@@ -8,7 +8,7 @@ export function place_in_range(value, lower, upper) {
   return Math.max(0, Math.min(1, (value - lower) / (upper - lower)));
 }
 
-// What the data of a robot are worth, as one word for the eye: that of the worst joint where the robot says none.
+// The state of a robot's data as one word: that of its worst joint where the robot reports none.
 export function state_of(robot) {
   if (robot.mode !== "mirrored") return "simulated";
   return robot.state && robot.state !== "none" ? robot.state : "none";

@@ -1,4 +1,4 @@
-// The gateway's short names of dotted paths, which tell equal robots apart, as it gave them in `live`.
+// The gateway's short names of dotted paths, which distinguish equal robots, as received in `live`.
 
 const kMostKnown = 2000;
 

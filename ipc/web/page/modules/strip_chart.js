@@ -2,7 +2,7 @@
 import {element, setText} from "./dom.js";
 import {number} from "./format.js";
 
-// Okabe and Ito's palette, told apart by colour-blind people; more series repeat it with dashes.
+// Okabe and Ito's palette, suited to colour-blind people; more series repeat it with dashes.
 // Orange, light blue and purple are darker than theirs: every curve stands out from white and from dark by 3 to 1.
 export const kColours = ["#0072b2", "#b87f00", "#009e73", "#d55e00", "#3a93c9", "#bd6496", "#8a8f00", "#7f7f7f"];
 
@@ -126,7 +126,7 @@ export class StripChart {
   }
 }
 
-// Digits after the point that tell neighbours on the axis apart.
+// Decimal places that distinguish neighbouring labels of the axis.
 function decimals(splits) {
   const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) : 1;
   return Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-9)));

@@ -1,4 +1,4 @@
-// Light or dark: as the system says until somebody chooses.
+// Light or dark: that of the system until the user chooses.
 
 const kKey = "cellmirror.theme";
 

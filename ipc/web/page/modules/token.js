@@ -1,5 +1,5 @@
 // The token that lets a client command. `cellmirror page` prints an address that ends in #token=...; the part behind #
-// is never sent to a server. It is kept for this tab only, and taken out of the address bar so that nobody photographs it.
+// is never sent to a server. It is kept for this tab only and removed from the address bar.
 
 const kKey = "cellmirror.token";
 
