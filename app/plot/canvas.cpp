@@ -3,38 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "rt_core/base/utf8.hpp"
+
 namespace cellmirror::plot {
 
 namespace {
 
 double on_pixel(double at) { return std::floor(at) + 0.5; }
-
-// How many bytes a character of UTF-8 that begins so has (RFC 3629, 3); 0: none begins so.
-std::size_t length_of_character(unsigned char first) {
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first < 0xE0) return 2;
-  if (first >= 0xE0 && first < 0xF0) return 3;
-  return first >= 0xF0 && first < 0xF5 ? 4 : 0;
-}
-
-// Names from files may hold any bytes; cairo refuses a text with a single one that is no UTF-8, and draws nothing more.
-std::string drawable(const std::string& words) {
-  std::string out;
-  for (std::size_t at = 0; at < words.size();) {
-    const auto byte = [&words](std::size_t i) { return static_cast<unsigned char>(words[i]); };
-    const std::size_t length = length_of_character(byte(at));
-    bool good = length > 0 && at + length <= words.size();
-    for (std::size_t i = 1; good && i < length; ++i) good = (byte(at + i) & 0xC0U) == 0x80U;
-    if (good && length == 3)
-      good = !(byte(at) == 0xE0 && byte(at + 1) < 0xA0) && !(byte(at) == 0xED && byte(at + 1) > 0x9F);
-    if (good && length == 4)
-      good = !(byte(at) == 0xF0 && byte(at + 1) < 0x90) && !(byte(at) == 0xF4 && byte(at + 1) > 0x8F);
-    const bool control = good && length == 1 && (byte(at) < 0x20 || byte(at) == 0x7F);
-    out += good && !control ? words.substr(at, length) : "?";
-    at += good ? length : 1;
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -87,7 +62,8 @@ void Canvas::text(double x, double y, const std::string& words, double size, Col
   if (anchor == Anchor::right) x -= width;
   colour(colour_of_text);
   cairo_move_to(context_.get(), x, y);
-  cairo_show_text(context_.get(), drawable(words).c_str());
+  // cairo refuses a text with a single byte that is no UTF-8, and draws nothing more.
+  cairo_show_text(context_.get(), drawable_utf8(words).c_str());
 }
 
 void Canvas::upright_text(double x, double y, const std::string& words, double size, Colour colour_of_text) {
@@ -101,7 +77,7 @@ void Canvas::upright_text(double x, double y, const std::string& words, double s
 double Canvas::text_width(const std::string& words, double size, bool bold) {
   font(size, bold);
   cairo_text_extents_t extents{};
-  cairo_text_extents(context_.get(), drawable(words).c_str(), &extents);
+  cairo_text_extents(context_.get(), drawable_utf8(words).c_str(), &extents);
   return extents.x_advance;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "ipc/wire/utf8.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace cellmirror::app {
 

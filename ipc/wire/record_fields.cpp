@@ -6,7 +6,7 @@
 #include <initializer_list>
 
 #include "ipc/wire/little_endian.hpp"
-#include "ipc/wire/utf8.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace cellmirror {
 namespace {

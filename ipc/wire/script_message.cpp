@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "ipc/wire/utf8.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace cellmirror {
 namespace {
@@ -20,9 +20,6 @@ std::string_view without_blanks(std::string_view text) {
   return text;
 }
 
-// Control characters of ASCII (C0, DEL) and of ISO 6429 (C1) do nothing good on a terminal or in a log.
-bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
-
 // `before`: bytes of the message in front of `text`, for the place in the error.
 Result<std::string> checked_command(std::string_view text, std::size_t before) {
   for (std::size_t at = 0; at < text.size();) {
@@ -31,7 +28,7 @@ Result<std::string> checked_command(std::string_view text, std::size_t before) {
       return fail(fmt::format("byte {} of the message is no UTF-8", before + at + 1),
                   "send plain text in ASCII or UTF-8");
     }
-    if (is_control(character->code) && !is_blank(text[at])) {
+    if (is_control_character(character->code) && !is_blank(text[at])) {
       return fail(fmt::format("byte {} of the message is a control character (U+{:04X})", before + at + 1,
                               static_cast<unsigned>(character->code)),
                   "send plain text in ASCII or UTF-8");
@@ -90,7 +87,8 @@ std::string reply_text(const ScriptReply& reply) {
   for (std::size_t at = 0; at < reply.text.size() && text.size() <= kMaxReplyBytes;) {
     const auto character = utf8_character(std::string_view(reply.text).substr(at));
     const std::size_t bytes = character ? character->bytes : 1;
-    const bool plain = character && (!is_control(character->code) || reply.text[at] == '\n' || reply.text[at] == '\t');
+    const bool plain =
+        character && (!is_control_character(character->code) || reply.text[at] == '\n' || reply.text[at] == '\t');
     text += plain ? reply.text.substr(at, bytes) : std::string(character ? " " : "?");
     at += bytes;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rt_core/base/text.hpp"
+#include "rt_core/base/utf8.hpp"
 #include "scripts/lang/command_table.hpp"
 #include "scripts/lang/matcher.hpp"
 #include "scripts/lang/values.hpp"

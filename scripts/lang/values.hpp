@@ -27,8 +27,6 @@ namespace cellmirror::script {
 // on another value must have been resolved before.
 [[nodiscard]] double to_si(double value, Unit unit, JointKind kind = JointKind::revolute);
 
-[[nodiscard]] bool is_utf8(std::string_view text);
-
 // "0.01..1", "more than 0 mm", "more than 0 and less than 180 degrees"
 [[nodiscard]] std::string range_text(const Range& range, Unit unit);
 

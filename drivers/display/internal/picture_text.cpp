@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "rt_core/base/utf8.hpp"
+
 namespace cellmirror::display {
 
 namespace {
@@ -15,8 +17,7 @@ constexpr std::size_t kLongestLabel = 80;  // characters
 constexpr std::size_t kLongestMessage = 600;
 constexpr double kWidestMessage = 1200;  // pixels: longer lines are hard to read
 constexpr std::size_t kMostEntries = 24;
-constexpr const char* kEllipsis = "\xE2\x80\xA6";  // in UTF-8
-constexpr double kLabelSize = 13;                  // pixels
+constexpr double kLabelSize = 13;  // pixels
 constexpr double kTitleSize = 12.5;
 constexpr double kHalo = 3.2;  // width of its line, pixels
 
@@ -163,26 +164,6 @@ Sticker draw_legend(const std::vector<std::string>& texts, std::span<const Legen
   return sheet.sticker();
 }
 
-// How many bytes the character of UTF-8 has that begins there (RFC 3629); 0: none does.
-std::size_t character_at(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return first >= 0x20 && first != 0x7F ? 1 : 0;
-  const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
-                             : first >= 0xE0 && first < 0xF0 ? 3
-                             : first >= 0xF0 && first < 0xF5 ? 4
-                                                             : 0;
-  if (length == 0 || at + length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return 0;
-  }
-  if (first == 0xE0 && byte(1) < 0xA0) return 0;
-  if (first == 0xED && byte(1) > 0x9F) return 0;
-  if (first == 0xF0 && byte(1) < 0x90) return 0;
-  if (first == 0xF4 && byte(1) > 0x8F) return 0;
-  return length;
-}
-
 constexpr double kMessageSize = 15;
 constexpr double kMessageMargin = 14;  // beside its lines
 constexpr std::size_t kMostLines = 4;
@@ -194,7 +175,10 @@ bool fits(std::string_view text, double width) {
 // How many bytes of the text have room in a line: whole characters, one at least.
 std::size_t fitting(std::string_view text, double width) {
   std::vector<std::size_t> ends;
-  for (std::size_t at = 0; at < text.size();) ends.push_back(at += std::max<std::size_t>(character_at(text, at), 1));
+  for (std::size_t at = 0; at < text.size();) {
+    const auto character = utf8_character(text.substr(at));
+    ends.push_back(at += character ? character->bytes : 1);
+  }
   const auto beyond = std::partition_point(ends.begin() + 1, ends.end(),
                                            [&](std::size_t end) { return fits(text.substr(0, end), width); });
   return *(beyond - 1);
@@ -202,8 +186,8 @@ std::size_t fitting(std::string_view text, double width) {
 
 // The text as far as it fits, with an ellipsis behind it.
 std::string shortened(std::string_view text, double width) {
-  const double dots = size_of(kEllipsis, kMessageSize, false).width;
-  return std::string(text.substr(0, fitting(text, std::max(width - dots, 1.0)))) + kEllipsis;
+  const double dots = size_of(std::string(kUtf8Ellipsis), kMessageSize, false).width;
+  return std::string(text.substr(0, fitting(text, std::max(width - dots, 1.0)))) + std::string(kUtf8Ellipsis);
 }
 
 std::vector<std::string> lines_of(std::string_view text, double width) {
@@ -250,18 +234,6 @@ Sticker draw_message(const std::string& text, double most) {
 
 }  // namespace
 
-std::string drawable_text(std::string_view text, std::size_t most_characters) {
-  std::string out;
-  std::size_t count = 0;
-  for (std::size_t at = 0; at < text.size(); ++count) {
-    if (count == most_characters) return out + kEllipsis;
-    const std::size_t length = character_at(text, at);
-    out += length > 0 ? text.substr(at, length) : "?";
-    at += std::max<std::size_t>(length, 1);
-  }
-  return out;
-}
-
 void stick(Image& picture, const PixelRect& within, const Sticker& sticker, int left, int top) {
   const int first_x = std::max({0, within.x, left});
   const int first_y = std::max({0, within.y, top});
@@ -302,7 +274,7 @@ const Sticker& TextPress::keep(std::string key, Sticker sticker) {
 }
 
 const Sticker& TextPress::label(std::string_view text, TextLook look) {
-  const std::string words = drawable_text(text, kLongestLabel);
+  const std::string words = drawable_utf8(text, kLongestLabel);
   std::string key = std::string(1, static_cast<char>('0' + static_cast<int>(look))) + words;
   if (const Sticker* const before = kept(key)) return *before;
   return keep(std::move(key), draw_label(words, look));
@@ -313,7 +285,7 @@ const Sticker& TextPress::legend(std::span<const LegendEntry> entries) {
   std::string key = "legend";
   std::vector<std::string> texts;
   for (const LegendEntry& entry : shown) {
-    texts.push_back(drawable_text(entry.text, kLongestLabel));
+    texts.push_back(drawable_utf8(entry.text, kLongestLabel));
     key += '\n' + texts.back();
     for (const float part : entry.rgba) key += ' ' + std::to_string(part);
   }
@@ -322,7 +294,7 @@ const Sticker& TextPress::legend(std::span<const LegendEntry> entries) {
 }
 
 const Sticker& TextPress::message(std::string_view text, int width) {
-  const std::string words = drawable_text(text, kLongestMessage);
+  const std::string words = drawable_utf8(text, kLongestMessage);
   std::string key = "message " + std::to_string(width) + ' ' + words;
   if (const Sticker* const before = kept(key)) return *before;
   return keep(std::move(key), draw_message(words, std::min<double>(width, kWidestMessage)));

@@ -29,9 +29,6 @@ void stick(Image& picture, const PixelRect& within, const Sticker& sticker, int 
 
 enum class TextLook : std::uint8_t { plain, near, touching, ghost, title };
 
-// The text as it can be drawn: broken UTF-8 and control characters as "?", at most so many characters.
-[[nodiscard]] std::string drawable_text(std::string_view text, std::size_t most_characters);
-
 class TextPress {
  public:
   TextPress();

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "ipc/wire/script_message.hpp"
-#include "ipc/wire/utf8.hpp"
+#include "rt_core/base/utf8.hpp"
 #include "rt_core/base/contract.hpp"
 
 namespace {

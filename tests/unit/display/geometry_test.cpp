@@ -98,14 +98,6 @@ TEST(DisplayShadow, BlurringKeepsTheAmountAndSpreadsIt) {
   EXPECT_NEAR(sut[32 * kEdge + 20], sut[20 * kEdge + 32], 2);
 }
 
-TEST(DisplayText, BrokenTextIsMadeDrawable) {
-  EXPECT_EQ(drawable_text("US_2: 1.3 m", 80), "US_2: 1.3 m");
-  EXPECT_EQ(drawable_text("\xC3\xA4", 80), "\xC3\xA4");
-  EXPECT_EQ(drawable_text("a\x01\xFF\xC0\x80z", 80), "a????z");
-  EXPECT_EQ(drawable_text("abcdef", 3), "abc\xE2\x80\xA6");
-  EXPECT_EQ(drawable_text("\xE2\x82", 80), "??");
-}
-
 TEST(DisplayText, AStickerIsCutAtTheEdges) {
   Image picture{4, 4, std::vector<std::uint8_t>(64, 100)};
   Sticker sticker{3, 3, std::vector<std::uint8_t>(36, 255)};

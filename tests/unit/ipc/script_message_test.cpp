@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "ipc/wire/utf8.hpp"
 
 namespace cellmirror {
 namespace {
@@ -138,26 +137,6 @@ TEST(ParseReply, ReadsWhatReplyTextWrites) {
 TEST(ParseReply, RefusesWhatIsNoReply) {
   for (const auto text : {""sv, "doner"sv, "Done"sv, "ok"sv, "refusedX"sv, "\0done"sv}) {
     EXPECT_FALSE(parse_reply({text.data(), text.size()})) << text;
-  }
-}
-
-// RFC 3629, section 4: the bounds of each row of its syntax.
-TEST(Utf8, TakesExactlyWellFormedCharacters) {
-  const auto bytes = [](std::string_view text) {
-    const auto character = utf8_character(text);
-    return character ? character->bytes : 0;
-  };
-  EXPECT_EQ(bytes("\x7F"), 1u);
-  EXPECT_EQ(bytes("\xC2\x80"), 2u);
-  EXPECT_EQ(bytes("\xDF\xBF"), 2u);
-  EXPECT_EQ(bytes("\xE0\xA0\x80"), 3u);
-  EXPECT_EQ(bytes("\xED\x9F\xBF"), 3u);
-  EXPECT_EQ(bytes("\xEE\x80\x80"), 3u);
-  EXPECT_EQ(bytes("\xF0\x90\x80\x80"), 4u);
-  EXPECT_EQ(bytes("\xF4\x8F\xBF\xBF"), 4u);
-  for (const auto bad : {"\x80", "\xBF", "\xC1\xBF", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xF0\x8F\xBF\xBF",
-                         "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "\xC2", "\xC2\x41", "\xE2\x82"}) {
-    EXPECT_EQ(bytes(bad), 0u);
   }
 }
 

@@ -131,11 +131,5 @@ TEST(JoinedLines, MakesOneLineOfSeveral) {
   EXPECT_EQ(joined_lines(""), "");
 }
 
-TEST(Utf8, IsToldFromOtherBytes) {
-  EXPECT_TRUE(is_utf8("Gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x9a\x80"));
-  for (const char* text : {"\x96", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88"})
-    EXPECT_FALSE(is_utf8(text));
-}
-
 }  // namespace
 }  // namespace cellmirror::script

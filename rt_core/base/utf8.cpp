@@ -1,4 +1,4 @@
-#include "ipc/wire/utf8.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace cellmirror {
 
@@ -28,11 +28,35 @@ std::optional<Utf8Character> utf8_character(std::string_view text) {
   return Utf8Character{bytes, code};
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const auto character = utf8_character(text);
+    if (!character) return false;
+    text.remove_prefix(character->bytes);
+  }
+  return true;
+}
+
 std::string_view cut_utf8(std::string_view text, std::size_t most) {
   if (text.size() <= most) return text;
   std::size_t end = most;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
   return text.substr(0, end);
+}
+
+std::string drawable_utf8(std::string_view text, std::size_t most_characters) {
+  std::string out;
+  for (std::size_t count = 0; !text.empty(); ++count) {
+    if (count == most_characters) return out.append(kUtf8Ellipsis);
+    const auto character = utf8_character(text);
+    if (character && !is_control_character(character->code)) {
+      out += text.substr(0, character->bytes);
+    } else {
+      out += '?';
+    }
+    text.remove_prefix(character ? character->bytes : 1);
+  }
+  return out;
 }
 
 }  // namespace cellmirror
