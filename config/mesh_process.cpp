@@ -19,6 +19,8 @@
 #include <optional>
 #include <utility>
 
+#include "rt_core/base/descriptor.hpp"
+
 namespace cellmirror {
 
 namespace {
@@ -26,22 +28,6 @@ namespace {
 using Steady = std::chrono::steady_clock;
 
 constexpr const char* kExportAnew = "export it anew";
-
-class Socket {
- public:
-  explicit Socket(int fd) : fd_(fd) {}
-  ~Socket() { shut(); }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  [[nodiscard]] int fd() const { return fd_; }
-  void shut() {
-    if (fd_ >= 0) close(fd_);
-    fd_ = -1;
-  }
-
- private:
-  int fd_;
-};
 
 // A process that was started here; ended and collected at the latest when this goes.
 class Child {
@@ -224,19 +210,19 @@ Result<ScenePolygons> read_mesh_apart(const MeshRequest& request, const MeshRead
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     return fail(fmt::format("it cannot be read: no connection to its reader: {}", std::strerror(errno)));
-  Socket own(ends[0]);
-  Socket theirs(ends[1]);
+  Descriptor own(ends[0]);
+  Descriptor theirs(ends[1]);
   pid_t id = -1;
-  if (const int error = Beginning(theirs.fd()).spawn(reader.program, id); error != 0) {
+  if (const int error = Beginning(theirs.get()).spawn(reader.program, id); error != 0) {
     const Error why = not_started(reader, error);
     return fail("it cannot be read: " + why.what, why.remedy);
   }
   Child child(id);
-  theirs.shut();
+  theirs.reset();
   const MeshMessage message = encode_mesh_request(request);
   std::string answer;
-  const Talk talked = talk(own.fd(), Outgoing(message.parts()), until, reader.most_bytes, answer);
-  own.shut();
+  const Talk talked = talk(own.get(), Outgoing(message.parts()), until, reader.most_bytes, answer);
+  own.reset();
   const std::optional<int> status = child.end();
   if (talked == Talk::too_late) return took_too_long(seconds(reader.longest));
   if (talked == Talk::too_long)

@@ -16,9 +16,9 @@
 #include <utility>
 
 #include "app/pictures/picture_file.hpp"
-#include "ipc/runtime/descriptor.hpp"
 #include "ipc/runtime/system_error.hpp"
 #include "rt_core/base/counted.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror::app {
 

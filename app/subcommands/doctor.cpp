@@ -21,6 +21,7 @@
 #include "ipc/sysv/limits.hpp"
 #include "ipc/sysv/shared_memory_limits.hpp"
 #include "ipc/web/web_server.hpp"
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/rt/memory_lock.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
@@ -53,12 +54,11 @@ Finding idle_finding() {
 }
 
 Finding can_finding() {
-  const int fd = socket(AF_CAN, SOCK_RAW | SOCK_CLOEXEC, 1);
-  if (fd < 0) {
+  const Descriptor probe(socket(AF_CAN, SOCK_RAW | SOCK_CLOEXEC, 1));
+  if (!probe.valid()) {
     return {"SocketCAN", std::strerror(errno), false,
             "modprobe can_raw; a kernel without CAN can still use the channels udp: and log:"};
   }
-  close(fd);
   return {"SocketCAN", "available", true, {}};
 }
 

@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "rt_core/base/descriptor.hpp"
+
 namespace cellmirror {
 
 namespace {
@@ -37,10 +39,9 @@ void limit(__rlimit_resource resource, rlim_t most, rlim_t beyond = 0) {
 
 // Where memory runs out the kernel ends this process first.
 void be_ended_first() {
-  const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
-  if (file < 0) return;
-  [[maybe_unused]] const ssize_t written = write(file, "1000", 4);
-  close(file);
+  const Descriptor file(open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC));
+  if (!file.valid()) return;
+  [[maybe_unused]] const ssize_t written = write(file.get(), "1000", 4);
 }
 
 #if defined(__x86_64__)

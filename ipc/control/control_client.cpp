@@ -14,8 +14,8 @@
 #include "ipc/control/control_server.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/control/unix_address.hpp"
-#include "ipc/runtime/descriptor.hpp"
 #include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "ipc/runtime/descriptor.hpp"
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror {

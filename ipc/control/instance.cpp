@@ -11,9 +11,9 @@
 #include <system_error>
 #include <utility>
 
-#include "ipc/runtime/descriptor.hpp"
 #include "ipc/runtime/runtime_folder.hpp"
 #include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror {
 namespace {

@@ -1,30 +1,4 @@
-// A file descriptor that closes itself.
+// Descriptor is in rt_core/base; for sources that include it from here.
 #pragma once
 
-#include <unistd.h>
-
-#include <utility>
-
-namespace cellmirror {
-
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  [[nodiscard]] int get() const { return fd_; }
-  [[nodiscard]] bool valid() const { return fd_ >= 0; }
-  [[nodiscard]] int release() { return std::exchange(fd_, -1); }
-
- private:
-  int fd_ = -1;
-};
-
-}  // namespace cellmirror
+#include "rt_core/base/descriptor.hpp"

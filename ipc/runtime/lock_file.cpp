@@ -15,8 +15,8 @@
 #include <thread>
 #include <utility>
 
-#include "ipc/runtime/descriptor.hpp"
 #include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror {
 namespace {
@@ -84,7 +84,7 @@ std::expected<LockFile, LockFile::Refused> LockFile::take(const std::filesystem:
         ::pwrite(file.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
       return std::unexpected(failed(path, "write", errno));
     }
-    return LockFile(file.release(), path);
+    return LockFile(std::move(file), path);
   }
   return std::unexpected(
       Refused{Refusal::held, holder,
@@ -93,12 +93,10 @@ std::expected<LockFile, LockFile::Refused> LockFile::take(const std::filesystem:
                     {}}});
 }
 
-LockFile::LockFile(LockFile&& other) noexcept : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)) {}
-
 LockFile& LockFile::operator=(LockFile&& other) noexcept {
   if (this != &other) {
     release();
-    fd_ = std::exchange(other.fd_, -1);
+    file_ = std::move(other.file_);
     path_ = std::move(other.path_);
   }
   return *this;
@@ -107,12 +105,12 @@ LockFile& LockFile::operator=(LockFile&& other) noexcept {
 LockFile::~LockFile() { release(); }
 
 void LockFile::release() {
-  if (fd_ < 0) return;
+  if (!file_.valid()) return;
   if (in_place()) ::unlink(path_.c_str());
-  ::close(std::exchange(fd_, -1));
+  file_.reset();
 }
 
-bool LockFile::in_place() const { return fd_ >= 0 && same_file(fd_, path_); }
+bool LockFile::in_place() const { return file_.valid() && same_file(file_.get(), path_); }
 
 std::optional<LockHolder> lock_holder(const std::filesystem::path& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror {
@@ -34,18 +35,18 @@ class LockFile {
   static std::expected<LockFile, Refused> take(const std::filesystem::path& path, std::string_view note);
 
   LockFile() = default;
-  LockFile(LockFile&& other) noexcept;
+  LockFile(LockFile&& other) noexcept = default;
   LockFile& operator=(LockFile&& other) noexcept;
   ~LockFile();  // removes the file, then lets go
 
-  [[nodiscard]] bool held() const { return fd_ >= 0; }
+  [[nodiscard]] bool held() const { return file_.valid(); }
   // Whether the file at the path is still the locked one: logind empties a user's runtime folder at log-out.
   [[nodiscard]] bool in_place() const;
   void release();
 
  private:
-  LockFile(int fd, std::filesystem::path path) : fd_(fd), path_(std::move(path)) {}
-  int fd_ = -1;
+  LockFile(Descriptor file, std::filesystem::path path) : file_(std::move(file)), path_(std::move(path)) {}
+  Descriptor file_;
   std::filesystem::path path_;
 };
 

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -134,14 +135,11 @@ Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_
 
 Result<std::string> read_text_file(const fs::path& path, std::size_t limit) {
   // O_NONBLOCK: opening a FIFO that somebody put in place of a file must not wait for its writer.
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0) return fail(fmt::format("{} cannot be opened: {}", path.string(), std::strerror(errno)));
-  struct Closer {
-    int fd;
-    ~Closer() { ::close(fd); }
-  } const closer{fd};
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.valid()) return fail(fmt::format("{} cannot be opened: {}", path.string(), std::strerror(errno)));
   struct stat info{};
-  if (fstat(fd, &info) != 0) return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
+  if (fstat(file.get(), &info) != 0)
+    return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
   if (S_ISDIR(info.st_mode)) return fail(fmt::format("{} is a folder, not a file", path.string()));
   if (!S_ISREG(info.st_mode)) return fail(fmt::format("{} is no regular file", path.string()));
   if (static_cast<std::size_t>(info.st_size) > limit) {
@@ -150,7 +148,7 @@ Result<std::string> read_text_file(const fs::path& path, std::size_t limit) {
   std::string text(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t filled = 0;
   while (filled < text.size()) {
-    const ssize_t got = ::read(fd, text.data() + filled, text.size() - filled);
+    const ssize_t got = ::read(file.get(), text.data() + filled, text.size() - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
     if (got == 0) break;

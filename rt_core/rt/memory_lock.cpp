@@ -153,26 +153,19 @@ MemoryLockOutcome probe_memory_lock() { return examine(false); }
 
 CpuLatencyRequest::CpuLatencyRequest(std::int32_t microseconds) {
   // Documentation/power/pm_qos_interface.rst of the kernel: the request holds while the file is open.
-  descriptor_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
-  if (descriptor_ >= 0) {
-    if (write(descriptor_, &microseconds, sizeof(microseconds)) == sizeof(microseconds)) {
+  descriptor_ = Descriptor(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC));
+  if (descriptor_.valid()) {
+    if (write(descriptor_.get(), &microseconds, sizeof(microseconds)) == sizeof(microseconds)) {
       return;
     }
     const int error = errno;
-    close(descriptor_);
-    descriptor_ = -1;
+    descriptor_.reset();
     why_not_ = fmt::format("/dev/cpu_dma_latency took no request: {}", std::strerror(error));
     return;
   }
   why_not_ = fmt::format("/dev/cpu_dma_latency cannot be opened: {}", std::strerror(errno));
   remedy_ = errno == ENOENT ? "none on this machine (a container or a kernel without power management)"
                             : "run as root, or let a udev rule give the user's group write access to it";
-}
-
-CpuLatencyRequest::~CpuLatencyRequest() {
-  if (descriptor_ >= 0) {
-    close(descriptor_);
-  }
 }
 
 }  // namespace cellmirror

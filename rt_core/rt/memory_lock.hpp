@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
 namespace cellmirror {
@@ -57,12 +58,12 @@ class CpuLatencyRequest {
   CpuLatencyRequest(const CpuLatencyRequest&) = delete;
   CpuLatencyRequest& operator=(const CpuLatencyRequest&) = delete;
 
-  [[nodiscard]] bool ok() const { return descriptor_ >= 0; }
+  [[nodiscard]] bool ok() const { return descriptor_.valid(); }
   [[nodiscard]] const std::string& why_not() const { return why_not_; }  // empty where ok
   [[nodiscard]] const std::string& remedy() const { return remedy_; }    // empty where ok
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   std::string why_not_;
   std::string remedy_;
 };

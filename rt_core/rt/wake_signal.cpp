@@ -10,22 +10,20 @@
 
 namespace cellmirror {
 
-WakeSignal::WakeSignal() : event_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) { CELLMIRROR_EXPECTS(event_fd_ >= 0); }
-
-WakeSignal::~WakeSignal() { close(event_fd_); }
+WakeSignal::WakeSignal() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) { CELLMIRROR_EXPECTS(event_.valid()); }
 
 void WakeSignal::wake() noexcept {
   const std::uint64_t one = 1;
   // It can only fail where the counter is full, and then the waiter is awake anyway.
-  [[maybe_unused]] const ssize_t written = write(event_fd_, &one, sizeof one);
+  [[maybe_unused]] const ssize_t written = write(event_.get(), &one, sizeof one);
 }
 
 bool WakeSignal::wait(Nanoseconds timeout) noexcept {
-  pollfd waited{event_fd_, POLLIN, 0};
+  pollfd waited{event_.get(), POLLIN, 0};
   const timespec limit{timeout.count() / 1'000'000'000, timeout.count() % 1'000'000'000};
   if (ppoll(&waited, 1, &limit, nullptr) <= 0) return false;
   std::uint64_t count = 0;
-  [[maybe_unused]] const ssize_t got = read(event_fd_, &count, sizeof count);
+  [[maybe_unused]] const ssize_t got = read(event_.get(), &count, sizeof count);
   return true;
 }
 

@@ -1,6 +1,7 @@
 // Wakes a waiting worker thread from another one. Not for the tick: both sides make system calls.
 #pragma once
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror {
@@ -9,7 +10,6 @@ namespace cellmirror {
 class WakeSignal {
  public:
   WakeSignal();
-  ~WakeSignal();
   WakeSignal(const WakeSignal&) = delete;
   WakeSignal& operator=(const WakeSignal&) = delete;
 
@@ -18,7 +18,7 @@ class WakeSignal {
   bool wait(Nanoseconds timeout) noexcept;
 
  private:
-  int event_fd_;
+  Descriptor event_;
 };
 
 }  // namespace cellmirror

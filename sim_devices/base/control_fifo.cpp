@@ -23,19 +23,17 @@ Result<std::unique_ptr<ControlFifo>> ControlFifo::open(const std::string& path) 
     return fail(fmt::format("--control {}: no FIFO", path), fmt::format("mkfifo {}", path));
   }
   // Open for writing too: else each reader of a FIFO that nobody writes to sees its end.
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) {
+  Descriptor fifo(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+  if (!fifo.valid()) {
     return fail(fmt::format("--control {}: {}", path, std::generic_category().message(errno)));
   }
-  return std::unique_ptr<ControlFifo>(new ControlFifo(descriptor));
+  return std::unique_ptr<ControlFifo>(new ControlFifo(std::move(fifo)));
 }
-
-ControlFifo::~ControlFifo() { ::close(descriptor_); }
 
 std::vector<std::string> ControlFifo::lines() {
   std::vector<std::string> whole;
   std::array<char, 4096> buffer;
-  const ssize_t got = ::read(descriptor_, buffer.data(), buffer.size());
+  const ssize_t got = ::read(fifo_.get(), buffer.data(), buffer.size());
   if (got <= 0) return whole;
   partial_.append(buffer.data(), static_cast<std::size_t>(got));
   for (std::size_t end = partial_.find('\n'); end != std::string::npos; end = partial_.find('\n')) {

@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror::sim {
@@ -13,7 +15,6 @@ class ControlFifo {
  public:
   // Fails where `path` is no FIFO.
   static Result<std::unique_ptr<ControlFifo>> open(const std::string& path);
-  ~ControlFifo();
   ControlFifo(const ControlFifo&) = delete;
   ControlFifo& operator=(const ControlFifo&) = delete;
 
@@ -21,9 +22,9 @@ class ControlFifo {
   [[nodiscard]] std::vector<std::string> lines();
 
  private:
-  explicit ControlFifo(int descriptor) : descriptor_(descriptor) {}
+  explicit ControlFifo(Descriptor fifo) : fifo_(std::move(fifo)) {}
 
-  int descriptor_;
+  Descriptor fifo_;
   std::string partial_;
 };
 

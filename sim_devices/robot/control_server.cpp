@@ -27,38 +27,31 @@ sockaddr_un address_of(const std::string& path) {
 }
 
 bool somebody_serves(const sockaddr_un& address) {
-  const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const bool served = connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  close(probe);
-  return served;
+  const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  return connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
 }
 
 }  // namespace
 
 ControlServer::~ControlServer() {
-  for (const Client& client : clients_) {
-    if (client.in > STDERR_FILENO) close(client.in);
-  }
-  if (listener_ >= 0) {
-    close(listener_);
-    unlink(socket_path_.c_str());
-  }
+  if (listener_.valid()) unlink(socket_path_.c_str());
 }
 
 void ControlServer::watch_standard_input() {
   struct stat info{};
   // A closed or empty input would be readable for ever.
   if (fstat(STDIN_FILENO, &info) != 0) return;
-  clients_.push_back({STDIN_FILENO, STDERR_FILENO, false, false, {}});
+  clients_.push_back({{}, STDIN_FILENO, STDERR_FILENO, false, false, {}});
 }
 
 Result<void> ControlServer::open(const std::string& path) {
   struct stat info{};
   const bool exists = lstat(path.c_str(), &info) == 0;
   if (exists && S_ISFIFO(info.st_mode)) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);  // O_RDWR: no end of file between writers
-    if (fd < 0) return fail(fmt::format("control {}: {}", path, reason()));
-    clients_.push_back({fd, STDERR_FILENO, false, true, {}});
+    Descriptor fifo(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));  // O_RDWR: no end of file between writers
+    if (!fifo.valid()) return fail(fmt::format("control {}: {}", path, reason()));
+    const int in = fifo.get();
+    clients_.push_back({std::move(fifo), in, STDERR_FILENO, false, true, {}});
     return {};
   }
   const sockaddr_un address = address_of(path);
@@ -71,15 +64,14 @@ Result<void> ControlServer::open(const std::string& path) {
         "choose another path");
   }
   if (exists) unlink(path.c_str());
-  listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  listener_ = Descriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const mode_t before = umask(0177);
   const bool bound =
-      listener_ >= 0 && bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+      listener_.valid() && bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
   umask(before);
-  if (!bound || listen(listener_, static_cast<int>(kMostClients)) != 0) {
+  if (!bound || listen(listener_.get(), static_cast<int>(kMostClients)) != 0) {
     const std::string why = reason();
-    if (listener_ >= 0) close(listener_);
-    listener_ = -1;
+    listener_.reset();
     return fail(fmt::format("control {}: {}", path, why), "the folder has to exist and be writable");
   }
   socket_path_ = path;
@@ -89,7 +81,7 @@ Result<void> ControlServer::open(const std::string& path) {
 void ControlServer::serve(int timeout_ms, const Answer& answer) {
   std::vector<pollfd> waits;
   for (const Client& client : clients_) waits.push_back({client.in, POLLIN, 0});
-  if (listener_ >= 0 && clients_.size() < kMostClients) waits.push_back({listener_, POLLIN, 0});
+  if (listener_.valid() && clients_.size() < kMostClients) waits.push_back({listener_.get(), POLLIN, 0});
   if (waits.empty() && timeout_ms < 0) timeout_ms = 1000;
   if (poll(waits.data(), waits.size(), timeout_ms) <= 0) return;
   const std::size_t known = clients_.size();
@@ -101,8 +93,9 @@ void ControlServer::serve(int timeout_ms, const Answer& answer) {
 }
 
 void ControlServer::accept_clients() {
-  const int fd = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (fd >= 0) clients_.push_back({fd, fd, true, false, {}});
+  Descriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  const int fd = socket.get();
+  if (socket.valid()) clients_.push_back({std::move(socket), fd, fd, true, false, {}});
 }
 
 void ControlServer::read_from(Client& client, const Answer& answer) {
@@ -122,7 +115,7 @@ void ControlServer::read_from(Client& client, const Answer& answer) {
     reply(client, fmt::format("error: a command has at most {} bytes", kMaxControlLine));
   }
   if (ended) {
-    if (client.in > STDERR_FILENO) close(client.in);
+    client.own.reset();
     client.in = -1;
   }
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror::sim {
@@ -35,6 +36,7 @@ class ControlServer {
 
  private:
   struct Client {
+    Descriptor own;  // none: standard input
     int in = -1;
     int out = -1;
     bool socket = false;
@@ -46,7 +48,7 @@ class ControlServer {
   void read_from(Client& client, const Answer& answer);
   static void reply(const Client& client, std::string text);
 
-  int listener_ = -1;
+  Descriptor listener_;
   std::string socket_path_;
   std::vector<Client> clients_;
 };

@@ -12,15 +12,15 @@
 #include <cstring>
 #include <utility>
 
+#include "rt_core/base/descriptor.hpp"
+
 namespace cellmirror::sim {
 namespace {
 
 class ErrorFrameChannel final : public CanChannel {
  public:
-  ErrorFrameChannel(std::unique_ptr<CanChannel> channel, int fd) : channel_(std::move(channel)), fd_(fd) {}
-  ~ErrorFrameChannel() override { close(fd_); }
-  ErrorFrameChannel(const ErrorFrameChannel&) = delete;
-  ErrorFrameChannel& operator=(const ErrorFrameChannel&) = delete;
+  ErrorFrameChannel(std::unique_ptr<CanChannel> channel, Descriptor socket)
+      : channel_(std::move(channel)), socket_(std::move(socket)) {}
 
   CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) override {
     return channel_->receive(frame, timeout);
@@ -32,7 +32,7 @@ class ErrorFrameChannel final : public CanChannel {
     raw.can_id = (frame.id & CAN_ERR_MASK) | CAN_ERR_FLAG;
     raw.len = kErrorFrameBytes;
     std::copy_n(frame.data.begin(), kErrorFrameBytes, raw.data);
-    return ::send(fd_, &raw, sizeof raw, MSG_DONTWAIT) == static_cast<ssize_t>(sizeof raw);
+    return ::send(socket_.get(), &raw, sizeof raw, MSG_DONTWAIT) == static_cast<ssize_t>(sizeof raw);
   }
 
   [[nodiscard]] CanChannelStatus status() const override { return channel_->status(); }
@@ -41,25 +41,23 @@ class ErrorFrameChannel final : public CanChannel {
   static constexpr int kErrorFrameBytes = 8;  // linux/can/error.h
 
   std::unique_ptr<CanChannel> channel_;
-  int fd_;
+  Descriptor socket_;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<CanChannel>> with_error_frames(std::unique_ptr<CanChannel> channel,
                                                       const std::string& interface) {
-  const int fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);
+  Descriptor sender(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW));
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
-  if (fd < 0 || bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    const std::string why = std::strerror(errno);
-    if (fd >= 0) close(fd);
-    return fail(fmt::format("{}: no socket for error frames: {}", interface, why));
+  if (!sender.valid() || bind(sender.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    return fail(fmt::format("{}: no socket for error frames: {}", interface, std::strerror(errno)));
   }
   // It only sends.
-  setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0);
-  return std::make_unique<ErrorFrameChannel>(std::move(channel), fd);
+  setsockopt(sender.get(), SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0);
+  return std::make_unique<ErrorFrameChannel>(std::move(channel), std::move(sender));
 }
 
 }  // namespace cellmirror::sim
