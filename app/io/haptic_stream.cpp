@@ -27,12 +27,10 @@ void HapticStream::set_memory(std::string endpoint, std::shared_ptr<const Haptic
   const std::scoped_lock lock(mutex_);
   endpoint_ = std::move(endpoint);
   meter_ = std::move(meter);
-  rate_since_ = Timestamp();
-  rate_hz_ = 0;
+  rate_.restart();
 }
 
 JointStreamStatus HapticStream::status() const {
-  constexpr Nanoseconds kWindow{500'000'000};
   JointStreamStatus out;
   out.kind = "haptic";
   const std::scoped_lock lock(mutex_);
@@ -41,13 +39,7 @@ JointStreamStatus HapticStream::status() const {
   out.condition = is_open_ ? "see haptics" : "closed";
   if (!meter_) return out;
   out.received = meter_->samples.load(std::memory_order_relaxed);
-  const Timestamp now = clock_.now();
-  if (!rate_since_.known() || now - rate_since_ >= kWindow) {
-    if (rate_since_.known()) rate_hz_ = static_cast<double>(out.received - rate_from_) / seconds(now - rate_since_);
-    rate_since_ = now;
-    rate_from_ = out.received;
-  }
-  out.rate_hz = rate_hz_;
+  out.rate_hz = rate_.read(clock_.now(), out.received);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/snapshot/haptic_meter.hpp"
+#include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 
@@ -37,9 +38,7 @@ class HapticStream final : public JointStream {
   bool is_open_ = false;
   std::string endpoint_ = "no shared memory";
   std::shared_ptr<const HapticMeter> meter_;
-  mutable Timestamp rate_since_;
-  mutable std::uint64_t rate_from_ = 0;
-  mutable double rate_hz_ = 0;
+  mutable CounterRate rate_{Nanoseconds(500'000'000)};  // between calls of status()
 };
 
 }  // namespace cellmirror::app

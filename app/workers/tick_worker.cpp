@@ -39,20 +39,11 @@ void TickWorker::wait_for_tick(const engine::TickState& tick, int tries) {
 }
 
 void TickWorker::count_run() {
-  constexpr Nanoseconds kWindow{1'000'000'000};
-  const Timestamp now = clock_.now();
-  if (!window_start_.known()) window_start_ = now;
-  ++runs_in_window_;
-  if (now - window_start_ < kWindow) return;
-  const double rate = static_cast<double>(runs_in_window_) / seconds(now - window_start_);
-  rate_mhz_.store(static_cast<std::uint64_t>(1e3 * rate), std::memory_order_relaxed);
-  window_start_ = now;
-  runs_in_window_ = 0;
+  rate_mhz_.store(static_cast<std::uint64_t>(1e3 * rate_.read(clock_.now(), ++runs_)), std::memory_order_relaxed);
 }
 
 void TickWorker::rest() {
-  window_start_ = Timestamp();
-  runs_in_window_ = 0;
+  rate_.restart();
   rate_mhz_.store(0, std::memory_order_relaxed);
   wake_.wait(kIdle);
 }

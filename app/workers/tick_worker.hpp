@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "app/snapshot/cell_state.hpp"
+#include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/rt/wake_signal.hpp"
@@ -56,8 +57,8 @@ class TickWorker {
   const Clock& clock_;
   Nanoseconds tick_period_;
   WakeSignal wake_;
-  Timestamp window_start_;  // of the rate
-  std::uint64_t runs_in_window_ = 0;
+  CounterRate rate_{Nanoseconds(1'000'000'000)};
+  std::uint64_t runs_ = 0;
   std::atomic<std::uint64_t> rate_mhz_{0};  // millihertz
   std::atomic<std::uint64_t> skipped_{0};
   std::jthread thread_;  // last: it uses everything above
