@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "rt_core/base/json_writer.hpp"
+
 namespace cellmirror::app {
 
 namespace {
@@ -33,23 +35,35 @@ std::string header_line(const FlightFileHeader& header) {
 }
 
 void append_tick(std::string& out, const engine::FlightTick& record) {
-  out += fmt::format(
-      "{{\"kind\":\"tick\",\"tick\":{},\"time_ns\":{},\"wakeup_latency_us\":{:.3f},\"compute_us\":{:.3f},"
-      "\"missed\":{},\"commands\":{},\"samples\":{}}}\n",
-      record.tick, record.time.ns, record.wakeup_latency_ns * 1e-3, record.compute_ns * 1e-3, record.missed_periods,
-      record.commands, record.samples);
+  JsonWriter line;
+  line.begin_object()
+      .member("kind", "tick")
+      .member("tick", record.tick)
+      .member("time_ns", record.time.ns)
+      .fixed_member("wakeup_latency_us", record.wakeup_latency_ns * 1e-3, 3)
+      .fixed_member("compute_us", record.compute_ns * 1e-3, 3)
+      .member("missed", record.missed_periods)
+      .member("commands", record.commands)
+      .member("samples", record.samples)
+      .end_object();
+  out += line.take() + "\n";
 }
 
 void append_robot(std::string& out, const engine::FlightRobot& record, const FlightFileHeader& header) {
-  const nlohmann::json id = record.slot < header.robots.size() ? header.robots[record.slot] : std::string();
-  out += fmt::format(
-      "{{\"kind\":\"robot\",\"event\":\"{}\",\"robot\":{},\"tick\":{},\"time_ns\":{},\"sequence\":{},\"position\":[",
-      word(record.event), id.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), record.tick,
-      record.time.ns, record.sequence);
-  for (std::size_t i = 0; i < record.joint_count; ++i) {
-    out += fmt::format("{}{:.7g}", i == 0 ? "" : ",", record.position[i]);
-  }
-  out += "]}\n";
+  constexpr int kDigitsOfFloat = 7;
+  JsonWriter line(kDigitsOfFloat);
+  line.begin_object()
+      .member("kind", "robot")
+      .member("event", word(record.event))
+      .member("robot", record.slot < header.robots.size() ? header.robots[record.slot] : std::string())
+      .member("tick", record.tick)
+      .member("time_ns", record.time.ns)
+      .member("sequence", record.sequence)
+      .key("position")
+      .begin_array();
+  for (std::size_t i = 0; i < record.joint_count; ++i) line.value(double{record.position[i]});
+  line.end_array().end_object();
+  out += line.take() + "\n";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rt_core/base/base64.hpp"
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -81,9 +82,16 @@ PictureRequest picture_request_of(const SnapshotRequest& wanted, int width, int 
 }
 
 std::string answer_text(const EncodedImage& picture, double posture_age_s) {
-  return fmt::format(
-      R"({{"format": "{}", "width": {}, "height": {}, "sequence": {}, "posture_age_s": {:.6f}, "data": "{}"}})",
-      word(picture.format), picture.width, picture.height, picture.sequence, posture_age_s, base64(picture.bytes));
+  JsonWriter out;
+  return out.begin_object()
+      .member("format", word(picture.format))
+      .member("width", picture.width)
+      .member("height", picture.height)
+      .member("sequence", picture.sequence)
+      .fixed_member("posture_age_s", posture_age_s, 6)
+      .member("data", base64(picture.bytes))
+      .end_object()
+      .take();
 }
 
 Result<SnapshotAnswer> snapshot_answer(std::string_view text) {

@@ -7,7 +7,6 @@
 
 #include "app/console/display_names.hpp"
 #include "app/console/put.hpp"
-#include "app/proximity/json_writer.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -26,21 +25,36 @@ std::size_t tested_pairs(const collision::PairTable& pairs) {
                     [](const collision::Pair& pair) { return collision::is_tested(pair.state); }));
 }
 
-std::string near_json(const collision::PairTable& pairs, const NearPair& pair) {
-  return fmt::format(R"({{"a":{},"b":{},"distance_m":{},"point_a_m":{},"point_b_m":{}{}}})",
-                     json_text((*pairs.names)[pair.a]), json_text((*pairs.names)[pair.b]), json_number(pair.distance_m),
-                     json_point(pair.point_a_m), json_point(pair.point_b_m), pair.doubtful ? ",\"doubtful\":true" : "");
+JsonWriter& begin_pair(JsonWriter& out, const collision::PairTable& pairs, std::uint32_t a, std::uint32_t b) {
+  return out.begin_object().member("a", (*pairs.names)[a]).member("b", (*pairs.names)[b]);
 }
 
-std::string touching_json(const collision::PairTable& pairs, const TouchingPair& pair) {
-  std::string contacts;
-  for (const TouchingPoint& point : pair.points)
-    contacts += fmt::format(R"({}{{"point_m":{},"normal":{},"depth_m":{}}})", contacts.empty() ? "" : ",",
-                            json_point(point.point_m), json_point(point.normal), json_number(point.depth_m));
-  return fmt::format(R"({{"a":{},"b":{},"depth_m":{},"point_m":{},"normal":{},"contacts":[{}]{}}})",
-                     json_text((*pairs.names)[pair.a]), json_text((*pairs.names)[pair.b]), json_number(pair.depth_m),
-                     json_point(pair.point_m), json_point(pair.normal), contacts,
-                     pair.doubtful ? ",\"doubtful\":true" : "");
+void add(JsonWriter& out, const collision::PairTable& pairs, const NearPair& pair) {
+  begin_pair(out, pairs, pair.a, pair.b)
+      .member("distance_m", pair.distance_m)
+      .member("point_a_m", pair.point_a_m)
+      .member("point_b_m", pair.point_b_m);
+  if (pair.doubtful) out.member("doubtful", true);
+  out.end_object();
+}
+
+void add(JsonWriter& out, const collision::PairTable& pairs, const TouchingPair& pair) {
+  begin_pair(out, pairs, pair.a, pair.b)
+      .member("depth_m", pair.depth_m)
+      .member("point_m", pair.point_m)
+      .member("normal", pair.normal)
+      .key("contacts")
+      .begin_array();
+  for (const TouchingPoint& point : pair.points) {
+    out.begin_object()
+        .member("point_m", point.point_m)
+        .member("normal", point.normal)
+        .member("depth_m", point.depth_m)
+        .end_object();
+  }
+  out.end_array();
+  if (pair.doubtful) out.member("doubtful", true);
+  out.end_object();
 }
 
 double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
@@ -49,43 +63,72 @@ double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
 
 CollideJson::CollideJson(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)
     : pairs_(pairs), out_(out) {
-  put(out_,
-      R"({{"cell":{},"bodies":{},"triangles":{},"pairs_tested":{},"pairs_left_out":{},"pairs_rigid":{},)"
-      R"("warning_distance_m":{},"frames":[)",
-      json_text(heading.cell), pairs.bodies.size(), pairs.triangles, tested_pairs(pairs),
-      pairs.pairs.size() - tested_pairs(pairs), pairs.rigid_pairs, json_number(heading.warning_distance_m));
+  const std::size_t tested = tested_pairs(pairs);
+  json_.begin_object()
+      .member("cell", heading.cell)
+      .member("bodies", pairs.bodies.size())
+      .member("triangles", pairs.triangles)
+      .member("pairs_tested", tested)
+      .member("pairs_left_out", pairs.pairs.size() - tested)
+      .member("pairs_rigid", pairs.rigid_pairs)
+      .member("warning_distance_m", heading.warning_distance_m)
+      .key("frames")
+      .begin_array();
+  hand_out();
 }
 
+void CollideJson::hand_out(std::string_view behind) { put(out_, "{}{}", json_.take(), behind); }
+
 void CollideJson::frame(const ProximityState& state) {
-  std::string collisions;
-  for (const TouchingPair& pair : state.touching)
-    collisions += (collisions.empty() ? "" : ",") + touching_json(pairs_, pair);
-  std::string warnings;
-  for (const NearPair& pair : state.near) {
-    if (pair.within_warning) warnings += (warnings.empty() ? "" : ",") + near_json(pairs_, pair);
+  json_.line().begin_object().key("collisions").begin_array();
+  for (const TouchingPair& pair : state.touching) add(json_, pairs_, pair);
+  json_.end_array().key("min_distance");
+  if (const NearPair* nearest = state.nearest()) {
+    add(json_, pairs_, *nearest);
+  } else {
+    json_.null();
   }
-  std::string doubts;
-  for (const std::string& doubt : state.doubts) doubts += (doubts.empty() ? "" : ",") + json_text(doubt);
-  put(out_, R"({}{{"collisions":[{}],"min_distance":{},"within_warning":[{}],"doubts":[{}]}})", first_ ? "\n" : ",\n",
-      collisions, state.nearest() == nullptr ? "null" : near_json(pairs_, *state.nearest()), warnings, doubts);
-  first_ = false;
+  json_.key("within_warning").begin_array();
+  for (const NearPair& pair : state.near) {
+    if (pair.within_warning) add(json_, pairs_, pair);
+  }
+  json_.end_array().member("doubts", state.doubts).end_object();
+  hand_out();
 }
 
 void CollideJson::end(const CollideTotals& totals) {
-  std::string touching;
-  for (const auto& [pair, touch] : totals.touching)
-    touching += fmt::format(R"({}{{"a":{},"b":{},"frames":{},"depth_m":{},"frame":{}}})", touching.empty() ? "" : ",",
-                            json_text((*pairs_.names)[pair.first]), json_text((*pairs_.names)[pair.second]),
-                            touch.frames, json_number(touch.deepest_m), touch.deepest_frame);
-  const std::string nearest = totals.nearest ? fmt::format(R"({{"frame":{},"pair":{}}})", totals.nearest_frame,
-                                                           near_json(pairs_, *totals.nearest))
-                                             : "null";
+  json_.line()
+      .end_array()
+      .key("summary")
+      .begin_object()
+      .member("frames", totals.frames)
+      .member("frames_with_collisions", totals.frames_touching)
+      .member("frames_in_doubt", totals.frames_in_doubt)
+      .key("collisions")
+      .begin_array();
+  for (const auto& [pair, touch] : totals.touching) {
+    begin_pair(json_, pairs_, pair.first, pair.second)
+        .member("frames", touch.frames)
+        .member("depth_m", touch.deepest_m)
+        .member("frame", touch.deepest_frame)
+        .end_object();
+  }
+  json_.end_array().key("min_distance");
+  if (totals.nearest) {
+    json_.begin_object().member("frame", totals.nearest_frame).key("pair");
+    add(json_, pairs_, *totals.nearest);
+    json_.end_object();
+  } else {
+    json_.null();
+  }
   const HistogramSnapshot& times = totals.times;
-  put(out_,
-      "\n],\"summary\":{{\"frames\":{},\"frames_with_collisions\":{},\"frames_in_doubt\":{},\"collisions\":[{}],"
-      "\"min_distance\":{},\"time_mean_us\":{},\"time_p50_us\":{},\"time_p99_us\":{},\"time_max_us\":{}}}}}\n",
-      totals.frames, totals.frames_touching, totals.frames_in_doubt, touching, nearest, us(times.mean()),
-      us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+  json_.member("time_mean_us", us(times.mean()))
+      .member("time_p50_us", us(times.percentile(50)))
+      .member("time_p99_us", us(times.percentile(99)))
+      .member("time_max_us", us(times.max()))
+      .end_object()
+      .end_object();
+  hand_out("\n");
 }
 
 CollideText::CollideText(const CollideHeading& heading, const collision::PairTable& pairs, std::FILE* out)

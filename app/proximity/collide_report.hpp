@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/plot/figure.hpp"
 #include "app/proximity/collide_run.hpp"
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/collision/pairs.hpp"
 
 namespace cellmirror::app {
@@ -27,9 +29,12 @@ class CollideJson {
   void end(const CollideTotals& totals);
 
  private:
+  // What is written so far, then `behind`.
+  void hand_out(std::string_view behind = {});
+
   const collision::PairTable& pairs_;
   std::FILE* out_;
-  bool first_ = true;
+  JsonWriter json_{JsonWriter::kExact};
 };
 
 // Frame by frame where there are few; else the frames in which bodies touch and part, and a summary.

@@ -8,8 +8,8 @@
 
 #include "app/console/display_names.hpp"
 #include "app/console/put.hpp"
-#include "app/proximity/json_writer.hpp"
 #include "rt_core/base/counted.hpp"
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -72,23 +72,25 @@ void print_pairs(const std::string& cell, const PairTable& pairs, std::FILE* out
 }
 
 void print_pairs_json(const std::string& cell, const PairTable& pairs, std::FILE* out) {
-  put(out, R"({{"cell":{},"triangles":{},"bodies":[)", json_text(cell), pairs.triangles);
-  for (std::size_t i = 0; i < pairs.bodies.size(); ++i)
-    put(out, "{}{}", i == 0 ? "" : ",", json_text((*pairs.names)[i]));
-  put(out, "],\"counts\":{{");
-  for (const StateText& text : kStates)
-    put(out, R"({}"{}":{})", &text == kStates.data() ? "" : ",", text.word, count(pairs, text.state));
-  put(out, "}},\"pairs\":[");
-  const char* separator = "\n";
+  JsonWriter json(JsonWriter::kExact);
+  json.begin_object().member("cell", cell).member("triangles", pairs.triangles).key("bodies").begin_array();
+  for (std::size_t i = 0; i < pairs.bodies.size(); ++i) json.value((*pairs.names)[i]);
+  json.end_array().key("counts").begin_object();
+  for (const StateText& text : kStates) json.member(text.word, count(pairs, text.state));
+  json.end_object().key("pairs").begin_array();
   for (const Pair& pair : pairs.pairs) {
-    put(out, R"({}{{"a":{},"b":{},"tested":{},"state":"{}","reason":{}}})", separator,
-        json_text((*pairs.names)[pair.a]), json_text((*pairs.names)[pair.b]), collision::is_tested(pair.state),
-        word_of(pair.state), json_text(pair.reason));
-    separator = ",\n";
+    json.line()
+        .begin_object()
+        .member("a", (*pairs.names)[pair.a])
+        .member("b", (*pairs.names)[pair.b])
+        .member("tested", collision::is_tested(pair.state))
+        .member("state", word_of(pair.state))
+        .member("reason", pair.reason)
+        .end_object();
+    put(out, "{}", json.take());
   }
-  put(out, "\n],\"doubts\":[");
-  for (std::size_t i = 0; i < pairs.doubts.size(); ++i) put(out, "{}{}", i == 0 ? "" : ",", json_text(pairs.doubts[i]));
-  put(out, "]}}\n");
+  json.line().end_array().member("doubts", pairs.doubts).end_object();
+  put(out, "{}\n", json.take());
 }
 
 }  // namespace cellmirror::app

@@ -6,7 +6,6 @@
 
 #include "app/console/display_names.hpp"
 #include "app/console/put.hpp"
-#include "app/proximity/json_writer.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -19,12 +18,17 @@ constexpr std::size_t kMostNames = 200;
 
 double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
 
-std::string reading_json(const RangeReading& reading) {
+void add(JsonWriter& out, const RangeReading& reading) {
   const bool seen = reading.distance_m.has_value();
-  return fmt::format(R"({{"id":{},"path":{},"distance_m":{},"point_m":{},"object":{},"in_blind_zone":{}{}}})",
-                     json_text(reading.id), json_text(reading.path), seen ? json_number(*reading.distance_m) : "null",
-                     seen ? json_point(reading.point_m) : "null", seen ? json_text(reading.object) : "null",
-                     reading.in_blind_zone, reading.doubtful ? ",\"doubtful\":true" : "");
+  out.begin_object().member("id", reading.id).member("path", reading.path).member("distance_m", reading.distance_m);
+  if (seen) {
+    out.member("point_m", reading.point_m).member("object", reading.object);
+  } else {
+    out.key("point_m").null().key("object").null();
+  }
+  out.member("in_blind_zone", reading.in_blind_zone);
+  if (reading.doubtful) out.member("doubtful", true);
+  out.end_object();
 }
 
 std::string reading_text(const RangeReading& reading) {
@@ -39,32 +43,45 @@ std::string reading_text(const RangeReading& reading) {
 }  // namespace
 
 RangeJson::RangeJson(const RangeHeading& heading, const CompiledCell& cell, std::FILE* out) : cell_(cell), out_(out) {
-  put(out_, R"({{"cell":{},"frames":[)", json_text(heading.cell));
+  json_.begin_object().member("cell", heading.cell).key("frames").begin_array();
+  hand_out();
 }
 
+void RangeJson::hand_out(std::string_view behind) { put(out_, "{}{}", json_.take(), behind); }
+
 void RangeJson::frame(std::span<const RangeReading> readings) {
-  std::string sensors;
-  for (const RangeReading& reading : readings) sensors += (sensors.empty() ? "" : ",") + reading_json(reading);
-  put(out_, R"({}{{"sensors":[{}]}})", first_ ? "\n" : ",\n", sensors);
-  first_ = false;
+  json_.line().begin_object().key("sensors").begin_array();
+  for (const RangeReading& reading : readings) add(json_, reading);
+  json_.end_array().end_object();
+  hand_out();
 }
 
 void RangeJson::end(const RangeTotals& totals) {
-  std::string sensors;
+  json_.line().end_array().key("summary").begin_object().member("frames", totals.frames).key("sensors").begin_array();
   for (std::size_t i = 0; i < totals.sensors.size(); ++i) {
     const SensorTotals& sensor = totals.sensors[i];
-    const bool seen = sensor.seen > 0;
-    sensors += fmt::format(
-        R"({}{{"id":{},"frames_seen":{},"frames_in_blind_zone":{},"smallest_m":{},"smallest_frame":{},"largest_m":{}}})",
-        i == 0 ? "" : ",", json_text(cell_.sensors[i].name), sensor.seen, sensor.in_blind_zone,
-        seen ? json_number(sensor.smallest_m) : "null", seen ? fmt::format("{}", sensor.smallest_frame) : "null",
-        seen ? json_number(sensor.largest_m) : "null");
+    json_.begin_object()
+        .member("id", cell_.sensors[i].name)
+        .member("frames_seen", sensor.seen)
+        .member("frames_in_blind_zone", sensor.in_blind_zone);
+    if (sensor.seen > 0) {
+      json_.member("smallest_m", sensor.smallest_m)
+          .member("smallest_frame", sensor.smallest_frame)
+          .member("largest_m", sensor.largest_m);
+    } else {
+      json_.key("smallest_m").null().key("smallest_frame").null().key("largest_m").null();
+    }
+    json_.end_object();
   }
   const HistogramSnapshot& times = totals.times;
-  put(out_,
-      "\n],\"summary\":{{\"frames\":{},\"sensors\":[{}],\"time_mean_us\":{},\"time_p50_us\":{},"
-      "\"time_p99_us\":{},\"time_max_us\":{}}}}}\n",
-      totals.frames, sensors, us(times.mean()), us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+  json_.end_array()
+      .member("time_mean_us", us(times.mean()))
+      .member("time_p50_us", us(times.percentile(50)))
+      .member("time_p99_us", us(times.percentile(99)))
+      .member("time_max_us", us(times.max()))
+      .end_object()
+      .end_object();
+  hand_out("\n");
 }
 
 RangeText::RangeText(const RangeHeading& heading, const CompiledCell& cell, std::FILE* out)

@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "app/plot/figure.hpp"
 #include "app/proximity/range_run.hpp"
+#include "rt_core/base/json_writer.hpp"
 
 namespace cellmirror::app {
 
@@ -24,9 +26,12 @@ class RangeJson {
   void end(const RangeTotals& totals);
 
  private:
+  // What is written so far, then `behind`.
+  void hand_out(std::string_view behind = {});
+
   const CompiledCell& cell_;
   std::FILE* out_;
-  bool first_ = true;
+  JsonWriter json_{JsonWriter::kExact};
 };
 
 // Frame by frame where there are few; else a line a sensor.

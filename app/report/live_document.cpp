@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "app/report/json_builder.hpp"
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/scene/panes.hpp"
 
 namespace cellmirror::app {
@@ -35,7 +35,7 @@ std::optional<double> age_s(Timestamp now, Timestamp then) {
   return then.known() ? std::optional(seconds(now - then)) : std::nullopt;
 }
 
-void add_joints(JsonBuilder& out, const RobotState& robot, const CompiledRobot* compiled) {
+void add_joints(JsonWriter& out, const RobotState& robot, const CompiledRobot* compiled) {
   out.key("joints").begin_array();
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const RobotJointState& joint = robot.joints[i];
@@ -55,7 +55,7 @@ void add_joints(JsonBuilder& out, const RobotState& robot, const CompiledRobot* 
   out.end_array();
 }
 
-void add_robots(JsonBuilder& out, const LiveSources& sources) {
+void add_robots(JsonWriter& out, const LiveSources& sources) {
   out.key("robots").begin_array();
   for (std::size_t i = 0; i < sources.robots.size() && i < sources.cell_state.robots.size(); ++i) {
     const RobotSnapshot& robot_snapshot = sources.cell_state.robots[i];
@@ -75,7 +75,7 @@ void add_robots(JsonBuilder& out, const LiveSources& sources) {
   out.end_array();
 }
 
-void add_loop(JsonBuilder& out, const LiveSources& sources, const LoopWindow::Figures& figures) {
+void add_loop(JsonWriter& out, const LiveSources& sources, const LoopWindow::Figures& figures) {
   out.key("loop")
       .begin_object()
       .member("rate_hz", sources.rate_hz)
@@ -91,7 +91,7 @@ std::string_view name(const ProximityState& state, std::uint32_t body) {
 
 // What both kinds of pairs begin with.
 template <class Pair>
-JsonBuilder& begin_pair(JsonBuilder& out, const ProximityState& found, const Pair& pair) {
+JsonWriter& begin_pair(JsonWriter& out, const ProximityState& found, const Pair& pair) {
   const auto in_short = [&](std::uint32_t body) {
     return found.names && body < found.names->size() ? std::string_view(found.short_name(body)) : std::string_view();
   };
@@ -102,7 +102,7 @@ JsonBuilder& begin_pair(JsonBuilder& out, const ProximityState& found, const Pai
       .member("b_short", in_short(pair.b));
 }
 
-void add_touching(JsonBuilder& out, const ProximityState& found) {
+void add_touching(JsonWriter& out, const ProximityState& found) {
   out.begin_array();
   for (std::size_t i = 0; i < std::min(kMostPairs, found.touching.size()); ++i) {
     const TouchingPair& pair = found.touching[i];
@@ -111,7 +111,7 @@ void add_touching(JsonBuilder& out, const ProximityState& found) {
   out.end_array();
 }
 
-void add_near(JsonBuilder& out, const ProximityState& found) {
+void add_near(JsonWriter& out, const ProximityState& found) {
   out.begin_array();
   for (std::size_t i = 0; i < std::min(kMostPairs, found.near.size()); ++i) {
     const NearPair& pair = found.near[i];
@@ -125,7 +125,7 @@ void add_near(JsonBuilder& out, const ProximityState& found) {
 }
 
 // Where nothing is tested, nobody knows what touches: an empty list would say that nothing does.
-void add_proximity(JsonBuilder& out, const LiveSources& sources) {
+void add_proximity(JsonWriter& out, const LiveSources& sources) {
   const ProximityState* state = sources.proximity.get();
   const bool known = state != nullptr && state->pairs > 0 && sources.cell_state.collision->active;
   const ProximityState nothing;
@@ -144,7 +144,7 @@ void add_proximity(JsonBuilder& out, const LiveSources& sources) {
       .member("collision_age_s", known ? age_s(sources.now, found.posture_time) : std::nullopt);
 }
 
-void add_ranges(JsonBuilder& out, const RangeReadings* readings) {
+void add_ranges(JsonWriter& out, const RangeReadings* readings) {
   out.key("ranges").begin_array();
   if (readings != nullptr) {
     for (const RangeReading& reading : readings->readings) {
@@ -163,7 +163,7 @@ void add_ranges(JsonBuilder& out, const RangeReadings* readings) {
   out.end_array();
 }
 
-void add_forces(JsonBuilder& out, const ForceState* state) {
+void add_forces(JsonWriter& out, const ForceState* state) {
   out.key("forces").begin_array();
   for (std::size_t i = 0; state != nullptr && i < state->robots.size(); ++i) {
     const RobotForces& robot = state->robots[i];
@@ -188,7 +188,7 @@ void add_forces(JsonBuilder& out, const ForceState* state) {
   out.end_array();
 }
 
-void add_queues(JsonBuilder& out, std::span<const engine::QueueStatus> queues) {
+void add_queues(JsonWriter& out, std::span<const engine::QueueStatus> queues) {
   out.key("queues").begin_array();
   for (const engine::QueueStatus& queue : queues) {
     out.begin_object()
@@ -201,7 +201,7 @@ void add_queues(JsonBuilder& out, std::span<const engine::QueueStatus> queues) {
   out.end_array();
 }
 
-void add_programs(JsonBuilder& out, const ProgramsSnapshot& programs) {
+void add_programs(JsonWriter& out, const ProgramsSnapshot& programs) {
   out.key("programs").begin_array();
   const std::size_t count = std::min(programs.programs.size(), kMostPrograms);
   for (std::size_t i = 0; i < count; ++i) {
@@ -222,7 +222,7 @@ void add_programs(JsonBuilder& out, const ProgramsSnapshot& programs) {
   out.end_array().member("deadlock", programs.deadlock ? programs.deadlock->text() : std::string());
 }
 
-void add_messages(JsonBuilder& out, const DisplayState& display, Timestamp now) {
+void add_messages(JsonWriter& out, const DisplayState& display, Timestamp now) {
   out.key("messages").begin_array();
   for (const ShownText& message : display.messages) {
     out.begin_object()
@@ -235,7 +235,7 @@ void add_messages(JsonBuilder& out, const DisplayState& display, Timestamp now) 
   out.end_array().member("bell", display.on(DisplayMode::bell));
 }
 
-void add_views(JsonBuilder& out, const LiveSources& sources) {
+void add_views(JsonWriter& out, const LiveSources& sources) {
   const DisplayState& display = *sources.cell_state.display;
   const scene::PaneInput input{*sources.cell_state.cell, sources.poses, display, sources.now, sources.picture_updates};
   out.key("views").begin_array();
@@ -258,7 +258,7 @@ void add_views(JsonBuilder& out, const LiveSources& sources) {
 }
 
 // The main view first.
-void add_displays(JsonBuilder& out, const DisplayLayout& layout) {
+void add_displays(JsonWriter& out, const DisplayLayout& layout) {
   out.key("displays").begin_array();
   for (std::size_t i = 0; i < kDisplays; ++i) {
     out.begin_object().member("id", i + 1).member("name", layout.displays.at(i).name).key("views").begin_array();
@@ -268,7 +268,7 @@ void add_displays(JsonBuilder& out, const DisplayLayout& layout) {
   out.end_array();
 }
 
-void add_display(JsonBuilder& out, const LiveSources& sources) {
+void add_display(JsonWriter& out, const LiveSources& sources) {
   const DisplayState& display = *sources.cell_state.display;
   out.key("display").begin_object().member("display", display.display).member("full_screen", display.full_screen);
   add_views(out, sources);
@@ -322,7 +322,7 @@ std::uint64_t TreeRevision::of(const std::shared_ptr<const CompiledCell>& cell) 
 
 std::string live_document(const LiveSources& sources, LoopWindow& window, std::uint64_t tree_revision) {
   const std::int64_t time_ms = to_wall_clock_ns(sources.now) / 1'000'000;
-  JsonBuilder out;
+  JsonWriter out;
   out.begin_object()
       .key("time_s")
       .fixed(1e-3 * static_cast<double>(time_ms), 3)

@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "app/report/json_builder.hpp"
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 
 namespace cellmirror::app {
@@ -40,7 +40,7 @@ std::string_view word(Shown shown) {
 
 std::string_view bare_name(std::string_view path) { return path.substr(path.rfind('.') + 1); }
 
-void add_names(JsonBuilder& out, std::string_view key, const std::vector<std::string>& names) {
+void add_names(JsonWriter& out, std::string_view key, const std::vector<std::string>& names) {
   out.key(key).begin_array();
   for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) out.value(names[i]);
   out.end_array();
@@ -57,7 +57,7 @@ std::string tree_document(const CellState& cell_state, std::uint64_t tree_revisi
   std::vector<std::size_t> order(cell.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, {}, [&](std::size_t i) { return std::string_view(paths[i]); });
-  JsonBuilder out;
+  JsonWriter out;
   out.begin_object().member("revision", tree_revision).key("nodes").begin_array();
   for (const std::size_t i : order) {
     const std::int32_t parent = cell.naming_parent[i];
@@ -114,7 +114,7 @@ std::string names_document(const CellState& cell_state, const std::filesystem::p
     if (kinds[i] == "workframe") workframes.emplace_back(bare_name(paths[i]));
   }
   std::ranges::sort(frames);
-  JsonBuilder out;
+  JsonWriter out;
   out.begin_object();
   add_names(out, "robots", robots);
   add_names(out, "frames", frames);

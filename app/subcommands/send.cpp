@@ -13,12 +13,12 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/json_builder.hpp"
 #include "app/subcommands/command_texts.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/sysv/script_client.hpp"
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -70,7 +70,7 @@ class Sender {
 
  private:
   static void print_json(const std::string& command, bool done, bool answered, const std::string& text) {
-    JsonBuilder document;
+    JsonWriter document;
     document.begin_object().member("command", command).member("done", done).member("answered", answered);
     document.member("text", text).end_object();
     std::printf("%s\n", document.take().c_str());

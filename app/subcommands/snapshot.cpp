@@ -14,11 +14,11 @@
 #include "app/pictures/film.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/snapshot_request.hpp"
-#include "app/proximity/json_writer.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/instance.hpp"
+#include "rt_core/base/json_writer.hpp"
 
 namespace cellmirror::app {
 
@@ -67,13 +67,21 @@ Result<SnapshotAnswer> ask(const SnapshotOptions& options) {
   return snapshot_answer(*text);
 }
 
-int print(const SnapshotOptions& options, const SnapshotAnswer& picture, const std::string& more) {
+// `more`: one more member of the document.
+template <class Value>
+int report(const SnapshotOptions& options, const SnapshotAnswer& picture, const char* more, const Value& value) {
   if (options.json) {
-    put(stdout,
-        "{{\"file\": {}, \"format\": \"{}\", \"width\": {}, \"height\": {}, \"bytes\": {}, \"posture_age_s\": "
-        "{:.6f}{}}}\n",
-        json_text(options.output), picture.format == ImageFormat::png ? "png" : "jpeg", picture.width, picture.height,
-        picture.bytes.size(), picture.posture_age_s, more);
+    JsonWriter document;
+    document.begin_object()
+        .member("file", options.output)
+        .member("format", picture.format == ImageFormat::png ? "png" : "jpeg")
+        .member("width", picture.width)
+        .member("height", picture.height)
+        .member("bytes", picture.bytes.size())
+        .fixed_member("posture_age_s", picture.posture_age_s, 6)
+        .member(more, value)
+        .end_object();
+    put(stdout, "{}\n", document.take());
   } else {
     put(stdout, "{}: {} x {}, {} bytes\n", options.output, picture.width, picture.height, picture.bytes.size());
   }
@@ -94,8 +102,8 @@ int of_cell(const SnapshotOptions& options) {
   const auto written = write_picture_file(options.output, picture->image.bytes);
   if (!written) return refuse(written.error().text());
   const EncodedImage& image = picture->image;
-  return print(options, {image.format, image.width, image.height, 1, 0.0, std::move(picture->image.bytes)},
-               fmt::format(", \"renderer\": {}", json_text(picture->renderer)));
+  return report(options, {image.format, image.width, image.height, 1, 0.0, std::move(picture->image.bytes)}, "renderer",
+                picture->renderer);
 }
 
 int of_gateway(const SnapshotOptions& options) {
@@ -103,7 +111,7 @@ int of_gateway(const SnapshotOptions& options) {
   if (!picture) return refuse(picture.error().text());
   const auto written = write_picture_file(options.output, picture->bytes);
   if (!written) return refuse(written.error().text());
-  return print(options, *picture, fmt::format(", \"sequence\": {}", picture->sequence));
+  return report(options, *picture, "sequence", picture->sequence);
 }
 
 int film(const SnapshotOptions& options) {
@@ -121,8 +129,15 @@ int film(const SnapshotOptions& options) {
   const auto finished = (*sink)->finish();
   if (!finished) return refuse(finished.error().text());
   if (options.json) {
-    put(stdout, "{{\"film\": {}, \"frames\": {}, \"repeated\": {}, \"rate_hz\": {}, \"longest_s\": {:.3f}}}\n",
-        json_text(options.film), totals->frames, totals->repeated, options.rate_hz, totals->longest_s);
+    JsonWriter document;
+    document.begin_object()
+        .member("film", options.film)
+        .member("frames", totals->frames)
+        .member("repeated", totals->repeated)
+        .member("rate_hz", options.rate_hz)
+        .fixed_member("longest_s", totals->longest_s, 3)
+        .end_object();
+    put(stdout, "{}\n", document.take());
   } else {
     put(stdout, "{}\n", *finished);
     if (totals->repeated > 0) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <system_error>
 
+#include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
 #include "sim_devices/base/pacer.hpp"
 #include "sim_devices/base/process.hpp"
@@ -22,9 +23,18 @@ Nanoseconds from_seconds(double s) { return Nanoseconds(static_cast<std::int64_t
 }  // namespace
 
 std::string to_json(const FootSwitchSummary& s) {
-  return fmt::format(
-      R"({{"device":"foot switches","duration_s":{:.3f},"waited_s":{:.3f},"attachments":{},"changes":{},"bounces":{},"left_out":{},"latest_us":{:.1f}}})",
-      s.duration_s, s.waited_s, s.attachments, s.changes, s.bounces, s.left_out, s.latest_us);
+  JsonWriter out;
+  return out.begin_object()
+      .member("device", "foot switches")
+      .fixed_member("duration_s", s.duration_s, 3)
+      .fixed_member("waited_s", s.waited_s, 3)
+      .member("attachments", s.attachments)
+      .member("changes", s.changes)
+      .member("bounces", s.bounces)
+      .member("left_out", s.left_out)
+      .fixed_member("latest_us", s.latest_us, 1)
+      .end_object()
+      .take();
 }
 
 SwitchLoop::SwitchLoop(FootSwitchOptions options)

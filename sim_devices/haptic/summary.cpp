@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "rt_core/base/json_writer.hpp"
+
 namespace cellmirror::sim {
 namespace {
 
@@ -18,38 +20,55 @@ std::string word(const std::array<std::string_view, N>& words, std::uint32_t num
   return number < N ? std::string(words[number]) : fmt::format("{}", number);
 }
 
-std::string to_json(const DurationHistogram& h) {
-  return fmt::format(R"({{"count":{},"p50":{:.1f},"p99":{:.1f},"max":{:.1f}}})", h.count(), h.quantile_us(0.5),
-                     h.quantile_us(0.99), h.max_us());
-}
-
-// Fault texts passed parse_haptic_fault(): names, numbers and signs, nothing that JSON would have to escape.
-std::string to_json(const std::vector<StruckFault>& faults) {
-  std::string json = "[";
-  for (const StruckFault& fault : faults) {
-    json += fmt::format(R"({}{{"fault":"{}","time_ns":{},"sequence":{}}})", json.size() > 1 ? "," : "", fault.fault,
-                        fault.time_ns, fault.sequence);
-  }
-  return json + "]";
+void add(JsonWriter& out, std::string_view name, const DurationHistogram& h) {
+  out.key(name)
+      .begin_object()
+      .member("count", h.count())
+      .fixed_member("p50", h.quantile_us(0.5), 1)
+      .fixed_member("p99", h.quantile_us(0.99), 1)
+      .fixed_member("max", h.max_us(), 1)
+      .end_object();
 }
 
 }  // namespace
 
 std::string to_json(const HapticSummary& s) {
-  std::string json =
-      fmt::format(R"({{"device":"{}","axes":{},"rate_hz":{},"duration_s":{:.3f},"waited_s":{:.3f},"attachments":{})",
-                  s.watching ? "haptic watcher" : "haptic", s.axes, s.rate_hz, s.duration_s, s.waited_s, s.attachments);
-  json += fmt::format(R"(,"samples":{},"missed_periods":{},"latest_start_us":{:.1f},"skipped_samples":{})", s.samples,
-                      s.missed_periods, s.latest_start_us, s.skipped_samples);
-  json += fmt::format(R"(,"forces":{},"skipped_forces":{},"torn_reads":{},"silences":{})", s.forces, s.skipped_forces,
-                      s.torn_reads, s.silences);
-  json += fmt::format(R"(,"latency_us":{},"tick_latency_us":{})", to_json(s.latency), to_json(s.tick_latency));
-  json += fmt::format(R"(,"max_force_n":{:.4f},"max_torque_nm":{:.4f},"work_j":{:.6f},"max_work_j":{:.6f})",
-                      s.max_force_n, s.max_torque_nm, s.work_j, s.max_work_j);
-  json += fmt::format(R"(,"phase":"{}","fault":"{}","gateway_faults":{},"motion_done":{},"faults":{}}})",
-                      word(kPhases, s.last_phase), word(kFaults, s.last_fault), s.gateway_faults, s.motion_done,
-                      to_json(s.faults));
-  return json;
+  JsonWriter out;
+  out.begin_object()
+      .member("device", s.watching ? "haptic watcher" : "haptic")
+      .member("axes", s.axes)
+      .member("rate_hz", s.rate_hz)
+      .fixed_member("duration_s", s.duration_s, 3)
+      .fixed_member("waited_s", s.waited_s, 3)
+      .member("attachments", s.attachments)
+      .member("samples", s.samples)
+      .member("missed_periods", s.missed_periods)
+      .fixed_member("latest_start_us", s.latest_start_us, 1)
+      .member("skipped_samples", s.skipped_samples)
+      .member("forces", s.forces)
+      .member("skipped_forces", s.skipped_forces)
+      .member("torn_reads", s.torn_reads)
+      .member("silences", s.silences);
+  add(out, "latency_us", s.latency);
+  add(out, "tick_latency_us", s.tick_latency);
+  out.fixed_member("max_force_n", s.max_force_n, 4)
+      .fixed_member("max_torque_nm", s.max_torque_nm, 4)
+      .fixed_member("work_j", s.work_j, 6)
+      .fixed_member("max_work_j", s.max_work_j, 6)
+      .member("phase", word(kPhases, s.last_phase))
+      .member("fault", word(kFaults, s.last_fault))
+      .member("gateway_faults", s.gateway_faults)
+      .member("motion_done", s.motion_done)
+      .key("faults")
+      .begin_array();
+  for (const StruckFault& fault : s.faults) {
+    out.begin_object()
+        .member("fault", fault.fault)
+        .member("time_ns", fault.time_ns)
+        .member("sequence", fault.sequence)
+        .end_object();
+  }
+  return out.end_array().end_object().take();
 }
 
 }  // namespace cellmirror::sim
