@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/node_reader.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror {
 
@@ -89,9 +90,9 @@ JointDefinition read_joint(TableReader& reader) {
   JointDefinition joint;
   reader.require("type");
   joint.kind = reader
-                   .choice<JointKind>("type", {{"revolute", JointKind::revolute},
-                                               {"continuous", JointKind::continuous},
-                                               {"prismatic", JointKind::prismatic}})
+                   .choice<JointKind>("type", {{word(JointKind::revolute), JointKind::revolute},
+                                               {word(JointKind::continuous), JointKind::continuous},
+                                               {word(JointKind::prismatic), JointKind::prismatic}})
                    .value_or(reader.has("range_m") ? JointKind::prismatic : JointKind::revolute);
   const Keys keys(joint.kind == JointKind::prismatic);
   read_axis(reader, joint);

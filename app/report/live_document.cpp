@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "rt_core/base/json_writer.hpp"
+#include "rt_core/ports/words.hpp"
 #include "rt_core/scene/panes.hpp"
 
 namespace cellmirror::app {
@@ -14,22 +15,7 @@ namespace {
 constexpr std::size_t kMostPairs = 50;  // touching, and near: keeps the document small
 constexpr std::size_t kMostPrograms = 50;
 
-std::string_view word(DataState state) {
-  constexpr std::array<std::string_view, 5> kWords = {"none", "fresh", "stale", "lost", "invalid"};
-  return kWords.at(static_cast<std::size_t>(state));
-}
-
-std::string_view word(JointKind kind) {
-  constexpr std::array<std::string_view, 3> kWords = {"revolute", "continuous", "prismatic"};
-  return kWords.at(static_cast<std::size_t>(kind));
-}
-
 std::string_view unit(JointKind kind) { return kind == JointKind::prismatic ? "m" : "rad"; }
-
-// In the order of the enumeration; the words of SET_MODE.
-constexpr std::array<std::string_view, kDisplayModes> kModeWords = {
-    "WFRM_display", "smear", "BFRM",         "CPU_BFRM", "CAM_MAINVIEW", "LGT_TWOSIDE", "TCP_DRAW",
-    "ZPF_DRAW",     "FLDR",  "GEO_VIS_TEST", "SHAD",     "BEEP",         "TEXTURES",    "ANTIALIAS"};
 
 std::optional<double> age_s(Timestamp now, Timestamp then) {
   return then.known() ? std::optional(seconds(now - then)) : std::nullopt;
@@ -63,7 +49,7 @@ void add_robots(JsonWriter& out, const LiveSources& sources) {
     const engine::RobotTickState& tick = sources.tick.robots.at(robot_snapshot.slot);
     out.begin_object()
         .member("id", robot_snapshot.id)
-        .member("mode", state.online ? "mirrored" : "simulated")
+        .member("mode", robot_mode_word(state.online))
         .member("state", state.online ? word(state.state) : "off")
         .member("age_s", state.online ? age_s(sources.now, tick.receive_time) : std::nullopt)
         .member("active", robot_snapshot.id == sources.cell_state.active_robot)
@@ -274,7 +260,7 @@ void add_display(JsonWriter& out, const LiveSources& sources) {
   add_views(out, sources);
   add_displays(out, display.layout);
   out.key("modes").begin_object();
-  for (std::size_t i = 0; i < kDisplayModes; ++i) out.member(kModeWords.at(i), display.modes.test(i));
+  for (std::size_t i = 0; i < kDisplayModes; ++i) out.member(kDisplayModeWords.at(i), display.modes.test(i));
   out.member("LEGEND", display.legend).end_object().end_object();
   out.key("cameras").begin_array();
   for (const CameraSetting& camera : display.cameras) out.value(camera.name);

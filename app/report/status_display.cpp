@@ -1,5 +1,6 @@
 #include "app/report/status_display.hpp"
 #include "app/report/status_values.hpp"
+#include "rt_core/ports/words.hpp"
 
 #include <algorithm>
 #include <array>
@@ -57,31 +58,10 @@ json camera_json(const CameraSetting& camera) {
 
 }  // namespace
 
-std::string_view script_name(DisplayMode mode) {
-  constexpr std::array<std::string_view, kDisplayModes> kNames = {
-      "WFRM_display", "SMEAR", "BFRM",         "CPU_BFRM", "CAM_MAINVIEW", "LGT_TWOSIDE", "TCP_DRAW",
-      "ZPF_DRAW",     "FLDR",  "GEO_VIS_TEST", "SHAD",     "BEEP",         "TEXTURES",    "ANTIALIAS"};
-  return kNames[static_cast<std::size_t>(mode)];
-}
-
-std::string_view word(DrawMode mode) {
-  switch (mode) {
-    case DrawMode::wireframe:
-      return "wireframe";
-    case DrawMode::flat:
-      return "flat";
-    case DrawMode::gouraud:
-      return "gouraud";
-    case DrawMode::transparent:
-      return "transparent";
-  }
-  return "gouraud";
-}
-
 json display_json(const DisplayState& display, Timestamp now) {
   json modes = json::object();
   for (std::size_t mode = 0; mode < kDisplayModes; ++mode)
-    modes[std::string(script_name(static_cast<DisplayMode>(mode)))] = display.modes.test(mode);
+    modes[std::string(kDisplayModeWords.at(mode))] = display.modes.test(mode);
   json views = json::array();
   for (std::size_t id = 0; id < kViews; ++id)
     views.push_back(view_json(id, display.layout.views[id].name, display.views[id], now));

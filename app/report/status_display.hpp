@@ -9,10 +9,6 @@
 
 namespace cellmirror::app {
 
-// The identifier of SET_MODE.
-[[nodiscard]] std::string_view script_name(DisplayMode mode);
-// "wireframe", "flat", "gouraud", "transparent"
-[[nodiscard]] std::string_view word(DrawMode mode);
 [[nodiscard]] nlohmann::json display_json(const DisplayState& display, Timestamp now);
 
 }  // namespace cellmirror::app

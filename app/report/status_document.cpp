@@ -21,6 +21,8 @@
 #include "app/report/status_switches.hpp"
 #include "app/report/status_values.hpp"
 #include "app/snapshot/joint_range.hpp"
+#include "rt_core/motion/move_words.hpp"
+#include "rt_core/ports/words.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
 
 namespace cellmirror::app {
@@ -28,33 +30,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-const char* word(DataState state) {
-  switch (state) {
-    case DataState::none:
-      return "none";
-    case DataState::fresh:
-      return "fresh";
-    case DataState::stale:
-      return "stale";
-    case DataState::lost:
-      return "lost";
-    case DataState::invalid:
-      return "invalid";
-  }
-  return "none";
-}
-
-const char* word(InverseClass inverse_class) {
-  // In the order of the enumeration; the words of the manual (1.2.2, rob_inverse_class).
-  static constexpr std::array<const char*, 25> kWords = {
-      "align_FRAME",     "align_POS",       "align_X_AXIS",    "align_Y_AXIS",    "align_Z_AXIS",
-      "align_XY_AXIS",   "align_YZ_AXIS",   "align_XZ_AXIS",   "align_N_AXIS",    "align_S_AXIS",
-      "align_A_AXIS",    "align_XY_N_AXIS", "align_XY_S_AXIS", "align_XY_A_AXIS", "align_XZ_N_AXIS",
-      "align_XZ_S_AXIS", "align_XZ_A_AXIS", "align_YZ_N_AXIS", "align_YZ_S_AXIS", "align_YZ_A_AXIS",
-      "EDITH",           "BOOM_3",          "BOOM_4",          "BOOM_5",          "BOOM_6"};
-  return kWords.at(static_cast<std::size_t>(inverse_class));
-}
 
 std::string note(const std::string& why_not, const std::string& remedy) {
   return why_not.empty() || remedy.empty() ? why_not : why_not + "; " + remedy;
@@ -162,22 +137,6 @@ json parameters_json(const RobotParameters& p, std::size_t joints) {
           {"tool_center_point", pose_json(p.X_PT)}};
 }
 
-const char* word(motion::Outcome outcome) {
-  switch (outcome) {
-    case motion::Outcome::none:
-      return "none";
-    case motion::Outcome::arrived:
-      return "arrived";
-    case motion::Outcome::stopped:
-      return "stopped";
-    case motion::Outcome::superseded:
-      return "superseded";
-    case motion::Outcome::blocked:
-      return "blocked";
-  }
-  return "none";
-}
-
 json motion_json(const RobotSnapshot& robot_snapshot, const motion::MotionState& motion, std::size_t joints) {
   json target = nullptr;
   if (robot_snapshot.target) {
@@ -200,7 +159,7 @@ json robots_json(const StatusSources& sources) {
     const RobotState& state = sources.robots[i];
     const engine::RobotTickState& tick = sources.tick.robots[robot_snapshot.slot];
     out.push_back({{"id", robot_snapshot.id},
-                   {"mode", state.online ? "mirrored" : "simulated"},
+                   {"mode", robot_mode_word(state.online)},
                    {"active", robot_snapshot.id == sources.cell_state.active_robot},
                    {"sending", robot_snapshot.sending},
                    {"stream", stream_json(robot_snapshot, tick, sources.now)},

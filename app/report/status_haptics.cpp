@@ -5,6 +5,7 @@
 
 #include "app/report/status_values.hpp"
 #include "app/snapshot/haptic_names.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror::app {
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "rt_core/motion/move_words.hpp"
+
 namespace cellmirror::app {
 
 namespace {
@@ -12,33 +14,9 @@ namespace {
 constexpr double kStill = 1e-9;  // rad or m
 constexpr double kNotThere = std::numeric_limits<double>::quiet_NaN();
 
-std::string kind_word(motion::MoveKind kind) {
-  switch (kind) {
-    case motion::MoveKind::joints:
-      return "joints";
-    case motion::MoveKind::linear:
-      return "linear";
-    case motion::MoveKind::circular:
-      return "circular";
-    case motion::MoveKind::delay:
-      return "delay";
-  }
-  return "unknown";
-}
-
-std::string outcome_word(motion::Outcome outcome) {
-  switch (outcome) {
-    case motion::Outcome::none:
-    case motion::Outcome::arrived:
-      return "arrived";
-    case motion::Outcome::stopped:
-      return "stopped";
-    case motion::Outcome::superseded:
-      return "superseded";
-    case motion::Outcome::blocked:
-      return "blocked";
-  }
-  return "unknown";
+// A move that ended without an outcome of its own went to its end.
+std::string_view end_word(motion::Outcome outcome) {
+  return motion::word(outcome == motion::Outcome::none ? motion::Outcome::arrived : outcome);
 }
 
 bool has_range(JointKind kind, double lower, double upper) {
@@ -77,7 +55,7 @@ void MotionRecorder::given(std::string_view robot, const motion::Move& move) {
   SimulatedMove& kept = moves_.emplace_back();
   kept.robot = robot;
   kept.id = move.id;
-  kept.kind = kind_word(move.kind);
+  kept.kind = motion::word(move.kind);
   kept.begin_s = kept.end_s = -1.0;
 }
 
@@ -152,7 +130,7 @@ void MotionRecorder::follow_moves(Track& track, const motion::MotionState& motio
       const auto [id, place] = *track.open.begin();
       begin_move(track, id, std::min(tick_before, end));  // one that was over before any tick showed it
       moves_[place].end_s = id == motion.finished ? end : std::max(moves_[place].begin_s, tick_before);
-      moves_[place].outcome = outcome_word(id >= motion.finished_from ? motion.outcome : motion::Outcome::arrived);
+      moves_[place].outcome = end_word(id >= motion.finished_from ? motion.outcome : motion::Outcome::arrived);
       track.open.erase(track.open.begin());
     }
   }

@@ -2,52 +2,6 @@
 
 namespace cellmirror::app {
 
-const char* word(HapticPhase phase) {
-  switch (phase) {
-    case HapticPhase::closed:
-      return "closed";
-    case HapticPhase::waiting:
-      return "waiting";
-    case HapticPhase::clutched:
-      return "clutched";
-    case HapticPhase::engaging:
-      return "engaging";
-    case HapticPhase::active:
-      return "active";
-    case HapticPhase::faulted:
-      return "faulted";
-  }
-  return "closed";
-}
-
-const char* word(HapticFault fault) {
-  switch (fault) {
-    case HapticFault::none:
-      return "none";
-    case HapticFault::stale:
-      return "stale";
-    case HapticFault::vanished:
-      return "vanished";
-    case HapticFault::not_finite:
-      return "not_finite";
-    case HapticFault::invalid:
-      return "invalid";
-    case HapticFault::jump:
-      return "jump";
-    case HapticFault::two_writers:
-      return "two_writers";
-    case HapticFault::torn:
-      return "torn";
-    case HapticFault::late_tick:
-      return "late_tick";
-    case HapticFault::stale_model:
-      return "stale_model";
-    case HapticFault::not_passive:
-      return "not_passive";
-  }
-  return "none";
-}
-
 const char* explanation(HapticFault fault) {
   switch (fault) {
     case HapticFault::none:

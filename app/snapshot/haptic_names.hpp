@@ -1,12 +1,10 @@
-// Phases and faults of haptic devices in words.
+// Faults of haptic devices in sentences; their words are in rt_core/ports/words.hpp.
 #pragma once
 
 #include "rt_core/ports/haptic_state.hpp"
 
 namespace cellmirror::app {
 
-[[nodiscard]] const char* word(HapticPhase phase);  // as in status and docs/haptics.md
-[[nodiscard]] const char* word(HapticFault fault);
 // One sentence for people: what has happened.
 [[nodiscard]] const char* explanation(HapticFault fault);
 // And what to do, before RESET_HAPTIC.

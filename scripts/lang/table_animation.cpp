@@ -1,4 +1,5 @@
 // Manual 1.2.3: commands for animation.
+#include "rt_core/ports/words.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -13,21 +14,22 @@ constexpr Range kViewIds{0, 6};
 constexpr Range kSequenceTime{0, 86400};  // a day
 
 constexpr Choice kFull[] = {{"FULL", "full screen"}, {"FULL_OFF", "normal"}};
+// In the order of DisplayMode, then ours.
 constexpr Choice kModes[] = {
-    {"WFRM_display", "workframes drawn"},
-    {"SMEAR", "trace of the active robot's TCP"},
-    {"BFRM", "backface removal by the graphics system"},
-    {"CPU_BFRM", "backface removal by the CPU"},
-    {"CAM_MAINVIEW", "camera view in the main display area"},
-    {"LGT_TWOSIDE", "lighting of both sides"},
-    {"TCP_DRAW", "TCP frame of the active robot"},
-    {"ZPF_DRAW", "ZP frame of the active robot"},
-    {"FLDR", "floor"},
-    {"GEO_VIS_TEST", "visibility test of geometries"},
-    {"SHAD", "shadows; needs the floor"},
-    {"BEEP", "sound with messages"},
-    {"TEXTURES", "textures"},
-    {"ANTIALIAS", "antialiasing"},
+    {cellmirror::word(DisplayMode::workframes), "workframes drawn"},
+    {cellmirror::word(DisplayMode::smear), "trace of the active robot's TCP"},
+    {cellmirror::word(DisplayMode::backface_removal), "backface removal by the graphics system"},
+    {cellmirror::word(DisplayMode::cpu_backface_removal), "backface removal by the CPU"},
+    {cellmirror::word(DisplayMode::camera_main_view), "camera view in the main display area"},
+    {cellmirror::word(DisplayMode::two_sided_light), "lighting of both sides"},
+    {cellmirror::word(DisplayMode::tcp_frame), "TCP frame of the active robot"},
+    {cellmirror::word(DisplayMode::zero_point_frame), "ZP frame of the active robot"},
+    {cellmirror::word(DisplayMode::floor), "floor"},
+    {cellmirror::word(DisplayMode::visibility_test), "visibility test of geometries"},
+    {cellmirror::word(DisplayMode::shadows), "shadows; needs the floor"},
+    {cellmirror::word(DisplayMode::bell), "sound with messages"},
+    {cellmirror::word(DisplayMode::textures), "textures"},
+    {cellmirror::word(DisplayMode::antialiasing), "antialiasing"},
     {"LEGEND", "legend of marks and colours; ours"},
 };
 

@@ -1,4 +1,5 @@
 // Manual 1.2.2: parameters of the active robot.
+#include "rt_core/ports/words.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -15,31 +16,31 @@ constexpr Choice kPtpModes[] = {{"sync", "all axes end together, the default"}, 
 constexpr Choice kProfiles[] = {{"sine", "sinusoidal, the default"}, {"ramp", "with a jump of the acceleration"}};
 // In the order of InverseClass.
 constexpr Choice kInverseClasses[] = {
-    {"align_FRAME", "position and orientation"},
-    {"align_POS", "position only"},
-    {"align_X_AXIS", "position along x; orientation as well as possible"},
-    {"align_Y_AXIS", "position along y; orientation as well as possible"},
-    {"align_Z_AXIS", "position along z; orientation as well as possible"},
-    {"align_XY_AXIS", "position in xy; orientation as well as possible"},
-    {"align_YZ_AXIS", "position in yz; orientation as well as possible"},
-    {"align_XZ_AXIS", "position in xz; orientation as well as possible"},
-    {"align_N_AXIS", "position and the n vector"},
-    {"align_S_AXIS", "position and the s vector"},
-    {"align_A_AXIS", "position and the a vector"},
-    {"align_XY_N_AXIS", "position in xy and the n vector"},
-    {"align_XY_S_AXIS", "position in xy and the s vector"},
-    {"align_XY_A_AXIS", "position in xy and the a vector"},
-    {"align_XZ_N_AXIS", "position in xz and the n vector"},
-    {"align_XZ_S_AXIS", "position in xz and the s vector"},
-    {"align_XZ_A_AXIS", "position in xz and the a vector"},
-    {"align_YZ_N_AXIS", "position in yz and the n vector"},
-    {"align_YZ_S_AXIS", "position in yz and the s vector"},
-    {"align_YZ_A_AXIS", "position in yz and the a vector"},
-    {"EDITH", "redundant boom in the horizontal plane"},
-    {"BOOM_3", "redundant boom in the horizontal plane"},
-    {"BOOM_4", "redundant boom in the horizontal plane"},
-    {"BOOM_5", "redundant boom in the horizontal plane"},
-    {"BOOM_6", "redundant boom in the horizontal plane"},
+    {cellmirror::word(InverseClass::align_frame), "position and orientation"},
+    {cellmirror::word(InverseClass::align_pos), "position only"},
+    {cellmirror::word(InverseClass::align_x_axis), "position along x; orientation as well as possible"},
+    {cellmirror::word(InverseClass::align_y_axis), "position along y; orientation as well as possible"},
+    {cellmirror::word(InverseClass::align_z_axis), "position along z; orientation as well as possible"},
+    {cellmirror::word(InverseClass::align_xy_axis), "position in xy; orientation as well as possible"},
+    {cellmirror::word(InverseClass::align_yz_axis), "position in yz; orientation as well as possible"},
+    {cellmirror::word(InverseClass::align_xz_axis), "position in xz; orientation as well as possible"},
+    {cellmirror::word(InverseClass::align_n_axis), "position and the n vector"},
+    {cellmirror::word(InverseClass::align_s_axis), "position and the s vector"},
+    {cellmirror::word(InverseClass::align_a_axis), "position and the a vector"},
+    {cellmirror::word(InverseClass::align_xy_n_axis), "position in xy and the n vector"},
+    {cellmirror::word(InverseClass::align_xy_s_axis), "position in xy and the s vector"},
+    {cellmirror::word(InverseClass::align_xy_a_axis), "position in xy and the a vector"},
+    {cellmirror::word(InverseClass::align_xz_n_axis), "position in xz and the n vector"},
+    {cellmirror::word(InverseClass::align_xz_s_axis), "position in xz and the s vector"},
+    {cellmirror::word(InverseClass::align_xz_a_axis), "position in xz and the a vector"},
+    {cellmirror::word(InverseClass::align_yz_n_axis), "position in yz and the n vector"},
+    {cellmirror::word(InverseClass::align_yz_s_axis), "position in yz and the s vector"},
+    {cellmirror::word(InverseClass::align_yz_a_axis), "position in yz and the a vector"},
+    {cellmirror::word(InverseClass::edith), "redundant boom in the horizontal plane"},
+    {cellmirror::word(InverseClass::boom_3), "redundant boom in the horizontal plane"},
+    {cellmirror::word(InverseClass::boom_4), "redundant boom in the horizontal plane"},
+    {cellmirror::word(InverseClass::boom_5), "redundant boom in the horizontal plane"},
+    {cellmirror::word(InverseClass::boom_6), "redundant boom in the horizontal plane"},
 };
 
 constexpr Parameter kLinearVelocity[] = {number("lin_vel", "velocity", Unit::mm_per_s, kPositive)};

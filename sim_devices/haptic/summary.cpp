@@ -6,14 +6,10 @@
 #include <string_view>
 
 #include "rt_core/base/json_writer.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror::sim {
 namespace {
-
-constexpr std::array<std::string_view, 6> kPhases{"closed", "waiting", "clutched", "engaging", "active", "faulted"};
-constexpr std::array<std::string_view, 11> kFaults{"none",      "stale",       "vanished",    "not_finite",
-                                                   "invalid",   "jump",        "two_writers", "torn",
-                                                   "late_tick", "stale_model", "not_passive"};
 
 template <std::size_t N>
 std::string word(const std::array<std::string_view, N>& words, std::uint32_t number) {
@@ -55,8 +51,8 @@ std::string to_json(const HapticSummary& s) {
       .fixed_member("max_torque_nm", s.max_torque_nm, 4)
       .fixed_member("work_j", s.work_j, 6)
       .fixed_member("max_work_j", s.max_work_j, 6)
-      .member("phase", word(kPhases, s.last_phase))
-      .member("fault", word(kFaults, s.last_fault))
+      .member("phase", word(kHapticPhaseWords, s.last_phase))
+      .member("fault", word(kHapticFaultWords, s.last_fault))
       .member("gateway_faults", s.gateway_faults)
       .member("motion_done", s.motion_done)
       .key("faults")

@@ -11,6 +11,7 @@
 #include "app/snapshot/haptic_names.hpp"
 #include "ipc/wire/haptic_block.hpp"
 #include "rt_core/base/log.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror::app {
 

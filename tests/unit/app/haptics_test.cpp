@@ -11,6 +11,7 @@
 #include "app/snapshot/haptic_names.hpp"
 #include "app/subcommands/status_table_haptics.hpp"
 #include "app/workers/tcp_force_worker.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror::app {
 namespace {
