@@ -26,9 +26,8 @@
 #include "cellmirror_messages.h"
 
 static const char* const kUsage =
-    "usage: sensor_reader [--count N] [--timeout SECONDS] [--key KEY]\n"
-    "Prints records as they come: N of them (default: without end), waiting at most SECONDS (default: for ever) for\n"
-    "each.\n";
+    "usage: sensor_reader [--count N] [--timeout SECONDS] [--key KEY]\nPrints records as they come: N of them "
+    "(default: no limit), waiting at most SECONDS (default: no limit) for\neach.\n";
 
 struct Message {
   long type;

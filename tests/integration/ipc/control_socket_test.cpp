@@ -103,7 +103,7 @@ TEST_F(ControlSocket, OtherUsersAreRefused) {
     if (::setresuid(65534, 65534, 65534) != 0) _exit(2);
     const RawClient client(path_);
     client.send("{\"request\":\"status\"}\n");
-    _exit(client.rest().find("only the gateway's user and root may ask") != std::string::npos ? 0 : 1);
+    _exit(client.rest().find("only the gateway's user and root are allowed") != std::string::npos ? 0 : 1);
   }
   int status = 1;
   ::waitpid(child, &status, 0);
@@ -116,7 +116,7 @@ TEST_F(ControlSocket, RefusalsAreErrorsOfTheClient) {
   start();
   const auto refused = ask("nonsense");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().what, "the request is no JSON object");
+  EXPECT_EQ(refused.error().what, "the request is not a JSON object");
 }
 
 TEST_F(ControlSocket, LargeAnswersArriveWhole) {

@@ -191,7 +191,7 @@ TEST(OwnedQueue, RemovedFromOutsideIsMadeAnew) {
   EXPECT_TRUE((*sut)->recreate());
   EXPECT_EQ((*sut)->send_now(5, span_of("x")), QueueOutcome::done);
   EXPECT_EQ((*sut)->recreated(), 1u);
-  EXPECT_TRUE((*sut)->recreate()) << "nothing to do is no failure";
+  EXPECT_TRUE((*sut)->recreate()) << "nothing to do is not a failure";
   EXPECT_EQ((*sut)->recreated(), 1u);
 }
 

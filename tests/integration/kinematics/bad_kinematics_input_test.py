@@ -64,13 +64,13 @@ class BadInput(unittest.TestCase):
         self.refused_targets(GOOD, "targets.csv:1:1: error: there is no header")
         self.refused_targets(HEADER + GOOD + "0.5,0,0.6,0,1,0\n", "targets.csv:3:16: error: 6 columns")
         self.refused_targets(HEADER + "0.5,0,0.6,0,1,0,0,0\n", "targets.csv:2:19: error: 8 columns")
-        self.refused_targets(HEADER + "0.5,0,six,0,1,0,0\n", "targets.csv:2:7: error: pz is no finite number: six")
-        self.refused_targets(HEADER + "0.5,NaN,0.6,0,1,0,0\n", "targets.csv:2:5: error: py is no finite number: NaN")
-        self.refused_targets(HEADER + "0.5,0,-inf,0,1,0,0\n", "targets.csv:2:7: error: pz is no finite number: -inf")
+        self.refused_targets(HEADER + "0.5,0,six,0,1,0,0\n", "targets.csv:2:7: error: pz is not a finite number: six")
+        self.refused_targets(HEADER + "0.5,NaN,0.6,0,1,0,0\n", "targets.csv:2:5: error: py is not a finite number: NaN")
+        self.refused_targets(HEADER + "0.5,0,-inf,0,1,0,0\n", "targets.csv:2:7: error: pz is not a finite number: -inf")
         self.refused_targets(HEADER + "0.5,0,0.6,0,1.1,0,0\n", "targets.csv:2:11: error: the quaternion's norm is 1.1, not 1")
         self.refused_targets(HEADER + "0.5,0,0.6,0,0,0,0\n", "norm is 0")
         self.refused_targets(HEADER + "1e99,0,0.6,0,1,0,0\n", "targets.csv:2:1: error: px is 1e+99 m away")
-        self.refused_targets(HEADER.encode() + b"\x00\xff,0,0.6,0,1,0,0\n", "targets.csv:2:1: error: px is no finite number: \\x00\\xff")
+        self.refused_targets(HEADER.encode() + b"\x00\xff,0,0.6,0,1,0,0\n", "targets.csv:2:1: error: px is not a finite number: \\x00\\xff")
 
     def test_all_that_is_wrong_with_a_csv_is_told_at_once(self):
         self.refused_targets(HEADER + "1,2\n" + GOOD + "x,0,0,0,0,0,1\n\n0,0,0,0,0,0,3\n",
@@ -118,7 +118,7 @@ class BadInput(unittest.TestCase):
     def test_joints_that_are_wrong(self):
         self.refused(REFUSED, ["fk", *ARM, "--joints", "0 0 0"], "3 values, the chain has 6 joints", "turn shoulder elbow")
         self.refused(REFUSED, ["fk", *ARM, "--joints", "0 0 0 0 0 0 0"], "7 values")
-        self.refused(REFUSED, ["fk", *ARM, "--joints", "0 0 nan 0 0 0"], "value 3 is no finite number: nan")
+        self.refused(REFUSED, ["fk", *ARM, "--joints", "0 0 nan 0 0 0"], "value 3 is not a finite number: nan")
         self.refused(REFUSED, ["fk", *ARM, "--joints", "0 0 0 0 0 1e999"], "value 6")
         self.refused(REFUSED, ["fk", *ARM, "--joints", ""], "0 values")
         self.refused(REFUSED, ["ik", *ARM, "--samples", "3", "--seed-joints", "1 2"], "--seed-joints: 2 values")
@@ -136,7 +136,7 @@ class BadInput(unittest.TestCase):
         ends = joint("j", "a", "b"), "b", "c"
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", inside='<limit lower="2" upper="-1" velocity="1" effort="1"/>')),
                            "robot.urdf:6", "lower 2 is not below upper -1")
-        self.refused_robot(urdf(ends[0], joint("k", "b", "c", axis="0 0 0")), "robot.urdf:6", "the axis has no direction")
+        self.refused_robot(urdf(ends[0], joint("k", "b", "c", axis="0 0 0")), "robot.urdf:6", "the axis has length zero")
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", axis="0 nan 1")), "robot.urdf:6")
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", inside="")), "robot.urdf:6", "needs <limit>")
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", kind="floating")), "robot.urdf:6", "floating")

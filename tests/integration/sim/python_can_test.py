@@ -273,9 +273,9 @@ class Commands(Heard):
 
     def test_the_motion_can_be_held(self):
         self.open(motion="ramp:velocity=100")
-        self.assertEqual(self.control.ask("hold"), "ok: the motion stands still")
+        self.assertEqual(self.control.ask("hold"), "ok: the motion stops")
         self.assertEqual(len({bytes(self.sync()[0].data) for _ in range(4)}), 1)
-        self.assertEqual(self.control.ask("go"), "ok: the motion goes on")
+        self.assertEqual(self.control.ask("go"), "ok: the motion continues")
         first = bytes(self.sync()[0].data)
         self.assertTrue(process.eventually(lambda: bytes(self.sync()[0].data) != first))
 

@@ -240,7 +240,7 @@ TEST_F(CheckerTest, DoubtsAPlaceThatIsNotANumber) {
     EXPECT_TRUE(findings.nearest()->doubtful);
     EXPECT_EQ(findings.nearest()->distance_m, 0.0);
     ASSERT_EQ(findings.doubts.size(), 1U);
-    EXPECT_EQ(findings.doubts[0], "Sledge.X: its place is not known; taken as touching");
+    EXPECT_EQ(findings.doubts[0], "Sledge.X: its pose is unknown; treated as touching");
     EXPECT_TRUE(sut.collides(poses));
   }
   const ProximityState& again = at(0.0);

@@ -51,7 +51,7 @@ TEST_F(PairDerivationTest, LeavesOutNeighboursOfOneRobotOnly) {
   build(kHall);
   EXPECT_EQ(state("Arm", "Arm.J_1"), PairState::neighbours);
   EXPECT_EQ(state("Arm.J_1.J_2", "Arm.J_1.J_2.J_3"), PairState::neighbours);
-  EXPECT_EQ(pair("Arm", "Arm.J_1")->reason, "neighbours in one robot: only the joint Arm.J_1 is between them");
+  EXPECT_EQ(pair("Arm", "Arm.J_1")->reason, "neighbours in one robot: with only the joint Arm.J_1 between them");
   // One joint between them as well, but the floor is no link of the arm.
   EXPECT_EQ(state("Hall", "Arm.J_1"), PairState::tested);
 }
@@ -154,7 +154,7 @@ abstract = "arm.mpc"
 )");
   EXPECT_FALSE(has_body("Thing"));
   ASSERT_EQ(table->doubts.size(), 1U);
-  EXPECT_EQ(table->doubts[0], "Thing: casting cannot be tested for collision, since its triangles are not there");
+  EXPECT_EQ(table->doubts[0], "Thing: casting cannot be tested for collision, because its triangles are missing");
 }
 
 TEST_F(PairDerivationTest, GivesEveryRobotOfAKindTheSameAnswers) {

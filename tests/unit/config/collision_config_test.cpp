@@ -65,8 +65,7 @@ TEST_F(CollisionConfig, loads_without_a_mesh_that_is_only_drawn_and_cannot_be_re
       "[[node]]\nname = \"A\"\ngeometry = [\n{ mesh = \"broken.stl\", collides = false },\n"
       "{ mesh = \"l.obj\", collides = false, collide_as = \"hull\" }]\n");
   ASSERT_TRUE(sut) << diagnostics.text();
-  EXPECT_EQ(finding(),
-            "cell.toml:6:10: warning: the mesh broken.stl is refused: there are no facets in it; it is not drawn\n");
+  EXPECT_EQ(finding(), "cell.toml:6:10: warning: the mesh broken.stl is refused: it has no facets; it is not drawn\n");
   EXPECT_EQ(geometry(*sut, "A")[0].mesh, nullptr);
   EXPECT_NE(geometry(*sut, "A")[1].mesh, nullptr);
   EXPECT_TRUE(geometry(*sut, "A")[1].pieces.empty());
@@ -76,14 +75,13 @@ TEST_F(CollisionConfig, refuses_a_bad_mesh_where_it_is_named) {
   home.write("envlib/broken.stl", "solid but not STL\n");
   home.write("envlib/part.mpc", "format = 1\ngeometry = [\n  { mesh = \"broken.stl\" },\n]\n");
   EXPECT_FALSE(load("[[node]]\nname = \"A\"\nabstract = \"part.mpc\"\n"));
-  EXPECT_EQ(finding(),
-            "envlib/part.mpc:3:12: error: geometry 1: the mesh broken.stl is refused: there are no facets in it\n");
+  EXPECT_EQ(finding(), "envlib/part.mpc:3:12: error: geometry 1: the mesh broken.stl is refused: it has no facets\n");
   home.write(
       "robots/r.urdf",
       "<robot name=\"r\">\n<link name=\"base\">\n<collision><geometry>\n<mesh filename=\"../envlib/broken.stl\"/>\n"
       "</geometry></collision></link></robot>");
   EXPECT_FALSE(load("[[node]]\nname = \"A\"\nabstract = \"r.urdf\"\n"));
-  EXPECT_EQ(finding(), "robots/r.urdf:4: error: <mesh>: the mesh broken.stl is refused: there are no facets in it\n");
+  EXPECT_EQ(finding(), "robots/r.urdf:4: error: <mesh>: the mesh broken.stl is refused: it has no facets\n");
 }
 
 TEST_F(CollisionConfig, tells_what_was_repaired) {
@@ -92,10 +90,9 @@ TEST_F(CollisionConfig, tells_what_was_repaired) {
   home.write("envlib/twice.obj", obj);
   const auto sut = load("geometry = [\n{ mesh = \"twice.obj\" }, { mesh = \"twice.obj\" }]\n");
   ASSERT_TRUE(sut) << diagnostics.text();
-  EXPECT_EQ(
-      finding(),
-      "cell.toml:4:10: note: the mesh twice.obj: 1 triangle has no area, 2 triangles stand twice; it was repaired "
-      "when it was read\n");
+  EXPECT_EQ(finding(),
+            "cell.toml:4:10: note: the mesh twice.obj: 1 triangle has no area, 2 triangles stand twice; it was "
+            "repaired while reading\n");
 }
 
 TEST_F(CollisionConfig, makes_hulls_and_parts_where_the_file_says_so) {

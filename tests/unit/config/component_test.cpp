@@ -109,7 +109,7 @@ TEST_F(ComponentText, unitsOtherThanSiAreAnsweredWithTheValueInSi) {
 
 TEST_F(ComponentText, findingsHaveLineAndColumn) {
   EXPECT_FALSE(parse("[[node]]\nname = \"A\"\n  xyz = [0, 0, 0]\n"));
-  EXPECT_THAT(findings(), HasSubstr("a.mpc:4:3: error: node A: the key xyz is not known; did you mean xyz_m?"));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:4:3: error: node A: the key xyz is unknown; did you mean xyz_m?"));
 }
 
 TEST_F(ComponentText, numbersAreFiniteAndOfTheirType) {

@@ -90,7 +90,7 @@ TEST(MeshFile, reads_the_buffer_beside_a_gltf_and_no_other_file) {
   const auto missing = read("missing.bin");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().text(),
-            "the mesh t.gltf is refused: its buffer missing.bin is not there; put it beside the mesh");
+            "the mesh t.gltf is refused: its buffer missing.bin is missing; put it beside the mesh");
   // One that nothing uses need not be there.
   EXPECT_TRUE(read("buffers/t.bin\",\"byteLength\":72},{\"uri\":\"missing.bin"));
 }
@@ -109,14 +109,14 @@ TEST(MeshFile, scales_and_mirrors) {
 TEST(MeshFile, refuses_damaged_files_with_the_reason) {
   const std::string stl = tetra_stl();
   EXPECT_EQ(refusal(stl.substr(0, stl.size() - 1), ".stl"),
-            "the mesh m is refused: it is no STL: 4 triangles make 284 bytes, but there are 283");
-  EXPECT_EQ(refusal(stl.substr(0, 50), ".stl"), "the mesh m is refused: it is no STL");
+            "the mesh m is refused: it is not an STL file: 4 triangles make 284 bytes, but there are 283");
+  EXPECT_EQ(refusal(stl.substr(0, 50), ".stl"), "the mesh m is refused: it is not an STL file");
   EXPECT_EQ(refusal("", ".stl"), "the mesh m is refused: it is empty");
-  EXPECT_EQ(refusal("solid\nendsolid\n", ".stl"), "the mesh m is refused: there are no facets in it");
-  EXPECT_EQ(refusal(stl, ".step"), "the mesh m is refused: its kind is not known");
+  EXPECT_EQ(refusal("solid\nendsolid\n", ".stl"), "the mesh m is refused: it has no facets");
+  EXPECT_EQ(refusal(stl, ".step"), "the mesh m is refused: its kind is unknown");
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(refusal(binary_stl({{{{0, 0, 0}, {1, 0, 0}, {0, 1, kNan}}}}), ".stl"),
-            "the mesh m is refused: a coordinate of vertex 3 is no number");
+            "the mesh m is refused: a coordinate of vertex 3 is not a number");
   EXPECT_EQ(refusal(binary_stl({{{{0, 0, 0}, {1e9F, 0, 0}, {0, 1, 0}}}}), ".stl"),
             "the mesh m is refused: vertex 2 is 1e+09 m away from the origin");
   for (const char* extension : {".obj", ".dae", ".ply", ".gltf", ".glb"}) {
@@ -164,7 +164,7 @@ count="4"><param name="X" type="name"/></accessor></technique_common></source>)"
   std::string shows_names = with_names;
   const std::string positions = R"("POSITION" source="#p")";
   shows_names.replace(shows_names.find(positions), positions.size(), R"("POSITION" source="#i")");
-  EXPECT_EQ(refusal(shows_names, ".dae"), "the mesh m is refused: <input> in line 9 names no numbers");
+  EXPECT_EQ(refusal(shows_names, ".dae"), "the mesh m is refused: <input> in line 9 refers to no numbers");
 }
 
 // The area that triangles of a plane polygon cover, those that face down counted negative.

@@ -86,7 +86,7 @@ TEST_F(MeshLooksOfGltf, a_picture_in_the_file) {
   }
   gltf.picture[40] ^= 0x55;
   EXPECT_EQ(look_of("bad.glb", gltf), nullptr);
-  EXPECT_THAT(finding(), HasSubstr("the mesh bad.glb: its picture in the file: it is damaged: "));
+  EXPECT_THAT(finding(), HasSubstr("the mesh bad.glb: its texture in the file: it is damaged: "));
 }
 
 TEST_F(MeshLooksOfGltf, a_picture_in_the_file_is_decoded_once_for_all_materials_and_not_for_those_that_nothing_shows) {
@@ -143,7 +143,7 @@ TEST_F(MeshLooksOfGltf, names_of_pictures_are_percent_coded_and_stay_in_the_home
     EXPECT_EQ(look("%2Fetc%2Fhostname"), nullptr);
     EXPECT_THAT(finding(), HasSubstr("the path /etc/hostname is absolute"));
     EXPECT_EQ(look("four%00.png"), nullptr);
-    EXPECT_THAT(finding(), HasSubstr("holds a NUL byte"));
+    EXPECT_THAT(finding(), HasSubstr("contains a NUL byte"));
   }
 }
 
@@ -155,7 +155,7 @@ TEST_F(MeshLooksOfGltf, images_that_repeat_the_same_bytes_are_bounded) {
   geometry::MeshFindings findings;
   const auto sut = parse_mesh(gltf.glb(), ".glb", "t.glb", Eigen::Vector3d::Ones(), {}, findings);
   ASSERT_FALSE(sut);
-  EXPECT_EQ(sut.error().what, "the mesh t.glb is refused: its pictures have more bytes together than a mesh may have");
+  EXPECT_EQ(sut.error().what, "the mesh t.glb is refused: its textures together exceed the size limit of a mesh");
 }
 
 }  // namespace

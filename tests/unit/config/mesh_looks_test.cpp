@@ -72,7 +72,7 @@ TEST_F(MeshLooksOfObj, a_picture_may_lie_anywhere_in_the_home_and_nowhere_else) 
   EXPECT_TRUE(square("..\\robots\\four.png"));
   EXPECT_EQ(square("../../four.png"), nullptr);
   EXPECT_EQ(finding(),
-            "HOME/cell.toml:5:22: warning: the mesh square.obj: its picture ../../four.png (square.mtl:6): the path "
+            "HOME/cell.toml:5:22: warning: the mesh square.obj: its texture ../../four.png (square.mtl:6): the path "
             "../../four.png leaves HOME; put the picture beside the mesh\n");
   EXPECT_EQ(square("/etc/hostname"), nullptr);
   EXPECT_THAT(finding(), HasSubstr("the path /etc/hostname is absolute"));
@@ -89,10 +89,10 @@ TEST_F(MeshLooksOfObj, what_is_missing_or_broken_is_told_and_the_cell_loads_with
   EXPECT_EQ(geometry().mesh->triangles.size(), 2U);
   home.write("envlib/four.png", four_pixels().substr(0, 60));
   EXPECT_EQ(square("four.png"), nullptr);
-  EXPECT_THAT(finding(), HasSubstr("its picture four.png (square.mtl:6): it is damaged: "));
+  EXPECT_THAT(finding(), HasSubstr("its texture four.png (square.mtl:6): it is damaged: "));
   home.write("envlib/red.jpg", red_jpeg().substr(0, 150));
   EXPECT_EQ(square("red.jpg"), nullptr);
-  EXPECT_THAT(finding(), HasSubstr("its picture red.jpg (square.mtl:6): it is damaged: "));
+  EXPECT_THAT(finding(), HasSubstr("its texture red.jpg (square.mtl:6): it is damaged: "));
   home.write("envlib/large.png", png_of(4097, 1, std::string(std::size_t{4} * 4097, 'x')));
   EXPECT_EQ(square("large.png"), nullptr);
   EXPECT_THAT(finding(), HasSubstr("it has 4097 x 1 pixels, more than 4096 x 4096; make it smaller\n"));
@@ -145,7 +145,7 @@ TEST(MeshLooksOfMaterials, a_picture_that_many_name_is_asked_for_once_and_told_o
   EXPECT_EQ(std::ranges::count(good.look->palette, picture, &MeshMaterial::picture), 3);
   const LookRequest bad = read(fail("it is damaged"));
   ASSERT_EQ(bad.left_out.size(), 1U);
-  EXPECT_EQ(bad.left_out[0].what, "its picture four.png (all.mtl:2): it is damaged");
+  EXPECT_EQ(bad.left_out[0].what, "its texture four.png (all.mtl:2): it is damaged");
 }
 
 TEST_F(MeshLooks, a_picture_that_was_mended_is_found_when_its_mesh_is_read_again) {

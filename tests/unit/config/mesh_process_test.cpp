@@ -61,18 +61,18 @@ struct MeshProcess : testing::Test {
 
 TEST_F(MeshProcess, tells_how_its_reader_ended) {
   EXPECT_EQ(refusal(with("kill -SEGV $$")),
-            "it cannot be read: its reader ended with signal 11 (SIGSEGV): the file is damaged; export it anew");
+            "it cannot be read: its reader ended with signal 11 (SIGSEGV): the file is damaged; export it again");
   EXPECT_EQ(refusal(with("kill -XCPU $$")),
-            "it cannot be read: its reader took more than 60 s of processor time; reduce the mesh, or export it anew");
+            "it cannot be read: its reader took more than 60 s of CPU time; reduce the mesh, or export it again");
   EXPECT_EQ(refusal(with("kill -KILL $$")),
-            "it cannot be read: its reader was ended with signal 9 (SIGKILL), as a system does that is out of memory; "
-            "reduce the mesh, or have other programs leave more memory");
+            "it cannot be read: its reader was ended with signal 9 (SIGKILL), as by a system that is out of memory; "
+            "reduce the mesh, or free memory of other programs");
   EXPECT_EQ(refusal(with("exit 3")),
-            "it cannot be read: its reader ended with status 3: the file is damaged; export it anew");
+            "it cannot be read: its reader ended with status 3: the file is damaged; export it again");
 }
 
 TEST_F(MeshProcess, takes_no_answer_that_is_none) {
-  const std::string damaged = "it cannot be read: its reader's answer is damaged; export it anew";
+  const std::string damaged = "it cannot be read: its reader's answer is damaged; export it again";
   EXPECT_EQ(refusal(with("cat >/dev/null; echo nonsense")), damaged);
   EXPECT_EQ(refusal(with("exit 0")), damaged);
   EXPECT_EQ(refusal(with("exit 0"), large), damaged);
@@ -86,12 +86,12 @@ TEST_F(MeshProcess, takes_no_answer_that_is_none) {
 TEST_F(MeshProcess, ends_a_reader_that_hangs_or_answers_for_ever) {
   MeshReader sut = with("exec sleep 1000");
   sut.longest = milliseconds(200);
-  const std::string late = "it cannot be read: its reader took more than 0.2 s; reduce the mesh, or export it anew";
+  const std::string late = "it cannot be read: its reader took more than 0.2 s; reduce the mesh, or export it again";
   EXPECT_EQ(refusal(sut), late);
   EXPECT_EQ(refusal(sut, large), late);
   sut = with("exec cat /dev/zero");
   sut.most_bytes = 1UL << 20U;
-  EXPECT_EQ(refusal(sut), "it cannot be read: its reader found more than 1 MiB in it; reduce the mesh");
+  EXPECT_EQ(refusal(sut), "it cannot be read: it contains more than 1 MiB; reduce the mesh");
 }
 
 TEST_F(MeshProcess, does_not_wait_for_a_reader_that_hangs_up_and_goes_on) {
@@ -100,15 +100,15 @@ TEST_F(MeshProcess, does_not_wait_for_a_reader_that_hangs_up_and_goes_on) {
 
 TEST_F(MeshProcess, sends_and_receives_at_the_same_time) {
   // Answers before it has read everything, more than a socket holds: neither may wait for the other.
-  EXPECT_EQ(refusal(with("exec cat"), large), "it cannot be read: its reader's answer is damaged; export it anew");
+  EXPECT_EQ(refusal(with("exec cat"), large), "it cannot be read: its reader's answer is damaged; export it again");
 }
 
 TEST_F(MeshProcess, says_what_to_do_where_the_reader_is_missing) {
   const MeshReader sut{home.root() / "nothing_here"};
   const std::string name = sut.program.string();
-  EXPECT_EQ(refusal(sut), "it cannot be read: " + name +
-                              " cannot be started: No such file or directory; install it where cellmirror is: it is "
-                              "built with it");
+  EXPECT_EQ(refusal(sut),
+            "it cannot be read: " + name +
+                " cannot be started: No such file or directory; install it beside cellmirror; both are built together");
   EXPECT_FALSE(check_mesh_reader(sut));
   EXPECT_TRUE(check_mesh_reader());
 }

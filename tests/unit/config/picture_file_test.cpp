@@ -82,7 +82,7 @@ TEST(PictureLibrary, a_mesh_asks_for_no_more_work_than_pictures_may_take) {
   const Picture held = *sut.of_bytes(four_pixels());
   sut.begin_mesh();
   EXPECT_THAT(refusal(sut.of_bytes(damaged_png(4096))), HasSubstr("it is damaged: "));
-  const std::string beyond = "with its 4096 x 4096 pixels the cell's pictures would take more than 128 MiB";
+  const std::string beyond = "with its 4096 x 4096 pixels the cell's textures would need more than 128 MiB";
   EXPECT_EQ(refusal(sut.of_bytes(damaged_png(4096))), beyond);  // the one in use takes some
   EXPECT_TRUE(sut.of_bytes(four_pixels()));
   sut.begin_mesh();

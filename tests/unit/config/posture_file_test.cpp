@@ -89,9 +89,9 @@ TEST_F(PostureFile, tellsEveryMistakeOfTheHeaderWithItsPlace) {
   EXPECT_THAT(text, HasSubstr("p.csv:1:1: error: "));
   EXPECT_THAT(text, HasSubstr("ARN"));
   EXPECT_THAT(text, HasSubstr("p.csv:1:10: error: robot ARM has no joint LFT; did you mean LIFT?"));
-  EXPECT_THAT(text, HasSubstr("p.csv:1:18: error: LIFT is no robot.joint; e.g. ARM.LIFT"));
+  EXPECT_THAT(text, HasSubstr("p.csv:1:18: error: LIFT is not robot.joint; e.g. ARM.LIFT"));
   EXPECT_THAT(text, HasSubstr("p.csv:1:23: error: a column without a name"));
-  EXPECT_THAT(text, HasSubstr("p.csv:1:33: error: ARM.TURN stands twice; the first time in column 24"));
+  EXPECT_THAT(text, HasSubstr("p.csv:1:33: error: ARM.TURN appears twice; first in column 24"));
 }
 
 TEST_F(PostureFile, tellsEveryMistakeOfTheRowsInOnePass) {
@@ -101,13 +101,13 @@ TEST_F(PostureFile, tellsEveryMistakeOfTheRowsInOnePass) {
   EXPECT_EQ(sut.rows, 9U) << "wrong rows count";
   EXPECT_THAT(text, HasSubstr("p.csv:2:2: error: 1 columns, the header has 2"));
   EXPECT_THAT(text, HasSubstr("p.csv:3:5: error: 3 columns, the header has 2"));
-  EXPECT_THAT(text, HasSubstr("p.csv:4:1: error: ARM.LIFT is no finite number: x"));
-  EXPECT_THAT(text, HasSubstr("p.csv:4:3: error: ARM.TURN is no finite number: nan"));
+  EXPECT_THAT(text, HasSubstr("p.csv:4:1: error: ARM.LIFT is not a finite number: x"));
+  EXPECT_THAT(text, HasSubstr("p.csv:4:3: error: ARM.TURN is not a finite number: nan"));
   EXPECT_THAT(text, HasSubstr("p.csv:5:1: error: ARM.LIFT is empty"));
-  EXPECT_THAT(text, HasSubstr("p.csv:6:3: error: ARM.TURN is no finite number: inf"));
-  EXPECT_THAT(text, HasSubstr("p.csv:7:1: error: ARM.LIFT is 1e+07 m; values lie within 1e+06"));
+  EXPECT_THAT(text, HasSubstr("p.csv:6:3: error: ARM.TURN is not a finite number: inf"));
+  EXPECT_THAT(text, HasSubstr("p.csv:7:1: error: ARM.LIFT is 1e+07 m; values must be within 1e+06"));
   EXPECT_THAT(text, HasSubstr("p.csv:8:3: error: the closing quote is missing"));
-  EXPECT_THAT(text, HasSubstr("p.csv:9:6: error: text behind the closing quote: 3"));
+  EXPECT_THAT(text, HasSubstr("p.csv:9:6: error: text after the closing quote: 3"));
 }
 
 TEST_F(PostureFile, warnsOnceAColumnOfValuesBeyondARange) {
@@ -116,11 +116,10 @@ TEST_F(PostureFile, warnsOnceAColumnOfValuesBeyondARange) {
   EXPECT_EQ(sut.postures.size(), 4U) << "a real robot may stand there";
   EXPECT_EQ(of(sut.postures[0], "ARM")[0], 2.5);
   ASSERT_EQ(sut.diagnostics.warnings(), 2U);
-  EXPECT_EQ(
-      sut.diagnostics.all()[0].text(),
-      "p.csv:2:1: warning: ARM.LIFT is 2.5 m, beyond its range 0 .. 2; so in 2 rows; it is computed as it stands");
+  EXPECT_EQ(sut.diagnostics.all()[0].text(),
+            "p.csv:2:1: warning: ARM.LIFT is 2.5 m, beyond its range 0 .. 2; so in 2 rows; it is used as given");
   EXPECT_EQ(sut.diagnostics.all()[1].text(),
-            "p.csv:5:3: warning: ARM.BEND is 1.5 rad, beyond its range -2 .. 1; it is computed as it stands");
+            "p.csv:5:3: warning: ARM.BEND is 1.5 rad, beyond its range -2 .. 1; it is used as given");
 }
 
 TEST_F(PostureFile, refusesWhatIsNoTableOfPostures) {

@@ -67,10 +67,10 @@ TEST(TargetFile, SaysWhichRowIsBrokenAndWhere) {
             "t.csv:3:12: error: 6 columns, 7 are expected; the columns are px,py,pz,qx,qy,qz,qw");
   EXPECT_EQ(finding(kHeader + "1,2,3,0,0,0,1,9\n"),
             "t.csv:2:15: error: 8 columns, 7 are expected; the columns are px,py,pz,qx,qy,qz,qw");
-  EXPECT_EQ(finding(kHeader + "1,2, abc,0,0,0,1\n"), "t.csv:2:6: error: pz is no finite number: abc");
+  EXPECT_EQ(finding(kHeader + "1,2, abc,0,0,0,1\n"), "t.csv:2:6: error: pz is not a finite number: abc");
   EXPECT_EQ(finding(kHeader + "1,,3,0,0,0,1\n"), "t.csv:2:3: error: py is empty");
-  EXPECT_EQ(finding(kHeader + "1,2,nan,0,0,0,1\n"), "t.csv:2:5: error: pz is no finite number: nan");
-  EXPECT_THAT(finding(kHeader + "1,2,3,0,0,inf,1\n"), HasSubstr("t.csv:2:11: error: qz is no finite number"));
+  EXPECT_EQ(finding(kHeader + "1,2,nan,0,0,0,1\n"), "t.csv:2:5: error: pz is not a finite number: nan");
+  EXPECT_THAT(finding(kHeader + "1,2,3,0,0,inf,1\n"), HasSubstr("t.csv:2:11: error: qz is not a finite number"));
   EXPECT_THAT(finding(kHeader + "1e7,2,3,0,0,0,1\n"), HasSubstr("t.csv:2:1: error: px is 1e+07 m away"));
 }
 

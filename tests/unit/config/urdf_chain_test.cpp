@@ -102,7 +102,7 @@ TEST(UrdfBetween, ReadsEverythingWhereTheLinksAreUnknownOrNoTree) {
       HasSubstr("circle"));
   EXPECT_THAT(
       parse(links("ab") + joint("j", 'a', 'b', kLimit) + joint("j", 'a', 'x', kLimit), "a", "b").diagnostics.text(),
-      HasSubstr("x is no link"));
+      HasSubstr("x is not a link"));
   const Parsed unknown = parse(links("ab") + joint("j", 'a', 'b', kLimit), "a", "z");
   ASSERT_TRUE(unknown.component);
   EXPECT_FALSE(chain_between(*unknown.component, "a", "z"));

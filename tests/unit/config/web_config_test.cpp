@@ -73,13 +73,14 @@ TEST_F(WebConfig, AddressesThatOthersReachHaveToBeMeant) {
 
 TEST_F(WebConfig, AddressesAreNumeric) {
   for (const char* address : {"localhost", "127.0.0.1:80", "", "127.0.0.256", "127.evil.example.org", "::g"})
-    EXPECT_THAT(refusal("address = \"" + std::string(address) + "\""), HasSubstr("is no numeric address")) << address;
+    EXPECT_THAT(refusal("address = \"" + std::string(address) + "\""), HasSubstr("is not a numeric address"))
+        << address;
 }
 
 TEST_F(WebConfig, OriginsHaveASchemeAndAHostAndNothingElse) {
   for (const char* origin : {"monitor.example.org", "ftp://a", "http://", "https://a/", "https://a/b", "https://a b",
                              "*", "null", "https://a\\nX: y", "https://user@a"})
-    EXPECT_THAT(refusal("origins = [\"" + std::string(origin) + "\"]"), HasSubstr("is no origin")) << origin;
+    EXPECT_THAT(refusal("origins = [\"" + std::string(origin) + "\"]"), HasSubstr("is not an origin")) << origin;
   EXPECT_THAT(refusal("origins = \"https://a\""), HasSubstr("origins must be an array"));
 }
 
@@ -94,7 +95,7 @@ TEST_F(WebConfig, AllThatIsWrongIsToldAtOnce) {
   EXPECT_FALSE(
       load("[web]\nenabled = 1\nport = 0\naddress = \"x\"\nread_only = \"no\"\norigins = [\"x\"]\ntls = true\n"));
   EXPECT_EQ(diagnostics.errors(), 6U) << diagnostics.text();
-  EXPECT_THAT(diagnostics.text(), HasSubstr("the key tls is not known"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("the key tls is unknown"));
 }
 
 }  // namespace

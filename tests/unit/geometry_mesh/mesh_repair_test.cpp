@@ -312,14 +312,14 @@ TEST(MeshRepair, refuses_what_cannot_be_trusted) {
   };
   Soup nan = cube();
   nan.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refused(nan), "a coordinate of vertex 4 is no number");
+  EXPECT_EQ(refused(nan), "a coordinate of vertex 4 is not a number");
   Soup infinite = cube();
   infinite.vertices[0].x() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refused(infinite), "a coordinate of vertex 1 is no number");
+  EXPECT_EQ(refused(infinite), "a coordinate of vertex 1 is not a number");
   EXPECT_EQ(refused(cube().scaled(1e7)), "vertex 1 is 5e+06 m away from the origin");
   Soup index = cube();
   index.triangles[5][1] = 8;
-  EXPECT_EQ(refused(index), "triangle 6 names vertex 9, but there are 8");
+  EXPECT_EQ(refused(index), "triangle 6 refers to vertex 9, but there are 8");
   EXPECT_EQ(refused({}), "there are no triangles");
   EXPECT_EQ(refused({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}), "no triangle has an area");
   EXPECT_EQ(refused(cube().scaled(0.0)), "no triangle has an area");

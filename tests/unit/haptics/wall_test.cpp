@@ -240,7 +240,7 @@ TEST(Proxy, StaysWithinWhatTheModelHasSeen) {
   EXPECT_NEAR(rig.state().x_proxy.x(), 0.015, 1e-9);
   rig.go({0.05, 0, 0.001});
   EXPECT_LE(rig.state().x_proxy.norm(), 0.02 + 1e-9);
-  EXPECT_EQ(rig.port.output.force_D.norm(), 0.0) << "not knowing is no wall";
+  EXPECT_EQ(rig.port.output.force_D.norm(), 0.0) << "not knowing is not a wall";
   rig.model.x_ref = rig.state().x_proxy;
   rig.model.constraints[0].gap = rig.model.x_ref.z();
   rig.go({0.038, 0, 0.001});

@@ -220,8 +220,8 @@ TEST_P(EveryMethod, RefusesWhatIsNoRequestAndSaysWhy) {
     return answer ? std::string("accepted") : answer.error().what;
   };
   EXPECT_EQ(what([](Request& r) { r.X_BG.translation().x() = kNan; }), "the target has a number that is not finite");
-  EXPECT_EQ(what([](Request& r) { r.X_BG.linear() *= 1.01; }), "the target's orientation is no rotation");
-  EXPECT_EQ(what([](Request& r) { r.X_BG.linear().col(0) *= -1.0; }), "the target's orientation is no rotation");
+  EXPECT_EQ(what([](Request& r) { r.X_BG.linear() *= 1.01; }), "the target's orientation is not a rotation");
+  EXPECT_EQ(what([](Request& r) { r.X_BG.linear().col(0) *= -1.0; }), "the target's orientation is not a rotation");
   EXPECT_EQ(what([](Request& r) { r.X_BG.translation().y() = 1e9; }), "the target is farther away than 1000 km");
   EXPECT_EQ(what([](Request& r) { r.tolerance = 0; }), "the tolerance 0 is not positive");
   EXPECT_EQ(what([](Request& r) { r.tolerance = kNan; }), "the tolerance nan is not positive");

@@ -81,7 +81,7 @@ TEST(SharedMemoryFindings, TellWhatIsTooSmallAndTheCommandThatMendsIt) {
 TEST(SharedMemoryFindings, TellWhatWasLeftBehindAndHowToRemoveIt) {
   const auto sut = shared_memory_findings({}, {{1313, 5, 192}, {2, 6, 512}});
   EXPECT_FALSE(find(sut, "shared memory").ok);
-  EXPECT_EQ(find(sut, "shared memory").value, "2 left behind by processes that ended: 0x521 (1313), 0x2 (2)");
+  EXPECT_EQ(find(sut, "shared memory").value, "2 left by ended processes: 0x521 (1313), 0x2 (2)");
   EXPECT_TRUE(find(sut, "shared memory").remedy.starts_with("ipcrm -m 5 -m 6 ")) << find(sut, "shared memory").remedy;
 }
 

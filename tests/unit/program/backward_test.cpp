@@ -66,7 +66,7 @@ TEST_F(BackwardTest, GoesOnFromTheCheckPointThatTheRobotIsAt) {
   ASSERT_TRUE(sut.stand_at(1));
   ASSERT_TRUE(sut.set_direction(Direction::forward));
   EXPECT_EQ(steps(sut, 9), "P2 fly 0.2, P3 0.3, ended");
-  EXPECT_FALSE(sut.stand_at(0)) << "a setting is no check point";
+  EXPECT_FALSE(sut.stand_at(0)) << "a setting is not a check point";
   EXPECT_FALSE(sut.stand_at(100));
 }
 
@@ -80,7 +80,7 @@ TEST_F(BackwardTest, GivesAgainWhatWasTakenBack) {
   EXPECT_EQ(steps(sut, 9), "P3 0.3, P2 fly 0.3, P1 0.2, ended");
   ASSERT_TRUE(sut.go_on_with(4));
   EXPECT_EQ(steps(sut, 1), "P2 fly 0.3, ");
-  EXPECT_FALSE(sut.go_on_with(0)) << "a setting is no check point";
+  EXPECT_FALSE(sut.go_on_with(0)) << "a setting is not a check point";
   ASSERT_TRUE(sut.set_direction(Direction::forward));
   ASSERT_TRUE(sut.go_on_with(100));
   EXPECT_EQ(steps(sut, 1), "ended");
@@ -98,10 +98,9 @@ TEST_F(MachineTest, ReportsWhatCannotBeRunBackward) {
   builder.at(4, 1);
   add(SemaphoreStatement{.acquire = true, .name = builder.text("S")});
   EXPECT_EQ(errors(),
-            "sut.txt:1:1: error: a relative move cannot be run backward\n"
-            "sut.txt:2:1: error: a program that is run backward has constant values only\n"
-            "sut.txt:3:1: error: a change of tool or zero point cannot be run backward\n"
-            "sut.txt:4:1: error: this statement cannot be run backward\n");
+            "sut.txt:1:1: error: a relative move cannot be run backward\nsut.txt:2:1: error: a program that runs "
+            "backward must have constant values only\nsut.txt:3:1: error: a change of tool or zero point cannot be run "
+            "backward\nsut.txt:4:1: error: this statement cannot be run backward\n");
 }
 
 }  // namespace

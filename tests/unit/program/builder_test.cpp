@@ -75,7 +75,7 @@ TEST_F(MachineTest, RefusesToNestTooDeep) {
 TEST_F(MachineTest, ReportsJumpsToNowhere) {
   builder.at(4, 2);
   builder.jump(builder.new_label());
-  EXPECT_EQ(errors(), "sut.txt:4:2: error: the target of the jump is nowhere in the program\n");
+  EXPECT_EQ(errors(), "sut.txt:4:2: error: the target of the jump is not in the program\n");
 }
 
 TEST_F(MachineTest, TakesALabelBehindTheLastStatement) {

@@ -135,13 +135,13 @@ TEST_F(MachineTest, EndsRecursionWithAnError) {
   builder.at(7, 3);
   builder.call(sub);
   EXPECT_EQ(run(),
-            "sut.txt:7:3: error: more than 64 subprograms within each other; a subprogram that calls itself needs "
-            "a condition that ends it");
+            "sut.txt:7:3: error: more than 64 nested subprograms; a subprogram that calls itself needs a condition "
+            "that ends it");
 }
 
 TEST_F(MachineTest, RefusesAReturnOutsideOfASubprogram) {
   add(ReturnStatement{});
-  EXPECT_EQ(run(), "sut.txt:1:1: error: a return outside of a subprogram");
+  EXPECT_EQ(run(), "sut.txt:1:1: error: a return outside a subprogram");
 }
 
 TEST_F(MachineTest, SpendsTheBudgetOfAnEndlessLoopAndGoesOn) {
@@ -251,7 +251,7 @@ TEST_F(MachineTest, FailsWhenTheTimeOfAWaitIsOver) {
   ASSERT_EQ(sut.next(world, 10), Machine::Step::command);
   EXPECT_EQ(trace_line(sut.program(), sut.command()), "1 wait the gate is open, at most 2.000000");
   sut.time_out();
-  EXPECT_EQ(trace(sut), "sut.txt:1:1: error: the time limit is over and what the program waits for has not come");
+  EXPECT_EQ(trace(sut), "sut.txt:1:1: error: the wait timed out");
 }
 
 TEST_F(MachineTest, TellsTheProgramThatTheTimeIsOver) {
@@ -285,13 +285,13 @@ TEST_F(MachineTest, FailsWhereAConditionCannotBeEvaluated) {
 TEST_F(MachineTest, ChecksComputedSettingsTimesAndJointCounts) {
   const VariableId value = ok(builder.declare("value", ValueType::real, 2.0));
   add(SetStatement{.setting = Setting::joint_velocity, .value = ok(builder.variable(value))});
-  EXPECT_EQ(run(), "sut.txt:1:1: error: the joint velocity is 200 %: it has to be above 0 and at most 100 %");
+  EXPECT_EQ(run(), "sut.txt:1:1: error: the joint velocity is 200 %: it must be above 0 and at most 100 %");
 }
 
 TEST_F(MachineTest, RefusesAComputedTimeBelowZero) {
   const VariableId value = ok(builder.declare("value", ValueType::real, -1.0));
   add(DelayStatement{ok(builder.variable(value))});
-  EXPECT_EQ(run(), "sut.txt:1:1: error: the time to wait is -1 s: it has to be within 0 .. 1000000 s");
+  EXPECT_EQ(run(), "sut.txt:1:1: error: the time to wait is -1 s: it must be within 0 .. 1000000 s");
 }
 
 TEST_F(MachineTest, RefusesMoreJointValuesThanTheRobotHas) {

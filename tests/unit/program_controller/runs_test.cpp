@@ -201,7 +201,7 @@ TEST(ProgramRuns, FailWhereAMoveIsBlockedOnItsWay) {
   cell.motion.block("A");
   cell.run("A", "p");
   cell.finish();
-  EXPECT_EQ(cell.status("A", "p").error.rfind("p.ird:1:1: error: A could not go on with this move", 0), 0U);
+  EXPECT_EQ(cell.status("A", "p").error.rfind("p.ird:1:1: error: A could not continue this move", 0), 0U);
 }
 
 TEST(ProgramQueue, RunsOneBehindTheOtherWithoutAGap) {
@@ -234,7 +234,7 @@ TEST(ProgramQueue, DoesNotGoOnBehindAProgramThatFailed) {
   ASSERT_TRUE(cell.sut.run("A", "good", Controllers::Begin::exec_wait));
   cell.finish();
   EXPECT_EQ(cell.status("A", "good").state, ProgramState::failed);
-  EXPECT_EQ(cell.status("A", "good").error, "not started: bad before it has failed");
+  EXPECT_EQ(cell.status("A", "good").error, "not started: the previous program bad has failed");
   EXPECT_EQ(cell.status("A", "good").runs, 0U);
   cell.run("A", "good");
   cell.finish();

@@ -248,7 +248,7 @@ TEST(ProgramDeadlock, WaitsForTheNextCommandWhereNobodyWasStartedWhoReleases) {
   cell.pass(0.2);
   ASSERT_TRUE(cell.sut.deadlock());
   EXPECT_EQ(cell.sut.deadlock()->text(),
-            "deadlock: A waiter waits at line 1 for semaphore S, which no program that was started releases");
+            "deadlock: A waiter waits at line 1 for semaphore S, which no started program releases");
 }
 
 TEST(ProgramDeadlock, ComesWhenTheOnlyReleaserFails) {
@@ -281,8 +281,8 @@ TEST(ProgramDeadlock, TellsWhoWasStoppedWithTheSemaphore) {
   cell.pass(1.5);
   ASSERT_TRUE(cell.sut.deadlock());
   EXPECT_EQ(cell.sut.deadlock()->text(),
-            "deadlock: A waiter waits at line 2 for semaphore table, which no program that was started releases "
-            "(B owner could, if started), B owner was stopped before it released it");
+            "deadlock: A waiter waits at line 2 for semaphore table, which no started program releases (B owner could, "
+            "if started), B owner was stopped before it released it");
   // Another gives back what it had.
   ProgramMaker helper("helper");
   cell.load("C", "helper", helper.release("table"));

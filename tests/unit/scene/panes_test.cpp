@@ -137,7 +137,7 @@ TEST_F(Panes, APictureOfACameraBeginsBehindItsOwnHousing) {
     geometry->X_NG.translation().z() = z;
     cell_.cell.geometry.push_back({node, geometry});
   };
-  EXPECT_LE((*panes_of_camera(input(), "CAM"))[0].eye.near_distance, 0.05) << "the table is no housing";
+  EXPECT_LE((*panes_of_camera(input(), "CAM"))[0].eye.near_distance, 0.05) << "the table is not a housing";
   add(SmallCell::camera, 0, 0.12);           // to 60 mm
   add(SmallCell::table, 1.0 + 0.085, 0.05);  // what it is fixed to: from 60 to 110 mm
   add(SmallCell::camera, 0.5, 0.1);          // beyond a gap

@@ -139,7 +139,7 @@ TEST_F(BuilderTest, TheTraceGrowsWithTheTcpUntilTheModeIsOff) {
     build();
   }
   ASSERT_EQ(scene_.traces.size(), 1U);
-  EXPECT_EQ(scene_.traces[0].points.size(), 3U) << "standing still is no point";
+  EXPECT_EQ(scene_.traces[0].points.size(), 3U) << "standing still is not a point";
   EXPECT_LT((scene_.traces[0].points[2] - Eigen::Vector3f(std::cos(0.2F), std::sin(0.2F), 0.5F)).norm(), 1e-6F);
   set(DisplayMode::smear, false);
   EXPECT_TRUE(build().traces.empty());
