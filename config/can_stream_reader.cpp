@@ -83,7 +83,7 @@ Cia402NodeConfig read_node(TableReader& reader, const RobotFacts* robot, const F
     reader.set_where(fmt::format("{}, node id {}", stream, node.node_id));
   }
   const auto joint = read_joint_reference(reader, robot);
-  // Without a known joint its kind is guessed from the keys, so that only what is wrong is told.
+  // Without a known joint its kind is guessed from the keys, so that only real errors are reported.
   JointKind kind =
       reader.has("increments_per_m") || reader.has("m_per_increment") ? JointKind::prismatic : JointKind::revolute;
   if (joint) {
@@ -139,7 +139,7 @@ Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, con
       static_cast<std::uint16_t>(std::lround(reader.number("heartbeat_producer_s", {0.0, 65.535}).value_or(0.0) * 1e3));
   constexpr std::size_t kMostNodes = 127;
   for (TableReader& node : reader.tables("node", kMostNodes)) config.nodes.push_back(read_node(node, robot, files));
-  if (config.nodes.empty()) reader.error({}, "no drive is given", "add [[stream.node]] with id and joint");
+  if (config.nodes.empty()) reader.error({}, "no drives are given", "add [[stream.node]] with id and joint");
   refuse_twice(reader, config.nodes, &Cia402NodeConfig::node_id, "id");
   if (std::ranges::none_of(config.nodes, [](const auto& node) { return node.joint_name.empty(); }))
     refuse_twice(reader, config.nodes, &Cia402NodeConfig::joint_name, "joint");
@@ -174,7 +174,7 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
     signal.scale_given = item.has("scale");
     if (signal.scale == 0.0) {
       item.error("scale", "scale is 0", "the value would always be the offset");
-      signal.scale = 1.0;  // so that it is told once
+      signal.scale = 1.0;  // so that it is reported once
     }
     signal.offset = item.number("offset").value_or(0.0);
     item.finish();
@@ -184,7 +184,7 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
     if (twice) item.error("joint", fmt::format("two signals give the same quantity of {}", signal.joint_name));
     config.signals.push_back(std::move(signal));
   }
-  if (config.signals.empty()) reader.error({}, "no signal is given", "add [[stream.signal]]");
+  if (config.signals.empty()) reader.error({}, "no signals are given", "add [[stream.signal]]");
   return config;
 }
 
@@ -198,8 +198,8 @@ DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot) {
     reader.error("topic", "the topic is empty", "ROS 2's joint_states is rt/joint_states on DDS");
   config.interface_address = reader.text("interface_address").value_or(config.interface_address);
   if (!is_address(config.interface_address)) {
-    reader.error("interface_address", fmt::format("\"{}\" is no numeric address", printable(config.interface_address)),
-                 "e.g. 127.0.0.1");
+    reader.error("interface_address",
+                 fmt::format("\"{}\" is not a numeric address", printable(config.interface_address)), "e.g. 127.0.0.1");
   }
   config.reliable = reader.boolean("reliable").value_or(false);
   constexpr std::size_t kMostJoints = 64;

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Tells `progress` of every file that is read from now on, until it is destroyed. Looks through all component files to
-// count them and their meshes, which takes little time beside the meshes.
+// Reports every file read from now on to `progress`, until it is destroyed. Scans all component files to count them and
+// their meshes, which takes little time compared with the meshes.
 class ProgressOfFiles {
  public:
   ProgressOfFiles(const std::string& file, std::string_view text, const HomeFiles& files, const LoadProgress& progress)
@@ -134,7 +134,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
 
 namespace {
 
-// The home of a component: $kis_home, else the nearest folder above it with a cell.toml, else its own folder.
+// The cell folder of a component: $kis_home, else the nearest folder above it with a cell.toml, else its own folder.
 Result<KismetHome> home_of_component(const fs::path& path) {
   const char* from_environment = std::getenv("kis_home");
   if (from_environment != nullptr && *from_environment != '\0') return KismetHome::open(from_environment);

@@ -49,8 +49,8 @@ struct RobotStream {
 struct RobotHaptic {
   std::string robot;
   haptics::HapticSettings settings;
-  bool placed = false;              // xyz_m was given; else its zero is where the tip stands when it goes online
-  double reach_m = 0.006;           // how far from the instrument its surroundings are looked at
+  bool placed = false;              // xyz_m was given; else its zero is the tip position when it goes online
+  double reach_m = 0.006;           // radius around the instrument within which its surroundings are queried
   std::optional<std::int32_t> key;  // none: rob_ela_shm names it
   std::size_t bytes = 512;
   std::uint32_t mode = 0600;
@@ -86,7 +86,7 @@ struct LoadedCell {
   collision::Settings collision;  // paths in rules are full paths
   std::vector<ViewSetting> views;
   DisplayLayout layout;                      // of the layout file, else the standard setting
-  std::string startup_script;                // name of a file in the home's scripts/, which exists; empty: none
+  std::string startup_script;                // name of an existing file in the cell folder's scripts/; empty: none
   std::vector<std::filesystem::path> files;  // every component file that was read
   Cell cell;
 };
@@ -95,7 +95,7 @@ struct LoadedCell {
 // `what` is the next one's name. The files are counted first; `total` grows where files appear meanwhile.
 using LoadProgress = std::function<void(std::size_t done, std::size_t total, std::string_view what)>;
 
-// Asked about each stream that could be read, also where the cell has errors: what its driver finds wrong with it.
+// Called for each valid stream, also if the cell has errors: its driver's diagnostics.
 using StreamCheck = std::function<void(const RobotStream& stream, Diagnostics& diagnostics)>;
 
 // Nothing where there is any error; all findings of all files in `diagnostics`, each with file:line:column.
@@ -103,10 +103,10 @@ using StreamCheck = std::function<void(const RobotStream& stream, Diagnostics& d
                                                   const LoadProgress& progress = {},
                                                   const StreamCheck& check_stream = {});
 
-// `cellmirror check` of a .toml (with all it refers to), .mpc or .urdf file. The home of a component is $kis_home, else
-// the nearest folder above it that holds a cell.toml, else its own folder. Other extensions are an error.
+// `cellmirror check` of a .toml (with all referenced files), .mpc or .urdf file. The cell folder of a component is
+// $kis_home, else the nearest folder above it with a cell.toml, else its own folder. Other extensions are an error.
 void check_file(const std::filesystem::path& path, Diagnostics& diagnostics, const LoadProgress& progress = {});
-// Whether check_file() knows the extension.
+// Whether check_file() supports the extension.
 [[nodiscard]] bool is_checkable(const std::filesystem::path& path);
 
 }  // namespace cellmirror

@@ -59,9 +59,9 @@ bool CellReader::read(std::string_view text) {
   for (const ComponentNode& node : root.nodes) {
     if (!root.geometry.empty() && node.parent < 0 && node.name == root.name)
       findings.error(root.place(node), fmt::format("the node {} has the name of the cell", node.name),
-                     "rename one of them: the cell's own geometry is told by that name");
+                     "rename one of them: it names the cell's own geometry in results");
     if (node.joint)
-      findings.error(root.place(node), fmt::format("the joint {} stands in a cell file", node.name),
+      findings.error(root.place(node), fmt::format("the joint {} is in a cell file", node.name),
                      "joints belong to component files with a [robot]");
   }
   if (const auto g = top.numbers("gravity_m_s2", 3, kGravity)) gravity_m_s2 = {(*g)[0], (*g)[1], (*g)[2]};
@@ -101,7 +101,7 @@ void CellReader::read_haptics(const RobotDirectory& robots, bool complete) {
       table.error("robot", fmt::format("there is another haptic device of {}", printable(haptic->robot)));
     if (std::ranges::any_of(streams, same_robot)) {
       table.error("robot", fmt::format("{} has a stream and a haptic device", printable(haptic->robot)),
-                  "it can follow one of them: take the other table away");
+                  "it can follow one of them: remove the other table");
     }
     const auto same_key = [&](const RobotHaptic& other) { return haptic->key && other.key == haptic->key; };
     if (std::ranges::any_of(haptics, same_key))
@@ -133,7 +133,7 @@ void CellReader::read_dds_output(TableReader& top) {
   dds.domain = static_cast<int>(table->integer("domain", 0, kHighestDomain).value_or(dds.domain));
   dds.interface_address = table->text("interface_address").value_or(dds.interface_address);
   if (!is_address(dds.interface_address)) {
-    table->error("interface_address", fmt::format("\"{}\" is no numeric address", printable(dds.interface_address)),
+    table->error("interface_address", fmt::format("\"{}\" is not a numeric address", printable(dds.interface_address)),
                  "e.g. 127.0.0.1");
   }
   dds.joint_states_topic = table->text("joint_states_topic").value_or(dds.joint_states_topic);
@@ -162,13 +162,14 @@ void CellReader::read_queues(TableReader& top) {
   if (const auto mode = table->text("mode")) {
     queues.mode = octal(*mode);
     if (!queues.mode)
-      table->error("mode", fmt::format("mode \"{}\" is no permission", printable(*mode)), "write e.g. mode = \"0660\"");
+      table->error("mode", fmt::format("mode \"{}\" is not a valid mode", printable(*mode)),
+                   "write e.g. mode = \"0660\"");
   }
   queues.sensor_rate_hz = table->number("sensor_rate_hz", kOutputRate);
   QueueConfig all;
   queues.apply_to(all);
   if (all.script_key == all.sensor_key || all.script_key == all.reply_key || all.sensor_key == all.reply_key)
-    table->error({}, "two queues have the same key", "the keys by default are 2351, 1990 and 2352");
+    table->error({}, "two queues have the same key", "the default keys are 2351, 1990 and 2352");
   table->finish();
 }
 
@@ -188,7 +189,7 @@ void CellReader::read_views(TableReader& top) {
     setting.change.far_distance = table.number("far_m", kPositive);
     const auto& change = setting.change;
     if (change.viewpoint && change.lookpoint && (*change.viewpoint - *change.lookpoint).norm() < 1e-6)
-      table.error("viewpoint_m", "the viewpoint is the lookpoint", "set them apart from each other");
+      table.error("viewpoint_m", "the viewpoint is the lookpoint", "choose two different points");
     if (change.near_distance && change.far_distance && *change.near_distance >= *change.far_distance)
       table.error("near_m", "the near plane is not nearer than the far plane");
     table.finish();

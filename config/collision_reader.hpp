@@ -14,7 +14,7 @@ class CollisionReader {
  public:
   void read(TableReader& top);
   // When the cell is there: the settings, with full paths in the rules; unknown and ambiguous paths are errors. A path
-  // into a part that is not in memory is believed below the part.
+  // into a part that is not in memory is accepted below the part.
   [[nodiscard]] collision::Settings settings(const Cell& cell, Diagnostics& diagnostics) const;
 
  private:

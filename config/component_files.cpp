@@ -25,7 +25,7 @@ std::shared_ptr<const Component> read_component_file(const fs::path& path, const
                                                      Diagnostics& diagnostics) {
   const std::string file = path.string();
   if (!is_urdf(path) && !is_component(path)) {
-    diagnostics.error({file, 0, 0}, "the file is no component", "component files are .mpc or .urdf");
+    diagnostics.error({file, 0, 0}, "the file is not a component", "component files are .mpc or .urdf");
     return nullptr;
   }
   const auto text = read_text_file(path, kLargestText);
@@ -63,7 +63,7 @@ Result<std::shared_ptr<const Component>> ComponentFiles::component_for(const Abs
   if (!diagnostics.ok() || !component) {
     const auto& all = diagnostics.all();
     const auto first = std::ranges::find(all, Severity::error, &Diagnostic::severity);
-    const std::string what = first == all.end() ? fmt::format("{} is no component", file) : first->text();
+    const std::string what = first == all.end() ? fmt::format("{} is not a component", file) : first->text();
     return fail(diagnostics.errors() > 1 ? fmt::format("{} (and {} more)", what, diagnostics.errors() - 1) : what,
                 fmt::format("cellmirror check {} shows all", path->string()));
   }
@@ -77,7 +77,7 @@ void ComponentFiles::load(const Component& root, Diagnostics& diagnostics) {
 }
 
 void ComponentFiles::visit(const Component& component, bool loaded, std::size_t depth, Diagnostics& diagnostics) {
-  // The limits on depth and nodes are told by Cell::build(); here they only bound the work.
+  // Cell::build() reports the limits on depth and nodes; here they only bound the work.
   if (depth > kDeepest || ++visits_ > kMaxNodes) return;
   for (const ComponentNode& node : component.nodes) {
     if (node.abstract) visit_node(component, node, loaded && node.abstract->loaded, depth, diagnostics);
@@ -88,7 +88,7 @@ void ComponentFiles::visit_node(const Component& component, const ComponentNode&
                                 Diagnostics& diagnostics) {
   const auto path = files_.find(FileUse::component, node.abstract->file);
   if (!path) {
-    // Told once for each place in a file, however often that file is used.
+    // Reported once for each place in a file, however often that file is used.
     const Place whole_node = component.place(node);
     const Place named{whole_node.file, node.abstract->line, node.abstract->column};
     if (faulty_references_.emplace(fmt::format("{}:{}:{}", named.file, named.line, named.column), true).second)
@@ -102,7 +102,7 @@ void ComponentFiles::visit_node(const Component& component, const ComponentNode&
   }
   if (!at->second.held) return;
   if (loaded) note_robot(*at->second.held, *node.abstract);
-  // A file that is not loaded is looked through once; its robots are not there yet.
+  // A file that is not loaded is scanned once; its robots do not exist yet.
   if (is_new || loaded) visit(*at->second.held, loaded, depth + 1, diagnostics);
 }
 

@@ -28,7 +28,7 @@ class ComponentFiles final : public ComponentSource {
  public:
   explicit ComponentFiles(HomeFiles files) : files_(std::move(files)) {}
 
-  // After load(): from memory as long as somebody uses it, else read again.
+  // After load(): from memory while in use, else read again.
   Result<std::shared_ptr<const Component>> component(std::string_view file) override;
   Result<std::shared_ptr<const Component>> component_for(const AbstractReference& reference) override;
 

@@ -72,7 +72,7 @@ std::optional<Component> parse_component(std::string_view text, const std::strin
     const auto joint =
         std::ranges::find_if(component.nodes, [](const ComponentNode& node) { return node.joint.has_value(); });
     if (joint != component.nodes.end())
-      findings.error(component.place(*joint), fmt::format("the joint {} belongs to no robot", joint->name),
+      findings.error(component.place(*joint), fmt::format("the joint {} does not belong to a robot", joint->name),
                      "add [robot] with an id, so that the joint can be moved");
   }
   reader.finish();
@@ -86,7 +86,7 @@ void take_sorted(Diagnostics& to, const Diagnostics& from) {
   for (const Diagnostic& diagnostic : kept) to.add(diagnostic);
   const std::size_t found = from.errors() + from.warnings();
   if (found > kept.size())
-    to.error({kept.front().place.file, 0, 0}, fmt::format("and {} findings more in this file", found - kept.size()));
+    to.error({kept.front().place.file, 0, 0}, fmt::format("and {} more diagnostics in this file", found - kept.size()));
 }
 
 }  // namespace cellmirror

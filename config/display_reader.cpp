@@ -24,20 +24,21 @@ void read_size(TableReader& table, std::string_view key, int& width, int& height
   if (!size) return;
   for (const double edge : *size) {
     if (edge == std::floor(edge)) continue;
-    table.error(key, fmt::format("{:g} is no whole number of pixels", edge), fmt::format("e.g. {} = [640, 480]", key));
+    table.error(key, fmt::format("{:g} is not a whole number of pixels", edge),
+                fmt::format("e.g. {} = [640, 480]", key));
     return;
   }
   width = static_cast<int>((*size)[0]);
   height = static_cast<int>((*size)[1]);
 }
 
-// Looked for in the home itself, beside the cell file.
+// Searched in the cell folder itself, beside the cell file.
 std::optional<std::filesystem::path> read_layout_file(TableReader& table, const FileFinder& files) {
   const auto name = table.text("layout_file");
   if (!name) return std::nullopt;
   const std::string extension = std::filesystem::path(*name).extension().string();
   if (!extension.empty() && extension != kLayoutExtension) {
-    table.error("layout_file", fmt::format("\"{}\" is no layout file", printable(*name)),
+    table.error("layout_file", fmt::format("\"{}\" is not a layout file", printable(*name)),
                 fmt::format("layout files end in {}; views (.vws) are loaded with LOAD_VIEWS", kLayoutExtension));
     return std::nullopt;
   }
@@ -76,7 +77,7 @@ void read_dds_pictures(TableReader& table, DdsPictureConfig& config) {
   read_size(table, "picture_size", config.width, config.height);
   config.quality = static_cast<int>(table.integer("picture_quality", 1, 100).value_or(config.quality));
   if (config.view && !config.camera.empty())
-    table.error("picture_camera", "a picture is of a view or of a camera", "take one of the two keys away");
+    table.error("picture_camera", "a picture is of a view or of a camera", "remove one of the two keys");
 }
 
 }  // namespace cellmirror

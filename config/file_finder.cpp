@@ -40,18 +40,18 @@ const char* default_extension(FileUse use) {
   return use == FileUse::layout ? ".lay" : "";
 }
 
-// The place of `path` seen from `root`, where it lies in it.
+// `path` relative to `root`, if it is within it.
 std::string below(const fs::path& root, const fs::path& path) {
   const fs::path relative = path.lexically_relative(root);
   if (relative.empty() || *relative.begin() == "..") return {};
   return relative.string();
 }
 
-// The folders in which a package may lie: those above the URDF (up to `root`), and robots/ in the home.
+// The folders searched for a package: those above the URDF (up to `root`), and robots/ in the cell folder.
 Result<fs::path> find_in_package(const KismetHome& root, const fs::path& urdf, std::string_view rest) {
   const std::size_t slash = rest.find('/');
   if (slash == std::string_view::npos || slash == 0)
-    return fail(fmt::format("package://{} names no file", printable(rest)));
+    return fail(fmt::format("package://{} names a missing file", printable(rest)));
   const fs::path package(rest.substr(0, slash));
   const fs::path inside(rest.substr(slash + 1));
   fs::path folder = urdf.parent_path();
@@ -126,7 +126,7 @@ Result<void> check_mesh(const fs::path& file) {
   static constexpr std::array<std::string_view, 6> kKinds{".stl", ".obj", ".dae", ".ply", ".gltf", ".glb"};
   const std::string extension = lower_case(file.extension().string());
   if (std::ranges::find(kKinds, extension) == kKinds.end()) {
-    return fail(fmt::format("{} is no mesh file", file.filename().string()),
+    return fail(fmt::format("{} is not a mesh file", file.filename().string()),
                 "meshes are .stl, .obj, .dae, .ply, .gltf or .glb");
   }
   std::error_code error;

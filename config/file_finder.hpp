@@ -13,14 +13,14 @@
 
 namespace cellmirror {
 
-// What a name is the name of; it decides in which folders of the home it is looked for.
+// The kind of a file name; it determines the folders of the cell folder that are searched.
 enum class FileUse {
   component,    // .mpc in envlib/, .urdf in robots/
   mesh,         // of a component: envlib/
   description,  // EDS, DCF, DBC: robots/
   script,       // scripts/
-  log,          // candump logs: the home itself
-  layout,       // .lay: the home itself
+  log,          // candump logs: the cell folder itself
+  layout,       // .lay: the cell folder itself
 };
 
 class FileFinder {
@@ -28,8 +28,8 @@ class FileFinder {
   virtual ~FileFinder() = default;
   // The absolute path of a regular, readable file.
   [[nodiscard]] virtual Result<std::filesystem::path> find(FileUse use, std::string_view name) const = 0;
-  // A mesh that the URDF at `urdf` names: "package://NAME/PATH", "file://PATH" or a path relative to the URDF. It must
-  // lie in the home, or in the URDF's own folder where that is outside.
+  // A mesh named by the URDF at `urdf`: "package://NAME/PATH", "file://PATH" or a path relative to the URDF. It must be
+  // in the cell folder, or in the URDF's own folder if that is outside.
   [[nodiscard]] virtual Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
                                                                         std::string_view name) const = 0;
   // What is in a mesh file that was found: nothing here, where no files are read. `collide_as`: what the shape itself
@@ -61,7 +61,7 @@ class HomeFiles final : public FileFinder {
   std::shared_ptr<MeshLibrary> meshes_;
 };
 
-// The same files; meshes that do not say themselves what stands for them in collision tests are taken as told here.
+// The same files; meshes without their own collide_as use this one.
 class FilesWithMeshesAs final : public FileFinder {
  public:
   FilesWithMeshesAs(const FileFinder& files, CollideAs collide_as) : files_(files), collide_as_(collide_as) {}
@@ -92,7 +92,7 @@ class AnyFile final : public FileFinder {
 };
 
 // A mesh file by its name: STL, OBJ, DAE, PLY, glTF or GLB, and neither empty nor larger than kLargestMesh (2,000,000
-// triangles of binary STL). Its content is not looked at.
+// triangles of binary STL). Its content is not read.
 inline constexpr std::size_t kLargestMesh = 128UL << 20U;
 [[nodiscard]] Result<void> check_mesh(const std::filesystem::path& file);
 

@@ -25,13 +25,14 @@ FootSwitchSettings read_foot_switches(TableReader& top) {
     if (const auto mode = octal(*text)) {
       settings.mode = *mode;
     } else {
-      table->error("mode", fmt::format("mode \"{}\" is no permission", printable(*text)), "write e.g. mode = \"0660\"");
+      table->error("mode", fmt::format("mode \"{}\" is not a valid mode", printable(*text)),
+                   "write e.g. mode = \"0660\"");
     }
   }
   settings.debounce = read_seconds(*table, "debounce_s", kLongestDebounce, true).value_or(settings.debounce);
   settings.online = table->boolean("online").value_or(settings.online);
   if (settings.online && !settings.key && !table->has("key"))
-    table->error("online", "online without a key: there is no memory to look at", "add a key, or go online by BIN_ELA");
+    table->error("online", "online without a key: there is no memory to read", "add a key, or go online by BIN_ELA");
   table->finish();
   return settings;
 }

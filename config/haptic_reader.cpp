@@ -55,7 +55,7 @@ void read_rendering(TableReader& reader, HapticSettings& settings) {
   const auto dynamic = reader.number("dynamic_friction", kFriction);
   settings.dynamic_friction = dynamic.value_or(std::min(settings.dynamic_friction, settings.static_friction));
   if (dynamic && *dynamic > settings.static_friction) {
-    reader.error("dynamic_friction", "what slides would be held better than what sticks",
+    reader.error("dynamic_friction", "sliding friction above static friction",
                  "dynamic_friction is at most static_friction");
   }
   settings.max_force = reader.number("max_force_n", kForce).value_or(settings.max_force);
@@ -86,7 +86,7 @@ void read_memory(TableReader& reader, RobotHaptic& haptic) {
     if (const auto bits = octal(*mode)) {
       haptic.mode = *bits;
     } else {
-      reader.error("shm_mode", fmt::format("shm_mode \"{}\" is no permission", printable(*mode)),
+      reader.error("shm_mode", fmt::format("shm_mode \"{}\" is not a valid mode", printable(*mode)),
                    "write e.g. shm_mode = \"0660\"");
     }
   }

@@ -34,7 +34,7 @@ void read_axis(TableReader& reader, JointDefinition& joint) {
   const auto axis = reader.vector3("axis");
   if (!axis) return;
   constexpr double kShortest = 1e-6;
-  if (axis->norm() < kShortest) return reader.error("axis", "axis has no direction", "give e.g. axis = [0, 0, 1]");
+  if (axis->norm() < kShortest) return reader.error("axis", "the axis has length zero", "give e.g. axis = [0, 0, 1]");
   joint.axis = axis->normalized();
 }
 

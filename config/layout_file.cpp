@@ -40,7 +40,7 @@ void read_view(TableReader& table, DisplayLayout& layout, std::vector<int>& befo
   if (const auto from = table.vector3("seen_from", kDirection)) {
     view.towards_viewer = *from;
     if (from->norm() < kShortestDirection)
-      table.error("seen_from", "seen_from points nowhere", "e.g. seen_from = [0, 0, 1] looks down from above");
+      table.error("seen_from", "seen_from has length zero", "e.g. seen_from = [0, 0, 1] looks down from above");
   }
   view.orthogonal =
       table.choice<bool>("projection", {{"perspective", false}, {"parallel", true}}).value_or(view.orthogonal);
@@ -61,8 +61,8 @@ bool read_area(TableReader& table, LayoutPane& pane) {
   pane.width = (*area)[2];
   pane.height = (*area)[3];
   if (pane.width < kSmallestPane || pane.height < kSmallestPane) {
-    table.error("area", fmt::format("a pane of {:g} by {:g} is too small to see anything", pane.width, pane.height),
-                fmt::format("width and height are parts of the picture, at least {:g}", kSmallestPane));
+    table.error("area", fmt::format("a pane of {:g} by {:g} is too small", pane.width, pane.height),
+                fmt::format("width and height are fractions of the picture, at least {:g}", kSmallestPane));
     return false;
   }
   if (pane.left + pane.width > 1.0 + kPaneTolerance || pane.top + pane.height > 1.0 + kPaneTolerance) {
@@ -70,7 +70,7 @@ bool read_area(TableReader& table, LayoutPane& pane) {
         "area",
         fmt::format("the pane ends at {:g} to the right and {:g} below, out of the picture", pane.left + pane.width,
                     pane.top + pane.height),
-        "area = [left, top, width, height], in parts of the picture: left + width and top + height are 1 at most");
+        "area = [left, top, width, height], in fractions of the picture: left + width and top + height are at most 1");
     return false;
   }
   return true;
@@ -99,7 +99,7 @@ void compare(const TableReader& table, const std::vector<ReadPane>& before, cons
     if (pane.view && other.view == pane.view)
       table.error("view", fmt::format("view {} is in pane {} already", *pane.view, other.number));
     if (pane.area && other.area && overlap(*other.area, *pane.area))
-      table.error("area", fmt::format("the pane lies over pane {}", other.number));
+      table.error("area", fmt::format("the pane overlaps pane {}", other.number));
   }
 }
 
@@ -120,7 +120,7 @@ void read_display(TableReader& table, DisplayLayout& layout, std::vector<int>& b
     display.panes.clear();
     for (const ReadPane& pane : panes) display.panes.push_back(pane.area.value_or(LayoutPane{}));
     if (panes.empty() && table.diagnostics().errors() == errors)
-      table.error("pane", "there are no panes in it", "leave the key out for those of the standard setting");
+      table.error("pane", "it has no panes", "omit the key for those of the standard setting");
   }
   table.finish();
 }
@@ -134,7 +134,7 @@ std::optional<DisplayLayout> parse_layout(std::string_view text, const std::stri
     std::vector<int> displays;
     for (TableReader& row : top.tables("display", kDisplays)) read_display(row, layout, displays);
     if (!top.has("view") && !top.has("display"))
-      top.error({}, "there are no views and no displays in it", "docs/cell-files.md shows [[view]] and [[display]]");
+      top.error({}, "it has no views and no displays", "docs/cell-files.md shows [[view]] and [[display]]");
   });
 }
 

@@ -25,7 +25,7 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// Binary STL is told from ASCII by its size alone: files of both kinds begin with "solid".
+// Binary STL is distinguished from ASCII by its size alone: files of both kinds begin with "solid".
 Result<void> check_stl(std::string_view bytes) {
   const bool looks_ascii = bytes.starts_with("solid");
   if (bytes.size() >= kStlHeader) {
@@ -37,12 +37,12 @@ Result<void> check_stl(std::string_view bytes) {
     if (bytes.size() == wanted) return {};
     if (!looks_ascii) {
       return fail(
-          fmt::format("it is no STL: {} triangles make {} bytes, but there are {}", count, wanted, bytes.size()),
-          "export it anew");
+          fmt::format("it is not an STL file: {} triangles need {} bytes, but it has {}", count, wanted, bytes.size()),
+          "export it again");
     }
   }
-  if (!looks_ascii) return fail("it is no STL");
-  if (bytes.find("facet") == std::string_view::npos) return fail("there are no facets in it");
+  if (!looks_ascii) return fail("it is not an STL file");
+  if (bytes.find("facet") == std::string_view::npos) return fail("it has no facets");
   return {};
 }
 
@@ -75,7 +75,7 @@ bool is_ply_line(const std::vector<std::string_view>& words) {
   return words.size() == 5 && words[1] == "list" && is_ply_type(words[2]) && is_ply_type(words[3]);
 }
 
-// The header line by line: assimp believes its counts, and looks for its end for ever where it is damaged.
+// The header line by line: assimp trusts its counts, and searches its end forever if it is damaged.
 Result<void> check_ply(std::string_view bytes) {
   constexpr int kMostLines = 1000;
   std::size_t at = 0;
@@ -85,18 +85,19 @@ Result<void> check_ply(std::string_view bytes) {
     std::string_view line = bytes.substr(at, end - at);
     if (line.ends_with('\r')) line.remove_suffix(1);
     at = end + 1;
-    if (number == 1 && line != "ply") return fail("it is no PLY");
+    if (number == 1 && line != "ply") return fail("it is not a PLY file");
     if (number == 1) continue;
     if (line == "end_header") return {};
     const auto words = words_of(line);
-    if (!is_ply_line(words)) return fail(fmt::format("line {} of its header is faulty", number), "export it anew");
+    if (!is_ply_line(words)) return fail(fmt::format("line {} of its header is faulty", number), "export it again");
     if (words[0] != "element") continue;
-    // Every element takes at least a byte, so none can stand more often than there are bytes.
+    // Every element takes at least a byte, so their number is bounded by the bytes.
     const auto count = parse_integer(words[2]);
     if (!count || *count < 0 || static_cast<std::size_t>(*count) > bytes.size())
-      return fail(fmt::format("it has fewer elements {} than its header says", printable(words[1])), "export it anew");
+      return fail(fmt::format("it has fewer elements {} than declared in its header", printable(words[1])),
+                  "export it again");
   }
-  return fail("its header does not end", "export it anew");
+  return fail("its header does not end", "export it again");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace cellmirror {
 [[nodiscard]] Result<void> check_gltf(std::string_view text);
 [[nodiscard]] Result<void> check_glb(std::string_view bytes);
 
-// The files that a glTF names as its buffers, each once, as they stand there; only .bin, and at most `most`.
+// The buffer files named by a glTF, each once, verbatim; only .bin, and at most `most`.
 [[nodiscard]] std::vector<std::string> gltf_buffer_files(std::string_view text, std::size_t most);
 
 }  // namespace cellmirror

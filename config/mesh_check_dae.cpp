@@ -36,7 +36,7 @@ bool holds_numbers(std::string_view text, bool whole) {
 }
 
 Error fault_at(const XMLElement& element, const char* what) {
-  return {fmt::format("<{}> in line {} {}", printable(element.Name()), element.GetLineNum(), what), "export it anew"};
+  return {fmt::format("<{}> in line {} {}", printable(element.Name()), element.GetLineNum(), what), "export it again"};
 }
 
 // Depth first.
@@ -58,7 +58,7 @@ Result<void> check_element(const XMLElement& element, std::size_t bytes) {
   const bool whole = std::ranges::find(kWhole, name) != kWhole.end();
   const auto fault = [&](const char* what) { return std::unexpected(fault_at(element, what)); };
   // Its indices of joints and weights are used unseen, and what is rigid needs none.
-  if (name == "skin") return fault("bends a mesh by a skeleton, and those of a cell are rigid");
+  if (name == "skin") return fault("skins a mesh to a skeleton, but meshes of a cell are rigid");
   if (whole || std::ranges::find(kNumbers, name) != kNumbers.end()) {
     for (const tinyxml2::XMLNode* child = element.FirstChild(); child != nullptr; child = child->NextSibling()) {
       if (child->ToComment() != nullptr) continue;
@@ -70,7 +70,8 @@ Result<void> check_element(const XMLElement& element, std::size_t bytes) {
     const char* text = element.Attribute(attribute);
     if (text == nullptr) continue;
     const auto value = parse_integer(text);
-    if (!value || *value < 0 || static_cast<std::size_t>(*value) > bytes) return fault("counts more than there is");
+    if (!value || *value < 0 || static_cast<std::size_t>(*value) > bytes)
+      return fault("declares more elements than it has");
   }
   return {};
 }
@@ -149,7 +150,7 @@ class Arrays {
       for_each_around(*at, "mesh", [&](const XMLElement&) { in_mesh = true; });
       const std::string source = text_of(*at, "source");
       if (in_mesh && (!with_numbers_.contains(source) || without_.contains(source)))
-        return std::unexpected(fault_at(*at, "names no numbers"));
+        return std::unexpected(fault_at(*at, "refers to no numbers"));
     }
     return {};
   }
@@ -209,12 +210,13 @@ class Arrays {
 Result<void> check_dae(std::string_view bytes) {
   tinyxml2::XMLDocument document;
   if (document.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-    return fail(fmt::format("it is no XML: {}", printable(document.ErrorName())), "export it anew");
+    return fail(fmt::format("it is not XML: {}", printable(document.ErrorName())), "export it again");
   const XMLElement& root = *document.RootElement();
   for (const XMLElement* at = &root; at != nullptr; at = next_element(*at)) {
     if (auto checked = check_element(*at, bytes.size()); !checked) return checked;
   }
-  if (!NodeCount(root).is_bounded(root)) return fail("its nodes show themselves, or are too many", "export it anew");
+  if (!NodeCount(root).is_bounded(root))
+    return fail("its nodes instantiate themselves, or are too many", "export it again");
   return Arrays(root).check(root);
 }
 

@@ -19,16 +19,16 @@ class GltfCheck {
   explicit GltfCheck(const nlohmann::json& json) : json_(json) {}
 
   [[nodiscard]] Result<void> run() const {
-    if (!json_.is_object()) return fail("it is no glTF");
-    if (!counts_are_bounded(json_)) return fail("it counts more than can be there", "export it anew");
-    if (!nodes_are_trees()) return fail("its nodes form a circle, or a node is not there", "export it anew");
+    if (!json_.is_object()) return fail("it is not a glTF file");
+    if (!counts_are_bounded(json_)) return fail("its counts exceed its size", "export it again");
+    if (!nodes_are_trees()) return fail("its nodes form a loop, or a node is missing", "export it again");
     if (!meshes_are_bounded()) {
-      return fail(fmt::format("its meshes name accessors that are not there, or have more than {} triangles",
+      return fail(fmt::format("its meshes refer to missing accessors, or have more than {} triangles",
                               geometry::kMostTriangles),
                   "reduce the mesh");
     }
     if (!pictures_are_bounded())
-      return fail("its pictures have more bytes together than a mesh may have", "have its images share no bytes");
+      return fail("its textures together exceed the size limit of a mesh", "give each image its own bytes");
     return {};
   }
 
@@ -55,7 +55,7 @@ class GltfCheck {
     return true;
   }
 
-  // Each node has one parent at most, and hangs on one that has none.
+  // Each node has at most one parent, and is connected to a root.
   [[nodiscard]] bool nodes_are_trees() const {
     const auto& nodes = list("nodes");
     std::vector<int> parents(nodes.size());
@@ -132,7 +132,7 @@ class GltfCheck {
 
 Result<void> check_gltf(std::string_view text) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (json.is_discarded()) return fail("its JSON is faulty", "export it anew");
+  if (json.is_discarded()) return fail("its JSON is faulty", "export it again");
   return GltfCheck(json).run();
 }
 
@@ -144,16 +144,15 @@ Result<void> check_glb(std::string_view bytes) {
     return std::size_t{value};
   };
   if (bytes.size() < kHeader || !bytes.starts_with("glTF") || bytes.substr(16, 4) != "JSON")
-    return fail("it is no GLB of version 2");
-  if (number(4) != 2 || number(8) != bytes.size())
-    return fail("its length is not what its header says", "export it anew");
+    return fail("it is not a GLB of version 2");
+  if (number(4) != 2 || number(8) != bytes.size()) return fail("its length differs from its header", "export it again");
   const std::size_t length = number(12);
-  if (length > bytes.size() - kHeader) return fail("its JSON reaches beyond its end", "export it anew");
+  if (length > bytes.size() - kHeader) return fail("its JSON reaches beyond its end", "export it again");
   constexpr std::size_t kChunkHeader = 8;
   const std::size_t rest = bytes.size() - kHeader - length;
   const std::size_t chunk = kHeader + length;
   if (rest > 0 && (rest < kChunkHeader || number(chunk) > rest - kChunkHeader))
-    return fail("its buffer reaches beyond its end", "export it anew");
+    return fail("its buffer reaches beyond its end", "export it again");
   return check_gltf(bytes.substr(kHeader, length));
 }
 

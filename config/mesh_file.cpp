@@ -27,8 +27,8 @@ constexpr std::array<std::string_view, 6> kFormats{".stl", ".obj", ".dae", ".ply
 // STL has no colours that two programs would agree on.
 bool may_have_looks(std::string_view extension) { return extension != ".stl"; }
 
-// The buffers beside a glTF. The reader alone knows which of them it takes: one that cannot be had counts only where
-// the mesh cannot be read.
+// The buffers beside a glTF. The reader alone knows which of them it takes: a missing one counts only if the mesh
+// cannot be read.
 struct Buffers {
   std::vector<std::pair<std::string, std::string>> found;
   std::string refusal;
@@ -69,7 +69,7 @@ Result<std::string> read_neighbour(const fs::path& folder, const std::string& na
   const fs::path wanted = fs::weakly_canonical(folder / name, error);
   const fs::path relative = error ? fs::path("..") : wanted.lexically_relative(folder);
   if (relative.empty() || *relative.begin() == ".." || !fs::is_regular_file(wanted, error))
-    return fail(fmt::format("its buffer {} is not there", printable(name)));
+    return fail(fmt::format("its buffer {} is missing", printable(name)));
   return read_text_file(wanted, kLargestMesh);
 }
 
@@ -82,7 +82,7 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extensi
   const auto refuse = [&](const Error& error) {
     return fail(fmt::format("the mesh {} is refused: {}", name, error.what), error.remedy);
   };
-  if (std::ranges::find(kFormats, extension) == kFormats.end()) return refuse({"its kind is not known", {}});
+  if (std::ranges::find(kFormats, extension) == kFormats.end()) return refuse({"its kind is unknown", {}});
   if (auto checked = check_mesh_bytes(bytes, extension); !checked) return refuse(checked.error());
   LookRequest* const wanted = may_have_looks(extension) ? looks : nullptr;
   auto polygons = polygons_of(bytes, extension, scale, neighbours, wanted != nullptr);

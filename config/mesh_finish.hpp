@@ -1,4 +1,4 @@
-// From what the reader of a mesh found to the mesh and its look. Private to this folder; takes memory, any thread.
+// Converts the reader's result to the mesh and its appearance. Private to this folder; allocates, any thread.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace cellmirror {
 
-// What parse_mesh() does after reading. `polygons` as decode_mesh_answer() gives them, with looks where `looks` is not
-// null; `bytes` and `extension` of the mesh file.
+// Second part of parse_mesh(). `polygons` from decode_mesh_answer(), with appearance if `looks` is not null; `bytes`
+// and `extension` of the mesh file.
 [[nodiscard]] Result<geometry::TriangleMesh> finish_mesh(ScenePolygons polygons, std::string_view bytes,
                                                          std::string_view extension, const std::string& name,
                                                          geometry::MeshFindings& findings, LookRequest* looks);

@@ -26,7 +26,7 @@ void tell_findings(const TriangleMesh& mesh, const MeshFindings& findings, const
   if (all.empty()) return;
   const bool lost = findings.lost_lines > 0;
   diagnostics.add({lost ? Severity::warning : Severity::note, place, fmt::format("the mesh {}: {}", mesh.name, all),
-                   lost ? "repair it where it was made" : "it was repaired when it was read"});
+                   lost ? "repair it in the program that made it" : "it was repaired while reading"});
 }
 
 void tell_left_out(const TriangleMesh& mesh, const LookRequest& looks, const Place& place, Diagnostics& diagnostics) {

@@ -37,15 +37,15 @@ class MeshLibrary {
   // Where a picture or a material file is that the mesh names.
   using Beside = std::function<Result<std::filesystem::path>(const std::string& name)>;
 
-  // Reads the file unless somebody still uses it, and its look where it has one, with that scale. Notes and warnings
-  // about what was found in it go to `diagnostics` at `place`, once each time it is read.
+  // Reads the file, and its appearance if it has one, with that scale, unless it is still in use. Notes and warnings go
+  // to `diagnostics` at `place`, once each time it is read.
   Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale, CollideAs collide_as,
                              const Beside& beside, const Place& place, Diagnostics& diagnostics);
 
   // For progress. While counting, mesh() reads nothing and gives nothing, but counts the files that it would read.
   void count_only(bool counting) { counting_ = counting; }
   [[nodiscard]] std::size_t counted() const { return counted_; }
-  // `reading` is called before each file that is read. Empty: nobody is told.
+  // `reading` is called before each file that is read. May be empty.
   using Reading = std::function<void(const std::filesystem::path& file)>;
   void tell(Reading reading) { reading_ = std::move(reading); }
   void about_to_read(const std::filesystem::path& file) const {
@@ -56,7 +56,7 @@ class MeshLibrary {
   using Pieces = std::vector<std::shared_ptr<const geometry::TriangleMesh>>;
   struct Entry {
     std::weak_ptr<const geometry::TriangleMesh> mesh;
-    // May be gone before the mesh: who only computes with the shape keeps no look.
+    // May be released before the mesh: users of the shape alone keep no appearance.
     std::weak_ptr<const MeshLook> look;
     bool had_look = false;
     // By kind: only while the pieces are used.

@@ -18,7 +18,7 @@ namespace {
 
 void leave_out(LookRequest& request, std::string what, std::string remedy) {
   if (request.left_out.size() < LookRequest::kMostLeftOut)
-    request.left_out.push_back({std::move(what), remedy.empty() ? "it is drawn without" : std::move(remedy)});
+    request.left_out.push_back({std::move(what), remedy.empty() ? "it is drawn without it" : std::move(remedy)});
 }
 
 // The share of each corner of a triangle in the point p of its plane.
@@ -28,7 +28,7 @@ Eigen::Vector3d shares(const std::array<Eigen::Vector3d, 3>& t, const Eigen::Vec
   const auto nearest = std::ranges::min_element(distances) - distances.begin();
   Eigen::Vector3d at_corner = Eigen::Vector3d::Zero();
   at_corner[nearest] = 1.0;
-  // Corners were moved by welding, at most: their places stay exactly as they stand in the file.
+  // Corners were moved by welding, at most: their texture coordinates stay exactly as in the file.
   constexpr double kSamePlace = 1e-6;
   const Eigen::Vector3d u = t[1] - t[0];
   const Eigen::Vector3d v = t[2] - t[0];
@@ -54,14 +54,14 @@ std::string decoded(const std::string& text) {
   return out;
 }
 
-// Null where it cannot be had, which is told.
+// Null if it is not available, which is reported.
 Picture load_picture(const SceneMaterial& from, const ScenePolygons& polygons, LookRequest& request) {
   std::string name = from.embedded ? "in the file" : from.picture;
   std::ranges::replace(name, '\\', '/');
   auto picture = from.embedded ? request.embedded(polygons.embedded[*from.embedded]) : request.picture(name);
   if (picture) return std::move(*picture);
   const std::string place = from.place.empty() ? "" : fmt::format(" ({})", from.place);
-  leave_out(request, fmt::format("its picture {}{}: {}", printable(name), place, picture.error().what),
+  leave_out(request, fmt::format("its texture {}{}: {}", printable(name), place, picture.error().what),
             picture.error().remedy);
   return nullptr;
 }

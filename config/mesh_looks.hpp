@@ -1,5 +1,4 @@
-// The look of a mesh: the pictures and colours that its file gives it, laid over the triangles that are left after
-// repair. Private to this folder.
+// Appearance of a mesh: textures and colours of its file, mapped to the triangles after repair. Private to this folder.
 #pragma once
 
 #include <functional>
@@ -14,7 +13,7 @@
 
 namespace cellmirror {
 
-// What parse_mesh() is given where a look is wanted, and what it hands back.
+// Input and output of parse_mesh() for the appearance.
 struct LookRequest {
   // Text that the mesh names beside itself (MTL), a picture by its name in the mesh, and one by its bytes.
   std::function<Result<std::string>(const std::string& name)> text;

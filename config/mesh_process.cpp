@@ -27,7 +27,7 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-constexpr const char* kExportAnew = "export it anew";
+constexpr const char* kExportAnew = "export it again";
 
 // A process that was started here; ended and collected at the latest when this goes.
 class Child {
@@ -37,8 +37,8 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Its status as waitpid() gives it; none where somebody else collected it. One that is ending by itself keeps the
-  // status of that: the kernel ignores signals to it.
+  // Its status as waitpid() gives it; none if another call has collected it. A process that is already ending keeps its
+  // status: the kernel ignores signals to it.
   std::optional<int> end() {
     if (id_ <= 0) return std::nullopt;
     kill(id_, SIGKILL);
@@ -102,7 +102,7 @@ class Outgoing {
  public:
   explicit Outgoing(const std::vector<std::string_view>& parts) : parts_(parts.begin(), parts.end()) {}
   [[nodiscard]] bool empty() const { return parts_.empty(); }
-  // As much as goes without waiting. False where nobody reads any more.
+  // As much as possible without waiting. False if there is no reader any more.
   bool send_some(int fd) {
     std::array<iovec, 16> vectors{};
     std::size_t count = 0;
@@ -158,21 +158,21 @@ std::string seconds(std::chrono::milliseconds time) {
 
 std::unexpected<Error> took_too_long(const std::string& time) {
   return fail(fmt::format("it cannot be read: its reader took more than {}", time),
-              "reduce the mesh, or export it anew");
+              "reduce the mesh, or export it again");
 }
 
 // Why there is no answer.
 std::unexpected<Error> why_ended(std::optional<int> status) {
   if (status && WIFSIGNALED(*status)) {
     const int signal = WTERMSIG(*status);
-    if (signal == SIGXCPU) return took_too_long("60 s of processor time");
+    if (signal == SIGXCPU) return took_too_long("60 s of CPU time");
     const char* known = sigabbrev_np(signal);
     const std::string name = known != nullptr ? fmt::format("{} (SIG{})", signal, known) : std::to_string(signal);
     if (signal == SIGKILL)
       return fail(
-          fmt::format("it cannot be read: its reader was ended with signal {}, as a system does that is out of memory",
+          fmt::format("it cannot be read: its reader was ended with signal {}, as by a system that is out of memory",
                       name),
-          "reduce the mesh, or have other programs leave more memory");
+          "reduce the mesh, or free memory of other programs");
     return fail(fmt::format("it cannot be read: its reader ended with signal {}: the file is damaged", name),
                 kExportAnew);
   }
@@ -186,7 +186,7 @@ std::unexpected<Error> why_ended(std::optional<int> status) {
 
 Error not_started(const MeshReader& reader, int error) {
   return {fmt::format("{} cannot be started: {}", reader.program.string(), std::strerror(error)),
-          "install it where cellmirror is: it is built with it"};
+          "install it beside cellmirror; both are built together"};
 }
 
 }  // namespace
@@ -226,7 +226,7 @@ Result<ScenePolygons> read_mesh_apart(const MeshRequest& request, const MeshRead
   const std::optional<int> status = child.end();
   if (talked == Talk::too_late) return took_too_long(seconds(reader.longest));
   if (talked == Talk::too_long)
-    return fail(fmt::format("it cannot be read: its reader found more than {} MiB in it", reader.most_bytes >> 20U),
+    return fail(fmt::format("it cannot be read: it contains more than {} MiB", reader.most_bytes >> 20U),
                 "reduce the mesh");
   if (auto polygons = decode_mesh_answer(answer, request.with_looks)) return std::move(*polygons);
   return why_ended(status);

@@ -25,8 +25,8 @@ struct MeshReader {
 // Why it could not be started, without starting it: for `cellmirror doctor`.
 [[nodiscard]] Result<void> check_mesh_reader(const MeshReader& reader = installed_mesh_reader());
 
-// Nothing of what is found is believed: see decode_mesh_answer(). Leaves neither a process nor a descriptor behind.
-// Errors are parts of sentences: "its reader ended with signal 11 (SIGSEGV): the file is damaged".
+// The result is untrusted: see decode_mesh_answer(). Leaves neither a process nor a descriptor behind. Errors are parts
+// of sentences: "its reader ended with signal 11 (SIGSEGV): the file is damaged".
 [[nodiscard]] Result<ScenePolygons> read_mesh_apart(const MeshRequest& request,
                                                     const MeshReader& reader = installed_mesh_reader());
 

@@ -39,8 +39,8 @@ int NodeReader::find(const TableReader& reader, std::string_view key, std::strin
   for (const auto& [name, nodes] : by_name_) names.push_back(name);
   std::ranges::sort(names);
   const std::string near = did_you_mean(last, names);
-  reader.error(key, fmt::format("{} \"{}\" is no node of this file above here", key, printable(wanted)),
-               near.empty() ? "a node stands after the nodes that it names" : near);
+  reader.error(key, fmt::format("{} \"{}\" is not a node of this file above this one", key, printable(wanted)),
+               near.empty() ? "a node must come after the nodes that it names" : near);
   return -1;
 }
 
@@ -54,7 +54,7 @@ SensorDefinition read_sensor(TableReader& table) {
       table.number("half_angle_rad", {0.0, kRightAngle, true, true}).value_or(sensor.half_angle_rad);
   sensor.blind_zone_m = table.number("blind_zone_m", {0.0, 1e3}).value_or(sensor.blind_zone_m);
   if (sensor.blind_zone_m >= sensor.range_m)
-    table.error("blind_zone_m", "the blind zone reaches as far as the range of the sensor");
+    table.error("blind_zone_m", "the blind zone is not smaller than the range of the sensor");
   sensor.active = table.boolean("active").value_or(sensor.active);
   sensor.max_incidence_rad =
       table.number("max_incidence_rad", {0.0, kRightAngle, true}).value_or(sensor.max_incidence_rad);
@@ -153,7 +153,7 @@ void NodeReader::read(TableReader& reader) {
   const bool twice = std::ranges::any_of(
       same_name, [&](int other) { return component_.nodes[static_cast<std::size_t>(other)].parent == node.parent; });
   if (twice) {
-    reader.error("name", fmt::format("there is another node {} in the same place", node.name), "rename one of them");
+    reader.error("name", fmt::format("there is another node {} with the same parent", node.name), "rename one of them");
     return;
   }
   same_name.push_back(static_cast<int>(component_.nodes.size()));
@@ -168,9 +168,9 @@ void NodeReader::finish(Diagnostics& diagnostics) const {
           return node.parent == parent && node.name == name && node.abstract.has_value();
         });
         if (!known)
-          diagnostics.error(
-              {component_.file, geometry.line, geometry.column},
-              fmt::format("stands_for names {}, which is no node with an ABSTRACT file below here", printable(name)));
+          diagnostics.error({component_.file, geometry.line, geometry.column},
+                            fmt::format("stands_for names {}, which is not a node with an ABSTRACT file below this one",
+                                        printable(name)));
       }
     }
   };
@@ -190,7 +190,7 @@ void NodeReader::check_coarse(const ComponentNode& node, const Place& place, Dia
   });
   if (!stood_for)
     diagnostics.error(
-        place, fmt::format("node {} cannot be shown coarsely: no geometry of its father stands for it", node.name),
+        place, fmt::format("node {} cannot be shown coarsely: it has no stands_for geometry of its father", node.name),
         fmt::format("give one stands_for = [\"{}\"]", node.name));
 }
 

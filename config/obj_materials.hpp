@@ -1,5 +1,4 @@
-// What an OBJ's material files (.mtl) say of colours. Read by ourselves: assimp's reader is not asked to open them.
-// Private to this folder.
+// Colours and textures of an OBJ's material files (.mtl). Read by our own code, not by assimp. Private to this folder.
 #pragma once
 
 #include <array>

@@ -19,13 +19,13 @@ inline constexpr std::size_t kLargestText = 16UL << 20U;  // bytes of a cell, co
 // What could be understood, even where there are findings; nothing where the text is no TOML or XML at all.
 [[nodiscard]] std::optional<Component> parse_component(std::string_view text, const std::string& file,
                                                        const FileFinder& files, Diagnostics& diagnostics);
-// `path` is where the URDF lies, for its meshes.
+// `path` is the path of the URDF, for its meshes.
 [[nodiscard]] std::optional<Component> parse_urdf(std::string_view text, const std::string& file,
                                                   const std::filesystem::path& path, const FileFinder& files,
                                                   Diagnostics& diagnostics);
 
-// The same of what lies on the way from the root to two links, without bodies: a robot of which only this is to be used
-// may have more joints than the capacities, and mistakes elsewhere. Speeds and efforts may be missing.
+// The same for the chains from the root to two links, without bodies: the rest of the robot may exceed the capacities
+// and have errors. Speeds and efforts may be missing.
 [[nodiscard]] std::optional<Component> parse_urdf_between(std::string_view text, const std::string& file,
                                                           std::string_view base, std::string_view tip,
                                                           Diagnostics& diagnostics);

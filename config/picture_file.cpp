@@ -23,9 +23,9 @@ Result<Image> sized(std::uint64_t width, std::uint64_t height, std::size_t& room
   }
   const std::size_t size = 4 * static_cast<std::size_t>(width * height);
   if (size > room) {
-    return fail(fmt::format("with its {} x {} pixels the cell's pictures would take more than {} MiB", width, height,
+    return fail(fmt::format("with its {} x {} pixels the cell's textures would need more than {} MiB", width, height,
                             kMostPictureBytes >> 20U),
-                "make them smaller, or have meshes share them");
+                "make them smaller, or share them between meshes");
   }
   room -= size;
   Image picture;
@@ -36,7 +36,7 @@ Result<Image> sized(std::uint64_t width, std::uint64_t height, std::size_t& room
 }
 
 Error damaged(const char* reason) {
-  return {fmt::format("it is damaged: {}", printable(std::string(reason))), "export it anew"};
+  return {fmt::format("it is damaged: {}", printable(std::string(reason))), "export it again"};
 }
 
 // By libpng's simplified interface: no longjmp gets out of it, chunks beside the pixels are bounded to 8 MB.
@@ -64,11 +64,11 @@ Result<Image> decode_jpeg(std::string_view bytes, std::size_t& room) {
   int colours = 0;
   if (tjDecompressHeader3(jpeg.get(), data, bytes.size(), &width, &height, &sampling, &colours) != 0)
     return std::unexpected(damaged(tjGetErrorStr2(jpeg.get())));
-  if (colours == TJCS_CMYK || colours == TJCS_YCCK) return fail("its colours are those of a printer", "save it as RGB");
+  if (colours == TJCS_CMYK || colours == TJCS_YCCK) return fail("its colours are CMYK", "save it as RGB");
   if (width < 1 || height < 1) return fail("it has no pixels");
   auto picture = sized(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), room);
   if (!picture) return picture;
-  // Limited scans: a small file can ask for hours of work by thousands of them.
+  // Limited scans: a small file with thousands of them could cause hours of work.
   constexpr int kFlags = TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
   if (tjDecompress2(jpeg.get(), data, bytes.size(), picture->rgba.data(), width, 0, height, TJPF_RGBA, kFlags) != 0)
     return std::unexpected(damaged(tjGetErrorStr2(jpeg.get())));
@@ -85,7 +85,7 @@ Result<Image> decode_picture(std::string_view bytes, std::size_t& room) {
     if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(bytes, room);
     if (bytes.starts_with("\xff\xd8\xff")) return decode_jpeg(bytes, room);
   } catch (const std::bad_alloc&) {
-    return fail("there is no memory for it", "make it smaller");
+    return fail("not enough memory", "make it smaller");
   }
   return fail("it is neither PNG nor JPEG", "save it as one of them");
 }

@@ -1,4 +1,4 @@
-// Pictures in files: PNG and JPEG. Nothing of the bytes is believed. Takes memory; any thread. Private to this folder.
+// Pictures in files: PNG and JPEG. The bytes are untrusted. Allocates; any thread. Private to this folder.
 #pragma once
 
 #include <cstddef>

@@ -20,11 +20,11 @@ using Picture = std::shared_ptr<const Image>;
 
 class PictureLibrary {
  public:
-  // Before each mesh. Until the next one no file that failed is opened again, and what was begun and failed counts as
-  // if it were in use: a mesh file cannot ask for more work than kMostPictureBytes of pixels.
+  // Before each mesh. Until the next one no failed file is opened again, and failed ones count as if in use: a mesh
+  // file cannot cause more work than kMostPictureBytes of pixels.
   void begin_mesh();
   Result<Picture> of_file(const std::filesystem::path& file);
-  // One that stands in the mesh file itself.
+  // A texture inside the mesh file.
   Result<Picture> of_bytes(std::string_view bytes);
   // Of those that are in use.
   [[nodiscard]] std::size_t bytes() const;

@@ -10,7 +10,7 @@ enum class PictureRenderer : std::uint8_t { automatic, osmesa, egl };
 struct PictureSettings {
   bool on = true;
   double rate_hz = 20;  // of updates, at most
-  int width = 640;      // where nobody says otherwise
+  int width = 640;      // default
   int height = 480;
   PictureRenderer renderer = PictureRenderer::automatic;
   int threads = 1;  // of a software renderer, beside the one that draws

@@ -17,7 +17,7 @@ constexpr double kRounding = 1e-9;
 
 std::string_view unit_of(JointKind kind) { return kind == JointKind::prismatic ? "m" : "rad"; }
 
-std::string expected() { return "expected: a header of robot.joint columns, then a row of numbers a posture"; }
+std::string expected() { return "expected: a header of robot.joint columns, then one row of numbers per posture"; }
 
 std::size_t skip_blanks(std::string_view line, std::size_t at) {
   return std::min(line.find_first_not_of(" \t", at), line.size());
@@ -40,7 +40,7 @@ void PostureReader::error(int column, std::string message, std::string remedy) {
   diagnostics_.error({file_, line_number_, column}, std::move(message), std::move(remedy));
 }
 
-// The next line of the file without its end, into `line_`. False: there is none, or no more is read.
+// The next line of the file without its end, into `line_`. False: at the end, or if reading has stopped.
 bool PostureReader::next_line() {
   if (ended_) return false;
   line_.clear();
@@ -69,7 +69,7 @@ bool PostureReader::next_line() {
 }
 
 // The same without comments and blank lines. Blank lines between the rows are an error: a row of one empty field looks
-// like one, and frames are told by number.
+// like one, and frames are numbered.
 bool PostureReader::next_content_line() {
   while (next_line()) {
     const std::string_view text = trimmed(line_);
@@ -80,7 +80,7 @@ bool PostureReader::next_content_line() {
     }
     if (blank_line_ != 0 && !columns_.empty())
       diagnostics_.error({file_, blank_line_, 1}, "a blank line between the rows",
-                         "take it out: frames are told by the number of the row");
+                         "remove it: frames are numbered by rows");
     blank_line_ = 0;
     return true;
   }
@@ -110,7 +110,7 @@ bool PostureReader::split() {
       }
       at = skip_blanks(line, at + 1);
       if (at < line.size() && line[at] != ',') {
-        error(static_cast<int>(at) + 1, "text behind the closing quote: " + printable(line.substr(at), 40));
+        error(static_cast<int>(at) + 1, "text after the closing quote: " + printable(line.substr(at), 40));
         return false;
       }
     } else {
@@ -143,7 +143,7 @@ bool PostureReader::find_joint(const std::string& name, Column& column) const {
 
 Error PostureReader::explain_joint(const std::string& name) const {
   const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos) return {printable(name) + " is no robot.joint", example_column(cell_)};
+  if (dot == std::string::npos) return {printable(name) + " is not robot.joint", example_column(cell_)};
   const std::string robot_name = name.substr(0, dot);
   const RobotModel* robot = cell_.robot(robot_name);
   if (robot == nullptr) return cell_.explain_robot(robot_name);
@@ -167,8 +167,8 @@ void PostureReader::read_column(const Field& field) {
   }
   for (const Column& other : columns_) {
     if (other.slot == column.slot && other.joint == column.joint)
-      return error(field.column, fmt::format("{} stands twice", printable(field.text)),
-                   fmt::format("the first time in column {}", other.header_column));
+      return error(field.column, fmt::format("{} appears twice", printable(field.text)),
+                   fmt::format("first in column {}", other.header_column));
   }
   columns_.push_back(std::move(column));
 }
@@ -201,12 +201,13 @@ bool PostureReader::read_value(std::size_t i, double& value) {
   }
   const auto number = parse_number(field.text);
   if (!number) {
-    error(field.column, fmt::format("{} is no finite number: {}", printable(column.name), printable(field.text, 40)));
+    error(field.column,
+          fmt::format("{} is not a finite number: {}", printable(column.name), printable(field.text, 40)));
     return false;
   }
   if (std::abs(*number) > kGreatestJointValue) {
     error(field.column, fmt::format("{} is {:g} {}", printable(column.name), *number, unit_of(column.kind)),
-          fmt::format("values lie within {:g}", kGreatestJointValue));
+          fmt::format("values must be within {:g}", kGreatestJointValue));
     return false;
   }
   value = *number;
@@ -253,7 +254,7 @@ void PostureReader::finish() {
                          fmt::format("{} is {:g} {}, beyond its range {:g} .. {:g}{}", printable(column.name),
                                      column.first_value, unit_of(column.kind), column.lower, column.upper,
                                      column.beyond == 1 ? "" : fmt::format("; so in {} rows", column.beyond)),
-                         "it is computed as it stands");
+                         "it is used as given");
   }
 }
 

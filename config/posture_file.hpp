@@ -23,8 +23,7 @@ inline constexpr double kGreatestJointValue = 1e6;  // rad or m, of either sign
 
 // Accepted: columns in any order; columns for some of the joints only; LF and CRLF; a UTF-8 byte order mark; fields in
 // double quotes; blanks around fields; lines that begin with #; blank lines at the end. Values beyond a joint's range
-// are taken, since a real robot may stand there, and told in a warning a column by finish(). Any bytes are allowed as
-// text.
+// are accepted, since a real robot may be there; finish() gives one warning per column. Any bytes are allowed as text.
 class PostureReader {
  public:
   // `in`, `diagnostics` and `cell` are used until the last call.
@@ -35,7 +34,7 @@ class PostureReader {
   // Writes the columns of the next row into q[slot][joint] and leaves the others as they are. False: there is no
   // further row. A row that is wrong gives its findings, leaves `q` as it is, and counts.
   bool read_row(std::span<JointValues> q);
-  // Tells what concerns the file as a whole: that there is no row, values beyond ranges.
+  // Reports errors of the whole file: no rows, values beyond ranges.
   void finish();
 
   [[nodiscard]] std::uint64_t rows() const { return rows_; }

@@ -23,7 +23,7 @@ void check_mimics(const Component& component, Diagnostics& diagnostics) {
     const std::string& name = node.joint->mimic->joint;
     const bool exists = std::ranges::find(component.nodes, name, &ComponentNode::name) != component.nodes.end();
     diagnostics.error(component.place(node),
-                      exists ? fmt::format("{} mimics {}, which is a mimic itself or no joint", node.name, name)
+                      exists ? fmt::format("{} mimics {}, which is a mimic itself or not a joint", node.name, name)
                              : fmt::format("{} mimics {}, which does not exist", node.name, printable(name)),
                       did_you_mean(name, masters));
   }
@@ -74,7 +74,7 @@ void complete_robot(Component& component, const Place& place, Diagnostics& diagn
   }
   if (robot.joints.empty()) diagnostics.error(place, fmt::format("the robot {} has no joint", robot.id));
   if (!is_above(component, robot.base, robot.flange))
-    diagnostics.error(place, fmt::format("the flange of {} does not hang on its base", robot.id));
+    diagnostics.error(place, fmt::format("the flange of {} is not connected to its base", robot.id));
 }
 
 }  // namespace cellmirror

@@ -58,7 +58,7 @@ StreamAges read_ages(TableReader& reader) {
   const auto lost = read_seconds(reader, "lost_after_s", kLongest, false);
   ages.lost_after = lost.value_or(std::max(ages.lost_after, ages.stale_after));
   if (lost && *lost < ages.stale_after)
-    reader.error("lost_after_s", "a value would be lost before it is stale", "make lost_after_s the larger one");
+    reader.error("lost_after_s", "lost_after_s is less than stale_after_s", "increase lost_after_s");
   return ages;
 }
 
@@ -68,7 +68,8 @@ CanChannelConfig read_channel(TableReader& reader, const FileFinder& files) {
   channel.fd = reader.boolean("fd").value_or(false);
   channel.interface = reader.text("interface").value_or("lo");
   if (!is_interface_name(channel.interface))
-    reader.error("interface", fmt::format("\"{}\" is no name of a network interface", printable(channel.interface)));
+    reader.error("interface",
+                 fmt::format("\"{}\" is not a valid name of a network interface", printable(channel.interface)));
   channel.log_as_fast_as_possible = reader.boolean("log_as_fast_as_possible").value_or(false);
   channel.log_repeat = reader.boolean("log_repeat").value_or(false);
   const auto endpoint = reader.text("channel");
@@ -81,11 +82,11 @@ CanChannelConfig read_channel(TableReader& reader, const FileFinder& files) {
   const bool is_log = kind == "log";
   if (kind == "socketcan") {
     if (!is_interface_name(rest))
-      reader.error("channel", fmt::format("\"{}\" is no name of a CAN interface", printable(rest)),
+      reader.error("channel", fmt::format("\"{}\" is not a valid name of a CAN interface", printable(rest)),
                    "e.g. socketcan:can0");
   } else if (kind == "udp") {
     if (!is_group_and_port(rest))
-      reader.error("channel", fmt::format("\"{}\" is no multicast group and port", printable(rest)),
+      reader.error("channel", fmt::format("\"{}\" is not a multicast group and port", printable(rest)),
                    "e.g. udp:239.74.163.2:43113 or udp:[ff15::1]:43113");
   } else if (is_log) {
     const auto found = files.find(FileUse::log, rest);
@@ -95,7 +96,7 @@ CanChannelConfig read_channel(TableReader& reader, const FileFinder& files) {
       channel.endpoint = "log:" + found->string();
     }
   } else {
-    reader.error("channel", fmt::format("\"{}\" is no channel", printable(*endpoint)),
+    reader.error("channel", fmt::format("\"{}\" is not a channel", printable(*endpoint)),
                  "it is socketcan:INTERFACE, udp:GROUP:PORT or log:FILE");
   }
   for (const char* key : {"log_as_fast_as_possible", "log_repeat"}) {
@@ -108,7 +109,7 @@ std::optional<JointReference> read_joint_reference(TableReader& reader, const Ro
   reader.require("joint");
   const auto name = reader.text("joint");
   if (!name) return std::nullopt;
-  if (robot == nullptr) return std::nullopt;  // the robot is unknown, and that was told
+  if (robot == nullptr) return std::nullopt;  // the robot is unknown, which was reported
   const auto at = std::ranges::find(robot->joint_names, *name);
   if (at == robot->joint_names.end()) {
     std::string remedy = did_you_mean(*name, robot->joint_names);

@@ -42,7 +42,7 @@ Place place_of(const std::string& file, const toml::source_region& region) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-// A unit that people know from data sheets, and ours.
+// A common unit of data sheets, and ours.
 struct Unit {
   std::string_view theirs;
   std::string_view ours;
@@ -91,7 +91,7 @@ void TableReader::refuse_word(std::string_view key, const std::string& word,
 
 bool TableReader::in_range(std::string_view key, double value, Range range) const {
   if (!std::isfinite(value)) {
-    error(key, fmt::format("{} is no finite number", key));
+    error(key, fmt::format("{} is not a finite number", key));
     return false;
   }
   const bool below = range.min_excluded ? value <= range.min : value < range.min;
@@ -129,7 +129,7 @@ std::optional<long long> TableReader::integer(std::string_view key, long long mi
     return std::nullopt;
   }
   if (value->get() < min || value->get() > max) {
-    error(key, fmt::format("{} is {}, but must lie within {} and {}", key, value->get(), min, max));
+    error(key, fmt::format("{} is {}, but must be between {} and {}", key, value->get(), min, max));
     return std::nullopt;
   }
   return value->get();
@@ -156,7 +156,7 @@ std::optional<std::string> TableReader::text(std::string_view key) {
   }
   constexpr std::size_t kLongest = 4096;
   if (value->get().size() > kLongest || value->get().find('\0') != std::string::npos) {
-    error(key, fmt::format("{} is longer than {} bytes or holds a NUL", key, kLongest));
+    error(key, fmt::format("{} is longer than {} bytes or contains a NUL", key, kLongest));
     return std::nullopt;
   }
   return value->get();
@@ -168,7 +168,7 @@ std::optional<std::string> TableReader::name(std::string_view key) {
   const bool plain = std::ranges::all_of(
       *value, [](char c) { return c > ' ' && c < 0x7F && c != '.' && c != ';' && c != '#' && c != '"' && c != '\''; });
   if (!value->empty() && value->size() <= kMaxNameLength && plain) return value;
-  error(key, fmt::format("{} \"{}\" is no name", key, printable(*value)),
+  error(key, fmt::format("{} \"{}\" is not a valid name", key, printable(*value)),
         fmt::format("a name has 1 to {} characters, without blanks, dots, quotes, ; and #", kMaxNameLength));
   return std::nullopt;
 }
@@ -295,7 +295,7 @@ void TableReader::format() {
   require("format");
   const auto version = integer("format", 0, std::numeric_limits<int>::max());
   if (version && *version != 1)
-    error("format", fmt::format("format {} is not known", *version), "this version reads format = 1");
+    error("format", fmt::format("format {} is unknown", *version), "this version reads format = 1");
 }
 
 void TableReader::finish() {
@@ -314,8 +314,8 @@ void TableReader::finish() {
       }
     }
     diagnostics_->error(place_of(*file_, key.source()),
-                        where_.empty() ? fmt::format("the key {} is not known", shown)
-                                       : fmt::format("{}: the key {} is not known", where_, shown),
+                        where_.empty() ? fmt::format("the key {} is unknown", shown)
+                                       : fmt::format("{}: the key {} is unknown", where_, shown),
                         std::move(remedy));
   }
 }

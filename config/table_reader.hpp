@@ -70,7 +70,7 @@ class TableReader {
 
   // The key format: 1 is the only one yet.
   void format();
-  // The keys that were not asked for are errors. Call it last.
+  // Unread keys are errors. Call it last.
   void finish();
 
   // The place of a key's value, or of the table where the key is missing.
@@ -94,7 +94,7 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
-// The table of a TOML text; nothing, with the place of the mistake, where it is none.
+// The table of a TOML text; nothing, with the place of the error, if it is invalid.
 [[nodiscard]] std::optional<toml::table> parse_toml(std::string_view text, const std::string& file,
                                                     Diagnostics& diagnostics);
 

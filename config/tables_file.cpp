@@ -23,7 +23,7 @@ std::optional<int> read_new_id(TableReader& table, int lowest, int highest, cons
   if (!read) return std::nullopt;
   const int id = static_cast<int>(*read);
   if (std::ranges::find(before, id) != before.end()) {
-    table.error("id", fmt::format("{} {} stands twice", what, id));
+    table.error("id", fmt::format("{} {} appears twice", what, id));
     return std::nullopt;
   }
   before.push_back(id);

@@ -52,7 +52,7 @@ class TargetReader {
 
  private:
   static std::string expected() {
-    return fmt::format("expected: the header {}, then a row of seven numbers a target", kTargetHeader);
+    return fmt::format("expected: the header {}, then one row of seven numbers per target", kTargetHeader);
   }
 
   void error(int line, int column, std::string message, std::string remedy = {}) {
@@ -76,7 +76,7 @@ class TargetReader {
     }
   }
 
-  // Whether the line was meant as a header; a row of numbers is none.
+  // Whether the line looks like a header; a row of numbers does not.
   bool read_header(std::string_view line) {
     const std::size_t count = split(line);
     bool same = count == kColumns.size();
@@ -84,7 +84,7 @@ class TargetReader {
     if (same) return true;
     const bool row = parse_number(fields_[0].text).has_value();
     const std::string found = row ? "there is no header" : "this is not the header: " + printable(line);
-    error(line_, 1, found, fmt::format("the first line has to be {}", kTargetHeader));
+    error(line_, 1, found, fmt::format("the first line must be {}", kTargetHeader));
     return !row;
   }
 
@@ -95,8 +95,7 @@ class TargetReader {
       return true;
     }
     if (blank_line_ != 0) {
-      error(blank_line_, 1, "a blank line between the rows",
-            "take it out: solutions are told by the number of the row");
+      error(blank_line_, 1, "a blank line between the rows", "remove it: solutions are numbered by rows");
       blank_line_ = 0;
     }
     if (targets_.size() == kMaxTargets) {
@@ -123,7 +122,7 @@ class TargetReader {
     if (!(std::abs(q.norm() - 1.0) <= kQuaternionSlack)) {
       return error(line_, fields_[kFirstOfQuaternion].column,
                    fmt::format("the quaternion's norm is {:.6g}, not 1", q.norm()),
-                   fmt::format("divide it by its norm; up to {:g} off is done here", kQuaternionSlack));
+                   fmt::format("divide it by its norm; deviations up to {:g} are normalised", kQuaternionSlack));
     }
     Pose X_BG = Pose::Identity();
     X_BG.translation() = Eigen::Vector3d(values[0], values[1], values[2]);
@@ -139,12 +138,12 @@ class TargetReader {
     }
     const auto number = parse_number(field.text);
     if (!number) {
-      error(line_, field.column, fmt::format("{} is no finite number: {}", kColumns[i], printable(field.text, 40)));
+      error(line_, field.column, fmt::format("{} is not a finite number: {}", kColumns[i], printable(field.text, 40)));
       return false;
     }
     if (i < kFirstOfQuaternion && std::abs(*number) > kFarthestTarget) {
       error(line_, field.column, fmt::format("{} is {:g} m away", kColumns[i], *number),
-            fmt::format("targets lie within {:g} m", kFarthestTarget));
+            fmt::format("targets must be within {:g} m", kFarthestTarget));
       return false;
     }
     value = *number;
@@ -165,7 +164,7 @@ std::optional<std::vector<Pose>> parse_targets(std::string_view text, const std:
                                                Diagnostics& diagnostics) {
   Diagnostics found;
   if (text.size() > kLargestTargetFile) {
-    diagnostics.error({file}, fmt::format("{} bytes; {} at most are read", text.size(), kLargestTargetFile));
+    diagnostics.error({file}, fmt::format("{} bytes; at most {} are allowed", text.size(), kLargestTargetFile));
     return std::nullopt;
   }
   std::vector<Pose> targets = TargetReader(file, found).read(text);

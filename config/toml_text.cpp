@@ -11,7 +11,7 @@ namespace cellmirror {
 
 namespace {
 
-// The line of the first table header that begins with no name; 0: there is none.
+// The line of the first table header without a name; 0: none.
 int line_of_faulty_header(std::string_view text) {
   int number = 0;
   while (!text.empty()) {
@@ -36,7 +36,7 @@ std::size_t step_over(std::string_view text, std::size_t at) {
   if (text.substr(at, 3) == three) {
     for (std::size_t i = at + 3; i < text.size(); ++i) {
       if (text.substr(i, 3) == three) return i + 3;
-      // In double quotes the parser looks for blanks after a line that ends in a backslash.
+      // In double quotes the parser skips blanks after a line that ends in a backslash.
       if (c == '"' && static_cast<unsigned char>(text[i]) >= 0x80) return i;
       if (c == '"' && text[i] == '\\') ++i;
     }
@@ -112,12 +112,12 @@ std::optional<Place> place_of_stray_character(std::string_view text, const std::
 
 std::optional<toml::table> parse_toml(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   if (text.find('\0') != std::string_view::npos) {
-    diagnostics.error({file, 0, 0}, "the file holds NUL bytes and is no TOML text");
+    diagnostics.error({file, 0, 0}, "the file contains NUL bytes and is not TOML");
     return std::nullopt;
   }
   if (const auto stray = place_of_stray_character(text, file)) {
-    diagnostics.error(*stray, "a character outside of ASCII stands outside of a text or comment",
-                      "write it in a text between quotes on one line; the rest of the file was not read");
+    diagnostics.error(*stray, "a character outside ASCII is outside a string or comment",
+                      "write it in a quoted string on one line; the rest of the file was not read");
     return std::nullopt;
   }
   const auto refuse = [&](Place place, std::string_view what) {
@@ -130,8 +130,8 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string& 
     return refuse({file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)},
                   error.description());
   } catch (const std::exception&) {
-    // One of the parser's own checks: where a table header begins with no name, it does not look before it takes one.
-    return refuse({file, line_of_faulty_header(text), 0}, "the text is no TOML: a name was expected");
+    // One of the parser's own checks: it does not check whether a table header begins with a name.
+    return refuse({file, line_of_faulty_header(text), 0}, "the text is not TOML: a name was expected");
   }
 }
 

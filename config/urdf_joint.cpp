@@ -29,7 +29,7 @@ void read_axis(const XMLElement& element, const UrdfXml& xml, JointDefinition& j
   if (axis == nullptr) return;
   const Eigen::Vector3d direction = xml.vector3(*axis, "xyz", joint.axis);
   constexpr double kShortest = 1e-6;
-  if (direction.norm() < kShortest) return xml.error(*axis, "the axis has no direction");
+  if (direction.norm() < kShortest) return xml.error(*axis, "the the axis has length zero");
   joint.axis = direction.normalized();
 }
 
@@ -61,7 +61,7 @@ void read_limit(const XMLElement& element, const UrdfXml& xml, JointDefinition& 
   }
   joint.max_velocity = xml.number(*limit, "velocity", !joint.mimic.has_value()).value_or(1.0);
   if (joint.max_velocity <= 0.0) {
-    if (!joint.mimic) xml.warning(*limit, "velocity is not positive", "1 rad/s (m/s) is taken");
+    if (!joint.mimic) xml.warning(*limit, "velocity is not positive", "1 rad/s (m/s) is used");
     joint.max_velocity = 1.0;
   }
   joint.max_acceleration = joint.max_velocity / kRampTime;

@@ -95,7 +95,7 @@ std::optional<Geometry> read_shape(const XMLElement& element, const UrdfXml& xml
   } else if (kind == "mesh") {
     understood = read_mesh(*shape, xml, path, files, collides, geometry);
   } else {
-    xml.error(*shape, "this is no shape", "shapes are box, cylinder, sphere, capsule and mesh");
+    xml.error(*shape, "this is not a shape", "shapes are box, cylinder, sphere, capsule and mesh");
     understood = false;
   }
   return understood ? std::optional(geometry) : std::nullopt;

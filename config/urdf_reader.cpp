@@ -93,7 +93,7 @@ class UrdfTree {
     std::vector<std::string> names;
     for (const auto& [known, index] : link_of_) names.push_back(known);
     std::ranges::sort(names);
-    error(joint.line, fmt::format("joint {}: its {} {} is no link", joint.name, end, printable(name)),
+    error(joint.line, fmt::format("joint {}: its {} {} is not a link", joint.name, end, printable(name)),
           did_you_mean(name, names));
     return std::nullopt;
   }
@@ -112,7 +112,7 @@ class UrdfTree {
         continue;
       }
       if (*parent == *child) {
-        error(joint.line, fmt::format("joint {} joins {} to itself", joint.name, joint.child));
+        error(joint.line, fmt::format("joint {} connects {} to itself", joint.name, joint.child));
         continue;
       }
       links_[*parent].joints_below.push_back(i);
@@ -126,12 +126,12 @@ class UrdfTree {
       if (links_[i].joints_above == 0 && link_of_.find(model_.links[i].name)->second == i) roots.push_back(i);
     }
     if (roots.empty() && !links_.empty())
-      diagnostics_.error({component_.file, 0, 0}, "there is no root link: the joints form a circle");
+      diagnostics_.error({component_.file, 0, 0}, "there is no root link: the joints form a loop");
     for (std::size_t i = 1; i < roots.size(); ++i) {
       error(
           model_.links[roots[i]].line,
           fmt::format("{} is a root link, but {} is one too", model_.links[roots[i]].name, model_.links[roots[0]].name),
-          "join it with a joint of type fixed");
+          "connect it by a joint of type fixed");
       links_[roots[i]].reached = true;
     }
     if (roots.empty()) return std::nullopt;
@@ -209,11 +209,11 @@ class UrdfTree {
   }
 
   void check_all_reached() {
-    if (several_roots_) return;  // what hangs on the other roots was not visited
+    if (several_roots_) return;  // links below the other roots were not visited
     for (std::size_t i = 0; i < links_.size(); ++i) {
       if (links_[i].reached || link_of_.find(model_.links[i].name)->second != i) continue;
       error(model_.links[i].line,
-            fmt::format("link {} does not hang on the root: its joints form a circle", model_.links[i].name));
+            fmt::format("link {} is not connected to the root: its joints form a loop", model_.links[i].name));
     }
   }
 
@@ -248,7 +248,7 @@ class UrdfTree {
 bool refuse_document_type(const tinyxml2::XMLDocument& document, const std::string& file, Diagnostics& diagnostics) {
   for (const tinyxml2::XMLNode* node = document.FirstChild(); node != nullptr; node = node->NextSibling()) {
     if (node->ToUnknown() == nullptr) continue;
-    diagnostics.error({file, node->GetLineNum(), 0}, "the document has a <!...> definition", "remove it");
+    diagnostics.error({file, node->GetLineNum(), 0}, "the document has a <!...> declaration", "remove it");
     return true;
   }
   return false;
@@ -258,7 +258,7 @@ bool refuse_document_type(const tinyxml2::XMLDocument& document, const std::stri
 XMLElement* read_document(std::string_view text, const std::string& file, tinyxml2::XMLDocument& document,
                           Diagnostics& diagnostics) {
   if (text.find('\0') != std::string_view::npos) {
-    diagnostics.error({file, 0, 0}, "the file holds NUL bytes and is no XML text");
+    diagnostics.error({file, 0, 0}, "the file contains NUL bytes and is not XML");
     return nullptr;
   }
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {

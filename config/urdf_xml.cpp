@@ -38,7 +38,7 @@ std::optional<std::string> UrdfXml::name(const tinyxml2::XMLElement& element, co
   const bool plain = std::ranges::all_of(
       value, [](char c) { return c > ' ' && c < 0x7F && c != '.' && c != ';' && c != '#' && c != '"' && c != '\''; });
   if (!value.empty() && value.size() <= kMaxNameLength && plain) return value;
-  error(element, fmt::format("{} \"{}\" is no name that a dotted path can hold", attribute, printable(value)),
+  error(element, fmt::format("{} \"{}\" is not a valid name in a dotted path", attribute, printable(value)),
         fmt::format("rename it: 1 to {} characters, without blanks, dots, quotes, ; and #", kMaxNameLength));
   return std::nullopt;
 }
@@ -59,8 +59,8 @@ std::optional<std::vector<double>> UrdfXml::numbers(const tinyxml2::XMLElement& 
     const std::size_t end = std::min(rest.find_first_of(" \t\r\n"), rest.size());
     const auto number = parse_number(rest.substr(0, end));
     if (!number || std::abs(*number) > kLargest) {
-      error(element,
-            fmt::format("{} \"{}\" holds something that is no number or too large", attribute, printable(value)));
+      error(element, fmt::format("{} \"{}\" contains something that is not a number or is too large", attribute,
+                                 printable(value)));
       return std::nullopt;
     }
     found.push_back(*number);
@@ -68,7 +68,7 @@ std::optional<std::vector<double>> UrdfXml::numbers(const tinyxml2::XMLElement& 
   }
   if (found.size() == count) return found;
   error(element,
-        fmt::format("{} \"{}\" must hold {} number{}", attribute, printable(value), count, count == 1 ? "" : "s"));
+        fmt::format("{} \"{}\" must have {} number{}", attribute, printable(value), count, count == 1 ? "" : "s"));
   return std::nullopt;
 }
 

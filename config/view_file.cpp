@@ -24,7 +24,7 @@ constexpr Range kOpeningAngle{0.0, std::numbers::pi, true, true};
 // Whether the values fit those that stay is found when they are set.
 void check_pairs(const TableReader& table, const ViewChange& change) {
   if (change.viewpoint && change.lookpoint && (*change.viewpoint - *change.lookpoint).norm() < kNearestLookpoint)
-    table.error("viewpoint_m", "the viewpoint is the lookpoint", "set them apart from each other");
+    table.error("viewpoint_m", "the viewpoint is the lookpoint", "choose two different points");
   if (change.near_distance && change.far_distance && *change.near_distance >= *change.far_distance)
     table.error("near_m", "the near plane is not nearer than the far plane");
 }
@@ -41,7 +41,7 @@ StoredView read_view(TableReader& table, std::vector<int>& before) {
   view.orthogonal = table.choice<bool>("projection", {{"perspective", false}, {"parallel", true}});
   view.camera = table.text("camera").value_or("");
   if (table.has("camera") && view.camera.empty())
-    table.error("camera", "the camera's name is empty", "leave the key out for a view of its own");
+    table.error("camera", "the camera's name is empty", "omit the key for a view without a camera");
   view.place = table.place();
   view.camera_place = table.place("camera");
   check_pairs(table, view.change);
@@ -49,7 +49,7 @@ StoredView read_view(TableReader& table, std::vector<int>& before) {
   return view;
 }
 
-// TOML tells integers from numbers.
+// TOML distinguishes integers from floats.
 std::string number(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".en") == std::string::npos) text += ".0";
@@ -78,7 +78,7 @@ std::optional<ViewFile> parse_views(std::string_view text, const std::string& fi
     std::vector<int> ids;
     for (TableReader& row : top.tables("view", kViews)) views.views.push_back(read_view(row, ids));
     if (!views.display && !top.has("view"))
-      top.error({}, "there are no views and no display in it", "add [[view]] tables, docs/cell-files.md shows them");
+      top.error({}, "it has no views and no display", "add [[view]] tables, docs/cell-files.md shows them");
   });
 }
 

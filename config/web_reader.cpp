@@ -33,13 +33,13 @@ void read_address(TableReader& table, WebSettings& settings) {
   const bool remote = table.boolean("allow_remote").value_or(false);
   if (!address) return;
   if (!is_address(*address)) {
-    table.error("address", fmt::format("\"{}\" is no numeric address", printable(*address)), "e.g. 127.0.0.1");
+    table.error("address", fmt::format("\"{}\" is not a numeric address", printable(*address)), "e.g. 127.0.0.1");
     return;
   }
   settings.address = *address;
   if (!is_loopback(*address) && !remote) {
-    table.error("address", fmt::format("the page at {} could be reached from other machines", printable(*address)),
-                "if that is meant, add allow_remote = true; what goes over the wire is not encrypted");
+    table.error("address", fmt::format("the page at {} would be reachable from other machines", printable(*address)),
+                "if intended, add allow_remote = true; the connection is not encrypted");
   }
 }
 
@@ -55,12 +55,12 @@ WebSettings read_web(TableReader& top) {
   settings.read_only = table->boolean("read_only").value_or(false);
   settings.origins = table->texts("origins").value_or(settings.origins);
   if (settings.origins.size() > kMostOrigins) {
-    table->error("origins", fmt::format("there are {} origins, but at most {} may be named", settings.origins.size(),
+    table->error("origins", fmt::format("there are {} origins, but at most {} are allowed", settings.origins.size(),
                                         kMostOrigins));
   }
   for (const std::string& origin : settings.origins) {
     if (!is_origin(origin))
-      table->error("origins", fmt::format("\"{}\" is no origin", printable(origin)),
+      table->error("origins", fmt::format("\"{}\" is not an origin", printable(origin)),
                    "e.g. https://monitor.example.org");
   }
   table->finish();

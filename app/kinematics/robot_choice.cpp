@@ -103,7 +103,8 @@ Result<std::vector<double>> parse_joints(const std::string& text, const std::str
     rest.remove_prefix(word.size());
     const auto value = parse_number(word);
     if (!value)
-      return fail(fmt::format("{}: value {} is no finite number: {}", option, values.size() + 1, printable(word, 40)));
+      return fail(
+          fmt::format("{}: value {} is not a finite number: {}", option, values.size() + 1, printable(word, 40)));
     values.push_back(*value);
   }
   if (values.size() == chain.variable_count()) return values;

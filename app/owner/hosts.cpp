@@ -114,7 +114,7 @@ Result<void> CellRobots::set_online(std::string_view robot, bool online) {
 
 Result<RobotModel*> CellRobots::active() {
   RobotModel* robot = names_.active_robot().empty() ? nullptr : cell_.edit_robot(names_.active_robot());
-  if (robot == nullptr) return fail("no robot is active", "make one active with ROBACT <robot>");
+  if (robot == nullptr) return fail("no robot is active", "activate one with ROBACT <robot>");
   return robot;
 }
 

@@ -5,7 +5,7 @@
 namespace cellmirror::app {
 
 Result<void> CellInteraction::set_force_memory(std::uint64_t /*send_type*/, std::int32_t key, std::size_t bytes) {
-  if (names_.active_robot().empty()) return fail("no robot is active", "make one active with ROBACT <robot>");
+  if (names_.active_robot().empty()) return fail("no robot is active", "activate one with ROBACT <robot>");
   if (off_line_) return {};
   return haptics_.set_force_memory(names_.active_robot(), key, bytes);
 }

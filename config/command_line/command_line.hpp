@@ -1,6 +1,6 @@
 // Command lines: options, flags, positionals and subcommands of a program, its help and its messages about wrong usage.
-// CLI11 does the work; it is known to command_line.cpp alone, since every source that sees it takes seconds more to
-// compile. Main thread, before anything else is started.
+// Based on CLI11, which only command_line.cpp includes, since it adds seconds of compile time. Main thread, before
+// anything else is started.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class Option {
   Option& between(int least, int most);
   Option& positive();
   Option& one_of(std::vector<std::string> words);
-  // `wrong` tells what is wrong with the text, or nothing; `shown` stands in the help behind the kind of value.
+  // `wrong` returns the error of the text, or nothing; `shown` follows the kind of value in the help.
   Option& check(std::function<std::string(const std::string&)> wrong, std::string shown);
   Option& excludes(Option other);
   Option& needs(Option other);
@@ -85,7 +85,7 @@ class Command {
 
 class CommandLine : public Command {
  public:
-  // `name` of the program, empty: as it was started; `description` stands above the help.
+  // `name` of the program, empty: as it was started; `description` begins the help.
   explicit CommandLine(const std::string& description, const std::string& name = {});
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
@@ -93,7 +93,7 @@ class CommandLine : public Command {
 
   // --version.
   void version(const std::string& text);
-  // Nothing where the program is to go on; else its exit status: 0 after help or version were printed, kExitWrongUsage
+  // Nothing if the program is to continue; else its exit status: 0 after help or version were printed, kExitWrongUsage
   // after a message. What an action of when_named() throws is passed on.
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
 

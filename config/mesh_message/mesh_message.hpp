@@ -54,13 +54,13 @@ class MeshMessage {
 // `answer` has to live until the message is sent.
 [[nodiscard]] MeshMessage encode_mesh_answer(const Result<ScenePolygons>& answer);
 
-// No answer has more bytes: all vertices, triangles and looks that a mesh may have, and pictures of 128 MiB.
+// Maximum size of an answer: the vertices, triangles and appearance of the largest mesh, and textures of 128 MiB.
 inline constexpr std::size_t kLargestMeshAnswer = std::size_t{512} << 20U;
 
-// What the reader found, or why it could read nothing (printable, at most some hundred characters). None where these
-// are no answer to a request `with_looks` or without. Nothing of it is believed: afterwards every index is in its
-// range, places are finite, and all lists of looks are as long as they have to be. Coordinates are left to
-// geometry::make_mesh(), which says of which vertex it is. Takes memory in proportion to bytes.size().
+// The reader's result, or why it failed (printable, at most some hundred characters). None if the bytes are not an
+// answer to a request `with_looks` or without. The input is untrusted: afterwards every index is in its range, texture
+// coordinates are finite, and all lists have the right length. geometry::make_mesh() checks coordinates and names the
+// vertex. Takes memory in proportion to bytes.size().
 [[nodiscard]] std::optional<Result<ScenePolygons>> decode_mesh_answer(std::string_view bytes, bool with_looks);
 
 }  // namespace cellmirror

@@ -1,5 +1,4 @@
-// The polygons of a mesh file and what they look like, as the reader of meshes finds them: before repair, and before
-// any picture is decoded. Plain data.
+// The polygons of a mesh file and their appearance as read: before repair, and before textures are decoded. Plain data.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,26 +16,26 @@ namespace cellmirror {
 
 struct SceneMaterial {
   std::string name;
-  std::string picture;                  // name of a file as it stands in the mesh file; empty: none, or `embedded`
+  std::string picture;                  // file name, verbatim from the mesh file; empty: none, or `embedded`
   std::optional<std::size_t> embedded;  // index in ScenePolygons::embedded
   std::string place;                    // where the picture is named, for messages; may be empty
   std::array<float, 3> rgb{1, 1, 1};    // 0 to 1, sRGB
-  bool is_factor = false;               // rgb multiplies pictures and colours, as in glTF; elsewhere they stand for it
+  bool is_factor = false;               // rgb multiplies textures and colours, as in glTF; otherwise they replace it
 };
 
 struct ScenePolygons {
-  // m, in the frame G of the geometry, scale applied. Not looked at yet: may be no numbers.
+  // m, in the frame G of the geometry, scale applied. Not validated yet: may be NaN.
   std::vector<Eigen::Vector3d> vertices;
   std::vector<geometry::TriangleIndices> triangles;
-  // What they look like. By vertex, as assimp has it (v goes up); empty where no mesh of the file has such.
+  // Appearance. By vertex, as in assimp (v upwards); empty if no mesh of the file has it.
   std::vector<Eigen::Vector2f> places;
   std::vector<MeshLook::Rgba> colours;
-  std::vector<std::uint16_t> materials;  // by triangle, index in `palette`; empty where looks are not wanted
+  std::vector<std::uint16_t> materials;  // by triangle, index in `palette`; empty if the appearance is not requested
   std::vector<SceneMaterial> palette;
   std::vector<std::string> embedded;  // the bytes of the pictures that the mesh file holds itself
 };
 
-// Beyond that, single precision no longer tells the pixels of a picture apart.
+// Beyond that, single precision no longer resolves the pixels of a texture.
 inline constexpr float kFarthestPlace = 1e4F;
 inline constexpr std::size_t kMostMaterials = 0xFFFF;
 

@@ -15,7 +15,7 @@
 #include "config/mesh_reader/mesh_importer.hpp"
 #include "rt_core/base/text.hpp"
 
-// With AddressSanitizer, which knows no limit of addresses: as large as the largest allocation that the limit allows.
+// With AddressSanitizer, which does not work with an address limit: the largest permitted allocation.
 extern "C" const char* __asan_default_options();
 extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=3072:detect_leaks=0"; }
 
@@ -50,7 +50,7 @@ Result<ScenePolygons> read_one() {
     if (!request) return fail("it cannot be read: its reader does not understand the request");
     return import_mesh(*request);
   } catch (const std::bad_alloc&) {
-    return fail("it cannot be read: its reader ran out of memory", "export it anew, or reduce the mesh");
+    return fail("it cannot be read: its reader ran out of memory", "export it again, or reduce the mesh");
   } catch (const std::exception& exception) {
     return fail("it cannot be read: " + printable(exception.what()));
   } catch (...) {

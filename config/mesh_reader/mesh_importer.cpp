@@ -106,13 +106,13 @@ void keep_only(Assimp::Importer& importer, std::string_view name) {
 
 Result<ScenePolygons> import_mesh(const MeshRequest& request) {
   const auto* const format = std::ranges::find(kFormats, request.extension, &Format::extension);
-  if (format == kFormats.end()) return fail("its kind is not known");
+  if (format == kFormats.end()) return fail("its kind is unknown");
   Assimp::Importer importer;
   keep_only(importer, format->importer);
   if (importer.GetImporterCount() == 0) return fail(fmt::format("this build reads no {} files", format->extension));
   const std::string name = fmt::format("mesh{}", format->extension);
   importer.SetIOHandler(new Files(name, request));  // the importer owns it
-  // As ROS does: coordinates as they stand in the file, whatever up_axis says; its unit counts.
+  // As in ROS: coordinates as in the file, regardless of up_axis; its unit applies.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = importer.ReadFile(name, aiProcess_ValidateDataStructure);
@@ -121,7 +121,7 @@ Result<ScenePolygons> import_mesh(const MeshRequest& request) {
       std::rethrow_exception(thrown);
     } catch (const std::bad_alloc&) {
       throw;
-    } catch (...) {  // NOLINT(bugprone-empty-catch): its text is what GetErrorString() tells
+    } catch (...) {  // NOLINT(bugprone-empty-catch): GetErrorString() returns its text
     }
   }
   if (scene == nullptr || scene->mRootNode == nullptr)

@@ -69,7 +69,7 @@ class Collector {
       if (face.mNumIndices - 2 > kMostTriangles - out_.triangles.size()) return std::unexpected(too_many());
       corners.clear();
       for (unsigned k = 0; k < face.mNumIndices; ++k) {
-        if (face.mIndices[k] >= mesh.mNumVertices) return fail("a face names a vertex that is not there");
+        if (face.mIndices[k] >= mesh.mNumVertices) return fail("a face refers to a missing vertex");
         corners.push_back(first + face.mIndices[k]);
       }
       if (mirrored) std::ranges::reverse(corners);
@@ -138,7 +138,7 @@ class Collector {
         to.rgb = {part_of_one(colour.r), part_of_one(colour.g), part_of_one(colour.b)};
       unsigned channel = 0;
       if (!picture_of(material, text, channel)) continue;
-      // "*3". The names that such pictures may have besides are nobody's references.
+      // "*3". Other names of such textures are not references.
       if (text.C_Str()[0] == '*') {
         if (const int index = scene_.GetEmbeddedTextureAndIndex(text.C_Str()).second;
             index >= 0 && static_cast<std::size_t>(index) < kMostMaterials)
@@ -183,7 +183,7 @@ Result<ScenePolygons> collect_polygons(const aiScene& scene, const Eigen::Vector
     open.pop_back();
     const Eigen::Matrix4d X = top.X * matrix_of(top.node->mTransformation);
     for (unsigned i = 0; i < top.node->mNumMeshes; ++i) {
-      if (top.node->mMeshes[i] >= scene.mNumMeshes) return fail("a node names a mesh that is not there");
+      if (top.node->mMeshes[i] >= scene.mNumMeshes) return fail("a node refers to a missing mesh");
       if (auto added = collector.add(*scene.mMeshes[top.node->mMeshes[i]], X); !added)
         return std::unexpected(added.error());
     }

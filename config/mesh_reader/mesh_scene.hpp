@@ -1,5 +1,4 @@
-// From the scene that assimp made of a mesh file to polygons and what they look like. assimp's types stay in the
-// sources.
+// Converts assimp's scene of a mesh file to polygons and their appearance. assimp's types stay in the sources.
 #pragma once
 
 #include <Eigen/Core>

@@ -41,7 +41,7 @@ class EarClipper {
     std::size_t left = points_.size();
     std::size_t at = 0;
     std::size_t refused = 0;
-    // Two looks at each corner are usual; a polygon that was made to need more becomes a fan.
+    // Two checks per corner are usual; a malicious polygon that needs more becomes a fan.
     constexpr std::size_t kMostLooks = 8;
     for (std::size_t looks = 0; left > 3 && refused <= left && looks < kMostLooks * points_.size(); ++looks) {
       if (!is_ear(at)) {

@@ -90,7 +90,7 @@ ImageEncoder::~ImageEncoder() = default;
 
 Result<void> ImageEncoder::encode(const Image& picture, const EncodeOptions& options,
                                   std::vector<std::uint8_t>& bytes) {
-  if (!complete(picture)) return fail("the picture has no pixels, or fewer than its size says", "draw it first");
+  if (!complete(picture)) return fail("the picture has no pixels, or fewer than its size says", "render it first");
   if (options.format == ImageFormat::png)
     return encode_png(picture, std::clamp(options.png_level, 0, 9), impl_->rows, bytes);
   return impl_->encode_jpeg(picture, std::clamp(options.jpeg_quality, 1, 100), bytes);

@@ -122,7 +122,7 @@ Result<void> Renderer::Impl::end(int width, int height) {
   if (gl.GetError() == GL_NO_ERROR) return {};
   return fail("the graphics system ran out of memory with a picture of " + std::to_string(width) + "x" +
                   std::to_string(height) + " pixels",
-              "ask for a smaller one");
+              "request a smaller one");
 }
 
 void Renderer::Impl::draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn) {

@@ -13,14 +13,14 @@ namespace cellmirror::footswitch {
 struct SwitchEdge {
   std::uint32_t input = 0;  // from 1, as in BININP1: bit 0 of the first byte
   bool on = false;
-  Timestamp time;      // when the bit was first seen changed
-  Timestamp not_told;  // the look before the one that told it: how late it is told at most
+  Timestamp time;      // first reading with the changed bit
+  Timestamp not_told;  // the reading before that one: bounds the delay of the report
 };
 
 // A change counts at once where the bit was quiet for `debounce` before it. Further changes are bounces until the bit
-// has been quiet for `debounce`; then its state counts, and where it is another one than the last that was told, that
-// is told. So the changes of an input that are told alternate, and its last state is told at the latest `debounce`
-// after it came. Inputs begin in the state of the first look, without a change.
+// has been quiet for `debounce`; then its state counts, and is reported if it differs from the last reported one. So
+// the reported changes of an input alternate, and its final state is reported at most `debounce` after it occurred.
+// Inputs begin in the state of the first reading, without a change.
 class SwitchEdges {
  public:
   SwitchEdges(std::size_t bytes, Nanoseconds debounce);
@@ -28,14 +28,14 @@ class SwitchEdges {
   // rest as it was. `now` never goes back. Room for 16 changes a byte keeps `edges` from allocating.
   void look(std::span<const std::uint8_t> bytes, Timestamp now, std::vector<SwitchEdge>& edges);
   [[nodiscard]] std::uint64_t bounces() const { return bounces_; }
-  // As they were told last; bit 0 of the first byte is input 1.
+  // Last reported states; bit 0 of the first byte is input 1.
   [[nodiscard]] std::span<const std::uint8_t> told() const { return told_; }
 
  private:
   void look_at_input(std::size_t byte, unsigned bit, bool raw, Timestamp now, std::vector<SwitchEdge>& edges);
   void tell(std::size_t byte, unsigned bit, bool on, Timestamp time, std::vector<SwitchEdge>& edges);
 
-  std::vector<std::uint8_t> seen_;      // as of the last look
+  std::vector<std::uint8_t> seen_;      // as of the last reading
   std::vector<std::uint8_t> told_;      // what counts
   std::vector<std::uint8_t> settling_;  // changed within the last `debounce`
   std::vector<Timestamp> changed_at_;   // of each input

@@ -46,7 +46,7 @@ class SwitchReader::Thread {
           while (!stop.stop_requested()) {
             const Timestamp now = clock.now();
             reader.look(now);
-            // After a pause of the machine the looks that were missed are not made up for.
+            // After a pause of the machine missed readings are not repeated.
             next = std::max(next + reader.options_.period, now);
             sleep_until(next);
           }

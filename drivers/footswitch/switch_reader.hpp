@@ -1,5 +1,5 @@
-// Watches a memory that another process writes: a thread that looks at its bytes once a millisecond and hands on what
-// changed. The other process may be hostile, dead or come back: its bytes are only ever read by value, one by one.
+// Monitors a memory written by another process: a thread reads its bytes once a millisecond and passes on changes. The
+// other process may be hostile, die or return: its bytes are only read by value, one by one.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace cellmirror::footswitch {
 
-inline constexpr std::size_t kMostSwitchBytes = 4096;  // what lies behind is not looked at
+inline constexpr std::size_t kMostSwitchBytes = 4096;  // bytes beyond are ignored
 inline constexpr std::size_t kEdgeQueue = 8192;        // changes on their way to the owner
 
 class SwitchReader {
@@ -27,16 +27,16 @@ class SwitchReader {
     Nanoseconds period{1'000'000};
     Nanoseconds debounce{0};
     int priority = 0;            // SCHED_FIFO of the thread, where it is to be had; 0: none
-    std::function<void()> wake;  // called by the thread after it has handed on changes; may be empty
+    std::function<void()> wake;  // called by the thread after it has passed on changes; may be empty
   };
   struct Counters {
     std::uint64_t looks = 0;
-    std::uint64_t edges = 0;    // handed on
+    std::uint64_t edges = 0;    // passed on
     std::uint64_t dropped = 0;  // the queue was full
     std::uint64_t bounces = 0;
   };
 
-  // Starts the thread. `memory` (at most kMostSwitchBytes of it are looked at) outlives the reader.
+  // Starts the thread. `memory` (at most kMostSwitchBytes of it are read) outlives the reader.
   SwitchReader(std::span<const std::byte> memory, Options options);
   ~SwitchReader();
   SwitchReader(const SwitchReader&) = delete;
@@ -44,7 +44,7 @@ class SwitchReader {
 
   // The owner's thread: ends the watching, once. Then all that changed before it can be had from next().
   void stop();
-  // The owner's thread: the next change, in order. False where there is none.
+  // The owner's thread: the next change, in order. False if there is none.
   bool next(SwitchEdge& edge) { return queue_.pop(edge); }
   // Any thread.
   [[nodiscard]] Counters counters() const;

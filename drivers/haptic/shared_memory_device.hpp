@@ -10,15 +10,15 @@
 
 namespace cellmirror::haptic {
 
-// The gateway's end of a block of memory (ipc/wire/haptic_block.hpp says what is in it). read() and write() belong to
-// one thread, the tick: loads and stores in mapped memory, no system call; `memory` has all its pages (SharedSegment
-// sees to it), so that none of them faults.
+// The gateway's end of a block of memory (layout: ipc/wire/haptic_block.hpp). read() and write() belong to one thread,
+// the tick: loads and stores in mapped memory, no system call; all pages of `memory` are present (SharedSegment ensures
+// it), so that no access faults.
 class SharedMemoryDevice final : public HapticDevicePort {
  public:
   // Writes the header and zero forces. `memory` is aligned to 8 bytes and outlives this; `joint_count` is that of the
   // instrument's robot; `process` the gateway's process number. Not for the tick.
   SharedMemoryDevice(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process);
-  // Leaves zero forces and tells the device that nobody writes any longer. The tick no longer uses it.
+  // Writes zero forces and marks the end of writing for the device. The tick no longer uses it.
   ~SharedMemoryDevice() override;
   SharedMemoryDevice(const SharedMemoryDevice&) = delete;
   SharedMemoryDevice& operator=(const SharedMemoryDevice&) = delete;
@@ -26,8 +26,8 @@ class SharedMemoryDevice final : public HapticDevicePort {
   // The newest sample, where another one has been written since the last call that gave `fresh`: whatever the device's
   // process wrote, by value (read_haptic_sample()). Tick.
   HapticRead read(HapticSample& sample) CELL_RT override;
-  // Forces that are not finite become zero (write_haptic_output()). Writes the header anew where it is no longer there,
-  // as after SharedSegment::renew(). Tick.
+  // Forces that are not finite become zero (write_haptic_output()). Rewrites a missing header, as after
+  // SharedSegment::renew(). Tick.
   void write(const HapticOutput& output) CELL_RT override;
 
   // How often the header was no longer there. The tick's thread.

@@ -42,7 +42,7 @@ class Inquiry {
   }
   [[nodiscard]] std::unexpected<Error> too_late() const {
     return fail(fmt::format("the gateway of the instance {} did not answer within {:g} s", who_, seconds(timeout_)),
-                "look at its log; kill -9 ends one that hangs, and the next start works");
+                "check its log; kill -9 ends a blocked gateway, and the next start works");
   }
   [[nodiscard]] std::unexpected<Error> failure(int reason) const {
     switch (reason) {
@@ -54,7 +54,8 @@ class Inquiry {
                         : fmt::format("start one with cellmirror run CELL.toml --instance {}", who_));
       case EACCES:
       case EPERM:
-        return fail(fmt::format("the gateway of the instance {} belongs to another user", who_), "ask as that user");
+        return fail(fmt::format("the gateway of the instance {} belongs to another user", who_),
+                    "run this as that user");
       default:
         return fail(fmt::format("the gateway of the instance {}: {}", who_, system_error_text(reason)));
     }
@@ -76,7 +77,7 @@ class Inquiry {
     if (!socket_.valid()) return failure(errno);
     while (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
       const int reason = errno;
-      // EAGAIN: so many wait for this gateway that the kernel's queue is full; it cannot be waited for by poll.
+      // EAGAIN: the kernel's queue of connections to this gateway is full; poll cannot wait for it.
       if (reason != EAGAIN && reason != EINTR) return failure(reason);
       if (left_ms() == 0) return too_late();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -112,8 +113,8 @@ class Inquiry {
     }
     if (!answer.ends_with('\n')) {
       return fail(
-          fmt::format("the answer of the gateway of the instance {} was cut short after {} bytes", who_, answer.size()),
-          "ask again; it may just have ended");
+          fmt::format("the answer of the gateway of the instance {} was truncated after {} bytes", who_, answer.size()),
+          "retry; it may just have ended");
     }
     answer.pop_back();
     return answer;

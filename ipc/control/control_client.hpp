@@ -1,4 +1,4 @@
-// Asks a running gateway.
+// Sends a request to a running gateway.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// One client of the control socket, as seen by the server: gathers a request line, then hands out the answer.
+// One client of the control socket, as seen by the server: collects a request line, then sends the answer.
 #pragma once
 
 #include <cstddef>

@@ -30,7 +30,7 @@ std::optional<std::string> ControlRequest::argument(std::string_view name) const
 Result<ControlRequest> parse_control_request(std::string_view line) {
   try {
     const json document = json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (document.is_discarded() || !document.is_object()) return fail("the request is no JSON object", kForm);
+    if (document.is_discarded() || !document.is_object()) return fail("the request is not a JSON object", kForm);
     const auto name = document.find("request");
     if (name == document.end() || !name->is_string()) return fail("the request has no text member \"request\"", kForm);
     if (document.size() > kMostArguments + 1) {

@@ -50,7 +50,7 @@ std::string answer_of(const ControlServer::Handler& handler, std::string_view re
 
 }  // namespace
 
-// Outlives the server as long as somebody owes it an answer.
+// Outlives the server as long as an answer is pending.
 class ControlReply::Desk {
  public:
   Desk() : wake_up_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
@@ -101,7 +101,7 @@ struct ControlServer::Impl {
     ControlConnection connection;
     std::uint64_t number = 0;
     bool asked = false;  // its request is being answered
-    Timestamp deadline;  // of the answer, where it has asked
+    Timestamp deadline;  // of the answer to its request
     [[nodiscard]] Timestamp until() const { return asked ? deadline : connection.deadline(); }
   };
 
@@ -141,7 +141,7 @@ Result<void> ControlServer::Impl::listen() {
   if (!listener.valid() || !desk->wake_up().valid()) return failed();
   ::unlink(path.c_str());
   if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) return failed();
-  // The folder lets nobody else in; the mode is the second door.
+  // The folder excludes other users; the mode is a second barrier.
   if (::chmod(path.c_str(), 0600) != 0) return failed();
   if (::listen(listener.get(), static_cast<int>(kMaxClients)) != 0) return failed();
   return {};
@@ -187,7 +187,7 @@ void ControlServer::Impl::accept_one() {
   if (allowed) return;
   refused.fetch_add(1, std::memory_order_relaxed);
   connections.back().connection.answer(
-      control_error({"only the gateway's user and root may ask", "run this as that user"}), now() + client_timeout);
+      control_error({"only the gateway's user and root are allowed", "run this as that user"}), now() + client_timeout);
 }
 
 bool ControlServer::Impl::go_on(Client& client, short events) {
@@ -233,7 +233,7 @@ void ControlServer::Impl::hand_over(Client& client) {
   client.deadline = now() + kLongestAnswer;
   try {
     handler(client.connection.request(), ControlReply(desk, client.number));
-  } catch (const std::exception& error) {  // the reply that was let go has told the client
+  } catch (const std::exception& error) {  // the released reply has informed the client
     log_error("ipc.control-request", "{}", error.what());
   }
 }
@@ -267,7 +267,7 @@ void ControlServer::Impl::cut_off_late() {
   connections.erase(late, connections.end());
 }
 
-// Who has been there longest has had the most time: stalled clients cannot keep newcomers out.
+// The oldest client is evicted: stalled clients cannot block new ones.
 void ControlServer::Impl::make_room() {
   connections.erase(std::min_element(connections.begin(), connections.end(),
                                      [](const auto& a, const auto& b) { return a.until() < b.until(); }));
@@ -296,7 +296,8 @@ Result<std::unique_ptr<ControlServer>> ControlServer::start_later(const std::fil
     impl->thread = std::thread([server] { server->serve(); });
   } catch (const std::system_error& error) {
     ::unlink(path.c_str());
-    return fail(fmt::format("no thread for the control socket: {}", error.what()), "raise the limit of processes");
+    return fail(fmt::format("cannot start the thread of the control socket: {}", error.what()),
+                "raise the limit of processes");
   }
   return std::unique_ptr<ControlServer>(new ControlServer(std::move(impl)));
 }

@@ -18,11 +18,11 @@ namespace cellmirror {
 inline constexpr std::size_t kMaxControlRequestBytes = 65'536;
 inline constexpr std::size_t kMaxControlReplyBytes = std::size_t{16} * 1024 * 1024;
 
-// Somebody's question that is still to be answered: at once or later, once, by any thread, also when the server or the
-// client has gone meanwhile. Let go without an answer it is answered as failed.
+// A pending request: answered at once or later, once, by any thread, even after the end of the server or the client.
+// Released without an answer it is answered as failed.
 class ControlReply {
  public:
-  class Desk;  // where answers are handed in
+  class Desk;  // receives answers
   ControlReply(std::shared_ptr<Desk> desk, std::uint64_t client);
   ~ControlReply();
   ControlReply(ControlReply&& other) noexcept;
@@ -40,9 +40,8 @@ struct ControlServerStatus {
   std::uint64_t cut = 0;      // clients that sent or read too slowly
 };
 
-// One thread serves up to kMaxClients at once; nobody waits for a slow one, who is cut off after the time-out, or
-// earlier where another one comes and there is no room. Only processes of the same user, and root, are heard
-// (SO_PEERCRED).
+// One thread serves up to kMaxClients at once; a slow client blocks no other and is disconnected after the time-out, or
+// earlier if a new one needs its place. Only processes of the same user, and root, are admitted (SO_PEERCRED).
 class ControlServer {
  public:
   static constexpr std::size_t kMaxClients = 32;
@@ -59,7 +58,7 @@ class ControlServer {
                                                                         5'000'000'000});
   [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start_later(
       const std::filesystem::path& path, LaterHandler handler, Nanoseconds client_timeout = Nanoseconds{5'000'000'000});
-  ~ControlServer();  // stops, cuts off who is there, removes the socket
+  ~ControlServer();  // stops, disconnects the clients, removes the socket
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
 

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr std::size_t kLongestName = 32;
 constexpr std::size_t kLargestDescription = 65'536;
-constexpr std::size_t kMostFolders = 4096;  // in the runtime folder; more are not looked at
+constexpr std::size_t kMostFolders = 4096;  // in the runtime folder; more are ignored
 
 std::filesystem::path lock_path(const std::filesystem::path& runtime, std::string_view name) {
   return runtime / ".locks" / fmt::format("instance-{}", name);
@@ -144,7 +144,7 @@ Result<Instance> Instance::claim(const InstanceInfo& info) {
   if (!lock) {
     if (lock.error().why == LockFile::Refusal::failed) return std::unexpected(lock.error().error);
     return fail(
-        fmt::format("a gateway of the instance {} runs already: process {}", info.name, lock.error().holder.pid),
+        fmt::format("a gateway of the instance {} is already running: process {}", info.name, lock.error().holder.pid),
         "end it, or choose another --instance NAME");
   }
   const auto folder = *runtime / info.name;

@@ -26,7 +26,7 @@ inline constexpr std::string_view kDefaultInstance = "default";
 // The same for a cell file: a key that is still the manual's is replaced by the instance's own.
 [[nodiscard]] QueueConfig queues_of_instance(std::string_view instance, QueueConfig from_cell);
 
-// What a running gateway tells about itself.
+// Data of a running gateway.
 struct InstanceInfo {
   std::string name;
   pid_t pid = 0;
@@ -56,8 +56,7 @@ class Instance {
   std::filesystem::path folder_;
 };
 
-// Of a running gateway; fails with "no gateway of the instance NAME is running; start one with ..." where there is
-// none.
+// Of a running gateway; fails with "no gateway of the instance NAME is running; start one with ..." if there is none.
 [[nodiscard]] Result<InstanceInfo> find_instance(std::string_view name);
 // All that run, by name. What others left behind is taken away.
 [[nodiscard]] Result<std::vector<InstanceInfo>> running_instances();

@@ -21,8 +21,7 @@
 namespace cellmirror {
 namespace {
 
-// How often taking is tried again where nobody is named in the file, i.e. while somebody only looks, or is just about
-// to write.
+// Retries if the file names no holder, i.e. while another process only checks the lock, or is about to write.
 constexpr int kTries = 50;
 constexpr std::chrono::milliseconds kBetweenTries{2};
 
@@ -77,7 +76,7 @@ std::expected<LockFile, LockFile::Refused> LockFile::take(const std::filesystem:
       std::this_thread::sleep_for(kBetweenTries);
       continue;
     }
-    // Between open and flock the holder may have removed the file: the lock would be on one that nobody else can find.
+    // Between open and flock the holder may have removed the file: the lock would be on an unlinked file.
     if (!same_file(file.get(), path)) continue;
     const std::string text = fmt::format("{} {}\n", ::getpid(), note);
     if (::ftruncate(file.get(), 0) != 0 ||
@@ -115,7 +114,7 @@ bool LockFile::in_place() const { return file_.valid() && same_file(file_.get(),
 std::optional<LockHolder> lock_holder(const std::filesystem::path& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file.valid()) return std::nullopt;
-  // A shared lock: many may look at once, and only the holder's exclusive one is in the way.
+  // A shared lock: several processes may check at once; only the holder's exclusive lock conflicts.
   if (::flock(file.get(), LOCK_SH | LOCK_NB) == 0) return std::nullopt;
   return read_holder(file.get());
 }

@@ -30,14 +30,14 @@ class LockFile {
     Error error;
   };
 
-  // Takes the lock and writes this process and `note` into the file. Does not wait, but for the moment in which another
-  // process looks whether the lock is free. Links are refused.
+  // Takes the lock and writes this process and `note` into the file. Does not wait, except while another process checks
+  // the lock. Links are refused.
   static std::expected<LockFile, Refused> take(const std::filesystem::path& path, std::string_view note);
 
   LockFile() = default;
   LockFile(LockFile&& other) noexcept = default;
   LockFile& operator=(LockFile&& other) noexcept;
-  ~LockFile();  // removes the file, then lets go
+  ~LockFile();  // removes the file, then releases the lock
 
   [[nodiscard]] bool held() const { return file_.valid(); }
   // Whether the file at the path is still the locked one: logind empties a user's runtime folder at log-out.
@@ -50,7 +50,7 @@ class LockFile {
   std::filesystem::path path_;
 };
 
-// Who holds the lock at `path`, if anybody does.
+// The holder of the lock at `path`, if any.
 [[nodiscard]] std::optional<LockHolder> lock_holder(const std::filesystem::path& path);
 
 }  // namespace cellmirror

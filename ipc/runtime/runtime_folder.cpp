@@ -15,7 +15,7 @@ namespace cellmirror {
 namespace {
 
 std::optional<std::string> environment(const char* name) {
-  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody changes the environment
+  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): the environment is not changed
   if (value == nullptr || *value == '\0') return std::nullopt;
   return std::string(value);
 }
@@ -25,7 +25,7 @@ constexpr const char* kOtherFolder = "set CELLMIRROR_RUNTIME_DIR to a folder of 
 Result<void> check_kind(const std::filesystem::path& folder, const struct stat& found) {
   if (S_ISLNK(found.st_mode))
     return fail(fmt::format("the runtime folder {} is a link", folder.native()), kOtherFolder);
-  if (!S_ISDIR(found.st_mode)) return fail(fmt::format("{} is no folder", folder.native()), kOtherFolder);
+  if (!S_ISDIR(found.st_mode)) return fail(fmt::format("{} is not a folder", folder.native()), kOtherFolder);
   return {};
 }
 
@@ -35,7 +35,7 @@ Result<std::filesystem::path> runtime_folder_path() {
   if (const auto ours = environment("CELLMIRROR_RUNTIME_DIR")) {
     const std::filesystem::path folder(*ours);
     if (!folder.is_absolute()) {
-      return fail(fmt::format("CELLMIRROR_RUNTIME_DIR is {}, which is no absolute path", *ours), "begin it with /");
+      return fail(fmt::format("CELLMIRROR_RUNTIME_DIR is {}, which is not an absolute path", *ours), "begin it with /");
     }
     return folder;
   }
@@ -50,12 +50,12 @@ Result<std::filesystem::path> runtime_folder_path() {
 
 Result<void> make_private_folder(const std::filesystem::path& folder) {
   if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
-    return fail(fmt::format("cannot make the runtime folder {}: {}", folder.native(), system_error_text(errno)),
+    return fail(fmt::format("cannot create the runtime folder {}: {}", folder.native(), system_error_text(errno)),
                 kOtherFolder);
   }
   struct stat found{};
   if (::lstat(folder.c_str(), &found) != 0) {
-    return fail(fmt::format("cannot look at the runtime folder {}: {}", folder.native(), system_error_text(errno)),
+    return fail(fmt::format("cannot read the runtime folder {}: {}", folder.native(), system_error_text(errno)),
                 kOtherFolder);
   }
   if (const auto kind = check_kind(folder, found); !kind) return kind;
@@ -63,9 +63,9 @@ Result<void> make_private_folder(const std::filesystem::path& folder) {
     return fail(fmt::format("the runtime folder {} belongs to user {}", folder.native(), found.st_uid), kOtherFolder);
   }
   if ((found.st_mode & 0077u) != 0) {
-    return fail(
-        fmt::format("others may enter the runtime folder {} (mode {:o})", folder.native(), found.st_mode & 0777u),
-        fmt::format("chmod 700 {}", folder.native()));
+    return fail(fmt::format("other users have access to the runtime folder {} (mode {:o})", folder.native(),
+                            found.st_mode & 0777u),
+                fmt::format("chmod 700 {}", folder.native()));
   }
   return {};
 }
@@ -85,8 +85,8 @@ Result<std::filesystem::path> runtime_folder_for_client() {
   if (const auto kind = check_kind(*folder, found); !kind) return std::unexpected(kind.error());
   const uid_t me = ::geteuid();
   if (me != 0 && found.st_uid != me && found.st_uid != 0) {
-    return fail(fmt::format("the runtime folder {} belongs to user {}, whose gateway could be anything",
-                            folder->native(), found.st_uid),
+    return fail(fmt::format("the runtime folder {} belongs to user {}, whose gateway is not trusted", folder->native(),
+                            found.st_uid),
                 kOtherFolder);
   }
   return folder;

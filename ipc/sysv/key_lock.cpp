@@ -50,7 +50,7 @@ std::string key_text(std::int32_t key) { return fmt::format("{:#x} ({})", static
 
 Result<KeyLock> KeyLock::take(std::int32_t key, const std::string& instance) {
   if (key == 0) {
-    return fail("key 0 means a private queue, which nobody else could find", "set another key in the cell file");
+    return fail("key 0 means a private queue, which no other process can find", "set another key in the cell file");
   }
   auto file = take_file(key, instance);
   if (!file) return std::unexpected(file.error());

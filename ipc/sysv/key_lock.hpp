@@ -19,7 +19,7 @@ class KeyLock {
   // Refused where another process holds it; the message names that process and its instance.
   static Result<KeyLock> take(std::int32_t key, const std::string& instance);
 
-  // Takes anew what was removed under it (log-out); fails where another gateway was faster.
+  // Takes a removed lock again (log-out); fails if another gateway was faster.
   [[nodiscard]] Result<void> confirm();
   void release() {
     semaphore_.release();
@@ -27,7 +27,7 @@ class KeyLock {
   }
   [[nodiscard]] std::int32_t key() const { return key_; }
 
-  // Whether any process holds the key, as far as this user may know.
+  // Whether any process holds the key, as far as visible to this user.
   [[nodiscard]] static bool held_by_anybody(std::int32_t key);
 
  private:

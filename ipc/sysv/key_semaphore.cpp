@@ -23,8 +23,8 @@ union SemaphoreArgument {
 
 std::unexpected<Error> other_users(std::int32_t key) {
   return fail(fmt::format("the key {:#x} ({}) is in use by another user", static_cast<std::uint32_t>(key), key),
-              fmt::format("start this gateway with --instance NAME and keys of its own; where that user's gateway was "
-                          "killed, have its owner or root run ipcrm -S {:#x}",
+              fmt::format("start this gateway with --instance NAME and keys of its own; if that user's gateway was "
+                          "killed, its owner or root must run ipcrm -S {:#x}",
                           static_cast<std::uint32_t>(key)));
 }
 
@@ -50,13 +50,13 @@ Result<KeySemaphore> KeySemaphore::take(std::int32_t key) {
     if (id < 0) {
       const int reason = errno;
       if (reason == EACCES) return other_users(key);
-      return fail(fmt::format("cannot make the semaphore of the key {:#x}: {}", static_cast<std::uint32_t>(key),
+      return fail(fmt::format("cannot create the semaphore of the key {:#x}: {}", static_cast<std::uint32_t>(key),
                               system_error_text(reason)),
                   reason == ENOSPC ? "remove unused semaphores (ipcs -s, ipcrm -s ID) or raise kernel.sem" : "");
     }
     if (raise(id) == 0) {
       if (is_ours(id)) return KeySemaphore(id);
-      // Only root gets so far on a semaphore of somebody else.
+      // Only root gets here with a semaphore of another user.
       sembuf back{0, -1, SEM_UNDO | IPC_NOWAIT};
       ::semop(id, &back, 1);
       return other_users(key);
@@ -66,8 +66,8 @@ Result<KeySemaphore> KeySemaphore::take(std::int32_t key) {
                             static_cast<std::uint32_t>(key), key, ::semctl(id, 0, GETPID)),
                 "end that gateway, or start this one with --instance NAME and keys of its own");
   }
-  return fail(fmt::format("the semaphore of the key {:#x} is removed again and again", static_cast<std::uint32_t>(key)),
-              "end the program that does it, or set other keys in the cell file");
+  return fail(fmt::format("the semaphore of the key {:#x} is repeatedly removed", static_cast<std::uint32_t>(key)),
+              "end the program that removes it, or set other keys in the cell file");
 }
 
 KeySemaphore::KeySemaphore(KeySemaphore&& other) noexcept : id_(std::exchange(other.id_, -1)) {}

@@ -1,4 +1,4 @@
-// Who owns a key, told by the kernel to every process that can see the key's queue.
+// The owner of a key, provided by the kernel to every process that can see the key's queue.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ class KeySemaphore {
   [[nodiscard]] bool in_place() const;
   void release();
 
-  // Whether any process holds it, as far as this user may know.
+  // Whether any process holds it, as far as visible to this user.
   [[nodiscard]] static bool held_by_anybody(std::int32_t key);
 
  private:

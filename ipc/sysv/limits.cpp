@@ -111,13 +111,13 @@ std::vector<IpcFinding> ipc_findings(const SysvLimits& limits, const RemoveIpc& 
     findings.push_back({name, value == 0 ? "unknown" : fmt::format("{} {}", value, what), ok,
                         ok ? "" : fmt::format("sysctl -w kernel.{}={}", name, least)});
   };
-  limit("msgmax", limits.max_message_bytes, kMaxRecordBytes, "bytes a message");
-  limit("msgmnb", limits.max_queue_bytes, 2 * kMaxRecordBytes, "bytes a queue");
+  limit("msgmax", limits.max_message_bytes, kMaxRecordBytes, "bytes per message");
+  limit("msgmnb", limits.max_queue_bytes, 2 * kMaxRecordBytes, "bytes per queue");
   // The three queues of one gateway.
   limit("msgmni", limits.max_queues, limits.queues_in_use + 3, "queues");
   const std::string source = remove_ipc.set_by.empty() ? "default" : remove_ipc.set_by;
   std::string value = fmt::format("{} ({})", remove_ipc.enabled ? "yes" : "no", source);
-  if (!remove_ipc.logind_runs) value += ", logind does not run";
+  if (!remove_ipc.logind_runs) value += ", logind is not running";
   findings.push_back({"RemoveIPC", std::move(value), !remove_ipc.concerns_us,
                       remove_ipc.concerns_us
                           ? "printf '[Login]\\nRemoveIPC=no\\n' > /etc/systemd/logind.conf.d/cellmirror.conf && "

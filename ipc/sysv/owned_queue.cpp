@@ -38,22 +38,22 @@ Result<void> check_left_behind(const OwnedQueue::Options& options, int id, std::
   if (::msgctl(id, IPC_STAT, &found) != 0) {
     if (errno == EIDRM || errno == EINVAL) return {};  // gone meanwhile
     return fail(
-        fmt::format("{} was made by another user: {}", queue_text(options), system_error_text(errno)),
-        fmt::format("have its owner or root run {}, or set other keys in the cell file", remove_command(options.key)));
+        fmt::format("{} was created by another user: {}", queue_text(options), system_error_text(errno)),
+        fmt::format("its owner or root must run {}, or set other keys in the cell file", remove_command(options.key)));
   }
   messages = found.msg_qnum;
   if (found.msg_perm.uid != ::geteuid() || found.msg_perm.cuid != ::geteuid()) {
     return fail(
-        fmt::format("{} was made by another user (owner {}, creator {})", queue_text(options), found.msg_perm.uid,
+        fmt::format("{} was created by another user (owner {}, creator {})", queue_text(options), found.msg_perm.uid,
                     found.msg_perm.cuid),
-        fmt::format("have its owner or root run {}, or set other keys in the cell file", remove_command(options.key)));
+        fmt::format("its owner or root must run {}, or set other keys in the cell file", remove_command(options.key)));
   }
   const unsigned mode = found.msg_perm.mode & 0777u;
   if ((mode & ~options.mode) != 0) {
-    return fail(fmt::format("{} lets in more users (mode {:o}) than the cell file allows ({:o}), so it was not made by "
-                            "cellmirror",
-                            queue_text(options), mode, options.mode),
-                fmt::format("run {}, or allow that mode in the cell file", remove_command(options.key)));
+    return fail(
+        fmt::format("{} has a wider mode ({:o}) than the cell file allows ({:o}), so it was not created by cellmirror",
+                    queue_text(options), mode, options.mode),
+        fmt::format("run {}, or allow that mode in the cell file", remove_command(options.key)));
   }
   return {};
 }
@@ -65,20 +65,20 @@ Result<int> make_queue(const OwnedQueue::Options& options, std::uint64_t& discar
     if (made >= 0) return made;
     if (errno != EEXIST) {
       const int reason = errno;
-      return fail(fmt::format("cannot make {}: {}", queue_text(options), system_error_text(reason)),
+      return fail(fmt::format("cannot create {}: {}", queue_text(options), system_error_text(reason)),
                   reason == ENOSPC ? "remove unused queues (ipcs -q, ipcrm -q ID) or raise kernel.msgmni" : "");
     }
     const int found = ::msgget(options.key, 0);
     if (found < 0) {
       if (errno == ENOENT) continue;
       return fail(fmt::format("cannot open {}: {}", queue_text(options), system_error_text(errno)),
-                  fmt::format("have its owner or root run {}", remove_command(options.key)));
+                  fmt::format("its owner or root must run {}", remove_command(options.key)));
     }
     std::uint64_t messages = 0;
     if (const auto ours = check_left_behind(options, found, messages); !ours) return std::unexpected(ours.error());
     if (::msgctl(found, IPC_RMID, nullptr) == 0) discarded += messages;
   }
-  return fail(fmt::format("{} is made anew by another program again and again", queue_text(options)),
+  return fail(fmt::format("{} is repeatedly recreated by another program", queue_text(options)),
               "end that program, or set other keys in the cell file");
 }
 

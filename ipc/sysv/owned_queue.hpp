@@ -26,9 +26,9 @@ class OwnedQueue {
     std::string instance = "default";
   };
 
-  // Takes the key's lock and makes the queue. A queue that is already there was left behind by a process that is gone:
-  // it is removed with all its messages (discarded() tells how many) and made anew. Refused, with the remedy: a key
-  // that another gateway holds, a queue of another user, one that lets in more than `mode`.
+  // Takes the key's lock and creates the queue. An existing queue is a leftover of an ended process: it is removed with
+  // all its messages (discarded() is their number) and recreated. Refused, with the remedy: a key that another gateway
+  // holds, a queue of another user, one with a wider mode than `mode`.
   static Result<std::unique_ptr<OwnedQueue>> make(Options options);
 
   ~OwnedQueue();  // removes the queue, unless it is no longer ours
@@ -40,11 +40,11 @@ class OwnedQueue {
   // Takes the oldest message of `type` (0: of any) out and forgets it. Never waits.
   [[nodiscard]] QueueOutcome discard_oldest(long type);
   // Waits until a message of any type comes (done), or the queue is removed (gone). `text` is at least one byte longer
-  // than the longest message expected: longer ones are cut, which their length then tells.
+  // than the longest message expected: longer ones are truncated, visible by their length.
   [[nodiscard]] QueueOutcome receive(long& type, std::span<char> text, std::size_t& length);
 
-  // After `gone`: makes the queue anew. Fails where the key was lost to somebody else in the meantime, and after
-  // close(). Any thread.
+  // After `gone`: recreates the queue. Fails if another process has taken the key meanwhile, and after close(). Any
+  // thread.
   [[nodiscard]] Result<void> recreate();
   // Removes the queue for good and gives the key back: receive() in another thread ends with `gone`. Any thread.
   void close();

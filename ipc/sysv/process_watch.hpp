@@ -5,19 +5,19 @@
 
 namespace cellmirror {
 
-// Whether this machine has such a process, as far as this process's PID namespace shows. A number that comes from
-// shared memory is only ever asked about. A system call: not for the tick.
+// Whether this machine has such a process, as far as this process's PID namespace shows. A number from shared memory is
+// only used in this query. A system call: not for the tick.
 [[nodiscard]] bool process_exists(std::uint32_t process);
 
-// Asked now and then with the number that a peer wrote into shared memory. A peer in another PID namespace (a
-// container) has a number that says nothing here: it is never told to have ended, its age has to do. One thread.
+// Called regularly with the number that a peer wrote into shared memory. The number of a peer in another PID namespace
+// (a container) has no meaning here: its end is never reported, only the age of its data counts. One thread.
 class ProcessWatch {
  public:
-  // True where the process was there at an earlier look and is no longer. 0: nobody, false. System calls.
+  // True if the process existed at an earlier call and no longer exists. 0: none, false. System calls.
   [[nodiscard]] bool has_ended(std::uint32_t process);
 
  private:
-  std::uint32_t seen_ = 0;  // that was there when it was looked at first
+  std::uint32_t seen_ = 0;  // that existed at the first call
 };
 
 }  // namespace cellmirror

@@ -65,8 +65,8 @@ class Interrupter {
   sigset_t mask_before_{};
 };
 
-// At random, so that a reply to a program that is gone meets nobody else; above the numbers of processes, which simple
-// clients take for their tags.
+// Random, so that a reply to an ended program reaches no other; above the numbers of processes, which simple clients
+// take for their tags.
 std::int64_t new_tag() {
   constexpr std::uint32_t kLargestPid = 4'194'304;  // PID_MAX_LIMIT
   std::uint32_t random = 0;
@@ -95,7 +95,7 @@ std::unexpected<Error> queue_failure(std::int32_t key, int error_number) {
     case EACCES:
     case EPERM:
       return fail(fmt::format("the message queue {} belongs to another user", key_text(key)),
-                  "run this as the user of the gateway, or allow others in the cell file");
+                  "run this as the user of the gateway, or set a wider mode in the cell file");
     case EIDRM:
     case EINVAL:
       return fail("the gateway ended before it answered", "see its log, and start it with cellmirror run CELL.toml");
@@ -110,7 +110,8 @@ class Exchange {
       : queues_(queues), timeout_(timeout), deadline_(SteadyClock::now() + timeout), interrupter_(timeout) {}
 
   Result<ScriptReply> run(std::string_view command) {
-    if (!interrupter_.armed()) return fail("no timer is left for the time-out", "raise the limit of pending signals");
+    if (!interrupter_.armed())
+      return fail("no timer is available for the time-out", "raise the limit of pending signals");
     const int input = ::msgget(queues_.script_key, 0200);
     if (input < 0) return queue_failure(queues_.script_key, errno);
     const std::int64_t tag = new_tag();
@@ -136,13 +137,13 @@ class Exchange {
         return fail(fmt::format("the message queue {} stayed full for {}, the command was not sent",
                                 key_text(queues_.script_key), seconds_text(timeout_)) +
                         holder_text(),
-                    "see what keeps the gateway busy with cellmirror status");
+                    "check with cellmirror status what keeps the gateway busy");
       }
     }
     return {};
   }
 
-  // Opened after sending: a gateway whose reply queue was removed makes it anew for a message that asks for a reply.
+  // Opened after sending: a gateway with a removed reply queue recreates it for a message that requests a reply.
   Result<int> reply_queue() {
     while (true) {
       const int id = ::msgget(queues_.reply_key, 0400);
@@ -164,7 +165,7 @@ class Exchange {
       if (!in_time()) {
         return fail(fmt::format("the gateway did not answer within {}{}; the command may still be executed",
                                 seconds_text(timeout_), holder_text()),
-                    "see what it does with cellmirror status, or wait longer with --timeout");
+                    "check its activity with cellmirror status, or wait longer with --timeout");
       }
     }
     return parse_reply(std::span<const char>(message.text).first(static_cast<std::size_t>(length)));

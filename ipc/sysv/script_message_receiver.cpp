@@ -71,7 +71,7 @@ void ScriptMessageReceiver::Impl::receive_until_closed() {
       take(type, std::span<const char>(buffer).first(length));
     } else if (!input->closed()) {
       repair(*input);
-      repair(*replies_queue);  // who removes one (log-out) removes both
+      repair(*replies_queue);  // log-out removes both
       if (outcome == QueueOutcome::failed) pause();
     }
   }
@@ -80,8 +80,8 @@ void ScriptMessageReceiver::Impl::receive_until_closed() {
 void ScriptMessageReceiver::Impl::take(long type, std::span<const char> text) {
   if (type != kScriptMessageType) {
     wrong_type.fetch_add(1, std::memory_order_relaxed);
-    log_warning("ipc.wrong-type", "a message of type {} on the SCRIPT queue was thrown away; commands have type {}",
-                type, kScriptMessageType);
+    log_warning("ipc.wrong-type", "a message of type {} on the SCRIPT queue was discarded; commands have type {}", type,
+                kScriptMessageType);
     return;
   }
   const std::int32_t sender = input->last_sender();
@@ -105,7 +105,7 @@ void ScriptMessageReceiver::Impl::repair(OwnedQueue& queue) {
   const auto made = queue.recreate();
   if (made) {
     if (queue.recreated() != before) {
-      log_warning("ipc.queue-removed", "the {} queue {} was removed from outside and is made anew",
+      log_warning("ipc.queue-removed", "the {} queue {} was removed by another program and is recreated",
                   queue.options().purpose, key_text(queue.options().key));
     }
     return;
@@ -164,7 +164,7 @@ Result<void> ScriptMessageReceiver::start(Handler handler) {
   auto input = OwnedQueue::make({"SCRIPT input", impl_->config.script_key, impl_->config.mode, impl_->instance});
   if (!input) return std::unexpected(input.error());
   if ((*input)->discarded() > 0) {
-    log_warning("ipc.left-behind", "{} messages that an earlier process left behind in queue {} were thrown away",
+    log_warning("ipc.left-behind", "{} messages left by an earlier process in queue {} were discarded",
                 (*input)->discarded(), key_text(impl_->config.script_key));
   }
   {
@@ -182,7 +182,8 @@ Result<void> ScriptMessageReceiver::start(Handler handler) {
   } catch (const std::system_error& error) {
     impl_->input->close();
     impl_->replies_queue->close();
-    return fail(fmt::format("no thread for the SCRIPT queue: {}", error.what()), "raise the limit of processes");
+    return fail(fmt::format("cannot start the thread of the SCRIPT queue: {}", error.what()),
+                "raise the limit of processes");
   }
   return {};
 }

@@ -16,18 +16,18 @@ namespace cellmirror {
 
 struct ScriptMessage {
   std::string text;             // one command; valid UTF-8, not empty
-  std::int64_t tag = 0;         // 0: no reply was asked for
-  std::int32_t sender_pid = 0;  // who sent last when it was taken: exact unless several send at once; 0 unknown
+  std::int64_t tag = 0;         // 0: no reply requested
+  std::int32_t sender_pid = 0;  // last sender at the time of reception: exact unless several send at once; 0 unknown
 };
 
 // A copy for `status`.
 struct ScriptMessageStatus {
-  std::uint64_t received = 0;            // handed to the handler
+  std::uint64_t received = 0;            // passed to the handler
   std::uint64_t malformed = 0;           // refused here: no text, no UTF-8, bad tag, too long
   std::uint64_t wrong_type = 0;          // of another type than 5: taken out so that they cannot clog the queue
   std::uint64_t replies = 0;             // sent
   std::uint64_t replies_dropped = 0;     // taken out unread because the reply queue was full, or not deliverable
-  std::uint64_t recreated = 0;           // times a queue was removed under us and made anew
+  std::uint64_t recreated = 0;           // times a removed queue was recreated
   std::uint64_t discarded = 0;           // messages that an earlier process left behind
   std::uint64_t waiting = 0;             // in the input queue now
   std::vector<std::string> last_errors;  // newest last, bounded

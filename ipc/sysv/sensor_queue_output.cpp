@@ -88,7 +88,7 @@ bool SensorQueueOutput::Impl::make_room() {
   return true;
 }
 
-// At most once a second where it fails, since it looks at files.
+// At most once a second on failure, since it accesses files.
 bool SensorQueueOutput::Impl::repair(Timestamp time) {
   if (time < repair_again) return false;
   const std::uint64_t before = queue->recreated();
@@ -99,7 +99,7 @@ bool SensorQueueOutput::Impl::repair(Timestamp time) {
     return false;
   }
   if (queue->recreated() != before) {
-    log_warning("ipc.queue-removed", "the SENSOR queue {} was removed from outside and is made anew",
+    log_warning("ipc.queue-removed", "the SENSOR queue {} was removed by another program and is recreated",
                 key_text(queue->options().key));
   }
   return true;
@@ -173,7 +173,7 @@ void SensorQueueOutput::publish_ranges(std::span<const RangeReading> readings, R
   }
 }
 
-// Numbers that begin anew are those of a new checker; nothing is skipped then.
+// Restarted numbers are those of a new checker; nothing is skipped then.
 void SensorQueueOutput::Impl::send_events(const ProximityState& state) {
   if (state.sequence == last_check) return;
   last_check = state.sequence;

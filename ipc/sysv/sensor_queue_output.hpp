@@ -14,11 +14,11 @@
 
 namespace cellmirror {
 
-// Never waits for a reader: a full queue loses its oldest records, which is counted. A queue that is removed from
-// outside is made anew. Nothing of FramePose is sent here. All publishing by one thread.
-// Counters: sent, dropped (old records taken out unread), refused (new ones that found no room at all, or values that
-// are not finite), of these sent and refused by kind (ranges_sent, ...), events_missing (gaps in the events that were
-// given to this output), recreated, discarded (left behind by an earlier process), waiting.
+// Never waits for a reader: a full queue loses its oldest records, which is counted. A queue removed by another program
+// is recreated. FramePose is not sent here. All publishing by one thread. Counters: sent, dropped (old records taken
+// out unread), refused (new ones that found no room at all, or values that are not finite), of these sent and refused
+// by kind (ranges_sent, ...), events_missing (gaps in the events that were given to this output), recreated, discarded
+// (left by an earlier process), waiting.
 class SensorQueueOutput final : public RobotStateOutput, public FindingsOutput, public CameraOutput {
  public:
   // Fails where the queue cannot be had; see OwnedQueue::make.

@@ -63,7 +63,7 @@ IpcFinding limit(const char* name, std::uint64_t value, std::uint64_t least, con
 }
 
 IpcFinding left_finding(const std::vector<LeftSegment>& left) {
-  if (left.empty()) return {"shared memory", "nothing left behind", true, ""};
+  if (left.empty()) return {"shared memory", "no leftovers", true, ""};
   constexpr std::size_t kMostNamed = 8;
   std::string keys;
   std::string command = "ipcrm";
@@ -72,8 +72,8 @@ IpcFinding left_finding(const std::vector<LeftSegment>& left) {
     command += fmt::format(" -m {}", left[i].id);
   }
   if (left.size() > kMostNamed) keys += ", ...";
-  return {"shared memory", fmt::format("{} left behind by processes that ended: {}", left.size(), keys), false,
-          command + " (a gateway that uses one of these keys takes it over when it starts)"};
+  return {"shared memory", fmt::format("{} left by ended processes: {}", left.size(), keys), false,
+          command + " (a gateway with one of these keys takes it over at its start)"};
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ SharedMemoryLimits read_shared_memory_limits(const std::filesystem::path& root) 
 std::vector<LeftSegment> read_left_segments(std::uint32_t user, const std::filesystem::path& root) {
   std::vector<LeftSegment> left;
   for (const Segment& segment : read_segments(root)) {
-    // Key 0 is private: its number is known to those alone who were given it, such as a display's client.
+    // Key 0 is private: only processes that were given its number know it, such as a display's client.
     if (segment.user != user || segment.attached != 0 || segment.key == 0 || process_exists(segment.maker)) continue;
     if (left.size() == kMostLeft) break;
     left.push_back({std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(segment.key)),
@@ -104,7 +104,7 @@ std::vector<LeftSegment> read_left_segments(std::uint32_t user, const std::files
 
 std::vector<IpcFinding> shared_memory_findings(const SharedMemoryLimits& limits, const std::vector<LeftSegment>& left) {
   const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return {limit("shmmax", limits.max_segment_bytes, kMaxSegmentBytes, "bytes a segment"),
+  return {limit("shmmax", limits.max_segment_bytes, kMaxSegmentBytes, "bytes per segment"),
           limit("shmall", limits.max_total_pages, (limits.bytes_in_use + kSegmentsOfAGateway * kMaxSegmentBytes) / page,
                 "pages of all segments"),
           limit("shmmni", limits.max_segments, limits.segments_in_use + kSegmentsOfAGateway, "segments"),

@@ -1,4 +1,4 @@
-// What this machine allows of System V shared memory, and what lies about in it, for `cellmirror doctor`.
+// Limits of System V shared memory on this machine, and leftover segments, for `cellmirror doctor`.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SharedMemoryLimits {
 };
 [[nodiscard]] SharedMemoryLimits read_shared_memory_limits(const std::filesystem::path& root = "/");
 
-// A segment of this user that nobody is attached to and whose maker has ended.
+// A segment of this user without attached processes whose creator has ended.
 struct LeftSegment {
   std::int32_t key = 0;
   std::int32_t id = 0;

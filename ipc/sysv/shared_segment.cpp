@@ -27,7 +27,7 @@ std::size_t page_bytes() { return static_cast<std::size_t>(::sysconf(_SC_PAGESIZ
 
 std::size_t whole_pages(std::size_t bytes) { return (bytes + page_bytes() - 1) / page_bytes() * page_bytes(); }
 
-// errno of a segment that was removed: EIDRM while somebody is attached, EINVAL once its number is unknown.
+// errno of a removed segment: EIDRM while a process is attached, EINVAL once its number is unknown.
 bool tells_removed(int error_number) { return error_number == EIDRM || error_number == EINVAL; }
 
 struct Found {
@@ -38,29 +38,27 @@ struct Found {
 
 std::unexpected<Error> other_users(const SharedSegment::Options& options, const std::string& detail) {
   return fail(
-      fmt::format("{} was made by another user ({})", segment_text(options), detail),
-      fmt::format("have its owner or root run {}, or set another key in the cell file", remove_command(options.key)));
+      fmt::format("{} was created by another user ({})", segment_text(options), detail),
+      fmt::format("its owner or root must run {}, or set another key in the cell file", remove_command(options.key)));
 }
 
 std::unexpected<Error> in_use(const SharedSegment::Options& options, const shmid_ds& found, const std::string& why) {
-  return fail(
-      fmt::format("{} is there already and {}", segment_text(options), why),
-      fmt::format("end the programs that use it (the last one was process {}, it was made by process {}) and run "
-                  "{}, or set another key in the cell file",
-                  found.shm_lpid, found.shm_cpid, remove_command(options.key)));
+  return fail(fmt::format("{} exists already and {}", segment_text(options), why),
+              fmt::format("end the programs that use it (the last one was process {}, it was created by process {}) "
+                          "and run {}, or set another key in the cell file",
+                          found.shm_lpid, found.shm_cpid, remove_command(options.key)));
 }
 
-// Whether the segment that is there belongs to this user and lets in nobody beyond the mode.
+// Whether the existing segment belongs to this user and has no wider mode.
 Result<void> check_owner(const SharedSegment::Options& options, const shmid_ds& found) {
   if (found.shm_perm.uid != ::geteuid() || found.shm_perm.cuid != ::geteuid()) {
     return other_users(options, fmt::format("owner {}, creator {}", found.shm_perm.uid, found.shm_perm.cuid));
   }
   const unsigned mode = found.shm_perm.mode & 0777u;
   if ((mode & ~options.mode) != 0) {
-    return fail(fmt::format("{} lets in more users (mode {:o}) than the cell file allows ({:o})", segment_text(options),
-                            mode, options.mode),
-                fmt::format("run {}, have the program that makes it use the mode {:o}, or allow that mode in the cell "
-                            "file",
+    return fail(fmt::format("{} has a wider mode ({:o}) than the cell file allows ({:o})", segment_text(options), mode,
+                            options.mode),
+                fmt::format("run {}, create it with the mode {:o}, or allow that mode in the cell file",
                             remove_command(options.key), options.mode));
   }
   return {};
@@ -73,16 +71,16 @@ Result<Fit> check_size(const SharedSegment::Options& options, const shmid_ds& fo
   const bool unused = found.shm_nattch == 0;
   if (found.shm_segsz > kMaxSegmentBytes) {
     return in_use(options, found,
-                  fmt::format("has {} bytes, so it serves another purpose", std::uint64_t{found.shm_segsz}));
+                  fmt::format("has {} bytes, so it has another purpose", std::uint64_t{found.shm_segsz}));
   }
   if (found.shm_segsz < options.bytes) {
     if (unused) return Fit::remove_it;
     return in_use(options, found,
-                  fmt::format("has {} bytes where {} are needed", std::uint64_t{found.shm_segsz}, options.bytes));
+                  fmt::format("has {} bytes, but {} are needed", std::uint64_t{found.shm_segsz}, options.bytes));
   }
   if (mapped != 0 && whole_pages(found.shm_segsz) != mapped) {
     if (unused) return Fit::remove_it;
-    return in_use(options, found, "has another size than before");
+    return in_use(options, found, "has changed its size");
   }
   return Fit::yes;
 }
@@ -92,7 +90,7 @@ std::unexpected<Error> cannot_make(const SharedSegment::Options& options, int re
   if (reason == ENOSPC)
     remedy = "remove unused segments (ipcs -m, ipcrm -m ID) or raise kernel.shmmni and kernel.shmall";
   if (reason == EINVAL) remedy = fmt::format("sysctl -w kernel.shmmax={}", kMaxSegmentBytes);
-  return fail(fmt::format("cannot make {}: {}", segment_text(options), system_error_text(reason)), remedy);
+  return fail(fmt::format("cannot create {}: {}", segment_text(options), system_error_text(reason)), remedy);
 }
 
 // Makes the segment, or finds the one that may be taken. A few tries: others may make or remove it at the same time.
@@ -117,7 +115,7 @@ Result<Found> find_or_make(const SharedSegment::Options& options, std::size_t ma
     if (*fit == Fit::yes) return Found{id, found.shm_segsz, false};
     ::shmctl(id, IPC_RMID, nullptr);
   }
-  return fail(fmt::format("{} is removed again and again by another program", segment_text(options)),
+  return fail(fmt::format("{} is repeatedly removed by another program", segment_text(options)),
               "end that program, or set another key in the cell file");
 }
 
@@ -189,7 +187,7 @@ Result<Mapping> map_segment(const SharedSegment::Options& options, std::byte* ad
     touch_pages(mapping.address, mapping.mapped);
     return mapping;
   }
-  return fail(fmt::format("{} is removed again and again by another program", segment_text(options)),
+  return fail(fmt::format("{} is repeatedly removed by another program", segment_text(options)),
               "end that program, or set another key in the cell file");
 }
 
@@ -197,7 +195,7 @@ Result<Mapping> map_segment(const SharedSegment::Options& options, std::byte* ad
 
 Result<std::unique_ptr<SharedSegment>> SharedSegment::make(Options options) {
   if (options.bytes == 0 || options.bytes > kMaxSegmentBytes) {
-    return fail(fmt::format("{} cannot have {} bytes", segment_text(options), options.bytes),
+    return fail(fmt::format("{} cannot have a size of {} bytes", segment_text(options), options.bytes),
                 fmt::format("set a size from 1 to {}", kMaxSegmentBytes));
   }
   auto lock = KeyLock::take(options.key, options.instance);
@@ -216,7 +214,7 @@ Result<std::unique_ptr<SharedSegment>> SharedSegment::make(Options options) {
 SharedSegment::SharedSegment(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 SharedSegment::~SharedSegment() {
-  // By number, not by key: one that somebody else has made meanwhile is not touched.
+  // By number, not by key: one created by another process meanwhile is not touched.
   ::shmctl(state_->id, IPC_RMID, nullptr);
   ::shmdt(state_->address);
 }
@@ -250,20 +248,20 @@ Result<AttachedSegment> AttachedSegment::attach(std::int32_t key, std::size_t by
   const std::string name = segment_text("", key);
   const int id = ::shmget(key, 0, 0);
   if (id < 0) {
-    if (errno == ENOENT) return fail(fmt::format("{} is not there", name), "start the gateway, or name another key");
+    if (errno == ENOENT) return fail(fmt::format("{} does not exist", name), "start the gateway, or use another key");
     return fail(fmt::format("cannot open {}: {}", name, system_error_text(errno)));
   }
   shmid_ds found{};
   if (::shmctl(id, IPC_STAT, &found) != 0) {
     return fail(fmt::format("cannot open {}: {}", name, system_error_text(errno)),
-                "run as the user who runs the gateway");
+                "run this as the user of the gateway");
   }
   if (found.shm_perm.uid != ::geteuid()) {
     return fail(fmt::format("{} belongs to another user ({})", name, found.shm_perm.uid),
-                "run as the user who runs the gateway");
+                "run this as the user of the gateway");
   }
   if (found.shm_segsz < bytes) {
-    return fail(fmt::format("{} has {} bytes where {} are needed", name, std::uint64_t{found.shm_segsz}, bytes),
+    return fail(fmt::format("{} has {} bytes, but {} are needed", name, std::uint64_t{found.shm_segsz}, bytes),
                 "set a larger size in the cell file");
   }
   void* address = ::shmat(id, nullptr, read_only ? SHM_RDONLY : 0);

@@ -1,4 +1,4 @@
-// System V shared memory: a segment that the gateway makes and owns, and one that somebody attaches to.
+// System V shared memory: a segment that the gateway creates and owns, and one that a client attaches to.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxSegmentBytes = std::size_t{1} << 20;
 
 struct SegmentUsers {
   bool gone = false;              // removed under us (log-out, ipcrm): others can no longer find it
-  std::uint64_t attached = 0;     // how often it is attached, by ourselves too: 1 means that nobody else has it
+  std::uint64_t attached = 0;     // number of attachments, including ours: 1 means no other process
   std::int32_t last_process = 0;  // that attached or detached last
 };
 
@@ -32,27 +32,27 @@ class SharedSegment {
     std::string instance = "default";
   };
 
-  // Takes the key's lock and makes the segment, all zero. One that is there already (left behind by a gateway that was
-  // killed, or made by the device's process before us) is taken where it belongs to this user, lets in nobody beyond
-  // `mode` and is large enough: as it stands where somebody is attached to it, else zeroed. One that is too small and
-  // that nobody uses is replaced. Refused, with the remedy: a key that another gateway holds, a segment of another
-  // user, one that lets in more users, one that is too small and in use, one beyond kMaxSegmentBytes.
+  // Takes the key's lock and creates the segment, zeroed. An existing one (left by a killed gateway, or created earlier
+  // by the device program) is used if it belongs to this user, has no wider mode than `mode` and is large enough:
+  // unchanged if a process is attached, else zeroed. One that is too small and unused is replaced. Refused, with the
+  // remedy: a key that another gateway holds, a segment of another user, one with a wider mode, one that is too small
+  // and in use, one beyond kMaxSegmentBytes.
   static Result<std::unique_ptr<SharedSegment>> make(Options options);
-  // Detaches and removes it: those who are attached keep the memory until they let go.
+  // Detaches and removes it: attached processes keep the memory until they detach.
   ~SharedSegment();
   SharedSegment(const SharedSegment&) = delete;
   SharedSegment& operator=(const SharedSegment&) = delete;
 
-  // At a page's beginning; as many bytes as were asked for. Constant while this lives. Every page has been written to,
-  // so that access to it does not fault where memory is locked or not short.
+  // Page-aligned; of the requested size. Constant while this lives. Every page has been written to, so that access to
+  // it does not fault where memory is locked or not short.
   [[nodiscard]] std::span<std::byte> memory() const;
   [[nodiscard]] const Options& options() const;
-  // A segment was there already, and somebody was attached to it.
+  // A segment existed already, with an attached process.
   [[nodiscard]] bool taken_over() const;
   [[nodiscard]] SegmentUsers users() const;
-  // After `gone`: makes it anew at the same address, zeroed, whatever other threads do in memory() meanwhile (their
-  // next access may wait for the kernel once). Nothing happens where it is not gone. Fails where the key was lost to
-  // somebody else: the old memory stays, shared with those who are still attached.
+  // After `gone`: recreates it at the same address, zeroed, even while other threads access memory() (their next access
+  // may wait for the kernel once). No effect if it is not gone. Fails if another process has taken the key: the old
+  // memory stays, shared with the attached processes.
   [[nodiscard]] Result<void> renew();
   [[nodiscard]] std::uint64_t renewed() const;
 
@@ -65,7 +65,7 @@ class SharedSegment {
 // The other side: simulators and tests. Moved, not copied. Nothing here is for the tick, except memory().
 class AttachedSegment {
  public:
-  // Refused where nobody has made it, it belongs to somebody else, or is smaller than `bytes`.
+  // Refused if it does not exist, belongs to another user, or is smaller than `bytes`.
   static Result<AttachedSegment> attach(std::int32_t key, std::size_t bytes, bool read_only);
   ~AttachedSegment();
   AttachedSegment(AttachedSegment&& other) noexcept;
@@ -73,9 +73,9 @@ class AttachedSegment {
   AttachedSegment(const AttachedSegment&) = delete;
   AttachedSegment& operator=(const AttachedSegment&) = delete;
 
-  // As many bytes as were asked for; aligned to a page. Nothing may be written where it was attached for reading.
+  // Of the requested size; page-aligned. Must not be written if attached for reading.
   [[nodiscard]] std::span<std::byte> memory() const { return memory_; }
-  // The one who made it has removed it, or was made to: attach anew.
+  // Its creator, or another process, has removed it: attach again.
   [[nodiscard]] bool removed() const;
 
  private:

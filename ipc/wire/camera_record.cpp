@@ -23,7 +23,7 @@ Result<void> get_flags(std::span<const std::byte> bytes, CameraRecord& record) {
   if ((flags & ~kAllFlags) != 0) return fail(fmt::format("flags {:#x} of a camera are unknown", flags));
   record.tracking = (flags & kCameraTracking) != 0;
   record.mirrored = (flags & kCameraMirrored) != 0;
-  if (record.tracking == record.tracks.empty()) return fail("a camera whose flags and target contradict each other");
+  if (record.tracking == record.tracks.empty()) return fail("a camera with contradictory flags and target");
   if (get<std::uint32_t>(bytes, kReserved) != 0) return fail("reserved bytes of a camera are not 0");
   return {};
 }
@@ -52,9 +52,9 @@ Result<std::size_t> encode_camera_record(const CameraRecord& record, std::span<s
   std::fill(out.begin(), out.end(), std::byte{0});
   put_name(out, kId, kRecordNameBytes, record.id);
   put_path(out, kTracks, kRecordPathBytes, record.tracks);
-  // As it stands there: a target that begins with a NUL is none.
+  // Verbatim: a target that begins with a NUL is none.
   if (record.tracking == (out[kTracks] == std::byte{0})) {
-    return fail("a camera whose flags and target contradict each other");
+    return fail("a camera with contradictory flags and target");
   }
   RecordHeader header = record.header;
   header.kind = RecordKind::camera_parameters;

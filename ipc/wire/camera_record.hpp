@@ -1,4 +1,4 @@
-// Records of cameras that are online (SENSOR channel, CAM_ONLINE): where each is to look, for whoever steers the real
+// Records of online cameras (SENSOR channel, CAM_ONLINE): the commanded direction, for the program that steers the real
 // one.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace cellmirror {
 
-inline constexpr std::uint32_t kCameraTracking = 1;  // it is to look at the frame that is named
+inline constexpr std::uint32_t kCameraTracking = 1;  // it tracks the named frame
 inline constexpr std::uint32_t kCameraMirrored = 2;  // its head is mirrored: its posture in the model is the real one's
 
 namespace camera_record_offset {
@@ -38,8 +38,8 @@ struct CameraRecord {
   RecordHeader header;
   std::string id;             // name of the camera's workframe
   std::string tracks;         // dotted path of the frame that it is to look at; empty: it tracks nothing
-  PoseRecord pose;            // X_WC: where it is to look
-  PoseRecord mount;           // X_WM: as it looks with its pan-tilt head at zero
+  PoseRecord pose;            // X_WC: commanded pose
+  PoseRecord mount;           // X_WM: pose with its pan-tilt head at zero
   double pan = 0;             // rad, about y of the mount
   double tilt = 0;            // rad, then about the new x
   double focal_distance = 0;  // m

@@ -40,7 +40,7 @@ bool is_our_version(std::uint64_t name) CELL_RT {
   return first_of(name) == kHapticBlockMagic && (second_of(name) & 0xffffu) == kHapticBlockVersion;
 }
 
-using Floats = std::array<float, kFloats>;  // what a program of 1999 sees
+using Floats = std::array<float, kFloats>;  // read by a program of 1999
 
 bool all_finite(const HapticOutput& output, const Floats& floats) CELL_RT {
   bool good = std::isfinite(output.gripper_torque) && std::isfinite(output.max_force);
@@ -49,7 +49,7 @@ bool all_finite(const HapticOutput& output, const Floats& floats) CELL_RT {
   return good;
 }
 
-// A double beyond float32 becomes infinite here, which all_finite() then sees.
+// A double beyond float32 becomes infinite here, which all_finite() then detects.
 Floats floats_of(const HapticOutput& output) CELL_RT {
   Floats floats{};
   for (std::size_t i = 0; i < 3; ++i) floats[i] = static_cast<float>(output.force_E[static_cast<int>(i)]);
@@ -97,7 +97,7 @@ HapticOutput without_force(const HapticOutput& output) CELL_RT {
 
 double number(std::uint64_t word) CELL_RT { return std::bit_cast<double>(word); }
 
-// CLOCK_MONOTONIC begins at 0. What lies before it is no time, and its difference to one might overflow.
+// CLOCK_MONOTONIC begins at 0. An earlier value is not a time, and its difference to one might overflow.
 Timestamp time_of(std::uint64_t word) CELL_RT {
   return Timestamp{std::max(std::bit_cast<std::int64_t>(word), std::int64_t{0})};
 }
@@ -109,7 +109,7 @@ void prepare_haptic_block(std::span<std::byte> memory, std::uint8_t joint_count,
   nothing.joint_count = joint_count;
   write_haptic_output(memory, nothing);
   if (!holds_all(memory)) return;
-  // The name last: who sees it sees a block.
+  // The name last: it marks a valid block.
   shared_words::store(memory, at::kBytes, maker_word(process));
   shared_words::store(memory, at::kMagic, name_word(joint_count));
 }
@@ -146,7 +146,7 @@ void write_haptic_output(std::span<std::byte> memory, const HapticOutput& output
 void end_haptic_block(std::span<std::byte> memory) CELL_RT {
   HapticOutput last;
   if (holds_all(memory)) {
-    // The numbers go on, so that a reader that compares them sees that this is new.
+    // The numbers continue, so that a reader that compares them detects the new block.
     last.sequence = shared_words::load<std::uint64_t>(memory, at::kForceSequence) + 1;
     last.time.ns = std::bit_cast<std::int64_t>(shared_words::load<std::uint64_t>(memory, at::kForceTime));
   }

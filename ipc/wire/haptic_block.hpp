@@ -58,11 +58,11 @@ inline constexpr std::size_t kLeastHapticBytes = 12;            // force only, a
 // Gateway: once, before the first force. Makes all forces zero and leaves the device's section as it is. `joint_count`
 // is that of the robot, at most kMaxJointsPerRobot (more counts as that); `process` the gateway's number.
 void prepare_haptic_block(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process) CELL_RT;
-// Gateway: writes the bytes 128 to 143 anew where they are no longer as prepare_haptic_block() left them (the memory
-// was renewed, or somebody wrote there). True where it did. Costs two loads else: for each tick.
+// Gateway: rewrites the bytes 128 to 143 if they differ from those of prepare_haptic_block() (the memory was renewed,
+// or overwritten). True if it did. Otherwise costs two loads: for each tick.
 bool restore_haptic_header(std::span<std::byte> memory, std::uint8_t joint_count, std::uint32_t process) CELL_RT;
 // Gateway, each tick. Forces and torques of which any is not finite, as float32 where it is written as such, are all
-// written as zero, with the fault not_finite where `output` tells of none. The sequence is the caller's to count.
+// written as zero, with the fault not_finite if `output` has none. The caller counts the sequence.
 void write_haptic_output(std::span<std::byte> memory, const HapticOutput& output) CELL_RT;
 // Gateway, at its end: all forces zero, phase closed, and the gateway's process number 0.
 void end_haptic_block(std::span<std::byte> memory) CELL_RT;

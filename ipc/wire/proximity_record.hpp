@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kPairTouching = 1;
 inline constexpr std::uint32_t kPairWithinWarning = 2;
 inline constexpr std::uint32_t kPairDoubtful = 4;  // touching or its distance is not certain: take it as touching
 
-// So many fit into less than a quarter of a queue of 16,384 bytes, which the robots' records share.
+// This many fit into less than a quarter of a queue of 16,384 bytes, which the robots' records share.
 inline constexpr std::size_t kMaxPairsInRecord = 10;
 
 namespace proximity_record_offset {
@@ -98,15 +98,15 @@ struct ProximityRecord {
 
 struct EventRecord {
   RecordHeader header;
-  std::uint64_t event = 0;  // from 1; a gap tells how many were lost
+  std::uint64_t event = 0;  // from 1; a gap gives the number lost
   ProximityChange change = ProximityChange::entered_warning;
   double distance = 0;  // m
   std::string a;
   std::string b;
 };
 
-// What records say of a state and of an event; sequence and wall time stay for the sender to fill in. Pairs beyond
-// kMaxPairsInRecord are left out, `found` tells.
+// Records of a state and of an event; the sender fills in sequence and wall time. Pairs beyond kMaxPairsInRecord are
+// left out; `found` counts them.
 [[nodiscard]] ProximityRecord proximity_record_of(const ProximityState& state);
 [[nodiscard]] EventRecord event_record_of(const ProximityEvent& event);
 

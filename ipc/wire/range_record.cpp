@@ -29,8 +29,8 @@ Result<void> get_flags(std::span<const std::byte> bytes, std::size_t offset, aut
   range.doubtful = (flags & kRangeDoubtful) != 0;
   if (flags > (kRangeSeen | kRangeInBlindZone | kRangeDoubtful))
     return fail(fmt::format("flags {:#x} of a range are unknown", flags));
-  if (seen == std::isnan(range.distance)) return fail("a range whose flags and distance contradict each other");
-  if (range.in_blind_zone && !seen) return fail("nothing is seen, in the blind zone");
+  if (seen == std::isnan(range.distance)) return fail("a range with contradictory flags and distance");
+  if (range.in_blind_zone && !seen) return fail("no echo, but in the blind zone");
   if (get<std::uint32_t>(bytes, offset + sizeof flags) != 0) return fail("reserved bytes of a range are not 0");
   return {};
 }
@@ -124,7 +124,7 @@ std::vector<RangeArrayRecord> range_arrays_of(std::span<const RangeReading> read
 Result<std::size_t> encode_range_record(const RangeRecord& record, std::span<std::byte> bytes) {
   using namespace range_record_offset;
   if (bytes.size() < kBytes) return fail(fmt::format("a range record of {} bytes into {}", kBytes, bytes.size()));
-  if (record.in_blind_zone && std::isnan(record.distance)) return fail("nothing is seen, in the blind zone");
+  if (record.in_blind_zone && std::isnan(record.distance)) return fail("no echo, but in the blind zone");
   const auto out = bytes.first(kBytes);
   std::fill(out.begin(), out.end(), std::byte{0});
   RecordHeader header = record.header;
@@ -179,7 +179,7 @@ Result<std::size_t> encode_range_array(const RangeArrayRecord& record, std::span
   put(out, kTotal, record.total);
   for (std::size_t i = 0; i < record.ranges.size(); ++i) {
     const RangeEntry& entry = record.ranges[i];
-    if (entry.in_blind_zone && std::isnan(entry.distance)) return fail("nothing is seen, in the blind zone");
+    if (entry.in_blind_zone && std::isnan(entry.distance)) return fail("no echo, but in the blind zone");
     put_entry(out.subspan(kRanges + i * kEntryBytes, kEntryBytes), entry);
   }
   return length;

@@ -17,7 +17,7 @@
 namespace cellmirror {
 
 inline constexpr std::uint32_t kRangeSeen = 1;         // something is in the cone
-inline constexpr std::uint32_t kRangeInBlindZone = 2;  // so near that a real sensor could not tell
+inline constexpr std::uint32_t kRangeInBlindZone = 2;  // nearer than a real sensor can measure
 inline constexpr std::uint32_t kRangeDoubtful = 4;     // something nearer may be there
 
 namespace range_record_offset {
@@ -55,11 +55,11 @@ inline constexpr std::size_t kMaxRangesInRecord =
     (kMaxRecordBytes - range_array_offset::kRanges) / range_array_offset::kEntryBytes;
 static_assert(kMaxRangesInRecord >= 64, "the sensors of a large cell fit in one record");
 
-// Distance and point are NaN where nothing is seen.
+// Distance and point are NaN without an echo.
 struct RangeRecord {
   RecordHeader header;
   std::string id;
-  std::string object;                                          // dotted path of the body that is seen
+  std::string object;                                          // dotted path of the detected body
   double distance = std::numeric_limits<double>::quiet_NaN();  // m, from the apex
   double range = 0;                                            // m
   double blind_zone = 0;                                       // m

@@ -24,7 +24,7 @@ Result<RecordHeader> decode_record_header(std::span<const std::byte> record) {
         fmt::format("a record of {} bytes; records have {} to {}", record.size(), kHeaderBytes, kMaxRecordBytes));
   }
   if (get<std::uint32_t>(record, kMagic) != kRecordMagic)
-    return fail("no cellmirror record: it does not begin with CMIR");
+    return fail("not a cellmirror record: it does not begin with CMIR");
   const auto version = get<std::uint16_t>(record, kVersion);
   if (version != kRecordVersion) {
     return fail(fmt::format("record version {}, this program reads version {}", version, kRecordVersion),
@@ -34,7 +34,7 @@ Result<RecordHeader> decode_record_header(std::span<const std::byte> record) {
   if (!known_kind(kind)) return fail(fmt::format("record kind {} is unknown", kind));
   const auto length = get<std::uint32_t>(record, kLength);
   if (length != record.size()) {
-    return fail(fmt::format("the record states {} bytes, {} have come", length, record.size()));
+    return fail(fmt::format("the record declares {} bytes, but {} were received", length, record.size()));
   }
   if (get<std::uint32_t>(record, kReserved) != 0) return fail("reserved bytes of the record's header are not 0");
   return RecordHeader{static_cast<RecordKind>(kind), length, get<std::uint64_t>(record, kSequence),

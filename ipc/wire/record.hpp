@@ -43,7 +43,7 @@ inline constexpr std::size_t kHeaderBytes = 40;  // where the payload starts
 struct RecordHeader {
   RecordKind kind = RecordKind::robot_parameters;
   std::uint32_t length = 0;       // bytes of the whole record
-  std::uint64_t sequence = 0;     // counts the records of one channel from 1; a gap tells how many were dropped
+  std::uint64_t sequence = 0;     // counts the records of one channel from 1; a gap gives the number dropped
   std::int64_t time_ns = 0;       // CLOCK_MONOTONIC, the instant that the record shows
   std::int64_t wall_time_ns = 0;  // the same instant since 1970, for logs; may jump when the clock is set
 };

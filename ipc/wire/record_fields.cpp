@@ -46,8 +46,8 @@ void put_path(std::span<std::byte> bytes, std::size_t offset, std::size_t room, 
 Result<std::string> get_text(std::span<const std::byte> bytes, std::size_t offset, std::size_t room) {
   const auto field = bytes.subspan(offset, room);
   const auto end = std::find(field.begin(), field.end(), std::byte{0});
-  if (end == field.end()) return fail(fmt::format("the text at byte {} has no NUL behind it", offset));
-  if (!all_zero({end, field.end()})) return fail(fmt::format("the text at byte {} goes on behind its NUL", offset));
+  if (end == field.end()) return fail(fmt::format("the text at byte {} is not terminated by a NUL", offset));
+  if (!all_zero({end, field.end()})) return fail(fmt::format("the text at byte {} continues after its NUL", offset));
   std::string text(static_cast<std::size_t>(end - field.begin()), '\0');
   std::transform(field.begin(), end, text.begin(), [](std::byte b) { return static_cast<char>(b); });
   return text;

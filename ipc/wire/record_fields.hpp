@@ -17,8 +17,8 @@ using PointRecord = std::array<double, 3>;  // m, in the world
 // A name in a field of `room` bytes: at least one NUL behind it, filled up with NULs. A longer one loses its end,
 // between characters.
 void put_name(std::span<std::byte> bytes, std::size_t offset, std::size_t room, std::string_view name);
-// A dotted path: what tells paths apart stands at both ends, so a longer one loses its middle, where "..." stands then;
-// its first name stays. `room` is at least 16.
+// A dotted path: both ends distinguish paths, so a longer one gets "..." in its middle; its first name stays. `room` is
+// at least 16.
 void put_path(std::span<std::byte> bytes, std::size_t offset, std::size_t room, std::string_view path);
 // Fails for text without its NUL and for bytes behind it.
 [[nodiscard]] Result<std::string> get_text(std::span<const std::byte> bytes, std::size_t offset, std::size_t room);

@@ -25,7 +25,7 @@ Result<std::string> checked_command(std::string_view text, std::size_t before) {
   for (std::size_t at = 0; at < text.size();) {
     const auto character = utf8_character(text.substr(at));
     if (!character) {
-      return fail(fmt::format("byte {} of the message is no UTF-8", before + at + 1),
+      return fail(fmt::format("byte {} of the message is not UTF-8", before + at + 1),
                   "send plain text in ASCII or UTF-8");
     }
     if (is_control_character(character->code) && !is_blank(text[at])) {
@@ -38,7 +38,7 @@ Result<std::string> checked_command(std::string_view text, std::size_t before) {
   return std::string(text);
 }
 
-// The digits behind '@', up to the first byte that is none.
+// The digits after '@'.
 std::int64_t tag_in(std::string_view text, std::size_t& digits) {
   std::int64_t tag = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), tag);
@@ -52,7 +52,7 @@ std::int64_t tag_in(std::string_view text, std::size_t& digits) {
 
 ScriptEnvelope parse_script_message(std::span<const char> message) {
   if (message.size() > kMaxScriptMessageBytes) {
-    // The tag is still looked for, so that the sender is told.
+    // The tag is still parsed, so that the sender gets an answer.
     ScriptEnvelope cut = parse_script_message(message.first(kMaxScriptMessageBytes));
     cut.text = fail(fmt::format("the message is longer than {} bytes", kMaxScriptMessageBytes),
                     "put it into a script file and send EXEC_SCRIPT");
@@ -67,12 +67,12 @@ ScriptEnvelope parse_script_message(std::span<const char> message) {
   std::size_t digits = 0;
   const std::int64_t tag = tag_in(text.substr(1), digits);
   if (tag == 0) {
-    return {0, fail("the tag behind @ is no whole number from 1 to 2147483647", "write @<tag> COMMAND")};
+    return {0, fail("the tag after @ is not an integer from 1 to 2147483647", "write @<tag> COMMAND")};
   }
   const std::string_view rest = text.substr(1 + digits);
   const std::string_view command = without_blanks(rest);
-  if (command.empty()) return {tag, fail("there is no command behind the tag", "write @<tag> COMMAND")};
-  if (!is_blank(rest.front())) return {0, fail("no blank behind the tag", "write @<tag> COMMAND")};
+  if (command.empty()) return {tag, fail("there is no command after the tag", "write @<tag> COMMAND")};
+  if (!is_blank(rest.front())) return {0, fail("no blank after the tag", "write @<tag> COMMAND")};
   return {tag, checked_command(command, offset(command))};
 }
 

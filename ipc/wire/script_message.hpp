@@ -18,10 +18,9 @@ inline constexpr std::int64_t kMaxReplyTag = 2'147'483'647;  // a message type f
 // Longer replies are cut, so that one of them cannot fill the reply queue (16,384 bytes by default).
 inline constexpr std::size_t kMaxReplyBytes = 4096;
 
-// What a message says. `tag` is kept where it could be read although the rest is refused, so that the sender can be
-// told.
+// Content of a message. A valid `tag` is kept even if the rest is refused, so that the sender gets an answer.
 struct ScriptEnvelope {
-  std::int64_t tag = 0;      // 1..kMaxReplyTag: the sender wants a reply of this message type; 0: none asked for
+  std::int64_t tag = 0;      // 1..kMaxReplyTag: message type of the requested reply; 0: none
   Result<std::string> text;  // the command; UTF-8 without control characters but tab and line breaks, never empty
 };
 
@@ -36,7 +35,7 @@ struct ScriptEnvelope {
 // The answer to a command.
 struct ScriptReply {
   bool done = false;
-  std::string text;  // what a command tells, often empty; or why it was refused
+  std::string text;  // the answer of a command, often empty; or the reason of a refusal
 
   bool operator==(const ScriptReply&) const = default;
 };

@@ -6,11 +6,11 @@
 // Memory order. The writer makes the lock odd, stores the words with release, then makes the lock even with release.
 // The reader loads the lock with acquire, the words with acquire, and the lock again.
 // - A reader that meets a word of a write under way has, by that word's release and acquire, also to see the odd lock
-//   (or a later one) in its second look: the try is given up.
-// - A reader whose first look is an even lock sees, by the lock's release and acquire, no word older than that.
-// So two equal even looks enclose words of one write. Release and acquire of every word take the place of fences, which
-// ThreadSanitizer cannot follow; they are plain loads and stores on x86-64 (H.-J. Boehm, "Can seqlocks get along with
-// programming language memory models?", MSPC 2012).
+//   (or a later one) in its second load: the attempt is discarded.
+// - A reader whose first load of the lock is even sees, by the lock's release and acquire, no word older than that. So
+//   two equal even loads enclose words of one write. Release and acquire of every word take the place of fences, which
+//   ThreadSanitizer cannot follow; they are plain loads and stores on x86-64 (H.-J. Boehm, "Can seqlocks get along with
+//   programming language memory models?", MSPC 2012).
 #pragma once
 
 #include <array>
@@ -48,9 +48,9 @@ template <class Word>
   return word;
 }
 
-// `offset` is a multiple of the word's size and lies within `memory`: constants of a layout, checked by the caller. A
-// place is only ever accessed with one size of word. The cast away of const serves atomic_ref, which takes no const
-// object before C++26: memory that is mapped for reading only is only loaded from.
+// `offset` is a multiple of the word's size and within `memory`: constants of a layout, checked by the caller. A place
+// is only ever accessed with one size of word. The cast away of const serves atomic_ref, which takes no const object
+// before C++26: memory that is mapped for reading only is only loaded from.
 template <class Word>
 [[nodiscard]] std::atomic_ref<Word> at(std::span<const std::byte> memory, std::size_t offset) CELL_RT {
   auto* place = const_cast<std::byte*>(memory.data() + offset);  // NOLINT(cppcoreguidelines-pro-type-const-cast)

@@ -32,7 +32,7 @@ inline constexpr std::size_t kRobot = 104;    // char[64], zero-terminated: id o
 inline constexpr std::size_t kSize = 192;
 }  // namespace tcp_force_block_offset
 
-inline constexpr std::uint32_t kTcpForceValid = 1;        // something tells of a force at this robot's TCP
+inline constexpr std::uint32_t kTcpForceValid = 1;        // the force at this robot's TCP is known
 inline constexpr std::uint32_t kTcpForceTest = 2;         // the values of SET_EXT_TCP_TEST
 inline constexpr std::uint32_t kTcpForceBeyondLimit = 4;  // of SET_TORQUE_LIMIT
 

@@ -32,11 +32,12 @@ bool is_inside(const fs::path& path, const fs::path& root) {
 Result<void> check_name(std::string_view name) {
   constexpr std::size_t kLongest = 512;
   const std::string shown = printable(name);
-  if (name.empty()) return fail("a file name is empty");
+  if (name.empty()) return fail("the file name is empty");
   if (name.size() > kLongest) return fail(fmt::format("the file name {} is too long", shown));
-  if (name.find('\0') != std::string_view::npos) return fail(fmt::format("the file name {} holds a NUL byte", shown));
+  if (name.find('\0') != std::string_view::npos)
+    return fail(fmt::format("the file name {} contains a NUL byte", shown));
   if (fs::path(name).is_absolute()) {
-    return fail(fmt::format("the path {} is absolute", shown), "name files relative to the cell's home");
+    return fail(fmt::format("the path {} is absolute", shown), "use a path relative to the cell folder");
   }
   return {};
 }
@@ -44,7 +45,7 @@ Result<void> check_name(std::string_view name) {
 // Names of the files in `folder`, as `name` is written: with its folders, and without an extension where it has none.
 std::vector<std::string> files_beside(const fs::path& folder, const fs::path& name,
                                       std::span<const std::string_view> extensions) {
-  constexpr std::size_t kMost = 512;  // entries that are looked at: a refusal stays cheap in a folder of any size
+  constexpr std::size_t kMost = 512;  // entries examined at most, so that a refusal is cheap in a folder of any size
   const bool bare = name.extension().empty() && !extensions.empty();
   std::vector<std::string> names;
   std::error_code error;
@@ -68,8 +69,9 @@ std::vector<std::string> files_beside(const fs::path& folder, const fs::path& na
 Result<KismetHome> KismetHome::open(const fs::path& root) {
   std::error_code error;
   fs::path canonical = fs::canonical(root, error);
-  if (error) return fail(fmt::format("the cell's home {} cannot be opened: {}", root.string(), error.message()));
-  if (!fs::is_directory(canonical, error)) return fail(fmt::format("the cell's home {} is no folder", root.string()));
+  if (error) return fail(fmt::format("the cell folder {} cannot be opened: {}", root.string(), error.message()));
+  if (!fs::is_directory(canonical, error))
+    return fail(fmt::format("the cell folder {} is not a folder", root.string()));
   return KismetHome(std::move(canonical));
 }
 
@@ -90,16 +92,16 @@ Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name
   const std::string shown = (fs::path(folder) / printable(name)).string() + std::string(extended ? extension : "");
   if (error == std::errc::no_such_file_or_directory) {
     const std::span<const std::string_view> extensions(&extension, extension.empty() ? 0 : 1);
-    return fail(fmt::format("the file {} does not exist in the cell's home {}", shown, root_.string()),
+    return fail(fmt::format("the file {} does not exist in the cell folder {}", shown, root_.string()),
                 nearest_files(folder, name, extensions));
   }
   if (error) return fail(fmt::format("the file {} cannot be opened: {}", shown, error.message()));
   if (!is_inside(found, root_)) {
-    return fail(fmt::format("the path {} leaves the cell's home {}", shown, root_.string()),
-                "put the file into the home");
+    return fail(fmt::format("the path {} leaves the cell folder {}", shown, root_.string()),
+                "put the file into the cell folder");
   }
   if (fs::is_directory(found, error)) return fail(fmt::format("{} is a folder, not a file", shown));
-  if (!fs::is_regular_file(found, error)) return fail(fmt::format("{} is no regular file", shown));
+  if (!fs::is_regular_file(found, error)) return fail(fmt::format("{} is not a regular file", shown));
   if (access(found.c_str(), R_OK) != 0)
     return fail(fmt::format("the file {} is not readable: {}", shown, std::strerror(errno)));
   return found;
@@ -122,14 +124,14 @@ Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_
   std::error_code error;
   const fs::path parent = root_ / folder;
   fs::create_directories(parent, error);
-  if (error) return fail(fmt::format("the folder {} cannot be made: {}", parent.string(), error.message()));
+  if (error) return fail(fmt::format("the folder {} cannot be created: {}", parent.string(), error.message()));
   const fs::path canonical_parent = fs::canonical(parent, error);
   if (error || !is_inside(canonical_parent, root_))
-    return fail(fmt::format("the path {} leaves the cell's home", parent.string()));
+    return fail(fmt::format("the path {} leaves the cell folder", parent.string()));
   const fs::path target = canonical_parent / name;
   const fs::file_status status = fs::symlink_status(target, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return fail(fmt::format("{} exists and is no regular file", target.string()));
+    return fail(fmt::format("{} exists and is not a regular file", target.string()));
   return target;
 }
 
@@ -141,9 +143,9 @@ Result<std::string> read_text_file(const fs::path& path, std::size_t limit) {
   if (fstat(file.get(), &info) != 0)
     return fail(fmt::format("{} cannot be read: {}", path.string(), std::strerror(errno)));
   if (S_ISDIR(info.st_mode)) return fail(fmt::format("{} is a folder, not a file", path.string()));
-  if (!S_ISREG(info.st_mode)) return fail(fmt::format("{} is no regular file", path.string()));
+  if (!S_ISREG(info.st_mode)) return fail(fmt::format("{} is not a regular file", path.string()));
   if (static_cast<std::size_t>(info.st_size) > limit) {
-    return fail(fmt::format("{} has {} bytes, more than the {} that are read", path.string(), info.st_size, limit));
+    return fail(fmt::format("{} has {} bytes, more than the limit of {}", path.string(), info.st_size, limit));
   }
   std::string text(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t filled = 0;

@@ -1,4 +1,4 @@
-// The KISMET home of a cell: the one folder from which names in cell files and SCRIPT may reach files.
+// The cell folder (the manual's KISMET home): the only folder whose files may be named in cell files and SCRIPT.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,17 @@ class KismetHome {
  public:
   // `root` is the cell's folder, or $kis_home where that is set. Fails where it is no readable folder.
   static Result<KismetHome> open(const std::filesystem::path& root);
-  // The home of the cell file at `cell_file`: $kis_home if set, else the file's own folder.
+  // The cell folder of the cell file at `cell_file`: $kis_home if set, else the file's own folder.
   static Result<KismetHome> of_cell(const std::filesystem::path& cell_file);
 
   // The regular, readable file `name` in `folder` ("scripts", "envlib", "robots", "" for the home itself), with
-  // `extension` (".spt") added where the name has none and no file without it exists. Refused: absolute names, names
-  // that leave the home (also through links), folders, missing and unreadable files; the message says which, and of
-  // missing ones which files a person may have meant.
+  // `extension` (".spt") added if the name has none and no file without it exists. Refused: absolute names, names that
+  // leave the cell folder (also through links), folders, missing and unreadable files; the message gives the reason,
+  // and the nearest names for missing files.
   [[nodiscard]] Result<std::filesystem::path> file(std::string_view folder, std::string_view name,
                                                    std::string_view extension = {}) const;
-  // "did you mean a or b?" of the files in `folder` with one of `extensions` (none given: with any), or empty where
-  // none is near. Looks at 512 entries at most.
+  // "did you mean a or b?" of the files in `folder` with one of `extensions` (none given: with any), or empty if none
+  // is near. Examines at most 512 entries.
   [[nodiscard]] std::string nearest_files(std::string_view folder, std::string_view name,
                                           std::span<const std::string_view> extensions) const;
   // A path for a file that will be written; the same rules, but the file need not exist. Makes `folder` where missing.

@@ -1,6 +1,6 @@
-// The log's front end. One line a message on standard error, with wall-clock time. Messages are rate limited by kind:
-// after kBurst of one kind within a second the rest are counted, and the count is told with the next one that passes.
-// Not for the tick.
+// The log's front end. One line per message on standard error, with wall-clock time. Messages are rate limited by kind:
+// after kBurst of one kind within a second the rest are counted, and the next message that passes shows the count. Not
+// for the tick.
 #pragma once
 
 #include <fmt/core.h>

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-// A function that bears CELL_RT may run in the tick: it is noexcept, takes no heap memory, waits for no lock, formats
-// no text, looks up no string and makes no system call but the clock. The mark is the only statement of that contract;
-// tests run such functions under the allocation guard, and clang checks the attribute where it knows it.
+// A function marked CELL_RT may run in the tick: it is noexcept, does not allocate, does not wait for a lock, formats
+// no text, looks up no string and makes no system call but the clock. Tests run such functions under the allocation
+// guard, and clang checks the attribute if it supports it.
 #if defined(__clang__) && __has_cpp_attribute(clang::nonblocking)
 #define CELL_RT noexcept [[clang::nonblocking]]
 #else
@@ -14,10 +14,10 @@
 
 namespace cellmirror {
 
-// How to ask for SCHED_FIFO and locked memory.
+// Policy for SCHED_FIFO and locked memory.
 enum class RealTimePolicy : std::uint8_t {
   require,  // without them the gateway does not start
-  prefer,   // taken where the machine allows it, else told and done without
+  prefer,   // used if the machine allows it, otherwise reported and continued without
   off,      // not asked for
 };
 

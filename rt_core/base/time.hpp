@@ -1,5 +1,5 @@
 // Time. Inside, every instant is a Timestamp on the machine's monotonic clock; wall-clock time appears only where a
-// protocol asks for it (DDS headers, logs) and is converted there.
+// protocol requires it (DDS headers, logs) and is converted there.
 #pragma once
 
 #include <chrono>

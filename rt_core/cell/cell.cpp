@@ -96,7 +96,7 @@ std::optional<Cell> Cell::build(std::shared_ptr<const Component> root, std::shar
   CellBuilder builder(*state, diagnostics);
   const auto graft = builder.plan_root();
   if (!graft) return std::nullopt;
-  // Predecessors are looked for even after other findings, so that one pass tells all.
+  // Predecessors are checked even after other errors, so that one pass reports all.
   builder.commit(kRootNode, *graft);
   builder.connect_predecessors();
   if (!diagnostics.ok()) return std::nullopt;

@@ -1,7 +1,6 @@
 // The model of the workcell: the tree of frames, joints and workframes with the detail levels of its components, and
-// the robots. Changed by one thread, its owner; everybody else reads the compiled pictures that compile() makes. What
-// SCRIPT's commands mean (manual 1.2.1) is written in docs/cell-files.md, "Detail levels". Every operation that is
-// refused changes nothing.
+// the robots. Changed by one thread, its owner; all others read the snapshots of compile(). docs/cell-files.md, "Detail
+// levels", defines the SCRIPT commands (manual 1.2.1). A refused operation changes nothing.
 #pragma once
 
 #include <cstddef>
@@ -37,13 +36,13 @@ class Cell {
   ~Cell();
 
   // --- Names. Paths are dotted; levels may be skipped where one node only matches.
-  // Fast for paths that were asked before.
+  // Cached for repeated paths.
   [[nodiscard]] bool knows(std::string_view path, PathKind kind = PathKind::any) const;
   // An error names the candidates of an ambiguous path or the nearest names.
   [[nodiscard]] Result<NodeId> find(std::string_view path, PathKind kind = PathKind::any) const;
   [[nodiscard]] Error explain(std::string_view path, PathKind kind = PathKind::any) const;
-  // The full path of a node, for rules about bodies. The name of a cell that has geometry of its own stands for that
-  // geometry alone and wins over shortened paths.
+  // The full path of a node, for rules about bodies. The name of a cell with geometry of its own means that geometry
+  // alone and takes precedence over shortened paths.
   [[nodiscard]] Result<std::string> find_branch(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> paths(PathKind kind) const;  // full paths of all nodes in memory
   [[nodiscard]] std::string path(NodeId node) const;
@@ -66,9 +65,9 @@ class Cell {
   // --- Places.
   // X_PF: the frame's pose in its kinematic predecessor. A joint is refused.
   Result<void> set_placement(std::string_view node, const Pose& X_PF);
-  // `part` hangs on `predecessor` from now on and keeps its world pose at the joint positions q[slot][joint].
+  // Attaches `part` to `predecessor`, keeping its world pose at the joint positions q[slot][joint].
   Result<void> connect(std::string_view part, std::string_view predecessor, std::span<const JointValues> q);
-  // `part` hangs on `predecessor` with the pose that the workframe has in its own parent.
+  // Attaches `part` to `predecessor` with the pose of the workframe in its own parent.
   Result<void> attach_at_workframe(std::string_view part, std::string_view predecessor, std::string_view workframe);
   Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad);
   Result<void> set_sensor_active(std::string_view sensor, bool active);
@@ -83,7 +82,7 @@ class Cell {
   [[nodiscard]] std::vector<std::string> robot_ids() const;  // in the order of the slots
   // Start positions of all robots by slot, kMaxRobots entries; zero where there is no robot.
   [[nodiscard]] std::vector<JointValues> start_positions() const;
-  // Asked before a component with a robot is deleted: true where that robot is on line. Default: none is.
+  // Called before a component with a robot is deleted: true if that robot is on line. Default: none is.
   void set_online_query(std::function<bool(std::string_view robot)> query);
 
   // --- Pictures. The revision counts changes; compile() gives the same picture as long as it stays.

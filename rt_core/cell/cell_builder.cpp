@@ -61,17 +61,17 @@ std::unique_ptr<Graft> CellBuilder::plan_root() {
 std::unique_ptr<Graft> CellBuilder::plan_file(const AbstractReference& reference, const Place& place) {
   auto component = state_.source->component_for(reference);
   if (!component) {
-    // The loader of the cell file has told it already where it reads every file first.
+    // The loader of the cell file has reported it already when it read the file.
     if (diagnostics_.ok()) diagnostics_.error(place, component.error().what, component.error().remedy);
     return nullptr;
   }
   if (std::ranges::find(files_above_, (*component)->file) != files_above_.end()) {
     diagnostics_.error(place, fmt::format("the component {} would contain itself", reference.file),
-                       "take the reference out of one of the files");
+                       "remove the reference from one of the files");
     return nullptr;
   }
   if (files_above_.size() >= kDeepest) {
-    diagnostics_.error(place, fmt::format("components lie within components more than {} deep", kDeepest));
+    diagnostics_.error(place, fmt::format("components are nested more than {} deep", kDeepest));
     return nullptr;
   }
   return plan_component(*component, &reference, place);
@@ -121,7 +121,7 @@ void CellBuilder::plan_robot(const Component& component, const AbstractReference
   if (!component.robot) {
     if (renamed)
       diagnostics_.error(place,
-                         fmt::format("{} holds no robot that could be named {}", component.file, reference->robot_id));
+                         fmt::format("{} has no robot that could be named {}", component.file, reference->robot_id));
     return;
   }
   const std::string& id = renamed ? reference->robot_id : component.robot->id;
@@ -239,7 +239,7 @@ void CellBuilder::add_robot(NodeId at, const Graft& graft, const std::vector<Nod
   state_.robots[slot] = std::move(robot);
 }
 
-// The path begins at something of which a component could not be loaded, and that was told.
+// The path begins at a component that could not be loaded, which was reported.
 bool CellBuilder::lies_in_gap(std::string_view path) const {
   if (!incomplete_) return false;
   const NodeId first = state_.names.find(path.substr(0, path.find('.')), PathKind::any);
@@ -262,7 +262,7 @@ void CellBuilder::connect_predecessors() {
       continue;
     }
     if (state_.hangs_on(*predecessor, id)) {
-      diagnostics_.error(place, fmt::format("{} would hang on itself: its predecessor {} hangs on it", node.name,
+      diagnostics_.error(place, fmt::format("{} would be its own ancestor: its predecessor {} is below it", node.name,
                                             node.definition->predecessor));
       continue;
     }

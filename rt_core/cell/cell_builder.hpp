@@ -13,7 +13,7 @@
 
 namespace cellmirror {
 
-// A component that will hang below a node, with those that its own nodes load.
+// A component to attach below a node, with those loaded by its own nodes.
 struct Graft {
   std::shared_ptr<const Component> component;
   const AbstractReference* reference = nullptr;                        // null: the cell file itself

@@ -35,19 +35,19 @@ struct DetailLevels {
   Result<void> check_above(NodeId id) const {
     for (NodeId up = state.at(id).parent; up != kNoNode; up = state.at(up).parent) {
       if (state.at(up).shown == Shown::detail) continue;
-      return fail(fmt::format("{} lies within {}, which is not shown in detail", path(id), path(up)),
+      return fail(fmt::format("{} is within {}, which is not shown in detail", path(id), path(up)),
                   "ACTIVATE " + path(up) + " first");
     }
     return {};
   }
 
-  // A part that was carried away cannot be replaced by the coarse geometry that stands where it was.
+  // The coarse geometry of a moved part would be at the old place.
   Result<void> check_at_home(NodeId id) const {
     const Node& node = state.at(id);
     if (node.predecessor == node.first_predecessor) return {};
-    return fail(fmt::format("{} hangs on {} now and cannot be replaced by the geometry of its father", path(id),
+    return fail(fmt::format("{} is attached to {} now and cannot be replaced by the geometry of its father", path(id),
                             path(node.predecessor)),
-                "CONNECT it to where it belongs first");
+                "CONNECT it to its original predecessor first");
   }
 
   // Shows these nodes in detail; loads what is not in memory. All or nothing.
@@ -93,8 +93,9 @@ struct DetailLevels {
     for (std::size_t i = 1; i < state.nodes.size(); ++i) {
       if (!state.nodes[i] || goes[i] || !goes[static_cast<std::size_t>(state.nodes[i]->predecessor)]) continue;
       const auto id = static_cast<NodeId>(i);
-      return fail(fmt::format("{} hangs on {}, which would be deleted", path(id), path(state.nodes[i]->predecessor)),
-                  "CONNECT it to another frame first");
+      return fail(
+          fmt::format("{} is attached to {}, which would be deleted", path(id), path(state.nodes[i]->predecessor)),
+          "CONNECT it to another frame first");
     }
     for (const auto& robot : state.robots) {
       if (!robot) continue;
@@ -193,9 +194,9 @@ Result<void> Cell::swap_node(std::string_view path) {
   Node& node = state_->at(*id);
   if (!node.has_abstract()) return fail(fmt::format("{} has no ABSTRACT file with details", levels.path(*id)));
   if (!state_->has_father_geometry(node)) {
-    return fail(
-        fmt::format("{} has no father geometry: nothing in {} stands for it", levels.path(*id), node.declared_in->file),
-        "give a geometry of its father stands_for = [\"" + node.name + "\"]");
+    return fail(fmt::format("{} has no father geometry: {} has no stands_for geometry for it", levels.path(*id),
+                            node.declared_in->file),
+                "give a geometry of its father stands_for = [\"" + node.name + "\"]");
   }
   if (auto above = levels.check_above(*id); !above) return above;
   if (node.shown != Shown::detail) return levels.show_in_detail({*id});

@@ -130,7 +130,7 @@ class Picture {
         {joint.axis, node.binding.multiplier, node.binding.offset, joint.kind, node.binding.slot, node.binding.joint});
   }
 
-  // Some part for which the geometry stands is shown coarsely.
+  // A part represented by the geometry is shown coarsely.
   [[nodiscard]] bool stands_in(const Node& father, const Geometry& geometry) const {
     return std::ranges::any_of(father.children, [&](NodeId id) {
       const Node& child = state_.at(id);

@@ -13,23 +13,24 @@ namespace {
 
 constexpr double kFarthest = 1e6;  // m; beyond it a double no longer resolves a nanometre
 
-// What part and predecessor must be for the one to hang on the other.
+// Conditions for attaching a part to a predecessor.
 Result<void> check_connection(const Cell::State& state, NodeId part, NodeId predecessor) {
   const std::string name = state.names.path(part);
   if (state.at(part).kind() == NodeKind::joint)
-    return fail(fmt::format("{} is a joint and stays where its mechanism has it", name),
+    return fail(fmt::format("{} is a joint and cannot leave its mechanism", name),
                 "connect the frame of the component instead");
   if (const RobotModel* robot = state.robot_of_mechanism(part); robot != nullptr && robot->base() != part) {
     return fail(fmt::format("{} is part of the mechanism of the robot {}", name, robot->id()),
                 fmt::format("connect {} instead", state.names.path(robot->component())));
   }
   if (state.at(part).shown == Shown::coarse) {
-    return fail(fmt::format("{} is shown by the geometry of its father, which cannot be carried away", name),
+    return fail(fmt::format("{} is shown by the geometry of its father, which cannot be moved", name),
                 fmt::format("SWAP_NODE {} first", name));
   }
   if (part == predecessor) return fail(fmt::format("{} cannot be its own predecessor", name));
   if (state.hangs_on(predecessor, part)) {
-    return fail(fmt::format("{} hangs on {} and cannot become its predecessor", state.names.path(predecessor), name));
+    return fail(
+        fmt::format("{} is attached to {} and cannot become its predecessor", state.names.path(predecessor), name));
   }
   return {};
 }
@@ -41,7 +42,7 @@ Result<void> Cell::set_placement(std::string_view path, const Pose& X_PF) {
   if (!id) return std::unexpected(id.error());
   Node& node = state_->at(*id);
   if (node.kind() == NodeKind::joint) {
-    return fail(fmt::format("{} is a joint; its place follows from its mechanism", state_->names.path(*id)),
+    return fail(fmt::format("{} is a joint; its mechanism defines its pose", state_->names.path(*id)),
                 "POS_ROB moves joints");
   }
   if (!X_PF.matrix().allFinite())
@@ -96,7 +97,7 @@ Result<void> Cell::set_camera(std::string_view camera, double focal_distance_m, 
   if (!(focal_distance_m > 0.0))
     return fail(fmt::format("the viewing distance of {} is {:g} m, but must be positive", camera, focal_distance_m));
   if (!std::isfinite(fovy_rad) || fovy_rad <= 0.0 || fovy_rad >= std::numbers::pi)
-    return fail(fmt::format("the opening angle of {} is {:g} rad, but must lie between 0 and pi", camera, fovy_rad));
+    return fail(fmt::format("the opening angle of {} is {:g} rad, but must be between 0 and pi", camera, fovy_rad));
   state_->at(*id).camera = {focal_distance_m, fovy_rad};
   state_->changed();
   return {};

@@ -59,7 +59,7 @@ struct Cell::State {
     ++structure_revision;
   }
 
-  // `above` is `node` or lies above it, by predecessors or by names.
+  // `above` is `node` or an ancestor of it, by predecessors or by names.
   [[nodiscard]] bool hangs_on(NodeId node, NodeId above) const;
   [[nodiscard]] bool named_within(NodeId node, NodeId above) const;
   // The robot to whose mechanism the node belongs: its base, joints, flange, ZP frame and what lies between; null:
@@ -68,7 +68,7 @@ struct Cell::State {
   // `node` and everything below it in the tree of names, parents first.
   [[nodiscard]] std::vector<NodeId> branch(NodeId node) const;
 
-  // The geometry of the file that declares `node`, at its father, that may stand for it.
+  // The geometry of its father, in the file that declares `node`, that may represent it.
   [[nodiscard]] const std::vector<Geometry>& father_geometry(const Node& node) const;
   [[nodiscard]] bool has_father_geometry(const Node& node) const;
   [[nodiscard]] std::shared_ptr<const CompiledCell> make_picture() const;

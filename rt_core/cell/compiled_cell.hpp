@@ -1,5 +1,5 @@
-// An immutable picture of the cell for everybody but its owner: flat arrays, no look-up by name needed. Threads: any
-// number of readers; shared by std::shared_ptr, let go off the tick.
+// An immutable snapshot of the cell for all readers: flat arrays, no look-up by name needed. Threads: any number of
+// readers; shared by std::shared_ptr, released outside the tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -70,7 +70,7 @@ struct CompiledInertia {
   BodyInertia inertia;
 };
 
-// Arrays are indexed by node. Parents stand before their children; nodes that no joint can move stand first.
+// Arrays are indexed by node. Parents come before their children; nodes that no joint can move come first.
 struct CompiledCell {
   std::uint64_t revision = 0;
   std::string name = "world";        // of the cell, and so of its own geometry in findings: the world has no path

@@ -29,7 +29,7 @@ enum class NodeKind : std::uint8_t {
   sensor,     // an ultrasonic sensor's workframe
 };
 
-// How a part is there: by its own (detailed) geometry, by its father's geometry that stands for it, or not at all.
+// State of a part: shown by its own (detailed) geometry, by its father's geometry, or not at all.
 enum class Shown : std::uint8_t { detail, coarse, hidden };
 
 // Moments about the centre of mass, axes parallel to the node's.

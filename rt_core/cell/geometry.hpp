@@ -16,8 +16,8 @@ namespace cellmirror {
 
 struct MeshLook;
 
-// What stands for a mesh in collision tests and ranging. Anything but `exact` is only taken where the cell or component
-// file says that it is good enough.
+// Substitute for a mesh in collision tests and ranging. Others than `exact` are used only if the cell or component file
+// selects them.
 enum class CollideAs : std::uint8_t {
   exact,  // every triangle
   hull,   // the convex hull
@@ -41,8 +41,8 @@ struct Geometry {
   std::array<float, 4> rgba{0.72F, 0.72F, 0.74F, 1.0F};               // 0..1
   bool drawn = true;
   bool collides = true;
-  // Names of child nodes whose details this coarse geometry stands for: it is there only while at least one of them is
-  // shown coarsely (docs/cell-files.md, "Detail levels"). Empty: ordinary geometry, there whenever its node is.
+  // Names of child nodes whose details this coarse geometry represents: it is shown only while at least one of them is
+  // shown coarsely (docs/cell-files.md, "Detail levels"). Empty: ordinary geometry, shown with its node.
   std::vector<std::string> stands_for;
   int line = 0;  // where it stands in its file
   int column = 0;

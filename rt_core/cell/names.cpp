@@ -13,7 +13,7 @@ namespace cellmirror {
 namespace {
 
 constexpr std::size_t kLongestPath = 1024;
-// Paths are asked for by messages too; what is remembered stays bounded whatever they ask.
+// Messages request paths too; the cache stays bounded for any input.
 constexpr std::size_t kRemembered = 65'536;
 
 std::size_t index_of(NodeId node) { return static_cast<std::size_t>(node); }
@@ -158,7 +158,7 @@ Error NameIndex::explain(std::string_view path, PathKind kind) const {
     if (others.size() == 1)
       return {fmt::format("{} is a {}, not a {}", shown, word(entry(others.front()).kind), word(kind)), {}};
   }
-  // Near paths, told as the full paths of the nodes whose own name is near the last one of the path.
+  // Nearest paths: the full paths of nodes whose own name is near the last name of the path.
   std::string_view above = path;
   const std::string_view last = take_last(above);
   std::vector<std::string> names;

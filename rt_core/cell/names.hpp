@@ -1,5 +1,5 @@
-// Finds nodes by dotted path. A path may skip levels of the tree as long as exactly one node matches; a path with no
-// level skipped wins over shortened ones. Found paths are remembered, so that asking again costs one hash look-up.
+// Finds nodes by dotted path. A path may skip levels of the tree as long as exactly one node matches; a full path takes
+// precedence over shortened ones. Found paths are cached, so a repeated query costs one hash look-up.
 #pragma once
 
 #include <array>

@@ -54,7 +54,7 @@ Result<int> find_node(const Component& component, std::string_view name, std::st
 }
 
 int common_ancestor(const Component& component, int a, int b) {
-  // Parents stand before their children: the larger of the two is never above the other.
+  // Parents come before their children: the larger of the two is never above the other.
   while (a != b) (a > b ? a : b) = node_at(component, std::max(a, b)).parent;
   return a;
 }
@@ -67,7 +67,7 @@ Result<int> master_of(const Component& component, int joint) {
     if (node.joint && !node.joint->mimic && node.name == mimic->joint) return static_cast<int>(i);
   }
   const ComponentNode& node = node_at(component, joint);
-  return fail(fmt::format("{}: joint {} mimics {}, which is a mimic itself or no joint", place_text(component, node),
+  return fail(fmt::format("{}: joint {} mimics {}, which is a mimic itself or not a joint", place_text(component, node),
                           node.name, printable(mimic->joint)));
 }
 
@@ -125,13 +125,13 @@ class ComponentTree {
     TreeLink link{node.name, Tree::kRoot, node.X_PF, std::nullopt};
     if (!kinematics::is_pose(node.X_PF)) {
       return fail(
-          fmt::format("{}: the pose of {} is not finite or no rotation", place_text(component_, node), node.name));
+          fmt::format("{}: the pose of {} is not finite or not a rotation", place_text(component_, node), node.name));
     }
     if (!node.joint) return link;
     const JointDefinition& joint = *node.joint;
     constexpr double kShortest = 1e-6;
     if (!(joint.axis.norm() >= kShortest)) {
-      return fail(fmt::format("{}: the axis of joint {} has the length zero", place_text(component_, node), node.name),
+      return fail(fmt::format("{}: the axis of joint {} has length zero", place_text(component_, node), node.name),
                   "give it a direction");
     }
     const auto variable = variable_of(index);
@@ -179,7 +179,7 @@ Result<std::int32_t> add_branch(const Cell& cell, const RobotModel& robot, NodeI
     TreeLink link{here.name, parent, here.X_PF, std::nullopt};
     if (here.kind() == NodeKind::joint) {
       if (here.binding.slot != robot.slot()) {
-        return fail(fmt::format("{} lies between the ZP frame and the flange of {}, but belongs to another robot",
+        return fail(fmt::format("{} is between the ZP frame and the flange of {}, but belongs to another robot",
                                 cell.path(*at), robot.id()),
                     "connect the parts of the robot differently");
       }
@@ -208,8 +208,8 @@ Result<Chain> chain_between(const Component& component, std::string_view base, s
   auto tree = nodes.finish();
   if (!tree) return std::unexpected(std::move(tree.error()));
   if (tree->variables().empty()) {
-    return fail(fmt::format("{}: no joint lies between {} and {}", component.file, printable(base), printable(tip)),
-                "name two links that move against each other");
+    return fail(fmt::format("{}: there is no joint between {} and {}", component.file, printable(base), printable(tip)),
+                "use two links that move relative to each other");
   }
   auto chain = tree->chain(*base_link, *tip_link, VariableOrder::along_chain);
   if (chain) return std::move(chain->chain);
@@ -219,7 +219,7 @@ Result<Chain> chain_between(const Component& component, std::string_view base, s
 
 Result<Tree> component_tree(const Component& component) {
   ComponentTree nodes(component);
-  // Masters first, so that the order of the variables does not depend on where mimics stand.
+  // Masters first, so that the order of the variables does not depend on the position of mimics.
   for (std::size_t i = 0; i < component.nodes.size(); ++i) {
     const auto& joint = component.nodes[i].joint;
     if (!joint || joint->mimic) continue;

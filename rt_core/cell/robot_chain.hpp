@@ -16,11 +16,11 @@ namespace cellmirror {
 
 // The joints between two nodes of a component, from the base to the tip. The names are those of links of a URDF, or
 // paths of nodes of an .mpc file (levels may be skipped where one node only matches). Where a link and a joint share a
-// name, the link is meant. The base need not stand above the tip. Variables in the order in which they come from base
-// to tip; a mimic is driven by the variable of the joint that it mimics, also where that itself lies elsewhere. Only
-// what lies between the two counts: the rest of the file may hold any number of joints. Refused: unknown and ambiguous
-// names (tells the nearest), no joint between the two, more joints than the capacities, an axis of length zero, limits
-// the wrong way round, numbers that are not finite; each with file and line.
+// name, the link is meant. The base need not be above the tip. Variables in the order in which they come from base to
+// tip; a mimic is driven by the variable of the joint that it mimics, also if that joint is elsewhere. Only the chain
+// between the two counts: the rest of the file may have any number of joints. Refused: unknown and ambiguous names
+// (with the nearest names), no joint between the two, more joints than the capacities, an axis of length zero, swapped
+// limits, numbers that are not finite; each with file and line.
 [[nodiscard]] Result<kinematics::Chain> chain_between(const Component& component, std::string_view base,
                                                       std::string_view tip);
 
@@ -44,9 +44,9 @@ struct RobotChain {
 enum class ChainTip : std::uint8_t { tool_center_point, flange };
 
 // From the robot's ZP frame to its TCP (point of reference and tool centre point) or flange, with the present values of
-// rob_jnt_rng_min and rob_jnt_rng_max as limits. It holds until the robot's parameters, its mechanism or the nodes of
-// the cell change: Cell::revision() tells. `id` unknown: refused with the nearest names. Refused too: nothing that
-// moves, or another robot's joint between the two.
+// rob_jnt_rng_min and rob_jnt_rng_max as limits. It is valid until the robot's parameters, its mechanism or the nodes
+// of the cell change, see Cell::revision(). Refused: an unknown `id`, with the nearest names; no moving joint, or
+// another robot's joint between the two.
 [[nodiscard]] Result<RobotChain> robot_chain(const Cell& cell, std::string_view id,
                                              ChainTip tip = ChainTip::tool_center_point);
 

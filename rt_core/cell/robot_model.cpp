@@ -132,7 +132,7 @@ std::string remedy(const RobotParameters& p, JointParameter which, JointKind kin
   const double most = velocity ? p.max_velocity[i] : p.max_acceleration[i];
   constexpr double kSteps = 1000;  // rounded down, so that what is advised is taken
   const double shown = std::floor((length ? mm_from_m(most) : most) * kSteps) / kSteps;
-  return fmt::format("in {}{}: give more than 0 and at most {:.10g}, or raise {} before",
+  return fmt::format("in {}{}: give more than 0 and at most {:.10g}, or raise {} first",
                      length ? (velocity ? "mm/s" : "mm/s2") : (velocity ? "rad/s" : "rad/s2"),
                      length ? "" : ", not degrees", shown, velocity ? "rob_jnt_max_vel" : "rob_jnt_max_acc");
 }
@@ -148,7 +148,7 @@ void take_bounded_values_along(RobotParameters& p, std::size_t joints) {
 
 Result<void> check_pose(const Pose& X, const std::string& robot, const char* name) {
   constexpr double kFarthest = 1e3;  // m; a tool is no building
-  if (!X.matrix().allFinite()) return fail(fmt::format("the {} of {} has a value that is no number", name, robot));
+  if (!X.matrix().allFinite()) return fail(fmt::format("the {} of {} has a value that is not a number", name, robot));
   if (X.translation().norm() > kFarthest)
     return fail(fmt::format("the {} of {} is {:.6g} m away", name, robot, X.translation().norm()),
                 fmt::format("give at most {:g} m", kFarthest));
@@ -173,12 +173,13 @@ std::vector<std::string> RobotModel::joint_names() const {
 
 Result<void> RobotModel::set_joint_parameter(JointParameter which, std::span<const double> values) {
   if (values.size() != joints_.size()) {
-    return fail(fmt::format("{} has {} joints, but {} values were given for the {}", id_, joints_.size(), values.size(),
+    return fail(fmt::format("{} has {} joints, but {} values are given for the {}", id_, joints_.size(), values.size(),
                             name_of(which)),
-                "give one value a joint, in the order of its component file");
+                "give one value per joint, in the order of its component file");
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) return fail(fmt::format("the {} of joint {} is no number", name_of(which), i + 1));
+    if (!std::isfinite(values[i]))
+      return fail(fmt::format("the {} of joint {} is not a number", name_of(which), i + 1));
     const std::string reason = conflict(parameters_, which, joints_[i].kind, i, values[i]);
     if (!reason.empty()) {
       return fail(fmt::format("the {} {} of joint {} ({}) of {} {}", name_of(which),
@@ -192,7 +193,7 @@ Result<void> RobotModel::set_joint_parameter(JointParameter which, std::span<con
 }
 
 Result<void> RobotModel::set_scalar_parameter(ScalarParameter which, double value) {
-  if (!std::isfinite(value)) return fail(fmt::format("a parameter of {} is no number", id_));
+  if (!std::isfinite(value)) return fail(fmt::format("a parameter of {} is not a number", id_));
   const auto positive = [&](double& member, const char* name) -> Result<void> {
     if (!(value > 0.0)) return fail(fmt::format("the {} of {} is {:.6g}, but must be positive", name, id_, value));
     member = value;
@@ -201,7 +202,7 @@ Result<void> RobotModel::set_scalar_parameter(ScalarParameter which, double valu
   const auto scale = [&](double& member, const char* name) -> Result<void> {
     constexpr double kSmallest = 0.01;  // manual 1.2.2
     if (value < kSmallest || value > 1.0)
-      return fail(fmt::format("the {} of {} is {:.6g}, but must lie within 0.01 and 1", name, id_, value));
+      return fail(fmt::format("the {} of {} is {:.6g}, but must be between 0.01 and 1", name, id_, value));
     member = value;
     return {};
   };
@@ -223,7 +224,7 @@ Result<void> RobotModel::set_scalar_parameter(ScalarParameter which, double valu
   }
   constexpr double kLongestDelay = 86'400.0;  // s
   if (value < 0.0 || value > kLongestDelay)
-    return fail(fmt::format("the program delay of {} is {:.6g} s, but must lie within 0 and 86400 s", id_, value));
+    return fail(fmt::format("the program delay of {} is {:.6g} s, but must be between 0 and 86400 s", id_, value));
   parameters_.program_delay_s = value;
   return {};
 }
@@ -234,7 +235,7 @@ Result<void> RobotModel::set_fly(FlyType type, double parameter) {
   constexpr double kFarthest = 1e3;  // m
   const double largest = fraction ? 1.0 : (angle ? std::numbers::pi : kFarthest);
   if (!std::isfinite(parameter) || parameter < 0.0 || parameter > largest) {
-    return fail(fmt::format("the fly parameter of {} is {:.6g}, but must lie within 0 and {:.6g}{}", id_, parameter,
+    return fail(fmt::format("the fly parameter of {} is {:.6g}, but must be between 0 and {:.6g}{}", id_, parameter,
                             largest, fraction ? "" : (angle ? " rad" : " m")));
   }
   parameters_.fly_type = type;
@@ -257,7 +258,7 @@ Result<void> RobotModel::set_tool_center_point(const Pose& X_PT) {
 Result<void> RobotModel::check_position(std::size_t i, double value) const {
   const JointKind kind = joints_[i].kind;
   const std::string joint = fmt::format("joint {} ({}) of {}", i + 1, joints_[i].name, id_);
-  if (!std::isfinite(value)) return fail(fmt::format("the position of {} is no number", joint));
+  if (!std::isfinite(value)) return fail(fmt::format("the position of {} is not a number", joint));
   // A limit that was written in degrees may differ from the same number in radians by rounding.
   constexpr double kRounding = 1e-9;
   const bool below = value < parameters_.min_range[i] - kRounding;
@@ -271,8 +272,8 @@ Result<void> RobotModel::check_position(std::size_t i, double value) const {
 
 Result<void> RobotModel::check_count(std::size_t values) const {
   if (values <= joints_.size()) return {};
-  return fail(fmt::format("{} has {} joints, but {} values were given", id_, joints_.size(), values),
-              "give at most one value a joint");
+  return fail(fmt::format("{} has {} joints, but {} values are given", id_, joints_.size(), values),
+              "give at most one value per joint");
 }
 
 Result<JointValues> RobotModel::positions_to(std::span<const double> values, const JointValues& current) const {
@@ -289,7 +290,7 @@ Result<JointValues> RobotModel::positions_by(std::span<const double> increments,
   if (auto counted = check_count(increments.size()); !counted) return std::unexpected(counted.error());
   JointValues positions = current;
   for (std::size_t i = 0; i < increments.size(); ++i) {
-    // A joint that is not moved may stand where it stands, even beyond a limit that was narrowed since.
+    // A joint that is not moved may stay where it is, even beyond a narrowed limit.
     if (increments[i] == 0.0) continue;
     const double wanted = current[i] + increments[i];
     if (auto checked = check_position(i, wanted); !checked) return std::unexpected(checked.error());

@@ -1,5 +1,5 @@
-// The names by which findings tell people and records of bodies: shorter than full paths, as different as those, and
-// accepted wherever a path is. Off the tick.
+// Names of bodies in results and records: shorter than full paths, equally unique, and accepted in place of a path. Not
+// for the tick.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace cellmirror {
 [[nodiscard]] std::vector<std::string> short_names(std::span<const std::string> paths,
                                                    std::span<const std::string> all);
 
-// What is told of the geometry of a node: its full path; of the cell's own geometry the name of the cell.
+// Name of a node's geometry in results: its full path; for the cell's own geometry the name of the cell.
 [[nodiscard]] const std::string& body_name(const CompiledCell& cell, std::int32_t node);
 // The same in short, for each of `nodes`.
 [[nodiscard]] std::vector<std::string> short_body_names(const CompiledCell& cell, std::span<const std::int32_t> nodes);

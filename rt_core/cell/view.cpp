@@ -130,17 +130,19 @@ Result<void> check_view(int id, const View& view) {
     return p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthestView;
   };
   if (!near_enough(view.viewpoint) || !near_enough(view.lookpoint))
-    return fail(fmt::format("the viewpoint or lookpoint of view {} lies beyond {:.10g} m ({:.10g} mm)", id,
-                            kFarthestView, mm_from_m(kFarthestView)));
+    return fail(fmt::format("the viewpoint or lookpoint of view {} is beyond {:.10g} m ({:.10g} mm)", id, kFarthestView,
+                            mm_from_m(kFarthestView)));
   if ((view.viewpoint - view.lookpoint).norm() < kNearestLookpoint)
-    return fail(fmt::format("the viewpoint of view {} is its lookpoint", id), "give VP and LP apart from each other");
-  if (!std::isfinite(view.twist)) return fail(fmt::format("the twist angle of view {} is no number", id));
+    return fail(fmt::format("the viewpoint of view {} is its lookpoint", id), "give different points for VP and LP");
+  if (!std::isfinite(view.twist)) return fail(fmt::format("the twist angle of view {} is not a number", id));
   if (!(view.opening_angle > 0.0 && view.opening_angle < std::numbers::pi))
     return fail(fmt::format("the viewing angle of view {} is not between 0 and 180 degrees", id));
   if (!(view.near_distance >= 0.0 && view.far_distance > view.near_distance && std::isfinite(view.far_distance))) {
-    return fail(fmt::format("the clipping planes of view {} leave nothing between them: front {:.6g} m, back {:.6g} m",
-                            id, view.near_distance, view.far_distance),
-                "the front plane (FCP) is nearer than the back plane (BCP)");
+    return fail(
+        fmt::format(
+            "the front clipping plane of view {} is not in front of the back one: front {:.6g} m, back {:.6g} m", id,
+            view.near_distance, view.far_distance),
+        "the front plane (FCP) must be nearer than the back plane (BCP)");
   }
   return {};
 }

@@ -1,5 +1,5 @@
-// The seven views of the display (manual 1.2.3, COVW): from where and how the cell is looked at. Plain data, SI; no
-// drawing. Any thread.
+// The seven views of the display (manual 1.2.3, COVW): viewpoint and projection. Plain data, SI; no drawing. Any
+// thread.
 #pragma once
 
 #include <Eigen/Core>

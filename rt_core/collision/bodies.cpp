@@ -13,7 +13,7 @@ namespace {
 
 bool usable(const std::shared_ptr<const geometry::TriangleMesh>& mesh) { return mesh && !mesh->triangles.empty(); }
 
-// The shapes that stand for `geometry`; empty where there is none to test.
+// The shapes that represent `geometry`; empty if there is none to test.
 std::vector<BodyPart> parts_of(const Geometry& geometry, geometry::SolidLibrary& solids) {
   std::vector<BodyPart> parts;
   if (geometry.shape != Shape::mesh) {
@@ -43,7 +43,7 @@ CollectedBodies collect_bodies(const CompiledCell& cell, geometry::SolidLibrary&
     if (!item.geometry->collides) continue;
     const auto parts = parts_of(*item.geometry, solids);
     if (parts.empty()) {
-      found.doubts.push_back(fmt::format("{}: {} cannot be tested for collision, since its triangles are not there",
+      found.doubts.push_back(fmt::format("{}: {} cannot be tested for collision, because its triangles are missing",
                                          body_name(cell, item.node), name_of(*item.geometry)));
       continue;
     }

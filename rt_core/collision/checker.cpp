@@ -19,9 +19,9 @@ namespace cellmirror::collision {
 namespace {
 
 constexpr std::size_t kMostDoubts = 100;  // sentences a computation; beyond, they are only counted
-constexpr std::size_t kMostDisputes = 4;  // disputed pairs that are asked about again in one computation
+constexpr std::size_t kMostDisputes = 4;  // disputed pairs checked again in one computation
 constexpr double kLeaveMargin = 0.5e-3;   // m beyond the warning distance
-constexpr double kLeastSpeed = 1e-6;      // m/s; slower is standing still: no time to contact is told
+constexpr double kLeastSpeed = 1e-6;      // m/s; slower counts as standing still: no time to contact
 
 enum class Zone : std::uint8_t { far, warning, touching };
 
@@ -30,7 +30,7 @@ struct PairHistory {
   Zone zone = Zone::far;
   bool own_touching = false;  // what our narrow phase said last
   bool disputed = false;      // FCL said something else, and has not taken it back
-  Timestamp contact_time;     // of the posture in which the contact that is told was computed
+  Timestamp contact_time;     // of the posture for which the reported contact was computed
 };
 
 bool touches(const Found& found) {
@@ -53,7 +53,7 @@ struct Checker::State {
   std::size_t disputes_left = 0;
   std::size_t contact_limit = std::numeric_limits<std::size_t>::max();
   std::uint64_t contact_period = 1;
-  std::vector<std::uint32_t> stale_contacts;  // pairs that go on touching and keep the contact that they had
+  std::vector<std::uint32_t> stale_contacts;  // pairs in continuing contact that keep their contact points
   ProximityState findings;
   CheckCounters counters;
 
@@ -167,13 +167,13 @@ void Checker::State::judge(const Found& found, const geometry::Contact* contact,
     if (again) --disputes_left;
     if (changed || its_turn || again) ask(found, contact, pair, poses);
     if (!found.at.certain)
-      doubt(fmt::format("the distance of {} could not be computed to the end: it is at least {:.6f} m",
-                        pair_text(found), found.at.distance));
+      doubt(fmt::format("the distance of {} could not be computed exactly: it is at least {:.6f} m", pair_text(found),
+                        found.at.distance));
   } else if (found.usable) {
-    doubt(fmt::format("the distance of {} came out contradictory: taken as touching", pair_text(found)));
+    doubt(fmt::format("the distance of {} is contradictory: treated as touching", pair_text(found)));
   }
   if (pair.disputed)
-    doubt(fmt::format("two ways of testing {} disagree whether they touch: taken as touching", pair_text(found)));
+    doubt(fmt::format("two tests of {} disagree about contact: treated as touching", pair_text(found)));
   const bool taken_as_touching = touching || pair.disputed;
   // A pair leaves a little later than it comes, so that noise of a joint gives no stream of events.
   const double leave = settings.warning_distance_m + (pair.zone == Zone::far ? 0.0 : kLeaveMargin);
@@ -276,7 +276,7 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     const auto& bodies = state.search.motion().bodies();
     for (std::size_t i = 0; i < bodies.size() && state.search.motion().unusable() > 0; ++i) {
       if (!bodies[i].usable)
-        state.doubt(state.short_name(static_cast<std::uint32_t>(i)) + ": its place is not known; taken as touching");
+        state.doubt(state.short_name(static_cast<std::uint32_t>(i)) + ": its pose is unknown; treated as touching");
     }
     state.disputes_left = kMostDisputes;
     state.choose_stale_contacts(found);
@@ -290,7 +290,7 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     }
     std::ranges::sort(findings.near, {},
                       [](const NearPair& near) { return std::tuple(near.distance_m, near.a, near.b); });
-    // Beyond the warning distance only the nearest pair is told.
+    // Beyond the warning distance only the nearest pair is reported.
     if (!findings.near.empty()) {
       const auto beyond = std::remove_if(findings.near.begin() + 1, findings.near.end(),
                                          [](const NearPair& near) { return !near.within_warning; });

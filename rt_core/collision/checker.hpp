@@ -1,7 +1,7 @@
-// Finds what touches and what is near in a moving cell, again and again: remembers from posture to posture how far
-// apart pairs were and computes only those that may have become the nearest, or come within the warning distance. The
-// answers are those of computing every pair anew. Every touch is seen by two independent implementations (ours and
-// FCL); where they disagree the pair counts as touching and is marked as a doubt (docs/decisions/).
+// Computes collisions and distances of successive postures: keeps distances between postures and computes only pairs
+// that may have become the nearest or may have come within the warning distance. The results equal those of computing
+// every pair. Two independent implementations (ours and FCL) check every contact; if they disagree the pair counts as
+// touching and is marked doubtful (docs/decisions/).
 #pragma once
 
 #include <cstddef>
@@ -37,13 +37,13 @@ class Checker {
              const Settings& settings);
 
   // Depth and points of a contact cost more than all distances. With a limit, check() computes them for pairs that
-  // begin to touch and, in every `period`-th posture, for at most `pairs` of those that go on touching, the oldest
-  // first; the others keep what they had in one of the last postures. Verdicts and distances are always those of the
-  // posture. At first there is no limit.
+  // begin to touch and, in every `period`-th posture, for at most `pairs` of those in continuing contact, the oldest
+  // first; the others keep the values of an earlier posture. Contact states and distances are always those of the
+  // posture. Initially there is no limit.
   void limit_contacts(std::size_t pairs, std::uint64_t period = 1);
 
-  // The findings at these poses of the adopted cell. `later`: the poses `ahead` later at present velocities, for
-  // closing speeds; null: none are told. Valid until the next call. Off the tick.
+  // The results at these poses of the adopted cell. `later`: the poses `ahead` later at present velocities, for closing
+  // speeds; null: no closing speeds. Valid until the next call. Not for the tick.
   const ProximityState& check(const CellPoses& poses, Timestamp posture_time, const CellPoses* later = nullptr,
                               Nanoseconds ahead = Nanoseconds(0));
   // Only whether any tested pair touches; stops at the first. For planning: no events, no distances.

@@ -124,7 +124,7 @@ RelativeMotion Mechanism::between(std::int32_t a, std::int32_t b) const {
   std::int32_t above_a = a;
   std::int32_t above_b = b;
   while (above_a != above_b) {
-    // Parents stand before their children.
+    // Parents come before their children.
     std::int32_t& lower = above_a > above_b ? above_a : above_b;
     lower = cell_.parent[at(lower)];
   }

@@ -35,8 +35,8 @@ struct JointChain {
   [[nodiscard]] Pose end(std::span<const double> values) const;
 };
 
-// All that decides how two nodes lie to each other. Joints that they have in common cancel and are left out; mimics
-// share the variable of their master.
+// Everything that determines the relative pose of two nodes. Joints that they have in common cancel and are left out;
+// mimics share the variable of their master.
 struct RelativeMotion {
   JointChain to_a;  // both from the lowest node above both
   JointChain to_b;

@@ -124,7 +124,7 @@ class PairJudge {
     const std::int32_t joint = one_robot ? mechanism_.single_joint(node_a, node_b) : -1;
     if (joint >= 0) {
       pair.state = PairState::neighbours;
-      pair.reason = fmt::format("neighbours in one robot: only the joint {} is between them",
+      pair.reason = fmt::format("neighbours in one robot: with only the joint {} between them",
                                 (*cell_.paths)[static_cast<std::size_t>(joint)]);
       return pair;
     }

@@ -50,7 +50,7 @@ class PairTracker {
   // Deepest first, at most kMostContactPoints, of a pair that touches; no points where no part touches another. Valid
   // until the next call for that pair.
   const geometry::Contact& contact(std::size_t index);
-  // What contact() found last, and in which frame: 0 where it was not asked.
+  // What contact() found last, and in which frame: 0 if it was not called.
   [[nodiscard]] const geometry::Contact& last_contact(std::size_t index) { return memory_of(index).contact; }
   [[nodiscard]] std::uint64_t contact_frame(std::size_t index) { return memory_of(index).contact_frame; }
   // Stops at the first touch.

@@ -11,7 +11,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A pair that was measured is worth a bound that lasts for about so many frames of its present motion.
 constexpr double kFramesAhead = 24.0;
-// More than this (m) is not looked for on top of what is asked: postures that jump have no next frame to save for.
+// Limit (m) of the search beyond the requested distance: postures that jump have no next frame to save for.
 constexpr double kWidestMargin = 0.1;
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace cellmirror::collision {
 
 namespace {
 
-// `branch` stands for itself and everything named below it; empty: the world, so everything.
+// `branch` means itself and everything named below it; empty: the world, so everything.
 bool in_branch(std::string_view path, std::string_view branch) {
   return branch.empty() || (path.starts_with(branch) && (path.size() == branch.size() || path[branch.size()] == '.'));
 }

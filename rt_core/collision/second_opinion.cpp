@@ -18,7 +18,7 @@ namespace {
 // Nearer than this to touching, or less deep, FCL and we may differ without either being wrong: its solver for
 // primitives stops at 1e-6 m.
 constexpr double kTolerance = 1e-6;
-// Of pairs of parts in one question. More are not asked; the answer is then that of those.
+// Limit of pairs of parts in one query; the answer covers only those.
 constexpr std::size_t kMostPartPairs = 4096;
 
 using FclShape = std::shared_ptr<fcl::CollisionGeometry<double>>;
@@ -84,7 +84,7 @@ struct SecondOpinion::Models {
     return entry.shape;
   }
 
-  // Meshes are surfaces to FCL: a body that lies within one without crossing it does not touch it there.
+  // Meshes are surfaces to FCL: a body inside one without crossing it does not touch it there.
   std::shared_ptr<const geometry::Solid> surface_of(const std::shared_ptr<const geometry::Solid>& solid) {
     if (solid->shape != Shape::mesh || !solid->tree->mesh().closed) return solid;
     Entry& entry = entries[solid];

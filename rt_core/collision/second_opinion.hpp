@@ -1,5 +1,5 @@
-// Asks FCL whether two bodies touch: an implementation that shares nothing with ours, so that a fault in one does not
-// pass unseen. Only its collide() is used, which never failed in any trial; distance() may abort or loop for ever.
+// Checks with FCL whether two bodies touch: an independent implementation, so that a fault in either is detected. Only
+// its collide() is used, which never failed in tests; distance() may abort or loop forever.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct OwnVerdict {
 enum class Opinion : std::uint8_t {
   agrees,     // or differs within what the tolerances of both explain
   disagrees,  // one of the two is wrong
-  failed,     // FCL could not tell
+  failed,     // FCL could not decide
 };
 
 // One thread. Models of meshes are built when they are needed first (some ms for thousands of triangles) and kept.
@@ -30,7 +30,7 @@ class SecondOpinion {
   ~SecondOpinion();
 
   [[nodiscard]] Opinion ask(const Body& a, const Pose& X_WA, const Body& b, const Pose& X_WB, const OwnVerdict& own);
-  // Lets go of models that are no longer used by a body of `table`.
+  // Releases models that no body of `table` uses.
   void keep_only(const PairTable& table);
 
  private:

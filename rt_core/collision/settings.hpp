@@ -8,8 +8,8 @@
 namespace cellmirror::collision {
 
 // A rule about all pairs with one body in the branch of `a` and the other in the branch of `b` (dotted paths of nodes;
-// a path stands for the node and everything below it by name; empty: everything; the cell's name: its own geometry).
-// The last rule that fits a pair counts.
+// a path means the node and everything below it by name; empty: everything; the cell's name: its own geometry). The
+// last matching rule counts.
 struct PairRule {
   enum class Kind : std::uint8_t { ignore, test };  // `test` overrides what was derived
   std::string a;

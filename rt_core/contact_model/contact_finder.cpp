@@ -21,7 +21,7 @@ constexpr double kLeastLever = 0.02;
 constexpr double kMostLever = 10.0;
 constexpr std::size_t kMostCandidates = 4096;
 constexpr int kMostHalvings = 6;
-// How deep a place that no plane stands for may be entered: at least, and in parts of the way there.
+// Depth to which a place without a plane may be entered: minimum, and as a fraction of the distance to it.
 constexpr double kEntered = 5e-5;  // m
 constexpr double kEnteredOnTheWay = 0.05;
 // However crooked the surface, the tip may go so far.
@@ -87,7 +87,7 @@ void ContactFinder::State::adopt() {
     if (!is_tested(pair.state) || moves_a == levers.moves(bodies[pair.b].node)) continue;
     moves_a ? partners[pair.a].push_back(pair.b) : partners[pair.b].push_back(pair.a);
   }
-  // Pieces of a body stand side by side.
+  // Pieces of a body are adjacent.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> range(bodies.size());
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     std::vector<Piece>& list = levers.moves(bodies[i].node) ? instrument : surroundings;
@@ -235,7 +235,7 @@ void ContactFinder::find(const CellPoses& poses, Timestamp posture_time, haptics
   while (!s.gather(reach, out)) {
     reach *= 0.5;
     if (++halvings <= kMostHalvings) continue;
-    // The tip stands still until something can be told.
+    // The tip stays at rest until a result is available.
     out.certain = false;
     out.reach = reach;
     return;

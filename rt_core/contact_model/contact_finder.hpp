@@ -19,7 +19,7 @@ struct FinderSettings {
 struct FinderCounters {
   std::uint64_t models = 0;
   std::uint64_t uncertain = 0;
-  std::uint64_t short_reach = 0;  // models with less reach than asked for: too much is near
+  std::uint64_t short_reach = 0;  // models with less reach than requested: too much is near
   std::uint64_t overlaps = 0;     // models with something deeper inside than the skin of a capsule
 };
 

@@ -21,7 +21,7 @@ const Matrix3d kZero = Matrix3d::Zero();
 void Levers::adopt(const CompiledCell& cell, const CompiledRobot& robot) {
   joints_.clear();
   above_.assign(cell.size(), {});
-  // Parents stand before their children.
+  // Parents come before their children.
   for (std::size_t node = 1; node < cell.size(); ++node) {
     above_[node] = above_[static_cast<std::size_t>(cell.parent[node])];
     if (cell.joint_of[node] < 0) continue;

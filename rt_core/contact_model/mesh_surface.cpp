@@ -115,7 +115,7 @@ Feature MeshSurface::feature(std::uint32_t triangle, const Vector3d& p) const {
   const double square = cross.squaredNorm();
   Feature out;
   out.triangle = triangle;
-  std::array<bool, 3> opposite{};  // the point lies on the edge opposite of a corner
+  std::array<bool, 3> opposite{};  // the point is on the edge opposite a corner
   int on_edges = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto row = static_cast<Eigen::Index>(k);

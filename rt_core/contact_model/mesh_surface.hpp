@@ -1,6 +1,5 @@
-// What a mesh's tree does not know: which triangles share an edge, and what the surface is like there. For telling a
-// true nearest point from one that only is the nearest of its triangle, and for normals that do not jump from facet to
-// facet. Immutable once made.
+// Adjacency of a mesh's triangles and the surface at their edges. Distinguishes a true nearest point from the nearest
+// point of a single triangle, and provides normals that are continuous across facets. Immutable.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +12,7 @@
 
 namespace cellmirror::contact_model {
 
-// Facets that meet at less than this stand for one smooth surface.
+// Facets that meet at less than this approximate one smooth surface.
 inline constexpr double kSmoothAngle = 0.53;  // rad
 
 enum class FeatureKind : std::uint8_t { face, edge, corner };
@@ -36,7 +35,7 @@ class MeshSurface {
   [[nodiscard]] Feature feature(std::uint32_t triangle, const Eigen::Vector3d& p) const;
   // Whether no neighbouring triangle is nearer to something in the direction `d` (unit vector) from the feature.
   [[nodiscard]] bool nearest_around(const Feature& feature, const Eigen::Vector3d& p, const Eigen::Vector3d& d) const;
-  // The normal of the smooth surface that the facets stand for; false: there is none at this edge or corner.
+  // The normal of the smooth surface that the facets approximate; false: there is none at this edge or corner.
   [[nodiscard]] bool smooth_normal(const Feature& feature, Eigen::Vector3d& normal) const;
   [[nodiscard]] const Eigen::Vector3d& facet_normal(std::uint32_t triangle) const { return facets_[triangle].normal; }
 

@@ -41,7 +41,7 @@ bool face_of_primitive(const Piece& piece, const Vector3d& d_in_world, Vector3d&
   return false;
 }
 
-// Whether the nearest point of a piece is one of the whole: not at an end where the shaft goes on.
+// Whether the nearest point of a piece is one of the whole: not at an end where the shaft continues.
 bool nearest_of_whole(const Piece& piece, const Vector3d& p_W, const Vector3d& d_in_world) {
   if (!piece.cut_low && !piece.cut_high) return true;
   const Vector3d axis = piece.X_WG.linear().col(2);
@@ -220,7 +220,7 @@ bool PairQuery::nearest_on_instrument(const Piece& instrument, const Touch& touc
   return instrument.surface->nearest_around(feature, p_M, back_in_mesh);
 }
 
-// Where a shaft lies along a face, both of its ends bear; which point between them is the nearest is rounding.
+// Where a shaft lies along a face, both ends are in contact; which point between them is the nearest is rounding.
 void PairQuery::add_ends(const Piece& instrument, const Piece& obstacle, const Touch& touch, const Candidate& found) {
   if (instrument.core.kind != CoreKind::segment && instrument.core.kind != CoreKind::cylinder) return;
   const Vector3d axis = instrument.X_WG.linear().col(2);

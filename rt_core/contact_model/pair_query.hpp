@@ -23,7 +23,7 @@ struct Candidate {
 
 enum class QueryResult : std::uint8_t {
   done,
-  crowded,    // more places than there is room for: to be asked again with less reach
+  crowded,    // more contact points than capacity: repeat with less reach
   uncertain,  // something could not be settled
 };
 
@@ -31,13 +31,13 @@ class PairQuery {
  public:
   explicit PairQuery(double margin);
 
-  // Appends what is nearer than `reach`, m. A pair that overlaps more than by its skins is told by one piece of each
-  // whole: `with_overlap`. No heap memory in steady state.
+  // Appends what is nearer than `reach`, m. A pair that overlaps by more than its skins is represented by one piece of
+  // each body: `with_overlap`. No heap memory in steady state.
   QueryResult ask(const Piece& instrument, const Piece& obstacle, double reach, bool with_overlap,
                   std::vector<Candidate>& out);
   // Of the last pair: places that nearer ones bar well, but perhaps not on long ways.
   [[nodiscard]] std::span<const Candidate> refused() const { return refused_; }
-  // Whether the last pair overlapped so that it was, or would have been, asked for its depth.
+  // Whether the last pair overlapped so that its depth was, or would have been, computed.
   [[nodiscard]] bool overlapped() const { return overlapped_; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace cellmirror::contact_model {
 
-// Longer shafts are looked at in pieces of about this length.
+// Longer shafts are divided into pieces of about this length.
 inline constexpr double kPieceLength = 0.02;  // m
 
 // A convex primitive or a piece of one, or a mesh.
@@ -49,7 +49,7 @@ struct Piece {
 class SurfaceLibrary {
  public:
   [[nodiscard]] const MeshSurface* of(const std::shared_ptr<const geometry::MeshTree>& tree);
-  // Forgets those of meshes that nobody else holds.
+  // Drops those of meshes without other owners.
   void forget_unused();
 
  private:

@@ -30,12 +30,12 @@ Result<void> check_drive(const Drive& drive) {
 }
 
 Result<void> check_link(const Link& link, std::size_t before, std::size_t variables) {
-  if (link.parent < -1 || link.parent >= static_cast<int>(before)) return fail("its parent does not stand before it");
+  if (link.parent < -1 || link.parent >= static_cast<int>(before)) return fail("its parent must come before it");
   if (link.variable >= variables) return fail(fmt::format("there is no variable {}", link.variable));
-  if (!kinematics::is_pose(link.X_PJ)) return fail("its frame is no pose");
+  if (!kinematics::is_pose(link.X_PJ)) return fail("its frame is not a pose");
   if (!all_finite({link.multiplier, link.offset})) return fail("its multiplier or offset is not finite");
   constexpr double kUnit = 1e-6;
-  if (!link.axis.allFinite() || std::abs(link.axis.norm() - 1.0) > kUnit) return fail("its axis is no unit vector");
+  if (!link.axis.allFinite() || std::abs(link.axis.norm() - 1.0) > kUnit) return fail("its axis is not a unit vector");
   return check(link.inertia);
 }
 
@@ -76,7 +76,7 @@ Result<Mechanism> Mechanism::make(std::span<const Drive> drives, std::span<const
         fmt::format("{} joints, mimics included: at most {} can be computed together", links.size(), kMaxLinks));
   }
   if (tip_link < -1 || tip_link >= static_cast<int>(links.size())) return fail("there is no such tip link");
-  if (!kinematics::is_pose(X_LT)) return fail("the tip is no pose");
+  if (!kinematics::is_pose(X_LT)) return fail("the tip is not a pose");
   Mechanism mechanism;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     if (const auto checked = check_drive(drives[i]); !checked) {

@@ -54,10 +54,10 @@ struct LinkMotion {
 
 class Mechanism {
  public:
-  // Parents stand before their children; one drive a variable. Refused: more than kMaxLinks links or
-  // kMaxJointsPerRobot variables, an unknown parent, variable or tip link (-1: the base), an axis that is no unit
-  // vector, poses that are none, numbers that are not finite, negative friction or rotors, and what check(Inertia)
-  // refuses; tells the number of the link or variable.
+  // Parents come before their children; one drive per variable. Refused: more than kMaxLinks links or
+  // kMaxJointsPerRobot variables, an unknown parent, variable or tip link (-1: the base), an axis that is not a unit
+  // vector, invalid poses, numbers that are not finite, negative friction or rotors, and what check(Inertia) refuses;
+  // the message gives the number of the link or variable.
   static Result<Mechanism> make(std::span<const Drive> drives, std::span<const Link> links, int tip_link,
                                 const Pose& X_LT);
 

@@ -1,4 +1,4 @@
-// Velocities and accelerations of joints out of what is told of them.
+// Estimates velocities and accelerations of joints.
 #pragma once
 
 #include <array>
@@ -29,20 +29,20 @@ class FilteredDerivative {
   double rate_ = 0;
 };
 
-// Of one robot. Accelerations are filtered derivatives of velocities. Velocities are those that are told; a source that
-// tells positions only (no velocity was ever other than zero) has filtered derivatives of its positions instead.
+// Of one robot. Accelerations are filtered derivatives of velocities. Velocities are those of the source; for a source
+// of positions only (every velocity was zero so far) they are filtered derivatives of positions.
 class MotionEstimate {
  public:
   // The time constant of both filters, or twice the time between two samples where that is longer.
   static constexpr double kTimeConstant = 0.02;  // s
-  static constexpr double kLongestGap = 0.25;    // s, between samples; after it the filters begin anew
+  static constexpr double kLongestGap = 0.25;    // s, between samples; after it the filters restart
   static constexpr double kJump = 0.5;           // rad or m, between samples: no motion
 
-  // A sample: the same instant again changes nothing, an earlier one or another number of joints begins anew.
-  // `differences`: where no velocities were told so far, take them from positions.
+  // A sample: the same instant again changes nothing, an earlier one or another number of joints restarts the filters.
+  // `differences`: derive velocities from positions as long as the source has given none.
   void take(Timestamp time, std::span<const double> position, std::span<const double> velocity,
             bool differences) CELL_RT;
-  // Nothing is known of the motion: as if it stood still. Forgets whether velocities were told.
+  // The motion is unknown and counts as standing still. Forgets whether velocities were given.
   void stand_still() CELL_RT;
 
   [[nodiscard]] const JointValues& velocity() const CELL_RT { return velocity_; }

@@ -174,7 +174,7 @@ class Builder {
   const CompiledRobot& robot_;
   RobotMechanism made_;
   std::vector<std::int32_t> link_of_;  // by joint node
-  std::vector<bool> feels_;            // by joint node: the robot bears what hangs there
+  std::vector<bool> feels_;            // by joint node: the robot carries what is attached there
   std::vector<Inertia> inertia_;       // by link
   bool has_masses_ = false;
 };

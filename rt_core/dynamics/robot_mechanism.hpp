@@ -31,10 +31,10 @@ struct RobotMechanism {
 };
 
 // One for each of cell.robots, in that order. A node belongs to the last joint on its way from the world (kinematic
-// predecessors). A robot whose model has no masses on its links has no mechanism, whatever it carries: half a weight
-// would be a wrong one. Where other robots' joints lie between the world and the robot, or behind its joints, they are
-// part of its mechanism, so that it feels their motion; robots that only share the carrier are not. Takes one pass over
-// the cell a robot.
+// predecessors). A robot whose model has no masses on its links has no mechanism, whatever it carries: a partial weight
+// would be wrong. Joints of other robots between the world and the robot, or beyond its joints, are part of its
+// mechanism, so their motion has an effect; robots that only share the carrier are not. One pass over the cell per
+// robot.
 [[nodiscard]] std::vector<RobotMechanism> robot_mechanisms(const CompiledCell& cell);
 
 // Whether the two give the same mechanisms. Costs some ten microseconds a thousand nodes where they do.

@@ -18,7 +18,7 @@ struct BoxQuery {
   std::array<float, 3> direction{};
 };
 
-// How the frames of two trees' boxes stand to each other: p_N = R_NO * p_O + p_NO.
+// Relative pose of the frames of two trees' boxes: p_N = R_NO * p_O + p_NO.
 struct BoxFrame {
   std::array<std::array<float, 3>, 3> R_NO{};
   std::array<float, 3> p_NO{};

@@ -18,7 +18,7 @@ class BoxWalk {
   // A box about the origin of frame B with a skin, and a mesh whose frame is M.
   BoxWalk(const WideTree& tree, const Pose& X_MB, const Eigen::Vector3d& half, double skin) noexcept;
 
-  // Only what is at most this far from the skin is looked at, m; may shrink from call to call.
+  // Only what is at most this far from the skin is examined, m; may shrink from call to call.
   void set_limit(double limit) noexcept;
   // A unit vector in M in which the bodies may be well apart.
   void set_direction(const Eigen::Vector3d& n_M) noexcept;

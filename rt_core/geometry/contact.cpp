@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The prism that stands for a cylinder is too thick: the overlap along the normal, with the cylinder itself.
+// The prism that approximates a cylinder is too thick: the overlap along the normal, with the cylinder itself.
 double overlap_with_cylinder(const Polytope& a, const ConvexCore& b, const Pose& X_AB, const Vector3d& n) {
   const Vector3d n_B = X_AB.linear().transpose() * n;
   double reach = -std::numeric_limits<double>::infinity();
@@ -104,7 +104,7 @@ bool sound(const ContactPoint& point) {
   return std::isfinite(point.depth) && point.depth >= 0 && point.p_W.allFinite() && point.normal.allFinite();
 }
 
-// Where nothing else tells, from one middle to the other.
+// Default direction: from one centre to the other.
 Vector3d between_middles(const Placed& a, const Placed& b) {
   const Vector3d n = b.X_W * b.solid.centre - a.X_W * a.solid.centre;
   const double length = n.norm();

@@ -27,7 +27,7 @@ struct Piercing {
 
 Triangle moved(const Triangle& t, const Pose& X) { return {X * t[0], X * t[1], X * t[2]}; }
 
-// What one contact looks at; memory is kept from query to query.
+// Working data of one contact; memory is kept between queries.
 struct Work {
   EvenSample<ContactPoint> crossings{kMostContactSamples};
   EvenSample<Vector3d> of_a{kMostContactSamples};

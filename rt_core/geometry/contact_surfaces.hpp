@@ -1,5 +1,5 @@
 // Where and how deep surfaces run below each other: contact of bodies that are not both convex. In bounded time: of
-// large contacts an evenly spread part is looked at, so that the depth is that of the points looked at.
+// large contacts an evenly spread sample is examined, so the depth is that of the sample.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // Distance and overlap of convex shapes: points, segments, boxes, cylinders and triangles, each with a skin of constant
-// thickness (a sphere is a point with a skin, a capsule a segment). Never fails: what an iteration cannot settle is
-// settled by a bound that is told as `certain == false`. No heap memory, noexcept.
-// Source: Gilbert, Johnson, Keerthi 1988 (distance); van den Bergen 2001 (penetration); closed forms where they exist.
+// thickness (a sphere is a point with a skin, a capsule a segment). Never fails: if an iteration does not converge, the
+// result is a bound with `certain == false`. No heap memory, noexcept. Source: Gilbert, Johnson, Keerthi 1988
+// (distance); van den Bergen 2001 (penetration); closed forms where they exist.
 #pragma once
 
 #include <Eigen/Core>

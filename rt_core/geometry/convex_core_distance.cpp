@@ -64,7 +64,7 @@ CoreDistance with_bounds(const GjkAnswer& found, double size) {
   return out;
 }
 
-// Corner i of a box: bit 0, 1, 2 tell the side in x, y, z.
+// Corner i of a box: bit 0, 1, 2 give the side in x, y, z.
 Vector3d corner(const Vector3d& half, unsigned i) {
   return {(i & 1U) != 0 ? half[0] : -half[0], (i & 2U) != 0 ? half[1] : -half[1], (i & 4U) != 0 ? half[2] : -half[2]};
 }

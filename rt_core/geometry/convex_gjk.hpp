@@ -14,7 +14,7 @@ struct GjkAnswer {
   double upper = 0;  // m, distance of p_a and p_b: not less than the distance
   double lower = 0;  // m, of the best plane between the bodies that was met: not more than the distance
   bool overlap = false;
-  bool beyond = false;  // `lower` exceeds what was asked for: the points are not set
+  bool beyond = false;  // `lower` exceeds the requested distance: the points are not set
   int iterations = 0;
   Eigen::Vector3d p_a = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
@@ -58,7 +58,7 @@ template <typename A, typename B>
       if (gap * gap <= gap_squared * vv || simplex.has(w)) break;
     }
     if (!simplex.add(w, p_a)) break;
-    // A tetrahedron that encloses the origin though a plane was seen between the bodies is rounding.
+    // A tetrahedron that encloses the origin despite a separating plane is a rounding error.
     if (simplex.encloses_origin() || !(simplex.squared() > zero_squared)) {
       out.overlap = !(lower_squared > 4.0 * gap_squared);
       break;

@@ -113,7 +113,7 @@ Result<TriangleMesh> convex_hull(std::string name, std::span<const Eigen::Vector
   if (points.size() > 3 * kMostTriangles) return fail(fmt::format("{} has too many points", name));
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) {
-    if (!p.allFinite()) return fail(fmt::format("a coordinate of {} is no number", name));
+    if (!p.allFinite()) return fail(fmt::format("a coordinate of {} is not a number", name));
     box.extend(p);
   }
   const double size = box.diagonal().norm();
@@ -131,7 +131,7 @@ Result<TriangleMesh> convex_hull(std::string name, std::span<const Eigen::Vector
   TriangleMesh hull = mesh_of(name, points, qhull.triangles());
   if (!hull.closed) return std::unexpected(flat(name));
   if (farthest_outside(hull, points) > kHullTolerance * size)
-    return fail(fmt::format("the convex hull of {} cannot be trusted", name), "use it as it is (exact)");
+    return fail(fmt::format("the convex hull of {} is not reliable", name), "use it as it is (exact)");
   hull.convex = true;
   return hull;
 }

@@ -68,8 +68,7 @@ struct Core {
   }
 };
 
-// Looks for the direction in which the overlap is least. Every direction that is tried gives a depth that parts the
-// bodies; what remains is to try the right ones.
+// Searches the direction of least overlap. Every tested direction gives a depth that separates the bodies.
 class Search {
  public:
   Search(const Core& a, const Core& b) : a_(a), b_(b) { best_.depth = std::numeric_limits<double>::infinity(); }
@@ -113,7 +112,7 @@ class Search {
     for (Eigen::Index i = 0; i < 3; ++i) consider_line(Vector3d::Unit(i));
   }
 
-  // Along all normals that are square to a straight edge: there lie the surfaces that a rim sweeps along that edge.
+  // Along all normals that are square to a straight edge: the surfaces swept by a rim along that edge are there.
   void consider_circle(const Vector3d& edge);
   // In all directions: where two rims meet.
   void consider_sphere();

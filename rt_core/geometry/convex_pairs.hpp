@@ -82,7 +82,7 @@ struct RelativePose {
 struct CoreDistance {
   double distance = 0;  // m; a lower bound where it is not certain
   bool certain = true;
-  bool beyond = false;  // more than was asked for; the points are not set
+  bool beyond = false;  // more than requested; the points are not set
   Eigen::Vector3d p_a = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
 };

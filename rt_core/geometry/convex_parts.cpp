@@ -21,11 +21,11 @@ namespace {
 
 using Plane = Eigen::Hyperplane<double, 3>;
 
-constexpr std::size_t kSamples = 1500;  // triangles that are looked at to judge a piece or a cut
+constexpr std::size_t kSamples = 1500;  // triangles examined to rate a piece or a cut
 
 struct Piece {
   std::vector<Triangle> surface;  // the part of the mesh's surface in it
-  std::vector<Plane> cuts;        // it lies where none of them has a positive distance
+  std::vector<Plane> cuts;        // inside: none of them has a positive distance
   TriangleMesh hull;
   double volume = 0;     // of the hull, m3
   double concavity = 0;  // m; 0 where it is not to be cut any more

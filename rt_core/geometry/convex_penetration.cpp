@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Part of the size below which the direction between the nearest points of two cores is rounding: the overlap of the
-// cores, which is then about 0, tells the normal.
+// cores, then about 0, gives the normal.
 constexpr double kTouching = 1e-11;
 
 // In frame A, for cores in their order.

@@ -53,7 +53,7 @@ Side side_of(double volume, double scale) {
   return volume > 0 ? Side::positive : Side::negative;
 }
 
-// +1 where the ray leaves through the triangle's front, -1 where it enters; nothing: not to be told.
+// +1 where the ray leaves through the triangle's front, -1 where it enters; nothing: undecided.
 std::optional<int> crossing(const Ray& ray, const Triangle& t) {
   const Vector3d a = t[0] - ray.from;
   const Vector3d b = t[1] - ray.from;

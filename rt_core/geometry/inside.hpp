@@ -9,9 +9,9 @@
 namespace cellmirror::geometry {
 
 // How often the mesh winds around a point: 0 outside, 1 inside; other values where shells overlap or lie inside out. Of
-// a closed mesh, in its own frame. A ray is followed through the tree; one that comes too near an edge to tell the
-// sides apart is replaced by another, and after several by the sum of all solid angles (van Oosterom, Strackee 1983),
-// which takes no ray but time in proportion to the mesh. On the surface itself either answer may come.
+// a closed mesh, in its own frame. A ray is followed through the tree; one too near an edge is replaced by another, and
+// after several by the sum of all solid angles (van Oosterom, Strackee 1983), which takes no ray but time in proportion
+// to the mesh. On the surface itself either answer may come.
 [[nodiscard]] int winding_number(const MeshTree& tree, const Eigen::Vector3d& p) noexcept;
 
 // In the sense of "solid": closed, and the winding number is not 0.

@@ -27,7 +27,7 @@ Result<void> check(const Vertices& vertices, const Triangles& triangles) {
     return fail(fmt::format("there are {} vertices, more than {}", vertices.size(), 3 * kMostTriangles));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Eigen::Vector3d& p = vertices[i];
-    if (!p.allFinite()) return fail(fmt::format("a coordinate of vertex {} is no number", i + 1), "export it anew");
+    if (!p.allFinite()) return fail(fmt::format("a coordinate of vertex {} is not a number", i + 1), "export it again");
     if (p.cwiseAbs().maxCoeff() > kLargestCoordinate) {
       return fail(fmt::format("vertex {} is {:g} m away from the origin", i + 1, p.cwiseAbs().maxCoeff()),
                   "check the unit and the scale");
@@ -36,7 +36,7 @@ Result<void> check(const Vertices& vertices, const Triangles& triangles) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto largest = *std::ranges::max_element(triangles[i]);
     if (largest >= vertices.size()) {
-      return fail(fmt::format("triangle {} names vertex {}, but there are {}", i + 1, largest + std::uint64_t{1},
+      return fail(fmt::format("triangle {} refers to vertex {}, but there are {}", i + 1, largest + std::uint64_t{1},
                               vertices.size()));
     }
   }
@@ -51,14 +51,14 @@ std::vector<std::string> MeshFindings::repairs() const {
     out.push_back(counted(degenerate_triangles, "triangle has no area", "triangles have no area"));
   if (lost_lines > 0) {
     out.push_back(fmt::format("{}, up to {:.3g} m long, and cannot be tested",
-                              counted(lost_lines, "of these is a bare line", "of these are bare lines"),
+                              counted(lost_lines, "of these is an isolated line", "of these are isolated lines"),
                               longest_lost_m));
   }
   if (duplicate_triangles > 0)
-    out.push_back(counted(duplicate_triangles, "triangle stands twice", "triangles stand twice"));
+    out.push_back(counted(duplicate_triangles, "triangle appears twice", "triangles stand twice"));
   if (flipped_triangles > 0) {
-    out.push_back(counted(flipped_triangles, "triangle faced the other way",
-                          "triangles faced another way than their neighbours"));
+    out.push_back(counted(flipped_triangles, "triangle was oriented against its neighbours",
+                          "triangles were oriented against their neighbours"));
   }
   if (inside_out_shells > 0)
     out.push_back(counted(inside_out_shells, "shell was inside out", "shells were inside out"));

@@ -1,6 +1,6 @@
-// From the triangles of a file to a mesh that is fit for geometry: welds, removes what has no area or stands twice,
-// orients, and finds out whether there is an inside. What cannot be trusted is refused; what was changed is told.
-// Not for the tick: O(n log n) with heap memory. Any thread.
+// Converts the triangles of a file to a valid mesh: welds vertices, removes duplicates and triangles without area,
+// orients, and determines whether there is an inside. Invalid meshes are refused; changes are reported. Not for the
+// tick: O(n log n) with heap memory. Any thread.
 #pragma once
 
 #include <cstddef>

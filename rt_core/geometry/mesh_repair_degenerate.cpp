@@ -145,7 +145,7 @@ class DegenerateRemover {
       return a == b ? used[a] : !uses_of(uses, edge_key(a, b)).empty();
     };
     for (const Flat& line : dropped_) {
-      // A middle corner that is no triangle's lies on the line all the same.
+      // A middle corner without a triangle is on the line, too.
       if (kept(line.a, line.b) || (kept(line.a, line.middle) && kept(line.middle, line.b))) continue;
       ++findings.lost_lines;
       findings.longest_lost_m = std::max(findings.longest_lost_m, (vertices_[line.b] - vertices_[line.a]).norm());

@@ -55,7 +55,7 @@ struct Neighbour {
   bool crowded = false;   // no neighbour, since the edge has more than two triangles
 };
 
-// Triangles that hang together by edges with exactly two of them; after join_shells() also by edges with more.
+// Triangles connected by edges with exactly two of them; after join_shells() also by edges with more.
 struct Shell {
   std::vector<std::uint32_t> triangles;
   bool closed = true;
@@ -210,7 +210,7 @@ class Orienter {
 
   // A closed shell that faces inwards is a cavity where it lies in another one, else it is inside out.
   void turn_outwards() {
-    std::size_t budget = 10'000'000;  // triangles looked at: some tenths of a second
+    std::size_t budget = 10'000'000;  // triangles examined: some tenths of a second
     for (Shell& shell : closed_shells_) {
       if (!shell.closed || shell.volume > 0.0) continue;
       const auto inside = lies_inside(shell, budget);

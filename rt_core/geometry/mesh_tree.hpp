@@ -24,13 +24,13 @@ class MeshTree {
   static constexpr int kMaxDepth = 64;                  // levels, whatever the mesh
   static constexpr std::size_t kMaxTriangles = std::size_t{1} << 26U;
 
-  // A part of the mesh that hangs together by common vertices. It lies inside of another body as a whole or not at all
-  // where the surfaces do not touch.
+  // A part of the mesh connected by common vertices. If the surfaces do not touch, it is wholly inside another body or
+  // wholly outside.
   struct Shell {
     std::array<Eigen::Vector3d, 6> extremes;  // m, vertices: least x, greatest x, least y, ...
   };
 
-  // Depth first: the left child of an inner node stands right behind it.
+  // Depth first: the left child of an inner node follows it directly.
   struct Node {
     Eigen::Vector3d lower;  // m, corners of the box
     Eigen::Vector3d upper;

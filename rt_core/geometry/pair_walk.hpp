@@ -21,7 +21,7 @@ class PairWalk {
   // X_AB: of the meshes' frames.
   PairWalk(const WideTree& a, const WideTree& b, const Pose& X_AB) noexcept;
 
-  // Only what is at most this far apart is looked at, m; may shrink from call to call.
+  // Only what is at most this far apart is examined, m; may shrink from call to call.
   void set_limit(double limit) noexcept;
   // A unit vector in A's frame in which the bodies may be well apart.
   void set_direction(const Eigen::Vector3d& n_A) noexcept;

@@ -46,7 +46,7 @@ Separation ordered(const Placed& a, const Placed& b, double up_to, double enough
   const Vector3d between = b.X_W * b.solid.centre - a.X_W * a.solid.centre;
   const double bound = between.norm() - a.solid.radius - b.solid.radius;
   if (!std::isfinite(bound)) {
-    Separation doubt;  // a pose that is none; everything may touch
+    Separation doubt;  // an invalid pose; everything may touch
     doubt.certain = false;
     return doubt;
   }
@@ -87,7 +87,7 @@ Separation query(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X
 
 Separation separation(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, double up_to,
                       ProximityHint& hint) noexcept {
-  // So that touch is told whatever the caller asks for.
+  // So that contact is reported for any requested distance.
   return query(a, X_WA, b, X_WB, std::max(up_to, kTouchDistance), 0.0, hint);
 }
 

@@ -26,8 +26,9 @@ struct ProximityHint {
 
 struct Separation {
   ClosestPoints points;  // in frame W
-  bool beyond = false;   // farther apart than was asked for: points.distance is a lower bound, the points are not set
-  bool certain = true;   // false: an iteration ended early and points.distance is a lower bound. To be told as a doubt.
+  bool beyond = false;   // farther apart than requested: points.distance is a lower bound, the points are not set
+  bool certain =
+      true;  // false: an iteration ended early and points.distance is a lower bound. To be reported as doubtful.
 };
 
 // The distance where it is below `up_to` (m, not negative). Symmetric.
@@ -48,11 +49,11 @@ struct Contact {
   std::vector<ContactPoint> points;  // at most `most`, spread over the contact, deepest first
 };
 
-// Of solids that touch; false where they do not. Two convex solids: depth is the shortest way that parts them. Else it
-// is the greatest depth of one's surface below the other's (0 between open surfaces, which have no inside). Bounded
-// work: of very many triangles that meet only a part is looked at (contact_surfaces.hpp), so that points and depth are
-// those of the part; whether the solids touch never depends on that. Unlike the others it may take heap memory, until
-// each thread has met its largest contact.
+// Of solids that touch; false where they do not. Two convex solids: depth is the shortest translation that separates
+// them. Else it is the greatest depth of one's surface below the other's (0 between open surfaces, which have no
+// inside). Bounded work: of very many intersecting triangles only a part is examined (contact_surfaces.hpp), so that
+// points and depth are those of the part; whether the solids touch never depends on that. Unlike the others it may take
+// heap memory, until each thread has met its largest contact.
 bool contact(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB, std::size_t most,
              Contact& out) noexcept;
 

@@ -21,14 +21,14 @@ double gap_along(const Vector3d& n, const Triangle& a, const Triangle& b) {
   return start_of_b - end_of_a;
 }
 
-// Of two triangles that share the nearest point with others, all but one need no second look: parts of the bodies'
-// size by which another pair has to be nearer to count.
+// Of two triangles that share the nearest point with others, all but one are skipped: fraction of the bodies' size by
+// which another pair must be nearer to count.
 constexpr double kSameDistance = 1e-14;
 
 Triangle moved(const Triangle& t, const Pose& X) { return {X * t[0], X * t[1], X * t[2]}; }
 
-// The nearest pair of those looked at so far. It may be farther apart than was asked for: its direction still shows
-// where the bodies part, and it is the hint for the next query.
+// The nearest pair so far. It may be farther apart than requested: its direction still separates the bodies, and it is
+// the hint for the next query.
 class Nearest {
  public:
   Nearest(double up_to, double size) : up_to_(up_to), rounding_(kSameDistance * size) {}
@@ -47,7 +47,7 @@ class Nearest {
   [[nodiscard]] double limit() const { return std::min(up_to_, points_.distance); }
   [[nodiscard]] const Vector3d& direction() const { return direction_; }
   [[nodiscard]] bool within(double enough) const { return points_.distance <= enough; }
-  // Whether a look along the direction is enough to tell that two triangles are farther apart than matters.
+  // Whether the projection on the direction shows that two triangles are too far apart.
   [[nodiscard]] bool apart(const Triangle& a, const Triangle& b) {
     const double gap = gap_along(direction_, a, b);
     if (!(gap > limit() - rounding_ && gap > rounding_)) return false;

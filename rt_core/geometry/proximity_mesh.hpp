@@ -1,5 +1,5 @@
 // Distances between meshes and between a mesh and a primitive: the cases of proximity.hpp that walk trees. Surfaces
-// only; who lies inside of whom is asked by proximity.cpp. Poses must be finite.
+// only; proximity.cpp tests containment. Poses must be finite.
 #pragma once
 
 #include "rt_core/geometry/proximity.hpp"

@@ -1,4 +1,4 @@
-// The kinds of solids that are drawn, tested for collision and seen by range sensors.
+// The kinds of solids that are drawn, tested for collision and detected by range sensors.
 #pragma once
 
 #include <cstdint>

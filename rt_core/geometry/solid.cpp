@@ -98,7 +98,7 @@ std::shared_ptr<const Solid> SolidLibrary::primitive(Shape shape, const Vector3d
   return solid;
 }
 
-// A living solid keeps its mesh alive, so an address stands for one mesh as long as its entry can be locked.
+// A solid keeps its mesh alive, so an address identifies one mesh as long as its entry can be locked.
 std::shared_ptr<const Solid> SolidLibrary::mesh(const std::shared_ptr<const TriangleMesh>& mesh) {
   const std::scoped_lock lock(mutex_);
   if (const auto found = meshes_.find(mesh.get()); found != meshes_.end()) {

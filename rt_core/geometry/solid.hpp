@@ -29,8 +29,8 @@ struct Solid {
 [[nodiscard]] Solid make_primitive(Shape shape, const Eigen::Vector3d& size);  // any shape but mesh
 [[nodiscard]] Solid make_mesh_solid(std::shared_ptr<const TriangleMesh> mesh);
 
-// One Solid for equal shapes, and one tree a mesh, however many bodies and threads use it. Any thread; may wait for
-// another thread that builds a tree. Keeps nothing alive by itself.
+// One Solid for equal shapes, and one tree per mesh, for all bodies and threads. Any thread; may wait for another
+// thread that builds a tree. Owns nothing.
 class SolidLibrary {
  public:
   [[nodiscard]] std::shared_ptr<const Solid> primitive(Shape shape, const Eigen::Vector3d& size);

@@ -146,7 +146,7 @@ bool any_corner_within(const Triangle& t, const Heights& heights, const Face& fa
   return false;
 }
 
-// A corner of one over the inside of the other: nothing is nearer than that, so no edge needs to be looked at.
+// A corner of one over the inside of the other: nothing is nearer than that, so no edge needs to be examined.
 bool corner_over_face(const Triangle& t, const Heights& heights, const Face& face, Vector3d& corner, Vector3d& foot) {
   if (heights.smallest <= 0.0) return false;
   corner = t[heights.nearest];

@@ -36,7 +36,7 @@ double greatest_length(const Triangle& a, const Triangle& b) {
   return std::sqrt(squared);
 }
 
-// Keeps the part of a segment in the plane of `t` that lies within t; false where none is left.
+// Keeps the part of a segment in the plane of `t` that lies within t; false if none is left.
 bool clip(Segment& s, const Triangle& t, const Plane& plane, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d edge = t[i == 2 ? 0 : i + 1] - t[i];

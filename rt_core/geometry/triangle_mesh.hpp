@@ -10,12 +10,12 @@
 
 namespace cellmirror::geometry {
 
-using TriangleIndices = std::array<std::uint32_t, 3>;  // counter-clockwise seen from outside where the mesh is closed
+using TriangleIndices = std::array<std::uint32_t, 3>;  // counter-clockwise from outside if the mesh is closed
 
 struct TriangleMesh {
   std::string name;                        // of the file, for messages
   std::vector<Eigen::Vector3d> vertices;   // m, in the frame G of its geometry (scale applied); no two are equal
-  std::vector<TriangleIndices> triangles;  // into `vertices`; none has an area of zero, none stands twice
+  std::vector<TriangleIndices> triangles;  // into `vertices`; none has an area of zero, no duplicates
   // Every edge is run through by as many triangles in one direction as in the other (by one each, but where shells
   // touch along an edge), and the volume is positive: there is an inside, and what lies in it touches the body.
   bool closed = false;

@@ -39,7 +39,7 @@ float round_up(double value) {
                                                : std::nextafter(rounded, std::numeric_limits<float>::infinity());
 }
 
-// At right angles: `normal` as nearly as possible the last, `along` the first. The identity where they do not tell.
+// At right angles: `normal` as nearly as possible the last, `along` the first. The identity if they are degenerate.
 Eigen::Matrix3d axes_along(const Vector3d& along, const Vector3d& normal) {
   Eigen::Matrix3d axes;
   axes.col(2) = normal.normalized();
@@ -83,7 +83,7 @@ Eigen::Matrix3d axes_of_triangle(const Triangle& t) {
   return axes_along(longest, (t[1] - t[0]).cross(t[2] - t[0]));
 }
 
-// How a surface extends and which way it faces, weighted by area. Of a large one some triangles stand for all.
+// How a surface extends and which way it faces, weighted by area. A large one is sampled.
 class Spread {
  public:
   explicit Spread(std::span<const Triangle> triangles) {
@@ -132,7 +132,7 @@ class Builder {
  public:
   Builder(const MeshTree& tree, const Vector3d& origin)
       : nodes_(tree.nodes()), triangles_(tree.triangles()), origin_(origin), counts_(tree.nodes().size()) {
-    // Children stand behind their parents, so counting from the end meets them first.
+    // Children come after their parents, so iterating from the end visits them first.
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       counts_[i] = nodes_[i].leaf() ? nodes_[i].count : counts_[i + 1] + counts_[nodes_[i].right];
     }

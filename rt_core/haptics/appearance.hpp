@@ -27,9 +27,9 @@ inline constexpr Nanoseconds kLongestBetween{10'000'000};
 class AppearanceWatch {
  public:
   void restart() CELL_RT { *this = AppearanceWatch{}; }
-  // `now` takes the place of `before` while the tip stands at `x` (m). True where surfaces have come deeper over the
-  // tip than they can have moved since; then it begins anew. Depth that shows bit by bit, model after model, adds up.
-  // Bounded time: two searches of nearest_point().
+  // `now` replaces `before` while the tip is at `x` (m). True if surfaces have covered the tip deeper than they can
+  // have moved since; then it restarts. Depth that shows bit by bit, model after model, adds up. Bounded time: two
+  // searches of nearest_point().
   bool appeared(const ContactModel& before, const ContactModel& now, const Eigen::Vector3d& x) CELL_RT;
 
  private:

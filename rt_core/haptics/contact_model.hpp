@@ -1,5 +1,5 @@
-// The surroundings of an instrument's tip as the tick knows them: a few linear constraints, found by a worker. Fixed
-// size, so that it crosses threads in a Latest. World frame, SI.
+// The surroundings of an instrument's tip for the tick: a few linear constraints, computed by a worker. Fixed size, so
+// that it crosses threads in a Latest. World frame, SI.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,8 +29,8 @@ struct ContactModel {
   bool certain = true;         // false: something could not be settled; treat what is near as touching
   std::uint64_t cell = 0;      // counted by the worker: another number where the cell was changed in between
   Eigen::Vector3d x_ref = Eigen::Vector3d::Zero();  // the tip's origin in that posture
-  // The joints of that posture, rad or m: an instrument whose tip does not stand at x_ref with them is another one,
-  // with another tool centre point or base. None: not told.
+  // The joints of that posture, rad or m: an instrument whose tip is not at x_ref with them is another one, with
+  // another tool centre point or base. None: unknown.
   std::uint8_t joint_count = 0;
   JointValues q{};
   double reach = 0;  // m: everything nearer than this to the instrument is in; the proxy stays within it. 0: all is in

@@ -11,7 +11,7 @@ constexpr double kFarthest = 100.0;        // m or rad: beyond it a number is no
 constexpr double kLeastQuaternion = 0.25;  // squared norm: less is no rotation
 constexpr double kLargestQuaternion = 4.0;
 constexpr double kJumpSlack = 0.5e-3;         // m: an encoder's steps and the jitter of stamps
-constexpr double kShortestInterval = 250e-6;  // s: stamps nearer than this are told apart by no device
+constexpr double kShortestInterval = 250e-6;  // s: no device distinguishes timestamps nearer than this
 
 bool finite(const HapticSample& sample) CELL_RT {
   bool all = sample.p_DH.allFinite() && sample.q_DH.coeffs().allFinite() && std::isfinite(sample.gripper);
@@ -48,7 +48,7 @@ void DeviceJudge::take(const HapticSample& sample, Timestamp now) CELL_RT {
   ++samples_;
 }
 
-// A stamp ahead of our clock by more than a sample may be old is of another clock, and tells no age.
+// A timestamp ahead of our clock by more than the permitted age is from another clock and gives no age.
 bool DeviceJudge::old(Timestamp now, const JudgeSettings& settings) const CELL_RT {
   return distance(now, last_.time) > settings.stale_after || now - received_ > settings.stale_after;
 }
@@ -72,8 +72,8 @@ Verdict DeviceJudge::judge_new(const HapticSample& sample, Timestamp now, const 
   writer_known_ = true;
   if (another_writer || backwards || in_step) {
     forget_place();
-    // Where the last sample is old, this is a device that was started anew, or another one that takes over. Its first
-    // sample may lie anywhere, so it does not count; where nobody drives the instrument yet, nothing is lost by that.
+    // If the last sample is old, this is a restarted device, or another one that takes over. Its first sample may be
+    // anywhere, so it does not count; without a driven instrument this has no effect.
     if (seen_) return {.fault = old(now, settings) ? HapticFault::stale : HapticFault::two_writers};
   }
   if (standing_still) return {.fault = old(now, settings) ? HapticFault::stale : HapticFault::none};

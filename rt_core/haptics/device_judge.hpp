@@ -22,16 +22,16 @@ struct Verdict {
   bool fresh = false;  // sample() is another one than before, and good
 };
 
-// Counts, ages and compares; knows nothing of the instrument. Goes on judging while a fault is latched, so that it can
-// be told whether the cause lasts.
+// Checks counters, ages and differences without knowledge of the instrument. Continues while a fault is latched, to
+// detect whether the cause persists.
 class DeviceJudge {
  public:
   void restart(Timestamp now) CELL_RT;
 
   // What port.read() gave in this tick.
   Verdict judge(HapticRead read, const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT;
-  // The place (m) that the fresh sample stands for, where the device's own position is not what moves: `jump` when no
-  // hand comes there from the last one in that time.
+  // The position (m) of the fresh sample if the device's own position does not move: `jump` if no hand can get there
+  // from the last one in that time.
   HapticFault moved_to(const Eigen::Vector3d& p, const JudgeSettings& settings) CELL_RT;
   // Forgets the last place, after its meaning has changed.
   void forget_place() CELL_RT { place_known_ = false; }
@@ -55,7 +55,7 @@ class DeviceJudge {
   HapticSample last_;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
   Timestamp place_time_;
-  Timestamp received_;        // when the count last went on
+  Timestamp received_;        // when the count last increased
   std::uint64_t count_ = 0;   // last sequence, of good samples and of bad ones
   std::uint64_t writes_ = 0;  // likewise
   std::uint32_t writer_ = 0;  // likewise

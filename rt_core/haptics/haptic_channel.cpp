@@ -123,8 +123,8 @@ HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
   return models_.stale(input.now, settings.model_stale_after) ? HapticFault::stale_model : HapticFault::none;
 }
 
-// A device that is not there yet, or is getting ready, is waited for; nonsense is told at once. One that only waits for
-// the surroundings of another instrument is watched as before.
+// A missing device, or one that is not ready, is not a fault; invalid data is reported at once. A device that only
+// waits for the surroundings of another instrument is supervised as before.
 bool HapticChannel::counts_while_waiting(HapticFault fault) const CELL_RT {
   return was_engaged_ || fault == HapticFault::not_finite || fault == HapticFault::jump ||
          fault == HapticFault::two_writers;
@@ -163,7 +163,7 @@ void HapticChannel::engage(const TickInput& input) CELL_RT {
   map_.anchor_orientation(*instrument_, judge_.sample(), posture_);
   wish_ = map_.wish(*instrument_, judge_.sample(), posture_.q);
   proxy_.start(posture_.X_WE.translation());
-  judge_.forget_place();  // joints without an axis stand elsewhere than was taken for granted
+  judge_.forget_place();  // joints without an axis are not where they were assumed
   restart_force();
   was_engaged_ = true;
   state_.phase = HapticPhase::engaging;
@@ -172,14 +172,14 @@ void HapticChannel::engage(const TickInput& input) CELL_RT {
 // A body was put onto the tip: as at an engagement, only what the hand presses on from here is felt.
 void HapticChannel::yield_to_what_appeared() CELL_RT {
   ++state_.appeared;
-  if (state_.phase == HapticPhase::clutched) return;  // it engages anyway when the clutch is let go
+  if (state_.phase == HapticPhase::clutched) return;  // it engages when the clutch is released
   proxy_.start(proxy_.x());
   restart_force();
   state_.phase = HapticPhase::engaging;
 }
 
-// While the clutch is pressed the force leaves as fast as max_slew lets it; when it is let go, the hand is where the
-// instrument is.
+// While the clutch is pressed the force decreases at max_slew; when it is released, the hand is where the instrument
+// is.
 void HapticChannel::work_clutch() CELL_RT {
   const int button = instrument_->settings.clutch_button;
   const bool pressed = button >= 0 && button < 32 && (judge_.sample().buttons >> button & 1U) != 0;
@@ -299,7 +299,7 @@ Eigen::Vector3d HapticChannel::answer(const ProxyContact& contact, double period
   return force;
 }
 
-// The one force in all the forms in which it is told.
+// The force in all output forms.
 void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& force_device) CELL_RT {
   state_.contacts = contact.contacts;
   state_.passivity_damping = passivity_.damping();

@@ -26,7 +26,7 @@ struct TickInput {
   Nanoseconds period{};
   std::uint64_t missed = 0;             // periods just before this tick
   const ContactModel* model = nullptr;  // newest; null: none yet, and until one is there the device does not engage
-  std::span<const double> q;            // rad or m, where the robot stands (all joints)
+  std::span<const double> q;            // rad or m, positions of all joints
   bool device_gone = false;             // the device's process is known to have ended
 };
 
@@ -40,15 +40,15 @@ class HapticChannel {
   void open(const Instrument& instrument, HapticDevicePort& port) CELL_RT;
   // Writes a last output of zero force.
   void close() CELL_RT;
-  // Another instrument for the device that is open, which engages anew: no force until its surroundings are known. A
-  // latched fault stays, and so does what the clutch has added where the device lies as before. `instrument` as in
-  // open(); the one before is no longer looked into.
+  // Another instrument for the open device, which engages again: no force until its surroundings are known. A latched
+  // fault stays, and so does the clutch offset if the device's base is unchanged. `instrument` as in open(); the
+  // previous one is no longer accessed.
   void exchange(const Instrument& instrument) CELL_RT;
-  // Takes a latched fault back: the force fades in anew. False where there is none, or its cause was still there within
-  // the last kQuietBeforeReset.
+  // Resets a latched fault: the force fades in again. False without a fault, or if its cause persisted within the last
+  // kQuietBeforeReset.
   bool reset() CELL_RT;
 
-  // One tick: read, judge, move, answer. True where `sample` holds new joint values of the instrument (every joint,
+  // One tick: read, validate, move, answer. True where `sample` holds new joint values of the instrument (every joint,
   // within its limits; sequence and times of the device's sample): in phases other than closed, waiting and faulted.
   bool step(const TickInput& input, JointSample& sample) CELL_RT;
 

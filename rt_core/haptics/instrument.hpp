@@ -1,4 +1,4 @@
-// The robot that a haptic device drives, as the tick needs to know it.
+// The robot driven by a haptic device, data for the tick.
 #pragma once
 
 #include <array>

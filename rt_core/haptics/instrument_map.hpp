@@ -11,7 +11,7 @@
 
 namespace cellmirror::haptics {
 
-// What the hand asks for.
+// Commanded motion of the hand.
 struct Wish {
   Eigen::Vector3d x_WE = Eigen::Vector3d::Zero();      // m: the tip's origin
   Eigen::Matrix3d R_WE = Eigen::Matrix3d::Identity();  // drive pose: followed in what freedom the tip's place leaves
@@ -19,7 +19,7 @@ struct Wish {
   Eigen::Vector3d p_handle = Eigen::Vector3d::Zero();  // m, world axes: where the handle is, as the device moves
 };
 
-// Where the instrument stands: all joints, and the tip's pose in the world.
+// Position of the instrument: all joints, and the tip's pose in the world.
 struct Posture {
   JointValues q{};
   Pose X_WE = Pose::Identity();
@@ -30,16 +30,16 @@ class InstrumentMap {
   // Back to the anchor of the cell file.
   void restart() CELL_RT { *this = InstrumentMap{}; }
 
-  // `q`: where the joints stand; those that the device has no axis for stay.
+  // `q`: joint positions; joints without an axis of the device stay.
   [[nodiscard]] Wish wish(const Instrument& instrument, const HapticSample& sample, const JointValues& q) const CELL_RT;
-  // From now on the sample means the posture in which the instrument stands.
+  // From now on the sample corresponds to the instrument's present posture.
   void anchor(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT;
   // The same for the orientation alone; the place stays that of the cell file.
   void anchor_orientation(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT;
 
  private:
   Eigen::Vector3d offset_W_ = Eigen::Vector3d::Zero();  // m
-  Eigen::Matrix3d R_HE_ = Eigen::Matrix3d::Identity();  // how the tool lies in the hand
+  Eigen::Matrix3d R_HE_ = Eigen::Matrix3d::Identity();  // orientation of the tool in the hand
   JointValues joint_offset_{};
 };
 

@@ -14,11 +14,11 @@ namespace cellmirror::haptics {
 class ModelWatch {
  public:
   void restart() CELL_RT;
-  // `newest` null: none came, or it was taken away. What is not finite, not of this instrument, or has no sequence is
-  // not taken; then the last one ages. In a model that is not certain, everything near counts as touching. `x` (m,
-  // world): where the tip stands.
+  // `newest` null: none exists. A model that is not finite, not of this instrument, or without sequence is ignored;
+  // then the last one ages. In a model that is not certain, everything near counts as touching. `x` (m, world):
+  // position of the tip.
   void look_at(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT;
-  // In the last look a body came to be where the tip is (appearance.hpp).
+  // In the last model a body appeared at the tip (appearance.hpp).
   [[nodiscard]] bool appeared() const CELL_RT { return appeared_; }
   // Null where none ever came.
   [[nodiscard]] const ContactModel* model() const CELL_RT { return known_ ? &model_ : nullptr; }

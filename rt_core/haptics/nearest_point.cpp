@@ -14,8 +14,8 @@ constexpr double kTight = 1e-10;       // m, of a constraint's own: met
 constexpr double kStillMet = 1e-6;     // m: what rounding may leave where planes are nearly parallel
 constexpr double kLeastSine = 1e-10;   // squared, of the angle between two normals that count as different
 
-// The constraints at the goal, reduced to numbers: what of each is left, and how the normals lie to each other.
-// x = goal + sum of lambda_i a_i has slack s_j + sum of G_ji lambda_i.
+// The constraints at the goal, reduced to numbers: what of each is left, and the products of their normals. x = goal +
+// sum of lambda_i a_i has slack s_j + sum of G_ji lambda_i.
 struct Reduced {
   std::uint8_t count = 0;
   std::array<std::uint8_t, kMaxConstraints> index{};

@@ -1,4 +1,4 @@
-// The point nearest to a goal that meets the constraints of a contact model: where a god object stands (Zilles,
+// The point nearest to a goal that meets the constraints of a contact model: the position of a god object (Zilles,
 // Salisbury, IROS 1995; Ruspini, Kolarov, Khatib, SIGGRAPH 1997). Exact.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Passivity observer and controller in the time domain (Hannaford, Ryu, IEEE Trans. Robotics and Automation 18(1),
 // 2002; with a look ahead as in Ryu, Preusche, Hannaford, Hirzinger, IEEE Trans. Control Systems Technology 13(4),
-// 2005): counts the energy that goes through the device's handle, and gives back no more than was put in.
+// 2005): observes the energy through the device's handle, and returns no more than was put in.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,12 +26,12 @@ class Passivity {
   // for nothing later.
   void observe(const Eigen::Vector3d& p, const Eigen::Vector3d& force, double stored, const PassivitySettings& settings,
                double period) CELL_RT;
-  // The force (N), less what would give out more than there is. It cuts, it never pulls: damping with a sample's delay
-  // would shake a light hand by itself. What was cut comes back within a tenth of a second, so that the wall is softer
-  // for a while.
+  // The force (N), clipped so that it releases no more energy than stored. It only reduces the force: damping with a
+  // sample's delay would shake a light hand. The reduction fades within a tenth of a second, so the wall is softer for
+  // a while.
   Eigen::Vector3d control(const Eigen::Vector3d& force, const PassivitySettings& settings, double period) CELL_RT;
 
-  // J; positive: went in and may come out again; negative: was generated.
+  // J; positive: stored and may be released; negative: generated.
   [[nodiscard]] double energy() const CELL_RT { return energy_; }
   [[nodiscard]] double damping() const CELL_RT { return damping_; }  // Ns/m, that the last cut is worth
   // Far more was generated than could be taken.

@@ -44,9 +44,9 @@ double Proxy::felt_share(double depth) CELL_RT {
   return depth > 0 ? (depth - forgiven_depth_) / depth : 0.0;
 }
 
-// Where friction holds the proxy back. The spring pulls it along the surface by the distance between where it stood and
-// where it would stand without friction; up to `limit_at_rest` it stays, beyond that it slides until `limit_sliding` is
-// left (Salisbury, Tarr, ASME DSC 61, 1997; Hayward, Armstrong, Experimental Robotics VI, 2000). Both limits are m:
+// Where friction holds the proxy back. The spring pulls it along the surface by the distance between its position and
+// the position without friction; up to `limit_at_rest` it sticks, beyond that it slides until `limit_sliding` is left
+// (Salisbury, Tarr, ASME DSC 61, 1997; Hayward, Armstrong, Experimental Robotics VI, 2000). Both limits are m:
 // coefficient times the depth that is felt.
 Eigen::Vector3d Proxy::cling(const ContactModel& model, const NearestPoint& nearest, double limit_at_rest,
                              double limit_sliding) CELL_RT {
@@ -115,7 +115,7 @@ ProxyContact Proxy::follow(const ContactModel* model, const Eigen::Vector3d& han
   if (model != nullptr && approaching_) settle(*model);
   if (model != nullptr) contact = press(*model, hand, friction, target);
   bool held_back = shorten(x_, longest_step, target);
-  // Beyond its reach the model knows nothing of what might be in the way.
+  // Beyond its reach the model has no obstacles.
   if (model != nullptr && model->reach > 0 && shorten(model->x_ref, model->reach, target)) {
     held_back = true;
     const NearestPoint allowed = nearest_point(*model, target);

@@ -1,4 +1,4 @@
-// The proxy: where the instrument's tip stands. It follows the hand, stops at every constraint, and clings by friction.
+// The proxy: position of the instrument's tip. It follows the hand, stops at every constraint, and sticks by friction.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,27 +17,26 @@ struct Friction {  // coefficients of Coulomb's law
 
 // What one tick of following gave.
 struct ProxyContact {
-  // From the hand to the proxy, as far as a contact bears it: what the spring between them feels. m, world.
+  // Vector from the hand to the proxy, as far as a contact supports it: the extension of the spring. m, world.
   Eigen::Vector3d elongation = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // unit vector, against the sum of the pressures; zero: no contact
   NearestPoint held;                                 // by which constraints; multipliers as the spring feels them
   std::uint8_t contacts = 0;
-  bool arrived = false;  // the proxy stands where it belongs: it was neither too far away nor held back by `reach`
+  bool arrived = false;  // the proxy position is valid: neither too far away nor limited by `reach`
 };
 
 class Proxy {
  public:
-  // Puts it there without asking; what was felt before is forgotten. Until it has arrived at the hand, and where it
-  // touches something two models in a row have found it well placed, nothing is felt: what lies deep around it shows
-  // only bit by bit. A hand that is inside of a body then feels it only when it presses on: the depth at which it began
-  // counts as none, and shrinks as the hand comes out.
+  // Sets it without checks and resets the force. There is no force until it has arrived at the hand and, in contact,
+  // two successive models have a valid position, since deep bodies are found incrementally. A hand inside a body then
+  // feels only further pressing: the initial depth counts as zero, and shrinks as the hand comes out.
   void start(const Eigen::Vector3d& x) CELL_RT;
 
   // `model` null: nothing is known, so nothing is in the way. `longest_step` (m): what it may move in this tick.
   ProxyContact follow(const ContactModel* model, const Eigen::Vector3d& hand, const Friction& friction,
                       double longest_step) CELL_RT;
 
-  // Where the instrument's tip really came to stand (limits of joints).
+  // The position that the instrument's tip has reached (limits of joints).
   void settle_at(const Eigen::Vector3d& x) CELL_RT { x_ = x; }
 
   [[nodiscard]] const Eigen::Vector3d& x() const CELL_RT { return x_; }
@@ -56,7 +55,7 @@ class Proxy {
   Eigen::Vector3d x_ = Eigen::Vector3d::Zero();
   bool sticking_ = false;
   bool approaching_ = true;
-  int settled_ = 0;              // models in a row that left it where it stood
+  int settled_ = 0;              // successive models that did not move it
   std::uint64_t looked_at_ = 0;  // sequence of the last of them
   double forgiven_depth_ = 0;    // m
 };

@@ -15,7 +15,7 @@ enum class Drive : std::uint8_t {
 
 struct HapticSettings {
   Drive drive = Drive::pose;
-  Pose X_WD = Pose::Identity();  // the device's base in the world: how its axes lie; its origin is where the tip stands
+  Pose X_WD = Pose::Identity();  // the device's base in the world: its axes; the origin is the tip position
                                  // when the handle is at the device's zero (drive pose)
   double workspace_scale = 1.0;  // metres of the cell a metre of the device (drive pose)
   double force_scale = 1.0;      // newton at the device a newton of the cell

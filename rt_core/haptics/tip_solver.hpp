@@ -1,5 +1,5 @@
-// The posture of an instrument whose tip is to stand in a place: the place first, the orientation in what freedom that
-// leaves. An instrument of four joints through a trocar has its roll left.
+// The posture of an instrument for a tip position: position first, orientation with the remaining freedom. An
+// instrument of four joints through a trocar has its roll left.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,7 +29,7 @@ struct TipFreedom {
 struct TipPosture {
   Pose X_BE = Pose::Identity();
   kinematics::Jacobian J;  // geometric, in the base
-  double error = 0;        // m, from the place that was asked for
+  double error = 0;        // m, from the requested position
   bool met = false;        // within a micrometre
 };
 

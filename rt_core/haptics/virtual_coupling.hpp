@@ -20,7 +20,7 @@ class VirtualCoupling {
   // damper never pulls the hand into a surface. `period` in s.
   Eigen::Vector3d force(const Eigen::Vector3d& elongation, const Eigen::Vector3d& normal,
                         const CouplingSettings& settings, double period) CELL_RT;
-  // Goes on fading in, by one period.
+  // Continues fading in, by one period.
   void fade(double engage_time, double period) CELL_RT;
   [[nodiscard]] double faded_in() const CELL_RT { return share_; }  // 0 to 1
 

@@ -32,7 +32,7 @@ constexpr double kNearness = 0.02;                         // of a squared joint
 constexpr std::size_t kAttempts = 6;            // starts for an orientation that is only attempted, or an even bend
 constexpr std::size_t kMostStarts = 300;        // all over the ranges, until a target counts as out of reach
 constexpr std::size_t kStartsOutOfReach = 12;   // when it certainly is: for the nearest reachable pose
-constexpr std::size_t kStartsWithoutNews = 80;  // when several solutions are asked for
+constexpr std::size_t kStartsWithoutNews = 80;  // if several solutions are requested
 
 bool whole_pose(const Task& task) { return task.position_axes == 0b111 && task.orientation == OrientationTask::full; }
 
@@ -66,7 +66,7 @@ class AutomaticSolver final : public Solver {
   }
 
  private:
-  // One solution is asked for and the nearest of all is there, or all that there are.
+  // One solution is requested and the nearest of all is found, or all exist.
   [[nodiscard]] bool enough(const Search& search, const Request& request) const {
     return search.found() > 0 && (request.max_solutions == 1 || closed_form_->exact());
   }

@@ -22,7 +22,7 @@ constexpr double kExact = 1e-9;       // of reach: what rounding in a file's num
 constexpr double kNearlySo = 0.02;    // of reach: more than any calibration finds, less than any offset by design
 constexpr std::size_t kSamples = 16;  // postures that a candidate has to find again
 
-// Every variable turns one joint by itself, in order.
+// Every variable moves one joint, in order.
 bool suits(const kinematics::Chain& chain, std::size_t joints) {
   if (chain.variable_count() != joints || chain.joints().size() != joints) return false;
   for (std::size_t i = 0; i < joints; ++i) {
@@ -43,8 +43,8 @@ std::vector<Line> lines_at_zero(const kinematics::Chain& chain) {
   return lines;
 }
 
-// The lengths between neighbouring axes and to the tip: an upper bound of reach that does not count where frames lie
-// along their axes.
+// The lengths between neighbouring axes and to the tip: an upper bound of reach that is independent of the frames'
+// positions along their axes.
 double reach_of(std::span<const Line> lines, const Vector& tip) {
   double reach = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -146,9 +146,9 @@ std::optional<ClosedForm> ClosedForm::analyse_arm(const kinematics::Chain& chain
   return std::nullopt;
 }
 
-// Guards against arrangements that are degenerate in a way that recognise() does not know: a posture has to be among
-// those found for its own pose, without help from a near posture, which arms that leave a joint free everywhere (fewer
-// than six independent axes) would need. One sample may fall to a singularity.
+// Guards against degenerate arrangements that recognise() misses: a posture has to be among those found for its own
+// pose, without help from a near posture, which arms that leave a joint free everywhere (fewer than six independent
+// axes) would need. One sample may fall to a singularity.
 bool ClosedForm::finds_samples(const kinematics::Chain& chain) const {
   const double tolerance = exact_ ? 1e-5 : 0.3;
   std::size_t found = 0;

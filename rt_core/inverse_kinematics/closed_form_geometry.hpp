@@ -1,4 +1,4 @@
-// How lines in space stand to each other: what the known arrangements of axes are recognised by.
+// Relations of lines in space, which identify the known arrangements of axes.
 #pragma once
 
 #include <array>

@@ -8,8 +8,8 @@ namespace cellmirror::inverse_kinematics {
 
 namespace {
 
-// The first solution that is met counts, from the present posture or else from postures all over the ranges: what a
-// user of the step alone would get with restarts, for comparison and for those who want few moving parts.
+// The first solution that is met counts, from the present posture or else from postures all over the ranges: the step
+// with restarts, for comparison and for simple uses.
 class FastSolver final : public Solver {
  public:
   explicit FastSolver(const kinematics::Chain& chain) : chain_(chain), spread_(chain_) {}

@@ -1,4 +1,4 @@
-// Inverse kinematics for everybody but the tick: three methods behind one interface.
+// Inverse kinematics outside the tick: three methods behind one interface.
 #pragma once
 
 #include <chrono>
@@ -60,7 +60,7 @@ class Solver {
   [[nodiscard]] virtual Result<Answer> solve(const Request& request) = 0;
 };
 
-// `automatic` builds its table of seeds here (some 20 ms); share a solver rather than make it anew.
+// `automatic` builds its table of seeds here (some 20 ms); share a solver instead of creating it again.
 [[nodiscard]] std::unique_ptr<Solver> make_solver(Method method, const kinematics::Chain& chain);
 
 }  // namespace cellmirror::inverse_kinematics

@@ -1,5 +1,5 @@
 // The nonlinear programs of inverse kinematics: objective, equations and their derivatives at a posture, and the best
-// posture that was seen. No Ipopt in here; internal to the folder.
+// posture so far. Without Ipopt; internal to the folder.
 #pragma once
 
 #include <chrono>
@@ -28,7 +28,7 @@ enum class HessianChoice : std::uint8_t {
   by_distance,   // Gauss-Newton far from the target, where the exact one is often indefinite, exact near it
 };
 
-// What one run is asked.
+// Input of one run.
 struct Problem {
   Pose X_BG = Pose::Identity();
   kinematics::Task task;
@@ -41,7 +41,7 @@ struct Problem {
 };
 
 struct Run {
-  JointValues q{};    // within the limits; the best that was seen
+  JointValues q{};    // within the limits; the best so far
   double cost = 0.0;  // the objective at q
   bool met = false;   // q meets the required components, by task_error()
   bool timed_out = false;
@@ -89,7 +89,7 @@ class Formulation {
   JointValues joint_weight_{};  // of the secondary objective: 1 / rad2 or 1 / m2
   const Problem* problem_ = nullptr;
   Run run_;
-  JointValues latest_{};  // of the last gradient: where the run stands
+  JointValues latest_{};  // of the last gradient: position of the run
   int slow_iterations_ = 0;
   double last_value_ = 0.0;
 };

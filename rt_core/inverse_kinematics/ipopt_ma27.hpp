@@ -12,7 +12,7 @@ extern "C" {
 // Defaults of the control parameters.
 void cellmirror_ma27id(int* icntl, double* cntl);
 
-// "Analysis": tells how long the work arrays have to be for a matrix of order n with nz entries.
+// "Analysis": gives the lengths of the work arrays for a matrix of order n with nz entries.
 void cellmirror_ma27ad(int* n, int* nz, const int* irn, const int* icn, int* iw, int* liw, int* ikeep, int* iw1,
                        int* nsteps, int* iflag, int* icntl, double* cntl, int* info, double* ops);
 

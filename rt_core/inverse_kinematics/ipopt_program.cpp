@@ -125,7 +125,7 @@ class Nlp final : public Ipopt::TNLP {
   Formulation& formulation_;
 };
 
-// For the whole process: Ipopt would look for a shared library with MA27 at the first use, unless it has been told.
+// For the whole process: Ipopt would search a shared library with MA27 at the first use, unless it is disabled.
 void use_dense_factorisation() {
   static std::once_flag once;
   std::call_once(once, [] { LSL_setMA27(cellmirror_ma27ad, cellmirror_ma27bd, cellmirror_ma27cd, cellmirror_ma27id); });
@@ -181,7 +181,7 @@ void IpoptProgram::State::build() {
   options.SetStringValue("sb", "yes");
   const bool dense = settings.linear_solver == IpoptSettings::LinearSolver::dense;
   options.SetStringValue("linear_solver", dense ? "ma27" : "mumps");
-  options.SetStringValue("linear_system_scaling", "none");  // the dense factorisation equilibrates by itself
+  options.SetStringValue("linear_system_scaling", "none");  // the dense factorisation equilibrates internally
   options.SetStringValue("nlp_scaling_method", "none");
   options.SetStringValue("fast_step_computation", "yes");  // such small systems need no check of their solution
   options.SetNumericValue("bound_relax_factor", 0.0);      // limits are limits
@@ -196,7 +196,7 @@ void IpoptProgram::State::build() {
 void IpoptProgram::State::optimise(double tolerance) {
   constexpr double kLocalMinimum = 1e-10;
   constexpr double kSecondary = 1e-5;  // of the secondary objective's gradient (rad)
-  // Ipopt's tolerance covers equations as well; theirs has to be below what the task asks.
+  // Ipopt's tolerance covers equations as well; theirs must be below the task's.
   const double tol = objective == Objective::squared_error ? kLocalMinimum : std::min(kSecondary, 0.5 * tolerance);
   application->Options()->SetNumericValue("tol", tol);
   if (used) {
@@ -224,7 +224,7 @@ Run IpoptProgram::run(const Problem& problem) {
     const bool fits = s.thread == std::this_thread::get_id() && s.equations == s.formulation.equation_count();
     if (!Ipopt::IsValid(s.application) || !fits) s.build();
     s.optimise(problem.tolerance);
-  } catch (...) {  // what Ipopt does not catch itself: build anew the next time
+  } catch (...) {  // not caught by Ipopt: rebuild the next time
     s.application = nullptr;
   }
   return s.formulation.run();

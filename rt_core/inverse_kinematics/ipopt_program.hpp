@@ -10,7 +10,7 @@ namespace cellmirror::inverse_kinematics {
 
 // One program, used again and again: the application, its options and the linear solver's memory stay. One thread at a
 // time. Ipopt 3.11 numbers the states of its objects by thread, to know what it has computed already: a call from
-// another thread than the last, and one with another number of equations, build the application anew.
+// another thread than the last, and one with another number of equations, rebuild the application.
 class IpoptProgram {
  public:
   IpoptProgram(const kinematics::Chain& chain, Objective objective, const IpoptSettings& settings);

@@ -19,8 +19,8 @@ class TaskEquations {
   TaskEquations() = default;
   TaskEquations(const kinematics::Task& task, const Pose& X_BG);
 
-  // Leaves out the equations that follow from the others, or that nothing can change, where the model stands: a planar
-  // arm cannot miss the height of its plane.
+  // Omits the equations that depend on others, or that nothing can change, at the model's posture: a planar arm cannot
+  // miss the height of its plane.
   void keep_independent(const PoseModel& model);
 
   [[nodiscard]] int count() const { return count_; }

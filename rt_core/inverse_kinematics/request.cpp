@@ -16,7 +16,7 @@ Result<Request> checked(const Request& request, const kinematics::Chain& chain) 
     return fail(fmt::format("the target is farther away than {} km", kFarthest / 1000), "give the target in metres");
   }
   if (!X.linear().isUnitary(kRotationSlack) || X.linear().determinant() < 0) {
-    return fail("the target's orientation is no rotation",
+    return fail("the target's orientation is not a rotation",
                 "give a unit quaternion or three perpendicular unit vectors");
   }
   if (!(std::isfinite(request.tolerance) && request.tolerance > 0)) {

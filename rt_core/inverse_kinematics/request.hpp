@@ -1,4 +1,4 @@
-// What every method asks of a request before it begins. Internal to the folder.
+// Validation of a request before any method begins. Internal to the folder.
 #pragma once
 
 #include "rt_core/inverse_kinematics/inverse_kinematics.hpp"

@@ -37,8 +37,8 @@ Search::Search(const kinematics::Chain& chain, const Request& request)
 }
 
 bool Search::out_of_time() {
-  // A machine that does something else for the whole time limit is no reason to give up after one start. So much work
-  // (some 0.5 ms) is always done, unless so little time was given that it would matter.
+  // A busy machine must not end the search after one start. This much work (some 0.5 ms) is always done, unless the
+  // time limit is very short.
   constexpr std::size_t kLeastStarts = 64;
   constexpr std::chrono::milliseconds kShortLimit(2);
   if (starts_ < kLeastStarts && request_.time_limit >= kShortLimit) return false;

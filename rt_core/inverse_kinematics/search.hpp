@@ -21,8 +21,8 @@ class Search {
   // Steps from `start`. Whether that led to a solution.
   bool descend(const JointValues& start, int max_iterations, FoundBy by);
 
-  // Keeps a posture that somebody found, after checking it by the plain forward kinematics and the limits. Of those
-  // that count as one, the better one stays.
+  // Keeps a candidate posture after checking it by the plain forward kinematics and the limits. Of equal ones, the
+  // better one is kept.
   bool keep(const JointValues& q, FoundBy by);
 
   // Remembers the posture for the case that none is found.
@@ -36,7 +36,7 @@ class Search {
   [[nodiscard]] double nearest_distance() const;
   // How far the best orientation is off that is only attempted (rad); 0 for what is required.
   [[nodiscard]] double best_attempt() const;
-  // Looks at the clock, after the first starts; once it is true it stays true.
+  // Checks the clock after the first starts; once true it stays true.
   [[nodiscard]] bool out_of_time();
 
   // Where the secondary objective would like the joints to be: the present posture, or the straight boom.

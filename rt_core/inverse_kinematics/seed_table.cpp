@@ -15,7 +15,7 @@ namespace cellmirror::inverse_kinematics {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr std::size_t kLeavesPerSeed = 1;  // visited in one look-up; more find hardly better seeds
+constexpr std::size_t kLeavesPerSeed = 1;  // visited in one look-up; more hardly improve the seeds
 
 // `value` moved by whole turns into the limits, nearest to `present`; the nearest limit where none lies within.
 double turned_into(double lower, double upper, double value, double present) {

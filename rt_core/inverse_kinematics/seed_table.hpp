@@ -54,7 +54,7 @@ class SeedTable {
     float split = 0;
     std::uint8_t dimension = 0;
   };
-  struct Placed {  // a pose as the table sees it
+  struct Placed {  // a pose in the table's coordinates
     Feature feature{};
     double azimuth = 0;
     double slide = 0;                                 // along the first axis

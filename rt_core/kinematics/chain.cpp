@@ -25,8 +25,8 @@ Result<void> check_limits(const Variable& variable) {
     return fail(fmt::format("joint {} has no finite limits", variable.name), "give it limits, or make it continuous");
   }
   if (variable.lower > variable.upper) {
-    return fail(fmt::format("joint {} has its limits the wrong way round: lower {} is above upper {}", variable.name,
-                            variable.lower, variable.upper),
+    return fail(fmt::format("joint {} has swapped limits: lower {} is above upper {}", variable.name, variable.lower,
+                            variable.upper),
                 "exchange them");
   }
   return {};
@@ -47,7 +47,7 @@ Result<Chain> Chain::make(std::vector<Variable> variables, std::span<const Chain
     const ChainJoint& joint = joints[i];
     if (joint.variable >= variables.size()) return fail(fmt::format("joint {} of the chain has no variable", i + 1));
     if (!is_pose(joint.X_PJ) || !std::isfinite(joint.multiplier) || !std::isfinite(joint.offset)) {
-      return fail(fmt::format("joint {} ({}) of the chain has a pose or factor that is not a finite one", i + 1,
+      return fail(fmt::format("joint {} ({}) of the chain has a pose or factor that is not finite", i + 1,
                               variables[joint.variable].name));
     }
     used[joint.variable] = true;
@@ -63,7 +63,7 @@ Result<Chain> Chain::make(std::vector<Variable> variables, std::span<const Chain
     chain.upper_[i] = free ? std::numeric_limits<double>::infinity() : variable.upper;
     chain.rotates_[i] = variable.kind != JointKind::prismatic;
   }
-  if (!is_pose(X_LT)) return fail("the tip's pose is not finite or no rotation");
+  if (!is_pose(X_LT)) return fail("the tip's pose is not finite or not a rotation");
   chain.variables_ = std::move(variables);
   chain.set_tip(X_LT);
   return chain;

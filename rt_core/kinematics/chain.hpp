@@ -58,7 +58,7 @@ class Chain {
   [[nodiscard]] std::span<const double> lower() const CELL_RT { return {lower_.data(), variable_count_}; }
   [[nodiscard]] std::span<const double> upper() const CELL_RT { return {upper_.data(), variable_count_}; }
   [[nodiscard]] bool rotates(std::size_t variable) const CELL_RT { return rotates_[variable]; }
-  // Every variable moves exactly one joint, as itself (no mimics): what the specialised routines ask for.
+  // Every variable moves exactly one joint, as itself (no mimics): required by the specialised routines.
   [[nodiscard]] bool plain() const CELL_RT { return plain_; }
 
   // Middle of the range, zero for continuous joints.

@@ -23,9 +23,9 @@ struct FastResult {
 };
 
 // Damped least squares (Levenberg-Marquardt) inside the box of the joint limits, from q to a posture that meets the
-// task; q is left at the best posture that was seen, always within the limits. Deterministic; no heap. A task that is
-// only attempted in its orientation is met when its required components are.
-// Nocedal, Wright, Numerical Optimization, 10.3; active set as in Bertsekas' projected Newton method.
+// task; q is left at the best posture found, always within the limits. Deterministic; no heap. A task that is only
+// attempted in its orientation is met when its required components are. Nocedal, Wright, Numerical Optimization, 10.3;
+// active set as in Bertsekas' projected Newton method.
 FastResult fast_solve(const Chain& chain, const Task& task, const Pose& X_BG, std::span<double> q,
                       const FastOptions& options) CELL_RT;
 

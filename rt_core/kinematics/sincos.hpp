@@ -71,8 +71,8 @@ CELLMIRROR_LANES bool sincos_of_lanes(const double* angles, double* sines, doubl
 // How long arrays for sincos_of() have to be.
 [[maybe_unused]] constexpr std::size_t sincos_capacity(std::size_t count) { return (count + 3) / 4 * 4; }
 
-// Of any angles (NaN of what is not finite). The arrays are as long as sincos_capacity() says; what stands in `angle`
-// beyond `count` has to be finite.
+// Of any angles (NaN of what is not finite). The arrays are as long as sincos_capacity() says; elements of `angle`
+// beyond `count` must be finite.
 CELLMIRROR_LANES void sincos_of(const double* angle, std::size_t count, double* sine, double* cosine) noexcept {
   bool all_reducible = true;
   for (std::size_t i = 0; i < count; i += 4) {

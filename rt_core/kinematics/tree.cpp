@@ -22,7 +22,7 @@ Result<void> check_joint(const TreeLink& link, std::size_t variables) {
     return fail(fmt::format("joint {}: its axis has the length {:g} instead of 1", link.name, joint.axis.norm()));
   }
   if (!std::isfinite(joint.multiplier) || !std::isfinite(joint.offset)) {
-    return fail(fmt::format("joint {}: its factor or offset is no finite number", link.name));
+    return fail(fmt::format("joint {}: its factor or offset is not a finite number", link.name));
   }
   return {};
 }
@@ -30,9 +30,9 @@ Result<void> check_joint(const TreeLink& link, std::size_t variables) {
 Result<void> check_link(const std::vector<TreeLink>& links, std::size_t i, std::size_t variables) {
   const TreeLink& link = links[i];
   if (link.parent < Tree::kRoot || link.parent >= static_cast<std::int32_t>(i)) {
-    return fail(fmt::format("link {} does not stand after its parent", link.name));
+    return fail(fmt::format("link {} must come after its parent", link.name));
   }
-  if (!is_pose(link.X_PL)) return fail(fmt::format("the pose of {} is not finite or no rotation", link.name));
+  if (!is_pose(link.X_PL)) return fail(fmt::format("the pose of {} is not finite or not a rotation", link.name));
   return link.joint ? check_joint(link, variables) : Result<void>{};
 }
 
@@ -121,7 +121,7 @@ Result<Tree> Tree::make(std::vector<Variable> variables, std::vector<TreeLink> l
 Result<TreeChain> Tree::chain(std::int32_t base, std::int32_t tip, VariableOrder order) const {
   const auto count = static_cast<std::int32_t>(links_.size());
   CELLMIRROR_EXPECTS(base >= kRoot && base < count && tip >= kRoot && tip < count);
-  // Parents stand before their children: the one with the larger index is never above the other.
+  // Parents come before their children: the one with the larger index is never above the other.
   ChainPath path(*this);
   std::vector<std::int32_t> down;
   for (std::int32_t up = tip; base != up;) {

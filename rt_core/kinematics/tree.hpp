@@ -52,17 +52,16 @@ class Tree {
  public:
   static constexpr std::int32_t kRoot = -1;
 
-  // Refused, with the name of the link or joint: more than the capacities, a parent that does not stand before its
-  // child, a joint without its variable, an axis that is no unit vector (of length zero first of all), poses or numbers
-  // that are not finite or no rotations, limits the wrong way round.
+  // Refused, with the name of the link or joint: more than the capacities, a parent after its child, a joint without
+  // its variable, an axis that is not a unit vector, poses or numbers that are not finite or not rotations, swapped
+  // limits.
   static Result<Tree> make(std::vector<Variable> variables, std::vector<TreeLink> links);
 
   [[nodiscard]] std::span<const TreeLink> links() const CELL_RT { return links_; }
   [[nodiscard]] std::span<const Variable> variables() const CELL_RT { return variables_; }
 
-  // The joints between two links (indices, or kRoot). The base need not stand above the tip: then joints are walked
-  // against their sense, from child to parent. Refused: nothing that moves between the two, and what Chain::make
-  // refuses.
+  // The joints between two links (indices, or kRoot). The base need not be above the tip: joints are then traversed in
+  // reverse, from child to parent. Refused: no moving joint between the two, and what Chain::make refuses.
   [[nodiscard]] Result<TreeChain> chain(std::int32_t base, std::int32_t tip, VariableOrder order) const;
 
  private:

@@ -99,7 +99,7 @@ bool MoveExecutor::add(const Move& move) CELL_RT {
                      (move.start == Start::supersede || state_.waiting < kMoveQueue);
   if (taken && move.start == Start::supersede) supersede(move);
   if (taken && move.start == Start::queue) push(move);
-  state_.moving = true;  // until the next step has looked
+  state_.moving = true;  // until the next step has checked
   return taken;
 }
 
@@ -171,7 +171,7 @@ double MoveExecutor::lag_of(const Move& move) const CELL_RT {
 void MoveExecutor::start_front(const JointRange& range, std::span<const double> q) CELL_RT {
   const Move& move = front().move;
   state_.running = move.id;
-  // What ended before it and was not told yet: moves that the queue refused.
+  // Ended earlier and not reported yet: moves refused by the queue.
   end_through(move.id - 1, Outcome::blocked);
   bool started = true;
   switch (move.kind) {
@@ -297,7 +297,7 @@ void MoveExecutor::arrive() CELL_RT {
   lag_ = over;
 }
 
-// The pace that is asked for, as far as the accelerations allow. What brakes to rest goes by its own time.
+// The requested pace, as far as the accelerations allow. Braking to rest uses its own time.
 void MoveExecutor::go_on_with_pace(double dt) CELL_RT {
   if (braking_ || brake_ || !(dt > 0)) return;
   PaceChange change;
@@ -339,7 +339,7 @@ bool MoveExecutor::step(double dt, Timestamp now, const JointRange& range, std::
     qd_.fill(0);  // held
   }
   std::ranges::copy(std::span(qd_).first(joints_), qd.begin());
-  // Until every id has ended: the next step tells of those that the queue refused.
+  // Until every id has ended: the next step reports those refused by the queue.
   state_.moving = activity_ != Activity::standing || state_.waiting > 0 || state_.finished < newest_;
   return true;
 }

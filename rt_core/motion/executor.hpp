@@ -22,7 +22,7 @@ enum class Outcome : std::uint8_t {
   arrived,
   stopped,     // by command
   superseded,  // by a newer move
-  blocked,     // the next step could not be met, or the move was refused by the tick: the robot stands where it was
+  blocked,     // the next step was impossible, or the tick refused the move: the robot stays where it was
 };
 
 struct MotionState {
@@ -35,7 +35,7 @@ struct MotionState {
   // When they ended, exactly: moves end between ticks. What the move began late and could not make up for is deducted,
   // so that the times of a program's moves add up.
   Timestamp finished_time;
-  double pace = 1;  // how fast time goes on its path, by set_pace(): 0 is held and at rest
+  double pace = 1;  // rate of time on its path, by set_pace(): 0 is held and at rest
 };
 
 // All its memory is inside (some 30 kB): put it on the heap as part of its owner.
@@ -43,30 +43,29 @@ class MoveExecutor {
  public:
   // Another robot: everything is forgotten, the ids too.
   void reset(std::size_t joints) CELL_RT;
-  // For the linear moves that are added from now on; null: linear moves are refused. Not owned: it has to live until
-  // another one was set and every move that was added before has ended by its id (MotionState::finished), seen after a
-  // step.
+  // For the linear moves that are added from now on; null: linear moves are refused. Not owned: must outlive the
+  // setting of another one, and every move that was added before has ended by its id (MotionState::finished), seen
+  // after a step.
   void set_chain(const kinematics::Chain* chain) CELL_RT { chain_ = chain; }
 
   // False where the queue is full or the move is not sound; its id ends as blocked, when everything before it has
   // ended.
   bool add(const Move& move) CELL_RT;
-  // How fast time goes on the path, 0..1: 0 brakes on the path and stays there, as long as no other pace comes; what
-  // waits does not begin, and a delay does not go on. The pace changes as fast as the accelerations of the move allow.
-  // A move that takes the place of others, stop() and abort() end it: the pace is 1 again. Values beyond are brought to
-  // the nearest one.
+  // Rate of time on the path, 0..1: 0 brakes on the path and stays there until another pace is set; queued moves do not
+  // begin, and delays pause. The pace changes as fast as the accelerations of the move allow. A superseding move,
+  // stop() and abort() reset it to 1. Values beyond are clamped.
   void set_pace(double pace) CELL_RT;
-  // Moves with ids beyond this one wait, as long as no other one is named: the robot stands at the end of it, also
-  // where it has a fly point. 0: none waits. Ends like a pace.
+  // Moves with ids beyond this one wait until another one is set: the robot stops at its end, even at a fly point. 0:
+  // none waits. Reset like a pace.
   void hold_behind(std::uint32_t id) CELL_RT { gate_ = id; }
-  // Brakes on the own path; everything that runs or waits ends as stopped when the robot stands.
+  // Brakes on the own path; all running and queued moves end as stopped when the robot is at rest.
   void stop() CELL_RT { halt(Outcome::stopped); }
   // At once, without braking; everything that runs or waits ends.
   void abort(Outcome outcome) CELL_RT;
 
   // `dt` seconds (not negative) on, to the instant `now`: from the posture `q` [rad or m] to the next, whose velocities
-  // are put into `qd`. `q` is what the step before left, or where the robot was put meanwhile. False, and q and qd
-  // untouched, where the robot stands.
+  // are put into `qd`. `q` is the result of the previous step, or the robot's new position. False, and q and qd
+  // unchanged, if the robot is at rest.
   bool step(double dt, Timestamp now, const JointRange& range, std::span<double> q, std::span<double> qd) CELL_RT;
 
   [[nodiscard]] const MotionState& state() const CELL_RT { return state_; }
@@ -111,9 +110,9 @@ class MoveExecutor {
   MotionState state_;
   Activity activity_ = Activity::standing;
   bool blend_ = false;              // the front of the queue starts out of the motion
-  bool brake_ = false;              // braking is asked for
+  bool brake_ = false;              // braking is requested
   bool braking_ = false;            // and under way
-  std::uint32_t halt_through_ = 0;  // ids that end as halt_outcome_ when the robot stands; 0: none
+  std::uint32_t halt_through_ = 0;  // ids that end as halt_outcome_ when the robot is at rest; 0: none
   Outcome halt_outcome_ = Outcome::stopped;
   std::uint32_t newest_ = 0;  // the newest id that was ever given
   PtpMotion ptp_;

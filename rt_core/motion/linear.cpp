@@ -11,8 +11,8 @@ namespace cellmirror::motion {
 
 namespace {
 
-constexpr double kEndTolerance = 1e-11;  // of the last step: asked for
-constexpr int kIterations = 6;           // of one search; a path that goes on smoothly takes 2
+constexpr double kEndTolerance = 1e-11;  // of the last step: requested
+constexpr int kIterations = 6;           // of one search; a smooth path takes 2
 constexpr int kTries = 5;                // searches in a tick at most
 constexpr int kTriesWithoutPosture = 2;
 constexpr double kShorterTry = 0.25;
@@ -91,7 +91,7 @@ double LinearMotion::stopping_time(const kinematics::Twist& twist) const CELL_RT
 }
 
 void LinearMotion::brake(double pace) CELL_RT {
-  // As fast as it really is; from here on time goes on at full pace.
+  // At its real velocity; from here time advances at full pace.
   pace *= std::exchange(pace_, 1.0);
   if (path_.count() == 1) {
     path_.brake(pace);

@@ -12,8 +12,8 @@
 
 namespace cellmirror::motion {
 
-// How well the joints meet the path, of each component [m, rad]: asked for, and still taken where rounding or a
-// singularity is in the way.
+// Accuracy of the joints on the path, per component [m, rad]: requested, and still accepted near rounding limits or
+// singularities.
 inline constexpr double kPathTolerance = 1e-8;
 inline constexpr double kPathTaken = 1e-6;
 
@@ -41,8 +41,8 @@ class LinearMotion {
   // Whether a move of this chain and task can be superposed.
   [[nodiscard]] bool fits(const Move& move, const kinematics::Chain* chain) const CELL_RT;
 
-  // `dt` seconds on from the posture `q`, of which the path sees the share `pace` (positive). It takes longer still
-  // where a joint, or the TCP under two superposed moves, would be too fast.
+  // `dt` seconds on from the posture `q`, of which the path advances by the fraction `pace` (positive). It slows down
+  // further if a joint, or the TCP under two superposed moves, would be too fast.
   Progress advance(double dt, double pace, std::span<double> q, std::span<double> qd) CELL_RT;
   // How long before the end of the last advance() it arrived, s.
   [[nodiscard]] double overrun() const CELL_RT { return overrun_; }
@@ -67,7 +67,7 @@ class LinearMotion {
   JointValues max_velocity_{};  // of the moves under way, the higher one of each joint
   double linear_velocity_ = 0;
   double rotational_velocity_ = 0;
-  double pace_ = 1;  // beside the one that is asked for: 1, or less where the path is slowed down
+  double pace_ = 1;  // besides the requested one: 1, or less if the path is slowed down
   double overrun_ = 0;
   bool older_ended_ = false;
 };

@@ -62,8 +62,8 @@ struct Move {
 
   double delay_s = 0;  // delay
 
-  // When it should have begun, where that is over already and the robot stands: it makes up for the time lost since
-  // (kMostCatchUp). Never: it begins when its turn comes.
+  // When it should have begun, if that has passed and the robot is at rest: it makes up for the lost time
+  // (kMostCatchUp). Never: it begins in its turn.
   Timestamp begin;
   // Where `begin` is never and it finds the robot standing, no longer than kMostCatchUp after the move before arrived:
   // as if it had been there then. For moves that are given one after the other.

@@ -1,4 +1,4 @@
-// How fast time goes on a path: 1, or less while a robot is held. Real-time class: any.
+// Rate of time on a path: 1, or less while a robot is held. Real-time class: any.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A way of the TCP, straight or an arc, and the pose that several of them together ask for. Belongs to the tick thread.
+// A path of the TCP, straight or an arc, and the pose of several superposed ones. Belongs to the tick thread.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,7 +66,7 @@ class SuperposedPath {
   [[nodiscard]] const Way& newest() const CELL_RT { return ways_[count_ - 1]; }
   // Where it all ends.
   [[nodiscard]] Pose end() const CELL_RT;
-  // What is asked for `later` seconds from now, and how fast.
+  // The target `later` seconds from now, and its velocity.
   [[nodiscard]] Pose pose(double later) const CELL_RT;
   [[nodiscard]] kinematics::Twist twist(double later) const CELL_RT;
   [[nodiscard]] bool ended(double later) const CELL_RT;
@@ -74,7 +74,7 @@ class SuperposedPath {
   [[nodiscard]] double overrun() const CELL_RT;
   // How the pace of its time may change while it has the value `pace`: no way is accelerated more than it may be.
   [[nodiscard]] PaceChange pace_change(double pace) const CELL_RT;
-  // Time goes on. True where the older one of two has ended and was dropped.
+  // Advances time. True if the older one of two has ended and was dropped.
   bool advance(double dt) CELL_RT;
 
  private:

@@ -41,7 +41,7 @@ class Trial {
   Trial(const kinematics::Chain& chain, const Move& move, const Way& way, const Pose& X_BS, const JointValues& from)
       : chain_(chain), move_(move), way_(way), X_BS_(X_BS), q_(from) {}
 
-  // Why it cannot go on; empty where it reached the end.
+  // Why it cannot continue; empty if it reached the end.
   std::string run() {
     const double extent = std::max(way_.length / kStepLength, way_.angle / kStepAngle);
     const int steps =
@@ -73,7 +73,7 @@ class Trial {
       if (std::string why = go_to(0.5 * (share_ + share), halvings - 1); !why.empty()) return why;
       return go_to(share, halvings - 1);
     }
-    return met ? joint_text(chain_, jumping) + " would have to turn at once" : reason(next);
+    return met ? joint_text(chain_, jumping) + " would need infinite velocity" : reason(next);
   }
 
   [[nodiscard]] std::string reason(const JointValues& q) const {
@@ -127,7 +127,7 @@ Move path_move(const kinematics::Chain& chain, const RobotParameters& parameters
 Result<PathPlan> try_out(const kinematics::Chain& chain, const Move& move, const JointValues& from) {
   for (std::size_t i = 0; i < chain.variable_count(); ++i) {
     if (from[i] >= chain.lower()[i] - kAtLimit && from[i] <= chain.upper()[i] + kAtLimit) continue;
-    return fail(fmt::format("{} stands beyond its range (or nowhere); a {} move cannot start from there",
+    return fail(fmt::format("{} is beyond its range (or unknown); a {} move cannot start from there",
                             joint_text(chain, i), move.kind == MoveKind::circular ? "circular" : "linear"),
                 "bring it back with POS_ROB JOINT_ABS");
   }
@@ -138,9 +138,9 @@ Result<PathPlan> try_out(const kinematics::Chain& chain, const Move& move, const
   Trial trial(chain, plan.move, way, X_BS, from);
   if (const std::string why = trial.run(); !why.empty()) {
     return fail(
-        fmt::format("the {} can be followed for {} only: {}", move.kind == MoveKind::circular ? "arc" : "straight line",
+        fmt::format("the {} is possible for {} only: {}", move.kind == MoveKind::circular ? "arc" : "straight line",
                     progress_text(way, trial.share()), why),
-        "a joint (PTP) move to the same target may do");
+        "a joint (PTP) move to the same target may succeed");
   }
   plan.end = trial.posture();
   plan.duration_s = way.share.duration();
@@ -163,13 +163,14 @@ Result<PathPlan> plan_circular_move(const kinematics::Chain& chain, const RobotP
   move.kind = MoveKind::circular;
   move.p_BV = p_BV;
   if (move.task.position_axes != 0b111)
-    return fail("rob_inverse_class leaves a part of the position open, so the TCP can follow no arc",
-                "choose one that names the whole position, such as ALIGN_FRAME");
+    return fail("rob_inverse_class leaves a part of the position open, so the TCP cannot follow an arc",
+                "choose one with the whole position, such as ALIGN_FRAME");
   const Pose X_BS = kinematics::forward(chain, std::span(from).first(chain.variable_count()));
   if (!Arc::through(X_BS.translation(), p_BV, X_BG.translation())) {
     return fail(
-        "there is no arc through the start, the via point and the target: two of them coincide, or all lie on one line",
-        "choose three points apart from each other; a full circle takes two arcs, a straight way a linear move");
+        "there is no arc through the start, the via point and the target: two of them coincide, or all lie on one "
+        "line",
+        "choose three distinct points; a full circle needs two arcs, a straight path a linear move");
   }
   return try_out(chain, move, from);
 }

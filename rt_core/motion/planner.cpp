@@ -55,10 +55,10 @@ Result<Move> plan_joint_move(const kinematics::Chain& chain, const RobotParamete
       return fail(fmt::format("the target of joint {} ({}) is not a finite number", i + 1, variable.name));
     }
     if (target[i] < chain.lower()[i] - kSlack || target[i] > chain.upper()[i] + kSlack) {
-      return fail(fmt::format("joint {} ({}) would stand at {}, beyond its range {} .. {}", i + 1, variable.name,
+      return fail(fmt::format("joint {} ({}) would be at {}, beyond its range {} .. {}", i + 1, variable.name,
                               value_text(variable, target[i]), value_text(variable, chain.lower()[i]),
                               value_text(variable, chain.upper()[i])),
-                  "command it into its range, or widen the range with rob_jnt_min_range and rob_jnt_max_range");
+                  "choose a target within its range, or widen the range with rob_jnt_min_range and rob_jnt_max_range");
     }
     move.target[i] = std::clamp(target[i], chain.lower()[i], chain.upper()[i]);
   }

@@ -1,5 +1,5 @@
-// Makes moves of what was commanded and of the robot's parameters, and looks ahead: what is refused here never reaches
-// the tick. Real-time class: worker threads.
+// Plans moves from commands and the robot's parameters, and checks them in advance: a refused move never reaches the
+// tick. Real-time class: worker threads.
 #pragma once
 
 #include <span>

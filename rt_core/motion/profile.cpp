@@ -8,8 +8,8 @@ namespace cellmirror::motion {
 
 namespace {
 
-// How much harder than asked an axis brakes before it overshoots its target: as hard as a sine brakes at its steepest.
-// A ramp needs it for rounding only.
+// Factor by which an axis may exceed its acceleration to avoid overshoot: the peak of a sine. A ramp needs it for
+// rounding only.
 double hardest_braking(double acceleration, VelocityProfile shape) CELL_RT {
   constexpr double kRounding = 1e-6;
   return acceleration * (shape == VelocityProfile::sine ? std::numbers::pi / 2 : 1.0) * (1 + kRounding);

@@ -37,15 +37,14 @@ struct AxisLimits {
 
 // From a position and a velocity to rest at a target.
 //
-// An axis that stands follows the shape. An axis that moves already takes up its new speed with a linear ramp even in
-// a sine profile: a sine begins with no acceleration at all, and commands that follow each other quickly would never
-// get beyond the beginning. An axis that is too fast brakes first; one that would overshoot or goes the wrong way stops
-// and turns round. Where it would overshoot only because it is in the middle of a sine, which brakes late, it brakes up
-// to pi/2 times as hard instead.
+// An axis at rest follows the shape. A moving axis adopts its new speed with a linear ramp even in a sine profile: a
+// sine begins with zero acceleration, and fast successive commands would never get beyond its beginning. An axis that
+// is too fast brakes first; one that would overshoot or moves the wrong way stops and reverses. Where it would
+// overshoot only because it is in the middle of a sine, which brakes late, it brakes up to pi/2 times as hard instead.
 class Profile {
  public:
   Profile() = default;
-  // `target` lies within the limits.
+  // `target` is within the limits.
   [[nodiscard]] static Profile to_target(double position, double velocity, double target, const AxisLimits& limits,
                                          VelocityProfile shape) CELL_RT;
   // To rest, as soon as the acceleration allows.
@@ -56,8 +55,8 @@ class Profile {
   [[nodiscard]] static double velocity_for(double duration, double position, double velocity, double target,
                                            const AxisLimits& limits, VelocityProfile shape) CELL_RT;
 
-  // The acceleration with which an axis that stands covers `way` within `duration` at this cruising speed at most.
-  // Infinite where the speed alone does not allow it.
+  // The acceleration with which an axis at rest covers `way` within `duration` at this cruising speed at most. Infinite
+  // where the speed alone does not allow it.
   [[nodiscard]] static double acceleration_for(double duration, double way, double velocity) CELL_RT;
 
   [[nodiscard]] double duration() const CELL_RT { return duration_; }  // s

@@ -107,7 +107,7 @@ void PtpMotion::brake(std::span<const double> q, std::span<const double> qd, con
 void PtpMotion::brake_together(const JointValues& acceleration, std::span<const double> q, std::span<const double> qd,
                                const JointRange& range) CELL_RT {
   constexpr double kOtherwise = 0.1;  // s
-  constexpr double kLeast = 1e-6;     // rad/s2, m/s2; of an axis that stands
+  constexpr double kLeast = 1e-6;     // rad/s2, m/s2; of an axis at rest
   double duration = 0;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const double own = acceleration[i] > 0 ? std::abs(qd[i]) / acceleration[i] : kOtherwise;

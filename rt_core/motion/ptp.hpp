@@ -36,7 +36,7 @@ class PtpMotion {
   // of a second.
   void brake_together(const JointValues& acceleration, std::span<const double> q, std::span<const double> qd,
                       const JointRange& range) CELL_RT;
-  // `dt` seconds on. True when it stands at its end.
+  // `dt` seconds on. True when it is at rest at its end.
   bool advance(double dt, std::span<double> q, std::span<double> qd) CELL_RT;
 
   // Whether the robot, which is in the posture `q` after the last advance(), has come to the fly point.

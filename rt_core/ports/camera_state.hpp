@@ -1,4 +1,4 @@
-// What a camera is to show, as it leaves the gateway for whoever steers the real one (CAM_ONLINE, manual 1.2.1). SI.
+// The commanded state of a camera, for the program that steers the real one (CAM_ONLINE, manual 1.2.1). SI.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace cellmirror {
 
-// A camera looks along its z axis; x is to the right of its picture, y down.
+// The optical axis is z; x points right in the image, y down.
 struct CameraState {
   std::string name;    // of its workframe
-  std::string tracks;  // dotted path of the frame that it is to look at; empty: it tracks nothing
-  // Where it is to look. Of a mirrored camera that tracks nothing: where it does look.
+  std::string tracks;  // dotted path of the tracked frame; empty: none
+  // Commanded pose. For a mirrored camera that tracks nothing: the measured one.
   Pose X_WC = Pose::Identity();
-  Pose X_WM = Pose::Identity();  // its mount: as it looks with its pan-tilt head at zero; X_WC where it has no head
+  Pose X_WM = Pose::Identity();  // its mount: its pose with the pan-tilt head at zero; X_WC without a head
   double pan_rad = 0;            // R_MC = Ry(pan) Rx(tilt), as near as that comes to it
   double tilt_rad = 0;
   double focal_distance_m = 0;  // viewing distance; of a tracking camera the distance to what it tracks
@@ -24,8 +24,8 @@ struct CameraState {
   bool mirrored = false;  // its head is mirrored from a real one (ROBOT online)
 };
 
-// Somebody to whom the cameras that are online are given off the tick. One calling thread (the publisher). Never blocks
-// for long; what cannot be delivered is dropped and counted by the implementation.
+// Receives the online cameras outside the tick. One calling thread (the publisher). Never blocks for long; what cannot
+// be delivered is dropped and counted by the implementation.
 class CameraOutput {
  public:
   virtual ~CameraOutput() = default;

@@ -43,17 +43,17 @@ struct CanChannelStatus {
   std::uint64_t received = 0;
   std::uint64_t sent = 0;
   std::uint64_t send_refused = 0;     // ENOBUFS and the like: the frame was not sent
-  std::uint64_t receive_dropped = 0;  // told by the kernel (SO_RXQ_OVFL)
+  std::uint64_t receive_dropped = 0;  // reported by the kernel (SO_RXQ_OVFL)
   std::uint64_t malformed = 0;        // datagrams or log lines that are no frames
   std::uint64_t error_frames = 0;
-  std::uint64_t reopened = 0;  // how often the channel recovered by itself
+  std::uint64_t reopened = 0;  // number of recoveries
   std::string last_error;
 };
 
 enum class CanReceive : std::uint8_t { frame, timeout, down, end };
 
-// One user thread. The channel recovers by itself from ENETDOWN, a vanished interface and the like: meanwhile receive()
-// answers `down` (after waiting out its timeout) and send() refuses.
+// One user thread. The channel recovers from ENETDOWN, a vanished interface and the like: meanwhile receive() answers
+// `down` (after waiting out its timeout) and send() refuses.
 class CanChannel {
  public:
   virtual ~CanChannel() = default;

@@ -15,7 +15,7 @@ inline constexpr std::size_t kDisplays = 6;  // 1 to 6, manual 1.2.3, STDP
 
 struct LayoutView {
   std::string name;  // in titles and at the page
-  // From the cell to the viewer, in the world, of any length above 0: where the view stands at the start.
+  // From the cell to the viewer, in the world, of any length above 0: initial direction of the view.
   Eigen::Vector3d towards_viewer;
   bool orthogonal = false;
 };

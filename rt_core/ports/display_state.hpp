@@ -1,5 +1,5 @@
-// What SCRIPT has set of the picture (manual 1.2.1, 1.2.3, 1.2.4, 1.2.6): plain data that the owner of the cell lets
-// everybody see. SI. Immutable once shared.
+// Display settings of SCRIPT (manual 1.2.1, 1.2.3, 1.2.4, 1.2.6): plain data published by the owner of the cell. SI.
+// Immutable once shared.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ enum class DisplayMode : std::uint8_t {
   tcp_frame,             // TCP_DRAW, of the active robot
   zero_point_frame,      // ZPF_DRAW, of the active robot
   floor,                 // FLDR
-  visibility_test,       // GEO_VIS_TEST: what is out of the picture is not handed to the graphics system
-  shadows,               // SHAD; seen only with the floor
+  visibility_test,       // GEO_VIS_TEST: objects outside the picture are culled
+  shadows,               // SHAD; visible only with the floor
   bell,                  // BEEP with messages
   textures,              // TEXTURES: of the floor and, where a mesh has them, of bodies
   antialiasing,          // ANTIALIAS
@@ -51,8 +51,8 @@ struct CameraSetting {
   bool pyramid = false;   // CAM_VIEW_PYRAMID
   bool online = false;    // CAM_ONLINE
   bool mirrored = false;  // its workframe is moved by a robot that is online: it is shown as that robot holds it
-  std::string tracks;     // dotted path of the frame it looks at (CAM_TRACKING on); empty: none
-  bool tracking = false;  // there is a direction to look; false where the frame lies where the camera is
+  std::string tracks;     // dotted path of the tracked frame (CAM_TRACKING on); empty: none
+  bool tracking = false;  // a direction exists; false if the frame coincides with the camera
 };
 
 // A view on its way (STVW with STEPS or TIME): the parameters go from `from` to `to` at once and evenly.
@@ -76,7 +76,7 @@ struct ShownText {
   std::string text;
   Timestamp time;
   std::uint64_t number = 0;  // counts from 1
-  bool bell = false;         // BEEP was on: it is to be heard where it is seen
+  bool bell = false;         // BEEP was on: play a sound with the message
 };
 
 struct DisplayState {
@@ -86,8 +86,9 @@ struct DisplayState {
   DisplayLayout layout;  // as the cell file has it; nothing changes it
   std::array<DisplayView, kViews> views;
   DisplayModes modes;
-  std::uint64_t smear_ends = 0;  // how often SMEAR was switched off: whoever missed it knows that the traces are over
-  double tag_length_m = 0.25;    // TAG_DRAWLEN; the manual's default
+  std::uint64_t smear_ends =
+      0;                       // number of times SMEAR was switched off, so that no reader misses the end of the traces
+  double tag_length_m = 0.25;  // TAG_DRAWLEN; the manual's default
   std::vector<DrawRule> draw_rules;
   std::vector<CameraSetting> cameras;  // of all cameras of the cell, in its order
   std::string current_camera;          // of CAM_MAINVIEW: the one a command named last; empty: the first

@@ -58,7 +58,7 @@ struct RobotForces {
   std::vector<JointForce> joints;
   Wrench tcp_T;  // of the surroundings on the TCP, in its frame: of a haptic instrument's contact; else zero
   Pose X_WT = Pose::Identity();
-  bool tcp_known = false;  // whether anything tells of it
+  bool tcp_known = false;  // the force is known
 };
 
 // An arrow to be drawn: from `from_m`, along and as long as `vector` says (N or Nm), in the world.
@@ -74,7 +74,7 @@ struct ForceState {
   std::vector<RobotForces> robots;  // those with masses in their models, and haptic instruments
 };
 
-// Somebody to whom forces are given, as RobotStateOutput.
+// Receives forces, like RobotStateOutput.
 class ForceOutput {
  public:
   virtual ~ForceOutput() = default;

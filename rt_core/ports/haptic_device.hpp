@@ -1,4 +1,4 @@
-// A haptic device as the tick sees it: a pose and buttons in, a force out. Whatever carries them implements it.
+// Interface of a haptic device for the tick: a pose and buttons in, a force out.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,10 @@ namespace cellmirror {
 inline constexpr std::size_t kMaxHapticDevices = 4;
 inline constexpr std::size_t kMaxHapticAxes = 7;
 
-// What a device says of itself at one instant, in its own base frame D: x, y, z as the device has them; the cell file
-// says how D stands in the world. SI.
+// A sample of a device at one instant, in its own base frame D; the cell file gives the pose of D in the world. SI.
 struct HapticSample {
   std::uint64_t sequence = 0;  // counted by the device's process, from 1
-  std::uint64_t writes = 0;    // how often anybody has written into what carries the samples; 0: it does not tell
+  std::uint64_t writes = 0;    // number of writes by any process; 0: unknown
   Timestamp time;              // of the measurement, CLOCK_MONOTONIC of this machine
   std::uint32_t writer = 0;    // process id of the device's process
   bool valid = false;          // the device itself says that its values are good

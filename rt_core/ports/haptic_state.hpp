@@ -1,4 +1,4 @@
-// What the tick tells of a haptic device and its instrument. Plain data of fixed size; SI, world frame.
+// State of a haptic device and its instrument, published by the tick. Plain data of fixed size; SI, world frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,7 +29,7 @@ enum class HapticFault : std::uint8_t {
   two_writers,  // two processes write into the same block
   torn,         // the block could not be read whole for longer than stale_after
   late_tick,    // the loop missed more periods than allowed
-  stale_model,  // the surroundings have not been looked at for too long
+  stale_model,  // the contact model is too old
   not_passive,  // energy was generated faster than damping could take it
 };
 
@@ -55,10 +55,10 @@ struct HapticState {
   double axis_torque = 0;                              // Nm, about the tool axis (z of the end-effector frame)
   JointValues joint_torques{};                         // Nm or N, of the instrument's joints
   std::uint8_t contacts = 0;                           // constraints that bear force
-  std::uint64_t appeared = 0;    // bodies that came to be where the tip was, so that it engaged anew
-  double energy = 0;             // J, that the passivity observer has seen come out (negative: generated)
-  double passivity_damping = 0;  // Ns/m, that the passivity controller added in this tick
-  Timestamp model_time;          // posture time of the contact model in use
+  std::uint64_t appeared = 0;                          // bodies that appeared at the tip, so that it engaged again
+  double energy = 0;                                   // J, by the passivity observer (negative: generated)
+  double passivity_damping = 0;                        // Ns/m, that the passivity controller added in this tick
+  Timestamp model_time;                                // posture time of the contact model in use
 };
 
 }  // namespace cellmirror

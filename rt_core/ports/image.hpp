@@ -38,7 +38,7 @@ struct EncodedImage {
   std::uint64_t sequence = 0;  // of its stream, counts from 1
 };
 
-// Somebody to whom pictures are given, by one thread. Waits for nobody.
+// Receives pictures from one thread. Never waits.
 class ImageOutput {
  public:
   virtual ~ImageOutput() = default;

@@ -51,8 +51,8 @@ struct JointStreamStatus {
   std::string kind;      // "can-cia402", "can-dbc", "dds", ...
   std::string endpoint;  // "socketcan:can0", "domain 0 topic rt/joint_states", ...
   bool open = false;
-  std::uint64_t received = 0;  // samples handed to the sink
-  std::uint64_t lost = 0;      // samples known to be missing (gaps in a sequence, overflow told by the kernel)
+  std::uint64_t received = 0;  // samples passed to the sink
+  std::uint64_t lost = 0;      // samples known to be missing (gaps in a sequence, overflow reported by the kernel)
   std::uint64_t rejected = 0;  // messages or values refused
   double rate_hz = 0;          // samples over the last second
   std::string condition;       // one line, e.g. "operational", "bus-off, waiting for the bus", "no publisher"
@@ -61,14 +61,14 @@ struct JointStreamStatus {
   std::vector<std::string> last_errors;  // newest last, bounded
 };
 
-// The stream of one robot. Life: made (closed) -> open() -> close() -> open() ... Destroying closes. It recovers by
-// itself from whatever the bus or the network does; it never needs a restart. All calls from one thread (the cell's
-// owner), status() from any.
+// The stream of one robot. Life: made (closed) -> open() -> close() -> open() ... Destroying closes. It recovers from
+// all faults of the bus or the network without a restart. All calls from one thread (the cell's owner), status() from
+// any.
 class JointStream {
  public:
   virtual ~JointStream() = default;
-  // Starts receiving into `sink`, which outlives the open stream. Fails only for what cannot mend itself (a name that
-  // does not exist, no permission); a silent peer is no failure.
+  // Starts receiving into `sink`, which outlives the open stream. Fails only on permanent errors (a name that does not
+  // exist, no permission); a silent peer is not a failure.
   virtual Result<void> open(JointSampleSink& sink) = 0;
   // Stops; after it returns nothing is pushed any more. A CiA 402 stream leaves its nodes as they are.
   virtual void close() = 0;

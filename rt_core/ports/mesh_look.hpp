@@ -1,6 +1,5 @@
-// What the surface of a mesh looks like beside its shape: pictures laid over it and colours at its corners. Made by
-// who reads the mesh file, drawn by drivers/display; nothing that computes with shapes knows of it. Plain data,
-// immutable once shared.
+// Appearance of a mesh: textures and vertex colours. Created by the reader of the mesh file, drawn by drivers/display;
+// not used in computations with shapes. Plain data, immutable once shared.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +13,7 @@
 namespace cellmirror {
 
 struct MeshMaterial {
-  // Goes on beyond its edges by repeating itself. Where its alpha is below 255 the body's own colour shows through.
-  // Null: `rgb` alone.
+  // Repeats beyond its edges. Where its alpha is below 255 the body's own colour shows through. Null: `rgb` alone.
   std::shared_ptr<const Image> picture;
   std::array<float, 3> rgb{1, 1, 1};  // 0 to 1, sRGB; the picture is multiplied by it
 };
@@ -24,8 +22,8 @@ struct MeshMaterial {
 struct MeshLook {
   using Rgba = std::array<std::uint8_t, 4>;  // sRGB
 
-  // By corner (3 * triangle + corner): where it lies in the picture; (0, 0) is the upper left corner of the picture,
-  // (1, 1) the lower right one.
+  // By corner (3 * triangle + corner): texture coordinates; (0, 0) is the upper left corner of the texture, (1, 1) the
+  // lower right one.
   std::vector<Eigen::Vector2f> places;
   std::vector<Rgba> colours;             // by corner, multiplies; empty: white everywhere
   std::vector<std::uint16_t> materials;  // by triangle: index in `palette`

@@ -1,5 +1,4 @@
-// The colours that mean something in the picture and in its legend: calm, and told apart by colour-blind people by
-// their lightness as well. sRGB.
+// The colours with a meaning in the picture and its legend, distinguishable for colour-blind users by lightness. sRGB.
 #pragma once
 
 #include "rt_core/ports/scene.hpp"

@@ -1,5 +1,5 @@
-// Which rendered image is wanted, and how it is delivered: between the renderer's side and those who show images.
-// Plain data and one interface.
+// Which rendered image is wanted, and how it is delivered: between the renderer and its clients. Plain data and one
+// interface.
 #pragma once
 
 #include <cstdint>

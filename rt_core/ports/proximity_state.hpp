@@ -56,13 +56,13 @@ struct ProximityEvent {
   std::string a;
   std::string b;
   double distance_m = 0;
-  Timestamp posture_time;    // of the posture in which it was seen
+  Timestamp posture_time;    // of its posture
   std::string short_a = {};  // for people and records, as ProximityState::short_name(); empty: as `a`
   std::string short_b = {};
 };
 
-// One computation. Everything in it is for the posture of `posture_time`, but for the contacts of bodies that go on
-// touching: those may be older and carry their own time.
+// One computation. Everything in it is for the posture of `posture_time`, except lasting contacts, which may be older
+// and carry their own time.
 struct ProximityState {
   Timestamp posture_time;  // the tick's instant
   Timestamp finished;      // when the computation ended
@@ -91,9 +91,9 @@ struct RangeReading {
   Timestamp posture_time;                             // the tick's instant
   std::optional<double> distance_m;                   // from the apex; none: nothing in the cone up to the range
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  // on the surface; where there is a distance
-  std::string object;                                 // dotted path of the body; empty where nothing is seen
+  std::string object;                                 // dotted path of the body; empty without an echo
   std::string short_object = {};                      // its short name; empty: as `object`
-  bool in_blind_zone = false;                         // nearer than a real sensor of this kind can tell
+  bool in_blind_zone = false;                         // nearer than a real sensor of this kind can measure
   // A pose was not a finite number, or the shape of something in the cell is not known: something nearer may be there.
   bool doubtful = false;
   double range_m = 0;
@@ -105,8 +105,8 @@ struct RangeReading {
 // SET_USSPAR sendmode (manual 1.2.1).
 enum class RangeSendMode : std::uint8_t { one_message_a_sensor = 0, one_message_for_all = 1 };
 
-// Somebody to whom findings are given off the tick. One calling thread (the publisher). Never blocks for long; what
-// cannot be delivered is dropped and counted by the implementation.
+// Receives results outside the tick. One calling thread (the publisher). Never blocks for long; what cannot be
+// delivered is dropped and counted by the implementation.
 class FindingsOutput {
  public:
   virtual ~FindingsOutput() = default;

@@ -1,4 +1,4 @@
-// The state of robots as it leaves the gateway: over the SENSOR channel, over DDS, to whoever shows it.
+// The published state of robots: on the SENSOR channel, on DDS, to displays.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -47,8 +47,8 @@ struct FramePose {
   Pose X_PC = Pose::Identity();
 };
 
-// Somebody to whom robot states are given at the cell file's rate, off the tick. One calling thread (the publisher).
-// Never blocks for long; what cannot be delivered is dropped and counted by the implementation.
+// Receives robot states at the cell file's rate, outside the tick. One calling thread (the publisher). Never blocks for
+// long; what cannot be delivered is dropped and counted by the implementation.
 class RobotStateOutput {
  public:
   virtual ~RobotStateOutput() = default;

@@ -24,7 +24,7 @@ struct MeshLook;
 
 using Colour = std::array<float, 4>;
 
-// What a body or line is about beside its own colour; the renderer has one calm, colour-blind safe look for each.
+// Highlight of a body or line; the renderer has one colour-blind safe style for each.
 enum class Mark : std::uint8_t {
   none,
   near,  // within the warning distance of another body
@@ -60,7 +60,7 @@ struct SceneLine {
   float width_px = 1.5F;
   bool dashed = false;
   bool on_top = false;       // not hidden by bodies before it
-  std::uint32_t camera = 0;  // as Pane::camera; not 0: left out where this camera looks
+  std::uint32_t camera = 0;  // as Pane::camera; not 0: left out in panes of this camera
 };
 
 // A curve through `points`, oldest first, older parts paler.
@@ -140,7 +140,7 @@ struct Pane {
   double height = 1;
   int view = 0;              // 0 to 6; -1: a free one
   std::string title;         // drawn in its corner; may be empty
-  std::uint32_t camera = 0;  // that it looks through: index of its node in the cell, plus 1; 0: none
+  std::uint32_t camera = 0;  // of the pane's camera: index of its node in the cell, plus 1; 0: none
   Eye eye;
 };
 

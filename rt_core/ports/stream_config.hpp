@@ -135,7 +135,7 @@ using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamC
   return joints;
 }
 
-// Pictures as sensor_msgs/CompressedImage; drawn only while somebody reads them.
+// Pictures as sensor_msgs/CompressedImage; rendered only while there is a reader.
 struct DdsPictureConfig {
   std::string topic = "rt/cellmirror/picture/compressed";  // empty: not published
   double rate_hz = 10;

@@ -1,4 +1,4 @@
-// From where and how the cell is looked at (manual 1.2.3, STVW). Plain data, SI.
+// Viewpoint and projection of a view (manual 1.2.3, STVW). Plain data, SI.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ struct View {
 struct Eye {
   Pose X_WE = Pose::Identity();
   double opening_angle = 0.7;   // rad, vertical; of a perspective projection
-  double height_m = 0;          // of what is seen; more than 0: parallel projection
+  double height_m = 0;          // visible height; above 0: parallel projection
   double near_distance = 0.05;  // 0 and above; a renderer may begin up to 10 mm before the eye
   double far_distance = 100;
 };

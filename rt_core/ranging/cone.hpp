@@ -23,7 +23,7 @@ struct ConeHit {
   Eigen::Vector3d p_S = Eigen::Vector3d::Zero();  // on the surface, in S
 };
 
-// The hit that is nearer than `up_to` (m), if any. Both sides of a surface are seen. X_SG: the solid in S.
+// The hit that is nearer than `up_to` (m), if any. Both sides of a surface count. X_SG: the solid in S.
 [[nodiscard]] std::optional<ConeHit> nearest_in_cone(const geometry::Solid& solid, const Pose& X_SG, const Cone& cone,
                                                      double up_to) noexcept;
 

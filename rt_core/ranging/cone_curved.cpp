@@ -85,7 +85,7 @@ bool comes_back(const ConeShape& cone, const Round& body, const Vector3d& p) {
   return p.norm() <= cone.reach(std::abs(normal.dot(p)), p.norm());
 }
 
-// `inside`: the apex sees the side from within.
+// `inside`: the apex is inside.
 void nearest_on_side(const ConeShape& cone, const Round& body, bool inside, Nearest& best) {
   const double from_axis = body.apex_from_axis();
   const double beyond_end = std::max(0.0, std::abs(body.apex_3) - body.half_length);

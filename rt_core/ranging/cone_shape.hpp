@@ -1,4 +1,4 @@
-// The query behind nearest_in_cone(), for callers that ask about many solids with one cone. Private to this folder.
+// The query behind nearest_in_cone(), for callers with many solids and one cone. Private to this folder.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace cellmirror::ranging {
 // None where the angles are not those of a cone.
 [[nodiscard]] std::optional<ConeShape> cone_shape(const Cone& cone) noexcept;
 
-// Betters `best` where something of the solid is nearer. `triangle`: of a mesh, in the tree's order; in: where to look
-// first (any number), out: which one was the nearest.
+// Improves `best` if a point of the solid is nearer. `triangle`: of a mesh, in the tree's order; in: first candidate
+// (any number), out: the nearest one.
 void nearest_on_solid(const geometry::Solid& solid, const Pose& X_SG, const ConeShape& cone, Nearest& best,
                       std::uint32_t& triangle) noexcept;
 

@@ -65,7 +65,7 @@ class Walk {
     float square;  // of a bound of the distance, m^2
     std::uint32_t child;
   };
-  // At each of 64 levels at most seven wait while the eighth is looked at.
+  // At each of 64 levels at most seven wait while the eighth is examined.
   static constexpr std::size_t kMostWaiting = 512;
 
   // The children of a node that the cone may meet within the limit; the nearest one ends on top.
@@ -94,7 +94,7 @@ class Walk {
     set_limit(best_.distance);
   }
 
-  // At most the square that marks what is beside the cone, so that this is never looked at.
+  // At most the square that marks what is beside the cone, so that it is never examined.
   void set_limit(double limit) {
     limit_ = limit;
     const double with_rounding = (limit + kSingleMargin * single_size_) * (1.0 + kSingleMargin);
@@ -103,8 +103,7 @@ class Walk {
   }
 
   // Most triangles whose boxes the cone meets are: beside the cone, or of a plane whose nearest point in the cone is
-  // too far away. Asked here without turning the triangle into the sensor's frame and without telling where that point
-  // is.
+  // too far away. Tested here without transforming the triangle to the sensor's frame and without computing that point.
   [[nodiscard]] bool out_of_sight(const geometry::Triangle& t) const {
     const Vector3d a = t[0] - apex_;
     const Vector3d b = t[1] - apex_;

@@ -9,7 +9,7 @@
 
 namespace cellmirror::ranging {
 
-// `triangle` (in the tree's order): in: which to look at first, out: which was the nearest.
+// `triangle` (in the tree's order): in: first candidate, out: the nearest one.
 void nearest_on_mesh(const ConeShape& cone, const geometry::MeshTree& tree, const Pose& X_SG, Nearest& best,
                      std::uint32_t& triangle) noexcept;
 

@@ -28,7 +28,7 @@ struct Sensor {
   std::optional<ConeShape> cone;  // none: the settings are not those of a cone
   std::vector<std::uint8_t> housing;
   Noise noise{0};
-  // What was seen last: most likely still the nearest, and so the best place to start.
+  // The last echo: most likely still the nearest, so the best start.
   std::uint32_t part = kNothing;
   std::uint32_t triangle = kNothing;
 };
@@ -127,7 +127,7 @@ void RangeFinder::State::read(Sensor& sensor, const Pose& X_WS, RangeReading& ou
   out.short_object.clear();
   out.in_blind_zone = false;
   out.doubtful = parts.incomplete() || !sensor.cone || !X_WS.matrix().allFinite();
-  // Drawn for every reading, so that what stands in the cell does not shift the sequence.
+  // Drawn for every reading, so that the sequence does not depend on the cell.
   const double noise = settings.noise_m > 0.0 ? settings.noise_m * sensor.noise.next() : 0.0;
   if (!sensor.cone || !X_WS.matrix().allFinite()) return;
   const Nearest found = nearest(sensor, X_WS);
@@ -143,7 +143,7 @@ void RangeFinder::State::read(Sensor& sensor, const Pose& X_WS, RangeReading& ou
 }
 
 Nearest RangeFinder::State::nearest(Sensor& sensor, const Pose& X_WS) {
-  // The range is part of what is seen, whatever the last digit of a distance is.
+  // The range is inclusive, regardless of rounding.
   constexpr double kRounding = 1e-12;
   Nearest best{sensor.settings.range_m * (1.0 + kRounding)};
   collect(sensor, X_WS, best.distance);
@@ -163,7 +163,7 @@ Nearest RangeFinder::State::nearest(Sensor& sensor, const Pose& X_WS) {
   return best;
 }
 
-// The parts whose spheres reach into the cone, what was seen last first, then by distance.
+// The parts whose spheres reach into the cone, the last echo first, then by distance.
 void RangeFinder::State::collect(const Sensor& sensor, const Pose& X_WS, double limit) {
   const Vector3d apex = X_WS.translation();
   const Vector3d axis = X_WS.linear().col(2);

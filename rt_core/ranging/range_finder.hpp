@@ -1,5 +1,5 @@
-// Reads the ultrasonic sensors of a cell. A sensor sees the active geometry except its own housing: geometry of bodies
-// that are rigidly joined with it and contain or touch (within 1 mm) its apex.
+// Reads the ultrasonic sensors of a cell. A sensor detects the active geometry except its own housing: geometry of
+// bodies that are rigidly joined with it and contain or touch (within 1 mm) its apex.
 #pragma once
 
 #include <cstdint>

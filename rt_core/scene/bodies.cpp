@@ -19,7 +19,7 @@ SceneBody body_of(const CompiledGeometry& part, DrawMode mode) {
   body.look = geometry.look;
   body.rgba = geometry.rgba;
   body.mode = mode;
-  // A wireframe is looked through; so is what has a see-through colour of its own.
+  // Wireframes are see-through; so are transparent colours.
   body.casts_shadow = mode != DrawMode::wireframe && geometry.rgba[3] > 0.5F;
   return body;
 }

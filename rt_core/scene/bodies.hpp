@@ -27,9 +27,9 @@ class Bodies {
 
   // Of all that was drawn since update() was true: what moves only widens it.
   [[nodiscard]] const Box& reach() const { return reach_; }
-  // Below what stands still, and not above the world's floor unless the whole cell is far above it.
+  // Below all static bodies, and not above the world's floor unless the whole cell is far above it.
   [[nodiscard]] double floor_z() const { return floor_z_; }
-  // Slabs that stand still, level and lowest of all: they catch shadows and cast none.
+  // Static, level and lowest slabs: they catch shadows and cast none.
   [[nodiscard]] const std::vector<ShadowCatcher>& slabs() const { return slabs_; }
 
  private:
@@ -45,7 +45,7 @@ class Bodies {
   void leave_paint_without_shadow();
 
   Version version_;
-  std::vector<SceneBody> bodies_;  // in the order of the nodes: those that stand still come first
+  std::vector<SceneBody> bodies_;  // in the order of the nodes: static ones first
   std::vector<std::int32_t> nodes_;
   std::vector<Pose> X_NG_;
   std::vector<Box> boxes_;

@@ -1,6 +1,5 @@
-// The pan-tilt head of a camera, and where it has to turn so that the camera looks at what it tracks. A head is a robot
-// of one or two revolute joints that carry the camera: pan about the camera's y axis, then tilt about its x axis
-// (docs/cameras.md).
+// The pan-tilt head of a camera, and its angles for tracking. A head is a robot of one or two revolute joints that
+// carry the camera: pan about the camera's y axis, then tilt about its x axis (docs/cameras.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +21,7 @@ namespace cellmirror::scene {
 // The camera that a setting or a command means: the one with this path, else the first whose path it ends.
 [[nodiscard]] std::optional<std::size_t> camera_named(const CompiledCell& cell, std::string_view name);
 
-// Where the camera looks with its head at zero. A camera on more joints than a head has, or on none: its workframe.
+// Pose of the camera with its head at zero. A camera on more joints than a head has, or on none: its workframe.
 [[nodiscard]] Pose mount_pose(const CompiledCell& cell, const CellPoses& poses, std::size_t camera);
 
 struct PanTilt {
@@ -34,8 +33,8 @@ struct PanTilt {
 [[nodiscard]] PanTilt pan_tilt_towards(const Eigen::Vector3d& direction_M);
 [[nodiscard]] Eigen::Matrix3d rotation_of(const PanTilt& angles);
 
-// What the real camera is to be told: turned towards what it tracks whether its head is mirrored or not. A frame that
-// is not in the cell (any more): as if it tracked nothing.
+// The command to the real camera: turned towards the tracked frame whether its head is mirrored or not. A frame that is
+// not in the cell counts as none.
 [[nodiscard]] CameraState camera_state(const CompiledCell& cell, const CellPoses& poses, const CameraSetting& setting,
                                        std::size_t camera);
 // Of all cameras that are online (CAM_ONLINE), in the order of the cell.

@@ -18,8 +18,8 @@ const CameraSetting* setting_of(const CompiledCell& cell, const DisplayState& di
   return at == display.cameras.end() ? nullptr : &*at;
 }
 
-// Solids of the camera's node and of what it is fixed to, along its axis without a gap. Meshes are not looked at: a
-// hall is one.
+// Solids of the camera's node and of what it is fixed to, along its axis without a gap. Meshes are skipped: a hall is
+// one.
 double housing_of(const CompiledCell& cell, std::int32_t node) {
   constexpr double kLargest = 0.3;  // m: more is no housing
   constexpr double kGap = 0.01;

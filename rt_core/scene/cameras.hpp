@@ -1,5 +1,5 @@
-// Where the cameras of the cell are and what they see. A camera looks along the z axis of its workframe; x is to the
-// right of its picture, y points down (docs/cell-files.md).
+// Poses and views of the cell's cameras. The optical axis is the z axis of the workframe; x points right in the image,
+// y down (docs/cell-files.md).
 #pragma once
 
 #include <cstddef>

@@ -17,7 +17,7 @@ std::vector<DrawMode> draw_modes(const CompiledCell& cell, std::span<const DrawR
   std::vector<DrawMode> modes(cell.geometry.size(), DrawMode::gouraud);
   if (rules.empty()) return modes;
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    // Geometry of a node stands together.
+    // Geometry of a node is contiguous.
     if (i > 0 && cell.geometry[i].node == cell.geometry[i - 1].node) {
       modes[i] = modes[i - 1];
       continue;

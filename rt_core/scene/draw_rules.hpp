@@ -15,8 +15,8 @@ namespace cellmirror::scene {
 [[nodiscard]] bool covers(const DrawRule& rule, std::string_view path);
 
 // By index into cell.geometry. Of the rules that cover the node of a geometry the last one counts; none: gouraud. A
-// coarse geometry belongs to the node that has it, not to the parts for which it stands. A path of which the cell knows
-// nothing (not loaded, deleted) waits until it does.
+// coarse geometry belongs to its own node, not to the parts it represents. A path that is not in the cell (not loaded,
+// deleted) has no effect until it is.
 [[nodiscard]] std::vector<DrawMode> draw_modes(const CompiledCell& cell, std::span<const DrawRule> rules);
 
 }  // namespace cellmirror::scene

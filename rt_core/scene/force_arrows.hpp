@@ -8,9 +8,9 @@
 
 namespace cellmirror::scene {
 
-// How much a metre of arrow stands for: 1, 2 or 5 times a power of ten, so that the longest arrow is not longer than
+// Scale of arrows, per metre of arrow: 1, 2 or 5 times a power of ten, so that the longest arrow is not longer than
 // `longest_m`; smaller again only where the longest would be shorter than a fifth of that, so that the scale does not
-// jump to and fro.
+// alternate.
 class ArrowScale {
  public:
   // `largest`: N or Nm; 0 keeps the scale.

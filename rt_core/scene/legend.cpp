@@ -36,7 +36,7 @@ void write_legend(const SceneInput& input, const ForceArrows& arrows, Scene& sce
   add(!scene.traces.empty(), palette::kTrace, "trace of the TCP");
   const double force = arrows.newton_per_metre();
   const double torque = arrows.newton_metre_per_metre();
-  // For 100 mm of arrow: lengths that are seen in a cell.
+  // For 100 mm of arrow.
   add(force > 0.0, palette::kForce, fmt::format("force, 100 mm = {}", quantity_text(0.1 * force, "N")));
   add(torque > 0.0, palette::kTorque, fmt::format("torque, 100 mm = {}", quantity_text(0.1 * torque, "Nm")));
 }

@@ -19,7 +19,7 @@ class PairMarks {
  public:
   static constexpr std::size_t kPairs = 200;          // that are drawn, of each kind
   static constexpr std::size_t kLabels = 12;          // of each kind; the nearest ones
-  static constexpr double kOldAfter = 0.5;            // s: a finding that is older tells its age
+  static constexpr double kOldAfter = 0.5;            // s: older results show their age
   static constexpr double kContactHalfLength = 0.02;  // m: a contact is drawn as long as this to both sides at least
 
   void update(const CompiledCell& cell);

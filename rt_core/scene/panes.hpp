@@ -23,9 +23,8 @@ struct PaneInput {
 
 // A view where it is now: at its camera (COVW) if that is there, else on its sequence, else as set.
 [[nodiscard]] View view_now(const PaneInput& input, int id);
-// What a camera sees, as a view: twist included, so that a view may go on from there. A camera has no clipping planes:
-// they are those of `clipped_as`, the nearer one not farther than 50 mm, or than
-// its own housing needs.
+// The camera's view: twist included, so that a view sequence may start there. A camera has no clipping planes: they are
+// those of `clipped_as`, the nearer one not farther than 50 mm, or than its own housing needs.
 [[nodiscard]] View view_of_camera(const CameraNow& camera, const View& clipped_as);
 [[nodiscard]] Eye eye_of(const View& view);
 [[nodiscard]] bool ended(const ViewSequence& sequence, Timestamp now, std::uint64_t updates);

@@ -6,8 +6,8 @@
 
 namespace cellmirror::scene {
 
-// Of a picture of 4 to 3, up to the viewing distance; a camera that tracks has a dashed line to what it tracks.
-// None of it is seen in panes at the camera itself.
+// Of a picture of 4 to 3, up to the viewing distance; a camera that tracks has a dashed line to what it tracks. Not
+// shown in panes of the camera itself.
 void draw_pyramids(const SceneInput& input, Scene& scene);
 
 }  // namespace cellmirror::scene

@@ -50,7 +50,7 @@ View view_of_camera(const CameraNow& camera, const View& clipped_as) {
   const double distance = std::max(camera.focal_distance_m, 1e-3);
   view.lookpoint = view.viewpoint + distance * camera.X_WC.linear().col(2);
   view.opening_angle = camera.fovy_rad;
-  // The camera's x is the picture's: twist is how far the screen has to turn until its x lies there.
+  // The camera's x is the picture's: twist is the rotation of the screen to that x.
   const Eigen::Matrix3d R_WS = screen_axes(view);
   const Eigen::Vector3d x_S = R_WS.transpose() * camera.X_WC.linear().col(0);
   view.twist = std::atan2(x_S.y(), x_S.x());

@@ -1,5 +1,4 @@
-// Something that a command began and that goes on after it, such as a robot on its way. One thread: the owner of the
-// cell.
+// Work that continues after its command, such as a moving robot. One thread: the owner of the cell.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Picture, views and cameras, as SCRIPT sees them. Rules as in host.hpp.
+// Interface of SCRIPT to picture, views and cameras. Rules as in host.hpp.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class DisplayHost {
   virtual Result<void> save_views(std::string_view file) = 0;                                   // SAVE_VIEWS, ours
   virtual Result<void> set_mode(DisplayMode mode, bool on) = 0;  // SET_MODE, BFRM, FLDR, SHAD
   virtual Result<void> set_legend(bool on) = 0;                  // ours
-  // RENDER. Done with a remark where nothing is seen of it.
+  // RENDER. Done with a remark if it has no visible effect.
   virtual Result<std::string> set_draw_mode(std::string_view node, bool branch, DrawMode mode) = 0;
   virtual Result<void> set_tag_length(double length_m) = 0;  // TAG_DRAWLEN
   virtual Result<void> set_camera(std::string_view camera, double focal_distance_m, double fovy_rad) = 0;  // SET_CAMPAR

@@ -36,14 +36,14 @@ Handler handler_of(FormId id) {
 
 Outcome not_available(const ParsedCommand& command, CommandHost& /*host*/) {
   const Form& form = command.form();
-  return Outcome::refused(
-      {fmt::format("{} is not available yet: {}", form.name, form.missing), "`cellmirror commands` shows what is"});
+  return Outcome::refused({fmt::format("{} is not available yet: {}", form.name, form.missing),
+                           "`cellmirror commands` lists available ones"});
 }
 
 Outcome execute(const ParsedCommand& command, CommandHost& host) {
   const Handler handler = handler_of(command.id());
   CELLMIRROR_EXPECTS(handler != nullptr);
-  // The parser gives an executable command only where it could ask for the kinds of the joints.
+  // The parser returns an executable command only if the kinds of the joints were known.
   if (!command.converted()) {
     return Outcome::refused({fmt::format("{}: the joints of the robot are not known", command.form().name), {}});
   }

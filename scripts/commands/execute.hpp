@@ -26,7 +26,7 @@ struct Outcome {
   Error error;
   std::string_view script;  // points into the command's text
   ActivityHandle activity;
-  std::string remark;  // of what is done, for whoever asked; empty: there is nothing to say
+  std::string remark;  // text of the answer; empty: none
 
   static Outcome done() { return {}; }
   static Outcome refused(Error why) { return {Kind::refused, std::move(why), {}, {}, {}}; }

@@ -93,7 +93,7 @@ Outcome tag_drawlen(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.display.set_tag_length(command.number(0)));
 }
 
-// The first choice of all three switches is "on"; the parser has seen to it that a target stands with "on" alone.
+// The first choice of all three switches is "on"; the parser ensures that a target comes with "on" only.
 Outcome cam_tracking(const ParsedCommand& command, CommandHost& host) {
   const std::optional<std::string_view> target = command.choice(1) == 0 ? std::optional(command.text(2)) : std::nullopt;
   return Outcome::of(host.display.track(command.text(0), target));

@@ -1,6 +1,5 @@
-// All that SCRIPT knows of the gateway. The handlers of the commands talk to these interfaces and to nothing else; the
-// gateway implements them. Every call comes from the thread that owns the cell. Quantities are SI. A refusal says why
-// and what to do; a refused call changes nothing.
+// SCRIPT's only interfaces to the gateway, which implements them. Every call comes from the thread that owns the cell.
+// Quantities are SI. A refusal has a reason and a remedy; a refused call changes nothing.
 #pragma once
 
 #include <cstdint>
@@ -78,7 +77,8 @@ class SensingHost {
 class DiagnosisHost {
  public:
   virtual ~DiagnosisHost() = default;
-  virtual Result<void> save_flight_record(std::string_view file_name) = 0;  // SAVE_FLIGHT, into the home's records/
+  virtual Result<void> save_flight_record(
+      std::string_view file_name) = 0;  // SAVE_FLIGHT, into the cell folder's records/
 };
 
 struct CommandHost {

@@ -1,4 +1,4 @@
-// What SCRIPT knows of haptic devices, foot switches, forces and coupled robots (manual 1.2.4, 1.2.6). As host.hpp.
+// Interface of SCRIPT to haptic devices, foot switches, forces and coupled robots (manual 1.2.4, 1.2.6). As host.hpp.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@ struct SlaveJoints {
 class InteractionHost {
  public:
   virtual ~InteractionHost() = default;
-  // rob_ela_shm of the active robot; the send type is kept and means nothing. Opens its haptic channel anew.
+  // rob_ela_shm of the active robot; the send type is stored and has no effect. Reopens its haptic channel.
   virtual Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
   virtual Result<void> reset_haptic(std::string_view robot) = 0;  // RESET_HAPTIC, ours
   virtual Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
   virtual Result<void> set_switches_online(bool online) = 0;  // BIN_ELA
-  // The first three settings count. Done with a remark where nothing can be seen of them.
+  // The first three settings count. Done with a remark if they have no visible effect.
   virtual Result<std::string> set_force_arrows(const ForceArrowSettings& settings) = 0;
   virtual Result<void> set_motor_forces_only(bool on) = 0;               // SET_FRC_ARR_SPECIAL
   virtual Result<void> set_force_limits(const ForceLimits& limits) = 0;  // SET_TORQUE_LIMIT

@@ -1,5 +1,5 @@
-// What SCRIPT asks robots to do: POS_ROB (manual 1.2.1), and our own MOVE_ROB, STOP_ROB and rob_positioning. Every call
-// comes from the thread that owns the cell. SI. A refusal says why and what to do; a refused call moves nothing.
+// Motion commands of SCRIPT: POS_ROB (manual 1.2.1), and our own MOVE_ROB, STOP_ROB and rob_positioning. Every call
+// comes from the thread that owns the cell. SI. A refusal has a reason and a remedy; a refused call moves nothing.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,7 @@ enum class Positioning : std::uint8_t { moving, jumping };  // rob_positioning m
 class MotionHost {
  public:
   virtual ~MotionHost() = default;
-  // POS_ROB: takes the place of what the robot does. The activity ends when the robot has arrived; null where it stands
-  // there at once.
+  // POS_ROB: replaces the running move. The activity ends when the robot has arrived; null if it is there at once.
   virtual Result<ActivityHandle> position(std::string_view robot, const MotionTarget& target) = 0;
   // MOVE_ROB: behind what the robot does.
   virtual Result<void> queue_move(std::string_view robot, MovePath path, const MotionTarget& target) = 0;

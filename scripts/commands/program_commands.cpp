@@ -5,7 +5,7 @@ namespace cellmirror::script {
 
 namespace {
 
-// Of a command that may go on.
+// Of a command that may continue.
 Outcome begun(Result<ActivityHandle> result) {
   if (!result) return Outcome::refused(std::move(result.error()));
   return *result ? Outcome::pending(std::move(*result)) : Outcome::done();
@@ -51,7 +51,8 @@ Outcome record(const ParsedCommand& command, CommandHost& host) {
   const auto what = static_cast<RecordStep>(command.choice(2));
   const std::string_view point = command.given(3) ? command.text(3) : std::string_view();
   if (!point.empty() && what != RecordStep::point) {
-    return Outcome::refused({"TF_RECORD: a name stands with POINT only", "e.g. TF_RECORD taught PUMA_762 POINT grip"});
+    return Outcome::refused(
+        {"TF_RECORD: a name is allowed with POINT only", "e.g. TF_RECORD taught PUMA_762 POINT grip"});
   }
   return Outcome::of(host.programs.record_program(command.text(0), command.text(1), what, point));
 }

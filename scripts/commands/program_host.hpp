@@ -1,4 +1,4 @@
-// Robot programs, as SCRIPT sees them (manual 1.2.1; what is ours: docs/robot-programs.md). Rules as in host.hpp.
+// Interface of SCRIPT to robot programs (manual 1.2.1; ours: docs/robot-programs.md). Rules as in host.hpp.
 #pragma once
 
 #include <cstddef>

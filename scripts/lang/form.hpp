@@ -11,7 +11,7 @@
 
 namespace cellmirror::script {
 
-// The unit in which a number stands in SCRIPT text. It becomes SI where the command is parsed, and nowhere else.
+// The unit of a number in SCRIPT text. It is converted to SI where the command is parsed, and nowhere else.
 enum class Unit : std::uint8_t {
   none,
   mm,
@@ -29,7 +29,7 @@ enum class Unit : std::uint8_t {
   joint_velocity,      // mm/s, rad/s
   joint_acceleration,  // mm/s2, rad/s2
   by_fly_type,         // rob_cart_fly_radius: none, mm or degrees by the fly type before it
-  by_effector_joint,   // rob_ela_interact: as joint_position, of the joint whose number stands first
+  by_effector_joint,   // rob_ela_interact: like joint_position, for the joint numbered first
   by_plausibility,     // eladyn_plaus_param: as table A.5 says for the token
 };
 
@@ -52,14 +52,14 @@ enum class ParameterKind : std::uint8_t {
   word,         // a fixed keyword, e.g. JOINT_ABS; takes no value slot
   choice,       // one of some keywords
   name,         // of a frame, robot, camera, sensor or workframe
-  identifier,   // a name that no directory knows (geometry of a deformable object)
-  file,         // of a file in the cell's home
+  identifier,   // a name without a directory (geometry of a deformable object)
+  file,         // of a file in the cell folder
   integer,      // decimal, or hexadecimal with 0x
   number,       // `width` numbers
   joint_list,   // one number a joint of the robot named before, or of the active robot; the last parameter
   number_list,  // 0 to `width` numbers; the last parameter
   slaves,       // the nested repetition of MASTER_SLAVE; the last parameter
-  text,         // the rest of the command as it stands
+  text,         // the rest of the command, verbatim
 };
 
 // A choice that is accepted, with what the reference page says of it.
@@ -76,7 +76,7 @@ struct Parameter {
   Range range{};
   std::span<const Choice> choices{};
   NameKind name_kind = NameKind::frame_node;
-  std::string_view label{};  // not empty: the label stands before the values, and labelled groups come in any order
+  std::string_view label{};  // not empty: the label precedes the values, and labelled groups come in any order
   std::uint8_t width = 1;    // values, i.e. slots of ParsedCommand
   bool optional = false;
   bool exact_count = false;       // joint_list: one value for each joint, not fewer
@@ -99,7 +99,7 @@ enum class LoopEffect : std::uint8_t {
   blocking,  // suspends the script that contains it (never the loop)
 };
 
-// How a form is told from the others of the same command.
+// How a form is distinguished from others of the same command.
 enum class Selector : std::uint8_t {
   only_form,
   by_first_word,   // the first parameter

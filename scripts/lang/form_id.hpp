@@ -1,4 +1,4 @@
-// The identity of every row of the command table, in the order of the index of the manual; ours stand behind it.
+// The identity of every row of the command table, in the order of the index of the manual; ours follow.
 #pragma once
 
 #include <cstddef>

@@ -51,7 +51,7 @@ std::string availability_text(const Form& form) {
   return form.available() ? "available" : fmt::format("not available yet: {}", form.missing);
 }
 
-// What may stand where a command's next word is expected.
+// Candidates for a command's next word.
 class Completion {
  public:
   Completion(std::string_view prefix, const NameDirectory* names) : prefix_(prefix), names_(names) {}

@@ -1,4 +1,4 @@
-// Cuts SCRIPT text into words. Knows comment lines, line ends and the separators, but no command.
+// Splits SCRIPT text into words. Handles comment lines, line ends and separators, but no commands.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace cellmirror::script {
 struct Token {
   std::string_view text;
   Position begin;
-  std::uint8_t commas_before = 0;  // how many commas stand before it (255: that many or more)
+  std::uint8_t commas_before = 0;  // number of commas before it (255: that many or more)
   bool first_in_line = false;
   bool plain = true;  // printable ASCII only
 };
@@ -33,14 +33,14 @@ class Lexer {
 
   // The next word of the command; false at ';' and at the end of the text. Commas before the word are counted.
   bool word(Token& token);
-  // Commas that stand behind the last word of a command: asked after word() returned false.
+  // Commas after the last word of a command: call it after word() returned false.
   [[nodiscard]] std::size_t trailing_commas() const { return commas_; }
 
   // The rest of the command up to ';' or the end of the text, with comment lines and line ends in it, without the
   // blanks around it.
   std::string_view rest_of_command();
 
-  // Behind the next ';', or to the end: how reading goes on after an error.
+  // Skips to after the next ';', or to the end, to continue after an error.
   void skip_command();
   // Behind a UTF-8 byte order mark and a first line that is the format tag RBv01r01.
   void skip_file_header();

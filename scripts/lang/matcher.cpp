@@ -86,7 +86,7 @@ bool Matcher::match_word(const Parameter& parameter) {
   }
   const Token& word = words_[next_];
   if (!equal_ignoring_case(word.text, parameter.name)) {
-    findings_.error(word.begin, fmt::format("{} stands where {} is expected", printable(word.text), parameter.name),
+    findings_.error(word.begin, fmt::format("{} is given instead of {}", printable(word.text), parameter.name),
                     expected());
     return false;
   }
@@ -264,10 +264,10 @@ void Matcher::missing(const Parameter& parameter) {
 
 void Matcher::surplus(const Token& word) {
   if (word.first_in_line && !forms_of(word.text).empty()) {
-    findings_.error(word.begin, fmt::format("{} stands within the command", printable(word.text)),
+    findings_.error(word.begin, fmt::format("{} is within the command", printable(word.text)),
                     "end the command before it with ';'");
   } else {
-    findings_.error(word.begin, fmt::format("{} is one word too many", printable(word.text)), expected());
+    findings_.error(word.begin, fmt::format("{} is a surplus word", printable(word.text)), expected());
   }
 }
 

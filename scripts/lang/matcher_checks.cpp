@@ -1,4 +1,4 @@
-// The checks of Matcher that look beyond one word: names, the robot concerned, values that depend on others.
+// The checks of Matcher beyond one word: names, the robot concerned, values that depend on others.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ void Matcher::check_commas() {
     const Token& word = words_[i];
     if (word.commas_before == 0) continue;
     if (!form_.commas || i == 0) {
-      findings_.error(word.begin, fmt::format("a comma before {} does not belong here", printable(word.text)),
+      findings_.error(word.begin, fmt::format("a comma before {} is not allowed here", printable(word.text)),
                       "values are separated by blanks, numbers have a decimal point");
     } else if (word.commas_before > 1) {
       findings_.error(word.begin, fmt::format("there is no value between the commas before {}", printable(word.text)));
@@ -68,10 +68,10 @@ void Matcher::check_commas() {
 void Matcher::check_active_robot() {
   if (!form_.needs_active_robot || names_ == nullptr || !names_->active_robot().empty()) return;
   if (check_ != NameCheck::for_execution) {
-    findings_.warning(out_.begin(), "no robot is active unless a caller made one so",
-                      "make one active before with ROBACT <Robot_id>");
+    findings_.warning(out_.begin(), "no robot is active unless a caller activates one",
+                      "activate one first with ROBACT <Robot_id>");
   } else {
-    findings_.error(out_.begin(), "no robot is active", "make one active with ROBACT <Robot_id>");
+    findings_.error(out_.begin(), "no robot is active", "activate one with ROBACT <Robot_id>");
   }
 }
 
@@ -91,7 +91,7 @@ void Matcher::check_name(const Parameter& parameter, const Token& word) {
   const std::string_view bare = without_brackets(word.text);
   Error why = names_->explain(parameter.name_kind, bare);
   if (bare.size() < word.text.size() && names_->knows(parameter.name_kind, bare)) {
-    why = {fmt::format("{} stands in brackets, which belong to the synopsis alone", printable(word.text)),
+    why = {fmt::format("{} is in brackets, which are only notation of the synopsis", printable(word.text)),
            fmt::format("write {}", printable(bare))};
   }
   if (check_ == NameCheck::ahead_after_loading && path) {
@@ -107,7 +107,7 @@ bool Matcher::check_text(const Token& word, std::string_view meaning, std::size_
     findings_.error(word.begin,
                     fmt::format("the {} {} has {} bytes, more than {}", meaning, shown(), word.text.size(), longest));
   } else if (!word.plain && has_control_byte(word.text)) {
-    findings_.error(word.begin, fmt::format("the {} {} holds a control byte", meaning, shown()));
+    findings_.error(word.begin, fmt::format("the {} {} contains a control byte", meaning, shown()));
   } else if (!word.plain && !is_utf8(word.text)) {
     findings_.error(word.begin, fmt::format("the {} {} is not UTF-8", meaning, shown()), "save the file as UTF-8");
   } else {
@@ -167,12 +167,12 @@ void Matcher::check_dependencies() {
     const bool on = out_.choice(kTrackingSwitchSlot) == 0;
     const bool given = out_.given(kTrackingFrameParameter);
     if (on && !given) findings_.error(end_, "the target frame <frame_id> is missing", expected());
-    if (!on && given) findings_.error(words_.back().begin, "a target frame is given only with on", "leave it away");
+    if (!on && given) findings_.error(words_.back().begin, "a target frame is given only with on", "omit it");
   }
   if (form_.id == FormId::stvw) {
     bool any = false;
     for (std::size_t i = kFirstViewParameter; i <= kLastViewParameter; ++i) any = any || out_.given(i);
-    if (!any) findings_.error(end_, "it names nothing that is to change", "give VP, LP, TW, VA, FCP or BCP");
+    if (!any) findings_.error(end_, "it gives no value to change", "give VP, LP, TW, VA, FCP or BCP");
   }
   if (form_.id == FormId::set_ext_tcp_test) {
     const bool off_alone = out_.choice(kTestSwitchSlot) != 0 && !out_.given(kFirstTestValue);

@@ -31,7 +31,7 @@ constexpr Parameter kSlaveJoint{.name = "slave_joint", .meaning = "joint of the 
 void Matcher::match_slaves() {
   const std::string_view master = out_.text(kMasterSlot);
   const auto count = static_cast<std::size_t>(out_.integer(kCountSlot));
-  if (count == 0) next_ = words_.size();  // the count was wrong: what follows cannot be told apart
+  if (count == 0) next_ = words_.size();  // the count was wrong: the rest is ambiguous
   for (std::size_t i = 0; i < count; ++i) {
     if (!match_slave(i, master)) {
       next_ = words_.size();
@@ -56,7 +56,7 @@ bool Matcher::match_slave(std::size_t number, std::string_view master) {
   }
   const bool fine_so_far = findings_.ok();
   match_single(kDofs, words_[next_++]);
-  if (fine_so_far && !findings_.ok()) return false;  // without the count the rest cannot be told apart
+  if (fine_so_far && !findings_.ok()) return false;  // without the count the rest is ambiguous
   const auto dofs = static_cast<std::size_t>(out_.integer(out_.size() - 1));
   const std::size_t first_pair = next_;
   for (std::size_t k = 0; k < dofs; ++k) {
@@ -67,7 +67,7 @@ bool Matcher::match_slave(std::size_t number, std::string_view master) {
     for (std::size_t earlier = first_pair + 1; earlier < next_; earlier += 2) {
       if (words_[earlier].text == words_[next_ + 1].text)
         findings_.error(words_[next_ + 1].begin,
-                        fmt::format("the joint {} follows two joints", printable(words_[earlier].text)));
+                        fmt::format("the joint {} follows more than one joint", printable(words_[earlier].text)));
     }
     match_joint_pair(master, slave.text);
   }

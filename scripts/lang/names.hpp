@@ -1,4 +1,4 @@
-// What SCRIPT has to know about names to check a command before it is executed, or without a gateway at all.
+// Names that SCRIPT needs to validate a command before its execution, or without a gateway.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class NameDirectory {
   [[nodiscard]] virtual std::span<const JointKind> joints(std::string_view robot) const = 0;
   // Names of the robot's joints, same order (MASTER_SLAVE).
   [[nodiscard]] virtual std::vector<std::string> joint_names(std::string_view robot) const = 0;
-  // The robot that ROBACT made active; empty when there is none.
+  // The robot activated by ROBACT; empty if none.
   [[nodiscard]] virtual std::string_view active_robot() const = 0;
   // All names of a kind, for completion.
   [[nodiscard]] virtual std::vector<std::string> all(NameKind kind) const = 0;

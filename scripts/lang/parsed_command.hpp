@@ -13,7 +13,7 @@
 
 namespace cellmirror::script {
 
-// Where something stands in a text: the byte, and the line and column (from 1, in bytes) that people count.
+// A place in a text: the byte, and line and column (from 1, in bytes).
 struct Position {
   std::size_t offset = 0;
   int line = 1;
@@ -53,8 +53,8 @@ class ParsedCommand {
   }
   // Whether the parameter at this index of the form's list was given (optional and labelled ones).
   [[nodiscard]] bool given(std::size_t parameter) const { return ((given_ >> parameter) & 1U) != 0; }
-  // False where joint values still stand in the text's own unit because no directory was there to ask for the kinds
-  // of the joints. Such a command can be checked, but not executed.
+  // False if joint values are still in the text's unit because no directory gave the kinds of the joints. Such a
+  // command can be checked, but not executed.
   [[nodiscard]] bool converted() const { return converted_; }
 
   // For the parser.

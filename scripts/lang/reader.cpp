@@ -36,7 +36,7 @@ Position place_of(std::string_view text, std::size_t offset) {
   return place;
 }
 
-// The words that tell the forms of a command apart, at the position of the selecting parameter.
+// The words that distinguish the forms of a command, at the position of the selecting parameter.
 std::vector<std::string> selecting_words(std::span<const Form* const> forms, std::size_t position) {
   std::vector<std::string> words;
   for (const Form* form : forms) {
@@ -57,7 +57,7 @@ bool looks_like_number(std::string_view word) {
   return (c >= '0' && c <= '9') || c == '+' || c == '-';
 }
 
-// eladyn_geo_def has three forms, told apart as docs/script.md defines.
+// eladyn_geo_def has three forms, distinguished as defined in docs/script.md.
 FormId geo_def_form(std::span<const Token> words) {
   constexpr std::size_t kWithFourValues = 6;
   if (words.size() >= 2 && !looks_like_number(words[1].text)) return FormId::eladyn_geo_def_token;
@@ -103,7 +103,7 @@ void unknown_command(const Token& head, Findings& findings) {
   findings.error(head.begin, fmt::format("there is no command {}", printable(head.text)), std::move(remedy));
 }
 
-// hot_message: the rest of the command as it stands.
+// hot_message: the rest of the command, verbatim.
 bool read_text(Lexer& lexer, const Form& form, ParsedCommand& out, Findings& findings) {
   lexer.skip_blank();
   const Position begin = lexer.position();
@@ -120,7 +120,7 @@ bool read_text(Lexer& lexer, const Form& form, ParsedCommand& out, Findings& fin
     const auto byte = static_cast<unsigned char>(text[i]);
     if ((byte >= 0x20 || (byte >= '\t' && byte <= '\r')) && byte != 0x7f) continue;
     const Position at = place_of(lexer.text(), begin.offset + i);
-    findings.error(at, fmt::format("the text holds the control byte {}", printable(text.substr(i, 1))));
+    findings.error(at, fmt::format("the text contains the control byte {}", printable(text.substr(i, 1))));
     return false;
   }
   if (!is_utf8(text)) {
@@ -148,7 +148,7 @@ bool CommandReader::start(Diagnostics& diagnostics) {
   if (!text.empty()) {
     if (const void* nul = std::memchr(text.data(), '\0', text.size()); nul != nullptr) {
       const Position at = place_of(text, static_cast<std::size_t>(static_cast<const char*>(nul) - text.data()));
-      diagnostics.error({source_, at.line, at.column}, "there is a NUL byte: this is no SCRIPT text");
+      diagnostics.error({source_, at.line, at.column}, "there is a NUL byte: this is not SCRIPT text");
       return false;
     }
   }
@@ -188,7 +188,7 @@ CommandReader::Step CommandReader::read_command(const Token& head, const NameDir
     if (forms.empty()) {
       unknown_command(head, findings);
     } else {
-      findings.error(head.begin, fmt::format("a comma before {} does not belong here", printable(head.text)));
+      findings.error(head.begin, fmt::format("a comma before {} is not allowed here", printable(head.text)));
     }
     lexer_.skip_command();
     return Step::error;
@@ -214,7 +214,7 @@ CommandReader::Step CommandReader::read_command(const Token& head, const NameDir
     ++word;
   }
   const Position end = lexer_.position();
-  if (lexer_.trailing_commas() != 0) findings.error(end, "there is no value behind the last comma");
+  if (lexer_.trailing_commas() != 0) findings.error(end, "there is no value after the last comma");
   if (lexer_.at_terminator()) lexer_.skip_terminator();
 
   const std::span<const Token> given(words_.data(), count);
@@ -229,8 +229,8 @@ CommandReader::Step CommandReader::finish_message(Step step, Diagnostics& diagno
   lexer_.skip_blank();
   if (lexer_.at_end() || step == Step::error) return step;
   const Position at = lexer_.position();
-  diagnostics.error({source_, at.line, at.column}, "there is more text behind the command",
-                    "send one command in a message");
+  diagnostics.error({source_, at.line, at.column}, "there is more text after the command",
+                    "send one command per message");
   return Step::error;
 }
 

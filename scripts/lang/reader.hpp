@@ -1,5 +1,5 @@
 // Reads SCRIPT text command by command: lexing, parsing, checking. Never throws, allocates nothing unless it finds an
-// error, and goes on behind an error with the next command, so that one pass shows them all.
+// error, and continues after an error with the next command, so that one pass reports all.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ class CommandReader {
   Step next(const NameDirectory* names, ParsedCommand& out, Diagnostics& diagnostics);
 
   void set_name_check(NameCheck check) { name_check_ = check; }
-  // Where the reader stands.
+  // Position of the reader.
   [[nodiscard]] Position position() const { return lexer_.position(); }
 
  private:
@@ -64,7 +64,7 @@ class CommandReader {
   std::array<Token, kMaxWords> words_;  // of the command that is being read; kept to spare their initialisation
 };
 
-// Sees each command that was read without an error. `place_of`: where a word of the command stands.
+// Called for each command read without an error. `place_of`: place of a word of the command.
 using CommandVisitor =
     std::function<void(const ParsedCommand& command, const std::function<Place(std::string_view word)>& place_of)>;
 

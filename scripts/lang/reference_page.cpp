@@ -49,7 +49,7 @@ std::string values_cell(const Parameter& parameter) {
     case ParameterKind::identifier:
       return "a name";
     case ParameterKind::file:
-      return "a file of the home";
+      return "a file of the cell folder";
     case ParameterKind::text:
       return "the rest of the command";
     case ParameterKind::integer:
@@ -114,12 +114,10 @@ std::string own_tables() {
 
 std::string reference_page() {
   std::string out =
-      "# SCRIPT reference\n\n"
-      "This page is generated from the command table (`scripts/lang/table_*.cpp`); a test compares the two. How "
-      "SCRIPT\n"
-      "is read and run, and what the manual leaves open, is told in [script.md](script.md).\n\n"
-      "Keywords are matched without regard to case, names with it. Numbers stand in the units given here and are\n"
-      "converted to SI where a command is parsed.\n";
+      "# SCRIPT reference\n\nThis page is generated from the command table (`scripts/lang/table_*.cpp`); a test "
+      "compares the two. How SCRIPT\nis read and run, and what the manual leaves open, is described in "
+      "[script.md](script.md).\n\nKeywords are case-insensitive, names are case-sensitive. Numbers are in the units "
+      "given here and are\nconverted to SI where a command is parsed.\n";
   std::string_view section;
   std::string_view command;
   for (const Form* form : forms()) {

@@ -58,9 +58,8 @@ constexpr Form kForms[] = {
      .parameters = kDisplay,
      .help = "sets the display: 1 perspective, 2 top and side, 3 top, 4 side, 5 side in perspective, 6 bird's eye",
      .example = "STDP 1 FULL",
-     .definition =
-         "without FULL or FULL_OFF: FULL_OFF. Its first view is the current one, whose axes SCREEN_INC takes; "
-         "FULL shows its views without titles and legend"},
+     .definition = "without FULL or FULL_OFF: FULL_OFF. Its first view is the current one, whose axes SCREEN_INC uses; "
+                   "FULL shows its views without titles and legend"},
     {.id = FormId::stvw,
      .name = "STVW",
      .syntax = "STVW <view_id> [VP x y z] [LP x y z] [TW twist] [VA angle] [FCP d] [BCP d] [STEPS n | TIME s]",
@@ -68,10 +67,9 @@ constexpr Form kForms[] = {
      .parameters = kStvw,
      .help = "sets parameters of a view, at once or as a sequence of n updates or s seconds",
      .example = "STVW 0 VP 519.7 -539 -850 LP 2183 9570 3391 TIME 15.0",
-     .definition =
-         "the groups come in any order, each at most once; with neither STEPS nor TIME: at once. It begins where "
-         "the view is, also on its way or at a camera (COVW), from which it is taken; all parameters change "
-         "evenly. STEPS counts updates of the picture, TIME goes by the clock"},
+     .definition = "the groups come in any order, each at most once; with neither STEPS nor TIME: at once. It begins "
+                   "at the view's present state, also during a sequence or at a camera (COVW), which it releases; all "
+                   "parameters change evenly. STEPS counts updates of the picture, TIME is real time"},
     {.id = FormId::covw,
      .name = "COVW",
      .syntax = "COVW <view_id> <cam_id>",
@@ -80,7 +78,7 @@ constexpr Form kForms[] = {
      .help = "binds a view to a camera, which it then follows",
      .example = "COVW 0 UMG_Kamera_1",
      .definition =
-         "until STVW or LOAD_VIEWS sets the view, or the camera is deleted; the clipping planes stay the view's"},
+         "until STVW or LOAD_VIEWS sets the view, or the camera is deleted; the view keeps its clipping planes"},
     {.id = FormId::set_mode,
      .name = "SET_MODE",
      .syntax = "SET_MODE <mode> [on | off]",
@@ -103,7 +101,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kSwitch,
      .help = "switches the floor",
-     .definition = "as SET_MODE FLDR; without it no shadows are seen"},
+     .definition = "as SET_MODE FLDR; without it shadows are invisible"},
     {.id = FormId::shad,
      .name = "SHAD",
      .syntax = "SHAD [on | off]",
@@ -117,7 +115,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .help = "suspends the SCRIPT file that contains it until all moves, robot programs and view sequences have ended",
      .example = "WAIT",
-     .definition = "messages and other SCRIPT files go on; refused as a message of its own",
+     .definition = "messages and other SCRIPT files continue; refused as a message of its own",
      .effect = LoopEffect::blocking},
 };
 

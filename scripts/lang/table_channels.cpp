@@ -57,7 +57,7 @@ constexpr Form kForms[] = {
      .syntax = "eladyn_calc [on | off]",
      .section = kSection,
      .parameters = kCalc,
-     .help = "lets the elastodynamic calculation run, or stand still",
+     .help = "starts or stops the elastodynamic calculation",
      .missing = kTissue,
      .effect = LoopEffect::queued},
     {.id = FormId::rob_ela_interact,
@@ -85,7 +85,7 @@ constexpr Form kForms[] = {
      .parameters = kCylinders,
      .help = "sets the virtual cylinders of the active robot's effector for the contact test",
      .missing = kTissue,
-     .definition = "what geom3 and geom4 mean is not said: kept as numbers",
+     .definition = "geom3 and geom4 are not defined: kept as numbers",
      .selector = Selector::by_shape,
      .needs_active_robot = true},
     {.id = FormId::rob_ela_shm,
@@ -93,10 +93,9 @@ constexpr Form kForms[] = {
      .syntax = "rob_ela_shm <send_type> <re_shmkey> <re_buflen>",
      .section = kSection,
      .parameters = kForceMemory,
-     .help = "sets the shared memory through which forces and joint torques go to a haptic device's process",
-     .definition =
-         "of the active robot; at least 12 bytes, force x, y, z as float32, then the joint torques, and what is ours "
-         "behind them as far as they fit; the key also in hexadecimal, not 0",
+     .help = "sets the shared memory for forces and joint torques to a haptic device program",
+     .definition = "of the active robot; at least 12 bytes, force x, y, z as float32, then the joint torques and our "
+                   "extensions as far as they fit; the key also in hexadecimal, not 0",
      .effect = LoopEffect::queued,
      .needs_active_robot = true},
     {.id = FormId::bin_ela_shm,
@@ -105,16 +104,15 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kSwitchMemory,
      .help = "sets the shared memory from which binary inputs (foot switches) are read",
-     .definition =
-         "bit 0 of the first byte is BININP1, bit 0 of the second BININP9, and so on, through the first 4096 bytes; "
-         "the key also in hexadecimal, not 0; BIN_ELA online starts the processing",
+     .definition = "bit 0 of the first byte is BININP1, bit 0 of the second BININP9, and so on, up to 4096 bytes; the "
+                   "key also in hexadecimal, not 0; BIN_ELA online starts the processing",
      .effect = LoopEffect::queued},
     {.id = FormId::binary_input_files,
      .name = "BININPn_ON.spt, BININPn_OFF.spt",
      .syntax = "files for n = 1..8, bit n-1",
      .section = kSection,
-     .help = "the SCRIPT files that run when a binary input goes on or off",
-     .definition = "in scripts/ of the home, once a change and one after another; inputs beyond 8 likewise",
+     .help = "the SCRIPT files that run when a binary input changes to on or off",
+     .definition = "in scripts/ of the cell folder, once per change and one after another; inputs beyond 8 likewise",
      .kind = FormKind::convention},
     {.id = FormId::bin_ela,
      .name = "BIN_ELA",
@@ -122,7 +120,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kBinary,
      .help = "switches the processing of binary inputs",
-     .definition = "inputs that are on when it goes online count as pressed from before: no file runs for them",
+     .definition = "inputs that are on when processing starts are the initial state: no file runs for them",
      .effect = LoopEffect::queued},
     {.id = FormId::hot_message,
      .name = "hot_message",
@@ -130,7 +128,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kMessage,
      .help = "shows a text for about 5 s",
-     .definition = "the text is the rest of the command, UTF-8; in every picture, at the page, in status and log. With "
+     .definition = "the text is the rest of the command, UTF-8; in every picture, on the page, in status and log. With "
                    "SET_MODE BEEP a bell, too"},
 };
 

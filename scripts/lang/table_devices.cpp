@@ -11,7 +11,7 @@ constexpr std::string_view kSection = "1.2.1";
 
 constexpr Choice kRenderModes[] = {{"2", "wireframe"}, {"3", "flat"}, {"4", "Gouraud"}, {"20", "transparent"}};
 constexpr Choice kSending[] = {{"send_on", "start"}, {"send_off", "stop"}};
-constexpr Choice kSendModes[] = {{"0", "one message a sensor"}, {"1", "one message with all ranges"}};
+constexpr Choice kSendModes[] = {{"0", "one message per sensor"}, {"1", "one message with all ranges"}};
 
 constexpr Parameter kJointAbs[] = {robot(), word("JOINT_ABS"), some_joints("joint position")};
 constexpr Parameter kJointInc[] = {robot(), word("JOINT_INC"), some_joints("joint increment")};
@@ -59,23 +59,21 @@ constexpr Parameter kCameraSwitch[] = {camera(), on_off()};
 
 // docs/script.md, "Motion", says the rest.
 constexpr std::string_view kJointNote =
-    "a PTP move that takes the place of what the robot does; in a file the next command waits for its end. Fewer "
-    "values "
-    "than joints: the others stay; more, or one beyond a limit: refused, nothing moves";
+    "a PTP move that replaces the running move; in a file the next command waits for its end. Fewer values than "
+    "joints: the others stay; more, or one beyond a limit: refused, nothing moves";
 constexpr std::string_view kFrameAbsNote =
     "a PTP move to the nearest posture that inverse kinematics finds for rob_inverse_class; out of reach: refused with "
     "the nearest pose";
 constexpr std::string_view kFrameIncNote =
-    "a linear move from where the robot was last commanded to; the rotation is about the TCP, in axes of the ZP frame. "
-    "The groups come in any order, each at most once, with or without commas between them";
-constexpr std::string_view kToolIncNote =
-    "a linear move from where the robot was last commanded to, in the axes of its TCP. The groups come in any order, "
-    "each at most once, with or without commas between them";
-constexpr std::string_view kScreenIncNote =
-    "a linear move from where the robot was last commanded to; the rotation is about the TCP, in the axes of the "
-    "current "
-    "view (the first of the display that STDP chose) as it stands at that moment, on its way or at its camera. The "
+    "a linear move from the last commanded position; the rotation is about the TCP, in axes of the ZP frame. The "
     "groups come in any order, each at most once, with or without commas between them";
+constexpr std::string_view kToolIncNote =
+    "a linear move from the last commanded position, in the axes of its TCP. The groups come in any order, each at "
+    "most once, with or without commas between them";
+constexpr std::string_view kScreenIncNote =
+    "a linear move from the last commanded position; the rotation is about the TCP, in the axes of the current view "
+    "(the first of the display selected by STDP) at that moment, also in a sequence or at a camera. The groups come in "
+    "any order, each at most once, with or without commas between them";
 
 constexpr Form kForms[] = {
     {.id = FormId::pos_rob_joint_abs,
@@ -150,14 +148,14 @@ constexpr Form kForms[] = {
      .parameters = kRender,
      .help = "sets the rendering mode of a frame's geometry",
      .example = "SET_FRAME Testlab_1.FL_Klein.Flansch_Typ1 RENDER 2",
-     .definition = "of geometries that several commands concern, the last command counts",
+     .definition = "the last command for a geometry counts",
      .selector = Selector::by_second_word},
     {.id = FormId::set_frame_placement,
      .name = "SET_FRAME",
      .syntax = "SET_FRAME <frame_node> PLACEMENT <wx> <wy> <wz> <dx> <dy> <dz>",
      .section = kSection,
      .parameters = kPlacement,
-     .help = "sets the pose of a frame in its predecessor; what follows it moves along",
+     .help = "sets the pose of a frame in its predecessor; attached frames move along",
      .example = "SET_FRAME Testlab_1.FL_Klein.Flansch_Typ1 PLACEMENT -88.5 16.32851 -180.0 -11920.0 2517.3 912.7",
      .definition = "rotations first, about fixed axes: x, then y, then z",
      .effect = LoopEffect::queued,
@@ -201,7 +199,7 @@ constexpr Form kForms[] = {
      .parameters = kSensorActive,
      .help = "switches the simulation of an ultrasonic sensor on or off",
      .example = "SET_USSPAR active USS_1B 0",
-     .definition = "the name of the sensor's workframe, or its dotted path where several sensors have that name",
+     .definition = "the name of the sensor's workframe, or its dotted path if the name is not unique",
      .effect = LoopEffect::queued,
      .selector = Selector::by_first_word},
     {.id = FormId::set_usspar_sendmode,
@@ -209,7 +207,7 @@ constexpr Form kForms[] = {
      .syntax = "SET_USSPAR sendmode [0 | 1]",
      .section = kSection,
      .parameters = kSensorSendMode,
-     .help = "sends one message a sensor (0, the default), or one with all ranges (1)",
+     .help = "sends one message per sensor (0, the default), or one with all ranges (1)",
      .example = "SET_USSPAR sendmode 1",
      .definition = "of active sensors only; docs/messages.md has the messages",
      .effect = LoopEffect::queued,
@@ -219,7 +217,7 @@ constexpr Form kForms[] = {
      .syntax = "SET_USSPAR range <USS_id> <USS_range>",
      .section = kSection,
      .parameters = kSensorRange,
-     .help = "sets the range within which a sensor sees obstacles",
+     .help = "sets the range within which a sensor detects obstacles",
      .example = "SET_USSPAR range USS_5 3500.0",
      .definition = "from the apex of the cone",
      .effect = LoopEffect::queued,
@@ -236,23 +234,23 @@ constexpr Form kForms[] = {
      .syntax = "CAM_TRACKING <cam_id> [on | off] (<frame_id>)",
      .section = kSection,
      .parameters = kTracking,
-     .help = "keeps a camera looking at a frame; the frame is given with on, and only then",
+     .help = "makes a camera track a frame; the frame is given only with on",
      .example = "CAM_TRACKING UMG_Kamera_1 on Gantry.J_2.Hand",
-     .definition = "the camera turns about its own place, pan about the y axis of its workframe, then tilt about its "
-                   "new x axis; twist is kept"},
+     .definition = "the camera rotates about its own position, pan about the y axis of its workframe, then tilt about "
+                   "its new x axis; twist is kept"},
     {.id = FormId::cam_view_pyramid,
      .name = "CAM_VIEW_PYRAMID",
      .syntax = "CAM_VIEW_PYRAMID <cam_id> [on | off]",
      .section = kSection,
      .parameters = kCameraSwitch,
-     .help = "draws a camera's viewing pyramid, or not",
+     .help = "shows or hides a camera's viewing pyramid",
      .example = "CAM_VIEW_PYRAMID UMG_Kamera_1 on"},
     {.id = FormId::cam_online,
      .name = "CAM_ONLINE",
      .syntax = "CAM_ONLINE <cam_id> [on | off]",
      .section = kSection,
      .parameters = kCameraSwitch,
-     .help = "sends a camera's current parameters to the camera-control process, or not",
+     .help = "starts or stops sending a camera's parameters to the camera-control process",
      .example = "CAM_ONLINE UMG_Kamera_1 on",
      .definition = "on the SENSOR channel (key 1990, type 5); docs/messages.md has the message"},
 };

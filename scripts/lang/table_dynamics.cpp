@@ -18,7 +18,7 @@ constexpr Parameter kForceArrow[] = {choice("int_1", "arrows of joint forces", k
                                      choice("int_3", "arrow of the TCP force", kArrows)};
 constexpr Parameter kTorqueLimit[] = {number("max_force", "force limit", Unit::newton, kNotNegative),
                                       number("max_torque", "torque limit", Unit::newton_metre, kNotNegative)};
-// With off alone they may be left out; the matcher sees to it.
+// With off alone they may be omitted; the matcher handles that.
 constexpr Parameter kTcpTest[] = {on_off("test mode"), optional(number("v1", "force along x", Unit::newton)),
                                   optional(number("v2", "force along y", Unit::newton)),
                                   optional(number("v3", "force along z", Unit::newton)),
@@ -43,13 +43,13 @@ constexpr Form kForms[] = {
      .syntax = "SET_TORQUE_LIMIT <max_force> <max_torque>",
      .section = kSection,
      .parameters = kTorqueLimit,
-     .help = "sets limits beyond which forces that go to shared memory 1313 raise a warning; 0: no limit"},
+     .help = "sets limits beyond which forces in shared memory 1313 cause a warning; 0: no limit"},
     {.id = FormId::set_ext_tcp_test,
      .name = "SET_EXT_TCP_TEST",
      .syntax = "SET_EXT_TCP_TEST [on | off] <v1> <v2> <v3> <v4>",
      .section = kSection,
      .parameters = kTcpTest,
-     .help = "writes test values to shared memory 1313 in place of simulated ones, or not",
+     .help = "starts or stops writing test values to shared memory 1313 instead of simulated ones",
      .definition = "force x, y, z [N] and torque about the tool axis [Nm]; off needs no values",
      .effect = LoopEffect::queued},
     {.id = FormId::set_frc_arr_special,
@@ -57,14 +57,14 @@ constexpr Form kForms[] = {
      .syntax = "SET_FRC_ARR_SPECIAL [on | off]",
      .section = kSection,
      .parameters = kSpecial,
-     .help = "shows of forces and torques only what the motors bear, or all"},
+     .help = "shows only the force and torque components of the motors, or all"},
     {.id = FormId::master_slave,
      .name = "MASTER_SLAVE",
      .syntax = "MASTER_SLAVE [on | off] <master_robot> <n_slaves> { <slave_robot> <n_dof> { <master_joint> "
                "<slave_joint> } }",
      .section = kSection,
      .parameters = kMasterSlave,
-     .help = "lets joints of up to five slaves follow joints of a master, or no longer",
+     .help = "couples joints of up to five slaves to joints of a master, or decouples them",
      .definition = "a slave is not its own master, and each of its joints follows one joint only",
      .effect = LoopEffect::queued,
      .commas = true},

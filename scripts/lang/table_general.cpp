@@ -18,7 +18,7 @@ constexpr Choice kExecWait[] = {{"exec_wait", "queue behind the robot's running 
 
 constexpr Parameter kComment[] = {{.name = "text", .meaning = "comment", .kind = ParameterKind::text}};
 constexpr Parameter kFrame[] = {frame()};
-// What is not in memory yet may be activated: the gateway looks the name up in the component files.
+// Nodes that are not in memory yet may be activated: the gateway looks the name up in the component files.
 constexpr Parameter kUnloadedFrame[] = {{.name = "frame_node",
                                          .meaning = "frame or joint",
                                          .kind = ParameterKind::name,
@@ -30,10 +30,10 @@ constexpr Parameter kRun[] = {file("teach_filename", "robot program"), robot(),
                               optional(choice("exec_wait", "start", kExecWait), "at once")};
 constexpr Parameter kViewFile[] = {file("view_filename", "view file")};
 constexpr Parameter kScriptFile[] = {file("script_file", "SCRIPT file")};
-constexpr Parameter kConnect[] = {frame("frame_2", "frame that is attached"), word("TO"),
-                                  frame("frame_1", "frame that becomes its predecessor")};
-constexpr Parameter kFrameToWorkframe[] = {frame("frame_2", "frame that is attached"), word("TO"),
-                                           frame("frame_1", "frame that becomes its predecessor"),
+constexpr Parameter kConnect[] = {frame("frame_2", "frame to attach"), word("TO"),
+                                  frame("frame_1", "its new predecessor")};
+constexpr Parameter kFrameToWorkframe[] = {frame("frame_2", "frame to attach"), word("TO"),
+                                           frame("frame_1", "its new predecessor"),
                                            named(NameKind::workframe, "WFRM_name1", "workframe")};
 
 constexpr Form kForms[] = {
@@ -51,10 +51,10 @@ constexpr Form kForms[] = {
      .syntax = "ACTIVATE <frame_node>",
      .section = kSection,
      .parameters = kUnloadedFrame,
-     .help = "shows a branch and takes it into collision tests; loads its component file where it is not in memory",
+     .help = "shows a branch and includes it in collision tests; loads its component file if it is not in memory",
      .example = "ACTIVATE Testlab_1.FL_Klein.Flansch_Typ1",
-     .definition = "refused on a node that has no component file; whether the name exists is looked up at execution, "
-                   "since it may not be loaded yet",
+     .definition = "refused on a node that has no component file; the name is looked up at execution, since it may not "
+                   "be loaded yet",
      .effect = LoopEffect::queued},
     {.id = FormId::deactivate,
      .name = "DEACTIVATE",
@@ -105,36 +105,35 @@ constexpr Form kForms[] = {
      .parameters = {},  // general_forms()
      .help = "sets the language in which robot programs loaded after it are parsed",
      .example = "ROBOT_LANGUAGE jet_tarm",
-     .definition = "irdata is the default, as in the manual; its four are dialects of ours, docs/robot-programs.md; "
-                   "those behind them are not the "
-                   "manual's"},
+     .definition = "irdata is the default, as in the manual; the manual's four are our own dialects, "
+                   "docs/robot-programs.md; the others are not in the manual"},
     {.id = FormId::robact,
      .name = "ROBACT",
      .syntax = "ROBACT <Robot_id>",
      .section = kSection,
      .parameters = kRobot,
-     .help = "makes a robot the active one, which the commands without a robot's name concern",
+     .help = "activates a robot for commands without a robot's name",
      .example = "ROBACT PUMA_762"},
     {.id = FormId::tf_load,
      .name = "TF_LOAD",
      .syntax = "TF_LOAD <teach_filename> <Robot_id>",
      .section = kSection,
      .parameters = kProgramOfRobot,
-     .help = "reads and checks a robot program for a robot without starting it",
+     .help = "loads and validates a robot program for a robot without starting it",
      .example = "TF_LOAD r3demo mantec_R3",
-     .definition = "looked for in the home's programs folder, then in scripts, with and without the extensions of the "
-                   "current language; a program with any error is not loaded; a name already loaded is replaced unless "
-                   "it runs or is queued"},
+     .definition =
+         "searched in the cell folder's programs, then in scripts, with and without the extensions of the current "
+         "language; a program with any error is not loaded; an existing name is replaced unless it runs or is queued"},
     {.id = FormId::tf_run,
      .name = "TF_RUN",
      .syntax = "TF_RUN <teach_filename> <Robot_id> [exec_wait]",
      .section = kSection,
      .parameters = kRun,
-     .help = "starts a loaded robot program beside the others, or behind the robot's running one",
+     .help = "starts a loaded robot program, or queues it after the robot's running one",
      .example = "TF_RUN hs2 ZELLENKRAN exec_wait",
-     .definition = "refused for a program that is not loaded for that robot, or runs or is queued already, and beside "
-                   "another program of the robot without exec_wait; done when the program has its place; WAIT and "
-                   "TF_WAIT wait for its end",
+     .definition = "refused for a program that is not loaded for that robot, or runs or is queued already, or while "
+                   "another program of the robot runs, without exec_wait; done when the program is started or queued; "
+                   "WAIT and TF_WAIT wait for its end",
      .effect = LoopEffect::queued},
     {.id = FormId::tf_delete,
      .name = "TF_DELETE",
@@ -149,10 +148,10 @@ constexpr Form kForms[] = {
      .syntax = "LOAD_VIEWS <view_filename>",
      .section = kSection,
      .parameters = kViewFile,
-     .help = "sets the stored views of a file (default extension .vws) of the home's scripts folder",
+     .help = "sets the stored views of a file (default extension .vws) of the cell folder's scripts",
      .example = "LOAD_VIEWS view1.vws",
-     .definition = "the format is ours, docs/cell-files.md; a file with any error sets nothing; views that it does not "
-                   "name stay"},
+     .definition =
+         "the format is ours, docs/cell-files.md; a file with any error sets nothing; other views stay unchanged"},
     {.id = FormId::exec_script,
      .name = "EXEC_SCRIPT",
      .syntax = "EXEC_SCRIPT <script_file>",
@@ -160,8 +159,8 @@ constexpr Form kForms[] = {
      .parameters = kScriptFile,
      .help = "calls another SCRIPT file (default extension .spt) like a subroutine",
      .example = "EXEC_SCRIPT trs_demo.spt",
-     .definition = "refused for the calling file, any file that is already being called, beyond a depth of 32, and for "
-                   "a file with syntax errors",
+     .definition = "refused for the calling file, any file in the call chain, beyond a depth of 32, and for a file "
+                   "with syntax errors",
      .effect = LoopEffect::none},
     {.id = FormId::draw_scene,
      .name = "DRAW_SCENE",
@@ -169,15 +168,15 @@ constexpr Form kForms[] = {
      .section = kSection,
      .help = "recalculates the kinematics and renders the views",
      .example = "DRAW_SCENE",
-     .definition = "done when the picture thread has the result; it draws without being told, so this only waits until "
-                   "jumps of robots have arrived",
+     .definition = "done when the render thread has the result; it draws continuously, so this only waits until robots "
+                   "have jumped",
      .effect = LoopEffect::queued},
     {.id = FormId::connect,
      .name = "CONNECT",
      .syntax = "CONNECT <frame_2> TO <frame_1>",
      .section = kSection,
      .parameters = kConnect,
-     .help = "makes frame_1 the predecessor of frame_2, which stays where it is and moves along from then on",
+     .help = "makes frame_1 the predecessor of frame_2, which keeps its pose and moves along from then on",
      .example = "CONNECT Testlab_1.FL_Klein_02.Flansch_Typ1 TO Mantec_1.HAND",
      .definition = "making a frame its own ancestor is refused",
      .effect = LoopEffect::queued},
@@ -188,7 +187,7 @@ constexpr Form kForms[] = {
      .parameters = kFrameToWorkframe,
      .help = "makes frame_1 the predecessor of frame_2, which jumps to the pose that the workframe defines",
      .example = "FRAME_TO_WFRM Toolbox.Tool1 TO Mantec_1.HAND Tool1_WFRM",
-     .definition = "frame_2 is what moves along, as in CONNECT; making a frame its own ancestor is refused",
+     .definition = "frame_2 moves along, as in CONNECT; making a frame its own ancestor is refused",
      .effect = LoopEffect::queued},
 };
 

@@ -12,7 +12,7 @@ constexpr std::string_view kSection = "ours";
 constexpr Range kWarningDistance{0.0, 100000.0, false, false};
 
 constexpr Choice kPositionings[] = {{"move", "POS_ROB moves the robot, the default"},
-                                    {"jump", "POS_ROB puts the robot there at once"}};
+                                    {"jump", "POS_ROB sets the robot to its target at once"}};
 constexpr Choice kPaths[] = {{"PTP", "point to point"}, {"LIN", "the TCP on a straight line"}};
 constexpr Choice kPtpOnly[] = {{"PTP", "point to point"}};
 
@@ -47,9 +47,8 @@ constexpr Parameter kReference[] = {robot(), choice("PTP", "path", kPtpOnly), wo
 constexpr Parameter kStop[] = {robot()};
 constexpr Parameter kResetHaptic[] = {robot()};
 
-constexpr Choice kPairTreatments[] = {{"ignore", "they are not tested"},
-                                      {"test", "they are tested, whatever was derived"},
-                                      {"derive", "the rule is taken back"}};
+constexpr Choice kPairTreatments[] = {
+    {"ignore", "not tested"}, {"test", "tested, whatever was derived"}, {"derive", "the rule is removed"}};
 constexpr Parameter kCollisionActive[] = {word("active"), choice("0 | 1", "switch", kZeroOne)};
 constexpr Parameter kCollisionWarning[] = {word("warning"),
                                            number("distance", "warning distance", Unit::mm, kWarningDistance)};
@@ -58,11 +57,11 @@ constexpr Parameter kCollisionPair[] = {word("pair"), named(NameKind::branch, "n
                                         choice("ignore | test | derive", "treatment", kPairTreatments)};
 
 constexpr Range kPortNumber{1.0, 1024.0, false, false};
-constexpr Choice kStepDirections[] = {{"FORWARD", "as the program goes"},
-                                      {"BACKWARD", "back to the check point before"}};
+constexpr Choice kStepDirections[] = {{"FORWARD", "in program order"},
+                                      {"BACKWARD", "back to the previous check point"}};
 constexpr Choice kRecordSteps[] = {{"START", "begins a recording"},
                                    {"POINT", "a check point where the robot is now"},
-                                   {"STOP", "ends it and writes the file"}};
+                                   {"STOP", "ends the recording and writes the file"}};
 constexpr Parameter kProgramRobot[] = {robot()};
 constexpr Parameter kProgramOfRobot[] = {file("teach_filename", "robot program"), robot()};
 constexpr Parameter kStep[] = {robot(), optional(choice("direction", "direction", kStepDirections), "FORWARD")};
@@ -74,11 +73,9 @@ constexpr Parameter kAnalogueInput[] = {robot(), integer("number", "analogue inp
                                         number("value", "value", Unit::none)};
 
 constexpr std::string_view kQueued =
-    "begins when the robot has done what was commanded before; the command is done when the move waits its turn (at "
-    "most "
-    "32 a robot)";
+    "begins after all earlier moves of the robot; the command is done when the move is queued (at most 32 per robot)";
 constexpr std::string_view kQueuedIncrement =
-    "as in POS_ROB, from the end of the move before; begins when the robot has done what was commanded before";
+    "as in POS_ROB, from the end of the previous move; begins after all earlier moves of the robot";
 
 constexpr Form move_form(FormId id, std::string_view syntax, std::span<const Parameter> parameters,
                          std::string_view help, std::string_view example) {
@@ -110,7 +107,7 @@ constexpr Form kForms[] = {
      .syntax = "SAVE_FLIGHT <file>",
      .section = kSection,
      .parameters = kFlight,
-     .help = "writes the flight recorder into the home's records folder",
+     .help = "writes the flight recorder into the cell folder's records",
      .example = "SAVE_FLIGHT before_stop.csv",
      .definition = "a plain file name without folders",
      .origin = Origin::ours},
@@ -119,9 +116,9 @@ constexpr Form kForms[] = {
      .syntax = "rob_positioning [move | jump]",
      .section = kSection,
      .parameters = kPositioning,
-     .help = "sets whether POS_ROB moves the active robot or puts it there at once",
+     .help = "sets whether POS_ROB moves the active robot or sets it to its target at once",
      .example = "rob_positioning move",
-     .definition = "with jump, nothing is limited but the ranges of the joints; MOVE_ROB moves all the same",
+     .definition = "with jump, only the ranges of the joints are limits; MOVE_ROB always moves",
      .origin = Origin::ours,
      .needs_active_robot = true},
     move_form(FormId::move_rob_joint_abs, "MOVE_ROB <Robot_id> [PTP | LIN] JOINT_ABS <j1> ... <jn>", kJointAbs,
@@ -150,9 +147,9 @@ constexpr Form kForms[] = {
      .syntax = "STOP_ROB <Robot_id>",
      .section = kSection,
      .parameters = kStop,
-     .help = "brakes a robot's move on its path and forgets the moves that wait",
+     .help = "brakes a robot's move on its path and discards queued moves",
      .example = "STOP_ROB MANTEC_RM3",
-     .definition = "done when the loop was told; a POS_ROB that is stopped so is refused to whoever waits for it",
+     .definition = "done when the loop has received it; a stopped POS_ROB is refused to its client",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::set_collpar_active,
@@ -162,7 +159,7 @@ constexpr Form kForms[] = {
      .parameters = kCollisionActive,
      .help = "switches collision tests off or on",
      .example = "SET_COLLPAR active 0",
-     .definition = "what was found before stays in status with its age",
+     .definition = "earlier results stay in status with their age",
      .selector = Selector::by_first_word,
      .origin = Origin::ours},
     {.id = FormId::set_collpar_warning,
@@ -179,12 +176,11 @@ constexpr Form kForms[] = {
      .syntax = "SET_COLLPAR pair <node_a> <node_b> [ignore | test | derive]",
      .section = kSection,
      .parameters = kCollisionPair,
-     .help = "says whether bodies of two branches are tested against each other",
+     .help = "sets whether bodies of two branches are tested against each other",
      .example = "SET_COLLPAR pair Toolbox.Tool1 Mantec_1.HAND ignore",
-     .definition =
-         "a frame stands for itself and everything below it by name, the cell's name for the cell's own geometry; the "
-         "newest rule that fits a pair counts, those of the cell file are older; derive takes back the rules for just "
-         "these two, also of the cell file",
+     .definition = "a frame means itself and everything below it by name, the cell's name the cell's own geometry; the "
+                   "newest matching rule counts, those of the cell file are older; derive removes the rules for just "
+                   "these two, including those of the cell file",
      .selector = Selector::by_first_word,
      .origin = Origin::ours},
     {.id = FormId::reset_haptic,
@@ -192,9 +188,9 @@ constexpr Form kForms[] = {
      .syntax = "RESET_HAPTIC <Robot_id>",
      .section = kSection,
      .parameters = kResetHaptic,
-     .help = "lets a haptic device bear force again after a fault, which latches and takes the force away",
+     .help = "resets the latched fault of a haptic device, which removed its force",
      .example = "RESET_HAPTIC MANTEC_RM3",
-     .definition = "forces fade in again; refused where the robot has no haptic device",
+     .definition = "forces fade in again; refused if the robot has no haptic device",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::save_views,
@@ -202,10 +198,10 @@ constexpr Form kForms[] = {
      .syntax = "SAVE_VIEWS <view_filename>",
      .section = kSection,
      .parameters = kViewFile,
-     .help = "writes the seven views, their cameras and the display into a file (.vws) of the home's scripts folder",
+     .help = "writes the seven views, their cameras and the display into a file (.vws) of the cell folder's scripts",
      .example = "SAVE_VIEWS my_views.vws",
-     .definition = "a plain file name without folders; a file of that name is replaced; a view on its way is saved as "
-                   "it will be",
+     .definition = "a plain file name without folders; a file of that name is replaced; a view in a sequence is saved "
+                   "in its final state",
      .origin = Origin::ours},
     {.id = FormId::tf_back,
      .name = "TF_BACK",
@@ -214,8 +210,8 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "runs a loaded robot program backward, from its last check point to its first",
      .example = "TF_BACK r3_taught mantec_R3",
-     .definition = "for programs of check points (jet_boom, jet_tarm); its comments and outputs are passed over; "
-                   "refused as TF_RUN is",
+     .definition =
+         "for programs of check points (jet_boom, jet_tarm); its comments and outputs are skipped; refused like TF_RUN",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_hold,
@@ -223,10 +219,10 @@ constexpr Form kForms[] = {
      .syntax = "TF_HOLD <Robot_id>",
      .section = kSection,
      .parameters = kProgramRobot,
-     .help = "holds the robot program that runs: the robot brakes on its path and waits there",
+     .help = "holds the running robot program: the robot brakes on its path and waits there",
      .example = "TF_HOLD MANTEC_RM3",
      .definition =
-         "within the robot's accelerations; nothing of the program is carried out meanwhile, and no time limit runs",
+         "within the robot's accelerations; meanwhile nothing of the program executes, and no time limit runs",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_resume,
@@ -234,9 +230,9 @@ constexpr Form kForms[] = {
      .syntax = "TF_RESUME <Robot_id>",
      .section = kSection,
      .parameters = kProgramRobot,
-     .help = "lets a held robot program go on, on the path where it was held",
+     .help = "resumes a held robot program on its path",
      .example = "TF_RESUME MANTEC_RM3",
-     .definition = "also behind the PAUSE of a program and behind TF_STEP",
+     .definition = "also after the PAUSE of a program and after TF_STEP",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_step,
@@ -244,9 +240,9 @@ constexpr Form kForms[] = {
      .syntax = "TF_STEP <Robot_id> [FORWARD | BACKWARD]",
      .section = kSection,
      .parameters = kStep,
-     .help = "lets a held robot program do one move, and holds it again",
+     .help = "executes one move of a held robot program, and holds it again",
      .example = "TF_STEP MANTEC_RM3 FORWARD",
-     .definition = "what stands before that move is carried out too; BACKWARD for programs of check points only",
+     .definition = "statements before that move execute, too; BACKWARD for programs of check points only",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_stop,
@@ -254,11 +250,10 @@ constexpr Form kForms[] = {
      .syntax = "TF_STOP <Robot_id>",
      .section = kSection,
      .parameters = kProgramRobot,
-     .help = "ends the robot program that runs and forgets those that are queued behind it; the robot brakes",
+     .help = "ends the running robot program and discards queued ones; the robot brakes",
      .example = "TF_STOP MANTEC_RM3",
-     .definition = "works at once, also on endless loops; refused where none runs; STOP_ROB does the same where a "
-                   "program moves the "
-                   "robot",
+     .definition = "effective at once, also in endless loops; refused if none runs; STOP_ROB does the same if a "
+                   "program moves the robot",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_wait,
@@ -268,8 +263,8 @@ constexpr Form kForms[] = {
      .parameters = kProgramRobot,
      .help = "waits until the robot's programs have ended",
      .example = "TF_WAIT MANTEC_RM3",
-     .definition = "suspends the SCRIPT file that contains it; a message is answered then; refused with what failed; "
-                   "robot programs themselves cannot wait so",
+     .definition = "suspends the SCRIPT file that contains it; a message is answered then; refused with the failure; "
+                   "not allowed in robot programs",
      .effect = LoopEffect::blocking,
      .origin = Origin::ours},
     {.id = FormId::tf_record,
@@ -277,11 +272,10 @@ constexpr Form kForms[] = {
      .syntax = "TF_RECORD <teach_filename> <Robot_id> [START | POINT | STOP] [point]",
      .section = kSection,
      .parameters = kRecord,
-     .help = "records a teach file (jet_boom, jet_tarm) from what a robot does",
+     .help = "records a teach file (jet_boom, jet_tarm) from the motion of a robot",
      .example = "TF_RECORD taught PUMA_762 START",
-     .definition = "check points are where the robot rests and where POINT is commanded; STOP writes the file into the "
-                   "home's programs folder; the language is that of ROBOT_LANGUAGE if it is one of the two, else "
-                   "jet_boom",
+     .definition = "check points are created where the robot rests and at POINT; STOP writes the file into the cell "
+                   "folder's programs; the language is that of ROBOT_LANGUAGE if it is one of the two, else jet_boom",
      .origin = Origin::ours},
     {.id = FormId::set_input,
      .name = "SET_INPUT",
@@ -290,7 +284,7 @@ constexpr Form kForms[] = {
      .parameters = kDigitalInput,
      .help = "sets a digital input of a robot's virtual controller",
      .example = "SET_INPUT MANTEC_RM3 3 on",
-     .definition = "all are off in the beginning",
+     .definition = "initially all are off",
      .origin = Origin::ours},
     {.id = FormId::set_analog_input,
      .name = "SET_ANALOG_INPUT",
@@ -299,7 +293,7 @@ constexpr Form kForms[] = {
      .parameters = kAnalogueInput,
      .help = "sets an analogue input of a robot's virtual controller",
      .example = "SET_ANALOG_INPUT MANTEC_RM3 1 4.75",
-     .definition = "all are 0 in the beginning; the unit is the program's affair",
+     .definition = "initially all are 0; the program defines the unit",
      .origin = Origin::ours},
 };
 

@@ -30,7 +30,7 @@ inline constexpr Range kPositive{0.0, kInfinity, true, false};
 inline constexpr Range kNotNegative{0.0, kInfinity, false, false};
 inline constexpr Range kUnsigned{0.0, kMaxUnsigned, false, false};
 inline constexpr Range kOpeningAngle{0.0, 180.0, true, true};
-inline constexpr Range kSharedMemoryKey{1.0, kMaxUnsigned, false, false};  // 0 is IPC_PRIVATE, which nobody can share
+inline constexpr Range kSharedMemoryKey{1.0, kMaxUnsigned, false, false};  // 0 is IPC_PRIVATE, which cannot be shared
 
 inline constexpr Choice kOnOff[] = {{"on", "on"}, {"off", "off"}};
 inline constexpr Choice kOnlineOffline[] = {{"online", "on"}, {"offline", "off"}};
@@ -97,7 +97,7 @@ constexpr Parameter optional(Parameter parameter, std::string_view default_text 
   return parameter;
 }
 
-// `label` stands before the values; labelled groups come in any order.
+// `label` precedes the values; labelled groups come in any order.
 constexpr Parameter labelled(std::string_view label, Parameter parameter, std::uint8_t width = 1,
                              std::uint8_t alternatives = 0) {
   parameter.label = label;

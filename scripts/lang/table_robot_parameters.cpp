@@ -70,7 +70,7 @@ constexpr Parameter kProfile[] = {choice("sine | ramp", "velocity profile", kPro
 constexpr Parameter kInverse[] = {choice("solution_hint", "inverse kinematics class", kInverseClasses)};
 constexpr Parameter kArc[] = {on_off("welding spark")};
 
-constexpr std::string_view kOneForEachJoint = "one value for each joint of the active robot, neither more nor fewer";
+constexpr std::string_view kOneForEachJoint = "exactly one value for each joint of the active robot";
 constexpr std::string_view kOffsetOrder = "translation, then roll, pitch, yaw; with or without commas";
 
 constexpr Form joint_form(FormId id, std::string_view name, std::string_view syntax,
@@ -102,21 +102,21 @@ constexpr Form scalar_form(FormId id, std::string_view name, std::string_view sy
 
 constexpr Form kForms[] = {
     scalar_form(FormId::rob_cart_lin_vel, "rob_cart_lin_vel", "rob_cart_lin_vel <lin_vel>", kLinearVelocity,
-                "sets the active robot's greatest velocity in linear moves", "rob_cart_lin_vel 1200.0"),
+                "sets the active robot's maximum velocity in linear moves", "rob_cart_lin_vel 1200.0"),
     scalar_form(FormId::rob_cart_lin_acc, "rob_cart_lin_acc", "rob_cart_lin_acc <lin_acc>", kLinearAcceleration,
-                "sets its greatest acceleration in linear moves", "rob_cart_lin_acc 4800.0"),
+                "sets its maximum acceleration in linear moves", "rob_cart_lin_acc 4800.0"),
     scalar_form(FormId::rob_cart_rot_vel, "rob_cart_rot_vel", "rob_cart_rot_vel <ang_vel>", kAngularVelocity,
-                "sets its greatest angular velocity of the tool in linear moves", "rob_cart_rot_vel 360.0"),
+                "sets its maximum angular velocity of the tool in linear moves", "rob_cart_rot_vel 360.0"),
     scalar_form(FormId::rob_cart_rot_acc, "rob_cart_rot_acc", "rob_cart_rot_acc <ang_acc>", kAngularAcceleration,
-                "sets its greatest angular acceleration of the tool in linear moves", "rob_cart_rot_acc 720.0"),
+                "sets its maximum angular acceleration of the tool in linear moves", "rob_cart_rot_acc 720.0"),
     scalar_form(FormId::rob_cart_vel_scal, "rob_cart_vel_scal", "rob_cart_vel_scal <scale>", kVelocityScale,
                 "scales its linear and angular velocity in linear moves", "rob_cart_vel_scal 0.3"),
     scalar_form(FormId::rob_cart_acc_scal, "rob_cart_acc_scal", "rob_cart_acc_scal <scale>", kAccelerationScale,
                 "scales its acceleration in linear moves", "rob_cart_acc_scal 0.65"),
     scalar_form(FormId::rob_cart_fly_radius, "rob_cart_fly_radius", "rob_cart_fly_radius <fly_type> <fly_parameter>",
                 kFly,
-                "sets where a linear move flies past its target: 0 below a fraction of the velocity, 1 within a "
-                "distance, 2 within an angle",
+                "sets the fly point of linear moves: 0 below a fraction of the velocity, 1 within a distance, 2 within "
+                "an angle",
                 "rob_cart_fly_radius 1 5.0"),
     scalar_form(FormId::rob_program_delays, "rob_program_delays", "rob_program_delays <delay>", kDelay,
                 "sets the delay between TF_RUN and the start of a program", ""),
@@ -130,21 +130,22 @@ constexpr Form kForms[] = {
     joint_form(FormId::rob_jnt_ref_pos, "rob_jnt_ref_pos", "rob_jnt_ref_pos <n values>", kReference,
                "sets the controller's reference position", "rob_jnt_ref_pos 17.35 0 -12.79307 1.507E-03 0.0 15.2003"),
     joint_form(FormId::rob_jnt_max_vel, "rob_jnt_max_vel", "rob_jnt_max_vel <n values>", kMaxVelocity,
-               "sets the greatest velocities of the joints",
+               "sets the maximum velocities of the joints",
                "rob_jnt_max_vel 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
     joint_form(FormId::rob_jnt_min_vel, "rob_jnt_min_vel", "rob_jnt_min_vel <n values>", kMinVelocity,
-               "sets the smallest velocities of the joints (stepper motors)",
+               "sets the minimum velocities of the joints (stepper motors)",
                "rob_jnt_min_vel 8.5 3.14159E-04 4.014257E-04"),
     joint_form(FormId::rob_jnt_act_vel, "rob_jnt_act_vel", "rob_jnt_act_vel <n values>", kActiveVelocity,
-               "sets the velocities that hold until a program sets others", "rob_jnt_act_vel 1300.0 3.14159 1.5707963"),
+               "sets the velocities in force until a program sets others", "rob_jnt_act_vel 1300.0 3.14159 1.5707963"),
     joint_form(FormId::rob_jnt_max_acc, "rob_jnt_max_acc", "rob_jnt_max_acc <n values>", kMaxAcceleration,
-               "sets the greatest accelerations of the joints",
+               "sets the maximum accelerations of the joints",
                "rob_jnt_max_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
     joint_form(FormId::rob_jnt_act_acc, "rob_jnt_act_acc", "rob_jnt_act_acc <n values>", kActiveAcceleration,
-               "sets the accelerations that hold until a program sets others",
+               "sets the accelerations in force until a program sets others",
                "rob_jnt_act_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
     scalar_form(FormId::rob_ptp_mode, "rob_PTPmode", "rob_PTPmode [sync | async]", kPtp,
-                "lets the axes of a point-to-point move end together, or each at its own time", "rob_PTPmode sync"),
+                "sets whether the axes of a point-to-point move end together or each at its own time",
+                "rob_PTPmode sync"),
     {.id = FormId::rob_por_def,
      .name = "rob_por_def",
      .syntax = "rob_por_def <X Y Z P R Y>",
@@ -170,14 +171,14 @@ constexpr Form kForms[] = {
     scalar_form(FormId::rob_vel_profile, "rob_vel_profile", "rob_vel_profile [sine | ramp]", kProfile,
                 "sets the shape of the velocity profile", "rob_vel_profile ramp"),
     scalar_form(FormId::rob_inverse_class, "rob_inverse_class", "rob_inverse_class <solution_hint>", kInverse,
-                "sets which part of a pose the inverse kinematics must meet, and how redundancy is resolved",
+                "sets the part of a pose that inverse kinematics must meet, and the resolution of redundancy",
                 "rob_inverse_class align_POS"),
     {.id = FormId::arc,
      .name = "ARC",
      .syntax = "ARC [on | off]",
      .section = kSection,
      .parameters = kArc,
-     .help = "draws a welding spark at the active robot's TCP, or not",
+     .help = "shows or hides a welding spark at the active robot's TCP",
      .example = "ARC on",
      .needs_active_robot = true},
 };

@@ -70,7 +70,7 @@ constexpr Form kForms[] = {
      .syntax = "VV_SET_LUT_PAR MEDICAL_LUT <air> <fat> <tissue> <bone>",
      .section = kSection,
      .parameters = kMedical,
-     .help = "sets how visible each type of tissue is in the medical table",
+     .help = "sets the visibility of each type of tissue in the medical table",
      .missing = kVolumes,
      .selector = Selector::by_first_word},
     {.id = FormId::vv_set_lut_par,
@@ -85,7 +85,7 @@ constexpr Form kForms[] = {
      .name = "VV_RELOAD_LUTS",
      .syntax = "VV_RELOAD_LUTS",
      .section = kSection,
-     .help = "loads all look-up tables again",
+     .help = "reloads all look-up tables",
      .missing = kVolumes},
 };
 

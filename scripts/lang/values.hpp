@@ -23,8 +23,8 @@ namespace cellmirror::script {
 // The index of the choice, without regard to case.
 [[nodiscard]] std::optional<std::size_t> choice_of(std::string_view word, std::span<const Choice> choices);
 
-// For the units that depend on a joint `kind` is its kind; the other units do not look at it. The units that depend
-// on another value must have been resolved before.
+// For the units that depend on a joint `kind` is its kind; the other units ignore it. The units that depend on another
+// value must have been resolved before.
 [[nodiscard]] double to_si(double value, Unit unit, JointKind kind = JointKind::revolute);
 
 // "0.01..1", "more than 0 mm", "more than 0 and less than 180 degrees"

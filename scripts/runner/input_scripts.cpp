@@ -9,7 +9,7 @@ namespace cellmirror::script {
 namespace {
 
 constexpr std::string_view kLogKind = "foot-switches";
-// Files that are not there are looked for all the same: a flood of such changes must not hold the owner up.
+// Missing files are still looked up: a flood of such changes must not delay the owner.
 constexpr int kFilesInATurn = 64;
 
 }  // namespace
@@ -23,7 +23,7 @@ bool InputScripts::add(const InputChange& change) {
   if (waiting_.size() == kMostWaiting) {
     ++counters_.dropped;
     if (!dropping_) {
-      log_warning(kLogKind, "{} does not run, nor do those behind it: {} changes wait already",
+      log_warning(kLogKind, "{} and later scripts are dropped: {} changes are waiting already",
                   input_script_name(change.input, change.on), kMostWaiting);
     }
     dropping_ = true;
@@ -68,7 +68,7 @@ bool InputScripts::start(const InputChange& change) {
   const std::string name = input_script_name(change.input, change.on);
   if (const auto path = home_.file("scripts", name); !path) {
     ++counters_.missing;
-    if (told_missing_.insert(name).second) log_warning(kLogKind, "{} (said once)", path.error().text());
+    if (told_missing_.insert(name).second) log_warning(kLogKind, "{} (reported once)", path.error().text());
     return false;
   }
   told_missing_.erase(name);

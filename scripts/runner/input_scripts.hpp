@@ -33,7 +33,7 @@ class InputScripts {
     std::uint64_t started = 0;
     std::uint64_t missing = 0;      // there is no such file: nothing to do
     std::uint64_t refused = 0;      // the file is there but does not run: syntax errors, unreadable
-    std::uint64_t dropped = 0;      // too many waited, or the inputs went offline before
+    std::uint64_t dropped = 0;      // the queue was full, or the inputs went offline first
     std::uint64_t with_errors = 0;  // ran, but commands of it were refused
   };
   struct Last {
@@ -43,26 +43,26 @@ class InputScripts {
     std::uint64_t refused = 0;  // commands
   };
 
-  // Runner, home and clock outlive this.
+  // Runner, cell folder and clock outlive this.
   InputScripts(ScriptRunner& runner, const KismetHome& home, const Clock& clock)
       : runner_(runner), home_(home), clock_(clock) {}
 
   // Behind the changes that wait. False where it was dropped.
   bool add(const InputChange& change);
-  // Forgets what waits; the script under way goes on.
+  // Discards waiting changes; the running script continues.
   void forget();
   // Starts the next script when the one before has ended. Often: before and after each step of the runner. True where
   // one was started: it has the runner's next turn.
   bool follow();
 
-  // Told how long after `since` the first command of a script was executed.
+  // Receives the time from `since` to the first executed command of a script.
   void on_first_command(std::function<void(Nanoseconds)> callback) { first_command_ = std::move(callback); }
 
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   [[nodiscard]] bool idle() const { return waiting_.empty() && run_ == 0; }
   [[nodiscard]] const Counters& counters() const { return counters_; }
   [[nodiscard]] const Last& last() const { return last_; }
-  // Files that were looked for and not found, and have not come since.
+  // Files that were not found, and still do not exist.
   [[nodiscard]] const std::set<std::string>& missing_files() const { return told_missing_; }
 
  private:
@@ -75,7 +75,7 @@ class InputScripts {
   std::deque<InputChange> waiting_;
   bool dropping_ = false;  // the newest change was dropped
   std::uint64_t run_ = 0;  // of the script under way; 0: none
-  Timestamp since_;        // of its change; never: its first command was told
+  Timestamp since_;        // of its change; never: its first command was reported
   std::set<std::string> told_missing_;
   std::function<void(Nanoseconds)> first_command_;
   Counters counters_;

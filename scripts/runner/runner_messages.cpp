@@ -31,8 +31,7 @@ bool waits_for_programs(FormId id) { return id == FormId::wait || id == FormId::
 
 }  // namespace
 
-// Programs are read and begin later, and then it turns out what is wrong with them. (A robot that does not arrive was
-// told to do something else.)
+// Programs load and begin later, when their errors are found. (A robot that does not arrive has got another command.)
 bool ScriptRunner::may_be_wrong_later(FormId id) {
   return id == FormId::tf_load || id == FormId::tf_run || id == FormId::tf_back;
 }
@@ -98,8 +97,8 @@ std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& co
   }
   Result<std::string> result;
   if (step == CommandReader::Step::command && from == CommandSource::program && waits_for_programs(command.id())) {
-    result = fail(fmt::format("{}: a robot program cannot wait for programs, it is one itself", command.form().name),
-                  "let programs wait for each other with semaphores");
+    result = fail(fmt::format("{}: a robot program cannot wait for programs", command.form().name),
+                  "synchronise programs by semaphores");
   } else if (step == CommandReader::Step::command) {
     Outcome outcome = execute(command, host_);
     if (outcome.kind == Outcome::Kind::pending) {

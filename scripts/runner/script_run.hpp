@@ -14,7 +14,7 @@
 
 namespace cellmirror::script {
 
-// A file on the call stack. Neither copied nor moved: the reader looks into the text.
+// A file on the call stack. Neither copied nor moved: the reader refers to the text.
 class ScriptFile {
  public:
   ScriptFile(std::filesystem::path path, std::string name, std::string text)
@@ -50,7 +50,7 @@ class ScriptRun {
   std::uint64_t failures = 0;  // ProgramHost::failures() when the run began, or its newest WAIT ended
   ActivityHandle activity;     // not null: of the last command, which is done when this has ended
   Place activity_place;
-  bool tells_later = false;  // the activity may find out that its command was wrong, which is told without the run too
+  bool tells_later = false;  // the activity may fail later, which is reported without the run too
   Timestamp first_command;
   RunReport report;
 };

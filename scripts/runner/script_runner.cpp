@@ -18,9 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What a step may do is bounded by work, not by commands, so that a script that loads large files or asks for a
-// thousand unknown names does not keep messages waiting: a refusal looks for the nearest names, a file is checked when
-// loaded.
+// What a step may do is bounded by work, not by commands, so that a script with large files or a thousand unknown names
+// does not delay messages: a refusal searches the nearest names, a file is checked when loaded.
 constexpr std::size_t kWorkOfRefusal = 15;
 constexpr std::size_t kBytesOfWork = 256;
 
@@ -35,7 +34,7 @@ std::string utc_text(Timestamp now) {
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-// Relative to the home where the file lies in it.
+// Relative to the cell folder if the file is in it.
 std::string shown_name(const fs::path& path, const fs::path& home) {
   const fs::path relative = path.lexically_relative(home);
   return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
@@ -70,7 +69,7 @@ Result<std::uint64_t> ScriptRunner::start_path(const fs::path& path, Diagnostics
 Result<std::uint64_t> ScriptRunner::start(const fs::path& path, Diagnostics* findings) {
   if (runs_.size() == kMaxRuns) {
     ++counters_.scripts_refused;
-    return fail(fmt::format("{} SCRIPT files run already", kMaxRuns), "wait until one of them has ended");
+    return fail(fmt::format("{} SCRIPT files are running already", kMaxRuns), "wait until one of them has ended");
   }
   Diagnostics own;
   Diagnostics& found = findings == nullptr ? own : *findings;
@@ -83,7 +82,7 @@ Result<std::uint64_t> ScriptRunner::start(const fs::path& path, Diagnostics* fin
   return last_id_;
 }
 
-// A file with syntax errors is refused as a whole, so that nothing is done by halves. Names are looked up when each
+// A file with syntax errors is refused as a whole, so that it is not executed partly. Names are looked up when each
 // command is executed, since the commands before it may create them.
 Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Diagnostics& findings) {
   const auto refused = [this](Error why) {
@@ -99,8 +98,8 @@ Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Dia
   work_ += text->size() / kBytesOfWork;
   const std::string name = shown_name(path, home_.root());
   if (bytes > kMaxTextBytes) {
-    return refused({fmt::format("{} does not fit beside the SCRIPT files that run: {} bytes are allowed together", name,
-                                kMaxTextBytes),
+    return refused({fmt::format("{} exceeds the memory of all running SCRIPT files: the limit is {} bytes together",
+                                name, kMaxTextBytes),
                     "wait until one of them has ended"});
   }
   const std::size_t errors_before = findings.errors();
@@ -109,8 +108,8 @@ Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Dia
   if (errors != 0) {
     const auto first = std::find_if(findings.all().begin(), findings.all().end(),
                                     [](const Diagnostic& d) { return d.severity == Severity::error; });
-    return refused({fmt::format("{} has {} error{}, nothing of it runs; the first: {}", name, errors,
-                                errors == 1 ? "" : "s", first->text()),
+    return refused({fmt::format("{} has {} error{}and is not run; the first: {}", name, errors, errors == 1 ? "" : "s",
+                                first->text()),
                     "`cellmirror check` shows all of them"});
   }
   return std::make_unique<ScriptFile>(path, name, std::move(*text));
@@ -247,7 +246,7 @@ Result<void> ScriptRunner::call(ScriptRun& run, std::string_view name, Diagnosti
   }
   if (on_stack) return refused(fmt::format("EXEC_SCRIPT: {} is being executed already: {}{}", shown, callers, shown));
   if (run.stack.size() >= kMaxScriptDepth) {
-    return refused(fmt::format("EXEC_SCRIPT: {} SCRIPT files are called within each other already", kMaxScriptDepth));
+    return refused(fmt::format("EXEC_SCRIPT: {} nested SCRIPT files are running already", kMaxScriptDepth));
   }
   auto file = load(*path, findings);
   if (!file) return std::unexpected(std::move(file.error()));
@@ -279,7 +278,7 @@ void ScriptRunner::end_run(std::size_t index, bool stopped) {
   if (run_ended_) run_ended_(run->report);
 }
 
-// The last command of a run that was stopped goes on; its end counts, and what is wrong with it is told.
+// The last command of a stopped run continues; its end counts, and its error is reported.
 void ScriptRunner::leave_activity(const ScriptRun& run) {
   if (!run.activity) return;
   if (!run.tells_later) {

@@ -53,7 +53,7 @@ struct ScriptCounters {
 // A run that has ended (or was stopped).
 struct RunReport {
   std::uint64_t id = 0;
-  std::string file;  // relative to the home, as in diagnostics
+  std::string file;  // relative to the cell folder, as in diagnostics
   SourceCounters counters;
   bool stopped = false;
   Diagnostics diagnostics;
@@ -80,25 +80,25 @@ class ScriptRunner {
   static constexpr std::size_t kKeptErrors = 20;                     // last_errors
   static constexpr std::size_t kSlice = 64;                          // commands of one run before the next has its turn
 
-  // The host, the home and the clock must outlive the runner. The clock dates errors and first commands.
+  // The host, the cell folder and the clock must outlive the runner. The clock dates errors and first commands.
   ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock);
   ~ScriptRunner();
   ScriptRunner(const ScriptRunner&) = delete;
   ScriptRunner& operator=(const ScriptRunner&) = delete;
 
-  // Starts a file of the home's scripts/ folder (default extension .spt) as a run of its own; nothing of it has been
-  // executed yet when the call returns. Refused: missing, unreadable, outside of the home, too large, with syntax
-  // errors (then nothing of it runs; the findings are in the error's text and, with `findings`, one by one). Returns
-  // the run's id.
+  // Starts a file of the cell folder's scripts/ (default extension .spt) as a run of its own; nothing of it has been
+  // executed yet when the call returns. Refused: missing, unreadable, outside the cell folder, too large, with syntax
+  // errors (nothing of it runs; the diagnostics are in the error's text and, individually, in `findings`). Returns the
+  // run's id.
   Result<std::uint64_t> start_file(std::string_view name, Diagnostics* findings = nullptr);
-  // The same for a file that the operator named on the command line: it may lie anywhere.
+  // The same for a file that the operator named on the command line: it may be anywhere.
   Result<std::uint64_t> start_path(const std::filesystem::path& path, Diagnostics* findings = nullptr);
 
   // Executes one command now, whatever the files do; returns a text for the acknowledgement. EXEC_SCRIPT starts the
   // file and returns when it was accepted, a motion when it has begun; WAIT is refused. `source` names the sender in
   // errors. A robot program that cannot be loaded or run later is counted and remembered as refused then.
   Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
-  // The same for a sender who is answered, once: now, or within a step() when what the command began has ended.
+  // The same for a client that gets one answer: now, or within a step() when the command's activity has ended.
   using Answer = std::function<void(const Result<std::string>& result)>;
   void execute_message(std::string_view text, std::string_view source, Answer answer);
 
@@ -108,14 +108,14 @@ class ScriptRunner {
   Result<ActivityHandle> execute_program_command(std::string_view text, std::string_view source);
 
   // Answers the messages whose activity has ended. Then executes up to `budget` commands of the files, in turn; fewer
-  // where they are refused (each counts 16) or load files (each 256 bytes count 1). Returns how many commands began or
+  // if they are refused (each counts 16) or load files (each 256 bytes count 1). Returns how many commands began or
   // ended. 0: every run waits, or there is none.
   std::size_t step(std::size_t budget);
 
   [[nodiscard]] bool idle() const { return runs_.empty(); }
   [[nodiscard]] std::vector<RunStatus> runs() const;
   // Ends a run, or all of them, before their next command; with all of them, messages that wait are refused. A robot
-  // program that the run was loading or starting is counted and, where that is refused later, told nevertheless.
+  // program that the run was loading or starting still counts, and a later refusal is reported.
   bool stop(std::uint64_t id);
   // The run is the next one to execute commands.
   void give_turn(std::uint64_t id);
@@ -162,8 +162,8 @@ class ScriptRunner {
   const KismetHome& home_;
   const Clock& clock_;
   // A message that is answered or counted when its activity has ended, a command of a robot program, or of a script
-  // that was stopped. At most one a
-  // robot runs, of TF_WAIT there is one a sender, and whoever loads programs bounds how many, so they stay few.
+  // that was stopped. At most one a robot runs, of TF_WAIT there is one per client, and the number of loads is bounded,
+  // so they stay few.
   struct WaitingMessage {
     CommandSource from;
     ActivityHandle activity;
@@ -183,7 +183,7 @@ class ScriptRunner {
   std::function<void(const RunReport&)> run_ended_;
   std::function<void(const Diagnostics&)> refused_;
   ParsedCommand command_;          // reused
-  ParsedCommand program_command_;  // likewise: a command of a file may let a program go on, which executes its own
+  ParsedCommand program_command_;  // likewise: a command of a file may resume a program, which executes its own
 };
 
 }  // namespace cellmirror::script

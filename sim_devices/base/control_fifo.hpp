@@ -1,4 +1,4 @@
-// Commands that somebody writes into a FIFO while a simulator runs: a line each.
+// Run-time commands from a FIFO, one per line.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What every simulator's process does: end when it is told to, and be on time.
+// Common process functions of simulators: termination by signals, scheduling.
 #pragma once
 
 namespace cellmirror::sim {

@@ -17,12 +17,12 @@ class SegmentSeeker {
   SegmentSeeker(std::int32_t key, std::size_t bytes, bool read_only)
       : key_(key), bytes_(bytes), read_only_(read_only) {}
 
-  // Looks every now and then, by system calls: attaches where there is something to attach to, and lets go of what was
-  // removed. True while there is memory. `memory()` may have moved after a call.
+  // Polls by system calls: attaches to a segment that exists, and detaches from a removed one. True while attached.
+  // `memory()` may have moved after a call.
   bool look(Timestamp now);
   [[nodiscard]] std::span<std::byte> memory() const { return segment_ ? segment_->memory() : std::span<std::byte>{}; }
   [[nodiscard]] std::uint64_t attachments() const { return attachments_; }
-  // Why there is none, in words; empty while there is.
+  // Why there is none; empty while attached.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:

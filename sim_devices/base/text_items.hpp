@@ -13,8 +13,8 @@ namespace cellmirror::sim {
 // At most `most` pieces, trimmed; the rest stays together in the last one. Empty pieces are kept.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char at, std::size_t most);
 
-// Words between blanks, tabs, line ends and colons, which stand for blanks where a shell would part words; at most
-// `most`, what is behind is dropped.
+// Words between blanks, tabs, line ends and colons, which replace blanks in a shell; at most `most`, the rest is
+// dropped.
 [[nodiscard]] std::vector<std::string_view> words(std::string_view text, std::size_t most);
 
 struct KeyValue {

@@ -12,7 +12,7 @@ Nanoseconds period_of(double hz) { return Nanoseconds(static_cast<std::int64_t>(
 
 }  // namespace
 
-// The drives ask within work(), for the instant to which the head was moved just before.
+// The drives call it within work(), for the instant to which the head was just moved.
 class CameraHead::Angles final : public MotionSource {
  public:
   explicit Angles(const PanTiltHead& head) : head_(head) {}

@@ -15,7 +15,7 @@ struct CameraHeadConfig {
   std::string camera;  // name of its workframe
   std::int32_t key = 0;
   bool take = false;
-  double look_hz = 200;  // how often it looks for records
+  double look_hz = 200;  // polling rate for records
   HeadConfig head;
   Cia402RobotsConfig drives;  // one robot of two joints: pan, tilt
 };

@@ -70,7 +70,7 @@ std::optional<CameraRecord> CameraReader::take_all() {
   return newest;
 }
 
-// From the newest message back to what was seen before. Messages may come and go meanwhile: the next call sees those
+// From the newest message back to what was seen before. Messages may come and go meanwhile: the next call gets those
 // that this one missed.
 std::optional<CameraRecord> CameraReader::look_back() {
   msqid_ds state{};
@@ -88,7 +88,7 @@ std::optional<CameraRecord> CameraReader::look_back() {
     if (got < 0 && (errno == ENOMSG || errno == EINTR)) continue;
     if (got < 0) {
       reason_ = errno == ENOSYS
-                    ? "this kernel cannot look at messages without taking them; use --take"
+                    ? "this kernel cannot peek at messages; use --take"
                     : fmt::format("the SENSOR queue cannot be read: {}", std::generic_category().message(errno));
       let_go();
       break;

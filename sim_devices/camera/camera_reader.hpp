@@ -1,5 +1,5 @@
-// Fetches what a camera is to do from the SENSOR channel of the gateway (docs/messages.md, kind 4): waits for the
-// queue, and notices that it was removed and made anew.
+// Reads a camera's records from the SENSOR channel of the gateway (docs/messages.md, kind 4): waits for the queue, and
+// detects its removal.
 #pragma once
 
 #include <array>
@@ -18,16 +18,16 @@ namespace cellmirror::sim {
 class CameraReader {
  public:
   struct Counters {
-    std::uint64_t records = 0;      // of this camera that were seen
+    std::uint64_t records = 0;      // of this camera
     std::uint64_t others = 0;       // records of other kinds and cameras
     std::uint64_t malformed = 0;    // no records
     std::uint64_t attachments = 0;  // how often the queue was found
   };
 
-  // `take`: everything on the channel is taken out; else it is only looked at and stays for others.
+  // `take`: removes everything from the channel; otherwise it only peeks.
   CameraReader(std::int32_t key, std::string camera, bool take) : key_(key), camera_(std::move(camera)), take_(take) {}
 
-  // The newest record that came since the last call; never waits. At most kMostAtOnce messages are looked at.
+  // The newest record that came since the last call; never waits. At most kMostAtOnce messages are read.
   [[nodiscard]] std::optional<CameraRecord> newest(Timestamp now);
   [[nodiscard]] const Counters& counters() const { return counters_; }
   // Why there is no queue, in words; empty while there is one.
@@ -52,7 +52,7 @@ class CameraReader {
   bool take_;
   int queue_ = -1;
   Timestamp next_look_;
-  std::uint64_t last_sequence_ = 0;  // of the newest record of any kind that was looked at
+  std::uint64_t last_sequence_ = 0;  // of the newest record of any kind
   Counters counters_;
   std::string reason_;
   Buffer buffer_;

@@ -16,14 +16,12 @@ namespace cellmirror::sim {
 namespace {
 
 constexpr const char* kFooter =
-    "Examples:\n"
-    "  sim_camera_head --camera UMG_Kamera_1 --nodes 21,22\n"
-    "  sim_camera_head --camera UMG_Kamera_1 --nodes 21,22 --channel socketcan:vcan0 --start 0,-0.63 --speed 0.8,0.5\n"
-    "  sim_camera_head --camera CAMERA_5 --key 0x434D0001 --fault slow:by=0.2@5..15 --fault loss:p=0.05 --json\n"
-    "  echo 'fault stuck:joint=1@0..5' | sim_camera_head --camera UMG_Kamera_1 --for 30\n"
-    "  sim_camera_head --faults     faults of the head and of its drives\n"
-    "  sim_camera_head --commands   what can be told to a running sim_camera_head\n"
-    "In a second shell: CAM_TRACKING UMG_Kamera_1 on FRAME; CAM_ONLINE UMG_Kamera_1 on (docs/cameras.md).\n";
+    "Examples:\n  sim_camera_head --camera UMG_Kamera_1 --nodes 21,22\n  sim_camera_head --camera UMG_Kamera_1 --nodes "
+    "21,22 --channel socketcan:vcan0 --start 0,-0.63 --speed 0.8,0.5\n  sim_camera_head --camera CAMERA_5 --key "
+    "0x434D0001 --fault slow:by=0.2@5..15 --fault loss:p=0.05 --json\n  echo 'fault stuck:joint=1@0..5' | "
+    "sim_camera_head --camera UMG_Kamera_1 --for 30\n  sim_camera_head --faults     faults of the head and of its "
+    "drives\n  sim_camera_head --commands   commands of a running sim_camera_head\nIn a second shell: CAM_TRACKING "
+    "UMG_Kamera_1 on FRAME; CAM_ONLINE UMG_Kamera_1 on (docs/cameras.md).\n";
 
 constexpr double kMostRad = 100;
 
@@ -58,11 +56,9 @@ struct Texts {
 void add_head(cli::Command& app, Texts& texts, CameraHeadConfig& config) {
   app.option("--camera", texts.camera, "name of the camera's workframe, as in CAM_ONLINE");
   app.option("--key", texts.key, "of the SENSOR channel: decimal, or hexadecimal with 0x").show_default();
-  app.flag("--take", config.take, "take every record out of the channel; else they stay for other readers");
-  app.option("--look-rate", config.look_hz, "how often a second it looks for records")
-      .between(1.0, 2000.0)
-      .show_default();
-  app.option("--start", texts.start, "PAN,TILT where it stands at first, rad").list_divided_by(',').show_default();
+  app.flag("--take", config.take, "remove every record from the channel; default: leave them for other readers");
+  app.option("--look-rate", config.look_hz, "polls for records per second").between(1.0, 2000.0).show_default();
+  app.option("--start", texts.start, "PAN,TILT at the start, rad").list_divided_by(',').show_default();
   app.option("--pan-range", texts.pan_range, "LEAST,MOST rad: its stops").list_divided_by(',').show_default();
   app.option("--tilt-range", texts.tilt_range, "LEAST,MOST rad").list_divided_by(',').show_default();
   app.option("--speed", texts.speed, "PAN,TILT rad/s").list_divided_by(',').show_default();
@@ -73,32 +69,32 @@ void add_drives(cli::Command& app, Texts& texts) {
   app.option("--channel", texts.channel, "socketcan:IF or udp:GROUP:PORT").show_default();
   app.option("--interface", texts.interface, "udp: the network interface").show_default();
   app.option("--nodes", texts.nodes, "node ids of pan and tilt").show_default();
-  app.option("--rate", texts.rate_hz, "samples a second, 1000/N").between(0.1, 1000.0).show_default();
+  app.option("--rate", texts.rate_hz, "samples per second, 1000/N").between(0.1, 1000.0).show_default();
   app.flag("--sync,!--no-sync", texts.sync, "send TPDOs with each SYNC instead of by the event timer");
-  app.option("--sync-producer", texts.sync_hz, "produce SYNC so often a second").between(0.0, 10000.0);
-  app.option("--increments-per-rad", texts.increments, "of object 0x6064; one value, or one an axis")
+  app.option("--sync-producer", texts.sync_hz, "produce SYNC at this rate, Hz").between(0.0, 10000.0);
+  app.option("--increments-per-rad", texts.increments, "of object 0x6064; one value, or one per axis")
       .list_divided_by(',')
       .show_default();
   app.option("--heartbeat", texts.heartbeat_ms, "heartbeat period in ms; 0: none").between(0, 65535).show_default();
-  app.flag("--self-starting", texts.self_starting, "operational at once, without an NMT start");
+  app.flag("--self-starting", texts.self_starting, "operational at once, without NMT start");
   app.flag("--with-velocity", texts.with_velocity, "TPDO2 with velocity and torque");
 }
 
 void add_common(cli::Command& app, Texts& texts, CameraHeadJob& job) {
   app.option("--fault", texts.faults, "KIND[:key=value,...][@START..END], may be repeated; see --faults")
       .one_value_each();
-  app.option("--seed", texts.seed, "of all chance").show_default();
-  app.option("--for", texts.for_s, "end after so many seconds; 0: run until quit or a signal")
+  app.option("--seed", texts.seed, "of the random numbers").show_default();
+  app.option("--for", texts.for_s, "end after this many seconds; 0: run until quit or a signal")
       .between(0.0, 1e9)
       .show_default();
-  app.option("--control", texts.control, "a FIFO to read commands from, or the path of a Unix socket to make");
-  app.flag("--no-input", texts.no_input, "take no commands from standard input");
+  app.option("--control", texts.control, "a FIFO to read commands from, or the path of a Unix socket to create");
+  app.flag("--no-input", texts.no_input, "read no commands from standard input");
   app.option("--priority", texts.priority, "SCHED_FIFO priority, where allowed").between(0, 98);
   app.flag("--json", job.json, "print the report as JSON on standard output at the end");
   app.flag("-q,--quiet", job.quiet, "only errors");
-  app.flag("-v,--verbose", job.verbose, "what the drivers log as well");
+  app.flag("-v,--verbose", job.verbose, "also log the drivers");
   app.flag("--faults", texts.show_faults, "print all faults");
-  app.flag("--commands", texts.show_commands, "print what can be told to a running sim_camera_head");
+  app.flag("--commands", texts.show_commands, "print commands of a running sim_camera_head");
 }
 
 // Collects what is wrong, a line each.
@@ -178,7 +174,7 @@ void read_faults(const Texts& texts, std::vector<HeadFaultSpec>& of_head, std::v
     } else if (of_bus) {
       of_drives.push_back(std::move(*of_bus));
     } else {
-      // The one that was meant, as far as that can be told.
+      // The nearest valid one, if any.
       const bool motion = is_head_fault(text) || of_motion.error().remedy.starts_with("did you mean");
       problems.add(motion ? of_motion.error().text() : of_bus.error().text());
     }
@@ -192,7 +188,8 @@ void read_names(const Texts& texts, CameraHeadConfig& config, Problems& problems
   }
   config.camera = texts.camera;
   const auto key = parse_integer(texts.key);
-  if (!key || *key < 1 || *key > 0xffffffffLL) problems.add(fmt::format("--key '{}' is no key", printable(texts.key)));
+  if (!key || *key < 1 || *key > 0xffffffffLL)
+    problems.add(fmt::format("--key '{}' is not a key", printable(texts.key)));
   config.key = static_cast<std::int32_t>(static_cast<std::uint32_t>(key.value_or(0)));
 }
 
@@ -208,9 +205,8 @@ ParsedCameraHead parse_camera_head_command_line(int argc, const char* const* arg
   CameraHeadConfig config;
   CameraHeadJob job;
   cli::CommandLine app(
-      "sim_camera_head stands in for a pan-tilt head: it follows the records of CAM_ONLINE, and its drives are "
-      "mirrored "
-      "as a robot's.",
+      "sim_camera_head simulates a pan-tilt head: it follows the records of CAM_ONLINE, and its drives are mirrored as "
+      "a robot.",
       "sim_camera_head");
   app.footer(kFooter);
   add_head(app, texts, config);

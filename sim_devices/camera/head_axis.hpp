@@ -1,4 +1,4 @@
-// One axis of a pan-tilt head: goes to where it is told as fast as its limits allow. Virtual time; rad.
+// One axis of a pan-tilt head: moves to its target as fast as its limits allow. Virtual time; rad.
 #pragma once
 
 namespace cellmirror::sim {
@@ -12,11 +12,11 @@ struct AxisLimits {
 
 class HeadAxis {
  public:
-  // Stands at `position`, within the stops.
+  // Sets it to `position`, within the stops.
   HeadAxis(const AxisLimits& limits, double position);
 
-  // Moves by `dt` seconds (0 to a second; more counts as one) towards `goal`, which is brought within the stops first.
-  // `speed_scale`: of the largest speed, 0 to 1. Brakes in time to stand at the goal.
+  // Moves by `dt` seconds (0 to a second; more counts as one) towards `goal`, which is clamped to the stops first.
+  // `speed_scale`: of the maximum speed, 0 to 1. Brakes in time to stop at the goal.
   void step(double goal, double speed_scale, double dt);
   void stop() { velocity_ = 0; }
 

@@ -25,9 +25,9 @@ struct Kind {
 constexpr std::array<Kind, kHeadFaultKinds> kKinds{{
     {"stuck", "an axis does not move, and its drive says so", "stuck:joint=1@3..8"},
     {"slow", "an axis has only `by` of its speed (0.1)", "slow:by=0.2@3"},
-    {"runaway", "an axis turns to its stop by itself", "runaway:joint=2@3..4"},
-    {"deaf", "records are not obeyed", "deaf@3..8"},
-    {"late", "records are obeyed `s` seconds later (0.5)", "late:s=1"},
+    {"runaway", "an axis drives to its stop", "runaway:joint=2@3..4"},
+    {"deaf", "records are ignored", "deaf@3..8"},
+    {"late", "records take effect `s` seconds later (0.5)", "late:s=1"},
 }};
 
 std::unexpected<Error> refused(std::string_view text, std::string what, std::string remedy) {
@@ -52,7 +52,7 @@ Result<void> parse_window(std::string_view text, std::string_view window, HeadFa
   const std::string_view end = dots == std::string_view::npos ? std::string_view{} : window.substr(dots + 2);
   const auto until = end.empty() ? std::optional(spec.until_s) : parse_number(end);
   if (!from || !until || !(*from >= 0) || !(*from <= kLongest) || !(*until > *from)) {
-    return refused(text, fmt::format("'@{}' is no time window", printable(window)),
+    return refused(text, fmt::format("'@{}' is not a time window", printable(window)),
                    "write @START or @START..END in seconds, e.g. @3..4");
   }
   spec.from_s = *from;
@@ -114,7 +114,7 @@ Result<HeadFaultSpec> parse_head_fault(std::string_view text) {
 }
 
 std::string head_fault_help() {
-  std::string help = "Faults of the head's motion (its drives have all faults of `sim_robot faults` as well):\n\n";
+  std::string help = "Faults of the head's motion (its drives also have all faults of `sim_robot faults`):\n\n";
   for (const Kind& kind : kKinds) help += fmt::format("  {:<9} {:<46} {}\n", kind.name, kind.does, kind.example);
   return help;
 }

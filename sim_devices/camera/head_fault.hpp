@@ -15,9 +15,9 @@ namespace cellmirror::sim {
 enum class HeadFaultKind : std::uint8_t {
   stuck,    // an axis does not move, and says so
   slow,     // an axis is slower than it should be
-  runaway,  // an axis turns to its stop by itself
-  deaf,     // records are not obeyed
-  late,     // records are obeyed later
+  runaway,  // an axis drives to its stop
+  deaf,     // records are ignored
+  late,     // records take effect later
 };
 inline constexpr std::size_t kHeadFaultKinds = 5;
 

@@ -1,4 +1,4 @@
-// sim_camera_head: stands in for the pan-tilt head of a camera.
+// sim_camera_head: simulates the pan-tilt head of a camera.
 #include <fmt/format.h>
 
 #include <utility>

@@ -29,7 +29,7 @@ class PanTiltHead {
  public:
   struct Counters {
     std::uint64_t followed = 0;  // records that gave a goal
-    std::uint64_t echoes = 0;    // records of where it looks by itself: nothing to follow
+    std::uint64_t echoes = 0;    // records of its own direction: no target
     std::uint64_t ignored = 0;   // not finite, or the head was deaf
     std::uint64_t beyond = 0;    // records whose goal is beyond a stop
   };
@@ -39,7 +39,7 @@ class PanTiltHead {
 
   void start(Timestamp now);
   void obey(const CameraRecord& record, Timestamp now);
-  // Moves until `now`; what lies before the last call does nothing.
+  // Moves until `now`; an earlier time than in the last call has no effect.
   void advance(Timestamp now);
   void hold(bool held) { held_ = held; }
 

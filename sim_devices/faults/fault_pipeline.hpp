@@ -1,6 +1,6 @@
-// The stretch between a simulated device and its channel: messages go in with their time and come out, or not, or
-// later, or twice, or spoilt. Pure: no clock, no channel. M is the protocol's message; what only the protocol knows
-// (where its bits and its identity are) is asked of FaultTraits<M>.
+// The stretch between a simulated device and its channel: timed messages go in and come out unchanged, delayed,
+// repeated, corrupted or not at all. Pure: no clock, no channel. M is the protocol's message; FaultTraits<M> provides
+// protocol details (position of bits and identity).
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace cellmirror::sim {
 //   static void change_identity(M&, std::optional<std::uint32_t> id, Random&);
 //   static void change_length(M&, int by);
 //   static M foreign(std::optional<std::uint32_t> id, Random&);
-//   static M bus_off();        an error frame; only for protocols whose bus knows it
+//   static M bus_off();        an error frame; only for protocols with bus-off
 //   static M bus_restarted();
 template <class M>
 struct FaultTraits;

@@ -1,4 +1,4 @@
-// Which faults are in force, whom they strike, and what they do to values. Pure: time is handed in, chance is seeded.
+// Active faults, their selection, and their effect on values. Pure: time is a parameter, random numbers are seeded.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +57,7 @@ class FaultSchedule {
   void shape(Timestamp now, int robot, std::span<JointValue> values);
   // The same for one joint (a drive of its own).
   void shape(Timestamp now, Source source, JointValue& value);
-  // False while the device is dead. `joint` 0 asks for the robot as a whole.
+  // False while the device is dead. `joint` 0 means the whole robot.
   [[nodiscard]] bool alive(Timestamp now, Source source) const;
   // When alive() may change next; kNeverEnds where it will not.
   [[nodiscard]] Timestamp next_life_change(Timestamp now) const;

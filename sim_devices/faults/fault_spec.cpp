@@ -47,8 +47,12 @@ constexpr Key kEvery{"every",
 constexpr Key kCount{
     "count", 1, 1e9, true, [](FaultSpec& f, double v) { f.most = static_cast<std::uint64_t>(v); }, "at most N times"};
 constexpr Key kSeconds{"s", 0, kLongest, false, [](FaultSpec& f, double v) { f.seconds = v; }, "seconds"};
-constexpr Key kJitter{
-    "jitter", 0, kLongest, false, [](FaultSpec& f, double v) { f.jitter_s = v; }, "up to so many seconds more, by lot"};
+constexpr Key kJitter{"jitter",
+                      0,
+                      kLongest,
+                      false,
+                      [](FaultSpec& f, double v) { f.jitter_s = v; },
+                      "random additional seconds, up to this many"};
 constexpr Key kNumber{"n",
                       1,
                       1000,
@@ -56,14 +60,14 @@ constexpr Key kNumber{"n",
                       [](FaultSpec& f, double v) { f.number = static_cast<unsigned>(v); },
                       "copies (repeat), messages that pass (reorder), bits (corrupt); default 1"};
 constexpr Key kRate{
-    "rate", 0.001, 1e5, false, [](FaultSpec& f, double v) { f.rate_hz = v; }, "messages a second, default 10"};
+    "rate", 0.001, 1e5, false, [](FaultSpec& f, double v) { f.rate_hz = v; }, "messages per second, default 10"};
 constexpr Key kBy{"by", -1e6, 1e6, false, [](FaultSpec& f, double v) { f.amount = v; }, "rad or m"};
 constexpr Key kId{"id",
                   0,
                   0x1FFFFFFF,
                   true,
                   [](FaultSpec& f, double v) { f.id = static_cast<std::uint32_t>(v); },
-                  "CAN identifier, default by lot"};
+                  "CAN identifier, default random"};
 constexpr Key kLengthBy{"by",
                         -64,
                         64,
@@ -95,28 +99,21 @@ struct Kind {
 
 const std::array<Kind, kFaultKinds> kKinds{{
     {FaultKind::loss, "loss", "messages vanish", {}, kMessageKeys, true, "", "loss:p=0.01"},
-    {FaultKind::delay, "delay", "messages leave later", kDelayKeys, kMessageKeys, true, "s", "delay:s=0.05@5..8"},
-    {FaultKind::repeat, "repeat", "messages leave n times more, s seconds apart", kRepeatKeys, kMessageKeys, true, "",
-     "repeat:every=10,n=2"},
-    {FaultKind::insert,
-     "insert",
-     "messages that no device of the cell sends",
-     kInsertKeys,
-     {},
-     false,
-     "",
-     "insert:rate=50,id=0x7AA"},
-    {FaultKind::reorder, "reorder", "a message, each second one by default, is held until n later ones have passed it",
+    {FaultKind::delay, "delay", "messages are sent later", kDelayKeys, kMessageKeys, true, "s", "delay:s=0.05@5..8"},
+    {FaultKind::repeat, "repeat", "messages are sent n times more, s seconds apart", kRepeatKeys, kMessageKeys, true,
+     "", "repeat:every=10,n=2"},
+    {FaultKind::insert, "insert", "messages of unknown devices", kInsertKeys, {}, false, "", "insert:rate=50,id=0x7AA"},
+    {FaultKind::reorder, "reorder", "a message (default: every second one) is held until n later ones have passed it",
      kNumberKeys, kMessageKeys, true, "", "reorder:p=0.1,n=2"},
     {FaultKind::corrupt, "corrupt", "n bits flip", kNumberKeys, kMessageKeys, true, "",
      "corrupt:p=0.001,n=3,only=sample"},
-    {FaultKind::wrong_id, "wrong-id", "messages bear another identity", kIdKeys, kMessageKeys, true, "",
+    {FaultKind::wrong_id, "wrong-id", "messages have another identity", kIdKeys, kMessageKeys, true, "",
      "wrong-id:every=100"},
     {FaultKind::wrong_length, "wrong-length", "messages are too short or too long", kLengthKeys, kMessageKeys, true, "",
      "wrong-length:by=-2,only=sample"},
     {FaultKind::frozen,
      "frozen",
-     "values stand still, sending goes on",
+     "values freeze, sending continues",
      {},
      kValueKeys,
      false,
@@ -125,11 +122,11 @@ const std::array<Kind, kFaultKinds> kKinds{{
     {FaultKind::nan, "nan", "values are not a number (DDS only)", {}, kMessageKeys, false, "", "nan:joint=2,p=0.1"},
     {FaultKind::jump, "jump", "positions are off by a constant", kJumpKeys, kValueKeys, false, "by",
      "jump:by=0.5,joint=1@3..4"},
-    {FaultKind::burst, "burst", "messages gather for s seconds and leave all at once", kBurstKeys, kMessageKeys, true,
+    {FaultKind::burst, "burst", "messages are collected for s seconds and sent at once", kBurstKeys, kMessageKeys, true,
      "s", "burst:s=0.2"},
     {FaultKind::death,
      "death",
-     "silence; at the end of the window the device boots again",
+     "silence; at the end of the window the device reboots",
      {},
      kValueKeys,
      false,
@@ -168,7 +165,7 @@ Result<void> parse_window(std::string_view text, std::string_view window, FaultS
   const auto start = time(from, 0.0);
   const auto end = time(until, spec.until_s);
   if (!start || !end || *start < 0 || *start > kLongest || *end <= *start || (from.empty() && until.empty())) {
-    return refused(text, fmt::format("'@{}' is no time window", printable(window)),
+    return refused(text, fmt::format("'@{}' is not a time window", printable(window)),
                    "write @START..END, @START.. or @..END in seconds, e.g. @5..8");
   }
   spec.from_s = *start;
@@ -274,8 +271,7 @@ Result<FaultSpec> parse_fault(std::string_view text) {
 std::string fault_help() {
   std::string help =
       "A fault is KIND[:key=value[,key=value...]][@START..END]; the window is in seconds after the start of the "
-      "program,\n"
-      "or after the command that switches the fault on. Without a window it lasts to the end.\n\n";
+      "program,\nor after the command that injects the fault. Without a window it lasts to the end.\n\n";
   for (const Kind& kind : kKinds) {
     help += fmt::format("  {:<13} {}\n  {:<13} e.g. {}\n", kind.name, kind.does, "", kind.example);
     for (const Key& key : kind.keys) help += fmt::format("  {:<13}   {:<7} {}\n", "", key.name, key.help);

@@ -19,9 +19,9 @@ enum class FaultKind : std::uint8_t {
   insert,        // messages that no device of the cell sends
   reorder,       // a message is held until later ones have passed it
   corrupt,       // bits flip
-  wrong_id,      // the message bears another's identity
+  wrong_id,      // the message has another identity
   wrong_length,  // too short or too long
-  frozen,        // values stand still although the device goes on sending
+  frozen,        // values freeze while the device keeps sending
   nan,           // a value is not a number
   jump,          // values are off by a constant
   burst,         // messages gather and leave all at once
@@ -44,7 +44,7 @@ struct FaultSpec {
   std::optional<MessageKind> only;  // none: every kind
   double probability = 1;           // of each message that matches
   std::uint64_t every = 0;          // > 0: each n-th message that matches, instead of by chance
-  std::uint64_t most = 0;           // > 0: ends after so many
+  std::uint64_t most = 0;           // > 0: ends after this many
 
   // What happens to them; which of these count depends on the kind.
   double seconds = 0;               // delay: how long; repeat: between the copies; burst: how long messages gather

@@ -21,7 +21,7 @@ struct FaultTraits<JointStateMessage> {
     }
   }
 
-  // A robot of which nobody has heard.
+  // An unknown robot.
   static void change_identity(JointStateMessage& message, std::optional<std::uint32_t>, Random&) {
     for (std::string& name : message.state.name) name = "wrong_" + name;
   }

@@ -1,5 +1,4 @@
-// What a simulated device hands to the fault pipeline: a message of any protocol, with the time at which it shall
-// leave.
+// Input of the fault pipeline: a message of any protocol, with its sending time.
 #pragma once
 
 #include <array>
@@ -18,7 +17,7 @@ enum class MessageKind : std::uint8_t {
   emergency,  // EMCY
   sdo,        // answer of the SDO server
   sync,
-  foreign,    // inserted: nobody's message
+  foreign,    // inserted: without a sender
   bus_error,  // an error frame
   other,
 };
@@ -28,13 +27,13 @@ inline constexpr std::array<std::string_view, 9> kMessageKindNames{
 constexpr std::string_view name_of(MessageKind kind) { return kMessageKindNames[static_cast<std::size_t>(kind)]; }
 
 struct Source {
-  int robot = 0;  // from 1; 0: nobody in particular
+  int robot = 0;  // from 1; 0: none
   int joint = 0;  // from 1; 0: the robot as a whole
 };
 
 template <class M>
 struct Outgoing {
-  Timestamp time;  // when it shall leave
+  Timestamp time;  // sending time
   Source source;
   MessageKind kind = MessageKind::other;
   M message;

@@ -41,29 +41,29 @@ void add_options(cli::Command& app, FootSwitchOptions& options, Texts& texts) {
   app.option("--key", texts.key, "of the shared memory (bin_ela_shm): decimal, or hexadecimal with 0x");
   app.option("--press", texts.press, "presses switch N (1,3: several at once), for --for seconds each")
       .list_divided_by(',');
-  app.option("--times", texts.times, "press so often").between(1, 100000).show_default();
+  app.option("--times", texts.times, "number of presses").between(1, 100000).show_default();
   app.option("--hold", texts.hold, "closes switch N until the end").list_divided_by(',');
   app.option("--sequence", texts.sequence, "N+ closes, N- opens, 1+,2+ at once, waits as 500ms; '1+ 2+ 500ms 1- 2-'");
   app.option("--gap", texts.gap_s, "s, between changes of a sequence, and between presses")
       .between(0.0, 1000.0)
       .show_default();
   app.option("--bounce", texts.bounce, "N,TIME: every change bounces N times within that time, e.g. 4,3ms");
-  app.option("--random", texts.random_hz, "so many presses a second by lot").between(0.0, 10000.0);
+  app.option("--random", texts.random_hz, "random presses per second").between(0.0, 10000.0);
   app.option("--inputs", texts.inputs, "switches that --random presses: 1 to N")
       .between(1, static_cast<int>(kMaxSwitches))
       .show_default();
-  app.option("--seed", texts.seed, "of all chance").show_default();
+  app.option("--seed", texts.seed, "of the random numbers").show_default();
   app.option("--for", texts.for_s,
-             "s, how long a press lasts (default 0.2), --hold holds (default: until a signal), or --random goes on "
-             "(default 10)")
+             "s, how long a press lasts (default 0.2), --hold holds (default: until a signal), or the duration of "
+             "--random (default 10)")
       .between(0.0, 1e6);
-  app.option("--wait", options.wait_s, "give up where the memory does not come within so many seconds; 0: wait on")
+  app.option("--wait", options.wait_s, "time limit for the memory to appear, s; 0: none")
       .between(0.0, 1e6)
       .show_default();
   app.option("--priority", options.priority, "SCHED_FIFO priority, where allowed").between(0, 98);
   app.option("--log", options.log, "a CSV file of every change: time_ns,input,on,bounce");
-  app.option("--control", options.control, "a FIFO to read commands from: a sequence a line, or quit");
-  app.flag("--no-input", options.no_input, "take no commands from standard input (it never does)");
+  app.option("--control", options.control, "a FIFO to read commands from: one sequence per line, or quit");
+  app.flag("--no-input", options.no_input, "read no commands from standard input (it never does)");
   app.flag("--json", options.json, "print the summary as JSON on standard output at the end");
   app.flag("-q,--quiet", options.quiet, "only errors");
 }
@@ -109,7 +109,7 @@ std::string read_texts(const Texts& texts, FootSwitchOptions& options) {
   const auto key = parse_integer(texts.key);
   if (!key || *key < 1 || *key > 0xffffffffLL) {
     problems += texts.key.empty() ? "sim_footswitch: --key is needed: shm_key of [foot_switches] in the cell file\n"
-                                  : fmt::format("sim_footswitch: --key '{}' is no key\n", printable(texts.key));
+                                  : fmt::format("sim_footswitch: --key '{}' is not a key\n", printable(texts.key));
   } else {
     options.key = static_cast<std::int32_t>(static_cast<std::uint32_t>(*key));
   }
@@ -144,7 +144,7 @@ std::string read_texts(const Texts& texts, FootSwitchOptions& options) {
 ParsedFootSwitch parse_foot_switch_command_line(int argc, const char* const* argv) {
   FootSwitchOptions options;
   Texts texts;
-  cli::CommandLine app("sim_footswitch stands in for a foot that presses switches, with bounces on demand.",
+  cli::CommandLine app("sim_footswitch simulates a foot that presses switches, with bounces on demand.",
                        "sim_footswitch");
   app.footer(kFooter);
   add_options(app, options, texts);

@@ -1,4 +1,4 @@
-// sim_footswitch: stands in for a foot that presses switches.
+// sim_footswitch: simulates a foot that presses switches.
 #include <fmt/format.h>
 
 #include "sim_devices/base/process.hpp"

@@ -19,7 +19,7 @@ struct FootSwitchOptions {
   int priority = 0;
   std::string log;
   std::string control;
-  bool no_input = false;  // there is none anyway: as sim_robot
+  bool no_input = false;  // no effect: for compatibility with sim_robot
   double gap_s = 0.1;     // of sequences that come by command
   bool json = false;
   bool quiet = false;

@@ -127,7 +127,7 @@ void SwitchLoop::put_told() {
 
 bool SwitchLoop::run() {
   if (!become_punctual(options_.priority)) {
-    fmt::print(stderr, "sim_footswitch: no SCHED_FIFO for this user; going on with ordinary priority\n");
+    fmt::print(stderr, "sim_footswitch: no SCHED_FIFO for this user; continuing with ordinary priority\n");
   }
   if (!wait_for_memory()) return false;
   started_ = clock_.now();

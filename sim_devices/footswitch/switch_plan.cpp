@@ -56,7 +56,7 @@ std::vector<SwitchChange> parse_switch_sequence(std::string_view text, std::stri
       SwitchChange change;
       if (!parse_change(part, now, change)) {
         diagnostics.error(
-            place_of(text, word, file), fmt::format("'{}' is no change of a switch", printable(word, 40)),
+            place_of(text, word, file), fmt::format("'{}' is not a change of a switch", printable(word, 40)),
             fmt::format("write 1+ (closes), 1- (opens), 1+,2+ (at once) or a time, e.g. 500ms; switches 1 to {}",
                         kMaxSwitches));
         break;

@@ -1,4 +1,4 @@
-// What the foot switches do and when: a row of changes, from text, from the command line's wishes, or by lot.
+// The timed changes of the foot switches: from text, from the command line, or random.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct SwitchChange {
   double at_s = 0;
   std::uint32_t input = 1;  // from 1, as in BININP1
   bool on = false;
-  bool bounce = false;  // one that a contact makes by itself
+  bool bounce = false;  // caused by contact bounce
 };
 
-// "1+ 2+ 500ms 1-,2- ...": N+ closes, N- opens input N; changes joined by commas come at one instant, the next ones
-// `gap_s` later, or after the time that stands between. Changes in their order.
+// "1+ 2+ 500ms 1-,2- ...": N+ closes, N- opens input N; changes joined by commas are simultaneous, the next ones follow
+// after `gap_s`, or after the time between them. Changes in their order.
 [[nodiscard]] std::vector<SwitchChange> parse_switch_sequence(std::string_view text, std::string_view file,
                                                               double gap_s, Diagnostics& diagnostics);
 // Until when a sequence lasts: the time of its last change, and waits behind it.

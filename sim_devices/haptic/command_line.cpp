@@ -49,10 +49,10 @@ void add_options(cli::Command& app, HapticOptions& options, Texts& texts) {
   app.option("--axes", options.axes_given, "4: yaw pitch insertion roll, 5: and jaw, 6: pose, 7: and gripper")
       .between(4, 7)
       .show_default();
-  app.option("--rate", options.rate_hz, "samples a second").between(1.0, 10000.0).show_default();
+  app.option("--rate", options.rate_hz, "samples per second").between(1.0, 10000.0).show_default();
   app.option("--motion", texts.motion, "'touch z -0.03; press 2s; drag x 0.02; letgo'; see --motions");
-  app.flag("--repeat", options.repeat, "play the motion again and again");
-  app.option("--start", texts.start, "where the axes stand first, e.g. 0,0,0.12,0 in m and rad");
+  app.flag("--repeat", options.repeat, "repeat the motion");
+  app.option("--start", texts.start, "start position of the axes, e.g. 0,0,0.12,0 in m and rad");
   app.option("--resolution", options.length_resolution, "m, of the encoders; 0: exact")
       .between(0.0, 0.01)
       .show_default();
@@ -62,18 +62,18 @@ void add_options(cli::Command& app, HapticOptions& options, Texts& texts) {
   add_hand(app, options.hand);
   app.option("--fault", texts.faults, "KIND[:key=value][@START[..END]], may be repeated; see --faults")
       .one_value_each();
-  app.option("--for", texts.for_s, "end after so many seconds; 0: run until a signal (default: to the motion's end)");
-  app.option("--wait", options.wait_s, "give up where the memory does not come within so many seconds; 0: wait on")
+  app.option("--for", texts.for_s, "end after this many seconds; 0: run until a signal (default: to the motion's end)");
+  app.option("--wait", options.wait_s, "time limit for the memory to appear, s; 0: none")
       .between(0.0, 1e6)
       .show_default();
-  app.option("--poll", options.poll_us, "look for the answer every so many microseconds; 0: once a period")
+  app.option("--poll", options.poll_us, "poll interval for the answer, us; 0: once per period")
       .between(0.0, 1e6)
       .show_default();
   app.option("--priority", options.priority, "SCHED_FIFO priority, where allowed").between(0, 98);
   app.flag("--watch", options.watch, "write nothing: record the gateway's answers (see --log)");
   app.option("--log", options.log, "a CSV file of every period");
   app.option("--control", options.control, "a FIFO to read commands from: motion MOTION, fault FAULT, clear, quit");
-  app.flag("--no-input", options.no_input, "take no commands from standard input (it never does)");
+  app.flag("--no-input", options.no_input, "read no commands from standard input (it never does)");
   app.flag("--json", options.json, "print the summary as JSON on standard output at the end");
   app.flag("-q,--quiet", options.quiet, "only errors");
   app.flag("--motions", texts.show_motions, "print all motions");
@@ -90,7 +90,7 @@ void read_start(const std::string& text, HapticOptions& options, std::string& pr
     if (good) options.start[i] = *value;
   }
   if (!good) {
-    problems += fmt::format("sim_haptic: --start '{}': at most {} numbers from -10 to 10, parted by commas\n",
+    problems += fmt::format("sim_haptic: --start '{}': at most {} numbers from -10 to 10, separated by commas\n",
                             printable(text), options.axes);
   }
 }
@@ -99,7 +99,7 @@ void read_key(const Texts& texts, HapticOptions& options, std::string& problems)
   const auto key = parse_integer(texts.key);
   if (!key || *key < 1 || *key > 0xffffffffLL) {
     problems += texts.key.empty() ? "sim_haptic: --key is needed: shm_key of [[haptic]] in the cell file\n"
-                                  : fmt::format("sim_haptic: --key '{}' is no key\n", printable(texts.key));
+                                  : fmt::format("sim_haptic: --key '{}' is not a key\n", printable(texts.key));
     return;
   }
   options.key = static_cast<std::int32_t>(static_cast<std::uint32_t>(*key));
@@ -124,7 +124,7 @@ std::string read_texts(const Texts& texts, HapticOptions& options) {
   if (!texts.for_s.empty()) {
     const auto seconds = parse_number(texts.for_s);
     if (!seconds || *seconds < 0 || *seconds > 1e9) {
-      problems += fmt::format("sim_haptic: --for '{}' is no number of seconds\n", printable(texts.for_s));
+      problems += fmt::format("sim_haptic: --for '{}' is not a number of seconds\n", printable(texts.for_s));
     }
     options.for_s = seconds.value_or(0);
   }
@@ -136,8 +136,8 @@ std::string read_texts(const Texts& texts, HapticOptions& options) {
 ParsedHaptic parse_haptic_command_line(int argc, const char* const* argv) {
   HapticOptions options;
   Texts texts;
-  cli::CommandLine app(
-      "sim_haptic stands in for a haptic device and the hand that holds it, with every fault on demand.", "sim_haptic");
+  cli::CommandLine app("sim_haptic simulates a haptic device and the hand that holds it, with faults on demand.",
+                       "sim_haptic");
   app.footer(kFooter);
   add_options(app, options, texts);
   if (const auto exit_code = app.parse(argc, argv)) return {exit_code, {}};

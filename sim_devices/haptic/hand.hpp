@@ -1,5 +1,5 @@
-// A hand that holds the handle of a haptic device: every axis is an oscillator about the place that the hand wishes,
-// pushed by what the device lets it feel, and it trembles.
+// A hand that holds the handle of a haptic device: every axis is an oscillator about the hand's target, driven by the
+// device's force, with tremor.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct HandParameters {
   Impedance let_go{0.06, 0.1, 0.0};  // the device alone
   Impedance wrist{1e-3, 0.04, 2.0};  // kg m2, Nms/rad, Nm/rad: handle rotations, roll, gripper
   double arm = 0.15;                 // m, from the trocar to the hand: yaw and pitch
-  double tremor = 0;                 // m, amplitude of the wish; angles: over the arm
+  double tremor = 0;                 // m, amplitude at the target; angles: over the arm
   double tremor_low_hz = 8;          // physiological tremor: 8 to 12 Hz
   double tremor_high_hz = 12;
   std::uint64_t seed = 1;

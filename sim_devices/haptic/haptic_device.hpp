@@ -81,7 +81,7 @@ class HapticLoop {
   void wait_for_answer(Timestamp until);
   void log(Timestamp now);
   void listen(Timestamp now);
-  // Why it was not obeyed; empty where it was.
+  // Why it was refused; empty if accepted.
   [[nodiscard]] std::string obey(std::string_view line);
 
   HapticOptions options_;
@@ -100,7 +100,7 @@ class HapticLoop {
   bool quit_ = false;
   std::uint64_t sequence_ = 0;
   std::uint64_t attachments_ = 0;
-  std::uint32_t noted_ = 0;  // faults that stand in the summary
+  std::uint32_t noted_ = 0;  // faults in the summary
   HapticSample last_;
 };
 

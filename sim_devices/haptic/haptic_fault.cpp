@@ -22,15 +22,15 @@ struct Kind {
 
 // In the order of HapticFaultKind.
 constexpr std::array<Kind, 11> kKinds{{
-    {"freeze", "nothing is written any more, the process lives", "freeze@3"},
-    {"stuck", "values stand still, writing goes on", "stuck@3..4"},
+    {"freeze", "no more writes, the process lives", "freeze@3"},
+    {"stuck", "values freeze, writing continues", "stuck@3..4"},
     {"jump", "the pose is off by `by` m and rad (0.05)", "jump:by=0.05@3..4"},
     {"nan", "a coordinate is not a number", "nan@3..3.1"},
-    {"rotation", "the quaternion is no rotation", "rotation@3..3.1"},
+    {"rotation", "the quaternion is not a rotation", "rotation@3..3.1"},
     {"late", "time stamps are older by `s` seconds (0.02)", "late:s=0.02@3"},
-    {"dead", "the process is killed without a word", "dead@3"},
+    {"dead", "the process is killed", "dead@3"},
     {"twice", "a second process writes into the same memory", "twice@3..4"},
-    {"invalid", "the device says that its values are not good", "invalid@3..4"},
+    {"invalid", "the device clears its good bit", "invalid@3..4"},
     {"torn", "the process is killed while it writes", "torn@3"},
     {"unbounded", "coordinates of 1e300", "unbounded@3..3.1"},
 }};
@@ -45,7 +45,7 @@ Result<void> parse_window(std::string_view text, std::string_view window, Haptic
   const std::string_view end = dots == std::string_view::npos ? std::string_view{} : window.substr(dots + 2);
   const auto until = end.empty() ? std::optional(spec.until_s) : parse_number(end);
   if (!from || !until || *from < 0 || *from > kLongest || *until <= *from) {
-    return refused(text, fmt::format("'@{}' is no time window", printable(window)),
+    return refused(text, fmt::format("'@{}' is not a time window", printable(window)),
                    "write @START or @START..END in seconds, e.g. @3..4");
   }
   spec.from_s = *from;
@@ -108,8 +108,8 @@ Result<HapticFaultSpec> parse_haptic_fault(std::string_view text) {
 
 std::string haptic_fault_help() {
   std::string help =
-      "A fault is KIND[:key=value][@START] or @START..END, in seconds after the device first wrote; without an end it\n"
-      "lasts.\n\n";
+      "A fault is KIND[:key=value][@START] or @START..END, in seconds after the device's first write; without an end "
+      "it\nlasts.\n\n";
   for (const Kind& kind : kKinds) help += fmt::format("  {:<10} {:<48} {}\n", kind.name, kind.does, kind.example);
   return help;
 }

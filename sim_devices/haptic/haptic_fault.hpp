@@ -13,7 +13,7 @@ namespace cellmirror::sim {
 
 enum class HapticFaultKind : std::uint8_t {
   freeze,     // nothing is written any more, the process lives
-  stuck,      // values stand still, writing goes on
+  stuck,      // values freeze, writing continues
   jump,       // the pose is off by `by`
   nan,        // a coordinate is not a number
   rotation,   // the quaternion is no rotation

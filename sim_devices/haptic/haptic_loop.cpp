@@ -61,7 +61,7 @@ bool HapticLoop::over(Timestamp now) const {
 
 bool HapticLoop::run() {
   if (!become_punctual(options_.priority)) {
-    fmt::print(stderr, "sim_haptic: no SCHED_FIFO for this user; going on with ordinary priority\n");
+    fmt::print(stderr, "sim_haptic: no SCHED_FIFO for this user; continuing with ordinary priority\n");
   }
   if (!wait_for_memory()) return false;
   started_ = clock_.now();
@@ -155,14 +155,14 @@ std::string HapticLoop::obey(std::string_view line) {
   } else if (word == "fault") {
     auto fault = parse_haptic_fault(rest);
     if (!fault) return fault.error().text();
-    if (!device_.add_fault(std::move(*fault))) return "there are too many faults; say clear first";
+    if (!device_.add_fault(std::move(*fault))) return "there are too many faults; use clear first";
   } else if (word == "clear") {
     device_.clear_faults();
     noted_ = 0;
   } else if (word == "quit") {
     quit_ = true;
   } else if (!line.empty()) {
-    return fmt::format("'{}' is no command; say motion MOTION, fault FAULT, clear or quit", printable(line, 40));
+    return fmt::format("'{}' is not a command; use motion MOTION, fault FAULT, clear or quit", printable(line, 40));
   }
   return {};
 }

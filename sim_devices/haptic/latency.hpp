@@ -15,7 +15,7 @@ class DurationHistogram {
   DurationHistogram() : counts_(kSteps, 0) {}
   void add(Nanoseconds duration);
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  // Upper edge of the step that holds the share; 0 where there is none. `share`: 0 to 1.
+  // Upper edge of the step that holds the share; 0 if there is none. `share`: 0 to 1.
   [[nodiscard]] double quantile_us(double share) const;
   [[nodiscard]] double max_us() const { return 1e-3 * static_cast<double>(max_.count()); }
 

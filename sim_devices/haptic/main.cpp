@@ -1,4 +1,4 @@
-// sim_haptic: stands in for a haptic device and the hand that holds it.
+// sim_haptic: simulates a haptic device and the hand that holds it.
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Plays the steps of a motion: where the hand wishes to be, from period to period. No clock.
+// Plays the steps of a motion: the target of the hand in each period. No clock.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ struct HandWish {
 
 class MotionPlayer {
  public:
-  // `repeat` plays the list again from its begin; where the hand is then is where its wish begins.
+  // `repeat` plays the list again from the start; the target then begins at the hand's position.
   MotionPlayer(std::vector<MotionStep> steps, const Coordinates& start, bool repeat);
 
-  // The wish `dt` seconds after the last one. `efforts` is what the hand feels, `hand` where it is.
+  // The target `dt` seconds after the last one. `efforts` on the hand, `hand` its position.
   [[nodiscard]] const HandWish& step(const Coordinates& hand, const Coordinates& efforts, double dt);
-  // Goes on with other steps from where it is; `back` keeps its place.
+  // Continues with other steps from its position; `back` keeps its start position.
   void replace(std::vector<MotionStep> steps);
   [[nodiscard]] bool done() const { return next_ >= steps_.size(); }
   [[nodiscard]] const HandWish& wish() const { return wish_; }
@@ -42,7 +42,7 @@ class MotionPlayer {
   std::size_t next_ = 0;
   bool begun_ = false;
   double t_ = 0;            // s, since the step's begin
-  Coordinates from_{};      // wish at the step's begin
+  Coordinates from_{};      // target at the start of the step
   Coordinates pressing_{};  // direction of the last touch
   double turn_at_ = 0;      // s into the tap's period, when it felt something
   double reached_ = 0;      // m or rad, there

@@ -28,18 +28,18 @@ struct VerbRow {
 // In the order of MotionVerb.
 constexpr std::array<VerbRow, 10> kVerbs{{
     {"hold", "hold [TIME]", "stays where it is", 0, false, false, true, "for", 1},
-    {"touch", "touch DIRECTION DISTANCE", "goes until it feels the force `at`, or the distance is over", 1, true, true,
-     false, "speed at", 0},
-    {"press", "press [DEPTH] [TIME]", "wishes itself deeper in the direction of the last touch, and stays", 0, false,
+    {"touch", "touch DIRECTION DISTANCE", "moves until it feels the force `at`, or to the end of the distance", 1, true,
+     true, false, "speed at", 0},
+    {"press", "press [DEPTH] [TIME]", "sets its target deeper in the direction of the last touch, and stays", 0, false,
      true, true, "for", 1},
-    {"drag", "drag DIRECTION DISTANCE", "goes without regard to what it feels", 1, true, true, false, "speed", 0},
-    {"tap", "tap DIRECTION DISTANCE", "touches and goes back, `times` times, one a `period`", 1, true, true, false,
+    {"drag", "drag DIRECTION DISTANCE", "moves regardless of force", 1, true, true, false, "speed", 0},
+    {"tap", "tap DIRECTION DISTANCE", "touches and returns, `times` times, one per `period`", 1, true, true, false,
      "times period at", 0},
-    {"sine", "sine DIRECTION AMPLITUDE [TIME]", "swings about where it is", 1, true, true, true, "period for", 1},
-    {"circle", "circle DIRECTION DIRECTION RADIUS [TIME]", "begins at its place in the first direction", 2, true, true,
-     true, "period for", 1},
-    {"back", "back", "goes to where the motion began", 0, false, false, false, "speed", 0},
-    {"letgo", "letgo [TIME]", "lets the handle go, then holds it where it has come to", 0, false, false, true, "for",
+    {"sine", "sine DIRECTION AMPLITUDE [TIME]", "oscillates about its position", 1, true, true, true, "period for", 1},
+    {"circle", "circle DIRECTION DIRECTION RADIUS [TIME]", "begins at its position in the first direction", 2, true,
+     true, true, "period for", 1},
+    {"back", "back", "returns to the start of the motion", 0, false, false, false, "speed", 0},
+    {"letgo", "letgo [TIME]", "releases the handle, then holds it at its new position", 0, false, false, true, "for",
      0.5},
     {"button", "button NUMBER on|off", "presses or releases a button, from 1", 0, false, false, false, "", 0},
 }};
@@ -88,7 +88,7 @@ class ScriptReader {
     const auto all = words(statement, kMaxWords + 1);
     if (all.empty()) return true;
     if (all.size() > kMaxWords) {
-      error(all.back(), "too many words for one step", "part steps by ';'");
+      error(all.back(), "too many words for one step", "separate steps by ';'");
       return true;
     }
     const std::string_view name = all.front();
@@ -137,7 +137,7 @@ class ScriptReader {
   void read_button(const VerbRow& verb, const std::vector<std::string_view>& all) {
     const auto number = all.size() == 3 ? parse_integer(all[1]) : std::nullopt;
     if (!number || *number < 1 || *number > 32 || (all[2] != "on" && all[2] != "off")) {
-      error(all.front(), "no button was understood", fmt::format("write {}, buttons 1 to 32", verb.form));
+      error(all.front(), "the button is invalid", fmt::format("write {}, buttons 1 to 32", verb.form));
       return;
     }
     step_.button = static_cast<std::uint32_t>(*number);
@@ -253,8 +253,8 @@ std::vector<MotionStep> parse_motion(std::string_view text, std::string_view fil
 
 std::string haptic_motion_help() {
   std::string help =
-      "A motion is a list of steps, parted by ';':\n"
-      "  touch z -0.03 speed=0.02; press 0.004 2s; drag x 0.02; letgo; back\n\n";
+      "A motion is a list of steps, separated by ';':\n  touch z -0.03 speed=0.02; press 0.004 2s; drag x 0.02; letgo; "
+      "back\n\n";
   for (const VerbRow& verb : kVerbs) {
     help +=
         fmt::format("  {:<42} {}{}\n", verb.form, verb.does,

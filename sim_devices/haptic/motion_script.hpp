@@ -1,4 +1,4 @@
-// What a simulated hand is told to do: a list of steps, as text "touch z -0.03; press 2s; drag x 0.02; letgo".
+// Motions of a simulated hand: a list of steps, as text "touch z -0.03; press 2s; drag x 0.02; letgo".
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct MotionStep {
 inline constexpr std::size_t kMaxMotionSteps = 256;
 inline constexpr std::size_t kMaxMotionText = 16384;
 
-// Steps are parted by ';' or line ends; '#' begins a comment. Tells all that is wrong with places in `file`.
+// Steps are separated by ';' or line ends; '#' begins a comment. Reports all errors with places in `file`.
 [[nodiscard]] std::vector<MotionStep> parse_motion(std::string_view text, std::string_view file,
                                                    const AxisLayout& layout, Diagnostics& diagnostics);
 

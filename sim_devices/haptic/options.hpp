@@ -26,12 +26,12 @@ struct HapticOptions {
   std::vector<HapticFaultSpec> faults;
   double for_s = -1;   // negative: to the end of the motion; 0: until a signal
   double wait_s = 0;   // for the memory; 0: as long as it takes
-  double poll_us = 0;  // how often to look for the answer within a period; 0: once a period
+  double poll_us = 0;  // polling of the answer within a period; 0: once per period
   int priority = 0;
-  bool watch = false;  // only look: nothing is written
+  bool watch = false;  // read only: nothing is written
   std::string log;
   std::string control;
-  bool no_input = false;  // there is none anyway: as sim_robot
+  bool no_input = false;  // no effect: for compatibility with sim_robot
   bool json = false;
   bool quiet = false;
 };

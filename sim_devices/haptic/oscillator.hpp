@@ -1,11 +1,11 @@
-// One axis of a hand: a mass that a spring and a damper hold at a wished place. SI: m, N, kg or rad, Nm, kg m2.
+// One axis of a hand: a mass held at a target by a spring and a damper. SI: m, N, kg or rad, Nm, kg m2.
 #pragma once
 
 namespace cellmirror::sim {
 
 struct Impedance {
   double mass = 1;       // > 0
-  double damping = 0;    // against the wish's speed
+  double damping = 0;    // against the target's speed
   double stiffness = 0;  // 0: nothing holds it
 };
 
@@ -19,8 +19,8 @@ struct Wish {
   double v = 0;
 };
 
-// mass x" = stiffness (wish.x - x) + damping (wish.v - x') + effort, one Runge-Kutta step of fourth order. The wish
-// moves on with its speed within the step, the effort is constant. Error of a step: of order (dt sqrt(k/m))^5.
+// mass x" = stiffness (wish.x - x) + damping (wish.v - x') + effort, one Runge-Kutta step of fourth order. The target
+// moves with its speed within the step, the effort is constant. Error of a step: of order (dt sqrt(k/m))^5.
 [[nodiscard]] OscillatorState advance(const OscillatorState& state, const Impedance& impedance, const Wish& wish,
                                       double effort, double dt);
 

@@ -1,4 +1,4 @@
-// Only looks: records every answer of the gateway, and beside it what stood in the device's section then.
+// Read only: records every answer of the gateway, with the content of the device's section at that time.
 #pragma once
 
 #include "sim_devices/base/segment_seeker.hpp"

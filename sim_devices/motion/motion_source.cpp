@@ -116,7 +116,7 @@ Result<void> read_parameters(std::string_view form, std::string_view text, std::
     }
     const auto value = equals == std::string_view::npos ? std::nullopt : parse_number(trimmed(item.substr(equals + 1)));
     if (!value || std::abs(*value) > 1e9) {
-      return fail(fmt::format("motion {}: '{}' gives no number", form, printable(item)), "write e.g. amplitude=0.5");
+      return fail(fmt::format("motion {}: '{}' is not a number", form, printable(item)), "write e.g. amplitude=0.5");
     }
     found->second = *value;
     text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
@@ -138,7 +138,7 @@ Result<std::unique_ptr<MotionSource>> from_file(std::string_view form, std::stri
   MotionTable table = read_motion_table(*content, file, diagnostics);
   if (!diagnostics.ok()) return fail(diagnostics.text());
   if (table.joints < joints) {
-    return fail(fmt::format("{} has {} values a row, the robot has {} joints", file, table.joints, joints));
+    return fail(fmt::format("{} has {} values per row, the robot has {} joints", file, table.joints, joints));
   }
   return std::make_unique<Table>(std::move(table), form == "waypoints", once);
 }
@@ -161,17 +161,17 @@ Result<std::unique_ptr<MotionSource>> make_motion(std::string_view text, std::si
   if (auto read = read_parameters(form, rest, p); !read) return std::unexpected(read.error());
   if (form == "hold") return std::make_unique<Hold>(p["position"]);
   if (form == "ramp") return std::make_unique<Ramp>(p["velocity"], p["offset"]);
-  if (p["period"] <= 0) return fail("motion sine: period has to be above 0", "write e.g. period=4");
+  if (p["period"] <= 0) return fail("motion sine: period must be above 0", "write e.g. period=4");
   return std::make_unique<Sine>(SineParameters{p["amplitude"], p["period"], p["offset"], p["phase"], p["step"]});
 }
 
 std::string motion_help() {
-  return "  hold[:position=Q]                                    stands still\n"
-         "  ramp[:velocity=V,offset=Q]                           Q + V t: a value tells its time\n"
-         "  sine[:amplitude=A,period=T,offset=Q,phase=P,step=S]  Q + A sin(2 pi t/T + P + j S), j = 0 for joint 1\n"
-         "  waypoints:FILE.csv[,once]                            rests at each row, minimum jerk between rows\n"
-         "  recorded:FILE.csv[,once]                             plays rows, linear between rows\n"
-         "  Rows are time_s, q1, q2, ... in s and rad (or m); without `once` the file begins anew after its end.\n";
+  return "  hold[:position=Q]                                    stands still\n  ramp[:velocity=V,offset=Q]            "
+         "               Q + V t: a value identifies its time\n  sine[:amplitude=A,period=T,offset=Q,phase=P,step=S]  "
+         "Q + A sin(2 pi t/T + P + j S), j = 0 for joint 1\n  waypoints:FILE.csv[,once]                            "
+         "rests at each row, minimum jerk between rows\n  recorded:FILE.csv[,once]                             plays "
+         "rows, linear between rows\n  Rows are time_s, q1, q2, ... in s and rad (or m); without `once` the file "
+         "repeats.\n";
 }
 
 }  // namespace cellmirror::sim

@@ -22,12 +22,12 @@ class MotionSource {
 
 // From its text form:
 //   hold[:position=Q]                                     stands still
-//   ramp[:velocity=V,offset=Q]                            position = Q + V t, so that a value tells its time
+//   ramp[:velocity=V,offset=Q]                            position = Q + V t, so that a value identifies its time
 //   sine[:amplitude=A,period=T,offset=Q,phase=P,step=S]   Q + A sin(2 pi t / T + P + j S), j = 0 for joint 1
 //   waypoints:FILE.csv[,once]                             stops at each row, minimum jerk between them
 //   recorded:FILE.csv[,once]                              plays rows, linear between them
 // FILE: one row a point, "time_s, q1, q2, ..." in s and rad or m, a heading line and lines with # are allowed; without
-// `once` it begins anew after its last row. `joints` is how many values each row must have at least.
+// `once` it repeats. `joints` is how many values each row must have at least.
 [[nodiscard]] Result<std::unique_ptr<MotionSource>> make_motion(std::string_view text, std::size_t joints);
 [[nodiscard]] std::string motion_help();
 

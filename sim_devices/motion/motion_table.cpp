@@ -47,7 +47,7 @@ class TableReader {
 
   MotionTable take() {
     if (table_.rows() == 0 && diagnostics_.ok()) {
-      diagnostics_.error({std::string(file_)}, "the file holds no row", "write rows of time_s, q1, q2, ...");
+      diagnostics_.error({std::string(file_)}, "the file has no rows", "write rows of time_s, q1, q2, ...");
     }
     return std::move(table_);
   }
@@ -74,7 +74,8 @@ class TableReader {
     for (const Field& field : fields) {
       const std::optional<double> value = parse_number(field.text);
       if (!value || std::abs(*value) > 1e9) {
-        diagnostics_.error(place(field.column), fmt::format("'{}' is no number within 1e9", printable(field.text, 40)));
+        diagnostics_.error(place(field.column),
+                           fmt::format("'{}' is not a number within 1e9", printable(field.text, 40)));
         return;
       }
       values_.push_back(*value);
@@ -86,7 +87,7 @@ class TableReader {
     const double time = values_.front() - (table_.rows() == 0 ? values_.front() : start_);
     if (table_.rows() == 0) start_ = values_.front();
     if (table_.rows() > 0 && time <= table_.time_s.back()) {
-      diagnostics_.error(std::move(place), "times have to rise from row to row");
+      diagnostics_.error(std::move(place), "times must increase from row to row");
       return;
     }
     table_.time_s.push_back(time);

@@ -67,7 +67,8 @@ Result<void> add_signals(const std::vector<std::string>& names, JointQuantity qu
   for (std::size_t joint = 0; joint < names.size(); ++joint) {
     const std::size_t dot = names[joint].find('.');
     if (dot == std::string::npos) {
-      return fail(fmt::format("'{}' is no MESSAGE.SIGNAL", printable(names[joint])), "e.g. --position Axis0.Position");
+      return fail(fmt::format("'{}' is not a MESSAGE.SIGNAL", printable(names[joint])),
+                  "e.g. --position Axis0.Position");
     }
     DbcSignalConfig signal;
     signal.message = names[joint].substr(0, dot);
@@ -83,7 +84,7 @@ Result<void> add_signals(const std::vector<std::string>& names, JointQuantity qu
 }  // namespace
 
 Result<std::unique_ptr<CanChannel>> open_bus(const std::string& endpoint, const std::string& interface) {
-  if (endpoint.starts_with("log:")) return fail("a log cannot be sent to", "use socketcan: or udp:");
+  if (endpoint.starts_with("log:")) return fail("a log channel cannot send", "use socketcan: or udp:");
   CanChannelConfig config;
   config.endpoint = endpoint;
   config.interface = interface;
@@ -119,7 +120,7 @@ std::expected<BuiltDevices, Refusal> build_cia402(const CommonOptions& common, c
   if (options.increments.size() != 1 && options.increments.size() != nodes->size()) {
     return wrong_usage(
         fmt::format("--increments-per-rad has {} values for {} nodes", options.increments.size(), nodes->size()),
-        "give one value, or one a joint");
+        "give one value, or one per joint");
   }
   for (const double value : options.increments) {
     if (!std::isfinite(value) || value == 0) return wrong_usage("--increments-per-rad: a value is zero or not finite");

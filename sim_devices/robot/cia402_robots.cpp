@@ -39,7 +39,7 @@ can::Cia402DriveConfig drive_config(const Cia402RobotsConfig& config, std::uint8
   return drive;
 }
 
-// What a drive sends, told by the predefined connection set.
+// Kind of a drive's message by the predefined connection set.
 MessageKind kind_of(const CanFrame& frame, std::uint8_t node) {
   if (frame.id == can::kHeartbeatBase + node) return frame.data[0] == 0 ? MessageKind::boot_up : MessageKind::heartbeat;
   if (frame.id == can::kEmcyBase + node) return MessageKind::emergency;

@@ -10,20 +10,16 @@ namespace cellmirror::sim {
 namespace {
 
 constexpr const char* kFooter =
-    "Examples:\n"
-    "  sim_robot cia402 --channel udp:239.74.163.2:43113 --nodes 1-6 --rate 100 --motion sine:amplitude=0.5,period=4\n"
-    "  sim_robot cia402 --channel socketcan:vcan0 --nodes 1-7 --sync --fault loss:p=0.01 --fault bus-off@5..6\n"
-    "  sim_robot dbc --dbc axes.dbc --position Axis1.Angle,Axis2.Angle --units-per-rad 57.29578 --channel "
-    "udp:239.74.163.2:43113\n"
-    "  sim_robot dds --topic rt/joint_states --joint-names a,b,c --rate 125 --for 10 --json\n"
-    "  sim_robot dds --robots 32 --joints 7 --rate 500 --control /tmp/robots.sock\n"
-    "  echo 'fault delay:s=0.05@0..3' | sim_robot dds --for 5\n"
-    "  sim_robot faults           all faults and their keys\n"
-    "  sim_robot motions          all motions\n"
-    "  sim_robot commands         what can be told to a running sim_robot\n";
+    "Examples:\n  sim_robot cia402 --channel udp:239.74.163.2:43113 --nodes 1-6 --rate 100 --motion "
+    "sine:amplitude=0.5,period=4\n  sim_robot cia402 --channel socketcan:vcan0 --nodes 1-7 --sync --fault loss:p=0.01 "
+    "--fault bus-off@5..6\n  sim_robot dbc --dbc axes.dbc --position Axis1.Angle,Axis2.Angle --units-per-rad 57.29578 "
+    "--channel udp:239.74.163.2:43113\n  sim_robot dds --topic rt/joint_states --joint-names a,b,c --rate 125 --for 10 "
+    "--json\n  sim_robot dds --robots 32 --joints 7 --rate 500 --control /tmp/robots.sock\n  echo 'fault "
+    "delay:s=0.05@0..3' | sim_robot dds --for 5\n  sim_robot faults           all faults and their keys\n  sim_robot "
+    "motions          all motions\n  sim_robot commands         commands of a running sim_robot\n";
 
 void add_common(cli::Command app, CommonOptions& options) {
-  app.option("--rate", options.rate_hz, "samples a second and robot").between(0.01, 10000.0).show_default();
+  app.option("--rate", options.rate_hz, "samples per second and robot").between(0.01, 10000.0).show_default();
   app.option("--robots", options.robots, "how many robots").between(1, 64).show_default();
   app.option("--first-robot", options.first_robot, "number of the first robot").between(1, 64).show_default();
   app.option("--motion", options.motion,
@@ -31,38 +27,37 @@ void add_common(cli::Command app, CommonOptions& options) {
       .show_default();
   app.option("--fault", options.faults, "KIND[:key=value,...][@START..END], may be repeated; see `sim_robot faults`")
       .one_value_each();
-  app.option("--seed", options.seed, "of all chance").show_default();
-  app.option("--for", options.for_s, "end after so many seconds; 0: run until quit or a signal")
+  app.option("--seed", options.seed, "of the random numbers").show_default();
+  app.option("--for", options.for_s, "end after this many seconds; 0: run until quit or a signal")
       .between(0.0, 1e9)
       .show_default();
-  app.option("--control", options.control, "a FIFO to read commands from, or the path of a Unix socket to make");
-  app.flag("--no-input", options.no_input, "take no commands from standard input");
+  app.option("--control", options.control, "a FIFO to read commands from, or the path of a Unix socket to create");
+  app.flag("--no-input", options.no_input, "read no commands from standard input");
   app.option("--priority", options.priority, "SCHED_FIFO priority of the sending threads, where allowed")
       .between(0, 98);
   app.flag("--json", options.json, "print the report as JSON on standard output at the end");
   app.flag("-q,--quiet", options.quiet, "only errors");
-  app.flag("-v,--verbose", options.verbose, "what the drivers log as well");
+  app.flag("-v,--verbose", options.verbose, "also log the drivers");
 }
 
 void add_cia402(cli::Command app, Cia402Options& options) {
   app.option("--channel", options.channels,
-             "socketcan:IF or udp:GROUP:PORT; when repeated, the robots are dealt out over the channels")
+             "socketcan:IF or udp:GROUP:PORT; when repeated, the channels share the robots")
       .one_value_each()
       .show_default();
   app.option("--interface", options.interface, "udp: the network interface").show_default();
   app.option("--nodes", options.nodes,
-             "node ids of the first robot's joints, e.g. 1-6 or 1,2,5; "
-             "each further robot on the channel has the ids that follow")
+             "node ids of the first robot's joints, e.g. 1-6 or 1,2,5; the next robots on the channel have the "
+             "following ids")
       .show_default();
   app.flag("--sync,!--no-sync", options.sync, "send TPDOs with each SYNC instead of by the event timer");
-  app.option("--sync-producer", options.sync_producer_hz, "produce SYNC so often a second").between(0.0, 10000.0);
+  app.option("--sync-producer", options.sync_producer_hz, "produce SYNC at this rate, Hz").between(0.0, 10000.0);
   app.option("--increments-per-rad", options.increments,
-             "increments of object 0x6064 for a rad (or m); "
-             "one value, or one a joint; negative turns it round")
+             "increments of object 0x6064 per rad (or m); one value, or one per joint; negative reverses it")
       .list_divided_by(',')
       .show_default();
   app.option("--heartbeat", options.heartbeat_ms, "heartbeat period in ms; 0: none").between(0, 65535).show_default();
-  app.flag("--self-starting", options.self_starting, "operational at once, without an NMT start");
+  app.flag("--self-starting", options.self_starting, "operational at once, without NMT start");
   app.flag("--with-velocity", options.with_velocity, "TPDO2 with velocity and torque");
   app.flag("--follow", options.follow, "move as commanded over the bus instead of by --motion");
 }
@@ -76,15 +71,14 @@ void add_dbc(cli::Command app, DbcOptions& options) {
       .required();
   app.option("--velocity", options.velocities, "MESSAGE.SIGNAL of each joint's velocity").list_divided_by(',');
   app.option("--effort", options.efforts, "MESSAGE.SIGNAL of each joint's effort").list_divided_by(',');
-  app.option("--units-per-rad", options.units_per_rad,
-             "the DBC's physical units for a rad (or m), e.g. 57.29578 for deg")
+  app.option("--units-per-rad", options.units_per_rad, "the DBC's physical units per rad (or m), e.g. 57.29578 for deg")
       .show_default();
 }
 
 void add_dds(cli::Command app, DdsOptions& options) {
   app.option("--domain", options.domain, "DDS domain").between(0, 232).show_default();
   app.option("--interface-address", options.interface_address, "IPv4 address of the network interface").show_default();
-  app.option("--topic", options.topic, "DDS topic; with {}: a topic a robot, {} is its number").show_default();
+  app.option("--topic", options.topic, "DDS topic; with {}: one topic per robot, {} is its number").show_default();
   app.option("--joint-names", options.joint_names, "a,b,c").list_divided_by(',');
   app.option("--joints", options.joints, "without --joint-names: joint_1, joint_2, ...").between(1, 128).show_default();
   app.option("--prefix", options.prefix,
@@ -92,10 +86,10 @@ void add_dds(cli::Command app, DdsOptions& options) {
              "(default: none for one robot, robot{}_ for several on one topic)");
   app.flag("--best-effort", options.best_effort, "instead of reliable");
   app.flag("--no-stamp", options.no_stamp, "header.stamp stays zero");
-  app.option("--spread", options.spread, "send the robots of a period in so many groups, evenly spread")
+  app.option("--spread", options.spread, "send the robots of a period in this many groups, evenly spread")
       .between(1, 64)
       .show_default();
-  app.option("--wait-for-reader", options.wait_for_reader_s, "wait so many seconds at most for a reader, then start")
+  app.option("--wait-for-reader", options.wait_for_reader_s, "wait at most this many seconds for a reader, then start")
       .between(0.0, 3600.0);
 }
 
@@ -126,15 +120,15 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   Cia402Options cia402_options;
   DbcOptions dbc_options;
   DdsOptions dds_options;
-  cli::CommandLine program("sim_robot stands in for a robot controller, with every fault on demand.");
+  cli::CommandLine program("sim_robot simulates a robot controller, with faults on demand.");
   program.require_subcommand();
   program.footer(kFooter);
-  cli::Command cia402 = program.subcommand("cia402", "drives of CiA 402 on CAN, one a joint");
+  cli::Command cia402 = program.subcommand("cia402", "CiA 402 drives on CAN, one per joint");
   cli::Command dbc = program.subcommand("dbc", "signals of a DBC file on CAN");
   cli::Command dds = program.subcommand("dds", "ROS 2 JointState on DDS");
   cli::Command faults = program.subcommand("faults", "print all faults and their keys");
   cli::Command motions = program.subcommand("motions", "print all motions");
-  cli::Command commands = program.subcommand("commands", "print what can be told to a running sim_robot");
+  cli::Command commands = program.subcommand("commands", "print commands of a running sim_robot");
   add_common(cia402, common);
   add_cia402(cia402, cia402_options);
   add_common(dbc, common);

@@ -29,7 +29,7 @@ Result<void> read_source(std::string_view word, Source& source) {
   const std::string_view name = word.substr(0, equals);
   const long long number = equals == std::string_view::npos ? -1 : parse_integer(word.substr(equals + 1)).value_or(-1);
   if ((name != "robot" && name != "joint") || number < 1 || number > 127) {
-    return fail(fmt::format("'{}' names no robot or joint", printable(word)),
+    return fail(fmt::format("'{}' is not a robot or joint", printable(word)),
                 "write robot=N or joint=N, counted from 1");
   }
   (name == "robot" ? source.robot : source.joint) = static_cast<int>(number);
@@ -38,7 +38,7 @@ Result<void> read_source(std::string_view word, Source& source) {
 
 Result<ControlCommand> clear(const std::vector<std::string_view>& words) {
   if (words.size() == 1) return EndFaults{};
-  if (words.size() > 2) return fail("clear takes one word at most", "clear | clear ID | clear KIND");
+  if (words.size() > 2) return fail("clear takes at most one word", "clear | clear ID | clear KIND");
   if (words[1] == "all") return EndFaults{};
   if (const auto id = parse_integer(words[1])) {
     if (*id < 1 || *id > 1'000'000'000) return fail(fmt::format("there is no fault {}", *id), "ask `status`");
@@ -105,7 +105,7 @@ Result<ControlCommand> parse_control_command(std::string_view line) {
     const std::string guess = did_you_mean(verb, kVerbs);
     return fail(fmt::format("there is no command '{}'", printable(verb)), guess.empty() ? "ask `help`" : guess);
   }
-  if (words.size() > 1) return fail(fmt::format("{} takes nothing more", verb));
+  if (words.size() > 1) return fail(fmt::format("{} takes no more parameters", verb));
   if (verb == "return") return EndFaults{0, FaultKind::death};
   if (verb == "hold") return SetHeld{true};
   if (verb == "go") return SetHeld{false};
@@ -115,14 +115,11 @@ Result<ControlCommand> parse_control_command(std::string_view line) {
 }
 
 std::string control_help() {
-  return "  fault FAULT                          switches a fault on; its window counts from now\n"
-         "  clear [ID|KIND|all]                  ends faults\n"
-         "  die [robot=N] [joint=N]              the device falls silent\n"
-         "  return                               the dead boot again\n"
-         "  emcy CODE [register=R] [robot=N] [joint=N]   an emergency message (CAN); code 0 is the reset\n"
-         "  hold | go                            the motion stands still | goes on\n"
-         "  status                               counters as one line of JSON\n"
-         "  help | quit\n";
+  return "  fault FAULT                          injects a fault; its window counts from now\n  clear [ID|KIND|all]    "
+         "              ends faults\n  die [robot=N] [joint=N]              the device goes silent\n  return           "
+         "                    dead devices reboot\n  emcy CODE [register=R] [robot=N] [joint=N]   an emergency message "
+         "(CAN); code 0 is the reset\n  hold | go                            stops | continues the motion\n  status    "
+         "                           counters as one line of JSON\n  help | quit\n";
 }
 
 }  // namespace cellmirror::sim

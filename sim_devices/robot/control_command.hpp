@@ -1,4 +1,4 @@
-// What can be told to a simulated device while it runs: one command a line, on standard input or over --control.
+// Run-time commands of a simulated device: one per line, on standard input or over --control.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct SendEmergency {
   Source source;  // robot 0, joint 0: every
 };
 struct SetHeld {
-  bool held = true;  // the motion stands still at its present time
+  bool held = true;  // the motion stops at its present time
 };
 struct AskStatus {};
 struct AskHelp {};

@@ -60,7 +60,7 @@ Result<void> ControlServer::open(const std::string& path) {
   }
   if (exists && (!S_ISSOCK(info.st_mode) || somebody_serves(address))) {
     return fail(
-        fmt::format("control {}: {} is there already", path, S_ISSOCK(info.st_mode) ? "a served socket" : "a file"),
+        fmt::format("control {}: {} exists already", path, S_ISSOCK(info.st_mode) ? "a served socket" : "a file"),
         "choose another path");
   }
   if (exists) unlink(path.c_str());

@@ -1,4 +1,4 @@
-// Where control commands come from: standard input, and a FIFO or a Unix socket. Never waits; the device's loop asks.
+// Sources of control commands: standard input, and a FIFO or a Unix socket. Never waits; the device's loop polls.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ class ControlServer {
 
   // Standard input; answers go to standard error, so that standard output stays one JSON document.
   void watch_standard_input();
-  // An existing FIFO is read (answers to standard error); else a Unix stream socket is made at `path`, mode 0600.
-  // A socket that nobody serves any more is replaced; anything else at `path` is refused.
+  // An existing FIFO is read (answers to standard error); else a Unix stream socket is created at `path`, mode 0600. An
+  // unserved socket is replaced; anything else at `path` is refused.
   Result<void> open(const std::string& path);
 
   // Takes what has come, on any of them. Waits at most `timeout_ms` (0: not at all, -1: until something comes).

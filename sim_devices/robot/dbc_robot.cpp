@@ -144,7 +144,7 @@ void DbcRobot::note_fit(const Frame& frame, Entry& entry, double wanted, const C
 }
 
 void DbcRobot::wait_until(Timestamp t) {
-  // Nobody's frames concern it, but receiving lets the channel see the state of its bus.
+  // It ignores all frames, but receiving updates the channel's bus state.
   const SystemClock clock;
   ReceivedCanFrame ignored;
   for (Nanoseconds left = t - clock.now(); left.count() > 0; left = t - clock.now()) {

@@ -1,4 +1,4 @@
-// A robot that tells its joints as signals of a DBC file, as vehicles and simple drives do.
+// A robot that sends its joints as signals of a DBC file, like vehicles and simple drives.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
   struct Entry {
     can::DbcSignal signal;
     DbcSignalConfig config;
-    bool too_small = false;  // a value did not fit, and that was told
+    bool too_small = false;  // a value did not fit, which was reported
   };
   // What one frame holds: the signals of a message that can be in it together.
   struct Frame {
@@ -55,7 +55,7 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
   DbcRobot(const DbcRobotConfig& config, std::unique_ptr<MotionSource> motion, std::unique_ptr<CanChannel> channel);
   void take_in(const can::DbcMessage& message, const can::DbcSignal& signal, const DbcSignalConfig& config);
   void send_frame(Frame& frame, Timestamp now);
-  // What is sent instead of a value that the signal cannot hold is told once a signal.
+  // A replacement for a value out of range is reported once per signal.
   void note_fit(const Frame& frame, Entry& entry, double wanted, const CanFrame& filled);
   [[nodiscard]] Result<void> check(const FaultSpec& spec) const override;
   bool transmit(const CanFrame& frame) override { return channel_->send(frame); }

@@ -90,10 +90,10 @@ void DdsRobots::send_sample(Robot& robot, Timestamp now) {
 
 Result<void> DdsRobots::check(const FaultSpec& spec) const {
   if (spec.kind == FaultKind::bus_off) return fail("DDS has no bus-off", "use death");
-  if (spec.id) return fail("a JointState has no identifier", "leave id= out");
+  if (spec.id) return fail("a JointState has no identifier", "remove id=");
   const bool of_values = spec.kind == FaultKind::frozen || spec.kind == FaultKind::jump || spec.kind == FaultKind::nan;
   if (spec.joint != 0 && !of_values) {
-    return fail(fmt::format("{}: one sample carries all joints", name_of(spec.kind)), "leave joint= out");
+    return fail(fmt::format("{}: one sample carries all joints", name_of(spec.kind)), "remove joint=");
   }
   return {};
 }

@@ -25,7 +25,7 @@ struct DdsRobotsConfig {
   int first_robot = 1;
   int robots = 1;
   double rate_hz = 125;
-  int groups = 1;  // the robots of a period are spread over so many instants
+  int groups = 1;  // the robots of a period are spread over this many instants
   bool stamped = true;
   std::uint64_t seed = 1;
 };

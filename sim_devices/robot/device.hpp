@@ -28,7 +28,7 @@ struct DeviceStatus {
   std::string endpoint;
   int first_robot = 1;
   int robots = 0;
-  std::array<std::uint64_t, kMessageKindNames.size()> sent{};  // handed to the channel, by MessageKind
+  std::array<std::uint64_t, kMessageKindNames.size()> sent{};  // passed to the channel, by MessageKind
   std::uint64_t refused = 0;                                   // by the channel
   std::uint64_t received = 0;
   std::uint64_t missed_periods = 0;
@@ -54,7 +54,7 @@ class SimulatedDevice {
 
   // One sentence what was done, or why not.
   virtual Result<std::string> obey(const ControlCommand& command, Timestamp now) = 0;
-  // A line that only this kind of device understands; none: it is for obey().
+  // A line for this kind of device only; none: it is for execute().
   virtual std::optional<Result<std::string>> obey_own(std::string_view /*line*/, Timestamp /*now*/) { return {}; }
   [[nodiscard]] virtual DeviceStatus status(Timestamp now) const = 0;
 };
@@ -83,7 +83,7 @@ class FaultyDevice : public SimulatedDevice {
     if (const auto* emergency = std::get_if<SendEmergency>(&command)) return send_emergency(*emergency, now);
     if (const auto* held = std::get_if<SetHeld>(&command)) {
       hold(held->held, now);
-      return std::string(held->held ? "the motion stands still" : "the motion goes on");
+      return std::string(held->held ? "the motion stops" : "the motion continues");
     }
     return fail("not a command for a device");
   }

@@ -1,4 +1,4 @@
-// sim_robot: stands in for a robot controller.
+// sim_robot: simulates a robot controller.
 #include <fmt/format.h>
 
 #include <chrono>

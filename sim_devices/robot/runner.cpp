@@ -103,7 +103,7 @@ void Runner::work(Seat& seat) {
   if (!become_punctual(config_.priority)) {
     fmt::print(stderr, "{}: no SCHED_FIFO for this user; sending with ordinary priority\n", config_.program);
   }
-  constexpr Nanoseconds kLongestWait{20'000'000};  // so that commands and the end are seen
+  constexpr Nanoseconds kLongestWait{20'000'000};  // so that commands and the end are detected
   while (!seat.stop) {
     Timestamp next;
     {

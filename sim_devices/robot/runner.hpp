@@ -1,4 +1,4 @@
-// Runs simulated devices until their time is over or somebody says quit: a thread a device, and this one for commands.
+// Runs simulated devices until the time limit or quit: one thread per device, and this one for commands.
 #pragma once
 
 #include <memory>

@@ -209,7 +209,7 @@ Result<void> DisplayService::set_tag_length(double length_m) {
 
 Result<void> DisplayService::set_arc(bool on) {
   const std::string robot(parts_.names.active_robot());
-  if (robot.empty()) return fail("no robot is active", "make one active with ROBACT <robot>");
+  if (robot.empty()) return fail("no robot is active", "activate one with ROBACT <robot>");
   std::erase(state_.arcs, robot);
   if (on) state_.arcs.push_back(robot);
   changed();

@@ -128,7 +128,7 @@ Result<void> MotionService::stop(std::string_view id) {
 
 Result<void> MotionService::set_positioning(Positioning positioning) {
   const RobotModel* robot = cell_.robot(names_.active_robot());
-  if (robot == nullptr) return fail("no robot is active", "make one active with ROBACT <robot>");
+  if (robot == nullptr) return fail("no robot is active", "activate one with ROBACT <robot>");
   records_.try_emplace(robot->id(), robot->id()).first->second.positioning = positioning;
   return {};
 }
@@ -298,7 +298,7 @@ Result<void> MotionService::check_limits(const RobotModel& robot, const JointVal
     const RobotJoint& joint = robot.joints()[i];
     return fail(fmt::format("joint {} ({}) of {} would stand at {}, beyond its limits; nothing was moved", i + 1,
                             joint.name, robot.id(), position_text(joint.kind, joints[i])),
-                "command it into its range with POS_ROB JOINT_ABS, or widen the range");
+                "choose a target within its range with POS_ROB JOINT_ABS, or widen the range");
   }
   return {};
 }

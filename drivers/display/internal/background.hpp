@@ -1,4 +1,4 @@
-// What is behind everything: a pale sky, so that bodies of any colour stand out. Private to this folder.
+// The background: a pale sky, so that bodies of any colour stand out. Private to this folder.
 #pragma once
 
 #include "drivers/display/internal/shader_program.hpp"

@@ -233,8 +233,7 @@ void BodyPass::draw_opaque(const Frame& frame, std::vector<DrawnBody>& bodies) {
   gl_.Disable(GL_CULL_FACE);
 }
 
-// Only the surface that is nearest to the eye shows, so that a robot's ghost looks like one thing and not like its
-// parts.
+// Only the surface nearest to the eye is drawn, so that a robot's ghost looks like one object.
 void BodyPass::draw_ghosts(const Frame& frame, std::span<const DrawnBody* const> ghosts) {
   gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   for (const DrawnBody* body : ghosts) {

@@ -19,7 +19,7 @@ struct DrawnBody {
   Eigen::Matrix4d X_WM;   // with the scale of the mesh
   Colour rgba{};          // sRGB, with its mark
   bool textured = false;  // with the pictures of its mesh
-  Colour own{};           // sRGB, without its mark; seen where the pictures are see-through
+  Colour own{};           // sRGB, without its mark; visible through transparent textures
   Colour over{};          // its mark's colour and, as alpha, the share that it has in any other
   DrawMode mode = DrawMode::gouraud;
   Mark mark = Mark::none;
@@ -49,7 +49,7 @@ class BodyPass {
 
   // Sets distance and visible of each body for this pane; counts.
   static BodyCounts examine(const Frame& frame, std::vector<DrawnBody>& bodies);
-  // First solid bodies and wireframes, then, with what else is opaque drawn, those that are seen through.
+  // First solid bodies and wireframes, then, after all opaque objects, transparent ones.
   void draw_opaque(const Frame& frame, std::vector<DrawnBody>& bodies);
   void draw_see_through(const Frame& frame, std::vector<DrawnBody>& bodies);
   // The number of each body's object.

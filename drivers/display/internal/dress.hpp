@@ -1,5 +1,5 @@
-// What a textured mesh has beside its surface: places in pictures and colours, by vertex, and its triangles in the
-// order of their materials. Private to this folder; knows no OpenGL.
+// Texture coordinates and colours by vertex of a textured mesh, and its triangles in the order of their materials.
+// Private to this folder; no OpenGL.
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@ struct Dress {
 };
 static_assert(sizeof(Dress) == 12);
 
-// Looks of files have been made for their mesh; one that was put together otherwise must not be read past its end.
+// The appearance from a file matches its mesh; another one must not be read past its end.
 [[nodiscard]] bool sound(const MeshLook& look, std::size_t triangles);
 
 // By vertex of the surface. Vertices of which corners have several dresses are doubled: the surface grows and its
 // corners name the new ones.
 [[nodiscard]] std::vector<Dress> dress(Surface& surface, const MeshLook& look);
 
-// The triangles of one material stand side by side.
+// The triangles of one material are contiguous.
 struct MaterialOrder {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> ends;  // by material, in `triangles`

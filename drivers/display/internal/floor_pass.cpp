@@ -262,7 +262,7 @@ void FloorPass::draw(const Frame& frame, RibbonPass& ribbon_pass) {
   if (!(eye.z() > eye.w() * frame.scene.floor_z_m)) return;
   make_disc(frame.scene);
   put(frame, program_of(frame.scene), frame.scene.floor_z_m);
-  gl_.PolygonOffset(1, 2);  // a plate that lies on the floor is above it
+  gl_.PolygonOffset(1, 2);  // a plate on the floor is above it
   gl_.DrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
   gl_.Disable(GL_BLEND);

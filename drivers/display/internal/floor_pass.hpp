@@ -23,14 +23,14 @@ class FloorPass {
   Result<void> prepare(const Scene& scene, std::span<const DrawnBody> bodies);
   // As prepared, at the height of the floor.
   [[nodiscard]] Eigen::AlignedBox3d reach(const Scene& scene) const;
-  // After what is opaque. From below, the floor is not drawn, so that one can look into the cell.
+  // After what is opaque. From below, the floor is not drawn, so that the cell is visible.
   void draw(const Frame& frame, RibbonPass& ribbon_pass);
 
  private:
   void make_disc(const Scene& scene);
   void upload(const std::vector<float>& vertices, const std::vector<std::uint32_t>& indices);
   void put(const Frame& frame, const ShaderProgram& program, double z_m);
-  // The shadow alone, on what the cell stands on.
+  // The shadow alone, on the cell's base slab.
   void draw_catchers(const Frame& frame);
   void make_tiles();
   void gather_grid(const Frame& frame);

@@ -11,12 +11,12 @@ struct Frame {
   const Scene& scene;
   const ViewTransform& view;
   std::uint32_t camera = 0;  // as Pane::camera
-  // Whether something belongs to the camera that this pane looks through.
+  // Whether an object belongs to the camera of this pane.
   [[nodiscard]] bool own(std::uint32_t of_camera) const { return of_camera != 0 && of_camera == camera; }
 };
 
-// The light that casts the shadow comes from here (unit vector towards it, W): from the upper left of who looks
-// along +y, as View's default does.
+// The light that casts the shadow comes from here (unit vector towards it, W): from the upper left of a viewer along
+// +y, View's default.
 [[nodiscard]] inline Eigen::Vector3d towards_light() { return Eigen::Vector3d(-0.42, -0.50, 0.90).normalized(); }
 
 }  // namespace cellmirror::display

@@ -10,11 +10,10 @@ namespace cellmirror::display {
 
 namespace {
 
-// OSMesa and EGL do not know of each other, and each takes its own context for still current when the other one has
-// bound another in between.
+// OSMesa and EGL are independent, and each assumes its own context to be current after the other has bound another one.
 thread_local GlContext* current = nullptr;
 
-// llvmpipe reads its number of threads when its screen is made and has no other way to be told.
+// llvmpipe reads its number of threads only when its screen is created.
 void limit_threads(int threads) {
   static std::once_flag once;
   static constexpr int kMostThreads = 16;

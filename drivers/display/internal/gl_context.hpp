@@ -11,9 +11,9 @@ namespace cellmirror::display {
 
 using GlProcedure = void (*)();
 
-// Belongs to the thread that made it. The libraries are opened when the first context is made, with symbols that only
-// their own handle sees, so that OSMesa and EGL can be in one program; they are never closed, since Mesa's threads
-// and thread-local data outlive a context.
+// Belongs to the thread that created it. The libraries are loaded with the first context, with private symbols, so that
+// OSMesa and EGL can be in one program; they are never closed, since Mesa's threads and thread-local data outlive a
+// context.
 class GlContext {
  public:
   GlContext() = default;

@@ -11,7 +11,7 @@
 #endif
 
 #ifdef CELLMIRROR_LEAKS_ARE_LOOKED_FOR
-extern "C" const char* __lsan_default_suppressions();  // asked by the sanitizer's runtime
+extern "C" const char* __lsan_default_suppressions();  // called by the sanitizer's runtime
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOSMesa\nleak:swrast_dri\nleak:libEGL\nleak:libfontconfig\n";
 }

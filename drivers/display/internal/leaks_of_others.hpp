@@ -3,7 +3,7 @@
 
 namespace cellmirror::display {
 
-// Does nothing when called: whoever refers to it gets the list of this file linked.
+// Does nothing: a reference to it links the list of this file.
 void tolerate_leaks_of_others();
 
 }  // namespace cellmirror::display

@@ -24,7 +24,7 @@ Colour faded(Colour colour, float alpha) {
   return colour;
 }
 
-// The edges of a cone as it is seen: from its tip, its base lies back along `direction`.
+// The silhouette edges of a cone: from its tip, its base is back along `direction`.
 void outline_head(const Frame& frame, const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, double length,
                   const Ribbons::Style& style, Ribbons& ribbons) {
   const Eigen::Vector4d eye = frame.view.eye();

@@ -137,7 +137,7 @@ const Buffers& StoredMesh::flat() {
 const Buffers& StoredMesh::wires() {
   if (wires_.array != 0) return wires_;
   edges_ = feature_edges(*mesh_);
-  // Any of the vertices that the surface has at a vertex of the mesh stands at its place.
+  // Any of the vertices that the surface has at a vertex of the mesh has its position.
   std::vector<Corner> at(mesh_->vertices.size(), 0);
   for (std::size_t i = 0; i < smooth_corners_.size(); ++i) at[mesh_->triangles[i / 3][i % 3]] = smooth_corners_[i];
   std::vector<Corner> ends;

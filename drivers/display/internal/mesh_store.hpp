@@ -1,5 +1,5 @@
-// Meshes in the memory of the graphics system: each is uploaded once and stays as long as somebody else holds it.
-// Private to this folder.
+// Meshes in the memory of the graphics system: each is uploaded once and kept while it has other owners. Private to
+// this folder.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ struct Buffers {
   GLuint array = 0;  // vertex array object
   GLuint vertices = 0;
   GLuint indices = 0;
-  GLuint dress = 0;                 // of vertices; 0: the mesh has no look
+  GLuint dress = 0;                 // of vertices; 0: the mesh has no appearance
   GLsizei count = 0;                // of indices
-  std::vector<std::uint32_t> ends;  // of indices, by material; empty: the mesh has no look, or these are edges
+  std::vector<std::uint32_t> ends;  // of indices, by material; empty: the mesh has no appearance, or these are edges
 };
 
 struct StoredMaterial {
@@ -40,7 +40,7 @@ class StoredMesh {
   StoredMesh& operator=(const StoredMesh&) = delete;
 
   [[nodiscard]] const Buffers& smooth() const { return smooth_; }
-  // Made when they are first asked for.
+  // Created on first use.
   const Buffers& flat();
   const Buffers& wires();
   // Those of the triangles (or, of wires, of the edges) that face `eye`, a point in the mesh's frame, or, for w = 0,
@@ -48,11 +48,11 @@ class StoredMesh {
   const Buffers& facing(DrawMode mode, const Eigen::Vector4d& eye);
 
   [[nodiscard]] bool has_look() const { return dressed_; }
-  // Of its look; uploads the pictures when they are first asked for.
+  // Of its appearance; uploads the textures on first use.
   const std::vector<StoredMaterial>& materials(TextureStore& textures);
 
   [[nodiscard]] const BoundingSphere& bounds() const { return bounds_; }
-  // Nobody else has the mesh; or the look, where the mesh is stored with several.
+  // The mesh has no other owner; or the appearance, if the mesh is stored with several.
   [[nodiscard]] bool unshared() const { return mesh_.use_count() == 1 || look_.use_count() == 1; }
   std::uint64_t last_used = 0;  // number of the frame
 
@@ -64,7 +64,7 @@ class StoredMesh {
   const GlApi& gl_;
   std::shared_ptr<const geometry::TriangleMesh> mesh_;
   std::shared_ptr<const MeshLook> look_;  // may be null
-  bool dressed_ = false;                  // has a look that is sound
+  bool dressed_ = false;                  // has a valid appearance
   MaterialOrder order_;
   std::vector<StoredMaterial> materials_;
   BoundingSphere bounds_;
@@ -95,7 +95,7 @@ class MeshStore {
   [[nodiscard]] StoredMesh& solid(Solid solid);
 
   void begin_frame() { ++frame_; }
-  // Drops what nobody else holds any more, and what no frame has shown for a while.
+  // Drops meshes without other owners, and those not shown for a while.
   void end_frame();
   [[nodiscard]] std::size_t size() const { return meshes_.size() + capsules_.size(); }
   [[nodiscard]] std::uint64_t uploads() const { return uploads_; }

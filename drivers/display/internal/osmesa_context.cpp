@@ -39,7 +39,7 @@ class OsMesaContext final : public GlContext {
   OsMesaContext(const OsMesaContext&) = delete;
   OsMesaContext& operator=(const OsMesaContext&) = delete;
 
-  // Answers for names that do not exist, too: gl_api asks only for functions of OpenGL 3.3.
+  // Returns pointers for unknown names, too: gl_api requests only functions of OpenGL 3.3.
   [[nodiscard]] GlProcedure find(const char* name) const override { return osmesa().find(name); }
   [[nodiscard]] const char* backend() const override { return "OSMesa"; }
 

@@ -1,4 +1,4 @@
-// Words in pictures, by cairo: drawn once, kept, and laid over the pixels. Private to this folder; knows no OpenGL.
+// Text in pictures, by cairo: drawn once, cached, and blended over the pixels. Private to this folder; no OpenGL.
 #pragma once
 
 #include <array>

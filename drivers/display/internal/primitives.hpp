@@ -1,4 +1,4 @@
-// Primitives as triangles. Private to this folder; knows no OpenGL.
+// Primitives as triangles. Private to this folder; no OpenGL.
 #pragma once
 
 #include "rt_core/geometry/triangle_mesh.hpp"

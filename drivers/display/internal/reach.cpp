@@ -10,7 +10,7 @@ namespace {
 constexpr double kFarthestDrawn = 1e5;       // m
 constexpr double kNearestPart = 1.0 / 5000;  // of the far distance
 constexpr double kNearestMost = 0.01;        // m
-constexpr double kBeyond = 1.01;             // of the reach: nothing lies in the far plane itself
+constexpr double kBeyond = 1.01;             // of the reach: nothing is in the far plane itself
 
 void include(Box& reach, const Eigen::Vector3d& centre, double radius = 0) {
   if (!centre.allFinite() || !(radius >= 0) || radius > kFarthestDrawn) return;

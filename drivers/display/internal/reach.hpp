@@ -1,5 +1,5 @@
-// How far what is drawn reaches, and the clipping planes that follow from it: the depth buffer divides what lies
-// between them, evenly in parallel views and mostly close to the nearer one in others. Private to this folder.
+// Extent of the drawn scene, and the resulting clipping planes: the depth buffer divides what lies between them, evenly
+// in parallel views and mostly close to the nearer one in others. Private to this folder.
 #pragma once
 
 #include <Eigen/Geometry>

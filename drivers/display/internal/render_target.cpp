@@ -52,7 +52,7 @@ Result<void> RenderTarget::begin(Pixels pixels, int width, int height) {
     if (!make()) {
       free();
       return fail("no memory for a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels",
-                  "ask for a smaller one");
+                  "request a smaller one");
     }
   }
   gl_.BindFramebuffer(GL_FRAMEBUFFER, frame_);

@@ -1,5 +1,5 @@
 // Lines of a width in pixels, as triangles with soft edges: OpenGL's core profile has only thin ones. Private to this
-// folder; knows no OpenGL.
+// folder; no OpenGL.
 #pragma once
 
 #include <array>

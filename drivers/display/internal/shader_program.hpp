@@ -18,7 +18,7 @@ class ShaderProgram {
   ShaderProgram(const ShaderProgram&) = delete;
   ShaderProgram& operator=(const ShaderProgram&) = delete;
 
-  // `defines` are names that the shaders' #ifdef ask for. Attributes have the locations that the shaders say.
+  // `defines` are names for #ifdef in the shaders. The shaders set the locations of attributes.
   Result<void> build(std::string_view vertex, std::string_view fragment,
                      std::initializer_list<std::string_view> defines = {});
   void use() const { gl_.UseProgram(program_); }

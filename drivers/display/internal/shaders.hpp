@@ -144,7 +144,7 @@ void main() {
 }
 )";
 
-// The floor lies at a height in W; its colour fades out to its edge. ALONE: nothing but the shadow.
+// The floor is at a height in W; its colour fades out to its edge. ALONE: nothing but the shadow.
 inline constexpr std::string_view kFloorVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in float alpha_in;

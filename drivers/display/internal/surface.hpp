@@ -1,5 +1,5 @@
-// Triangles as the graphics system takes them: with normals, and with the edges that a wireframe shows. Private to this
-// folder; knows no OpenGL.
+// Triangles for the graphics system: with normals, and with the edges of a wireframe. Private to this folder; no
+// OpenGL.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,10 +21,10 @@ using Corner = std::uint32_t;
 
 struct Surface {
   std::vector<Vertex> vertices;
-  std::vector<Corner> corners;  // three a triangle, counter-clockwise seen from outside
+  std::vector<Corner> corners;  // three per triangle, counter-clockwise from outside
 };
 
-// An edge of a wireframe and the triangles beside it, which say whether it is seen; the same one twice at open edges.
+// An edge of a wireframe and its adjacent triangles, which determine its visibility; the same one twice at open edges.
 struct FeatureEdge {
   std::array<std::uint32_t, 2> vertices{};  // of the mesh
   std::array<std::uint32_t, 2> triangles{};

@@ -24,7 +24,7 @@ bool opaque(const std::vector<std::uint8_t>& rgba) {
   return true;
 }
 
-// So that no colour of pixels that cannot be seen bleeds into their neighbours in smaller levels.
+// So that the colour of invisible pixels does not bleed into their neighbours in smaller levels.
 std::vector<std::uint8_t> premultiplied(std::vector<std::uint8_t> rgba) {
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
     for (std::size_t c = i; c < i + 3; ++c) rgba[c] = static_cast<std::uint8_t>((rgba[c] * rgba[i + 3] + 127) / 255);

@@ -1,5 +1,5 @@
-// The pictures of meshes in the memory of the graphics system: each is uploaded once, when it is first seen, and stays
-// as long as a mesh that is uploaded uses it. Private to this folder.
+// Textures in the memory of the graphics system: each is uploaded once, when it is first visible, and kept while an
+// uploaded mesh uses it. Private to this folder.
 #pragma once
 
 #include <cstddef>

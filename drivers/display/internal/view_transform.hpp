@@ -1,4 +1,4 @@
-// From the world to the pixels of a pane. Private to this folder; knows no OpenGL.
+// From the world to the pixels of a pane. Private to this folder; no OpenGL.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,7 +43,7 @@ class ViewTransform {
   std::array<Eigen::Vector4d, 6> planes_;  // inside: positive; normals of unit length
   Pose X_WE_ = Pose::Identity();
   bool parallel_ = false;
-  double half_height_ = 1;  // of what is seen: at a distance of 1 m, or, of a parallel projection, anywhere
+  double half_height_ = 1;  // visible extent: at a distance of 1 m, or, of a parallel projection, anywhere
   PixelRect pixels_;
 };
 

@@ -1,5 +1,5 @@
-// All words of a picture: labels of the scene, names of frames, titles, legend, messages; and the borders of panes.
-// Private to this folder; knows no OpenGL.
+// All text of a picture: labels of the scene, names of frames, titles, legend, messages; and the borders of panes.
+// Private to this folder; no OpenGL.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ namespace cellmirror::display {
 
 class Words {
  public:
-  // Those that belong to a pane. No label lies over another one: it moves aside, and where there is no room the less
-  // important ones (farther away, of no mark) are left out.
+  // Those that belong to a pane. Labels do not overlap: they move aside, and if there is no room the less important
+  // ones (farther away, without mark) are left out.
   void draw_pane(const Frame& frame, Image& picture);
   void draw_title(const Pane& pane, int width, int height, Image& picture);
   void draw_legend(const Scene& scene, Image& picture);

@@ -87,8 +87,8 @@ bool Controllers::used(std::string_view semaphore, const LoadedProgram& except, 
   return false;
 }
 
-// Of a program that goes: those that it alone uses are gone with it, those that no running one uses begin anew, so that
-// a script that was stopped half-way can be run again.
+// For a program being unloaded: its own semaphores are deleted, those that no running program uses are reset, so that a
+// stopped script can be repeated.
 void Controllers::set_back_semaphores(const LoadedProgram& gone) {
   for (const std::string& semaphore : gone.used) {
     if (!used(semaphore, gone, false)) {
@@ -247,7 +247,7 @@ bool Controllers::follow_once() {
   return serve_semaphores() || any;
 }
 
-// Who waits longest, by the instant at which its program came to the semaphore, is served first.
+// Served in the order in which the programs reached the semaphore.
 bool Controllers::serve_semaphores() {
   std::vector<ProgramRun*> waiting;
   for (const auto& [robot, controller] : robots_) {

@@ -29,8 +29,8 @@ struct LoadedProgram;
 
 class Controllers {
  public:
-  // A program that waits for a semaphore that no started program releases is in a deadlock only when this time has
-  // passed: whoever releases it may be started by the next command.
+  // A program that waits for a semaphore that no started program releases is in a deadlock only after this time: the
+  // next command may start a program that releases it.
   static constexpr Nanoseconds kGrace{1'000'000'000};
 
   // All outlive it.
@@ -49,12 +49,12 @@ class Controllers {
   Result<void> run(std::string_view robot, std::string_view name, Begin begin,
                    Direction direction = Direction::forward);
   Result<void> remove(std::string_view robot, std::string_view name);  // TF_DELETE. Refused while it runs or is queued
-  // Of the program that runs. hold() brakes on the path; resume() goes on with what is left, in the direction in which
-  // the program was started, also after a PAUSE. What the program waits for does not time out while it is held.
+  // Of the running program. hold() brakes on the path; resume() continues in the direction in which the program was
+  // started, also after a PAUSE. Waits do not time out while it is held.
   Result<void> hold(std::string_view robot);
   Result<void> resume(std::string_view robot);
-  // Held programs: to the end of the next move in this direction, and held again there. What stands before that move is
-  // carried out (forward). Backward: reversible programs only.
+  // Held programs: to the end of the next move in this direction, and held again there. Statements before that move
+  // execute (forward). Backward: reversible programs only.
   Result<void> step(std::string_view robot, Direction direction);
   // Ends the program that runs and forgets those that are queued; the robot brakes. Refused where none does.
   Result<void> stop(std::string_view robot);
@@ -69,20 +69,20 @@ class Controllers {
   [[nodiscard]] const SignalBoard* signals(std::string_view robot) const;
   [[nodiscard]] const Semaphores& semaphores() const { return context_.semaphores; }
 
-  // Goes on with everything that can go on. True where anything did. Often: what is behind a move or a wait is noticed
+  // Continues all programs that can continue. True if any did. Call it often: the end of moves and waits is detected
   // here. Bounded: 2,000 statements and 8 SCRIPT commands of each program.
   bool follow();
   // A program runs, waits, is held, queued or delayed.
   [[nodiscard]] bool busy() const;
   [[nodiscard]] bool busy(std::string_view robot) const;
-  // One that runs goes on by itself at a known time: behind its rob_program_delays, at a time limit.
+  // A running one that continues at a known time: after its rob_program_delays, at a time limit.
   [[nodiscard]] bool waits_for_time() const;
   // The robot's moves belong to a program now; POS_ROB from elsewhere is refused. Not while the program carries out a
   // SCRIPT comment at rest, which may move the robot itself.
   [[nodiscard]] bool moves(std::string_view robot) const;
   // By robot and name.
   [[nodiscard]] std::vector<ProgramStatus> status() const;
-  // As it is now; none when somebody has ended it.
+  // Its present state; none if it has been ended.
   [[nodiscard]] const std::optional<Deadlock>& deadlock() const { return deadlock_; }
   // Counts programs that failed and deadlocks, also those that have ended since.
   [[nodiscard]] std::uint64_t failures() const { return context_.failures; }
@@ -111,7 +111,7 @@ class Controllers {
   RunContext context_;
   std::map<std::string, std::shared_ptr<VirtualController>, std::less<>> robots_;
   bool following_ = false;
-  bool changed_ = false;   // since deadlocks were looked for
+  bool changed_ = false;   // since the last deadlock search
   Timestamp alone_since_;  // a program waits for what no started one releases; never: none
   std::optional<Deadlock> deadlock_;
 };

@@ -16,7 +16,7 @@ void append_parties(const VirtualController& controller, const Semaphores& semap
   std::size_t behind = Party::kNobody;
   if (const ProgramRun* run = controller.run(); run != nullptr) {
     behind = parties.size();
-    // Held or not: a semaphore is what it needs before all else. Of a free one it has to be let go on only.
+    // Held or not: it needs the semaphore first. With a free one it needs only to be resumed.
     const std::string wanted(semaphores.available(run->semaphore()) ? std::string_view{} : run->semaphore());
     parties.push_back({controller.robot(), &run->loaded(), run->step_name(), wanted, Party::kNobody});
   }

@@ -9,7 +9,7 @@ namespace cellmirror::program {
 
 namespace {
 
-// Everybody who waits is taken for stuck first; then those are let off whose semaphore somebody who is not stuck
+// All waiting programs count as stuck first; then those are removed whose semaphore a program that is not stuck
 // releases, until nothing changes.
 std::vector<bool> stuck_ones(std::span<const Party> parties) {
   std::vector<bool> stuck(parties.size());

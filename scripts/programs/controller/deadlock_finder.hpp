@@ -1,4 +1,4 @@
-// Who waits for whom. Private to the folder.
+// Detects deadlocks. Private to the folder.
 #pragma once
 
 #include <cstddef>

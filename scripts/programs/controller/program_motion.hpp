@@ -1,5 +1,5 @@
-// What virtual controllers ask of the robots and of the rest of the gateway. The gateway and the off-line simulation
-// implement it. Every call comes from the thread that owns the cell. SI. A refusal says why.
+// Interface of virtual controllers to the robots and the gateway. The gateway and the offline simulation implement it.
+// Every call comes from the thread that owns the cell. SI. A refusal has a reason.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ class ProgramMotion {
   virtual ~ProgramMotion() = default;
   // Whether programs may move the robot now: refused while it is unknown, mirrored (ROBOT online) or follows a master.
   virtual Result<void> check(std::string_view robot) const = 0;
-  // Moves wait in the tick behind each other, so that nothing is lost between them. False: no room now, ask again.
+  // Moves are queued in the tick, so there is no gap between them. False: no room now, retry.
   [[nodiscard]] virtual bool room(std::string_view robot) const = 0;
   // Puts a move behind those before. `begin`: the instant at which it should have begun (that of the end of what it
   // waited for), when that is over already: it begins as far on as the time that has passed since, so that the time it
@@ -43,16 +43,16 @@ class ProgramMotion {
   virtual Result<std::uint32_t> delay(std::string_view robot, double seconds, Timestamp begin) = 0;
   virtual Result<void> set_tool(std::string_view robot, const std::optional<Pose>& X_PT) = 0;
   [[nodiscard]] virtual MotionProgress progress(std::string_view robot) const = 0;
-  // 0: brakes on its path and waits there; 1: goes on. Within the robot's accelerations.
+  // 0: brakes on its path and waits there; 1: continues. Within the robot's accelerations.
   virtual Result<void> set_pace(std::string_view robot, double pace) = 0;
-  // Moves with tickets beyond this one do not begin: the robot stands at the end of it, also where it is a fly move.
-  // 0: all may begin. For steps.
+  // Moves with tickets beyond this one do not begin: the robot stops at its end, even of a fly move. 0: all may begin.
+  // For steps.
   virtual Result<void> hold_behind(std::string_view robot, std::uint32_t ticket) = 0;
-  // Brakes and forgets what waits. At pace 0 too: what runs ends where the robot stands.
+  // Brakes and discards queued moves. At pace 0 too: the running one ends where the robot is.
   virtual Result<void> stop(std::string_view robot) = 0;
 
   [[nodiscard]] virtual std::span<const JointKind> joint_kinds(std::string_view robot) const = 0;
-  [[nodiscard]] virtual JointValues joints(std::string_view robot) const = 0;     // rad or m; where it stands
+  [[nodiscard]] virtual JointValues joints(std::string_view robot) const = 0;     // rad or m; present position
   [[nodiscard]] virtual Result<Pose> position(std::string_view robot) const = 0;  // X_ZT
   [[nodiscard]] virtual double program_delay(std::string_view robot) const = 0;   // s; rob_program_delays
 };

@@ -49,8 +49,8 @@ bool ProgramRun::collect() {
   finished_time_ = progress.finished_time.known() ? progress.finished_time : context_.clock.now();
   if (progress.end != MotionProgress::End::arrived) {
     const Error why = progress.end == MotionProgress::End::blocked
-                          ? Error{fmt::format("{} could not go on with this move", robot_),
-                                  "look for limits and singular postures on its way"}
+                          ? Error{fmt::format("{} could not continue this move", robot_),
+                                  "check limits and singular postures on its path"}
                           : Error{fmt::format("another command has ended this move of {}", robot_), {}};
     fail_now(error_text(moving_.front().statement, why), moving_.front().statement);
     return true;
@@ -184,7 +184,7 @@ bool ProgramRun::fetch() {
   return false;
 }
 
-// The machine stands at it or behind it.
+// The machine is at it or after it.
 std::optional<StatementId> ProgramRun::failed_statement() const {
   const Program& program = *loaded_->program;
   for (const StatementId back : {0U, 1U}) {
@@ -251,8 +251,8 @@ void ProgramRun::finish(End end, Timestamp when) {
   tell(kEvents[static_cast<std::size_t>(end)], when, end == End::failed ? loaded_->error : kept);
 }
 
-// A stopped program gives nothing back: its robot stands where the semaphore keeps others out. Who only takes, as a
-// signal that another program gives, keeps nothing. Gives the text for people.
+// A stopped program releases nothing: its robot is in the protected space. A program that only acquires, as a signal
+// from another program, keeps nothing. Returns the text for reports.
 std::string ProgramRun::keep_semaphores(End end) {
   std::string text;
   if (end == End::ended) return text;
@@ -307,7 +307,7 @@ ProgramState ProgramRun::state() const {
 std::string ProgramRun::waits_for() const {
   if (phase_ == Phase::semaphore) return fmt::format("semaphore {}", semaphore_);
   if (phase_ == Phase::condition) return std::get<WaitCommand>(waiting_->what).condition;
-  if (phase_ == Phase::activity) return "what its SCRIPT command has begun";
+  if (phase_ == Phase::activity) return "its SCRIPT command";
   return {};
 }
 

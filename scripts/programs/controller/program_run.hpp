@@ -37,7 +37,7 @@ class ProgramRun final : private ProgramWorld {
 
   // A new turn of the owner: the budgets are full again.
   void begin_turn();
-  // Goes on as far as it can. True where anything was done. Commands of the program may call any other function here.
+  // Continues as far as possible. True if anything was done. Commands of the program may call any other function here.
   bool follow();
 
   Result<void> hold();
@@ -52,7 +52,7 @@ class ProgramRun final : private ProgramWorld {
   [[nodiscard]] std::string_view wanted_semaphore() const { return held_ ? std::string_view{} : semaphore_; }
   // The same, also while it is held.
   [[nodiscard]] std::string_view semaphore() const { return semaphore_; }
-  // What it waits for comes by itself, at a known time: rob_program_delays, a time limit.
+  // It waits for a known time: rob_program_delays, a time limit.
   [[nodiscard]] bool waits_for_time() const {
     return !held_ && (phase_ == Phase::delayed || (phase_ == Phase::condition && deadline_.known()));
   }
@@ -75,7 +75,7 @@ class ProgramRun final : private ProgramWorld {
   [[nodiscard]] std::uint32_t line() const;
   [[nodiscard]] Direction direction() const { return machine_.direction(); }
   [[nodiscard]] double elapsed_s() const;
-  // Came to its end by itself and was neither held nor stepped: its time is that of the next run, too.
+  // Completed without hold or step: its time is the expected time of the next run.
   [[nodiscard]] bool undisturbed() const { return end_ == End::ended && !disturbed_; }
 
  private:
@@ -97,15 +97,15 @@ class ProgramRun final : private ProgramWorld {
     std::string why;
     std::optional<StatementId> at;
   };
-  // Held, and asked to go on: first the robot has to stand.
+  // Held, with a request to resume: first the robot must be at rest.
   struct Request {
     bool step = false;
     bool stopping = false;  // the moves ahead are being forgotten
   };
-  // Where the robot stands in a reversible program that was turned round.
+  // Position of the robot in a reversed program.
   struct Turned {
-    StatementId check_point = 0;  // it stands there or, was it on its way to it when it was turned, before it
-    // By direction: the statement that the program goes on with; none: what lies behind the check point in it.
+    StatementId check_point = 0;  // it is there or, if it was moving to it at the reversal, before it
+    // By direction: the statement at which the program continues; none: after the check point.
     std::array<std::optional<StatementId>, 2> next;
   };
   enum class Done : std::uint8_t { yes, not_yet };

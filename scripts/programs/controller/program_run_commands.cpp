@@ -83,7 +83,7 @@ ProgramRun::Done ProgramRun::begin_to(const WaitCommand& wait, const CanonicalCo
   return Done::yes;
 }
 
-// Whoever waits longest is served first, so that even a free semaphore is not taken here: Controllers grants it.
+// The longest waiting program is served first, so even a free semaphore is not acquired here: Controllers grants it.
 ProgramRun::Done ProgramRun::begin_to(const AcquireCommand& acquire, const CanonicalCommand& command) {
   if (!rested()) return Done::not_yet;
   waiting_ = command;

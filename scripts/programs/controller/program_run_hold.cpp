@@ -10,7 +10,7 @@ namespace cellmirror::program {
 
 Result<void> ProgramRun::hold() {
   if (held_ && !request_) {
-    return fail(fmt::format("{} of {} is held already", loaded_->name, robot_), "TF_RESUME or TF_STEP goes on");
+    return fail(fmt::format("{} of {} is held already", loaded_->name, robot_), "continue with TF_RESUME or TF_STEP");
   }
   request_.reset();
   if (!held_) hold_here();
@@ -32,7 +32,7 @@ void ProgramRun::hold_here() {
 
 Result<void> ProgramRun::resume() {
   if (stepping_) hold_here();
-  if (!held_) return fail(fmt::format("{} of {} is not held", loaded_->name, robot_), "TF_HOLD holds it");
+  if (!held_) return fail(fmt::format("{} of {} is not held", loaded_->name, robot_), "hold it with TF_HOLD");
   if (machine_.direction() != direction_) {
     if (auto turned = turn(direction_); !turned) return turned;
   }
@@ -42,8 +42,9 @@ Result<void> ProgramRun::resume() {
 }
 
 Result<void> ProgramRun::step(Direction direction) {
-  if (!held_) return fail(fmt::format("{} of {} is not held", loaded_->name, robot_), "TF_HOLD holds it");
-  if (request_) return fail(fmt::format("{} of {} is about to go on", loaded_->name, robot_), "wait until it is held");
+  if (!held_) return fail(fmt::format("{} of {} is not held", loaded_->name, robot_), "hold it with TF_HOLD");
+  if (request_)
+    return fail(fmt::format("{} of {} is about to continue", loaded_->name, robot_), "wait until it is held");
   if (direction == Direction::backward && !loaded_->program->reversible) {
     return fail(fmt::format("{} cannot go backward: only programs of check points can", loaded_->name),
                 "use jet_boom or jet_tarm files, or step FORWARD");
@@ -55,7 +56,7 @@ Result<void> ProgramRun::step(Direction direction) {
   return {};
 }
 
-// The robot goes the other way when it stands: until then it may come to the next check point.
+// The robot reverses once it is at rest: until then it may reach the next check point.
 Result<void> ProgramRun::turn(Direction direction) {
   const bool moved = turned_ || at_ || first_move_ahead() != 0;
   if (!moved) return fail(fmt::format("{} of {} has not moved yet", loaded_->name, robot_), "step FORWARD");

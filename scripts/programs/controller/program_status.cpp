@@ -26,7 +26,7 @@ std::string Deadlock::text() const {
     text +=
         fmt::format("{} {} waits at {} for semaphore {}", waiter.robot, waiter.program, waiter.step, waiter.semaphore);
     if (!waiter.releasers.empty()) text += fmt::format(", which {} could release", fmt::join(waiter.releasers, " or "));
-    if (waiter.releasers.empty()) text += ", which no program that was started releases";
+    if (waiter.releasers.empty()) text += ", which no started program releases";
     if (!waiter.not_started.empty())
       text += fmt::format(" ({} could, if started)", fmt::join(waiter.not_started, ", "));
     for (const std::string& keeper : waiter.kept_by) text += fmt::format(", {} before it released it", keeper);

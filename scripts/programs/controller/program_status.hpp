@@ -1,4 +1,4 @@
-// What virtual controllers tell about their programs.
+// Program status of virtual controllers.
 #pragma once
 
 #include <cstddef>
@@ -34,18 +34,18 @@ struct ProgramStatus {
   std::string file;
   ProgramState state = ProgramState::loaded;
   std::string waits_for;  // "semaphore S1", "input 3 is on"
-  std::string step;       // "N40", "check point P3", "line 12": of the move that goes on; empty before the first
+  std::string step;       // "N40", "check point P3", "line 12": of the running move; empty before the first
   std::uint32_t line = 0;
   std::size_t statements = 0;
   bool reversible = false;
   Direction direction = Direction::forward;
-  double elapsed_s = 0;              // of the run that goes on, or of the last one; without the time that it was held
+  double elapsed_s = 0;              // of the present or last run; without the time in hold
   std::optional<double> expected_s;  // of the last run that came to its end undisturbed (neither held nor stepped)
   std::uint64_t runs = 0;            // begun
   std::string error;                 // of the last run: file:line:column and why
 };
 
-// Programs that wait for semaphores that nobody can release any more.
+// Programs that wait for semaphores that no program can release any more.
 struct Deadlock {
   struct Waiting {
     std::string robot;

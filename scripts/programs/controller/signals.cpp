@@ -17,7 +17,7 @@ Result<Semaphores::Semaphore*> Semaphores::open(std::string_view name) {
 
 Result<void> Semaphores::declare(std::string_view name, std::uint32_t initial) {
   if (initial > kMostCount) {
-    return fail(fmt::format("semaphore {} begins with {}; {} is the most", name, initial, kMostCount));
+    return fail(fmt::format("semaphore {} begins with {}; {} is the maximum", name, initial, kMostCount));
   }
   auto opened = open(name);
   if (!opened) return std::unexpected(std::move(opened.error()));

@@ -33,13 +33,13 @@ class Semaphores {
   Result<void> declare(std::string_view name, std::uint32_t initial);
   // One that was never declared begins with 0.
   [[nodiscard]] bool try_acquire(std::string_view name);
-  [[nodiscard]] bool available(std::string_view name) const;  // to who tries next
+  [[nodiscard]] bool available(std::string_view name) const;  // to the next program
   // Refused: beyond kMostCount, or kMost.
   Result<void> release(std::string_view name, Timestamp when);
   // When it was released last; never: not yet.
   [[nodiscard]] Timestamp released(std::string_view name) const;
-  // `who` ("B owner was stopped") had taken it and would have given it back; that is told in a deadlock until somebody
-  // else releases it instead, make_up(), or it begins anew.
+  // `who` ("B owner was stopped") had acquired it and would have released it; deadlock reports show that until another
+  // program releases it, make_up(), or it is reset.
   void keep(std::string_view name, std::string who);
   void make_up(std::string_view name);
   [[nodiscard]] std::vector<std::string> kept_by(std::string_view name) const;

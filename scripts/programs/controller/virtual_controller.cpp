@@ -20,7 +20,7 @@ Result<std::shared_ptr<LoadedProgram>> VirtualController::find(std::string_view 
 }
 
 Error VirtualController::none_runs() const {
-  return {fmt::format("no program of {} runs", robot_), "TF_RUN starts one"};
+  return {fmt::format("no program of {} runs", robot_), "start one with TF_RUN"};
 }
 
 bool VirtualController::occupied(const LoadedProgram& program) const {
@@ -75,9 +75,9 @@ Result<void> VirtualController::run(std::string_view name, bool exec_wait, Direc
     return {};
   }
   if (!exec_wait) {
-    return fail(
-        fmt::format("{} runs {} already", robot_, run_ ? run_->loaded().name : queue_.front().program->name),
-        fmt::format("TF_RUN {} {} exec_wait starts it behind that, TF_STOP {} ends that", name, robot_, robot_));
+    return fail(fmt::format("{} runs {} already", robot_, run_ ? run_->loaded().name : queue_.front().program->name),
+                fmt::format("queue it with TF_RUN {} {} exec_wait, or end the running one with TF_STOP {}", name,
+                            robot_, robot_));
   }
   if (queue_.size() == kMostQueued) {
     return fail(fmt::format("{} programs are queued for {} already", kMostQueued, robot_),
@@ -167,7 +167,8 @@ void VirtualController::end_run() {
   if (run->end() != ProgramRun::End::failed) return;
   note_failure(run->loaded());
   if (!queue_.empty())
-    drop_queue(ProgramState::failed, fmt::format("not started: {} before it has failed", run->loaded().name));
+    drop_queue(ProgramState::failed,
+               fmt::format("not started: the previous program {} has failed", run->loaded().name));
 }
 
 void VirtualController::begin_next(Timestamp when) {

@@ -62,7 +62,7 @@ Limits CommandReader::read_overrides(const Fields& fields, const XmlNode& node,
 
 void CommandReader::move_to_pose(const Fields& fields, const XmlNode& node, bool straight, bool through) {
   if (!node.type.empty() && node.type != "PoseType" && node.type != "PoseAndSetType") {
-    return fields.error(node, fmt::format("'{}' is no type of poses", printable(node.type)),
+    return fields.error(node, fmt::format("'{}' is not a pose type", printable(node.type)),
                         "PoseType or PoseAndSetType");
   }
   std::optional<double> tolerance_m = through_tolerance_m_;
@@ -93,7 +93,7 @@ void CommandReader::move_through_to(const Fields& fields, const XmlNode& node) {
   for (const XmlNode* one = fields.tree().first(node); one != nullptr; one = fields.tree().next(*one)) {
     if (one->name == "Waypoint") points.push_back(one);
   }
-  if (points.size() < 2) fields.error(node, "a move through way points has at least two of them");
+  if (points.size() < 2) fields.error(node, "a move through way points needs at least two");
   if (count && static_cast<std::size_t>(*count) != points.size()) {
     fields.error(node, fmt::format("<NumPositions> is {}, and there are {} way points", *count, points.size()));
   }
@@ -119,7 +119,7 @@ void CommandReader::add_screw(const Fields& fields, const XmlNode& node, double 
 void CommandReader::move_screw(const Fields& fields, const XmlNode& node) {
   fields.only(node, {"CommandID", "StartPosition", "AxisPoint", "AxialDistanceFree", "AxialDistanceScrew", "Turn"});
   if (const XmlNode* axis = fields.optional(node, "AxisPoint")) {
-    fields.error(*axis, "a screw motion about another axis than that of the TCP is not known here");
+    fields.error(*axis, "a screw motion about another axis than that of the TCP is not supported");
   }
   const auto distance = fields.number(node, "AxialDistanceScrew");
   const auto turn = fields.number(node, "Turn");
@@ -154,7 +154,7 @@ CommandReader::Joints CommandReader::read_joints(const Fields& fields, const Xml
     const XmlNode* details = fields.required(*one, "JointDetails");
     const bool any = details != nullptr && fields.tree().first(*details) != nullptr;
     if (any && !std::exchange(told_joint_speeds_, true)) {
-      fields.warning(*one, "speeds and forces of single joints have no effect: the robot's own hold",
+      fields.warning(*one, "speeds and forces of single joints have no effect: the robot's own apply",
                      "SetTransSpeed with a fraction slows all joints down");
     }
     if (!number || !position) continue;

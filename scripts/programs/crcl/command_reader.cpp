@@ -58,7 +58,7 @@ void CommandReader::read(const XmlTree& tree) {
   }
   place(fields, node);
   if (init) {
-    if (part_ != Part::before) fields.error(node, "<InitCanon> begins a program and stands there once");
+    if (part_ != Part::before) fields.error(node, "<InitCanon> must come once, at the beginning of the program");
     part_ = Part::commands;
     return fields.only(node, {"CommandID"});
   }
@@ -66,7 +66,7 @@ void CommandReader::read(const XmlTree& tree) {
     fields.error(node, fmt::format("<{}> before <InitCanon>", node.name));
     part_ = Part::commands;
   }
-  if (part_ == Part::behind) return fields.error(node, fmt::format("<{}> behind <EndCanon>", node.name));
+  if (part_ == Part::behind) return fields.error(node, fmt::format("<{}> after <EndCanon>", node.name));
   if (middle) return middle_command(fields, node);
   part_ = Part::behind;
   fields.only(node, {"CommandID"});
@@ -91,7 +91,7 @@ void CommandReader::middle_command(const Fields& fields, const XmlNode& node) {
   if (node.type.empty()) return fields.error(node, "<MiddleCommand> without xsi:type", "as xsi:type=\"MoveToType\"");
   const Handler handler = handler_of(node.type);
   if (handler == nullptr) {
-    return fields.error(node, fmt::format("'{}' is no command of CRCL that is known", printable(node.type)),
+    return fields.error(node, fmt::format("'{}' is not a known command of CRCL", printable(node.type)),
                         "docs/languages/crcl.md lists them");
   }
   (this->*handler)(fields, node);
@@ -137,13 +137,13 @@ void CommandReader::parameters(const Fields& fields, const XmlNode& node) {
     const XmlNode* name = fields.required(*one, "ParameterName");
     const XmlNode* value = fields.required(*one, "ParameterValue");
     if (name == nullptr || value == nullptr) continue;
-    fields.warning(*one, fmt::format("the parameter '{}' is not known here and has no effect", printable(name->text)));
+    fields.warning(*one, fmt::format("the parameter '{}' is unknown and has no effect", printable(name->text)));
   }
 }
 
 void CommandReader::run_program(const Fields& fields, const XmlNode& node) {
   fields.error(node, "a program of another language within a program cannot be run",
-               "load it as a program of its own (TF_LOAD) and run both one behind the other (TF_RUN ... exec_wait)");
+               "load it as a separate program (TF_LOAD) and run both in sequence (TF_RUN ... exec_wait)");
 }
 
 void CommandReader::set_angle_units(const Fields& fields, const XmlNode& node) {
@@ -151,7 +151,7 @@ void CommandReader::set_angle_units(const Fields& fields, const XmlNode& node) {
   const XmlNode* unit = fields.required(node, "UnitName");
   if (unit == nullptr) return;
   if (unit->text != "radian" && unit->text != "degree") {
-    return fields.error(*unit, fmt::format("'{}' is no unit of angles", printable(unit->text)), "radian or degree");
+    return fields.error(*unit, fmt::format("'{}' is not a unit of angles", printable(unit->text)), "radian or degree");
   }
   units_.angle = unit->text == "degree" ? AngleUnit::degree : AngleUnit::radian;
 }
@@ -167,7 +167,8 @@ void CommandReader::set_length_units(const Fields& fields, const XmlNode& node) 
   } else if (unit->text == "inch") {
     units_.length = LengthUnit::inch;
   } else {
-    fields.error(*unit, fmt::format("'{}' is no unit of lengths", printable(unit->text)), "meter, millimeter or inch");
+    fields.error(*unit, fmt::format("'{}' is not a unit of length", printable(unit->text)),
+                 "meter, millimeter or inch");
   }
 }
 
@@ -180,7 +181,7 @@ void CommandReader::set_force_units(const Fields& fields, const XmlNode& node) {
   const bool known = force ? unit->text == "newton" || unit->text == "pound" || unit->text == "ounce"
                            : unit->text == "newtonMeter" || unit->text == "footPound";
   if (known) return;
-  fields.error(*unit, fmt::format("'{}' is no unit of {}", printable(unit->text), force ? "forces" : "torques"),
+  fields.error(*unit, fmt::format("'{}' is not a unit of {}", printable(unit->text), force ? "forces" : "torques"),
                force ? "newton, pound or ounce" : "newtonMeter or footPound");
 }
 
@@ -231,14 +232,14 @@ void CommandReader::stop_motion(const Fields& fields, const XmlNode& node) {
   const XmlNode* condition = fields.required(node, "StopCondition");
   if (condition == nullptr) return;
   if (condition->text == "Immediate" || condition->text == "Fast" || condition->text == "Normal") return;
-  fields.error(*condition, fmt::format("'{}' is no stop condition", printable(condition->text)),
+  fields.error(*condition, fmt::format("'{}' is not a stop condition", printable(condition->text)),
                "Immediate, Fast or Normal");
 }
 
 void CommandReader::tool_changer(const Fields& fields, const XmlNode& node) {
   fields.only(node, {"CommandID"});
   if (std::exchange(told_tool_changer_, true)) return;
-  fields.warning(node, "tools are not changed here: the robot keeps its TCP",
+  fields.warning(node, "tool changes are not supported: the robot keeps its TCP",
                  "a message %rob_tcp_def ... sets another one");
 }
 

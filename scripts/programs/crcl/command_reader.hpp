@@ -51,7 +51,7 @@ class CommandReader {
   // What a move needs that is not in force yet.
   void put_limits(const Fields& fields, const XmlNode& node, const Limits& wanted);
   void put_fly(const Fields& fields, const XmlNode& node, std::optional<double> distance_m);
-  // PoseType or PoseAndSetType; `through`: the next move goes on from there.
+  // PoseType or PoseAndSetType; `through`: the next move continues from there.
   void move_to_pose(const Fields& fields, const XmlNode& node, bool straight, bool through);
   Limits read_overrides(const Fields& fields, const XmlNode& node, std::optional<double>& tolerance_m) const;
   void add_screw(const Fields& fields, const XmlNode& node, double distance_m, double turn_rad);

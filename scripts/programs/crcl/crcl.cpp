@@ -21,7 +21,7 @@ std::string name_of_file(const std::string& file) {
 std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& context, Diagnostics& diagnostics) {
   if (text.size() > kLargestProgramText) {
     diagnostics.error({.file = context.file}, fmt::format("the program has {} bytes", text.size()),
-                      fmt::format("at most {} are read: split it", kLargestProgramText));
+                      fmt::format("the limit is {}: split it", kLargestProgramText));
     return nullptr;
   }
   Diagnostics found;
@@ -38,7 +38,8 @@ std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& 
             root_column = static_cast<int>(root.column);
             if (root.name == "CRCLProgram") return true;
             found.error({.file = context.file, .line = root_line},
-                        fmt::format("<{}> is no CRCL program", printable(root.name)), "it begins with <CRCLProgram>");
+                        fmt::format("<{}> is not a CRCL program", printable(root.name)),
+                        "it must begin with <CRCLProgram>");
             return false;
           },
       .element = [&](const crcl::XmlTree& element) { reader.read(element); },

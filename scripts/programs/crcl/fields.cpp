@@ -128,7 +128,7 @@ std::optional<Pose> Fields::pose(const XmlNode& node, const Units& units) const 
   const double x_length = x_axis->norm();
   const double z_length = z_axis->norm();
   if (!(x_length > kShortest && z_length > kShortest && std::isfinite(x_length) && std::isfinite(z_length))) {
-    error(node, "an axis of the pose has no direction");
+    error(node, "an axis of the pose has length zero");
     return std::nullopt;
   }
   const Eigen::Vector3d z = *z_axis / z_length;

@@ -15,7 +15,7 @@ namespace cellmirror::crcl {
 enum class AngleUnit : std::uint8_t { radian, degree };
 enum class LengthUnit : std::uint8_t { metre, millimetre, inch };
 
-// In force where a command stands in the text.
+// In force at a command's place in the text.
 struct Units {
   AngleUnit angle = AngleUnit::radian;
   LengthUnit length = LengthUnit::metre;
@@ -31,8 +31,8 @@ class Fields {
   void error(const XmlNode& at, std::string message, std::string remedy = {}) const;
   void warning(const XmlNode& at, std::string message, std::string remedy = {}) const;
 
-  // Reports elements in `node` that are none of these (Name may stand everywhere), and those given twice unless their
-  // name is `repeated`.
+  // Reports elements in `node` that are not listed (Name may be anywhere), and those given twice unless their name is
+  // `repeated`.
   void only(const XmlNode& node, std::initializer_list<std::string_view> names, std::string_view repeated = {}) const;
   // Reports where it is missing.
   [[nodiscard]] const XmlNode* required(const XmlNode& node, std::string_view name) const;

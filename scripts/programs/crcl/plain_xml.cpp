@@ -9,10 +9,10 @@ namespace {
 // What a byte may be, as bits.
 using Class = std::uint8_t;
 constexpr Class kSpace = 1;
-constexpr Class kText = 2;   // may stand in text; `]` may not, since `]]>` is an error there
+constexpr Class kText = 2;   // allowed in text; `]` is not, since `]]>` is an error there
 constexpr Class kValue = 4;  // in the value of an attribute: no tabs and ends of lines, which become spaces there
 constexpr Class kFirst = 8;  // begins a name
-constexpr Class kName = 16;  // goes on with a name
+constexpr Class kName = 16;  // continues a name
 constexpr Class kComment = 32;
 
 constexpr std::array<Class, 256> classes() {

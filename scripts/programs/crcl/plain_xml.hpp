@@ -1,5 +1,5 @@
-// Reads plain XML in place: ASCII, elements, attributes, text and comments, and no more. It knows no errors: it stops
-// where it meets what it does not know.
+// Reads plain XML in place: ASCII, elements, attributes, text and comments, only. It has no errors: it stops at
+// anything else.
 #pragma once
 
 #include <string_view>

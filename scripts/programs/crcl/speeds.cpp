@@ -27,7 +27,7 @@ const std::array<LimitName, kLimits>& limit_names() {
 std::optional<LimitValue> read_limit(const Fields& fields, const XmlNode& node, const LimitName& name,
                                      const Units& units) {
   if (node.type != name.absolute && node.type != name.relative) {
-    fields.error(node, fmt::format("<{}> has no xsi:type that is known, '{}'", name.element, printable(node.type)),
+    fields.error(node, fmt::format("<{}> has no known xsi:type, '{}'", name.element, printable(node.type)),
                  fmt::format("{} or {}", name.absolute, name.relative));
     return std::nullopt;
   }
@@ -39,7 +39,7 @@ std::optional<LimitValue> read_limit(const Fields& fields, const XmlNode& node, 
   const auto value = share ? fields.fraction(*value_node) : fields.number(*value_node);
   if (!value) return std::nullopt;
   if (*value <= 0) {
-    fields.error(*value_node, fmt::format("<{}> has to be above 0", field));
+    fields.error(*value_node, fmt::format("<{}> must be above 0", field));
     return std::nullopt;
   }
   const double unit = name.angle ? units.rad() : units.metres();
@@ -54,7 +54,7 @@ std::optional<double> read_tolerance(const Fields& fields, const XmlNode& node, 
     const auto value = fields.number(*one);
     if (!value) continue;
     if (*value < 0) {
-      fields.error(*one, "a tolerance is not below 0");
+      fields.error(*one, "a tolerance must not be negative");
       continue;
     }
     const bool of_point =

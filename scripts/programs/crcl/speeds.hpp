@@ -1,4 +1,4 @@
-// Speeds, accelerations and tolerances of CRCL: what is set until it is set anew, and what a single pose overrides.
+// Speeds, accelerations and tolerances of CRCL: modal settings, and overrides of a single pose.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ class ExpatReader {
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
                                                                               &XML_ParserFree);
     if (parser == nullptr) {
-      diagnostics_.error({.file = file_}, "no memory for the XML parser");
+      diagnostics_.error({.file = file_}, "not enough memory for the XML parser");
       return;
     }
     parser_ = parser.get();
@@ -51,7 +51,7 @@ class ExpatReader {
     } while (!text.empty() && !stopped_);
   }
 
-  // Where the parser is. expat would look at every byte once more for it; counting ends of lines is faster.
+  // Where the parser is. expat would scan every byte again; counting ends of lines is faster.
   void find_place() {
     const XML_Index index = XML_GetCurrentByteIndex(parser_);
     const std::size_t here = index < 0 ? 0 : std::min(static_cast<std::size_t>(index), text_.size());
@@ -87,7 +87,7 @@ class ExpatReader {
 
   void start(std::string_view name, const XML_Char** attributes) {
     if (stopped_) return;
-    if (++depth_ > kMostDepth) return fail(fmt::format("more than {} elements within each other", kMostDepth));
+    if (++depth_ > kMostDepth) return fail(fmt::format("more than {} nested elements", kMostDepth));
     std::string_view type;
     for (; attributes[0] != nullptr; attributes += 2) {
       if (without_prefix(attributes[0]) == "type") type = without_prefix(attributes[1]);

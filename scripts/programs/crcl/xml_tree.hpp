@@ -25,8 +25,8 @@ inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
 // Views of the document, or of what the tree has kept: valid until the tree is cleared.
 struct XmlNode {
   std::string_view name;  // without a prefix
-  std::string_view type;  // xsi:type without a prefix; empty where there is none
-  std::string_view text;  // what stands directly in it, without the space around
+  std::string_view type;  // xsi:type without a prefix; empty if there is none
+  std::string_view text;  // its direct text, trimmed
   std::uint32_t line = 0;
   std::uint32_t column = 0;
   std::uint32_t parent = kNoNode;
@@ -48,7 +48,7 @@ class XmlTree {
   [[nodiscard]] const XmlNode& root() const { return nodes_[0]; }
   [[nodiscard]] const XmlNode* first(const XmlNode& node) const { return at(node.first_child); }
   [[nodiscard]] const XmlNode* next(const XmlNode& node) const { return at(node.next); }
-  // The first child of that name; null where there is none.
+  // The first child of that name; null if there is none.
   [[nodiscard]] const XmlNode* child(const XmlNode& node, std::string_view name) const {
     for (const XmlNode* one = first(node); one != nullptr; one = next(*one)) {
       if (same_name(one->name, name)) return one;

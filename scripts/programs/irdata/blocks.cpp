@@ -36,7 +36,7 @@ void Translator::block_record() {
 
 Translator::Block& Translator::open_block(Operation kind) {
   if (blocks_.size() == kMostBlocks) {
-    findings_.error(operation_column_, fmt::format("more than {} blocks are within each other", kMostBlocks),
+    findings_.error(operation_column_, fmt::format("more than {} blocks are nested", kMostBlocks),
                     "use subprograms; the rest of the text was not read");
     gave_up_ = true;
   }
@@ -57,14 +57,14 @@ Translator::Block* Translator::innermost(Operation kind) {
   bool any = false;
   for (const Block& block : blocks_) any = any || block.kind == kind;
   if (!any) {
-    findings_.error(operation_column_, fmt::format("{} belongs to no {}", row_of(operation_).name, row_of(kind).name),
-                    fmt::format("open a block with {}, or leave this record out", form_of(kind)));
+    findings_.error(operation_column_, fmt::format("{} has no matching {}", row_of(operation_).name, row_of(kind).name),
+                    fmt::format("open a block with {}, or remove this record", form_of(kind)));
     return nullptr;
   }
   while (blocks_.back().kind != kind) {
     const Block& block = blocks_.back();
     findings_.error(operation_column_,
-                    fmt::format("{} stands in front of the end of {} (line {})", row_of(operation_).name,
+                    fmt::format("{} comes before the end of {} (line {})", row_of(operation_).name,
                                 row_of(block.kind).name, block.line),
                     fmt::format("close it first with {}", block.kind == Operation::repeat
                                                               ? "UNTIL, condition"
@@ -101,8 +101,8 @@ void Translator::continue_if() {
   Block* block = innermost(Operation::if_begin);
   if (block != nullptr && block->is_else)
     findings_.error(operation_column_,
-                    fmt::format("{} stands behind ELSE (IF of line {})", row_of(operation_).name, block->line),
-                    "ELSE is the last part of an IF");
+                    fmt::format("{} comes after ELSE (IF of line {})", row_of(operation_).name, block->line),
+                    "ELSE must be the last part of an IF");
   if (block != nullptr) {
     builder_.jump(block->end);
     if (block->open_next) builder_.bind(block->next);
@@ -199,7 +199,7 @@ void Translator::begin_loop() {
     builder_.bind(open_block(Operation::loop).begin);
     return;
   }
-  const Term times = typed_parameter("how often a loop is run", ValueType::integer);
+  const Term times = typed_parameter("the number of loop passes", ValueType::integer);
   Block& block = open_block(Operation::loop);
   const VariableId left = hidden_variable(ValueType::integer);
   if (times.known) assign_hidden(left, times);
@@ -214,7 +214,7 @@ void Translator::begin_loop() {
 void Translator::exit_loop() {
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block)
     if (block->kind != Operation::if_begin) return builder_.jump(block->end);
-  findings_.error(operation_column_, "EXIT_LOOP stands outside of a loop",
+  findings_.error(operation_column_, "EXIT_LOOP is outside a loop",
                   "use it between LOOP, WHILE, REPEAT or FOR and their ends");
 }
 

@@ -34,7 +34,7 @@ std::optional<CodeTable::Row> read_code_line(std::string_view line, const Place&
   const CodeLine cut = cut_code_line(line);
   const std::optional<long long> code = parse_integer(cut.code);
   if (!code || *code < 0 || *code > kGreatestCode) {
-    diagnostics.error(place, fmt::format("'{}' is no operation code", printable(cut.code)),
+    diagnostics.error(place, fmt::format("'{}' is not an operation code", printable(cut.code)),
                       fmt::format("write a number from 0 to {}, a tab and the operation's name", kGreatestCode));
     return std::nullopt;
   }
@@ -42,8 +42,8 @@ std::optional<CodeTable::Row> read_code_line(std::string_view line, const Place&
   if (!operation) {
     Place there = place;
     there.column = std::max(cut.name_column, 1);
-    diagnostics.error(there, fmt::format("'{}' is no operation", printable(cut.name)),
-                      cut.name.empty() ? "write its symbolic name behind a tab" : nearest_operation(cut.name));
+    diagnostics.error(there, fmt::format("'{}' is not an operation", printable(cut.name)),
+                      cut.name.empty() ? "write its symbolic name after a tab" : nearest_operation(cut.name));
     return std::nullopt;
   }
   return CodeTable::Row{static_cast<std::uint32_t>(*code), *operation, static_cast<std::uint32_t>(place.line)};

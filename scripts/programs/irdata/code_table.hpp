@@ -1,5 +1,5 @@
 // Numeric operation codes. The numbers of the standards are not public, so they are data: a table of the project's own
-// numbers is built in, and a user who owns the standards puts his own in its place.
+// numbers is built in, and an owner of the standards can replace it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Where reading of a record stands: its characters, names and numbers.
+// Read position in a record: its characters, names and numbers.
 #pragma once
 
 #include <cstddef>

@@ -43,7 +43,7 @@ Term ExpressionReader::word(Word which, std::string_view text, std::uint32_t col
       break;
   }
   if (const FunctionRow* row = find_function(which)) return call(*row, text, column);
-  return syntax_error(column, fmt::format("'{}' is no value", text),
+  return syntax_error(column, fmt::format("'{}' is not a value", text),
                       "it is a reserved word; write a number, a name or an expression");
 }
 
@@ -55,8 +55,8 @@ Term ExpressionReader::symbol(std::string_view name, std::uint32_t column) {
   if (symbol == nullptr || symbol->kind == Symbol::Kind::unknown) {
     if (cursor_->peek() == '[') static_cast<void>(list_index());
     if (cursor_->peek() == '(')
-      return syntax_error(cursor_->column(), fmt::format("'{}' is no function", printable(name, 40)),
-                          "see docs/languages/irdata.md for the functions there are");
+      return syntax_error(cursor_->column(), fmt::format("'{}' is not a function", printable(name, 40)),
+                          "see docs/languages/irdata.md for the list of functions");
     return unknown;
   }
   if (symbol->kind == Symbol::Kind::constant) {
@@ -67,13 +67,13 @@ Term ExpressionReader::symbol(std::string_view name, std::uint32_t column) {
   }
   if (header_) {
     terms_.findings().error(column, fmt::format("'{}' has no value in the header section", name),
-                            "write a number or a CONSTANT, and SET the variable behind END_HEADER");
+                            "write a number or a CONSTANT, and SET the variable after END_HEADER");
     if (cursor_->peek() == '[') static_cast<void>(list_index());
     return unknown;
   }
   if (symbol->kind == Symbol::Kind::variable) {
     if (cursor_->peek() == '[') {
-      terms_.findings().error(cursor_->column(), fmt::format("'{}' is no list", name), "leave the index out");
+      terms_.findings().error(cursor_->column(), fmt::format("'{}' is not a list", name), "remove the index");
       static_cast<void>(list_index());
       return unknown;
     }
@@ -95,7 +95,8 @@ Term ExpressionReader::list_index() {
   if (failed_) return index;
   if (!cursor_->take(']')) return syntax_error(cursor_->column(), "a ']' is missing", "close the bracket of the index");
   if (index.known && index.type != ValueType::integer) {
-    terms_.findings().error(index.column, fmt::format("an index is an integer, this is {}", with_article(index.type)),
+    terms_.findings().error(index.column,
+                            fmt::format("an index must be an integer, this is {}", with_article(index.type)),
                             "use ROUND or TRUNC");
     return Term{};
   }
@@ -105,7 +106,7 @@ Term ExpressionReader::list_index() {
 bool ExpressionReader::has_element(VariableId list, const Term& index) {
   const std::optional<Value> value = terms_.constant(index);
   const auto* number = value ? std::get_if<std::int64_t>(&*value) : nullptr;
-  if (number == nullptr || list == kNone) return true;  // too many variables have been told
+  if (number == nullptr || list == kNone) return true;  // too many variables have been reported
   const Variable& variable = terms_.builder().variable_of(list);
   const std::int64_t last = variable.first + static_cast<std::int64_t>(variable.initial.size()) - 1;
   if (*number >= variable.first && *number <= last) return true;
@@ -134,8 +135,7 @@ std::optional<std::size_t> ExpressionReader::arguments(std::string_view function
                                                        std::size_t fewest, std::size_t most) {
   const std::size_t begin = arguments_.size();
   if (!cursor_->take('(')) {
-    syntax_error(cursor_->column(), fmt::format("a '(' is missing behind {}", function),
-                 "its values stand in brackets");
+    syntax_error(cursor_->column(), fmt::format("a '(' is missing after {}", function), "put its values in brackets");
     return std::nullopt;
   }
   bool more = !cursor_->take(')');
@@ -145,7 +145,7 @@ std::optional<std::size_t> ExpressionReader::arguments(std::string_view function
     if (arguments_.size() - begin < most + 1) arguments_.push_back(argument);
     more = cursor_->take(',');
     if (!more && !cursor_->take(')')) {
-      syntax_error(cursor_->column(), fmt::format("a ')' is missing behind the values of {}", function),
+      syntax_error(cursor_->column(), fmt::format("a ')' is missing after the values of {}", function),
                    "close the bracket");
       break;
     }
@@ -272,10 +272,10 @@ Term ExpressionReader::list_bound(Word which, std::uint32_t column) {
   const Symbol* symbol = known_symbol(name, name_column);
   if (symbol == nullptr || symbol->kind == Symbol::Kind::unknown) return out;
   if (symbol->kind != Symbol::Kind::list || header_) {
-    terms_.findings().error(
-        name_column,
-        header_ ? fmt::format("'{}' has no value in the header section", name) : fmt::format("'{}' is no list", name),
-        "write the name of a list, behind END_HEADER");
+    terms_.findings().error(name_column,
+                            header_ ? fmt::format("'{}' has no value in the header section", name)
+                                    : fmt::format("'{}' is not a list", name),
+                            "write the name of a list, after END_HEADER");
     return out;
   }
   const Variable& list = terms_.builder().variable_of(symbol->variable);
@@ -309,7 +309,7 @@ AssignTarget ExpressionReader::read_target(Cursor& cursor) {
     terms_.findings().error(
         target.column,
         symbol->kind == Symbol::Kind::constant ? fmt::format("'{}' is a CONSTANT", name)
-        : indexed                              ? fmt::format("'{}' is no list", name)
+        : indexed                              ? fmt::format("'{}' is not a list", name)
                                                : fmt::format("'{}' is a list", name),
         symbol->kind == Symbol::Kind::list ? fmt::format("write {}[index]", name) : "write the name of a variable");
     return target;

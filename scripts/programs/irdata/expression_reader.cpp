@@ -18,7 +18,7 @@ Term ExpressionReader::read(Cursor& cursor) {
   return value();
 }
 
-// Most values are a number alone: those need no look at operators.
+// Most values are a number alone: those need no operator parsing.
 Term ExpressionReader::value() {
   cursor_->skip_blank();
   const std::size_t begin = cursor_->at();
@@ -162,7 +162,7 @@ Term ExpressionReader::primary() {
     return failed_ ? term : components(term);
   }
   if (cursor_->at_end()) return syntax_error(column, "a value is missing", "write a number, a name or an expression");
-  return syntax_error(column, fmt::format("'{}' begins no value", printable(std::string_view(&c, 1))),
+  return syntax_error(column, fmt::format("'{}' cannot begin a value", printable(std::string_view(&c, 1))),
                       "write a number, a name or an expression");
 }
 
@@ -170,21 +170,22 @@ Term ExpressionReader::number() {
   const std::uint32_t column = cursor_->column();
   bool whole = true;
   const std::string_view text = cursor_->number(whole);
-  if (text.empty()) return syntax_error(column, "a point alone is no number", "write digits with it");
+  if (text.empty()) return syntax_error(column, "a decimal point alone is not a number", "write digits with it");
   if (is_letter(cursor_->peek()))
-    return syntax_error(column, fmt::format("'{}{}...' is no number", printable(text, 30), cursor_->peek()),
-                        "numbers have digits, a point and an exponent only; put an operator between numbers and names");
+    return syntax_error(
+        column, fmt::format("'{}{}...' is not a number", printable(text, 30), cursor_->peek()),
+        "numbers have digits, a decimal point and an exponent only; put an operator between numbers and names");
   if (whole) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error == std::errc{}) return integer_literal(value, column);
     return syntax_error(column, fmt::format("{} is too large for an integer", printable(text, 30)),
-                        "write it with a point as a real");
+                        "write it with a decimal point as a real");
   }
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || !std::isfinite(value))
-    return syntax_error(column, fmt::format("{} is beyond what a real can be", printable(text, 30)),
+    return syntax_error(column, fmt::format("{} is beyond the range of a real", printable(text, 30)),
                         "write a smaller exponent");
   return real_literal(value, column);
 }
@@ -201,7 +202,7 @@ Term ExpressionReader::component(const Term& term) {
   const std::uint32_t column = cursor_->column();
   const std::string_view text = cursor_->name();
   if (text.empty())
-    return syntax_error(column, "a component is missing behind '.'", "write X, Y, Z, ROLL, PITCH, YAW or J1, J2, ...");
+    return syntax_error(column, "a component is missing after '.'", "write X, Y, Z, ROLL, PITCH, YAW or J1, J2, ...");
   if (!term.known) return term;
   Term out;
   out.column = term.column;
@@ -215,7 +216,7 @@ Term ExpressionReader::component(const Term& term) {
       return terms_.apply(Operator::component, term.column, {term}, *index);
   } else {
     terms_.findings().error(column, fmt::format("{} has no components", with_article(term.type)),
-                            "only poses and joint values have some");
+                            "only poses and joint values have components");
     return out;
   }
   terms_.findings().error(column, fmt::format("{} has no component '{}'", with_article(term.type), printable(text, 30)),

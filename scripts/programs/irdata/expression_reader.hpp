@@ -1,4 +1,4 @@
-// Reads what stands in parameters: values, conditions, and what is assigned to.
+// Reads parameters: values, conditions, and assignment targets.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +33,8 @@ class ExpressionReader {
 
   // In the header constants alone are values.
   void in_header(bool header) { header_ = header; }
-  // From the cursor on. After a fault of the grammar syntax_failed() is true, the term unknown, and the cursor stands
-  // where the fault is; all other faults leave it behind the expression.
+  // From the cursor on. After a syntax error syntax_failed() is true, the term unknown, and the cursor is at the error;
+  // all other errors leave it after the expression.
   Term read(Cursor& cursor);
   AssignTarget read_target(Cursor& cursor);
   [[nodiscard]] bool syntax_failed() const { return failed_; }
@@ -71,7 +71,7 @@ class ExpressionReader {
   Term port(Operator which, std::string_view text, std::uint32_t column);
   Term list_bound(Word which, std::uint32_t column);
   Term list_index();
-  // False, and told: a constant index of an element that is not there.
+  // False, and reported: a constant index without an element.
   bool has_element(VariableId list, const Term& index);
   bool are_numbers(std::size_t begin, std::string_view function);
   void undeclared(std::string_view name, std::uint32_t column);

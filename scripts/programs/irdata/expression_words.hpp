@@ -68,7 +68,7 @@ struct FunctionRow {
   bool takes_degrees = false;
   bool gives_degrees = false;
 };
-// Null where the word is none of them.
+// Null if the word is not one of them.
 [[nodiscard]] const FunctionRow* find_function(Word word);
 [[nodiscard]] const FunctionRow& function_of(Operator which);  // which is among them
 

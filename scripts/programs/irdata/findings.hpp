@@ -25,7 +25,7 @@ class Findings {
                        std::move(remedy));
   }
   [[nodiscard]] std::size_t errors() const { return errors_; }
-  // Names like a wrong one are looked for a limited number of times, since each time costs a pass over all names.
+  // Names similar to a wrong one are searched a limited number of times, since each time costs a pass over all names.
   [[nodiscard]] bool may_suggest() { return suggestions_++ < 100; }
 
  private:

@@ -29,7 +29,7 @@ void Translator::flow_record() {
       return add(EndStatement{}, operation_column_);
     case Operation::end:
       if (section_ == Section::subprogram) {
-        findings_.error(operation_column_, "END stands in a subprogram",
+        findings_.error(operation_column_, "END is in a subprogram",
                         "close the subprogram with END_SUBPROGRAM; STOP ends the program from anywhere");
         return;
       }
@@ -55,9 +55,9 @@ void Translator::jump_record() {
   if (const auto made = builder_.branch_unless(terms_.id(stay), *label); !made) refuse(condition.column, made.error());
 }
 
-// 1 leads to the first label, 2 to the second, ...; anything else goes on with the next record.
+// 1 leads to the first label, 2 to the second, ...; anything else continues with the next record.
 void Translator::jump_on_record() {
-  const Term which = typed_parameter("what chooses the label", ValueType::integer);
+  const Term which = typed_parameter("the label selector", ValueType::integer);
   const VariableId chosen = hidden_variable(ValueType::integer);
   if (which.known) assign_hidden(chosen, which);
   std::int64_t number = 0;
@@ -86,7 +86,7 @@ void Translator::subprogram_record() {
     }
     case Operation::subprogram: {
       if (section_ == Section::main)
-        findings_.error(column, "a subprogram stands within the main section", "put it behind END");
+        findings_.error(column, "a subprogram is within the main section", "put it after END");
       if (section_ == Section::subprogram)
         findings_.error_at(subprogram_spot_.line, subprogram_spot_.column, "the subprogram is not closed",
                            "close it with a record END_SUBPROGRAM");
@@ -100,13 +100,13 @@ void Translator::subprogram_record() {
     }
     case Operation::return_back:
       if (section_ == Section::subprogram) return add(ReturnStatement{}, column);
-      findings_.error(column, "RETURN stands outside of a subprogram", "end the program with STOP");
+      findings_.error(column, "RETURN is outside a subprogram", "end the program with STOP");
       return;
     default:
       break;
   }
   if (section_ != Section::subprogram) {
-    findings_.error(column, "END_SUBPROGRAM closes nothing", "open a subprogram behind END with 'SUBPROGRAM, name'");
+    findings_.error(column, "END_SUBPROGRAM has no SUBPROGRAM", "open a subprogram after END with 'SUBPROGRAM, name'");
     return;
   }
   end_section();

@@ -117,7 +117,7 @@ void Translator::declare_list() {
   } else if (word == Word::joints) {
     list.type = ValueType::joints;
   } else if (word != Word::real) {
-    findings_.error(column, fmt::format("'{}' is no type", printable(text, 30)),
+    findings_.error(column, fmt::format("'{}' is not a type", printable(text, 30)),
                     "write BOOLEAN, INTEGER, REAL, POSE or JOINTS");
     list.good = false;
     cursor_.skip_parameter(parameter_begin_);
@@ -140,7 +140,7 @@ void Translator::read_list_bounds(List& list) {
   const auto greatest = static_cast<double>(kGreatestIndex);
   if (*from < -greatest || *to > greatest || *to < *from || *to - *from >= static_cast<double>(kMostListElements)) {
     findings_.error(first.column, fmt::format("indices cannot go from {} to {}", *from, *to),
-                    fmt::format("the last is not below the first, and {} elements are the most", kMostListElements));
+                    fmt::format("the last must not be below the first; at most {} elements", kMostListElements));
     list.good = false;
     return;
   }
@@ -156,7 +156,7 @@ void Translator::read_data() {
   const Symbol* symbol = symbols_.find(name);
   if (symbol == nullptr || symbol->kind != Symbol::Kind::list) {
     if (symbol == nullptr || symbol->kind != Symbol::Kind::unknown)
-      findings_.error(column, fmt::format("'{}' is no list", printable(name, 40)),
+      findings_.error(column, fmt::format("'{}' is not a list", printable(name, 40)),
                       "declare it before with 'LIST, name, type'");
     symbols_.add(name, Symbol{});
     cursor_.go_to(cursor_.line().size());
@@ -177,8 +177,8 @@ void Translator::read_data() {
     if (full) {
       findings_.error(value.known ? value.column : column,
                       fmt::format("list '{}' has more than {} elements", name, list.values.size()),
-                      list.values.size() >= room ? "leave them out, or declare it with a greater last index"
-                                                 : "that is the most of all lists together");
+                      list.values.size() >= room ? "remove them, or declare it with a larger last index"
+                                                 : "that is the limit of all lists together");
       cursor_.go_to(cursor_.line().size());
       return;
     }

@@ -41,7 +41,7 @@ std::shared_ptr<const Program> parse_irdata(std::string_view text, const ParseCo
                                             Diagnostics& diagnostics) {
   if (text.size() > kLargestProgramText) {
     diagnostics.error({context.file, 0, 0}, fmt::format("the program has {} bytes", text.size()),
-                      fmt::format("divide it; {} bytes are the most", kLargestProgramText));
+                      fmt::format("divide it; {} bytes is the maximum", kLargestProgramText));
     return nullptr;
   }
   try {

@@ -6,7 +6,7 @@
 namespace cellmirror::program {
 
 // For the list of languages. ParseContext::codes: text of a table of operation codes in place of the built-in one
-// (config/languages/irdata_codes.tsv); what is wrong with it is told with the place in the table. Any thread.
+// (config/languages/irdata_codes.tsv); its errors are reported with the place in the table. Any thread.
 [[nodiscard]] const Language& irdata_language();
 
 }  // namespace cellmirror::program

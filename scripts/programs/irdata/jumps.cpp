@@ -35,8 +35,7 @@ std::uint32_t Jumps::target_index(std::unordered_map<std::string_view, std::uint
 
 void Jumps::define(Target& target, const Spot& spot, std::string_view what) {
   if (target.spot.line != 0) {
-    findings_.error(spot.column,
-                    fmt::format("{} '{}' is there already, in line {}", what, target.name, target.spot.line),
+    findings_.error(spot.column, fmt::format("{} '{}' exists already, in line {}", what, target.name, target.spot.line),
                     "give it another name");
     return;
   }
@@ -77,7 +76,7 @@ ProgramBuilder::Label Jumps::to_record(std::uint32_t number, const Spot& from) {
 }
 
 bool Jumps::encloses(std::uint32_t outer, std::uint32_t block) const {
-  // Blocks within others have greater numbers, and no more of them lie within each other than are allowed.
+  // Nested blocks have greater numbers, and the nesting is bounded.
   while (block > outer) block = outer_blocks_[block];
   return block == outer;
 }
@@ -98,9 +97,9 @@ std::string Jumps::remedy_for(const Target& target) {
     if (!near.empty()) return near;
   }
   if (target.kind == Kind::label)
-    return fmt::format("put a record 'LABEL, {}' where the jump leads to", printable(target.name, 40));
+    return fmt::format("put a record 'LABEL, {}' at the target of the jump", printable(target.name, 40));
   if (target.kind == Kind::subprogram)
-    return fmt::format("put a record 'SUBPROGRAM, {}' behind END", printable(target.name, 40));
+    return fmt::format("put a record 'SUBPROGRAM, {}' after END", printable(target.name, 40));
   return "write the number of a record of this program";
 }
 
@@ -114,14 +113,14 @@ void Jumps::check(const Use& use) {
     return;
   } else if (target.spot.scope != from.scope) {
     findings_.error_at(from.line, from.column,
-                       fmt::format("{} (line {}) is outside of this {}", name_of_target(target), target.spot.line,
+                       fmt::format("{} (line {}) is outside this {}", name_of_target(target), target.spot.line,
                                    from.scope == 0 ? "section: it is in a subprogram" : "subprogram"),
-                       "jump within one section; CALL and RETURN lead into subprograms and out of them");
+                       "jump within one section; enter and leave subprograms by CALL and RETURN");
   } else if (!encloses(target.spot.block, from.block)) {
     findings_.error_at(from.line, from.column,
-                       fmt::format("{} (line {}) is within a block that this jump is not in", name_of_target(target),
-                                   target.spot.line),
-                       "jump to the begin of the block, or out of blocks only");
+                       fmt::format("{} (line {}) is within a block that does not contain this jump",
+                                   name_of_target(target), target.spot.line),
+                       "jump to the beginning of the block, or out of blocks only");
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace cellmirror::program::irdata {
 
-// Where something stands that is jumped to or from.
+// The place of a jump or its target.
 struct Spot {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
@@ -25,7 +25,7 @@ class Jumps {
  public:
   Jumps(ProgramBuilder& builder, Findings& findings) : builder_(builder), findings_(findings) {}
 
-  // So many records follow.
+  // Number of records that follow.
   void reserve(std::size_t records) { records_.reserve(records); }
   // A block begins within another one (0: none); its number.
   std::uint32_t new_block(std::uint32_t within);

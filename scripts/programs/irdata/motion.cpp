@@ -34,7 +34,7 @@ void Translator::motion_record() {
   for (const Term* point : {static_cast<const Term*>(&via), &target}) {
     if (!point->known || is_target(*point)) continue;
     findings_.error(point->column, fmt::format("a robot cannot move to {}", with_article(point->type)),
-                    "write POSE(...), JOINTS(...) or a variable of such");
+                    "write POSE(...), JOINTS(...) or a variable of these types");
     good = false;
   }
   if (!good || !target.known || (move.path == PathKind::circular && !via.known)) return;
@@ -56,7 +56,7 @@ void Translator::motion_record() {
   add(move, target.column);
 }
 
-// A setting that is a positive number; DEFAULT (unknown then) has been looked for before.
+// A setting that is a positive number; DEFAULT (then unknown) has been checked before.
 Term Translator::scaled_setting(std::string_view what, double greatest, double factor) {
   const Term term = typed_parameter(what, ValueType::real);
   const auto value = terms_.constant_number(term);
@@ -130,7 +130,7 @@ void Translator::fly_record() {
     set.setting = Setting::fly_angle;
     value = scaled_setting("a fly angle in degrees", 180, kRadPerDeg);
   } else if (require_parameter()) {
-    findings_.error(cursor_.column(), "a fly point is told by SPEED, DISTANCE or ANGLE",
+    findings_.error(cursor_.column(), "a fly point is given by SPEED, DISTANCE or ANGLE",
                     "write " + form_of(operation_));
     incomplete_ = true;
   }

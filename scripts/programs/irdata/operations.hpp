@@ -1,5 +1,5 @@
-// The operations of records: their symbolic names and what stands behind them. Their numeric codes are in a table that
-// the user may replace (code_table.hpp).
+// The operations of records: their symbolic names and parameters. Their numeric codes are in a table that the user may
+// replace (code_table.hpp).
 #pragma once
 
 #include <cstddef>

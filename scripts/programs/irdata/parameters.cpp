@@ -11,12 +11,12 @@
 
 namespace cellmirror::program::irdata {
 
-// Between parameters the cursor stands at a comma or at the end of the record.
+// Between parameters the cursor is at a comma or at the end of the record.
 bool Translator::next_parameter() {
   cursor_.skip_blank();
   if (cursor_.at_end()) return false;
   if (!cursor_.take(',')) {  // behind the operation only
-    findings_.error(cursor_.column(), fmt::format("a ',' is missing behind {}", row_of(operation_).name),
+    findings_.error(cursor_.column(), fmt::format("a ',' is missing after {}", row_of(operation_).name),
                     "write " + form_of(operation_));
     cursor_.skip_parameter(cursor_.at());
     if (!cursor_.take(',')) return false;
@@ -39,7 +39,7 @@ void Translator::end_parameter() {
   cursor_.skip_blank();
   if (cursor_.at_end() || cursor_.peek() == ',') return;
   findings_.error(cursor_.column(),
-                  fmt::format("'{}' does not go on with this parameter", printable(cursor_.rest().substr(0, 1))),
+                  fmt::format("'{}' cannot follow in this parameter", printable(cursor_.rest().substr(0, 1))),
                   "put a comma between parameters, or an operator between values");
   cursor_.skip_parameter(parameter_begin_);
 }
@@ -138,7 +138,7 @@ std::string_view Translator::name_parameter(std::string_view what) {
   }
   if (name.size() > kMaxNameLength) {
     findings_.error(column, fmt::format("the name has {} letters", name.size()),
-                    fmt::format("{} are the most", kMaxNameLength));
+                    fmt::format("{} is the maximum", kMaxNameLength));
     end_parameter();
     return {};
   }
@@ -171,8 +171,8 @@ std::optional<ProgramBuilder::Label> Translator::jump_parameter() {
   const std::string_view text = cursor_.number(whole);
   const auto number = parse_integer(text);
   if (!whole || !number || *number > kGreatestRecord) {
-    findings_.error(column, fmt::format("'{}' is no number of a record", printable(text, 20)),
-                    "write the number that the record begins with");
+    findings_.error(column, fmt::format("'{}' is not the number of a record", printable(text, 20)),
+                    "write the number at the beginning of the record");
     cursor_.skip_parameter(parameter_begin_);
     return std::nullopt;
   }

@@ -30,7 +30,7 @@ void Translator::read_line(std::string_view text) {
   findings_.at_line(++line_);
   if (text.size() > kLongestLine) {
     findings_.error(1, fmt::format("the line has {} bytes", text.size()),
-                    fmt::format("divide it; {} bytes are the most", kLongestLine));
+                    fmt::format("divide it; {} bytes is the maximum", kLongestLine));
     return;
   }
   cursor_ = Cursor(text);
@@ -66,7 +66,7 @@ void Translator::execute_record() {
     cursor_.skip_blank();
     const std::uint32_t column = cursor_.column();
     if (!text_follows && !cursor_.at_end() && cursor_.peek() != ';')
-      findings_.error(column, "a ',' is missing behind COMMENT", "write COMMENT, text");
+      findings_.error(column, "a ',' is missing after COMMENT", "write COMMENT, text");
     else
       read_comment(cursor_.rest(), column);
     return;
@@ -119,10 +119,10 @@ void Translator::read_number() {
   }
   if (value > kGreatestRecord) {
     findings_.error(column_, "the number of the record is too large",
-                    fmt::format("{} is the greatest", kGreatestRecord));
+                    fmt::format("{} is the maximum", kGreatestRecord));
   } else if (any_number_ && value <= last_number_) {
     findings_.error(column_, fmt::format("record number {} does not follow {}", value, last_number_),
-                    "numbers ascend from record to record");
+                    "record numbers must ascend");
   } else {
     numbered_ = true;
     any_number_ = true;
@@ -130,14 +130,14 @@ void Translator::read_number() {
     jumps_.begin_record(number_, spot(column_));
   }
   if (!cursor_.take(','))
-    findings_.error(cursor_.column(), "a ',' is missing behind the number of the record",
+    findings_.error(cursor_.column(), "a ',' is missing after the number of the record",
                     "write number, operation, parameters");
 }
 
 std::string Translator::remedy_for(std::string_view name) {
   std::string near;
   if (findings_.may_suggest()) near = nearest_operation(name);
-  return near.empty() ? "see docs/languages/irdata.md for the operations there are" : near;
+  return near.empty() ? "see docs/languages/irdata.md for the list of operations" : near;
 }
 
 bool Translator::read_operation() {
@@ -157,7 +157,7 @@ bool Translator::read_operation() {
     }
     findings_.error(
         operation_column_,
-        fmt::format("{} is no operation code", printable(cursor_.line().substr(begin, cursor_.at() - begin), 20)),
+        fmt::format("{} is not an operation code", printable(cursor_.line().substr(begin, cursor_.at() - begin), 20)),
         "see irdata_codes.tsv, or write the symbolic name");
     return false;
   }
@@ -169,9 +169,9 @@ bool Translator::read_operation() {
   }
   if (name.empty())
     findings_.error(operation_column_, "the operation is missing",
-                    "write its symbolic name or its code behind the number");
+                    "write its symbolic name or its code after the number");
   else
-    findings_.error(operation_column_, fmt::format("'{}' is no operation", printable(name, 40)), remedy_for(name));
+    findings_.error(operation_column_, fmt::format("'{}' is not an operation", printable(name, 40)), remedy_for(name));
   return false;
 }
 
@@ -188,15 +188,15 @@ bool Translator::section_allows() {
       return true;
     case Section::header:
       if (of_header || operation_ == Operation::comment) return true;
-      findings_.error(column_, fmt::format("{} stands in the header section", row_of(operation_).name),
+      findings_.error(column_, fmt::format("{} is in the header section", row_of(operation_).name),
                       "close the section with a record END_HEADER before it");
       end_header();
       return true;
     case Section::main:
     case Section::subprogram:
       if (!of_header) return true;
-      findings_.error(operation_column_, fmt::format("{} stands behind the header section", row_of(operation_).name),
-                      "put it in front of END_HEADER");
+      findings_.error(operation_column_, fmt::format("{} comes after the header section", row_of(operation_).name),
+                      "put it before END_HEADER");
       return false;
     case Section::behind_end:
       break;
@@ -208,8 +208,8 @@ bool Translator::section_allows() {
 bool Translator::leave_wrong_section() {
   if (operation_ == Operation::subprogram || operation_ == Operation::comment) return true;
   if (!strayed_)
-    findings_.error(operation_column_, fmt::format("{} stands behind the end", row_of(operation_).name),
-                    "only subprograms stand behind END: open one with 'SUBPROGRAM, name', or move the record");
+    findings_.error(operation_column_, fmt::format("{} comes after the end", row_of(operation_).name),
+                    "only subprograms may follow END: open one with 'SUBPROGRAM, name', or move the record");
   strayed_ = true;
   return false;
 }
@@ -222,11 +222,11 @@ void Translator::read_comment(std::string_view text, std::uint32_t column) {
   content = trimmed(content.substr(1));
   while (content.ends_with(';')) content = trimmed(content.substr(0, content.size() - 1));
   if (content.empty()) {
-    findings_.error(column, "there is no SCRIPT command behind '%'", "write one, or leave the '%' out of the comment");
+    findings_.error(column, "there is no SCRIPT command after '%'", "write one, or remove the '%' from the comment");
     return;
   }
   if (section_ != Section::main && section_ != Section::subprogram) {
-    findings_.error(column, "a SCRIPT command stands outside of what is executed",
+    findings_.error(column, "a SCRIPT command is outside the executed sections",
                     "put it between END_HEADER and END, or into a subprogram; other comments do not begin with '%'");
     return;
   }

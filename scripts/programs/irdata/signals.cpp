@@ -78,7 +78,7 @@ void Translator::pulse_record() {
   output(once_more, false);
 }
 
-// "3, ON": what is waited for, and how people are told of it.
+// "3, ON": the awaited state, and its text in messages.
 Term Translator::input_condition(std::string& text) {
   const Term number = port_parameter();
   const std::size_t begin = parameter_begin_;
@@ -107,7 +107,7 @@ void Translator::wait_record() {
   finish_wait(condition, text);
 }
 
-// Timeout and label: where the program goes on when the time is over. Without a label that is an error of the program.
+// Timeout and label: where the program continues after a timeout. Without a label a timeout is an error of the program.
 void Translator::finish_wait(const Term& condition, const std::string& text) {
   WaitStatement wait;
   bool good = condition.known;

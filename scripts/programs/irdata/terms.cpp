@@ -86,7 +86,7 @@ Term Terms::variable(VariableId id, std::uint32_t column) {
 }
 
 Term Terms::negated(const Term& term) {
-  // The least integer has no negative, which the operation tells.
+  // The least integer has no negative; the operation reports that.
   if (!term.literal || term.integer == std::numeric_limits<std::int64_t>::min())
     return apply(Operator::negate, term.column, {term});
   Term out = term;

@@ -32,7 +32,7 @@ class Translator {
   // `codes` and the text whose lines follow must outlive this.
   Translator(const ParseContext& context, const CodeTable& codes, Diagnostics& diagnostics);
 
-  // So many lines follow: room is made for them at once.
+  // Number of lines that follow: memory is reserved at once.
   void expect_lines(std::size_t lines);
   // The next line, without its end.
   void read_line(std::string_view text);
@@ -52,7 +52,7 @@ class Translator {
     std::uint32_t outside = 0;    // id of the block around it
     ProgramBuilder::Label begin;  // of a loop
     ProgramBuilder::Label end;
-    ProgramBuilder::Label next;  // of IF: where it goes on when the condition does not hold
+    ProgramBuilder::Label next;  // of IF: where it continues if the condition is false
     bool open_next = false;
     bool is_else = false;
     std::uint32_t counter = kNone;  // of FOR: its variable

@@ -31,8 +31,8 @@ inline constexpr double kGreatestTeachAngle = 180;         // degrees; tolerance
   return dialect == TeachDialect::boom ? "jet_boom" : "jet_tarm";
 }
 
-// How near a check point the robot has to come before it may go on to the next one. The units of FlyType: m, rad, or
-// the fraction of the speed below which it has dropped.
+// Distance to a check point at which the robot may continue to the next one. The units of FlyType: m, rad, or the
+// fraction of the speed below which it has dropped.
 struct TeachTolerance {
   FlyType type = FlyType::distance;
   double parameter = 0;

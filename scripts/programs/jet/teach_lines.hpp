@@ -1,4 +1,4 @@
-// Cuts the text of a teach file into lines and words. Knows comments, but no statement.
+// Splits the text of a teach file into lines and words. Handles comments, but no statements.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ class TeachLines {
   enum class Line : std::uint8_t {
     end,        // there is no further line
     words,      // words() of a statement
-    script,     // script(): what stands behind a '%' that is the first character of the line
+    script,     // script(): the text after a '%' at the beginning of the line
     too_long,   // more than kLongestTeachLine bytes
     too_many,   // more than kMostWords words
     unwritten,  // a byte that is no part of text at column()

@@ -24,7 +24,7 @@ int TeachNames::note(std::string_view name, int line) {
 
 TeachNames::Slot& TeachNames::find(std::uint32_t hash, std::string_view name) {
   std::size_t at = hash & (slots_.size() - 1);
-  // Names are looked at only where the whole hash agrees: most searches touch one slot and nothing else.
+  // Names are compared only if the whole hash agrees: most searches touch one slot and nothing else.
   while (slots_[at].entry != 0 && (slots_[at].hash != hash || entries_[slots_[at].entry - 1].name != name))
     at = (at + 1) & (slots_.size() - 1);
   return slots_[at];

@@ -1,5 +1,4 @@
-// The names of the check points of a file, with the lines in which they stand. Files have a hundred thousand of them: a
-// table without a node each.
+// The names of the check points of a file, with their lines. Files have a hundred thousand of them: a flat hash table.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +10,7 @@ namespace cellmirror::program {
 
 class TeachNames {
  public:
-  // The line in which the name stands already; 0: it is new, and is noted with this one. `name` is used until the last
-  // call.
+  // The line of an existing name; 0: it is new, and is stored with this one. `name` is used until the last call.
   int note(std::string_view name, int line);
 
  private:
@@ -26,7 +24,7 @@ class TeachNames {
   };
 
   void grow();
-  // Where the name stands, or where it belongs.
+  // The slot of the name, or its free slot.
   [[nodiscard]] Slot& find(std::uint32_t hash, std::string_view name);
 
   std::vector<Slot> slots_;  // a power of two, at most half of them taken

@@ -20,7 +20,7 @@ namespace cellmirror::program {
 
 namespace {
 
-using PointName = std::optional<TeachWord>;  // none: it was wrong, and told of
+using PointName = std::optional<TeachWord>;  // none: invalid, and reported
 using JointsGiven = std::array<bool, kMaxJointsPerRobot>;
 
 class TeachParser {
@@ -129,7 +129,7 @@ bool TeachParser::read_line(TeachLines::Line kind) {
       error(lines_.column(), fmt::format("the line has more than {} words", TeachLines::kMostWords));
       return true;
     case TeachLines::Line::unwritten:
-      error(lines_.column(), "a control character stands in the text", "teach files are plain text");
+      error(lines_.column(), "the text contains a control character", "teach files are plain text");
       return true;
     case TeachLines::Line::script:
     case TeachLines::Line::words:
@@ -137,7 +137,7 @@ bool TeachParser::read_line(TeachLines::Line kind) {
   }
   const int column = kind == TeachLines::Line::words ? lines_.words().front().column : lines_.column();
   if (ended_) {
-    error(column, "something stands behind END", "END is the last line of a teach file");
+    error(column, "there is text after END", "END is the last line of a teach file");
     return false;
   }
   if (program_.full()) {
@@ -170,14 +170,14 @@ void TeachParser::header(TeachWords& words) {
   const TeachDialect found = boom ? TeachDialect::boom : TeachDialect::tarm;
   if (found != dialect_) {
     words.error(words.peek(),
-                fmt::format("this is a {} program and is read as {}", language_of(found), language_of(dialect_)),
+                fmt::format("this is a {} program, but the language is {}", language_of(found), language_of(dialect_)),
                 fmt::format("ROBOT_LANGUAGE {}", language_of(found)));
     dialect_ = found;
   }
   const TeachWord& keyword = words.take();
   if (words.at_end() || parse_integer(words.peek().text) != kTeachVersion) {
     words.error(words.at_end() ? keyword : words.peek(),
-                fmt::format("the version behind {} is not {}", header_of(found), kTeachVersion));
+                fmt::format("the version after {} is not {}", header_of(found), kTeachVersion));
     return words.skip_rest();
   }
   words.take();
@@ -204,11 +204,11 @@ void TeachParser::script() {
   }
   std::string_view command = lines_.script().text;
   if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
-  if (command.empty()) return error(lines_.column(), "no SCRIPT command stands behind %");
+  if (command.empty()) return error(lines_.column(), "there is no SCRIPT command after %");
   const std::size_t semicolon = command.find(';');
   if (semicolon != std::string_view::npos)
-    return error(lines_.script().column + static_cast<int>(semicolon), "more than one SCRIPT command stands behind %",
-                 "one command a line");
+    return error(lines_.script().column + static_cast<int>(semicolon), "there is more than one SCRIPT command after %",
+                 "one command per line");
   expect(program_.script(command));
 }
 
@@ -220,7 +220,7 @@ void TeachParser::finish() {
   }
   if (!ended_ && !program_.full())
     diagnostics_.error({file_, lines_.number()}, "END is missing",
-                       "the file was cut off, or its last line is to be: END");
+                       "the file is truncated, or its last line must be: END");
   if (joints_line_ == 0 && !told_of_joints_)
     diagnostics_.error({file_}, "JOINTS is missing", "the number of values of a check point: JOINTS 6");
   if (!any_point_) diagnostics_.error({file_}, "there is no check point", "for example: POINT P1 0 90 0");
@@ -229,8 +229,8 @@ void TeachParser::finish() {
 void TeachParser::name(TeachWords& words) {
   const TeachWord& keyword = words.take();
   const auto name = words.name("program");
-  if (named_) return words.error(keyword, "NAME stands here a second time");
-  if (any_point_) return words.error(keyword, "NAME stands behind a check point", "it belongs to the header");
+  if (named_) return words.error(keyword, "NAME is given a second time");
+  if (any_point_) return words.error(keyword, "NAME comes after a check point", "it belongs to the header");
   named_ = true;
   if (name) program_.rename(name->text);
 }
@@ -239,9 +239,9 @@ void TeachParser::joints(TeachWords& words) {
   const TeachWord& keyword = words.take();
   const auto count = words.integer("JOINTS", 1, static_cast<long long>(kMaxJointsPerRobot));
   if (joints_line_ != 0)
-    return words.error(keyword, fmt::format("JOINTS stands here a second time, after line {}", joints_line_));
+    return words.error(keyword, fmt::format("JOINTS is given a second time, after line {}", joints_line_));
   joints_line_ = lines_.number();
-  if (any_point_ && !told_of_joints_) words.error(keyword, "JOINTS stands behind a check point");
+  if (any_point_ && !told_of_joints_) words.error(keyword, "JOINTS comes after a check point");
   if (count) joint_count_ = static_cast<std::size_t>(*count);
 }
 
@@ -275,7 +275,7 @@ void TeachParser::point(TeachWords& words) {
   if (name) new_point_name(*name);
   if (joints_line_ == 0 && !told_of_joints_) {
     told_of_joints_ = true;
-    words.error(keyword, "JOINTS has to stand before the first check point",
+    words.error(keyword, "JOINTS must come before the first check point",
                 "the number of values of a check point: JOINTS 6");
   }
   TeachSettings settings = settings_;
@@ -288,7 +288,7 @@ void TeachParser::point(TeachWords& words) {
 
 void TeachParser::new_point_name(const TeachWord& word) {
   const int known = points_.note(word.text, lines_.number());
-  if (known != 0) error(word.column, fmt::format("check point {} stands in line {} already", word.text, known));
+  if (known != 0) error(word.column, fmt::format("check point {} exists already, in line {}", word.text, known));
 }
 
 bool is_setting(const TeachWords& words) {
@@ -297,7 +297,7 @@ bool is_setting(const TeachWords& words) {
 
 bool begins_number(std::string_view word) { return word.find_first_of("0123456789+-.") == 0; }
 
-// What follows cannot be told apart from what it belongs to.
+// The rest is ambiguous.
 void no_value(TeachWords& words) {
   static const std::array<std::string, 3> settings{"SPEED", "ACCELERATION", "TOLERANCE"};
   const std::string_view word = words.peek().text;
@@ -322,7 +322,7 @@ bool TeachParser::all_values(TeachWords& words, const PointName& point) {
   }
   if (point && joint_count_ != 0 && count != joint_count_) {
     words.error(*point,
-                fmt::format("check point {} has {} values, and JOINTS says {}", point->text, count, joint_count_));
+                fmt::format("check point {} has {} values, but JOINTS is {}", point->text, count, joint_count_));
     return false;
   }
   target_.count = static_cast<std::uint8_t>(joint_count_);
@@ -339,7 +339,7 @@ bool TeachParser::named_values(TeachWords& words, const PointName& point) {
     for (std::size_t i = 0; i < joint_count_; ++i)
       if (!given[i]) missing += fmt::format("{}J{}", missing.empty() ? "" : ", ", i + 1);
     if (!missing.empty()) {
-      words.error(*point, fmt::format("the first check point leaves out {}", missing), "it names every joint");
+      words.error(*point, fmt::format("the first check point omits {}", missing), "it must name every joint");
       return false;
     }
   }
@@ -359,13 +359,13 @@ bool TeachParser::named_value(TeachWords& words, JointsGiven& given) {
                           ? parse_integer(joint.substr(1))
                           : std::nullopt;
   if (sign == std::string_view::npos || !number) {
-    words.error(word, fmt::format("{} is no value of a joint", printable(word.text)),
+    words.error(word, fmt::format("{} is not a value of a joint", printable(word.text)),
                 "the joint's number and its value without blanks: J3=250");
     return false;
   }
   const std::size_t count = joint_count_ == 0 ? given.size() : joint_count_;
   if (*number < 1 || static_cast<std::size_t>(*number) > count) {
-    words.error(word, fmt::format("{} is none of the {} joints", printable(joint), count));
+    words.error(word, fmt::format("{} is not one of the {} joints", printable(joint), count));
     return false;
   }
   const auto index = static_cast<std::size_t>(*number - 1);
@@ -380,7 +380,7 @@ bool TeachParser::named_value(TeachWords& words, JointsGiven& given) {
     words.error({text, word.column + static_cast<int>(sign) + 1},
                 value ? fmt::format("{} is not within {} .. {}", text, -kGreatestTeachValue, kGreatestTeachValue)
                 : text.empty() ? fmt::format("{} has no value", printable(joint))
-                               : fmt::format("{} is no number", printable(text)));
+                               : fmt::format("{} is not a number", printable(text)));
     return false;
   }
   target_.values[index] = *value;

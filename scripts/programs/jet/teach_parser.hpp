@@ -11,8 +11,8 @@
 
 namespace cellmirror::program {
 
-// Language::parse() of both dialects. A file of the other dialect is told so and read by its own rules, so that its
-// other faults are found as well.
+// Language::parse() of both dialects. A file of the other dialect is reported and read by its own rules, so that its
+// other errors are found as well.
 [[nodiscard]] std::shared_ptr<const Program> parse_teach_file(TeachDialect dialect, std::string_view text,
                                                               const ParseContext& context, Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// Makes a program of check points and of what stands between them.
+// Builds a program from check points and the statements between them.
 #pragma once
 
 #include <algorithm>
@@ -24,15 +24,15 @@ struct TeachSettings {
   std::optional<TeachTolerance> tolerance;
 };
 
-// Settings become statements where they change, so that traces tell only what the file says. Refusals name no place.
+// Settings become statements where they change, so that traces show only the file's settings. Refusals have no place.
 class TeachProgram {
  public:
   TeachProgram(TeachDialect dialect, std::string_view file);
 
   void rename(std::string_view name) { builder_.rename(std::string(name)); }
-  // For a file of so many lines; a hint.
+  // Expected number of lines; a hint.
   void reserve(std::size_t lines) { builder_.reserve(std::min(lines, kMostReserved)); }
-  // Where the following statements stand in the file.
+  // Place of the following statements in the file.
   void at(int line, int column);
   Result<void> point(std::string_view name, const JointPosition& target, const TeachSettings& settings);
   Result<void> dwell(double seconds);

@@ -72,7 +72,7 @@ std::string TeachRecorder::free_name() {
 }
 
 Result<void> TeachRecorder::point(std::string_view name) {
-  if (!newest_time_) return fail("nothing is known of where the robot is", "TF_RECORD needs a robot that is mirrored");
+  if (!newest_time_) return fail("the position of the robot is unknown", "TF_RECORD needs a mirrored robot");
   return add(name.empty() ? free_name() : std::string(name), newest_);
 }
 
@@ -91,7 +91,7 @@ Result<void> TeachRecorder::add(std::string name, const JointValues& joints) {
 }
 
 Result<std::string> TeachRecorder::finish() {
-  if (!newest_time_) return fail("nothing was recorded", "TF_RECORD needs a robot that is mirrored");
+  if (!newest_time_) return fail("nothing was recorded", "TF_RECORD needs a mirrored robot");
   if (away_from_last_point()) {
     // Wherever it is stopped, it ends: nothing follows that the point could be passed to.
     rests_since_ = newest_time_;

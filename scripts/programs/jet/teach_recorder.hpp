@@ -1,5 +1,5 @@
-// Makes a teach file of the way that a robot goes: from a mirrored robot that somebody leads by hand or by its own
-// controller (TF_RECORD). No clock, no file, no thread of its own.
+// Records a teach file from a robot's motion, for example of a mirrored robot moved by hand or by its own controller
+// (TF_RECORD). No clock, no file, no thread.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace cellmirror::program {
 
-// Check points come about where the robot has come to rest, and where somebody asks for one. The speed of a leg is the
-// highest that any joint had on it, as a share of that joint's highest velocity. A point that the robot passed gets a
-// tolerance, so that the repetition does not stop there either.
+// Check points are created where the robot has come to rest, and on request. The speed of a leg is the highest of any
+// joint on it, as a fraction of that joint's maximum velocity. A point that the robot passed gets a tolerance, so that
+// the repetition does not stop there either.
 class TeachRecorder {
  public:
   static constexpr Nanoseconds kSpan{50'000'000};       // over which speeds are measured
@@ -33,8 +33,8 @@ class TeachRecorder {
   // Where the robot is. Times ascend; others, and values that are not finite, are passed over. The first one makes the
   // first check point.
   void sample(Timestamp time, const JointValues& joints);
-  // A check point where the robot is now. Without a name: P1, P2, ... Refused: nothing was sampled yet; the name is
-  // none, or known.
+  // A check point where the robot is now. Without a name: P1, P2, ... Refused: no samples yet; an invalid or existing
+  // name.
   Result<void> point(std::string_view name);
   [[nodiscard]] std::size_t points() const { return writer_.points(); }
   // The file, with a last check point where the robot is. Refused: nothing was sampled.

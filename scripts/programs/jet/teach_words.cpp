@@ -20,8 +20,8 @@ bool TeachWords::peek_is(std::string_view keyword) const {
 
 void TeachWords::expect_end() {
   if (at_end()) return;
-  error(peek(), fmt::format("{} is too much here", printable(peek().text)),
-        "one statement a line; a comment begins with #");
+  error(peek(), fmt::format("{} is surplus here", printable(peek().text)),
+        "one statement per line; a comment begins with #");
   skip_rest();
 }
 
@@ -42,7 +42,7 @@ std::optional<TeachWord> TeachWords::name(std::string_view what) {
   }
   const TeachWord& word = take();
   if (is_teach_name(word.text)) return word;
-  error(word, fmt::format("{} is no name of a {}", printable(word.text), what),
+  error(word, fmt::format("{} is not a valid name of a {}", printable(word.text), what),
         fmt::format("a letter, then letters, digits, '_', '-' and '.', at most {}", kMaxNameLength));
   return std::nullopt;
 }
@@ -55,7 +55,7 @@ std::optional<double> TeachWords::number(std::string_view what, double least, do
   const TeachWord& word = take();
   const std::optional<double> value = parse_number(word.text);
   if (!value) {
-    error(word, fmt::format("{} is no number", printable(word.text)));
+    error(word, fmt::format("{} is not a number", printable(word.text)));
   } else if (*value < least || *value > most) {
     error(word, fmt::format("{} {} is not within {} .. {}", what, word.text, least, most));
   } else {
@@ -72,7 +72,7 @@ std::optional<long long> TeachWords::integer(std::string_view what, long long le
   const TeachWord& word = take();
   const std::optional<long long> value = parse_integer(word.text);
   if (!value) {
-    error(word, fmt::format("{} is no whole number", printable(word.text)));
+    error(word, fmt::format("{} is not a whole number", printable(word.text)));
   } else if (*value < least || *value > most) {
     error(word, fmt::format("{} {} is not within {} .. {}", what, word.text, least, most));
   } else {
@@ -151,7 +151,7 @@ void TeachWords::tolerance(std::optional<TeachTolerance>& tolerance) {
     if (*value > 100) return error(unit, fmt::format("TOLERANCE {} PERCENT is not within 0 .. 100", *value));
     read = {FlyType::speed_fraction, *value / 100};
   } else {
-    return error(unit, fmt::format("{} is no unit of a tolerance", printable(unit.text)),
+    return error(unit, fmt::format("{} is not a unit of a tolerance", printable(unit.text)),
                  "MM from the check point, DEG from its orientation, or PERCENT of the speed");
   }
   tolerance = read.parameter > 0 ? std::optional(read) : std::nullopt;

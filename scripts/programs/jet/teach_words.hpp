@@ -24,7 +24,7 @@ class TeachWords {
   const TeachWord& take() { return words_[next_++]; }
   [[nodiscard]] bool peek_is(std::string_view keyword) const;
   void skip_rest() { next_ = words_.size(); }
-  // Finding: something stands behind the statement.
+  // Reports text after the statement.
   void expect_end();
 
   // What follows has to be there and in order; none, and a finding, where it is not. `what` names it: "SPEED".

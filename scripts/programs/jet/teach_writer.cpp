@@ -49,7 +49,7 @@ bool is_tolerance(const TeachTolerance& tolerance) {
 
 Result<TeachWriter> TeachWriter::begin(TeachDialect dialect, std::string_view name, std::span<const JointKind> joints) {
   if (!is_teach_name(name))
-    return fail(fmt::format("{} is no name of a program", printable(name)),
+    return fail(fmt::format("{} is not a valid name of a program", printable(name)),
                 fmt::format("a letter, then letters, digits, '_', '-' and '.', at most {}", kMaxNameLength));
   if (joints.empty() || joints.size() > kMaxJointsPerRobot)
     return fail(fmt::format("a teach file is for 1 to {} joints, not for {}", kMaxJointsPerRobot, joints.size()));
@@ -66,7 +66,8 @@ void TeachWriter::comment(std::string_view text) {
 }
 
 Result<void> TeachWriter::add(const CheckPoint& point) {
-  if (!is_teach_name(point.name)) return fail(fmt::format("{} is no name of a check point", printable(point.name)));
+  if (!is_teach_name(point.name))
+    return fail(fmt::format("{} is not a valid name of a check point", printable(point.name)));
   if (knows(point.name)) return fail(fmt::format("there is a check point {} already", point.name));
   if (points() == kMostPoints) return fail(fmt::format("a teach file is written with at most {} points", kMostPoints));
   if (point.speed && !(*point.speed >= kLeastShare && *point.speed <= 1))
@@ -77,7 +78,7 @@ Result<void> TeachWriter::add(const CheckPoint& point) {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const double value = in_file_units(joints_[i], point.joints[i]);
     if (!(std::abs(value) <= kGreatestTeachValue))
-      return fail(fmt::format("joint {} stands at {}, which is no value for a teach file", i + 1, value));
+      return fail(fmt::format("joint {} is at {}, which is not valid in a teach file", i + 1, value));
     values.push_back(number_text(value));
   }
   text_ += "POINT " + point.name;

@@ -27,13 +27,13 @@ class TeachWriter {
  public:
   static constexpr std::size_t kMostPoints = 100'000;
 
-  // Refused: a name that is none (is_teach_name()), no joint or more than kMaxJointsPerRobot.
+  // Refused: an invalid name (is_teach_name()), no joint or more than kMaxJointsPerRobot.
   [[nodiscard]] static Result<TeachWriter> begin(TeachDialect dialect, std::string_view name,
                                                  std::span<const JointKind> joints);
   // A line that people read; line ends and control characters in it become blanks.
   void comment(std::string_view text);
-  // Values are written to a millionth of a degree or mm. Refused: a name that is none or is known already, values that
-  // are not finite or too great, speeds and tolerances that the reader would not take, one point too many.
+  // Values are written to a millionth of a degree or mm. Refused: an invalid or existing name, values that are not
+  // finite or too great, speeds and tolerances that the reader would refuse, too many points.
   Result<void> add(const CheckPoint& point);
   [[nodiscard]] bool knows(std::string_view name) const { return names_.contains(std::string(name)); }
   [[nodiscard]] std::size_t points() const { return names_.size(); }
@@ -46,7 +46,7 @@ class TeachWriter {
 
   TeachDialect dialect_;
   std::vector<JointKind> joints_;
-  std::vector<std::string> last_values_;  // as written; jet_tarm tells what differs
+  std::vector<std::string> last_values_;  // as written; jet_tarm shows differences only
   std::unordered_set<std::string> names_;
   std::string text_;
 };

@@ -1,5 +1,5 @@
-// Canonical commands: what every robot language comes down to. SI; frames are named. A command is complete in itself:
-// whoever carries it out needs nothing of the program.
+// Canonical commands: the output of every robot language. SI; frames are named. A command is self-contained: its
+// execution needs nothing of the program.
 #pragma once
 
 #include <cstdint>
@@ -73,7 +73,7 @@ struct OutputCommand {
 // Until the condition of the statement holds (Machine::holds()).
 struct WaitCommand {
   std::string condition;            // for people: "input 3 is on"
-  std::optional<double> timeout_s;  // then the program goes on, or fails: Machine::time_out()
+  std::optional<double> timeout_s;  // then the program continues, or fails: Machine::time_out()
 };
 struct AcquireCommand {
   std::string semaphore;
@@ -84,10 +84,10 @@ struct ReleaseCommand {
 struct ScriptCommand {
   std::string text;  // one SCRIPT command
 };
-// Until somebody resumes the program.
+// Until the program is resumed.
 struct PauseCommand {};
-// The robot has to stand before the machine goes on, because the next statement asks where it is, or what an input
-// says. Not part of traces.
+// The robot must be at rest before the machine continues, because the next statement reads its position or an input.
+// Not part of traces.
 struct RestCommand {};
 
 struct CanonicalCommand {

@@ -1,5 +1,5 @@
-// Expressions of robot programs: trees whose nodes lie in one array of the program. Types are checked while they are
-// evaluated; a language that knows its types checks them earlier.
+// Expressions of robot programs: trees whose nodes are in one array of the program. Types are checked while they are
+// evaluated; a typed language checks them earlier.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class Operator : std::uint8_t {
   // leaves; `payload` says which
   constant,  // of Program::constants
   variable,  // of Program::variables
-  // world; the machine waits for the robot to stand before it looks
+  // world; the machine waits for the robot to rest before it reads it
   current_joints,    // JointPosition; `payload`: its JointUnits
   current_position,  // X_UT: the TCP in the program's zero point
   digital_input,     // (number) boolean
@@ -83,11 +83,11 @@ struct Arity {
 // The type of the result for operands of these types. Refused: types that it does not take. Not for constant, variable
 // and element, whose types are those of what they name.
 [[nodiscard]] Result<ValueType> result_type(Operator which, std::span<const ValueType> operands);
-// The result of all that looks neither at variables nor at the world. Refused: overflow, division by 0, not finite, a
-// component that is not there.
+// The result of an expression without variables and world. Refused: overflow, division by 0, not finite, a missing
+// component.
 [[nodiscard]] Result<Value> apply(Operator which, std::span<const Value> operands, std::uint32_t payload);
 
-// The operands of a node stand before it in the array.
+// The operands of a node come before it in the array.
 struct ExpressionNode {
   Operator which = Operator::constant;
   std::uint8_t operands = 0;

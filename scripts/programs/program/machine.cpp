@@ -9,7 +9,7 @@
 namespace cellmirror::program {
 namespace {
 
-// The expressions that a statement evaluates before it gives its command; the condition of a wait is looked at later.
+// The expressions that a statement evaluates before it emits its command; the condition of a wait is evaluated later.
 struct Expressions {
   using List = std::array<ExpressionId, 3>;
 
@@ -62,7 +62,7 @@ void Machine::end_wait() {
   if (wait.timed_out != kNone) {
     values_[first_value_[wait.timed_out]] = timed_out_;
   } else if (timed_out_) {
-    failed(statement, {"the time limit is over and what the program waits for has not come", ""});
+    failed(statement, {"the wait timed out", ""});
   }
 }
 

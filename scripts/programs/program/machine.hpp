@@ -1,5 +1,5 @@
-// Executes one program: statement by statement, without a clock, a robot or a thread. Whoever drives it carries out the
-// commands that come out and says when to go on.
+// Executes one program: statement by statement, without a clock, a robot or a thread. The caller executes the emitted
+// commands and says when to continue.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace cellmirror::program {
 
-// What expressions look at: the robot that executes the program, and its inputs and outputs.
+// World of expressions: the robot that executes the program, and its inputs and outputs.
 class ProgramWorld {
  public:
   virtual ~ProgramWorld() = default;
@@ -43,7 +43,7 @@ class Machine {
   enum class Step : std::uint8_t {
     command,  // command() is to be carried out; then next() again. A delay, and a move that may be followed by others,
               // need not have ended before (RestCommand comes where it must)
-    spent,    // the budget is spent: an endless loop, or much to compute. next() goes on
+    spent,    // the budget is spent: an endless loop, or much to compute. next() continues
     ended,
     failed,  // error(): what is wrong with which statement
   };
@@ -52,30 +52,28 @@ class Machine {
   [[nodiscard]] const CanonicalCommand& command() const { return command_; }
   [[nodiscard]] const Diagnostic& error() const { return error_; }
 
-  // The condition of the newest WaitCommand; next() may be called when it holds. An error is true and fails the
-  // machine: next() tells.
+  // The condition of the newest WaitCommand; next() may be called when it is true. An error counts as true and fails
+  // the machine: next() reports it.
   [[nodiscard]] bool holds(const ProgramWorld& world);
-  // The time of the newest WaitCommand is over. next() goes on with what the statement says of that, which may be an
-  // error.
+  // The newest WaitCommand has timed out. next() continues with the statement's reaction, which may be an error.
   void time_out();
 
-  // Reversible programs: check points one by one in the other order, from where the program stands, each with the
-  // velocities of the way that it goes back. Everything else is passed over backward. Before the first next(): from the
-  // end of the program (TF_BACK). After its end in one direction it goes on in the other. Refused for other programs
-  // and after an error.
+  // Reversible programs: check points one by one in reverse order, from the program's position, each with the
+  // velocities of its leg. Everything else is skipped backward. Before the first next(): from the end of the program
+  // (TF_BACK). After its end in one direction it continues in the other. Refused for other programs and after an error.
   Result<void> set_direction(Direction direction);
   [[nodiscard]] Direction direction() const { return direction_; }
-  // Reversible programs: the robot is at, or on its way to, the check point of this statement (of a command that was
-  // given); commands given after it have been taken back. next() goes on from there.
+  // Reversible programs: the robot is at, or moving to, the check point of this statement (of an emitted command);
+  // later commands have been discarded. next() continues from there.
   Result<void> stand_at(StatementId check_point);
-  // Reversible programs: next() goes on with this statement in the direction in force, whatever was given before.
-  // Backward: with this check point.
+  // Reversible programs: next() continues with this statement in the present direction. Backward: with this check
+  // point.
   Result<void> go_on_with(StatementId statement);
 
   // The statement that next() will execute; the size of the program at its end.
   [[nodiscard]] StatementId position() const { return position_; }
   [[nodiscard]] const Program& program() const { return *program_; }
-  // A variable, or the first element of a list; null where there is none of that name. Tests and status.
+  // A variable, or the first element of a list; null if there is none of that name. Tests and status.
   [[nodiscard]] const Value* variable(std::string_view name) const;
   [[nodiscard]] std::uint64_t executed() const { return executed_; }  // statements
 
@@ -107,7 +105,7 @@ class Machine {
 
   std::shared_ptr<const Program> program_;
   std::vector<JointKind> joints_;
-  std::vector<bool> looks_;               // expressions that look at the world
+  std::vector<bool> looks_;               // expressions that use the world
   std::vector<Value> values_;             // of all variables, list elements behind each other
   std::vector<std::size_t> first_value_;  // by variable
   std::vector<Value> stack_;              // of operands, while an expression is evaluated

@@ -78,7 +78,7 @@ Result<void> Machine::stand_at(StatementId check_point) {
 }
 
 Result<void> Machine::go_on_with(StatementId statement) {
-  if (!program_->reversible) return fail("the program '" + program_->name + "' goes one way only");
+  if (!program_->reversible) return fail("the program '" + program_->name + "' has only one direction");
   behind_end_ = false;
   if (direction_ == Direction::forward) {
     position_ = std::min(statement, static_cast<StatementId>(program_->statements.size()));

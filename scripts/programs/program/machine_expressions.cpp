@@ -23,7 +23,7 @@ Result<std::size_t> Machine::value_place(VariableId variable, const Value* index
   const Variable& declared = program_->variables[variable];
   if (index == nullptr) return first_value_[variable];
   const auto* number = std::get_if<std::int64_t>(index);
-  if (number == nullptr) return fail(fmt::format("the index of '{}' is no whole number", declared.name));
+  if (number == nullptr) return fail(fmt::format("the index of '{}' is not a whole number", declared.name));
   const auto size = static_cast<std::int64_t>(declared.initial.size());
   // Written so that no index overflows.
   if (*number < declared.first || *number - declared.first >= size) {

@@ -28,7 +28,7 @@ struct Machine::Execute {
   [[nodiscard]] Result<double> time(ExpressionId id, std::string_view what) const {
     auto seconds = machine.evaluate_number(world, id);
     if (seconds && !(*seconds >= 0 && *seconds <= kLongestTime_s)) {
-      return fail(fmt::format("{} is {} s: it has to be within 0 .. {} s", what, *seconds, kLongestTime_s));
+      return fail(fmt::format("{} is {} s: it must be within 0 .. {} s", what, *seconds, kLongestTime_s));
     }
     return seconds;
   }
@@ -106,7 +106,7 @@ struct Machine::Execute {
   }
   Next operator()(const CallStatement& call) const {
     if (machine.calls_.size() >= kMostCalls) {
-      return fail(fmt::format("more than {} subprograms within each other", kMostCalls),
+      return fail(fmt::format("more than {} nested subprograms", kMostCalls),
                   "a subprogram that calls itself needs a condition that ends it");
     }
     machine.calls_.push_back(machine.position_ + 1);
@@ -114,7 +114,7 @@ struct Machine::Execute {
     return Outcome::go_on;
   }
   Next operator()(const ReturnStatement& /*statement*/) const {
-    if (machine.calls_.empty()) return fail("a return outside of a subprogram");
+    if (machine.calls_.empty()) return fail("a return outside a subprogram");
     machine.position_ = machine.calls_.back();
     machine.calls_.pop_back();
     return Outcome::go_on;

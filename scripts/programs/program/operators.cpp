@@ -31,7 +31,7 @@ Result<Value> finite(Operator which, double value) {
 }
 
 std::unexpected<Error> overflow(Operator which) {
-  return fail(fmt::format("the result of '{}' is larger than an integer can be", name_of(which)));
+  return fail(fmt::format("the result of '{}' exceeds the range of an integer", name_of(which)));
 }
 
 Result<Value> apply_to_integer(Operator which, Integer a) {

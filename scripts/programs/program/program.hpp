@@ -1,5 +1,5 @@
-// A robot program in the form that every language is translated to: a list of statements for the machine. It knows no
-// robot and may be loaded for several. Immutable once made (ProgramBuilder).
+// A robot program in the form that every language is translated to: a list of statements for the machine. It is
+// independent of the robot and may be loaded for several. Immutable once made (ProgramBuilder).
 #pragma once
 
 #include <cstddef>

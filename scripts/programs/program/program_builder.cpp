@@ -75,7 +75,7 @@ Result<ValueType> ProgramBuilder::operation_type(Operator which, std::span<const
   return node_type(*program_, {.which = which, .payload = payload}, std::span(types).first(operands.size()));
 }
 
-// How many nodes the constants of an operation take at the end of the program; 0 where they stand elsewhere too.
+// How many nodes the constants of an operation take at the end of the program; 0 if they are used elsewhere too.
 std::size_t ProgramBuilder::foldable_tail(std::span<const ExpressionId> operands) const {
   const std::size_t nodes = program_->expressions.size();
   const std::size_t constants = program_->constants.size();
@@ -121,7 +121,7 @@ Result<ExpressionId> ProgramBuilder::operation(Operator which, std::span<const E
   }
   if (depth >= kMostExpressionDepth) {
     return fail(fmt::format("the expression is nested more than {} deep", kMostExpressionDepth),
-                "compute parts of it before");
+                "compute parts of it first");
   }
   program_->operands.insert(program_->operands.end(), operands.begin(), operands.end());
   push_node(node, *type, static_cast<std::uint8_t>(depth + 1));

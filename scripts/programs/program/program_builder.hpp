@@ -1,5 +1,5 @@
-// Makes programs. A parser tells it expressions and statements in the order of the text; it checks types and bounds as
-// they come, so that all languages refuse the same things with the same words, and folds what is constant.
+// Builds programs. A parser adds expressions and statements in the order of the text; the builder validates types and
+// bounds, so that all languages have the same errors, and folds constants.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace cellmirror::program {
 
-// One thread. Real-time class: worker threads. Refusals say what is wrong and name no place: the parser knows it.
+// One thread. Real-time class: worker threads. Refusals have no place: the parser adds it.
 class ProgramBuilder {
  public:
   // `name`, `file`: as in Program. `language` is that of the registry.
@@ -56,7 +56,7 @@ class ProgramBuilder {
   [[nodiscard]] std::optional<VariableId> find_variable(std::string_view name) const;
   [[nodiscard]] const Variable& variable_of(VariableId id) const { return program_->variables[id]; }
 
-  // ---- Statements. at() says where the following ones stand; `label`: what people call the step ("N40", "check point
+  // ---- Statements. at() says where the following ones stand; `label`: name of the step ("N40", "check point
   // P3"), empty: its line.
   void at(std::uint32_t line, std::uint32_t column, std::string_view label = {});
   // Any but jumps, branches and calls. Refused: expressions of a wrong type, constants out of range.

@@ -44,7 +44,7 @@ struct Checker {
     if (auto checked = number(id, what); !checked) return checked;
     const auto value = constant_number(program, id);
     if (value && !(*value >= 0 && *value <= kLongestTime_s)) {
-      return fail(fmt::format("{} is {} s: it has to be within 0 .. {} s", what, *value, kLongestTime_s));
+      return fail(fmt::format("{} is {} s: it must be within 0 .. {} s", what, *value, kLongestTime_s));
     }
     return {};
   }
@@ -64,7 +64,7 @@ struct Checker {
         return checked;
       }
     } else if (assign.index != kNoExpression) {
-      return fail(fmt::format("'{}' is no list", variable.name));
+      return fail(fmt::format("'{}' is not a list", variable.name));
     }
     if (assign.component != kNone) {
       const bool pose = variable.type == ValueType::pose;
@@ -89,10 +89,10 @@ struct Checker {
   Result<void> operator()(const WaitStatement& wait) const {
     if (auto checked = of_type(wait.condition, ValueType::boolean, "the condition"); !checked) return checked;
     if (wait.timed_out != kNone) {
-      if (wait.timeout_s == kNoExpression) return fail("without a time limit nothing can be timed out");
+      if (wait.timeout_s == kNoExpression) return fail("a timeout result needs a time limit");
       const bool fits = wait.timed_out < program.variables.size() && !program.variables[wait.timed_out].list &&
                         program.variables[wait.timed_out].type == ValueType::boolean;
-      if (!fits) return fail("whether the time is over goes to a boolean variable");
+      if (!fits) return fail("the timeout result needs a boolean variable");
     }
     return wait.timeout_s == kNoExpression ? Result<void>{} : time(wait.timeout_s, "the time limit");
   }
@@ -150,10 +150,10 @@ Result<void> check_setting(Setting setting, double value) {
   const bool large_enough = may_be_zero ? value >= 0 : value > 0;
   if (std::isfinite(value) && large_enough && (!share || value <= 1)) return {};
   if (share) {
-    return fail(fmt::format("{} is {} %: it has to be {} 0 and at most 100 %", name_of(setting), value * 100,
+    return fail(fmt::format("{} is {} %: it must be {} 0 and at most 100 %", name_of(setting), value * 100,
                             may_be_zero ? "at least" : "above"));
   }
-  return fail(fmt::format("{} is {}: it has to be {} 0", name_of(setting), value, may_be_zero ? "at least" : "above"));
+  return fail(fmt::format("{} is {}: it must be {} 0", name_of(setting), value, may_be_zero ? "at least" : "above"));
 }
 
 const Value* constant_value(const Program& program, ExpressionId id) {

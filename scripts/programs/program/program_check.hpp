@@ -16,7 +16,7 @@ namespace cellmirror::program {
 // are bugs of the parser, and reported too, so that no text whatever can harm the machine. Linear in the program.
 void check_program(const Program& program, Diagnostics& diagnostics);
 
-// One statement; `types`: of all expressions so far. Jump targets are not looked at.
+// One statement; `types`: of all expressions so far. Jump targets are not checked.
 [[nodiscard]] Result<void> check_statement(const Program& program, std::span<const ValueType> types,
                                            const Statement& statement);
 // Of a node whose operands have these types.

@@ -37,7 +37,7 @@ void check_reversible(const Program& program, Diagnostics& diagnostics) {
     const auto* set = std::get_if<SetStatement>(&statement);
     const bool fixed = (move == nullptr || (constant(move->target) && constant(move->via))) &&
                        (set == nullptr || constant(set->value));
-    if (!fixed) diagnostics.error(program.place(id), "a program that is run backward has constant values only");
+    if (!fixed) diagnostics.error(program.place(id), "a program that runs backward must have constant values only");
   }
 }
 
@@ -72,12 +72,12 @@ class ExpressionCheck {
     const bool there = node.operands >= arity.least && node.operands <= arity.most &&
                        node.first_operand <= program_.operands.size() &&
                        node.operands <= program_.operands.size() - node.first_operand;
-    if (node.operands > 0 && !there) return fail("its operands are not there");
+    if (node.operands > 0 && !there) return fail("its operands are missing");
     std::array<ValueType, kMaxJointsPerRobot> operand_types{};
     std::size_t depth = 0;
     for (std::size_t index = 0; index < node.operands; ++index) {
       const ExpressionId operand = program_.operands[node.first_operand + index];
-      if (operand >= id) return fail("an operand stands behind it");
+      if (operand >= id) return fail("an operand comes after it");
       operand_types.at(index) = types_[operand];
       depth = std::max<std::size_t>(depth, depths_[operand]);
     }
@@ -128,7 +128,7 @@ Result<ValueType> node_type(const Program& program, const ExpressionNode& node, 
     if (node.payload >= program.variables.size()) return fail("no such variable");
     const Variable& variable = program.variables[node.payload];
     const bool list = node.which == Operator::element;
-    if (list && !variable.list) return fail(fmt::format("'{}' is no list", variable.name));
+    if (list && !variable.list) return fail(fmt::format("'{}' is not a list", variable.name));
     if (!list && variable.list) return fail(fmt::format("'{}' is a list: which element?", variable.name));
     if (list) {
       if (const auto index = result_type(node.which, operands); !index) return index;
@@ -152,7 +152,7 @@ void check_program(const Program& program, Diagnostics& diagnostics) {
     }
     const StatementId* target = jump_target(statement);
     if (target != nullptr && *target > program.statements.size()) {
-      diagnostics.error(program.place(id), "the target of the jump is nowhere in the program");
+      diagnostics.error(program.place(id), "the target of the jump is not in the program");
     }
   }
   if (program.reversible) check_reversible(program, diagnostics);

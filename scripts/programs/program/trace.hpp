@@ -10,7 +10,7 @@ namespace cellmirror::program {
 class Program;
 
 // One line without its end, "LINE COMMAND DETAILS". SI with six digits after the point, never "-0.000000"; poses as x y
-// z qx qy qz qw with qw >= 0; only what was set is told of the settings. The same command always gives the same text:
+// z qx qy qz qw with qw >= 0; only given settings are shown. The same command always gives the same text:
 //   12 move ptp to joints 0.785398 -0.500000 with joint_velocity 0.500000
 //   13 move circular via pose X to pose X fly with linear_velocity 0.250000 fly_distance 0.010000
 //   14 move linear to pose+ X        relative in the axes of ZP; tool+: of the TCP; joints+: differences

@@ -13,8 +13,8 @@
 
 namespace cellmirror::program {
 
-// In what units joint values are written. Which joints turn and which slide is the robot's affair, so that a program
-// knows its joint values in SI only when the machine gives a command.
+// Units of joint values. The kinds of joints depend on the robot, so joint values become SI only when the machine emits
+// a command.
 enum class JointUnits : std::uint8_t {
   si,         // rad and m
   degree_mm,  // degrees and mm, as in SCRIPT

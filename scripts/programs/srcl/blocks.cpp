@@ -42,7 +42,7 @@ std::uint32_t Blocks::new_id(std::uint32_t parent) {
 Block& Blocks::open(Keyword begin, const Token& at) {
   if (open_.size() >= kMostNested && !told_depth_) {
     told_depth_ = true;
-    faults_.add(at, fmt::format("more than {} blocks within each other", kMostNested), "move some into a subprogram");
+    faults_.add(at, fmt::format("more than {} nested blocks", kMostNested), "move some into a subprogram");
   }
   const std::uint32_t parent = block_here();
   Block& block = open_.emplace_back();
@@ -62,7 +62,7 @@ Block* Blocks::innermost_loop() {
 
 Block* Blocks::find_to_close(Keyword begin, const Token& at) {
   std::size_t found = open_.size();
-  // Bounded: only the blocks that may be nested are looked at.
+  // Bounded: only permitted nesting levels are searched.
   for (std::size_t looked = 0; found > 0 && looked <= kMostNested; --found, ++looked) {
     if (open_[found - 1].begin == begin) break;
   }
@@ -94,7 +94,7 @@ void Blocks::close_all() {
   while (!open_.empty()) {
     const Block& block = open_.back();
     faults_.add(block.at, fmt::format("{} is not closed", spelling(block.begin)),
-                fmt::format("write {} behind what belongs to it", spelling(closing(block.begin))));
+                fmt::format("write {} after its statements", spelling(closing(block.begin))));
     close();
   }
 }
@@ -108,7 +108,7 @@ void Blocks::label(const Token& name) {
   const Label label{emitter_.here(), block_here(), name.line};
   const auto [at, fresh] = labels_.emplace(name.text, label);
   if (!fresh) {
-    faults_.add(name, fmt::format("the label {} is there already, in line {}", shown(name), at->second.line),
+    faults_.add(name, fmt::format("the label {} exists already, in line {}", shown(name), at->second.line),
                 "give one of the two another name");
   }
   emitter_.name_next(std::string(name.text));
@@ -119,7 +119,7 @@ void Blocks::jump(const Token& name, const Token& at) {
 }
 
 bool Blocks::encloses(std::uint32_t outer, std::uint32_t inner) const {
-  // Deeper ones have been told; the way out is bounded all the same.
+  // Deeper ones have been reported; the way out is bounded, too.
   for (std::size_t step = 0; step <= kMostNested && inner > outer; ++step) inner = parents_[inner];
   return inner == outer;
 }
@@ -136,7 +136,7 @@ void Blocks::resolve_jumps() {
           faults_.proposal(jump.name.text, names, fmt::format("write '{}:' before a statement", jump.name.text)));
     } else if (!encloses(label->second.block, jump.block)) {
       faults_.add(jump.name,
-                  fmt::format("the label {} in line {} lies in a block, and no jump leads into one", shown(jump.name),
+                  fmt::format("the label {} in line {} is in a block, which no jump may enter", shown(jump.name),
                               label->second.line),
                   "put the label before the block");
     } else {
@@ -159,12 +159,12 @@ void Blocks::begin_subprogram(const Token& name, const Token& at) {
     end_subprogram(at);
   } else {
     close_routine();
-    // What runs into the end of the main program must not go on in the first subprogram.
+    // The end of the main program must not continue in the first subprogram.
     if (subprograms_.empty()) emitter_.add(EndStatement{}, at);
   }
   const auto [earlier, fresh] = subprograms_.emplace(name.text, Label{emitter_.here(), 0, name.line});
   if (!fresh) {
-    faults_.add(name, fmt::format("the subprogram {} is there already, in line {}", shown(name), earlier->second.line),
+    faults_.add(name, fmt::format("the subprogram {} exists already, in line {}", shown(name), earlier->second.line),
                 "give one of the two another name");
   }
   subprogram_ = name;
@@ -196,7 +196,7 @@ void Blocks::resolve_calls() {
     faults_.add(
         call.name, fmt::format("there is no subprogram {}", shown(call.name)),
         faults_.proposal(call.name.text, names,
-                         fmt::format("write 'UPRO {}' ... 'ENDE_UPRO' behind the main program", call.name.text)));
+                         fmt::format("write 'UPRO {}' ... 'ENDE_UPRO' after the main program", call.name.text)));
   }
 }
 

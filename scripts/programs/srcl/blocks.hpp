@@ -21,7 +21,7 @@ namespace cellmirror::program::srcl {
 struct Block {
   Keyword begin = Keyword::none;   // if_begin, while_begin, count_begin, repeat_begin, loop_begin
   Token at;                        // where it begins
-  std::uint32_t id = 0;            // what labels and jumps lie in; each branch of a WENN has its own
+  std::uint32_t id = 0;            // the block of labels and jumps; each branch of a WENN has its own
   StatementId top = 0;             // loops: where each round begins
   StatementId skip = kNone;        // the branch that leads behind the block, or to the next branch of a WENN
   std::vector<StatementId> exits;  // jumps to behind the block
@@ -42,11 +42,11 @@ class Blocks {
 
   Blocks(Emitter& emitter, Faults& faults) : emitter_(emitter), faults_(faults) {}
 
-  // Blocks that lie too deep are told once and kept all the same, so that what closes them fits.
+  // Blocks nested too deeply are reported once and kept, so that their ends match.
   Block& open(Keyword begin, const Token& at);
   [[nodiscard]] Block* innermost() { return open_.empty() ? nullptr : &open_.back(); }
   [[nodiscard]] Block* innermost_loop();
-  // The innermost block of this kind; the ones within it that are still open are told and closed. Null, and told, where
+  // The innermost block of this kind; inner ones that are still open are reported and closed. Null, and reported, if
   // there is none.
   Block* find_to_close(Keyword begin, const Token& at);
   // The innermost one: what leads behind it leads here from now on.
@@ -90,7 +90,7 @@ class Blocks {
   Emitter& emitter_;
   Faults& faults_;
   std::vector<Block> open_;
-  std::vector<std::uint32_t> parents_ = {0};  // of block ids; 0 is what lies in no block
+  std::vector<std::uint32_t> parents_ = {0};  // of block ids; 0: outside blocks
   std::unordered_map<std::string_view, Label> labels_;
   std::vector<Jump> jumps_;
   std::optional<Token> subprogram_;

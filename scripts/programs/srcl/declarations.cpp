@@ -16,7 +16,7 @@ constexpr std::int64_t kMostSemaphoreCount = 1'000'000;
 }  // namespace
 
 bool Parser::program_name(const Token& at) {
-  if (statement_seen_) faults_.add(at, "PROGRAMM stands behind other statements", "make it the first line");
+  if (statement_seen_) faults_.add(at, "PROGRAMM comes after other statements", "make it the first line");
   statement_seen_ = true;
   const std::optional<Token> name = read_name("the program");
   if (!name) return false;
@@ -27,7 +27,7 @@ bool Parser::program_name(const Token& at) {
   return true;
 }
 
-// A name that nothing has yet. Where it is not free that is told, and reading goes on.
+// A new name. If it is not free, that is reported, and reading continues.
 std::optional<Token> Parser::read_new_name(std::string_view what) {
   const std::optional<Token> name = read_name(what);
   statement_seen_ = true;
@@ -70,7 +70,7 @@ std::optional<ValueType> Parser::read_type() {
   return type;
 }
 
-// Of a constant; poses and joints that nobody else refers to are taken out of the program's constants again.
+// Of a constant; unreferenced poses and joints are removed from the program's constants again.
 Value Parser::take_value(const Operand& constant, std::size_t constants_before) {
   Value value = emitter_.value_of(constant);
   if (constant.form != Operand::Form::stored) return value;
@@ -184,7 +184,7 @@ bool Parser::read_list_values(Variable& variable, std::size_t size) {
     if (!value) return false;
     if (values.size() == size) {
       faults_.add(value_at, fmt::format("the list {} has {} elements, but more values", variable.name, size),
-                  "delete what is too much, or make the list longer");
+                  "delete the surplus ones, or make the list longer");
       return false;
     }
     values.push_back(value->known() ? take_value(*value, before) : variable.initial.front());
@@ -197,7 +197,7 @@ bool Parser::read_list_values(Variable& variable, std::size_t size) {
     variable.initial = std::move(values);
   } else {
     faults_.add(at, fmt::format("the list {} has {} elements, but {} values", variable.name, size, values.size()),
-                "write one value for all, or one for each");
+                "write one value for all, or one for each element");
   }
   return true;
 }

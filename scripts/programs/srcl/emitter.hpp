@@ -30,7 +30,7 @@ class Emitter {
 
   ExpressionId constant(Value value);
   [[nodiscard]] Value value_of(const Operand& constant) const;
-  // The expression an operand stands for; it must be known.
+  // The expression of an operand; it must be known.
   ExpressionId expression(const Operand& operand);
   // `type` of the result. The depth is one more than that of the deepest operand.
   Operand node(Operator which, ValueType type, std::span<const Operand> operands, std::uint32_t payload = 0);

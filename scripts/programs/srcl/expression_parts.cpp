@@ -74,7 +74,7 @@ std::optional<Component> ExpressionReader::read_component(ValueType type) {
       return Component{static_cast<std::uint32_t>(*axis - 1), 1};
     }
   }
-  faults_.add(name, fmt::format("{} is no component of a value of {}", shown(name), word_of(type)),
+  faults_.add(name, fmt::format("{} is not a component of a value of {}", shown(name), word_of(type)),
               type == ValueType::pose ? "they are X, Y, Z, ROLL, NICK and GIER"
                                       : fmt::format("they are A1 to A{}", kMaxJointsPerRobot));
   return std::nullopt;
@@ -90,7 +90,7 @@ std::optional<Operand> ExpressionReader::primary() {
       lexer_.advance();
       return Operand::of(token.real);
     case TokenKind::bad_number:
-      faults_.add(token, fmt::format("{} is no number that can be held", shown(token)),
+      faults_.add(token, fmt::format("{} is not a representable number", shown(token)),
                   "write a number like 12, 0.5 or 1.5E3");
       return std::nullopt;
     case TokenKind::name:
@@ -147,7 +147,8 @@ std::optional<Operand> ExpressionReader::named() {
 }
 
 void ExpressionReader::tell_no_list(const Token& name) {
-  faults_.add(lexer_.token(), fmt::format("{} is no list", shown(name)), "delete the index, or declare it with LISTE");
+  faults_.add(lexer_.token(), fmt::format("{} is not a list", shown(name)),
+              "delete the index, or declare it with LISTE");
 }
 
 std::optional<Operand> ExpressionReader::read_index(const Declared& list) {
@@ -243,7 +244,7 @@ std::optional<std::size_t> ExpressionReader::arguments(std::span<Operand> to, st
   if (!expect(Sign::close, ")")) return std::nullopt;
   if (count < least) {
     faults_.add(function, fmt::format("{} takes {} values, but has {}", shown(function), least, count),
-                "write the ones that are missing");
+                "write the missing ones");
     for (Operand& operand : to) operand = Operand{};
   }
   return count;
@@ -253,8 +254,8 @@ std::optional<Operand> ExpressionReader::function() {
   const Token name = lexer_.token();
   const auto* const row = std::ranges::find(kFunctions, name.keyword, &FunctionRow::keyword);
   if (row == kFunctions.end()) {
-    faults_.add(name, fmt::format("{} cannot stand in an expression", shown(name)),
-                "write a number, a name or a function; names must differ from the words of the language");
+    faults_.add(name, fmt::format("{} is not allowed in an expression", shown(name)),
+                "write a number, a name or a function; names must differ from keywords");
     return std::nullopt;
   }
   lexer_.advance();

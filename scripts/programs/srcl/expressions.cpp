@@ -37,7 +37,7 @@ class ExpressionReader::Nesting {
   ~Nesting() { --reader_.nesting_; }
   Nesting(const Nesting&) = delete;
   Nesting& operator=(const Nesting&) = delete;
-  // False, and told, where it is too deep.
+  // False, and reported, if it is too deep.
   [[nodiscard]] bool fits() const {
     if (reader_.nesting_ <= kMostNesting) return true;
     reader_.faults_.add(reader_.lexer_.token(), fmt::format("the expression is nested more than {} deep", kMostNesting),
@@ -144,7 +144,7 @@ Operand ExpressionReader::combine(Operator which, ValueType type, std::span<cons
   }
   const Operand result = emitter_.node(which, type, operands, payload);
   if (result.depth <= kMostDepth) return result;
-  faults_.add(at, fmt::format("the expression has more than {} operations within each other", kMostDepth),
+  faults_.add(at, fmt::format("the expression has more than {} nested operations", kMostDepth),
               "compute a part of it into a variable first");
   return Operand{};
 }

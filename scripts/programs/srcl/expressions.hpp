@@ -15,22 +15,21 @@
 
 namespace cellmirror::program::srcl {
 
-// A component of a pose or of joints: what stands behind the point.
+// A component of a pose or of joints: the text after the point.
 struct Component {
   std::uint32_t index = 0;
   double si_factor = 1;  // of poses: what is written, times this, is SI. Joints are in degrees and mm by their units
 };
 
-// Where a function returns nothing, the rest of the line cannot be read; the fault has been told. What can be read but
-// is wrong (an unknown name, a wrong type) is told, too, and gives an operand that is not known().
+// If a function returns nothing, the rest of the line cannot be read; the error has been reported. What can be read but
+// is invalid (an unknown name, a wrong type) is reported, too, and gives an operand that is not known().
 class ExpressionReader {
  public:
   ExpressionReader(Lexer& lexer, Emitter& emitter, const Names& names, Faults& faults)
       : lexer_(lexer), emitter_(emitter), names_(names), faults_(faults) {}
 
   std::optional<Operand> read();
-  // With a value of this type; a whole number becomes a real one where that is wanted. `what` is told in faults: "the
-  // condition".
+  // With a value of this type; an integer becomes a real if required. `what` is used in errors: "the condition".
   std::optional<Operand> read(ValueType wanted, std::string_view what);
   // As above, and constant.
   std::optional<Operand> read_constant(ValueType wanted, std::string_view what);
@@ -39,13 +38,13 @@ class ExpressionReader {
   std::optional<Operand> read_port();
   // "(index)" of a list.
   std::optional<Operand> read_index(const Declared& list);
-  // An index stands behind what has none.
+  // An index after an operand without one.
   void tell_no_list(const Token& name);
   // ".X"; the token is the point.
   std::optional<Component> read_component(ValueType type);
-  // Of a name that is declared; else the fault is told.
+  // Of a declared name; else the error is reported.
   const Declared* find(const Token& name);
-  // Passes over a sign, or tells that it is missing.
+  // Skips a sign, or reports that it is missing.
   bool expect(Sign sign, std::string_view spelled);
   bool expect(Keyword keyword);
 

@@ -1,4 +1,4 @@
-// What is wrong with a program, gathered while it is read and handed on in the order of the lines.
+// Errors of a program, collected while it is read and passed on in the order of the lines.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class Faults {
   // unknown names is read in linear time.
   [[nodiscard]] std::string proposal(std::string_view wrong, const std::vector<std::string>& candidates,
                                      std::string_view otherwise);
-  // Whether looking for proposals among so many is worth gathering them.
+  // Whether the number of candidates permits a search for proposals.
   [[nodiscard]] bool may_propose(std::size_t candidates) const { return candidates <= proposals_left_; }
   [[nodiscard]] std::size_t count() const { return found_.errors(); }
   void hand_over(Diagnostics& diagnostics) const;

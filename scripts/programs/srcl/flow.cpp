@@ -52,7 +52,7 @@ std::optional<bool> Parser::flow_statement(const Token& at) {
       if (blocks_.in_subprogram()) {
         emitter_.add(ReturnStatement{}, at);
       } else {
-        faults_.add(at, fmt::format("{} stands outside of a subprogram", shown(at)), "end the program with ENDE");
+        faults_.add(at, fmt::format("{} is outside a subprogram", shown(at)), "end the program with ENDE");
       }
       return true;
     case Keyword::halt:
@@ -73,8 +73,8 @@ std::optional<Token> Parser::read_name(std::string_view what) {
     return token;
   }
   if (token.kind == TokenKind::keyword) {
-    faults_.add(token, fmt::format("{} is a word of the language and no name", shown(token)),
-                "choose another name, as with a number behind it");
+    faults_.add(token, fmt::format("{} is a keyword, not a name", shown(token)),
+                "choose another name, for example with a number appended");
   } else {
     faults_.add(token, fmt::format("the name of {} is missing before {}", what, shown(token)),
                 "write a name: letters, digits and _, with a letter first");
@@ -107,14 +107,14 @@ bool Parser::else_branch(const Token& at, bool with_condition) {
   Block* const block = blocks_.find_to_close(Keyword::if_begin, at);
   if (block == nullptr) return false;
   if (block->has_otherwise) {
-    faults_.add(at, fmt::format("{} stands behind the SONST of this WENN", shown(at)), "put SONST last");
+    faults_.add(at, fmt::format("{} comes after the SONST of this WENN", shown(at)), "put SONST last");
   }
   block->exits.push_back(emitter_.add(JumpStatement{}, at));
   if (block->skip != kNone) emitter_.set_target(block->skip, emitter_.here());
   block->skip = kNone;
   blocks_.begin_branch();
   if (!with_condition && lexer_.token().keyword == Keyword::if_begin) {
-    faults_.add(lexer_.token(), "WENN stands behind SONST in a line", "write SONSTWENN, in one word");
+    faults_.add(lexer_.token(), "WENN follows SONST on the same line", "write SONSTWENN, in one word");
     lexer_.advance();
     with_condition = true;
   }
@@ -143,16 +143,16 @@ bool Parser::begin_while(const Token& at) {
 // ZAEHLE i VON a BIS b SCHRITT s: the bound is computed once.
 bool Parser::begin_count(const Token& at) {
   Block& block = blocks_.open(Keyword::count_begin, at);
-  const std::optional<Token> name = read_name("the variable that counts");
+  const std::optional<Token> name = read_name("the loop variable");
   if (!name) return false;
   const Declared* const counter = expressions_.find(*name);
   if (counter != nullptr && (counter->kind != Declared::Kind::variable || counter->type != ValueType::integer)) {
-    faults_.add(*name, fmt::format("{} cannot count", shown(*name)), "count with a variable of GANZ");
+    faults_.add(*name, fmt::format("{} cannot be a loop variable", shown(*name)), "count with a variable of GANZ");
   }
   if (!expressions_.expect(Keyword::from)) return false;
-  const std::optional<Operand> begin = expressions_.read(ValueType::integer, "where the count begins");
+  const std::optional<Operand> begin = expressions_.read(ValueType::integer, "the first value of the count");
   if (!begin || !expressions_.expect(Keyword::until)) return false;
-  const std::optional<Operand> end = expressions_.read(ValueType::integer, "where the count ends");
+  const std::optional<Operand> end = expressions_.read(ValueType::integer, "the last value of the count");
   if (!end) return false;
   if (lexer_.token().keyword == Keyword::step) {
     lexer_.advance();
@@ -217,7 +217,7 @@ bool Parser::end_repeat(const Token& at) {
 bool Parser::leave_loop(const Token& at, bool next_round) {
   Block* const loop = blocks_.innermost_loop();
   if (loop == nullptr) {
-    faults_.add(at, fmt::format("{} stands in no loop", shown(at)), "put it into a loop, or use SPRUNG");
+    faults_.add(at, fmt::format("{} is outside a loop", shown(at)), "put it into a loop, or use SPRUNG");
     return true;
   }
   const StatementId jump = emitter_.add(JumpStatement{}, at);

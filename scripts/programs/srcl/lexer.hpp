@@ -1,5 +1,5 @@
-// Cuts SRCL text into words and signs, one ahead of the parser. Knows lines, comments and how lines go on; no grammar.
-// Views point into the text, which must outlive them.
+// Splits SRCL text into words and signs, one ahead of the parser. Handles lines, comments and continuation lines; no
+// grammar. Views point into the text, which must outlive them.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ enum class TokenKind : std::uint8_t {
   keyword,
   integer,
   real,
-  bad_number,  // begins like a number and is none, or one that no number can hold
+  bad_number,  // begins like a number but is invalid, or out of range
   sign,
   bad_byte,
 };
@@ -66,7 +66,7 @@ class Lexer {
   explicit Lexer(std::string_view text);
 
   [[nodiscard]] const Token& token() const { return token_; }
-  // Goes on to the next token. Behind a comma the line goes on in the next one that is not blank.
+  // Moves to the next token. After a comma the statement continues on the next line that is not blank.
   void advance();
   [[nodiscard]] bool at_end_of_line() const {
     return token_.kind == TokenKind::end_of_line || token_.kind == TokenKind::end_of_text;

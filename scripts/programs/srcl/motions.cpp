@@ -83,7 +83,8 @@ std::optional<Operand> Parser::read_target(TargetKind pose_kind, TargetKind join
   } else {
     const bool tool = pose_kind == TargetKind::tool_relative;
     faults_.add(
-        at, fmt::format("a value of {} is no target{}", word_of(target->type), tool ? " in the axes of the tool" : ""),
+        at,
+        fmt::format("a value of {} is not a target{}", word_of(target->type), tool ? " in the axes of the tool" : ""),
         tool ? "write a value of LAGE" : "write a value of LAGE or STELLUNG, as in LAGE(500, 0, 300)");
     return Operand{};
   }

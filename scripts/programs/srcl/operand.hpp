@@ -11,7 +11,7 @@ namespace cellmirror::program::srcl {
 
 struct Operand {
   enum class Form : std::uint8_t {
-    unknown,  // something is wrong with it and has been told
+    unknown,  // invalid, which has been reported
     integer,
     real,
     boolean,

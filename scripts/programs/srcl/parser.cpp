@@ -58,8 +58,8 @@ std::shared_ptr<const Program> Parser::run(Diagnostics& diagnostics) {
 void Parser::read_line() {
   const bool readable = read_statement();
   if (readable && !lexer_.at_end_of_line()) {
-    faults_.add(lexer_.token(), fmt::format("{} is too much here", shown(lexer_.token())),
-                "end the line before it; one statement stands in a line");
+    faults_.add(lexer_.token(), fmt::format("{} is surplus here", shown(lexer_.token())),
+                "end the line before it; one statement per line");
   }
   while (!lexer_.at_end_of_line()) lexer_.advance();
   flush_scripts();
@@ -74,7 +74,7 @@ bool Parser::read_statement() {
     if (first.kind == TokenKind::keyword) return statement(first);
     if (first.kind != TokenKind::name) {
       faults_.add(first, fmt::format("no statement begins with {}", shown(first)),
-                  "begin it with a word of the language or the name of a variable; comments begin with ';'");
+                  "begin it with a keyword or the name of a variable; comments begin with ';'");
       return false;
     }
     const Sign sign = lexer_.token().sign;
@@ -116,14 +116,14 @@ bool Parser::statement(const Token& at) {
   if (const std::optional<bool> readable = flow_statement(at)) return *readable;
   if (const std::optional<bool> readable = signal_statement(at)) return *readable;
   faults_.add(at, fmt::format("no statement begins with {}", shown(at)),
-              "begin it with another word; names must differ from the words of the language");
+              "begin it with another word; names must differ from keywords");
   return false;
 }
 
 bool Parser::declaration(const Token& at) {
   if (blocks_.innermost() != nullptr || blocks_.has_subprograms()) {
-    faults_.add(at, fmt::format("{} cannot stand in a block or behind a subprogram", shown(at)),
-                "declare it in the main program, outside of blocks");
+    faults_.add(at, fmt::format("{} is not allowed in a block or after a subprogram", shown(at)),
+                "declare it in the main program, outside blocks");
   }
   switch (at.keyword) {
     case Keyword::program:
@@ -147,12 +147,12 @@ bool Parser::declaration(const Token& at) {
   }
 }
 
-// What stands behind a subprogram and in none is never executed.
+// Statements after a subprogram and outside any are never executed.
 bool Parser::belongs_to_routine(const Token& at) {
   if (!blocks_.has_subprograms() || blocks_.in_subprogram()) return true;
   if (!told_stray_) {
     told_stray_ = true;
-    faults_.add(at, "statements behind a subprogram belong to none",
+    faults_.add(at, "statements after a subprogram do not belong to one",
                 "put them before the first UPRO, or into a subprogram");
   }
   return false;
@@ -161,8 +161,8 @@ bool Parser::belongs_to_routine(const Token& at) {
 bool Parser::unknown_statement(const Token& name) {
   std::string remedy = faults_.proposal(name.text, statement_words(), {});
   if (remedy.empty()) {
-    remedy = names_.find(name.text) != nullptr ? "write '=' behind the name of a variable"
-                                               : "begin with a word of the language, or 'NAME =' or 'NAME:'";
+    remedy = names_.find(name.text) != nullptr ? "write '=' after the name of a variable"
+                                               : "begin with a keyword, or 'NAME =' or 'NAME:'";
   }
   faults_.add(name, fmt::format("no statement begins with {}", shown(name)), std::move(remedy));
   recover_block(name);
@@ -267,7 +267,7 @@ void Parser::flush_scripts() {
     std::string_view command = comment.text;
     if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
     if (command.empty()) {
-      faults_.add(at, "the comment begins with % but holds no SCRIPT command", "write the command, or delete the %");
+      faults_.add(at, "the comment begins with % but has no SCRIPT command", "write the command, or delete the %");
     } else if (belongs_to_routine(at)) {
       emitter_.add(ScriptStatement{emitter_.text(command)}, at);
     }

@@ -20,12 +20,12 @@ namespace cellmirror::program::srcl {
 class Parser {
  public:
   Parser(std::string_view text, const ParseContext& context);
-  // Once. Null where something is wrong, which is told then.
+  // Call it once. Null after an error, which is reported.
   std::shared_ptr<const Program> run(Diagnostics& diagnostics);
 
  private:
-  // Each of these reads a statement whose first word is `at` and has been passed over. False: the rest of the line
-  // cannot be read, and that has been told.
+  // Each of these reads a statement after its first word `at`. False: the rest of the line cannot be read, which has
+  // been reported.
   void read_line();
   bool read_statement();
   bool statement(const Token& at);

@@ -85,8 +85,7 @@ bool Parser::wait_limit(WaitStatement& statement, const Token& at, std::optional
   const Declared* const declared = expressions_.find(*name);
   if (declared == nullptr) return true;
   if (declared->kind != Declared::Kind::variable || declared->type != ValueType::boolean) {
-    faults_.add(*name, fmt::format("{} cannot tell whether the time is over", shown(*name)),
-                "name a variable of LOGIK");
+    faults_.add(*name, fmt::format("{} cannot hold the timeout result", shown(*name)), "use a variable of LOGIK");
     return true;
   }
   statement.timed_out = declared->variable;
@@ -114,7 +113,7 @@ bool Parser::semaphore(const Token& at, bool acquire) {
   const Declared* const declared = expressions_.find(*name);
   if (declared == nullptr) return true;
   if (declared->kind != Declared::Kind::semaphore) {
-    faults_.add(*name, fmt::format("{} is no semaphore", shown(*name)), "declare it with SEMAPHOR before");
+    faults_.add(*name, fmt::format("{} is not a semaphore", shown(*name)), "declare it with SEMAPHOR before");
     return true;
   }
   emitter_.add(SemaphoreStatement{acquire, emitter_.text(name->text)}, at);
