@@ -25,7 +25,7 @@ class DdsStream final : public JointStream {
   DdsStream& operator=(const DdsStream&) = delete;
 
   Result<void> open(JointSampleSink& sink) override {
-    const std::scoped_lock lock(mutex_);
+    const std::scoped_lock lock(status_mutex_);
     CELLMIRROR_EXPECTS(topic_ == nullptr);
     auto topic = JointStateTopic::shared(config_, clock_);
     if (!topic) return std::unexpected(topic.error());
@@ -36,18 +36,18 @@ class DdsStream final : public JointStream {
   }
 
   void close() override {
-    const std::scoped_lock lock(mutex_);
+    const std::scoped_lock lock(status_mutex_);
     if (topic_ == nullptr) return;
     topic_->remove(*feed_);
     topic_.reset();
   }
 
   [[nodiscard]] JointStreamStatus status() const override {
-    const std::scoped_lock lock(mutex_);
-    std::unique_lock<std::mutex> feed_lock;
-    if (topic_ != nullptr) feed_lock = topic_->lock();
+    const std::scoped_lock lock(status_mutex_);
     const Timestamp now = clock_.now();
-    const FeedCounters& counters = feed_->counters();
+    const FeedReport& feed = feed_->report();
+    const FeedCounters& counters = feed.counters;
+    RateMeter rate = feed.rate;
     JointStreamStatus status;
     status.kind = "dds";
     status.endpoint = endpoint();
@@ -55,10 +55,10 @@ class DdsStream final : public JointStream {
     status.received = counters.received;
     status.lost = counters.lost;
     status.rejected = counters.rejected;
-    status.rate_hz = feed_->rate_hz(now);
-    status.condition = condition(now);
-    status.details = details();
-    status.last_errors = feed_->last_errors();
+    status.rate_hz = rate.per_second(now);
+    status.condition = condition(feed, now);
+    status.details = details(counters);
+    status.last_errors = feed_->reported_errors();
     return status;
   }
 
@@ -67,17 +67,16 @@ class DdsStream final : public JointStream {
     return fmt::format("domain {} topic {} on {}", config_.domain, config_.topic, config_.interface_address);
   }
 
-  // With both locks held.
-  [[nodiscard]] std::string condition(Timestamp now) const {
+  [[nodiscard]] std::string condition(const FeedReport& feed, Timestamp now) const {
     if (topic_ == nullptr) return "closed";
-    const TopicStatus& topic = topic_->status();
+    const TopicStatus topic = topic_->status();
     if (topic.publishers == 0) {
       return topic.incompatible > 0 && config_.reliable
                  ? fmt::format("the publisher on {} is best effort, but reliable = true asks for more", config_.topic)
                  : fmt::format("no publisher on {} in domain {}", config_.topic, config_.domain);
     }
     const std::string publishers = publishers_in_words(topic.publishers);
-    const Timestamp last = feed_->last_receive_time();
+    const Timestamp last = feed.last_receive_time;
     if (!last.known()) {
       return publishers + (topic.messages == 0 ? ", nothing received yet" : ", no message names a joint of this robot");
     }
@@ -86,12 +85,12 @@ class DdsStream final : public JointStream {
     return publishers;
   }
 
-  [[nodiscard]] std::vector<std::pair<std::string, std::string>> details() const {
-    const FeedCounters& counters = feed_->counters();
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> details(const FeedCounters& counters) const {
     std::vector<std::pair<std::string, std::string>> found;
     if (topic_ != nullptr) {
-      found.emplace_back("publishers", fmt::format("{}", topic_->status().publishers));
-      found.emplace_back("messages on the topic", fmt::format("{}", topic_->status().messages));
+      const TopicStatus topic = topic_->status();
+      found.emplace_back("publishers", fmt::format("{}", topic.publishers));
+      found.emplace_back("messages on the topic", fmt::format("{}", topic.messages));
     }
     const std::pair<const char*, std::uint64_t> counts[] = {
         {"malformed samples", counters.malformed},
@@ -107,9 +106,11 @@ class DdsStream final : public JointStream {
   }
 
   DdsStreamConfig config_;
-  std::unique_ptr<RobotFeed> feed_;  // guarded by the topic's lock while open
+  std::unique_ptr<RobotFeed> feed_;
   const Clock& clock_;
-  mutable std::mutex mutex_;
+  // Among callers of status(), open() and close(). Never taken by the threads of the DDS library that receive, nor does
+  // status() take the topic's mutex: what it reads is published by them.
+  mutable std::mutex status_mutex_;
   std::shared_ptr<JointStateTopic> topic_;  // open: not null
 };
 

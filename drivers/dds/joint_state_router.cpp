@@ -84,6 +84,8 @@ void RobotFeed::note_error(std::string text) {
   if (!last_errors_.empty() && last_errors_.back() == text) return;
   if (last_errors_.size() == kKeptErrors) last_errors_.erase(last_errors_.begin());
   last_errors_.push_back(std::move(text));
+  published_errors_.writable() = last_errors_;
+  published_errors_.publish();
 }
 
 void RobotFeed::finish() {
@@ -91,11 +93,13 @@ void RobotFeed::finish() {
   sample_.sequence = ++sequence_;
   last_receive_time_ = sample_.receive_time;
   rate_.count(sample_.receive_time);
-  if (sink_->push(sample_)) {
-    ++counters_.received;
-  } else {
-    ++counters_.sink_full;
-  }
+  // Published before the sink has the sample, so that a status never counts less than has arrived there.
+  ++counters_.received;
+  publish();
+  if (sink_->push(sample_)) return;
+  --counters_.received;
+  ++counters_.sink_full;
+  publish();
 }
 
 void JointStateRouter::add(RobotFeed& feed, JointSampleSink& sink) {
@@ -129,6 +133,7 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
       ++feed->counters_.rejected;
       ++feed->counters_.malformed;
       feed->note_error(fmt::format("a sample of {} bytes is no JointState: {}", payload.size(), words(fault)));
+      feed->publish();
     }
     return;
   }
@@ -138,13 +143,13 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
     if (known == names_.end()) continue;
     for (const Target& target : known->second.targets) touch(*target.feed, receive_time);
   }
+  for (RobotFeed* feed : touched_) feed->counters_.lost += missing;
   if (lengths_fit(view_)) {
     route_values();
   } else {
     refuse_lengths();
   }
   if (touched_.empty()) return;
-  for (RobotFeed* feed : touched_) feed->counters_.lost += missing;
   if (const auto publisher = publishers_.find(origin.publisher); publisher != publishers_.end()) {
     publisher->second.feeds_us = true;
     publisher->second.missing = 0;
@@ -191,10 +196,11 @@ void JointStateRouter::refuse_lengths() {
     ++feed->counters_.wrong_length;
     feed->note_error(fmt::format("message refused: {} names, but {} positions, {} velocities, {} efforts",
                                  view_.name.size(), view_.position.size(), view_.velocity.size(), view_.effort.size()));
+    feed->publish();
   }
 }
 
-// What is missing before this message in its publisher's sequence, as far as no robot was told of it yet.
+// What is missing before this message in its publisher's sequence, as far as no robot has counted it yet.
 std::uint64_t JointStateRouter::take_missing(MessageOrigin origin) {
   if (origin.publisher == 0) return 0;
   if (publishers_.size() >= kMaxPublishers && !publishers_.contains(origin.publisher)) publishers_.clear();

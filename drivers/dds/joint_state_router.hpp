@@ -16,11 +16,12 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/stream_config.hpp"
+#include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::dds {
 
 struct FeedCounters {
-  std::uint64_t received = 0;      // samples that the sink took
+  std::uint64_t received = 0;      // samples that the sink accepted
   std::uint64_t sink_full = 0;     // samples that the sink refused
   std::uint64_t lost = 0;          // messages missing in their publisher's sequence
   std::uint64_t rejected = 0;      // messages refused as a whole, and single values refused
@@ -30,7 +31,15 @@ struct FeedCounters {
   std::uint64_t bad_stamps = 0;    // stamps that are no time; the sample is used without one
 };
 
+// What RobotFeed::report() returns: a copy as of the newest message.
+struct FeedReport {
+  FeedCounters counters;
+  RateMeter rate;
+  Timestamp last_receive_time;
+};
+
 // One robot's share of a topic. Counters outlive closing and opening again.
+// The router's thread publishes its state through `Latest` edges and waits for no reader.
 class RobotFeed {
  public:
   static constexpr std::size_t kKeptErrors = 8;
@@ -40,8 +49,10 @@ class RobotFeed {
 
   [[nodiscard]] const FeedCounters& counters() const { return counters_; }
   [[nodiscard]] const std::vector<std::string>& last_errors() const { return last_errors_; }
-  [[nodiscard]] double rate_hz(Timestamp now) { return rate_.per_second(now); }
-  [[nodiscard]] Timestamp last_receive_time() const { return last_receive_time_; }
+
+  // Any thread, one at a time, while messages arrive. Valid until the next call.
+  [[nodiscard]] const FeedReport& report() { return published_.read().value; }
+  [[nodiscard]] const std::vector<std::string>& reported_errors() { return published_errors_.read().value; }
 
  private:
   friend class JointStateRouter;
@@ -54,6 +65,7 @@ class RobotFeed {
                                   double factor, std::string_view what);
   void note_error(std::string text);
   void finish();
+  void publish() { published_.write({counters_, rate_, last_receive_time_}); }
 
   std::vector<DdsJointConfig> joints_;
   JointSampleSink* sink_ = nullptr;  // set while it is part of a router
@@ -64,6 +76,8 @@ class RobotFeed {
   std::uint64_t sequence_ = 0;
   JointSample sample_;    // the one being put together
   bool touched_ = false;  // by the message in work
+  Latest<FeedReport> published_;
+  Latest<std::vector<std::string>> published_errors_;
 };
 
 // Who sent a message and its place in that publisher's sequence; zeros where unknown.
@@ -104,7 +118,7 @@ class JointStateRouter {
   };
   struct Publisher {
     std::uint64_t last_sequence = 0;
-    std::uint64_t missing = 0;  // not yet told to a robot
+    std::uint64_t missing = 0;  // not yet counted by a robot
     bool feeds_us = false;
   };
 

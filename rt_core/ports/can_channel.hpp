@@ -36,14 +36,13 @@ struct ReceivedCanFrame {
 
 enum class CanBusState : std::uint8_t { unknown, active, warning, passive, bus_off, down };
 
-// Counters of a channel since it was opened. A copy.
+// Counters of a channel since it was opened.
 struct CanChannelStatus {
-  std::string endpoint;  // as in the cell file: "socketcan:can0", "udp:239.74.163.2:43113", "log:FILE"
   CanBusState bus = CanBusState::unknown;
   std::uint64_t received = 0;
   std::uint64_t sent = 0;
   std::uint64_t send_refused = 0;     // ENOBUFS and the like: the frame was not sent
-  std::uint64_t receive_dropped = 0;  // reported by the kernel (SO_RXQ_OVFL)
+  std::uint64_t receive_dropped = 0;  // as reported by the kernel (SO_RXQ_OVFL)
   std::uint64_t malformed = 0;        // datagrams or log lines that are no frames
   std::uint64_t error_frames = 0;
   std::uint64_t reopened = 0;  // number of recoveries
@@ -52,8 +51,8 @@ struct CanChannelStatus {
 
 enum class CanReceive : std::uint8_t { frame, timeout, down, end };
 
-// One user thread. The channel recovers from ENETDOWN, a vanished interface and the like: meanwhile receive() answers
-// `down` (after waiting out its timeout) and send() refuses.
+// All calls on one thread at a time. The channel recovers by itself from ENETDOWN, a removed interface and the like:
+// meanwhile receive() returns `down` (after its timeout) and send() refuses.
 class CanChannel {
  public:
   virtual ~CanChannel() = default;
@@ -61,7 +60,8 @@ class CanChannel {
   virtual CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) = 0;
   // Never waits. False where the frame could not be sent (counted).
   virtual bool send(const CanFrame& frame) = 0;
-  [[nodiscard]] virtual CanChannelStatus status() const = 0;  // any thread
+  // Valid until the next call. Takes no lock: who needs it on another thread publishes a copy.
+  [[nodiscard]] virtual const CanChannelStatus& status() const = 0;
 };
 
 }  // namespace cellmirror

@@ -100,6 +100,7 @@ Timestamp Cia402Robots::next() const {
 
 void Cia402Robots::work(Timestamp now) {
   now_ = now;
+  channel_status_ = channel_->status();
   live_and_die(now);
   for (const ReceivedCanFrame& received : inbox_) hear(received.frame, now);
   inbox_.clear();
@@ -236,11 +237,10 @@ Result<std::string> Cia402Robots::send_emergency(const SendEmergency& command, T
 
 DeviceStatus Cia402Robots::status(Timestamp now) const {
   DeviceStatus status = common_status(now);
-  const CanChannelStatus channel = channel_->status();
   status.missed_periods = sync_.missed();
-  status.details.emplace_back("channel_received", channel.received);
-  status.details.emplace_back("channel_malformed", channel.malformed);
-  status.details.emplace_back("channel_receive_dropped", channel.receive_dropped);
+  status.details.emplace_back("channel_received", channel_status_.received);
+  status.details.emplace_back("channel_malformed", channel_status_.malformed);
+  status.details.emplace_back("channel_receive_dropped", channel_status_.receive_dropped);
   std::uint64_t operational = 0;
   for (const auto& node : nodes_) operational += node->drive.nmt_state() == can::NmtState::operational ? 1U : 0U;
   status.details.emplace_back("nodes", nodes_.size());

@@ -72,6 +72,7 @@ class Cia402Robots final : public FaultyDevice<CanFrame> {
   Cia402RobotsConfig config_;
   std::shared_ptr<const MotionSource> motion_;
   std::unique_ptr<CanChannel> channel_;
+  CanChannelStatus channel_status_;  // as of the newest work(): status() comes while wait_until() receives
   std::vector<std::unique_ptr<Node>> nodes_;
   std::vector<JointValue> values_;  // of the robot `values_robot_` at `values_time_`
   int values_robot_ = 0;

@@ -35,7 +35,7 @@ class ErrorFrameChannel final : public CanChannel {
     return ::send(socket_.get(), &raw, sizeof raw, MSG_DONTWAIT) == static_cast<ssize_t>(sizeof raw);
   }
 
-  [[nodiscard]] CanChannelStatus status() const override { return channel_->status(); }
+  [[nodiscard]] const CanChannelStatus& status() const override { return channel_->status(); }
 
  private:
   static constexpr int kErrorFrameBytes = 8;  // linux/can/error.h

@@ -14,7 +14,6 @@
 
 #include "drivers/can/channel/candump_line.hpp"
 #include "drivers/can/channel/error_frame.hpp"
-#include "drivers/can/channel/status_board.hpp"
 
 namespace cellmirror::can {
 namespace {
@@ -26,9 +25,8 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 
 class LogChannel final : public CanChannel {
  public:
-  LogChannel(const LogChannelOptions& options, File file)
-      : options_(options), file_(std::move(file)), board_("log:" + options.file) {
-    board_.update([](CanChannelStatus& status) { status.bus = CanBusState::active; });
+  LogChannel(const LogChannelOptions& options, File file) : options_(options), file_(std::move(file)) {
+    status_.bus = CanBusState::active;
   }
 
   CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) override {
@@ -46,31 +44,34 @@ class LogChannel final : public CanChannel {
     sleep_until(due);
     frame = {next_->frame, clock_.now()};
     next_.reset();
-    board_.update([&frame](CanChannelStatus& status) {
-      if (!frame.frame.error) {
-        ++status.received;
-        if (status.bus == CanBusState::bus_off) status.bus = CanBusState::active;  // a frame proves that it is not off
-        return;
-      }
-      ++status.error_frames;
-      status.last_error = error_words(frame.frame);
-      if (const auto bus = bus_state_of_error(frame.frame)) status.bus = *bus;
-    });
+    count(frame.frame);
     return CanReceive::frame;
   }
 
   bool send(const CanFrame&) override {
-    board_.update([](CanChannelStatus& status) { ++status.send_refused; });
+    ++status_.send_refused;
     return false;
   }
 
-  [[nodiscard]] CanChannelStatus status() const override { return board_.copy(); }
+  [[nodiscard]] const CanChannelStatus& status() const override { return status_; }
 
  private:
   struct Next {
     CanFrame frame;
     std::int64_t time_ns = 0;
   };
+
+  void count(const CanFrame& frame) {
+    if (!frame.error) {
+      ++status_.received;
+      // A frame proves that the bus is not off.
+      if (status_.bus == CanBusState::bus_off) status_.bus = CanBusState::active;
+      return;
+    }
+    ++status_.error_frames;
+    status_.last_error = error_words(frame);
+    if (const auto bus = bus_state_of_error(frame)) status_.bus = *bus;
+  }
 
   CanReceive wait_and_end(Nanoseconds timeout) {
     sleep_until(clock_.now() + timeout);
@@ -133,15 +134,13 @@ class LogChannel final : public CanChannel {
   }
 
   void broken(std::string_view reason) {
-    board_.update([&](CanChannelStatus& status) {
-      ++status.malformed;
-      status.last_error = fmt::format("{}:{}: {}", options_.file, line_, reason);
-    });
+    ++status_.malformed;
+    status_.last_error = fmt::format("{}:{}: {}", options_.file, line_, reason);
   }
 
   LogChannelOptions options_;
   File file_;
-  StatusBoard board_;
+  CanChannelStatus status_;
   SystemClock clock_;
   std::optional<Next> next_;
   bool ended_ = false;

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr Nanoseconds kFirstBackOff = 50ms;
 constexpr Nanoseconds kLongestBackOff = 1s;
-constexpr Nanoseconds kLookPeriod = 500ms;
+constexpr Nanoseconds kCheckPeriod = 500ms;
 constexpr std::int64_t kOldestStamp_ns = 1'000'000'000;
 
 std::int64_t now_ns(clockid_t clock) {
@@ -79,12 +79,12 @@ CanReceive SocketChannel::receive(ReceivedCanFrame& frame, Nanoseconds timeout) 
     if (socket_.is_open() && !fill()) socket_.reset();
     if (give(frame)) return CanReceive::frame;
     const Timestamp now = clock_.now();
-    look_after(now);
+    check_interface(now);
     if (now >= deadline) break;
     if (!socket_.is_open()) reopen_when_due(now);
     wait(deadline - now);
   }
-  const bool down = !socket_.is_open() || board_.copy().bus == CanBusState::down;
+  const bool down = !socket_.is_open() || status_.bus == CanBusState::down;
   return down ? CanReceive::down : CanReceive::timeout;
 }
 
@@ -107,7 +107,7 @@ void SocketChannel::wait(Nanoseconds time) {
     std::this_thread::sleep_for(std::min(time, kFirstBackOff));
     return;
   }
-  time = std::min(time, kLookPeriod);
+  time = std::min(time, kCheckPeriod);
   const timespec limit{time.count() / 1'000'000'000, time.count() % 1'000'000'000};
   pollfd descriptor{socket_.get(), POLLIN, 0};
   const int ready = ppoll(&descriptor, 1, &limit, nullptr);
@@ -115,9 +115,9 @@ void SocketChannel::wait(Nanoseconds time) {
   if (ready > 0 && (descriptor.revents & POLLIN) == 0) std::this_thread::sleep_for(1ms);
 }
 
-void SocketChannel::look_after(Timestamp now) {
-  if (now < next_look_) return;
-  next_look_ = now + kLookPeriod;
+void SocketChannel::check_interface(Timestamp now) {
+  if (now < next_check_) return;
+  next_check_ = now + kCheckPeriod;
   if (socket_.is_open() && !is_current()) socket_.reset();
 }
 
@@ -131,28 +131,24 @@ void SocketChannel::reopen_when_due(Timestamp now) {
     return;
   }
   back_off_ = Nanoseconds{0};
-  board_.update([](CanChannelStatus& status) { ++status.reopened; });
+  ++status_.reopened;
 }
 
 void SocketChannel::note_dropped(const Ancillary& ancillary) {
   if (!ancillary.has_dropped || ancillary.dropped == last_dropped_) return;
   const std::uint32_t more = ancillary.dropped - last_dropped_;  // the kernel's counter may wrap
   last_dropped_ = ancillary.dropped;
-  board_.update([more](CanChannelStatus& status) { status.receive_dropped += more; });
+  status_.receive_dropped += more;
 }
 
 void SocketChannel::go_down(const std::string& why) {
-  board_.update([&why](CanChannelStatus& status) {
-    status.bus = CanBusState::down;
-    status.last_error = why;
-  });
+  status_.bus = CanBusState::down;
+  status_.last_error = why;
 }
 
 void SocketChannel::note_refused(const std::string& why) {
-  board_.update([&why](CanChannelStatus& status) {
-    ++status.send_refused;
-    if (status.bus != CanBusState::down) status.last_error = why;
-  });
+  ++status_.send_refused;
+  if (status_.bus != CanBusState::down) status_.last_error = why;
 }
 
 }  // namespace cellmirror::can

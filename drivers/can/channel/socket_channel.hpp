@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <string>
 
-#include "drivers/can/channel/status_board.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/can_channel.hpp"
 
@@ -46,7 +45,7 @@ struct ClockPair {
   [[nodiscard]] Timestamp monotonic(std::int64_t stamp_real_ns) const;
 };
 
-// What the kernel tells beside the data.
+// What the kernel reports beside the data.
 struct Ancillary {
   std::int64_t stamp_real_ns = 0;  // 0: none
   std::uint32_t dropped = 0;       // SO_RXQ_OVFL: since the socket was opened
@@ -61,16 +60,16 @@ inline constexpr std::size_t kControlCapacity = 128;
 class SocketChannel : public CanChannel {
  public:
   CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) final;
-  [[nodiscard]] CanChannelStatus status() const final { return board_.copy(); }
+  [[nodiscard]] const CanChannelStatus& status() const final { return status_; }
 
  protected:
-  explicit SocketChannel(std::string endpoint) : board_(std::move(endpoint)) {}
+  SocketChannel() = default;
 
   // Opens or re-opens; leaves `socket_` closed where it fails.
   [[nodiscard]] virtual Result<void> open_socket() = 0;
   // Takes what has arrived into the batch, without waiting. False: the socket is of no use any more.
   [[nodiscard]] virtual bool fill() = 0;
-  // Once in a while: is the interface still the one that was opened? False: re-open.
+  // Called every half second: whether the interface is still the one that was opened. False: re-open.
   [[nodiscard]] virtual bool is_current() = 0;
 
   void put(const CanFrame& frame, Timestamp receive_time);
@@ -81,12 +80,12 @@ class SocketChannel : public CanChannel {
   void note_refused(const std::string& why);
 
   Descriptor socket_;
-  StatusBoard board_;
+  CanChannelStatus status_;
   SystemClock clock_;
 
  private:
   void reopen_when_due(Timestamp now);
-  void look_after(Timestamp now);
+  void check_interface(Timestamp now);
   void wait(Nanoseconds time);
   [[nodiscard]] bool give(ReceivedCanFrame& frame);
 
@@ -95,7 +94,7 @@ class SocketChannel : public CanChannel {
   std::size_t next_ = 0;
   Timestamp next_try_;
   Nanoseconds back_off_{0};
-  Timestamp next_look_;
+  Timestamp next_check_;
   std::uint32_t last_dropped_ = 0;
 };
 

@@ -54,8 +54,7 @@ bool is_gone(int error) { return error == ENODEV || error == ENXIO; }
 
 class SocketCanChannel final : public SocketChannel {
  public:
-  explicit SocketCanChannel(std::string interface)
-      : SocketChannel("socketcan:" + interface), interface_(std::move(interface)) {}
+  explicit SocketCanChannel(std::string interface) : interface_(std::move(interface)) {}
 
   [[nodiscard]] Result<void> open_socket() override;
   bool send(const CanFrame& frame) override;
@@ -64,15 +63,12 @@ class SocketCanChannel final : public SocketChannel {
   [[nodiscard]] bool fill() override;
   [[nodiscard]] bool is_current() override;
   void take(const canfd_frame& raw, std::size_t bytes, Timestamp receive_time);
-  void set_bus(CanBusState bus);
-  void set_down(const std::string& why);
   [[nodiscard]] bool is_up() const;
   [[nodiscard]] std::string switched_off() const;
   [[nodiscard]] std::string removed() const { return "the interface " + interface_ + " was removed"; }
 
   std::string interface_;
   unsigned index_ = 0;
-  CanBusState bus_ = CanBusState::unknown;
 };
 
 Result<void> SocketCanChannel::open_socket() {
@@ -106,9 +102,9 @@ Result<void> SocketCanChannel::open_socket() {
   }
   socket_ = std::move(fd);
   if (is_up()) {
-    set_bus(CanBusState::active);
+    status_.bus = CanBusState::active;
   } else {
-    set_down(switched_off());
+    go_down(switched_off());
   }
   return {};
 }
@@ -121,27 +117,17 @@ bool SocketCanChannel::is_up() const {
 
 bool SocketCanChannel::is_current() {
   if (if_nametoindex(interface_.c_str()) != index_) {
-    set_down(removed());
+    go_down(removed());
     return false;
   }
   const bool up = is_up();
-  if (up && bus_ == CanBusState::down) set_bus(CanBusState::active);
-  if (!up && bus_ != CanBusState::down) set_down(switched_off());
+  if (up && status_.bus == CanBusState::down) status_.bus = CanBusState::active;
+  if (!up && status_.bus != CanBusState::down) go_down(switched_off());
   return true;
 }
 
 std::string SocketCanChannel::switched_off() const {
   return fmt::format("the interface {} is down: 'ip link set {} up'", interface_, interface_);
-}
-
-void SocketCanChannel::set_bus(CanBusState bus) {
-  bus_ = bus;
-  board_.update([bus](CanChannelStatus& status) { status.bus = bus; });
-}
-
-void SocketCanChannel::set_down(const std::string& why) {
-  bus_ = CanBusState::down;
-  go_down(why);
 }
 
 bool SocketCanChannel::fill() {
@@ -160,9 +146,9 @@ bool SocketCanChannel::fill() {
   if (count < 0) {
     if (errno == EAGAIN || errno == EINTR) return true;
     const int error = errno;
-    set_down(error == ENETDOWN ? switched_off()
-             : is_gone(error)  ? removed()
-                               : fmt::format("{}: {}", interface_, std::strerror(error)));
+    go_down(error == ENETDOWN ? switched_off()
+            : is_gone(error)  ? removed()
+                              : fmt::format("{}: {}", interface_, std::strerror(error)));
     return error == ENETDOWN;  // the socket stays bound and hears again when the interface is up
   }
   const ClockPair clocks = ClockPair::read();
@@ -177,27 +163,20 @@ bool SocketCanChannel::fill() {
 
 void SocketCanChannel::take(const canfd_frame& raw, std::size_t bytes, Timestamp receive_time) {
   if (bytes != CAN_MTU && bytes != CANFD_MTU) {
-    board_.update([](CanChannelStatus& status) { ++status.malformed; });
+    ++status_.malformed;
     return;
   }
   const CanFrame frame = from_kernel(raw, bytes);
   if (frame.error) {
-    const std::string error = error_words(frame);
-    const auto bus = bus_state_of_error(frame);
-    if (bus) bus_ = *bus;
-    board_.update([&](CanChannelStatus& status) {
-      ++status.error_frames;
-      status.last_error = error;
-      if (bus) status.bus = *bus;
-    });
+    ++status_.error_frames;
+    status_.last_error = error_words(frame);
+    if (const auto bus = bus_state_of_error(frame)) status_.bus = *bus;
   } else {
     // A frame proves that the bus is not off and the interface not down.
-    const bool back = bus_ == CanBusState::bus_off || bus_ == CanBusState::down || bus_ == CanBusState::unknown;
-    if (back) bus_ = CanBusState::active;
-    board_.update([back](CanChannelStatus& status) {
-      ++status.received;
-      if (back) status.bus = CanBusState::active;
-    });
+    const CanBusState bus = status_.bus;
+    const bool back = bus == CanBusState::bus_off || bus == CanBusState::down || bus == CanBusState::unknown;
+    if (back) status_.bus = CanBusState::active;
+    ++status_.received;
   }
   put(frame, receive_time);
 }
@@ -220,11 +199,11 @@ bool SocketCanChannel::send(const CanFrame& frame) {
   }
   const bool sent = written == static_cast<ssize_t>(bytes);
   if (sent) {
-    board_.update([](CanChannelStatus& status) { ++status.sent; });
+    ++status_.sent;
     return true;
   }
-  if (error == ENETDOWN) set_down(switched_off());
-  if (is_gone(error)) set_down(removed());
+  if (error == ENETDOWN) go_down(switched_off());
+  if (is_gone(error)) go_down(removed());
   note_refused(fmt::format("send: {}", std::strerror(error)));
   return false;
 }

@@ -77,8 +77,8 @@ std::unexpected<Error> socket_failure(std::string_view what) {
 
 class UdpChannel final : public SocketChannel {
  public:
-  UdpChannel(const std::string& text, UdpEndpoint endpoint, std::string interface)
-      : SocketChannel(text), endpoint_(std::move(endpoint)), interface_(std::move(interface)) {}
+  UdpChannel(UdpEndpoint endpoint, std::string interface)
+      : endpoint_(std::move(endpoint)), interface_(std::move(interface)) {}
 
   [[nodiscard]] Result<void> open_socket() override;
   bool send(const CanFrame& frame) override;
@@ -158,7 +158,7 @@ Result<void> UdpChannel::open_socket() {
   if (!receiver) return std::unexpected(receiver.error());
   sender_ = std::move(*sender);
   socket_ = std::move(*receiver);
-  board_.update([](CanChannelStatus& status) { status.bus = CanBusState::active; });
+  status_.bus = CanBusState::active;
   return {};
 }
 
@@ -204,22 +204,19 @@ bool UdpChannel::fill() {
 void UdpChannel::take(std::span<const std::uint8_t> datagram, bool cut, Timestamp receive_time) {
   const auto frame = decode_udp_datagram(datagram);
   if (cut || !frame) {
-    board_.update([&](CanChannelStatus& status) {
-      ++status.malformed;
-      status.last_error = fmt::format("datagram refused: {}", cut ? "too long" : frame.error());
-    });
+    ++status_.malformed;
+    status_.last_error = fmt::format("datagram refused: {}", cut ? "too long" : frame.error());
     return;
   }
-  board_.update([&](CanChannelStatus& status) {
-    if (!frame->error) {
-      ++status.received;
-      if (status.bus == CanBusState::bus_off) status.bus = CanBusState::active;  // a frame proves that it is not off
-      return;
-    }
-    ++status.error_frames;
-    status.last_error = error_words(*frame);
-    if (const auto bus = bus_state_of_error(*frame)) status.bus = *bus;
-  });
+  if (frame->error) {
+    ++status_.error_frames;
+    status_.last_error = error_words(*frame);
+    if (const auto bus = bus_state_of_error(*frame)) status_.bus = *bus;
+  } else {
+    ++status_.received;
+    // A frame proves that the bus is not off.
+    if (status_.bus == CanBusState::bus_off) status_.bus = CanBusState::active;
+  }
   put(*frame, receive_time);
 }
 
@@ -234,7 +231,7 @@ bool UdpChannel::send(const CanFrame& frame) {
   }
   const bool sent = written == static_cast<ssize_t>(datagram.size);
   if (sent) {
-    board_.update([](CanChannelStatus& status) { ++status.sent; });
+    ++status_.sent;
   } else {
     note_refused(fmt::format("send: {}", std::strerror(error)));
   }
@@ -243,9 +240,8 @@ bool UdpChannel::send(const CanFrame& frame) {
 
 }  // namespace
 
-Result<std::unique_ptr<CanChannel>> open_udp_channel(const std::string& text, const UdpEndpoint& endpoint,
-                                                     const std::string& interface) {
-  auto channel = std::make_unique<UdpChannel>(text, endpoint, interface);
+Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint, const std::string& interface) {
+  auto channel = std::make_unique<UdpChannel>(endpoint, interface);
   if (const auto opened = channel->open_socket(); !opened) return std::unexpected(opened.error());
   return channel;
 }

@@ -10,10 +10,10 @@
 
 namespace cellmirror::can {
 
-// `interface`: the network interface that joins the group and sends; others hear nothing of it. Hop limit 1. What this
-// channel sends does not come back to it, but reaches every other member on this machine. Datagrams that are no frames
-// are counted as malformed. Fails where the interface does not exist or cannot join.
-[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_udp_channel(const std::string& text, const UdpEndpoint& endpoint,
+// `interface`: the network interface that joins the group and sends; no frame crosses another one. Hop limit 1. What
+// this channel sends does not come back to it, but reaches every other member of the group on this machine. Datagrams
+// that are no frames are counted as malformed. Fails where the interface does not exist or cannot join.
+[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint,
                                                                    const std::string& interface);
 
 }  // namespace cellmirror::can

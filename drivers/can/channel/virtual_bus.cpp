@@ -49,8 +49,7 @@ struct VirtualCanBus::State {
 
 class VirtualCanBus::Member final : public CanChannel {
  public:
-  Member(std::shared_ptr<State> state, std::string name) : state_(std::move(state)) {
-    port_.status.endpoint = std::move(name);
+  explicit Member(std::shared_ptr<State> state) : state_(std::move(state)) {
     const std::lock_guard lock(state_->mutex);
     state_->ports.push_back(&port_);
   }
@@ -96,11 +95,12 @@ class VirtualCanBus::Member final : public CanChannel {
     return true;
   }
 
-  [[nodiscard]] CanChannelStatus status() const override {
+  // The other endpoints count what this one lost, so this takes the lock of the bus.
+  [[nodiscard]] const CanChannelStatus& status() const override {
     const std::lock_guard lock(state_->mutex);
-    CanChannelStatus status = port_.status;
-    status.bus = state_->bus;
-    return status;
+    status_ = port_.status;
+    status_.bus = state_->bus;
+    return status_;
   }
 
  private:
@@ -117,6 +117,7 @@ class VirtualCanBus::Member final : public CanChannel {
 
   std::shared_ptr<State> state_;
   State::Port port_;
+  mutable CanChannelStatus status_;  // what status() returned last
 };
 
 VirtualCanBus::VirtualCanBus(std::size_t queue) : state_(std::make_shared<State>()) {
@@ -124,9 +125,7 @@ VirtualCanBus::VirtualCanBus(std::size_t queue) : state_(std::make_shared<State>
 }
 VirtualCanBus::~VirtualCanBus() = default;
 
-std::unique_ptr<CanChannel> VirtualCanBus::connect(std::string name) {
-  return std::make_unique<Member>(state_, std::move(name));
-}
+std::unique_ptr<CanChannel> VirtualCanBus::connect() { return std::make_unique<Member>(state_); }
 
 void VirtualCanBus::set_state(CanBusState bus) {
   {

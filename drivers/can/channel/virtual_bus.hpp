@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "rt_core/base/time.hpp"
@@ -21,14 +20,14 @@ class VirtualCanBus {
   VirtualCanBus(const VirtualCanBus&) = delete;
   VirtualCanBus& operator=(const VirtualCanBus&) = delete;
 
-  // A new member of the bus. It hears what the others send, not itself.
-  [[nodiscard]] std::unique_ptr<CanChannel> connect(std::string name);
+  // A new endpoint. It receives what the others send, not its own frames.
+  [[nodiscard]] std::unique_ptr<CanChannel> connect();
 
-  // bus_off: frames are refused and none arrives, an error frame tells it; active: a restart; down: as ENETDOWN.
+  // bus_off: frames are refused and none arrives, an error frame reports it; active: a restart; down: as ENETDOWN.
   void set_state(CanBusState state);
-  // To all endpoints, as if the controller had told it. `error_class`: CAN_ERR_* of linux/can/error.h.
+  // To all endpoints, as if the controller had reported it. `error_class`: CAN_ERR_* of linux/can/error.h.
   void inject_error(std::uint32_t error_class);
-  // To all endpoints, as if a stranger had sent it.
+  // To all endpoints, as if another device had sent it.
   void inject(const CanFrame& frame);
   // Decides for each frame what arrives instead of it: nothing (loss), itself, several (repetition, insertion).
   using Filter = std::function<std::vector<CanFrame>(const CanFrame&)>;

@@ -262,9 +262,13 @@ void Cia402Session::tell(Cia402EventKind kind, std::size_t node, std::string wha
 
 std::vector<Cia402NodeStatus> Cia402Session::nodes() const {
   std::vector<Cia402NodeStatus> result;
-  result.reserve(nodes_.size());
-  for (const Node& node : nodes_) result.push_back(node.status);
+  copy_nodes(result);
   return result;
+}
+
+void Cia402Session::copy_nodes(std::vector<Cia402NodeStatus>& out) const {
+  out.resize(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) out[i] = nodes_[i].status;
 }
 
 }  // namespace cellmirror::can

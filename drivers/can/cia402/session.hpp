@@ -92,6 +92,8 @@ class Cia402Session {
 
   [[nodiscard]] const Cia402Counters& counters() const { return counters_; }
   [[nodiscard]] std::vector<Cia402NodeStatus> nodes() const;
+  // The same into memory that is used again: allocates only where a text has grown.
+  void copy_nodes(std::vector<Cia402NodeStatus>& out) const;
 
  private:
   struct ConfigurationStep {

@@ -21,6 +21,16 @@ using namespace std::chrono_literals;
 constexpr Nanoseconds kLongestWait = 50ms;  // how long close() may have to wait for the thread
 constexpr std::size_t kErrorsKept = 16;
 
+// Empty: nothing is wrong with the bus.
+std::string bus_condition(const CanChannelStatus& channel, bool ended) {
+  if (ended) return "the log has ended";
+  if (channel.bus == CanBusState::bus_off) return "bus-off: waiting for the bus";
+  if (channel.bus == CanBusState::down) {
+    return channel.last_error.empty() ? "bus down: waiting for it" : channel.last_error;
+  }
+  return {};
+}
+
 }  // namespace
 
 CanStream::CanStream(std::string kind, CanChannelConfig channel, const Clock& clock, CanStreamOptions options,
@@ -39,15 +49,18 @@ Result<void> CanStream::open(JointSampleSink& sink) {
   CELLMIRROR_EXPECTS(!thread_.joinable());
   auto channel = options_.open_channel(channel_config_);
   if (!channel) return std::unexpected(channel.error());
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(status_mutex_);
   channel_ = std::move(*channel);
   protocol_ = make_protocol_(*this);
   sink_ = &sink;
   rate_ = {};
   last_errors_.clear();
+  published_errors_.writable().clear();
+  published_errors_.publish();
   bus_ = CanBusState::unknown;
-  ended_ = false;
   stop_ = false;
+  protocol_->start(clock_->now());
+  publish(false);
   thread_ = std::thread([this] { run(); });
   return {};
 }
@@ -56,9 +69,9 @@ void CanStream::close() {
   if (!thread_.joinable()) return;
   stop_ = true;
   thread_.join();
-  const std::lock_guard lock(mutex_);
-  channel_.reset();
   sink_ = nullptr;
+  const std::lock_guard lock(status_mutex_);
+  channel_.reset();
 }
 
 void CanStream::prepare_thread() const {
@@ -73,19 +86,13 @@ void CanStream::prepare_thread() const {
 
 void CanStream::run() {
   prepare_thread();
-  Timestamp due;
-  {
-    const std::lock_guard lock(mutex_);
-    protocol_->start(clock_->now());
-    due = protocol_->next_due();
-  }
+  Timestamp due = protocol_->next_due();
   ReceivedCanFrame frame;
   CanReceive last = CanReceive::timeout;
   Timestamp seen_due;  // when this thread first saw that advance() is due
   while (!stop_) {
     const Nanoseconds until_due = due.known() ? due - clock_->now() : kLongestWait;
     const CanReceive received = channel_->receive(frame, std::clamp<Nanoseconds>(until_due, 0ns, kLongestWait));
-    const std::lock_guard lock(mutex_);
     const bool is_frame = received == CanReceive::frame;
     if (is_frame && !frame.frame.error) protocol_->receive(frame.frame, frame.receive_time);
     const Timestamp now = clock_->now();
@@ -98,20 +105,28 @@ void CanStream::run() {
       seen_due = {};
     }
     due = protocol_->next_due();
-    ended_ = received == CanReceive::end;
     // The state of the bus can only have changed where no ordinary frame came.
     const bool is_error = is_frame && frame.frame.error;
     if (!is_frame || is_error || last != CanReceive::frame) {
       watch_bus(is_error ? bus_state_of_error(frame.frame) : std::nullopt);
     }
     last = received;
+    publish(received == CanReceive::end);
   }
 }
 
-// `told`: what an error frame said; the channel may have moved on since.
-void CanStream::watch_bus(std::optional<CanBusState> told) {
-  const CanChannelStatus status = channel_->status();
-  const CanBusState bus = told.value_or(status.bus);
+void CanStream::publish(bool ended) {
+  Report& report = published_.writable();
+  report.channel = channel_->status();
+  report.rate = rate_;
+  report.ended = ended;
+  published_.publish();
+  protocol_->publish();
+}
+
+void CanStream::watch_bus(std::optional<CanBusState> reported) {
+  const CanChannelStatus& status = channel_->status();
+  const CanBusState bus = reported.value_or(status.bus);
   if (bus == bus_) return;
   const bool was_bad = bus_ == CanBusState::bus_off || bus_ == CanBusState::down;
   bus_ = bus;
@@ -136,37 +151,32 @@ void CanStream::note(Severity severity, std::string_view kind, const std::string
   }
   log_warning(fmt::format("can.{} {}", kind, channel_config_.endpoint), "{}", text);
   if (!last_errors_.empty() && last_errors_.back() == text) return;
+  if (last_errors_.size() == kErrorsKept) last_errors_.erase(last_errors_.begin());
   last_errors_.push_back(text);
-  if (last_errors_.size() > kErrorsKept) last_errors_.pop_front();
-}
-
-std::string CanStream::bus_condition(const CanChannelStatus& bus) const {
-  if (ended_) return "the log has ended";
-  if (bus.bus == CanBusState::bus_off) return "bus-off: waiting for the bus";
-  if (bus.bus == CanBusState::down) return bus.last_error.empty() ? "bus down: waiting for it" : bus.last_error;
-  return {};
+  published_errors_.writable() = last_errors_;
+  published_errors_.publish();
 }
 
 JointStreamStatus CanStream::status() const {
   JointStreamStatus status;
   status.kind = kind_;
   status.endpoint = channel_config_.endpoint;
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(status_mutex_);
   status.open = channel_ != nullptr;
   status.condition = "closed";
   if (protocol_ == nullptr) return status;
   const Timestamp now = clock_->now();
   protocol_->describe(status, now);
-  status.last_errors.assign(last_errors_.begin(), last_errors_.end());
+  status.last_errors = published_errors_.read().value;
   if (channel_ == nullptr) {
     status.condition = "closed";
     return status;
   }
-  status.rate_hz = rate_.hz(now);
-  const CanChannelStatus bus = channel_->status();
+  const auto& [bus, rate, ended] = published_.read().value;
+  status.rate_hz = rate.hz(now);
   status.lost += bus.receive_dropped;
   status.rejected += bus.malformed;
-  if (const std::string condition = bus_condition(bus); !condition.empty()) status.condition = condition;
+  if (const std::string condition = bus_condition(bus, ended); !condition.empty()) status.condition = condition;
   status.details.emplace_back("bus", words(bus.bus));
   status.details.emplace_back(
       "channel", fmt::format("{} received, {} sent, {} refused, {} dropped, {} malformed, {} error frames, {} reopened",

@@ -2,21 +2,22 @@
 #pragma once
 
 #include <atomic>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "drivers/can/stream/rate_meter.hpp"
 #include "drivers/can/stream/streams.hpp"
 #include "rt_core/base/diagnostics.hpp"
+#include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::can {
 
-// What a protocol may do to the outside while it is called.
+// What a protocol may call while it is called itself, on the stream's thread.
 class CanProtocolHost {
  public:
   virtual ~CanProtocolHost() = default;
@@ -26,7 +27,7 @@ class CanProtocolHost {
   virtual void note(Severity severity, std::string_view kind, const std::string& text) = 0;
 };
 
-// All calls under the stream's lock.
+// Called on the stream's thread (start() and the first publish() before that thread exists), except for describe().
 class CanProtocol {
  public:
   virtual ~CanProtocol() = default;
@@ -34,10 +35,17 @@ class CanProtocol {
   virtual void receive(const CanFrame& frame, Timestamp now) = 0;
   virtual void advance(Timestamp now) = 0;
   [[nodiscard]] virtual Timestamp next_due() const = 0;
-  // received, lost, rejected, condition and details.
-  virtual void describe(JointStreamStatus& status, Timestamp now) const = 0;
+  // Publishes what describe() reports. Never waits.
+  virtual void publish() = 0;
+  // received, lost, rejected, condition and details as last published. Any thread, one at a time, while the stream's
+  // thread is in any of the functions above.
+  virtual void describe(JointStreamStatus& status, Timestamp now) = 0;
 };
 
+// The stream's thread takes no lock that status() takes. After each frame or timeout it publishes what status() reports
+// through `Latest` edges (release on its side, acquire on the reader's: latest.hpp). Those have one reader, so callers
+// of status() exclude each other, and open() and close(), by a mutex that the stream's thread never takes. Status
+// is as of the last step of the thread: at most the longest wait for a frame (50 ms) old.
 class CanStream final : public JointStream, private CanProtocolHost {
  public:
   using MakeProtocol = std::function<std::unique_ptr<CanProtocol>(CanProtocolHost&)>;
@@ -51,14 +59,22 @@ class CanStream final : public JointStream, private CanProtocolHost {
   [[nodiscard]] JointStreamStatus status() const override;
 
  private:
+  // What status() reports beside the protocol's part.
+  struct Report {
+    CanChannelStatus channel;
+    RateMeter rate;
+    bool ended = false;  // the log was played to its end
+  };
+
   bool send(const CanFrame& frame) override;
   void push(const JointSample& sample) override;
   void note(Severity severity, std::string_view kind, const std::string& text) override;
 
   void run();
   void prepare_thread() const;
-  void watch_bus(std::optional<CanBusState> told);
-  [[nodiscard]] std::string bus_condition(const CanChannelStatus& bus) const;
+  // `reported`: what an error frame said; the channel may have moved on since.
+  void watch_bus(std::optional<CanBusState> reported);
+  void publish(bool ended);
 
   std::string kind_;
   CanChannelConfig channel_config_;
@@ -66,17 +82,21 @@ class CanStream final : public JointStream, private CanProtocolHost {
   CanStreamOptions options_;
   MakeProtocol make_protocol_;
 
+  // Replaced by open() and close() under `status_mutex_`, while the thread does not run; the thread uses them without.
   std::unique_ptr<CanChannel> channel_;
+  std::unique_ptr<CanProtocol> protocol_;
+  JointSampleSink* sink_ = nullptr;
   std::thread thread_;
   std::atomic<bool> stop_{false};
 
-  mutable std::mutex mutex_;  // guards what follows
-  std::unique_ptr<CanProtocol> protocol_;
-  JointSampleSink* sink_ = nullptr;
+  // The thread's own, or open()'s while it does not run.
   RateMeter rate_;
-  std::deque<std::string> last_errors_;
   CanBusState bus_ = CanBusState::unknown;
-  bool ended_ = false;
+  std::vector<std::string> last_errors_;
+
+  mutable std::mutex status_mutex_;  // of those who ask for the status; never taken by the thread
+  mutable Latest<Report> published_;
+  mutable Latest<std::vector<std::string>> published_errors_;
 };
 
 }  // namespace cellmirror::can

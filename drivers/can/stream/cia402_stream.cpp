@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "drivers/can/cia402/session.hpp"
 #include "drivers/can/stream/can_stream.hpp"
+#include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::can {
 namespace {
@@ -44,12 +46,18 @@ class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
   void advance(Timestamp now) override { session_.advance(now); }
   [[nodiscard]] Timestamp next_due() const override { return session_.next_due(); }
 
-  void describe(JointStreamStatus& status, Timestamp now) const override {
-    const Cia402Counters& counters = session_.counters();
+  void publish() override {
+    Report& report = published_.writable();
+    report.counters = session_.counters();
+    session_.copy_nodes(report.nodes);
+    published_.publish();
+  }
+
+  void describe(JointStreamStatus& status, Timestamp now) override {
+    const auto& [counters, nodes] = published_.read().value;
     status.received = counters.samples;
     status.lost = counters.lost;
     status.rejected = counters.rejected;
-    const auto nodes = session_.nodes();
     status.condition = condition(nodes, now);
     for (const Cia402NodeStatus& node : nodes) {
       status.details.emplace_back(fmt::format("node {} ({})", node.node_id, node.joint_name), words(node, now));
@@ -63,6 +71,11 @@ class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
   }
 
  private:
+  struct Report {
+    Cia402Counters counters;
+    std::vector<Cia402NodeStatus> nodes;
+  };
+
   bool send(const CanFrame& frame) override { return host_->send(frame); }
   void sample(const JointSample& sample) override { host_->push(sample); }
   void event(const Cia402Event& event) override {
@@ -71,6 +84,7 @@ class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
 
   CanProtocolHost* host_;
   Cia402Session session_;
+  Latest<Report> published_;
 };
 
 }  // namespace

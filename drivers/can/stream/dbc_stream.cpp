@@ -5,6 +5,7 @@
 #include "drivers/can/dbc/session.hpp"
 #include "drivers/can/stream/can_stream.hpp"
 #include "rt_core/base/counted.hpp"
+#include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::can {
 namespace {
@@ -19,21 +20,31 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
   void advance(Timestamp) override {}
   [[nodiscard]] Timestamp next_due() const override { return {}; }
 
-  void describe(JointStreamStatus& status, Timestamp now) const override {
-    status.received = session_.counters().samples;
-    status.rejected = session_.counters().rejected;
-    if (const std::uint64_t outside = session_.counters().outside; outside > 0)
-      status.details.emplace_back("beyond the DBC's limits", number_of(outside, "value"));
-    if (!last_sample_.known()) {
-      status.condition = fmt::format("no frame of the DBC's messages since {:.1f} s", seconds(now - started_));
-    } else if (now - last_sample_ > ages_.stale_after) {
-      status.condition = fmt::format("no frame since {:.1f} s", seconds(now - last_sample_));
+  void publish() override { published_.write({session_.counters(), started_, last_sample_}); }
+
+  void describe(JointStreamStatus& status, Timestamp now) override {
+    const auto& [counters, started, last_sample] = published_.read().value;
+    status.received = counters.samples;
+    status.rejected = counters.rejected;
+    if (counters.outside > 0) {
+      status.details.emplace_back("beyond the DBC's limits", number_of(counters.outside, "value"));
+    }
+    if (!last_sample.known()) {
+      status.condition = fmt::format("no frame of the DBC's messages since {:.1f} s", seconds(now - started));
+    } else if (now - last_sample > ages_.stale_after) {
+      status.condition = fmt::format("no frame since {:.1f} s", seconds(now - last_sample));
     } else {
       status.condition = "operational";
     }
   }
 
  private:
+  struct Report {
+    DbcCounters counters;
+    Timestamp started;
+    Timestamp last_sample;
+  };
+
   void sample(const JointSample& sample) override {
     last_sample_ = sample.receive_time;
     host_->push(sample);
@@ -46,6 +57,7 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
   DbcSession session_;
   Timestamp started_;
   Timestamp last_sample_;
+  Latest<Report> published_;
 };
 
 }  // namespace

@@ -69,10 +69,10 @@ void JointStateTopic::on_data_available(fd::DataReader* reader) {
   try {
     fd::SampleInfo info;
     while (reader->take_next_sample(&sample, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
-      if (!info.valid_data) continue;  // a publisher's farewell
+      if (!info.valid_data) continue;  // a publisher that leaves
       const Timestamp now = clock_.now();
+      messages_.fetch_add(1, std::memory_order_relaxed);
       const std::scoped_lock lock(mutex_);
-      ++status_.messages;
       router_.accept(sample.payload, now,
                      {publisher_id(info.publication_handle), info.sample_identity.sequence_number().to64long()});
     }
@@ -82,14 +82,14 @@ void JointStateTopic::on_data_available(fd::DataReader* reader) {
 }
 
 void JointStateTopic::on_subscription_matched(fd::DataReader*, const fd::SubscriptionMatchedStatus& status) {
+  publishers_.store(status.current_count, std::memory_order_relaxed);
+  if (status.current_count_change >= 0) return;
   const std::scoped_lock lock(mutex_);
-  status_.publishers = status.current_count;
-  if (status.current_count_change < 0) router_.forget(publisher_id(status.last_publication_handle));
+  router_.forget(publisher_id(status.last_publication_handle));
 }
 
 void JointStateTopic::on_requested_incompatible_qos(fd::DataReader*, const fd::RequestedIncompatibleQosStatus& status) {
-  const std::scoped_lock lock(mutex_);
-  status_.incompatible = static_cast<std::uint64_t>(status.total_count);
+  incompatible_.store(static_cast<std::uint64_t>(status.total_count), std::memory_order_relaxed);
 }
 
 }  // namespace cellmirror::dds

@@ -1,6 +1,7 @@
 // One DDS reader of JointState and the robots that share it.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <memory>
@@ -21,11 +22,11 @@ struct TopicStatus {
   std::uint64_t incompatible = 0;  // publishers seen that do not offer what we ask for
 };
 
-// Samples are taken on the thread of the DDS library that received them, without a hand-over; the mutex makes
-// it one at a time also where several such threads serve one reader.
+// Samples are taken on the thread of the DDS library that received them, without a hand-over. The mutex is among those
+// threads, where several serve one reader, and add() and remove() of the cell's owner; no status takes it.
 class JointStateTopic final : private eprosima::fastdds::dds::DataReaderListener {
  public:
-  // The one for this domain, interface, topic, reliability and clock; lives as long as somebody holds it. Any thread.
+  // The one for this domain, interface, topic, reliability and clock; lives as long as it is referred to. Any thread.
   [[nodiscard]] static Result<std::shared_ptr<JointStateTopic>> shared(const DdsStreamConfig& config,
                                                                        const Clock& clock);
   ~JointStateTopic() override;
@@ -35,10 +36,11 @@ class JointStateTopic final : private eprosima::fastdds::dds::DataReaderListener
   void add(RobotFeed& feed, JointSampleSink& sink);
   // After it returns nothing is pushed for this feed any more.
   void remove(RobotFeed& feed);
-  // Held while a feed of this topic is looked at.
-  [[nodiscard]] std::unique_lock<std::mutex> lock() const { return std::unique_lock(mutex_); }
-  // With the lock held.
-  [[nodiscard]] const TopicStatus& status() const { return status_; }
+  // Any thread; takes no lock. The counters are not taken at one instant.
+  [[nodiscard]] TopicStatus status() const {
+    return {publishers_.load(std::memory_order_relaxed), messages_.load(std::memory_order_relaxed),
+            incompatible_.load(std::memory_order_relaxed)};
+  }
 
  private:
   JointStateTopic(std::shared_ptr<Participant> participant, const Clock& clock);
@@ -51,9 +53,12 @@ class JointStateTopic final : private eprosima::fastdds::dds::DataReaderListener
   std::shared_ptr<Participant> participant_;
   const Clock& clock_;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
-  mutable std::mutex mutex_;
-  JointStateRouter router_;
-  TopicStatus status_;
+  std::mutex mutex_;
+  JointStateRouter router_;  // under the mutex
+  // Relaxed: each publishes nothing but itself.
+  std::atomic<int> publishers_{0};
+  std::atomic<std::uint64_t> messages_{0};
+  std::atomic<std::uint64_t> incompatible_{0};
 };
 
 }  // namespace cellmirror::dds

@@ -38,7 +38,7 @@ class CameraHeadTest : public ::testing::TestWithParam<bool> {
     config.drives.nodes = {{21, 22}};
     config.drives.increments_per_unit = {1000.0};
     config.drives.self_starting = true;
-    sut_ = std::make_unique<CameraHead>(config, bus_.connect("sut"));
+    sut_ = std::make_unique<CameraHead>(config, bus_.connect());
     sut_->start(kStart);
     now_ = kStart;
   }
@@ -92,7 +92,7 @@ class CameraHeadTest : public ::testing::TestWithParam<bool> {
   int queue_ = -1;
   std::uint64_t sequence_ = 0;
   can::VirtualCanBus bus_{100'000};
-  std::unique_ptr<CanChannel> master_ = bus_.connect("master");
+  std::unique_ptr<CanChannel> master_ = bus_.connect();
   std::unique_ptr<CameraHead> sut_;
   Timestamp now_;
 };

@@ -28,7 +28,6 @@ constexpr Nanoseconds kLong = 5s;  // never waited out where the code works
 
 // A channel whose interface was removed: its socket cannot be opened again.
 struct ChannelWithoutInterface final : SocketChannel {
-  ChannelWithoutInterface() : SocketChannel("gone0") {}
   Result<void> open_socket() override { return fail("there is no network interface gone0"); }
   bool fill() override { return true; }
   bool is_current() override { return true; }
@@ -177,8 +176,8 @@ TEST(SocketCanChannel, WithoutCanOrInterfaceItFailsWithARemedy) {
 
 struct VirtualBusTest : testing::Test {
   VirtualCanBus sut;
-  std::unique_ptr<CanChannel> a = sut.connect("a");
-  std::unique_ptr<CanChannel> b = sut.connect("b");
+  std::unique_ptr<CanChannel> a = sut.connect();
+  std::unique_ptr<CanChannel> b = sut.connect();
   ReceivedCanFrame got;
 };
 
@@ -230,8 +229,8 @@ TEST_F(VirtualBusTest, DelayHoldsFramesBack) {
 
 TEST_F(VirtualBusTest, FullQueuesDropTheOldestAndCountIt) {
   VirtualCanBus small(2);
-  const auto x = small.connect("x");
-  const auto y = small.connect("y");
+  const auto x = small.connect();
+  const auto y = small.connect();
   for (std::uint32_t i = 0; i < 5; ++i) x->send(frame(i, {}));
   EXPECT_EQ(y->receive(got, kLong), CanReceive::frame);
   EXPECT_EQ(got.frame.id, 3U);

@@ -42,8 +42,7 @@ struct Sink : JointSampleSink {
 // A drive with a thread on the bus.
 class LiveDrive : Cia402DriveOutput {
  public:
-  LiveDrive(VirtualCanBus& bus, const Cia402DriveConfig& config)
-      : channel_(bus.connect("drive")), drive_(config, *this) {
+  LiveDrive(VirtualCanBus& bus, const Cia402DriveConfig& config) : channel_(bus.connect()), drive_(config, *this) {
     thread_ = std::thread([this] { run(); });
   }
   ~LiveDrive() override {
@@ -96,8 +95,8 @@ struct StreamTest : testing::Test {
     config.heartbeat_timeout = 300ms;
     drive_config.node_id = 3;
     drive_config.heartbeat_ms = 20;
-    options.open_channel = [this](const CanChannelConfig& channel) {
-      return Result<std::unique_ptr<CanChannel>>(bus.connect(channel.endpoint));
+    options.open_channel = [this](const CanChannelConfig&) {
+      return Result<std::unique_ptr<CanChannel>>(bus.connect());
     };
   }
   void open() {
@@ -267,7 +266,7 @@ struct StallingBus {
       return true;
     }
 
-    [[nodiscard]] CanChannelStatus status() const override { return {}; }
+    [[nodiscard]] const CanChannelStatus& status() const override { return status_; }
 
    private:
     void answer(Timestamp time, std::uint32_t base, std::initializer_list<int> bytes) {
@@ -278,6 +277,7 @@ struct StallingBus {
     std::deque<ReceivedCanFrame> arriving_;
     Timestamp back_;
     int syncs_ = 0;
+    CanChannelStatus status_;
   };
 
   StreamClock clock;
@@ -344,7 +344,7 @@ class DbcStream : public testing::Test {
     config.signals = {{message, "Position", 0, "J_1", JointQuantity::position, scale, 0.0}};
     CanStreamOptions options;
     options.open_channel = [this](const CanChannelConfig&) {
-      return Result<std::unique_ptr<CanChannel>>(bus.connect("dbc"));
+      return Result<std::unique_ptr<CanChannel>>(bus.connect());
     };
     auto made = make_dbc_stream(config, clock, options);
     ASSERT_TRUE(made) << made.error().text();
@@ -353,7 +353,7 @@ class DbcStream : public testing::Test {
   }
 
   VirtualCanBus bus;
-  std::unique_ptr<CanChannel> robot = bus.connect("robot");
+  std::unique_ptr<CanChannel> robot = bus.connect();
   SystemClock clock;
   Sink sink;
   std::unique_ptr<JointStream> sut;
@@ -407,7 +407,7 @@ TEST(StreamCheck, LeavesOutWhatTheReaderOfTheCellFileRefused) {
 TEST_F(DbcStream, TellsValuesBeyondTheLimitsOfTheDbc) {
   ASSERT_NO_FATAL_FAILURE(open("Axis_1", 0.01));
   robot->send(frame(0x100, {0x40, 0x0D, 0x03, 0, 0, 0, 0, 0}));  // 200 deg
-  ASSERT_TRUE(becomes_true([&] { return sink.count == 1; }));
+  ASSERT_TRUE(becomes_true([&] { return sut->status().received == 1; }));
   const JointStreamStatus status = sut->status();
   EXPECT_THAT(status.last_errors, testing::ElementsAre(HasSubstr("Axis_1.Position is 200 deg, beyond -180 .. 180")));
   EXPECT_THAT(status.details, testing::Contains(testing::Pair("beyond the DBC's limits", "1 value")));

@@ -34,7 +34,7 @@ class Cia402RobotsTest : public ::testing::Test {
 
   void make(const Cia402RobotsConfig& config, const char* motion = "ramp:velocity=1") {
     sut = std::make_unique<Cia402Robots>(
-        config, std::shared_ptr<const MotionSource>(std::move(*make_motion(motion, 2))), bus.connect("sut"));
+        config, std::shared_ptr<const MotionSource>(std::move(*make_motion(motion, 2))), bus.connect());
     sut->start(kStart);
     now = kStart;
     sut->work(now);
@@ -77,7 +77,7 @@ class Cia402RobotsTest : public ::testing::Test {
   }
 
   can::VirtualCanBus bus{100'000};
-  std::unique_ptr<CanChannel> master = bus.connect("master");
+  std::unique_ptr<CanChannel> master = bus.connect();
   std::unique_ptr<Cia402Robots> sut;
   Timestamp now;
 };

@@ -27,8 +27,7 @@ struct DbcRobotTest : ::testing::Test {
     config.endpoint = "virtual";
     config.joints = 1;
     config.signals = {{"ArmA", "A1", 0, "1", JointQuantity::position, 0.017453292519943295, 0.0}};
-    auto made =
-        DbcRobot::make(config, dbc, std::move(*make_motion("hold:position=" + position, 1)), bus.connect("sut"));
+    auto made = DbcRobot::make(config, dbc, std::move(*make_motion("hold:position=" + position, 1)), bus.connect());
     EXPECT_TRUE(made);
     sut = std::move(*made);
     testing::internal::CaptureStderr();
