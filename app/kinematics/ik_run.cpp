@@ -11,15 +11,11 @@ namespace {
 using inverse_kinematics::Answer;
 using inverse_kinematics::Request;
 using inverse_kinematics::Solver;
-using std::chrono::steady_clock;
-
-double us_since(steady_clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(steady_clock::now() - start).count();
-}
 
 class Runner {
  public:
-  Runner(const kinematics::Chain& chain, const IkSettings& settings) : chain_(chain), settings_(settings) {
+  Runner(const kinematics::Chain& chain, const IkSettings& settings, const Clock& clock)
+      : chain_(chain), settings_(settings), clock_(clock) {
     request_.task = settings.task;
     request_.present = settings.start;
     request_.tolerance = settings.tolerance;
@@ -29,8 +25,8 @@ class Runner {
 
   // Tables are built, memory is taken and code is loaded before anything is measured.
   Result<double> set_up() {
-    const auto start = steady_clock::now();
-    solver_ = inverse_kinematics::make_solver(settings_.method, chain_);
+    const Timestamp start = clock_.now();
+    solver_ = inverse_kinematics::make_solver(settings_.method, chain_, clock_);
     if (!solver_) return fail("there is no such method for this robot", "--method auto");
     JointValues q = chain_.middle();
     for (std::size_t i = 0; i < chain_.variable_count(); ++i) {
@@ -44,7 +40,7 @@ class Runner {
 
   Result<IkOutcome> solve(const Pose& X_BG, std::size_t& false_claims) {
     request_.X_BG = X_BG;
-    const auto start = steady_clock::now();
+    const Timestamp start = clock_.now();
     const Result<Answer> answer = solver_->solve(request_);
     IkOutcome out;
     out.time_us = us_since(start);
@@ -57,6 +53,7 @@ class Runner {
   }
 
  private:
+  [[nodiscard]] double us_since(Timestamp start) const { return 1e6 * seconds(clock_.now() - start); }
   [[nodiscard]] std::span<const double> used(const JointValues& q) const { return {q.data(), chain_.variable_count()}; }
 
   void fill(IkOutcome& out, const Answer& answer, const Pose& X_BG) const {
@@ -84,6 +81,7 @@ class Runner {
 
   const kinematics::Chain& chain_;
   const IkSettings& settings_;
+  const Clock& clock_;
   Request request_;
   std::unique_ptr<Solver> solver_;
 };
@@ -91,8 +89,8 @@ class Runner {
 }  // namespace
 
 Result<IkRun> run_ik(const kinematics::Chain& chain, const IkSettings& settings, std::span<const Pose> targets,
-                     const Progress& progress) {
-  Runner runner(chain, settings);
+                     const Clock& clock, const Progress& progress) {
+  Runner runner(chain, settings, clock);
   IkRun run;
   const auto setup_ms = runner.set_up();
   if (!setup_ms) return std::unexpected(setup_ms.error());

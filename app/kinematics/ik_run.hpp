@@ -9,6 +9,7 @@
 
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/inverse_kinematics/inverse_kinematics.hpp"
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/kinematics/task.hpp"
@@ -41,10 +42,11 @@ struct IkRun {
   std::size_t false_claims = 0;  // solutions that did not stand our check; they count as not solved
 };
 
-// Called now and then with the number of targets that are done.
+// Called from time to time with the number of targets that are done.
 using Progress = std::function<void(std::size_t done)>;
 
+// `clock`: for the time limit and for what is measured.
 [[nodiscard]] Result<IkRun> run_ik(const kinematics::Chain& chain, const IkSettings& settings,
-                                   std::span<const Pose> targets, const Progress& progress);
+                                   std::span<const Pose> targets, const Clock& clock, const Progress& progress);
 
 }  // namespace cellmirror::app

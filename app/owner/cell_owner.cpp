@@ -55,9 +55,9 @@ CellOwner::CellOwner(Parts parts)
            std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},
           parts.views, std::move(parts.layout)),
       motion_(
-          cell_, names_, [this] { return display_.screen_axes(); }, *fleet_),
+          cell_, names_, [this] { return display_.screen_axes(); }, *fleet_, clock_),
       couplings_(cell_, *fleet_, motion_),
-      program_motion_(cell_, motion_, *fleet_),
+      program_motion_(cell_, motion_, *fleet_, clock_),
       programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_, std::move(parts.program_event),
                  !parts.let_tick_pass}),
       guarded_motion_(motion_, programs_),

@@ -75,7 +75,7 @@ Result<void> FootSwitchService::set_online(bool online) {
 
 void FootSwitchService::start_watching() {
   reader_ = std::make_unique<footswitch::SwitchReader>(
-      memory_->memory(),
+      memory_->memory(), clock_,
       footswitch::SwitchReader::Options{
           .debounce = options_.settings.debounce, .priority = options_.priority, .wake = options_.wake});
 }

@@ -126,7 +126,7 @@ Result<IkSettings> settings_of(const IkOptions& options, const kinematics::Chain
 Result<IkRun> run_with_progress(const kinematics::Chain& chain, const IkSettings& settings,
                                 std::span<const Pose> targets) {
   ProgressLine line("targets");
-  return run_ik(chain, settings, targets, [&](std::size_t done) { line.update(done, targets.size()); });
+  return run_ik(chain, settings, targets, SystemClock(), [&](std::size_t done) { line.update(done, targets.size()); });
 }
 
 // Prints what was found, and gives the exit status: one target that is not reached is a failure, of many it is a

@@ -97,9 +97,11 @@ void CollisionWorker::run(const CellState& cell_state, const engine::TickState& 
 void CollisionWorker::check(const engine::TickState& tick) {
   const Timestamp start = clock_.now();
   const ProximityState& found = checker_.check(follower_.poses(), tick.time, follower_.later(tick, kAhead), kAhead);
-  compute_.record(clock_.now() - start);
+  const Timestamp finished = clock_.now();
+  compute_.record(finished - start);
   std::shared_ptr<ProximityState> state = states_.take();
   *state = found;
+  state->finished = finished;
   state->sequence = ++sequence_;  // those that show nothing count, too
   for (const ProximityEvent& event : found.events) log_event(event);
   board_.publish(std::move(state));

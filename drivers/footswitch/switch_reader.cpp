@@ -41,7 +41,7 @@ class SwitchReader::Thread {
           set_thread_name("switches");
           if (reader.options_.priority > 0)
             static_cast<void>(set_real_time_scheduling(RealTimePolicy::prefer, reader.options_.priority));
-          const SystemClock clock;
+          const Clock& clock = reader.clock_;
           Timestamp next = clock.now();
           while (!stop.stop_requested()) {
             const Timestamp now = clock.now();
@@ -56,14 +56,15 @@ class SwitchReader::Thread {
   std::jthread thread_;
 };
 
-SwitchReader::SwitchReader(std::span<const std::byte> memory, Options options)
+SwitchReader::SwitchReader(std::span<const std::byte> memory, const Clock& clock, Options options)
     : memory_(looked_at(memory)),
+      clock_(clock),
       options_(std::move(options)),
       edges_(memory_.size(), options_.debounce),
       copy_(memory_.size()) {
   found_.reserve(2 * kBits * memory_.size());
   // The first state is that of this moment, whenever the thread gets its first turn.
-  look(SystemClock().now());
+  look(clock_.now());
   thread_ = std::make_unique<Thread>(*this);
 }
 
@@ -72,7 +73,7 @@ SwitchReader::~SwitchReader() = default;
 void SwitchReader::stop() {
   thread_.reset();
   options_.wake = {};  // the owner is here
-  look(SystemClock().now());
+  look(clock_.now());
 }
 
 void SwitchReader::look(Timestamp now) {

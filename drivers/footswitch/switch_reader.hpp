@@ -36,8 +36,9 @@ class SwitchReader {
     std::uint64_t bounces = 0;
   };
 
-  // Starts the thread. `memory` (at most kMostSwitchBytes of it are read) outlives the reader.
-  SwitchReader(std::span<const std::byte> memory, Options options);
+  // Starts the thread. `memory` (at most kMostSwitchBytes of it are read) and `clock` outlive the reader. The thread
+  // sleeps by the monotonic clock of the system, whatever `clock` says.
+  SwitchReader(std::span<const std::byte> memory, const Clock& clock, Options options);
   ~SwitchReader();
   SwitchReader(const SwitchReader&) = delete;
   SwitchReader& operator=(const SwitchReader&) = delete;
@@ -58,6 +59,7 @@ class SwitchReader {
   void look(Timestamp now);
 
   std::span<const std::byte> memory_;
+  const Clock& clock_;
   Options options_;
   SwitchEdges edges_;
   std::vector<std::uint8_t> copy_;

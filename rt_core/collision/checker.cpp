@@ -298,7 +298,6 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     }
     state.counters.pairs_computed = state.search.tracker().queries() + state.plain_search.tracker().queries();
   }
-  findings.finished = SystemClock().now();
   return findings;
 }
 

@@ -42,8 +42,8 @@ class Checker {
   // posture. Initially there is no limit.
   void limit_contacts(std::size_t pairs, std::uint64_t period = 1);
 
-  // The results at these poses of the adopted cell. `later`: the poses `ahead` later at present velocities, for closing
-  // speeds; null: no closing speeds. Valid until the next call. Not for the tick.
+  // The findings at these poses of the adopted cell. `later`: the poses `ahead` later at present velocities, for
+  // closing speeds; null: none are reported. `finished` is left to the caller. Valid until the next call. Off the tick.
   const ProximityState& check(const CellPoses& poses, Timestamp posture_time, const CellPoses* later = nullptr,
                               Nanoseconds ahead = Nanoseconds(0));
   // Only whether any tested pair touches; stops at the first. For planning: no events, no distances.

@@ -38,8 +38,9 @@ bool whole_pose(const Task& task) { return task.position_axes == 0b111 && task.o
 
 class AutomaticSolver final : public Solver {
  public:
-  explicit AutomaticSolver(const kinematics::Chain& chain)
+  AutomaticSolver(const kinematics::Chain& chain, const Clock& clock)
       : chain_(chain),
+        clock_(clock),
         reach_(kinematics::reach_bound(chain)),
         unit_(kinematics::unit_of_length(chain)),
         closed_form_(ClosedForm::analyse(chain)),
@@ -50,7 +51,7 @@ class AutomaticSolver final : public Solver {
     const Result<Request> good = checked(asked, chain_);
     if (!good) return std::unexpected(good.error());
     const Request& request = *good;
-    Search search(chain_, request);
+    Search search(chain_, request, clock_);
     if (whole_pose(request.task) && request.task.orientation_required) {
       from_closed_form(search, request);
       if (enough(search, request)) return search.finish();
@@ -156,6 +157,7 @@ class AutomaticSolver final : public Solver {
   }
 
   kinematics::Chain chain_;
+  const Clock& clock_;
   double reach_;
   double unit_;
   std::optional<ClosedForm> closed_form_;
@@ -165,8 +167,8 @@ class AutomaticSolver final : public Solver {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_automatic_solver(const kinematics::Chain& chain) {
-  return std::make_unique<AutomaticSolver>(chain);
+std::unique_ptr<Solver> make_automatic_solver(const kinematics::Chain& chain, const Clock& clock) {
+  return std::make_unique<AutomaticSolver>(chain, clock);
 }
 
 }  // namespace cellmirror::inverse_kinematics

@@ -7,6 +7,6 @@
 
 namespace cellmirror::inverse_kinematics {
 
-[[nodiscard]] std::unique_ptr<Solver> make_automatic_solver(const kinematics::Chain& chain);
+[[nodiscard]] std::unique_ptr<Solver> make_automatic_solver(const kinematics::Chain& chain, const Clock& clock);
 
 }  // namespace cellmirror::inverse_kinematics

@@ -12,7 +12,7 @@ namespace {
 // with restarts, for comparison and for simple uses.
 class FastSolver final : public Solver {
  public:
-  explicit FastSolver(const kinematics::Chain& chain) : chain_(chain), spread_(chain_) {}
+  FastSolver(const kinematics::Chain& chain, const Clock& clock) : chain_(chain), clock_(clock), spread_(chain_) {}
 
   [[nodiscard]] Result<Answer> solve(const Request& asked) override {
     constexpr std::size_t kMostStarts = 1000;
@@ -20,7 +20,7 @@ class FastSolver final : public Solver {
     constexpr int kIterations = 40;
     const Result<Request> good = checked(asked, chain_);
     if (!good) return std::unexpected(good.error());
-    Search search(chain_, *good);
+    Search search(chain_, *good, clock_);
     (void)search.descend(good->present, kIterations, FoundBy::fast);
     std::size_t without_news = 0;
     for (std::size_t start = 0; start < kMostStarts && search.found() < good->max_solutions; ++start) {
@@ -35,11 +35,14 @@ class FastSolver final : public Solver {
 
  private:
   kinematics::Chain chain_;
+  const Clock& clock_;
   PostureSpread spread_;
 };
 
 }  // namespace
 
-std::unique_ptr<Solver> make_fast_solver(const kinematics::Chain& chain) { return std::make_unique<FastSolver>(chain); }
+std::unique_ptr<Solver> make_fast_solver(const kinematics::Chain& chain, const Clock& clock) {
+  return std::make_unique<FastSolver>(chain, clock);
+}
 
 }  // namespace cellmirror::inverse_kinematics

@@ -1,4 +1,4 @@
-// Inverse kinematics outside the tick: three methods behind one interface.
+// Inverse kinematics for all threads but the tick: three methods behind one interface.
 #pragma once
 
 #include <chrono>
@@ -11,6 +11,7 @@
 
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/kinematics/forward.hpp"
 #include "rt_core/kinematics/task.hpp"
@@ -60,7 +61,9 @@ class Solver {
   [[nodiscard]] virtual Result<Answer> solve(const Request& request) = 0;
 };
 
-// `automatic` builds its table of seeds here (some 20 ms); share a solver instead of creating it again.
-[[nodiscard]] std::unique_ptr<Solver> make_solver(Method method, const kinematics::Chain& chain);
+// `automatic` builds its table of seeds here (some 20 ms); share a solver rather than create another. `clock`, for the
+// time limits of requests, outlives the solver; one that stands still never ends a search, which counts of starts
+// bound, too.
+[[nodiscard]] std::unique_ptr<Solver> make_solver(Method method, const kinematics::Chain& chain, const Clock& clock);
 
 }  // namespace cellmirror::inverse_kinematics

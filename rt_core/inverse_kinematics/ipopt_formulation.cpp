@@ -125,7 +125,7 @@ bool Formulation::slow(double value) {
 
 bool Formulation::go_on(int iteration, double value) {
   run_.iterations = iteration;
-  if (Clock::now() >= problem_->deadline) run_.timed_out = true;
+  if (problem_->clock != nullptr && problem_->clock->now() >= problem_->deadline) run_.timed_out = true;
   if (objective_ != Objective::squared_error) {
     note({latest_.data(), chain().variable_count()}, value);
     return !run_.timed_out && iteration < problem_->max_iterations;

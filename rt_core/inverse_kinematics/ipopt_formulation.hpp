@@ -2,18 +2,16 @@
 // posture so far. Without Ipopt; internal to the folder.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <span>
 
 #include "rt_core/base/pose.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/inverse_kinematics/ipopt_pose_model.hpp"
 #include "rt_core/inverse_kinematics/ipopt_task_equations.hpp"
 #include "rt_core/kinematics/task.hpp"
 
 namespace cellmirror::inverse_kinematics {
-
-using Clock = std::chrono::steady_clock;
 
 enum class Objective : std::uint8_t {
   squared_error,  // of the required components; no equations; stops as soon as the task is met
@@ -28,14 +26,15 @@ enum class HessianChoice : std::uint8_t {
   by_distance,   // Gauss-Newton far from the target, where the exact one is often indefinite, exact near it
 };
 
-// Input of one run.
+// The input of one run.
 struct Problem {
   Pose X_BG = Pose::Identity();
   kinematics::Task task;
   JointValues wished{};  // of the secondary objective: where the joints would like to be
   JointValues start{};
   double tolerance = 1e-5;
-  Clock::time_point deadline;
+  const Clock* clock = nullptr;  // null: no deadline
+  Timestamp deadline;
   int max_iterations = 60;
   bool to_the_end = false;  // squared_error: down to the local minimum, even if it is no solution
 };

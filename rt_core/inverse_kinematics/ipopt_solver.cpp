@@ -20,7 +20,7 @@ constexpr std::size_t kBarrenStarts = 25;  // without a new solution: there will
 constexpr double kNearTarget = 1.0;        // squared task error below which the equations can be met from here
 constexpr int kNearIterations = 12;        // for that
 // Kept back for the nearest pose, if there is no solution: this much, or this part of the time if that is less.
-constexpr Clock::duration kLastRun = std::chrono::milliseconds(2);
+constexpr Nanoseconds kLastRun = std::chrono::milliseconds(2);
 constexpr double kLastRunShare = 0.2;
 
 bool only_attempts_orientation(const kinematics::Task& task) {
@@ -29,11 +29,11 @@ bool only_attempts_orientation(const kinematics::Task& task) {
 
 // What belongs to one request.
 struct Work {
-  Work(const kinematics::Chain& chain, const Request& request) : search(chain, request) {}
+  Work(const kinematics::Chain& chain, const Request& request, const Clock& clock) : search(chain, request, clock) {}
 
   Search search;
   Problem problem;
-  Clock::time_point deadline;
+  Timestamp deadline;
   Run nearest;           // of the descents that met nothing
   bool settled = false;  // the last descent has minimised the secondary objective as well
   bool timed_out = false;
@@ -42,8 +42,9 @@ struct Work {
 
 class IpoptSolver final : public Solver {
  public:
-  IpoptSolver(const kinematics::Chain& chain, const IpoptSettings& settings)
-      : model_(chain),
+  IpoptSolver(const kinematics::Chain& chain, const Clock& clock, const IpoptSettings& settings)
+      : clock_(clock),
+        model_(chain),
         spread_(chain),
         reach_(chain, Objective::squared_error, settings),
         refine_(chain, Objective::secondary, settings),
@@ -66,6 +67,7 @@ class IpoptSolver final : public Solver {
   [[nodiscard]] bool has_freedom(const Problem& problem);
   [[nodiscard]] bool near_target(const Problem& problem);
 
+  const Clock& clock_;
   PoseModel model_;
   PostureSpread spread_;
   IpoptProgram reach_;
@@ -75,11 +77,11 @@ class IpoptSolver final : public Solver {
 };
 
 Result<Answer> IpoptSolver::solve(const Request& asked) {
-  const auto start = Clock::now();
+  const Timestamp start = clock_.now();
   const Result<Request> good = checked(asked, chain());
   if (!good) return std::unexpected(good.error());
   const Request& request = *good;
-  Work work(chain(), request);
+  Work work(chain(), request, clock_);
   work.deadline = start + request.time_limit;
   Problem& problem = work.problem;
   problem.X_BG = request.X_BG;
@@ -87,7 +89,8 @@ Result<Answer> IpoptSolver::solve(const Request& asked) {
   problem.wished = work.search.wished();
   problem.start = request.present;
   problem.tolerance = request.tolerance;
-  const auto share = std::chrono::duration_cast<Clock::duration>(request.time_limit * kLastRunShare);
+  const auto share = std::chrono::duration_cast<Nanoseconds>(request.time_limit * kLastRunShare);
+  problem.clock = &clock_;
   problem.deadline = work.deadline - std::min(kLastRun, share);
   work.nearest.q = request.present;
   work.nearest.cost = std::numeric_limits<double>::infinity();
@@ -125,7 +128,7 @@ void IpoptSolver::search(Work& work, std::size_t max_solutions) {
     }
     if (work.search.found() >= max_solutions) return;
     barren = work.search.found() > 0 && work.search.found() == known ? barren + 1 : 0;
-    if (Clock::now() < work.problem.deadline) continue;
+    if (clock_.now() < work.problem.deadline) continue;
     work.timed_out = true;
     return;
   }
@@ -154,7 +157,7 @@ Run IpoptSolver::improve(Work& work, const Run& found) {
   Problem problem = work.problem;
   problem.deadline = work.deadline;
   problem.start = nearest_turns(chain(), best.q, problem.wished);
-  if (Clock::now() >= problem.deadline || !has_freedom(problem)) return best;
+  if (clock_.now() >= problem.deadline || !has_freedom(problem)) return best;
   if (only_attempts_orientation(problem.task)) {
     const Run aligned = run(work, align_, problem);
     if (aligned.met) best = aligned;
@@ -201,10 +204,9 @@ void IpoptSolver::miss(Work& work, const JointValues& q) const {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_ipopt_solver(const kinematics::Chain& chain) { return make_ipopt_solver(chain, {}); }
-
-std::unique_ptr<Solver> make_ipopt_solver(const kinematics::Chain& chain, const IpoptSettings& settings) {
-  return std::make_unique<IpoptSolver>(chain, settings);
+std::unique_ptr<Solver> make_ipopt_solver(const kinematics::Chain& chain, const Clock& clock,
+                                          const IpoptSettings& settings) {
+  return std::make_unique<IpoptSolver>(chain, clock, settings);
 }
 
 }  // namespace cellmirror::inverse_kinematics

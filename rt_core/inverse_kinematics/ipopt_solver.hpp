@@ -22,7 +22,7 @@ struct IpoptSettings {
 // From the present posture first, then from others that are the same for every request. Redundancy is resolved by the
 // task's secondary objective: a local minimum of it, from the posture that was found. A task that is only attempted in
 // its orientation is met in what it requires, then turned as near as that allows.
-[[nodiscard]] std::unique_ptr<Solver> make_ipopt_solver(const kinematics::Chain& chain);
-[[nodiscard]] std::unique_ptr<Solver> make_ipopt_solver(const kinematics::Chain& chain, const IpoptSettings& settings);
+[[nodiscard]] std::unique_ptr<Solver> make_ipopt_solver(const kinematics::Chain& chain, const Clock& clock,
+                                                        const IpoptSettings& settings);
 
 }  // namespace cellmirror::inverse_kinematics

@@ -4,10 +4,10 @@
 
 namespace cellmirror::inverse_kinematics {
 
-std::unique_ptr<Solver> make_solver(Method method, const kinematics::Chain& chain) {
-  if (method == Method::automatic) return make_automatic_solver(chain);
-  if (method == Method::ipopt) return make_ipopt_solver(chain);
-  return make_fast_solver(chain);
+std::unique_ptr<Solver> make_solver(Method method, const kinematics::Chain& chain, const Clock& clock) {
+  if (method == Method::automatic) return make_automatic_solver(chain, clock);
+  if (method == Method::ipopt) return make_ipopt_solver(chain, clock, {});
+  return make_fast_solver(chain, clock);
 }
 
 }  // namespace cellmirror::inverse_kinematics

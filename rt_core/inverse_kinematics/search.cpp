@@ -27,11 +27,12 @@ JointValues wished_posture(const kinematics::Chain& chain, const Request& reques
 
 }  // namespace
 
-Search::Search(const kinematics::Chain& chain, const Request& request)
+Search::Search(const kinematics::Chain& chain, const Request& request, const Clock& clock)
     : chain_(chain),
       request_(request),
       wished_(wished_posture(chain, request)),
-      deadline_(std::chrono::steady_clock::now() + request.time_limit),
+      clock_(clock),
+      deadline_(clock.now() + request.time_limit),
       least_miss_(kInfinity) {
   found_.reserve(8);
 }
@@ -42,7 +43,7 @@ bool Search::out_of_time() {
   constexpr std::size_t kLeastStarts = 64;
   constexpr std::chrono::milliseconds kShortLimit(2);
   if (starts_ < kLeastStarts && request_.time_limit >= kShortLimit) return false;
-  timed_out_ = timed_out_ || std::chrono::steady_clock::now() >= deadline_;
+  timed_out_ = timed_out_ || clock_.now() >= deadline_;
   return timed_out_;
 }
 

@@ -1,7 +1,6 @@
 // One request while it is worked on: descents from starts, what they found, and the time. Internal to the folder.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <vector>
 
@@ -15,14 +14,14 @@ inline constexpr double kDistinctPostures = 0.1;
 
 class Search {
  public:
-  // Both have to outlive the search. `request` is a checked one.
-  Search(const kinematics::Chain& chain, const Request& request);
+  // All three have to outlive the search. `request` is a checked one; its time counts from here.
+  Search(const kinematics::Chain& chain, const Request& request, const Clock& clock);
 
   // Steps from `start`. Whether that led to a solution.
   bool descend(const JointValues& start, int max_iterations, FoundBy by);
 
-  // Keeps a candidate posture after checking it by the plain forward kinematics and the limits. Of equal ones, the
-  // better one is kept.
+  // Keeps a posture found elsewhere, after checking it by the plain forward kinematics and the limits. Of those
+  // that count as one, the better one stays.
   bool keep(const JointValues& q, FoundBy by);
 
   // Remembers the posture for the case that none is found.
@@ -36,7 +35,7 @@ class Search {
   [[nodiscard]] double nearest_distance() const;
   // How far the best orientation is off that is only attempted (rad); 0 for what is required.
   [[nodiscard]] double best_attempt() const;
-  // Checks the clock after the first starts; once true it stays true.
+  // Reads the clock, after the first starts; once it is true it stays true.
   [[nodiscard]] bool out_of_time();
 
   // Where the secondary objective would like the joints to be: the present posture, or the straight boom.
@@ -56,7 +55,8 @@ class Search {
   const kinematics::Chain& chain_;
   const Request& request_;
   JointValues wished_;
-  std::chrono::steady_clock::time_point deadline_;
+  const Clock& clock_;
+  Timestamp deadline_;
   bool timed_out_ = false;
   std::size_t starts_ = 0;
   int iterations_ = 0;

@@ -81,8 +81,8 @@ kinematics::Task RobotKinematics::task(InverseClass inverse_class) const {
 }
 
 Result<inverse_kinematics::Answer> RobotKinematics::solve(const Pose& X_ZG, const kinematics::Task& task,
-                                                          const JointValues& present) {
-  if (!solver_) solver_ = inverse_kinematics::make_solver(inverse_kinematics::Method::automatic, moving_->chain);
+                                                          const JointValues& present, const Clock& clock) {
+  if (!solver_) solver_ = inverse_kinematics::make_solver(inverse_kinematics::Method::automatic, moving_->chain, clock);
   inverse_kinematics::Request request;
   request.X_BG = X_ZG;
   request.task = task;

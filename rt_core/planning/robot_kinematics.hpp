@@ -29,10 +29,10 @@ class RobotKinematics {
   [[nodiscard]] Pose X_ZT(const JointValues& joints) const;
   [[nodiscard]] kinematics::Task task(InverseClass inverse_class) const;
 
-  // The method `auto`, within 5 ms; the first call after a change takes some 20 ms more. `present` and the solutions
-  // are all joints of the robot.
+  // The method `auto`, within 5 ms of `clock`, which outlives this and is the same in every call; the first call after
+  // a change takes some 20 ms more. `present` and the solutions are all joints of the robot.
   [[nodiscard]] Result<inverse_kinematics::Answer> solve(const Pose& X_ZG, const kinematics::Task& task,
-                                                         const JointValues& present);
+                                                         const JointValues& present, const Clock& clock);
 
  private:
   std::optional<Pose> X_PT_;

@@ -192,7 +192,7 @@ Result<MotionGoal> MotionService::point(const RobotModel& robot, MotionRecord& r
   const auto X_ZG = pose_target(robot, record, target, from);
   if (!X_ZG) return std::unexpected(X_ZG.error());
   const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
-  auto answer = record.kinematics.solve(*X_ZG, task, from.joints);
+  auto answer = record.kinematics.solve(*X_ZG, task, from.joints, clock_);
   if (!answer) return std::unexpected(answer.error());
   if (!answer->solved) {
     const Pose X_ZN = answer->solutions.empty() ? *X_ZG : record.kinematics.X_ZT(answer->solutions.front().q);

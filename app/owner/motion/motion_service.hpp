@@ -22,8 +22,8 @@ class MotionService final : public MotionHost {
  public:
   // `screen_axes`: R_WS of the current view as it is now, for SCREEN_INC.
   MotionService(const Cell& cell, const NameDirectory& names, std::function<Eigen::Matrix3d()> screen_axes,
-                MotionPort& port)
-      : cell_(cell), names_(names), screen_axes_(std::move(screen_axes)), port_(port) {}
+                MotionPort& port, const Clock& clock)
+      : cell_(cell), names_(names), screen_axes_(std::move(screen_axes)), port_(port), clock_(clock) {}
 
   // Null, as in the beginning: no robot follows another. They outlive the service.
   void set_coupled(const CoupledRobots* coupled) { coupled_ = coupled; }
@@ -81,6 +81,7 @@ class MotionService final : public MotionHost {
   const NameDirectory& names_;
   std::function<Eigen::Matrix3d()> screen_axes_;
   MotionPort& port_;
+  const Clock& clock_;  // for the time limits of inverse kinematics
   const CoupledRobots* coupled_ = nullptr;
   std::map<std::string, MotionRecord, std::less<>> records_;
 };

@@ -134,7 +134,7 @@ Result<PlannedMove> CellProgramMotion::plan_joints(const Scene& scene, const Mov
     const auto X_ZG = pose_of(scene, command.target);
     if (!X_ZG) return std::unexpected(X_ZG.error());
     const kinematics::Task task = scene.arm.kinematics.task(scene.parameters.inverse_class);
-    auto answer = scene.arm.kinematics.solve(*X_ZG, task, scene.from.joints);
+    auto answer = scene.arm.kinematics.solve(*X_ZG, task, scene.from.joints, clock_);
     if (!answer) return std::unexpected(answer.error());
     if (!answer->solved) {
       const Pose X_ZN = answer->solutions.empty() ? *X_ZG : scene.arm.kinematics.X_ZT(answer->solutions.front().q);

@@ -22,8 +22,8 @@ namespace cellmirror::app {
 // The tickets are the ids of the moves in the tick (motion::MotionState). All three outlive it.
 class CellProgramMotion final : public program::ProgramMotion {
  public:
-  CellProgramMotion(const Cell& cell, MotionService& motion, MotionPort& port)
-      : cell_(cell), motion_(motion), port_(port) {}
+  CellProgramMotion(const Cell& cell, MotionService& motion, MotionPort& port, const Clock& clock)
+      : cell_(cell), motion_(motion), port_(port), clock_(clock) {}
 
   Result<void> check(std::string_view robot) const override;
   [[nodiscard]] bool room(std::string_view robot) const override;
@@ -69,6 +69,7 @@ class CellProgramMotion final : public program::ProgramMotion {
   const Cell& cell_;
   MotionService& motion_;
   MotionPort& port_;
+  const Clock& clock_;
   mutable std::map<std::string, Arm, std::less<>> arms_;
 };
 

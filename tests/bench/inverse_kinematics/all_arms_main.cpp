@@ -92,7 +92,7 @@ void print(const std::string& arm, const std::string& method, Tally tally) {
 
 Search ours(Method method, const kinematics::Chain& chain) {
   const auto begin = Clock::now();
-  std::shared_ptr<inverse_kinematics::Solver> solver = make_solver(method, chain);
+  std::shared_ptr<inverse_kinematics::Solver> solver = make_solver(method, chain, test_arms::kClock);
   fmt::print("# made in {:.1f} ms\n", std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
   return [solver](const Pose& X_BG, const JointValues& start, JointValues& q, Tally& tally) {
     inverse_kinematics::Request request;

@@ -1,13 +1,17 @@
-// The arms on which inverse kinematics is measured: those of the shared data, and others that nobody tuned it for.
+// The arms on which inverse kinematics is measured: those of the shared data, and others that it was not tuned for.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "rt_core/base/time.hpp"
 #include "rt_core/kinematics/chain.hpp"
 
 namespace cellmirror::test_arms {
+
+// For the time limits of searches.
+inline const SystemClock kClock;
 
 struct Arm {
   std::string name;

@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
     for (const bool near : {false, true}) {
       std::vector<Request> all = requests(arm.chain, count, near);
       for (const Variant& variant : variants) {
-        const auto solver = make_ipopt_solver(arm.chain, variant.settings);
+        const auto solver = make_ipopt_solver(arm.chain, test_arms::kClock, variant.settings);
         all.resize(std::max<std::size_t>(1, count / variant.share));
         (void)solver->solve(all.front());
         print(arm.name, near ? "near" : "cold", variant.name, measure(*solver, all, limit_ms, clock));

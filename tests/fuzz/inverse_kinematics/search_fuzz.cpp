@@ -116,7 +116,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   request.X_BG = bytes.below(2) == 0 ? kinematics::forward(chain, {there.data(), n}) : pose_from(bytes);
 
   try_closed_form(chain, request.X_BG);
-  const auto solver = inverse_kinematics::make_solver(inverse_kinematics::Method::fast, chain);
+  const ManualClock clock;  // stands still: what an input does depends on its bytes alone
+  const auto solver = inverse_kinematics::make_solver(inverse_kinematics::Method::fast, chain, clock);
   const Result<Answer> answer = solver->solve(request);
   if (!answer) {
     expect(!answer.error().what.empty());

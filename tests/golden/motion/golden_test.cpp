@@ -69,9 +69,9 @@ class Stage {
         home_(home),
         display_({cell_, names_, home_, clock_, [this] { return port.positions(); }, {}, {}, {}}, {}),
         motion_(
-            cell_, names_, [this] { return display_.screen_axes(); }, port),
+            cell_, names_, [this] { return display_.screen_axes(); }, port, clock_),
         couplings_(cell_, fleet_, motion_),
-        program_motion_(cell_, motion_, port),
+        program_motion_(cell_, motion_, port, clock_),
         programs_({cell_, home_, fleet_, motion_, display_, program_motion_, clock_}),
         world_(cell_, fleet_, motion_, programs_, [] {}),
         robots_(cell_, fleet_, motion_, couplings_, programs_, names_),

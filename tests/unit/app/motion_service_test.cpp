@@ -57,7 +57,7 @@ class MotionDeskTest : public testing::Test {
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
   Fleet fleet_{cell_, *engine_, {}, clock_, 0};
   NoNames names_;
-  MotionService sut_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_};
+  MotionService sut_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_, clock_};
   std::uint64_t cycle_ = 0;
 };
 

@@ -87,8 +87,8 @@ class ProgramMotionTest : public testing::Test {
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
   Fleet fleet_{cell_, *engine_, {}, clock_, 0};
   NoNames names_;
-  MotionService motion_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_};
-  CellProgramMotion sut_{cell_, motion_, fleet_};
+  MotionService motion_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_, clock_};
+  CellProgramMotion sut_{cell_, motion_, fleet_, clock_};
   RobotParameters settings_;
   JointValues start_{};
   std::uint64_t cycle_ = 0;

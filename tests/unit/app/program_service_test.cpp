@@ -123,8 +123,8 @@ class ProgramDeskTest : public testing::Test {
     Watchdog watchdog{std::chrono::seconds(1), {}};
     std::unique_ptr<engine::Engine> engine = std::make_unique<engine::Engine>(watchdog);
     Fleet fleet{cell, *engine, {}, clock, 0};
-    MotionService motion{cell, names, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet};
-    CellProgramMotion moves{cell, motion, fleet};
+    MotionService motion{cell, names, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet, clock};
+    CellProgramMotion moves{cell, motion, fleet, clock};
     DisplayService display;
     ProgramService programs;
     GuardedMotion guarded{motion, programs};

@@ -17,7 +17,7 @@ constexpr std::chrono::seconds kLongEnough{20};
 struct Watched {
   explicit Watched(std::size_t bytes, Nanoseconds debounce = Nanoseconds(0)) : memory(bytes) {
     sut = std::make_unique<SwitchReader>(
-        memory, SwitchReader::Options{.debounce = debounce, .wake = [this] { woken.release(); }});
+        memory, clock, SwitchReader::Options{.debounce = debounce, .wake = [this] { woken.release(); }});
   }
   void write(std::size_t byte, std::uint8_t value) {
     __atomic_store_n(reinterpret_cast<std::uint8_t*>(&memory[byte]), value, __ATOMIC_RELAXED);
@@ -29,6 +29,7 @@ struct Watched {
     return true;
   }
 
+  SystemClock clock;
   std::vector<std::byte> memory;
   std::counting_semaphore<> woken{0};
   std::unique_ptr<SwitchReader> sut;
@@ -54,7 +55,8 @@ TEST(SwitchReader, HandsOnEveryChangeInOrderAndWakesItsOwner) {
 
 TEST(SwitchReader, AnInputThatIsOnFromTheStartIsShownButNoChange) {
   std::vector<std::byte> memory{std::byte{0x81}};
-  SwitchReader sut(memory, {});
+  const SystemClock clock;
+  SwitchReader sut(memory, clock, {});
   EXPECT_EQ(sut.inputs_on(8), (std::vector<std::uint32_t>{1, 8}));
   EXPECT_EQ(sut.inputs_on(1), std::vector<std::uint32_t>{1});
   SwitchEdge edge;

@@ -49,7 +49,7 @@ Tally tally_of(const kinematics::Chain& chain, std::size_t targets, Search&& sea
 
 void compare_with_kdl(const test_arms::Arm& arm) {
   SCOPED_TRACE(arm.name);
-  const auto solver = make_solver(Method::automatic, arm.chain);
+  const auto solver = make_solver(Method::automatic, arm.chain, test_arms::kClock);
   const Tally ours = tally_of(arm.chain, kTargets, [&](const Pose& X_BG, JointValues& q) {
     Request request;
     request.X_BG = X_BG;

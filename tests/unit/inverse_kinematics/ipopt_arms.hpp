@@ -8,10 +8,13 @@
 #include <random>
 #include <vector>
 
+#include "rt_core/base/time.hpp"
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/kinematics/forward.hpp"
 
 namespace cellmirror::inverse_kinematics::ipopt_test {
+
+inline const SystemClock kClock;  // for the time limits of searches
 
 using kinematics::Chain;
 using kinematics::ChainJoint;

@@ -42,7 +42,7 @@ std::vector<Request> requests(const Chain& chain, std::uint64_t seed) {
 }
 
 std::vector<Answer> solve_all(const Chain& chain, const std::vector<Request>& all) {
-  const auto solver = make_ipopt_solver(chain);
+  const auto solver = make_ipopt_solver(chain, ipopt_test::kClock, {});
   std::vector<Answer> answers;
   for (const Request& request : all) answers.push_back(solver->solve(request).value());
   return answers;
@@ -78,7 +78,7 @@ TEST(IpoptConcurrency, ASolverMayChangeItsThread) {
   const Chain chain = odd_arm();
   std::vector<Request> asked = requests(chain, 3);
   asked.resize(60);
-  const auto solver = make_ipopt_solver(chain);
+  const auto solver = make_ipopt_solver(chain, ipopt_test::kClock, {});
   std::vector<Answer> answers;
   for (std::size_t k = 0; k < asked.size(); ++k) {
     if (k % 3 == 0) {

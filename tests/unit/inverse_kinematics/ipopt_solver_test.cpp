@@ -56,7 +56,7 @@ void expect_sound(const Chain& chain, const Request& request, const Answer& answ
 
 TEST(IpoptSolver, FindsBothPosturesOfATwoJointArm) {
   const Chain chain = planar_arm(2);
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   for (const double radius : {0.6, 1.2, 1.9}) {
     const double heading = 0.4;
     Request request = point_request(chain, radius * std::cos(heading), radius * std::sin(heading));
@@ -78,7 +78,7 @@ TEST(IpoptSolver, FindsBothPosturesOfATwoJointArm) {
 // known from trying all headings of the last link.
 TEST(IpoptSolver, ResolvesRedundancyByTheDistanceFromThePresentPosture) {
   const Chain chain = planar_arm(3);
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   std::mt19937_64 random(17);
   int at_the_minimum = 0;
   constexpr int kRounds = 40;
@@ -117,7 +117,7 @@ TEST(IpoptSolver, ResolvesRedundancyByTheDistanceFromThePresentPosture) {
 
 TEST(IpoptSolver, BendsABoomEvenly) {
   const Chain chain = planar_arm(5);
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   Request request = point_request(chain, 3.0, 2.0);
   request.task.secondary = Secondary::even_bend;
   request.present = {1.0, -0.5, 1.0, -0.8, 0.9};
@@ -141,7 +141,7 @@ TEST(IpoptSolver, KeepsLimitsThatTheSolutionTouches) {
   const std::vector<double> lower = {-3.0, -3.0};
   const std::vector<double> upper = {0.5, 1.0};
   const Chain chain = wide.with_limits(lower, upper).value();
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   const Eigen::Vector3d p = pose_at(chain, there).translation();
   Request request = point_request(chain, p.x(), p.y());
   request.present = {-2.0, 0.9};
@@ -153,7 +153,7 @@ TEST(IpoptSolver, KeepsLimitsThatTheSolutionTouches) {
 TEST(IpoptSolver, MeetsEveryClassOfTasks) {
   std::mt19937_64 random(5);
   for (const Chain& chain : {wrist_arm(), odd_arm()}) {
-    const auto sut = make_ipopt_solver(chain);
+    const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
     for (int axes = 0; axes < 8; ++axes) {
       for (const OrientationTask orientation : {OrientationTask::free, OrientationTask::full, OrientationTask::normal,
                                                 OrientationTask::sliding, OrientationTask::approach}) {
@@ -173,7 +173,7 @@ TEST(IpoptSolver, MeetsEveryClassOfTasks) {
 
 TEST(IpoptSolver, TurnsAnAttemptedOrientationAsNearAsThePositionAllows) {
   const Chain chain = planar_arm(3);
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   Request request = request_for(chain, pose_from_xyz_rpy({1.5, 0.8, 0}, {0, 0, 1.2}));
   request.task.orientation_required = false;
   Answer answer = sut->solve(request).value();
@@ -193,7 +193,7 @@ TEST(IpoptSolver, TurnsAnAttemptedOrientationAsNearAsThePositionAllows) {
 
 TEST(IpoptSolver, GivesTheNearestPoseOfATargetOutOfReach) {
   const Chain chain = planar_arm(3);
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   Request request = point_request(chain, 3.0, 4.0);  // 5 m away; the arm reaches 3
   request.time_limit = std::chrono::milliseconds(100);
   const Answer answer = sut->solve(request).value();
@@ -211,7 +211,7 @@ double processor_ms() {
 
 TEST(IpoptSolver, KeepsItsTimeLimit) {
   const Chain chain = odd_arm();
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   Request request = request_for(chain, pose_from_xyz_rpy({30, 0, 0}, {0, 0, 0}));
   std::vector<double> ms;
   for (int round = 0; round < 21; ++round) {
@@ -232,7 +232,7 @@ TEST(IpoptSolver, SolvesAChainThatCannotMove) {
   Chain chain = planar_arm(2);
   const std::vector<double> fixed = {0.3, 0.4};
   chain = chain.with_limits(fixed, fixed).value();
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   const Request there = request_for(chain, pose_at(chain, {0.3, 0.4}));
   expect_sound(chain, there, sut->solve(there).value());
   EXPECT_TRUE(sut->solve(there)->solved);
@@ -247,7 +247,7 @@ TEST(IpoptSolver, SolvesWithOneJointHeldByItsLimits) {
   std::vector<double> upper(wide.upper().begin(), wide.upper().end());
   lower[3] = upper[3] = 0.7;
   const Chain chain = wide.with_limits(lower, upper).value();
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   std::mt19937_64 random(8);
   for (int round = 0; round < 20; ++round) {
     const Request request = request_for(chain, pose_at(chain, random_posture(chain, random)));
@@ -259,7 +259,7 @@ TEST(IpoptSolver, SolvesWithOneJointHeldByItsLimits) {
 
 TEST(IpoptSolver, MeetsATighterTolerance) {
   const Chain chain = odd_arm();
-  const auto sut = make_ipopt_solver(chain);
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
   std::mt19937_64 random(12);
   for (int round = 0; round < 20; ++round) {
     Request request = request_for(chain, pose_at(chain, random_posture(chain, random, 0.9)));
@@ -272,8 +272,9 @@ TEST(IpoptSolver, MeetsATighterTolerance) {
 
 TEST(IpoptSolver, AgreesWithItsOwnLinearSolver) {
   const Chain chain = wrist_arm();
-  const auto sut = make_ipopt_solver(chain);
-  const auto reference = make_ipopt_solver(chain, {.linear_solver = IpoptSettings::LinearSolver::mumps, .hessian = {}});
+  const auto sut = make_ipopt_solver(chain, ipopt_test::kClock, {});
+  const auto reference = make_ipopt_solver(chain, ipopt_test::kClock,
+                                           {.linear_solver = IpoptSettings::LinearSolver::mumps, .hessian = {}});
   std::mt19937_64 random(21);
   for (int round = 0; round < 20; ++round) {
     const Request request = request_for(chain, pose_at(chain, random_posture(chain, random, 0.8)));

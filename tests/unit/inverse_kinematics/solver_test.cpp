@@ -49,7 +49,9 @@ double apart(const Chain& chain, const JointValues& a, const JointValues& b) {
 
 class EveryMethod : public testing::TestWithParam<Method> {
  protected:
-  [[nodiscard]] std::unique_ptr<Solver> make(const Chain& chain) const { return make_solver(GetParam(), chain); }
+  [[nodiscard]] std::unique_ptr<Solver> make(const Chain& chain) const {
+    return make_solver(GetParam(), chain, test_arms::kClock);
+  }
 };
 
 TEST_P(EveryMethod, FindsPosturesOfPosesWithinTheLimits) {
@@ -153,6 +155,26 @@ TEST_P(EveryMethod, KeepsTheTimeLimit) {
   }
   // The best of many: a machine that does other things meanwhile is no fault of the search.
   EXPECT_LT(*std::min_element(over.begin(), over.end()), 4.0);
+}
+
+// An hour passes between any two readings of it.
+struct HastyClock final : Clock {
+  [[nodiscard]] Timestamp now() const CELL_RT override {
+    time = time + std::chrono::hours(1);
+    return time;
+  }
+  mutable Timestamp time{1};
+};
+
+TEST_P(EveryMethod, ATimeLimitIsMeasuredByTheClockThatWasGiven) {
+  const test_arms::Arm arm = test_arms::random_arm(8, 2);
+  Request request = request_for(arm.chain, Pose(Eigen::Translation3d(0.1, 100, 0)));
+  request.time_limit = milliseconds(2);
+  const HastyClock hasty;
+  EXPECT_TRUE(make_solver(GetParam(), arm.chain, hasty)->solve(request).value().timed_out);
+  request.time_limit = microseconds(1);
+  const ManualClock standing;
+  EXPECT_FALSE(make_solver(GetParam(), arm.chain, standing)->solve(request).value().timed_out);
 }
 
 TEST_P(EveryMethod, TargetsAtTheLimitsAreSolved) {
@@ -273,7 +295,7 @@ Chain boom(std::size_t links) {
 
 TEST(AutomaticSolver, RedundantBoomMeetsPositionAndHeadingAndBendsEvenly) {
   const Chain chain = boom(5);
-  const auto sut = make_solver(Method::automatic, chain);
+  const auto sut = make_solver(Method::automatic, chain, test_arms::kClock);
   Request request = request_for(
       chain, Pose(Eigen::Translation3d(4.0, 1.5, 0)) * Pose(Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitZ())));
   request.task = kinematics::task_of(InverseClass::edith, chain);
@@ -298,7 +320,7 @@ TEST(AutomaticSolver, FiveJointsAreToldWhichComponentsCannotBeMet) {
   const auto five = std::find_if(arms.begin(), arms.end(), [](const auto& arm) { return arm.name == "five-5"; });
   ASSERT_NE(five, arms.end());
   const Chain& chain = five->chain;
-  const auto sut = make_solver(Method::automatic, chain);
+  const auto sut = make_solver(Method::automatic, chain, test_arms::kClock);
   const Pose X_there = pose_at(chain, {0.4, 0.8, -1.1, 0.6, 0.3});
   Request request = request_for(chain, X_there);
   EXPECT_TRUE(sut->solve(request).value().solved) << "a pose that the arm happens to reach";
@@ -313,8 +335,8 @@ TEST(AutomaticSolver, FiveJointsAreToldWhichComponentsCannotBeMet) {
 TEST(AutomaticSolver, AnswersOfClosedFormsAreTheNearestOfAll) {
   const auto arms = test_arms::unseen_arms();
   const Chain& chain = arms[2].chain;  // PUMA 560
-  const auto sut = make_solver(Method::automatic, chain);
-  const auto fast = make_solver(Method::fast, chain);
+  const auto sut = make_solver(Method::automatic, chain, test_arms::kClock);
+  const auto fast = make_solver(Method::fast, chain, test_arms::kClock);
   for (const JointValues& there : test_arms::random_postures(chain, 50, 41)) {
     Request request = request_for(chain, pose_at(chain, there));
     const Answer answer = sut->solve(request).value();
