@@ -73,6 +73,28 @@ Result<LoadedCell> load(const GatewayOptions& options) {
   return std::move(*loaded);
 }
 
+// Who reads what the tick publishes, beside the owner. Workers are named as their threads.
+struct TickReaders {
+  explicit TickReaders(engine::Engine& engine)
+      : status(engine.subscribe("status")),
+        collisions(engine.subscribe("collisions")),
+        ranging(engine.subscribe("ranging")),
+        contacts(engine.subscribe("contacts")),
+        forces(engine.subscribe("forces")),
+        tcp_force(engine.subscribe("tcp-force")),
+        publisher(engine.subscribe("publisher")),
+        pictures(engine.subscribe("pictures")) {}
+
+  engine::TickReader& status;
+  engine::TickReader& collisions;
+  engine::TickReader& ranging;
+  engine::TickReader& contacts;
+  engine::TickReader& forces;
+  engine::TickReader& tcp_force;
+  engine::TickReader& publisher;
+  engine::TickReader& pictures;
+};
+
 }  // namespace
 
 // In the order in which they are made; they end in the reverse order.
@@ -88,6 +110,7 @@ struct Gateway::Parts {
   std::optional<Instance> instance;
   Watchdog watchdog{kLoopStandsStillAfter, {}};
   std::unique_ptr<engine::Engine> engine;
+  std::optional<TickReaders> readers;
   Board<CellState> board;
   PictureCounter picture_counter;
   std::unique_ptr<ScriptMessageReceiver> messages;
@@ -208,11 +231,11 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   // Both look at the same shapes.
   const auto solids = std::make_shared<geometry::SolidLibrary>();
   const Nanoseconds period = loop->options().period;
-  collisions = std::make_unique<CollisionWorker>(*engine, board, clock, period, solids);
-  ranging = std::make_unique<RangingWorker>(*engine, board, clock, period, solids);
-  contacts = std::make_unique<ContactWorker>(*engine, board, clock, period, solids);
-  forces = std::make_unique<ForceWorker>(*engine, board, clock, period, gravity_W);
-  tcp_force = std::make_unique<TcpForceWorker>(*engine, board, clock, period);
+  collisions = std::make_unique<CollisionWorker>(readers->collisions, board, clock, period, solids);
+  ranging = std::make_unique<RangingWorker>(readers->ranging, board, clock, period, solids);
+  contacts = std::make_unique<ContactWorker>(*engine, readers->contacts, board, clock, period, solids);
+  forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W);
+  tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period);
 }
 
 Result<void> Gateway::Parts::start_messages() {
@@ -223,8 +246,8 @@ Result<void> Gateway::Parts::start_messages() {
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
   auto outputs = make_outputs(queues, dds, instance->info().name);
   if (!outputs) return std::unexpected(outputs.error());
-  publisher = std::make_unique<Publisher>(*engine, board, collisions->board(), ranging->board(), forces->board(), clock,
-                                          loop->options().period, std::move(*outputs));
+  publisher = std::make_unique<Publisher>(readers->publisher, board, collisions->board(), ranging->board(),
+                                          forces->board(), clock, loop->options().period, std::move(*outputs));
   return {};
 }
 
@@ -235,7 +258,7 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
   if (!outputs) return std::unexpected(outputs.error());
   renderer = std::make_unique<RenderService>(
       RenderService::Options{settings, headless, std::move(*outputs), {}},
-      SceneSource::Boards{*engine, board, collisions->board(), ranging->board(), forces->board(), clock},
+      SceneSource::Boards{readers->pictures, board, collisions->board(), ranging->board(), forces->board(), clock},
       picture_counter);
   return {};
 }
@@ -320,7 +343,7 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
   const std::shared_ptr<const CellState> cell_state = board.latest();
   const std::vector<engine::QueueStatus> queues_now = thread_queues(*cell_state);
   const std::scoped_lock lock(answering);
-  const engine::TickState& tick = engine->status_view();
+  const engine::TickState& tick = readers->status.newest();
   const std::span<const RobotState> robots = status_builder.build(*cell_state, tick);
   const Timestamp now = clock.now();
   look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *cell_state, tick,
@@ -331,7 +354,7 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
 std::string Gateway::Parts::status() {
   const std::shared_ptr<const CellState> cell_state = board.latest();
   const std::scoped_lock lock(answering);
-  const engine::TickState& tick = engine->status_view();
+  const engine::TickState& tick = readers->status.newest();
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
   for (const PublishedOutput& output : publisher->outputs())
     outputs.emplace_back(output.output->name(), output.output->counters());
@@ -382,6 +405,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->queues = default_queues(options.instance);
   loaded->queues.apply_to(parts->queues);
   parts->engine = std::make_unique<engine::Engine>(parts->watchdog);
+  parts->readers.emplace(*parts->engine);
   const DdsOutputConfig dds = loaded->dds;
   const PictureSettings pictures = loaded->pictures;
   const WebSettings web = loaded->web;

@@ -55,10 +55,10 @@ void take_efforts(const ForceState& forces, std::span<RobotState> robots) {
   }
 }
 
-Publisher::Publisher(engine::Engine& engine, const Board<CellState>& board, const ProximityBoard& proximity,
+Publisher::Publisher(engine::TickReader& ticks, const Board<CellState>& board, const ProximityBoard& proximity,
                      const Board<RangeReadings>& ranges, const Board<ForceState>& forces, const Clock& clock,
                      Nanoseconds tick_period, std::vector<PublishedOutput> outputs)
-    : engine_(engine),
+    : ticks_(ticks),
       board_(board),
       forces_(forces),
       clock_(clock),
@@ -79,7 +79,7 @@ void Publisher::loop(const std::stop_token& stop) {
     const Timestamp now = clock_.now();
     const Timestamp due = std::min(publish_due(now), now + kLongestSleep);
     // The first tick at or after the due time, and a little later.
-    const Timestamp tick = engine_.publisher_view().time;
+    const Timestamp tick = ticks_.newest().time;
     const std::int64_t periods =
         tick.known() ? std::max<std::int64_t>(1, (due - tick + tick_period_ / 2) / tick_period_) : 0;
     sleep_until(tick.known() ? std::max(tick + periods * tick_period_ + kBehindTick, now + kBehindTick) : due);
@@ -104,7 +104,7 @@ Timestamp Publisher::publish_due(Timestamp now) {
       std::any_of(due_.begin(), due_.end(), [now, this](Timestamp due) { return due <= now + tick_period_ / 2; });
   if (any_due) {
     const std::shared_ptr<const CellState> cell_state = board_.latest();
-    const engine::TickState& state = engine_.publisher_view();
+    const engine::TickState& state = ticks_.newest();
     const std::span<const RobotState> robots = builder_.build(*cell_state, state);
     for (const std::string& text : range_watch_.look(now, robots, cell_state->robots))
       log_warning("joint.range", "{}", text);

@@ -14,7 +14,7 @@
 #include "app/snapshot/range_readings.hpp"
 #include "app/snapshot/robot_states.hpp"
 #include "rt_core/base/time.hpp"
-#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/ports/camera_state.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
@@ -54,7 +54,7 @@ void take_efforts(const ForceState& forces, std::span<RobotState> robots);
 class Publisher {
  public:
   // All but the outputs are not owned and outlive the publisher.
-  Publisher(engine::Engine& engine, const Board<CellState>& board, const ProximityBoard& proximity,
+  Publisher(engine::TickReader& ticks, const Board<CellState>& board, const ProximityBoard& proximity,
             const Board<RangeReadings>& ranges, const Board<ForceState>& forces, const Clock& clock,
             Nanoseconds tick_period, std::vector<PublishedOutput> outputs);
   ~Publisher();
@@ -69,7 +69,7 @@ class Publisher {
   Timestamp publish_due(Timestamp now);
   void select_sending(const CellState& cell_state, std::span<const RobotState> robots);
 
-  engine::Engine& engine_;
+  engine::TickReader& ticks_;
   const Board<CellState>& board_;
   const Board<ForceState>& forces_;
   const Clock& clock_;

@@ -64,7 +64,7 @@ CellOwner::CellOwner(Parts parts)
       world_(cell_, *fleet_, motion_, programs_, [this] { publish_state(); }),
       robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
       sensing_(cell_, std::move(parts.collision)),
-      haptics_({cell_, *fleet_, parts.engine, clock_, parts.instance, std::move(parts.haptics)}),
+      haptics_({cell_, *fleet_, clock_, parts.instance, std::move(parts.haptics)}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
                [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
       interaction_(cell_, names_, haptics_, forces_),

@@ -38,6 +38,7 @@ Fleet::Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamCon
              const Clock& clock, int stream_priority)
     : cell_(cell),
       engine_(engine),
+      ticks_(engine.subscribe("owner")),
       streams_(std::move(streams)),
       clock_(clock),
       stream_priority_(stream_priority),
@@ -84,7 +85,7 @@ void Fleet::wait_for_tick() const {
 
 Result<void> Fleet::settle() {
   const Timestamp deadline = clock_.now() + kTickPatience;
-  while (engine_.owner_view().commands_done < last_command_) {
+  while (ticks_.newest().commands_done < last_command_) {
     if (clock_.now() > deadline) return std::unexpected(tick_stands_still());
     wait_for_tick();
   }
@@ -217,17 +218,17 @@ Result<void> Fleet::check_simulated(std::string_view id) const {
 
 motion::MotionState Fleet::motion(std::string_view id) {
   const FleetRobot* robot = find(id);
-  return robot == nullptr ? motion::MotionState() : engine_.owner_view().robots[robot->slot].motion;
+  return robot == nullptr ? motion::MotionState() : ticks_.newest().robots[robot->slot].motion;
 }
 
 bool Fleet::knows_position(std::string_view id) {
   const FleetRobot* robot = find(id);
   if (robot == nullptr) return false;
-  return !robot->online || engine_.owner_view().robots[robot->slot].state == DataState::fresh;
+  return !robot->online || ticks_.newest().robots[robot->slot].state == DataState::fresh;
 }
 
 std::span<const JointValues> Fleet::positions() {
-  const engine::TickState& view = engine_.owner_view();
+  const engine::TickState& view = ticks_.newest();
   for (const auto& [id, robot] : robots_) {
     JointValues& out = positions_[robot.slot];
     if (view.commands_done < robot.put_command) {
@@ -246,7 +247,7 @@ Result<void> Fleet::set_chain(std::string_view id, std::shared_ptr<const kinemat
   const auto sent = send(command);
   if (!sent) return std::unexpected(sent.error());
   chains_.replaced(command.slot, std::move(chain), *sent, find(id)->newest_move);
-  chains_.release(engine_.owner_view());
+  chains_.release(ticks_.newest());
   return {};
 }
 

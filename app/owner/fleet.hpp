@@ -37,7 +37,8 @@ struct FleetRobot {
 // Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.
 class Fleet final : public MotionPort {
  public:
-  // `stream_priority`: SCHED_FIFO priority of the streams' threads; 0: none.
+  // Before the first tick, since it subscribes to the engine. `stream_priority`: SCHED_FIFO priority of the streams'
+  // threads; 0: none.
   Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
         const Clock& clock, int stream_priority);
   // Closes all streams.
@@ -85,6 +86,8 @@ class Fleet final : public MotionPort {
   }
   [[nodiscard]] bool has_stream(std::string_view id) const { return streams_.find(id) != streams_.end(); }
 
+  // The newest state that the tick published; valid until the next call of any function of the fleet.
+  [[nodiscard]] const engine::TickState& tick() { return ticks_.newest(); }
   // Any command but add_move; waits while the tick's queue is full. Its id.
   Result<std::uint64_t> send(const engine::Command& command);
   // Waits until the tick has carried out everything that was sent so far.
@@ -105,6 +108,7 @@ class Fleet final : public MotionPort {
 
   Cell& cell_;
   engine::Engine& engine_;
+  engine::TickReader& ticks_;
   std::map<std::string, StreamConfig, std::less<>> streams_;
   std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_streams_;
   const Clock& clock_;

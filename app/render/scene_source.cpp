@@ -41,7 +41,7 @@ void SceneSource::take_conditions(const engine::TickState& tick, Timestamp now) 
 
 bool SceneSource::refresh() {
   std::shared_ptr<const CellState> picture = boards_.pictures.latest();
-  const engine::TickState& tick = boards_.engine.picture_view();
+  const engine::TickState& tick = boards_.ticks.newest();
   if (!picture || !picture->display || !tick.time.known() || !take_posture(*picture->cell, tick)) return false;
   picture_ = std::move(picture);
   cell_ = picture_->cell;

@@ -11,7 +11,7 @@
 #include "app/snapshot/range_readings.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
-#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/ports/picture_request.hpp"
 #include "rt_core/scene/panes.hpp"
 #include "rt_core/scene/scene_builder.hpp"
@@ -21,12 +21,12 @@ namespace cellmirror::app {
 // Of the cell at `poses`, as `request` says; also used without a gateway.
 [[nodiscard]] Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const PictureRequest& request);
 
-// One thread, which alone reads the engine's picture_view().
+// One thread, which alone reads `ticks`.
 class SceneSource {
  public:
   // Not owned; they outlive the source.
   struct Boards {
-    engine::Engine& engine;
+    engine::TickReader& ticks;
     const Board<CellState>& pictures;
     const ProximityBoard& proximity;
     const Board<RangeReadings>& ranges;

@@ -23,7 +23,8 @@ bool any_moves(const engine::TickState& tick, const CellState& cell_state) {
 OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
     : observer_(std::move(observer)),
       watchdog_(kNeverWatched, {}),
-      engine_(watchdog_, engine::Readers::owner),
+      engine_(watchdog_),
+      ticks_(engine_.subscribe("observer")),
       period_(std::llround(1e9 / cell.loop.rate_hz)) {
   clock_.set(kBegin);
   context_.period = period_;
@@ -74,7 +75,7 @@ void OffLineGateway::tick() {
   ++context_.cycle;
   const std::shared_ptr<const CellState> cell_state = board_.latest();
   if (!cell_state) return;
-  const engine::TickState& state = engine_.owner_view();
+  const engine::TickState& state = ticks_.newest();
   robots_move_ = any_moves(state, *cell_state);
   observer_.tick(cell_state, state);
 }

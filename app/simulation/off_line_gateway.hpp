@@ -55,6 +55,7 @@ class OffLineGateway {
   ManualClock clock_;
   Watchdog watchdog_;
   engine::Engine engine_;
+  engine::TickReader& ticks_;
   Board<CellState> board_;
   Nanoseconds period_;
   CycleContext context_;

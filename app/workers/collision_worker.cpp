@@ -32,14 +32,12 @@ void log_event(const ProximityEvent& event) {
 
 }  // namespace
 
-CollisionWorker::CollisionWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+CollisionWorker::CollisionWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                                  Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
     : cell_states_(cell_states),
       clock_(clock),
       derivation_(std::move(solids)),
-      worker_(
-          "collisions", *this, [&engine]() -> const engine::TickState& { return engine.collision_view(); }, cell_states,
-          clock, tick_period) {}
+      worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 bool CollisionWorker::wanted(const CellState& cell_state) {
   const bool wanted = cell_state.collision->active &&

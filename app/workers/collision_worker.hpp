@@ -15,7 +15,7 @@
 #include "app/workers/tick_worker.hpp"
 #include "rt_core/collision/checker.hpp"
 #include "rt_core/collision/pairs.hpp"
-#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/geometry/solid.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
@@ -24,7 +24,7 @@ namespace cellmirror::app {
 class CollisionWorker final : private TickJob {
  public:
   // All but `solids` are not owned and outlive the worker.
-  CollisionWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+  CollisionWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                   Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids);
 
   // Any thread.

@@ -18,14 +18,13 @@ void set_posture(const engine::RobotTickState& robot, haptics::ContactModel& fou
 
 }  // namespace
 
-ContactWorker::ContactWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
-                             Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
+ContactWorker::ContactWorker(engine::Engine& engine, engine::TickReader& ticks, const Board<CellState>& cell_states,
+                             const Clock& clock, Nanoseconds tick_period,
+                             std::shared_ptr<geometry::SolidLibrary> solids)
     : engine_(engine),
       clock_(clock),
       derivation_(std::move(solids)),
-      worker_(
-          "contacts", *this, [&engine]() -> const engine::TickState& { return engine.contact_view(); }, cell_states,
-          clock, tick_period) {}
+      worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 bool ContactWorker::wanted(const CellState& cell_state) {
   const bool wanted = std::ranges::any_of(cell_state.haptics, &HapticSnapshot::online);

@@ -25,8 +25,8 @@ namespace cellmirror::app {
 class ContactWorker final : private TickJob {
  public:
   // All but `solids` are not owned and outlive the worker.
-  ContactWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
-                Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids);
+  ContactWorker(engine::Engine& engine, engine::TickReader& ticks, const Board<CellState>& cell_states,
+                const Clock& clock, Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids);
 
   // Any thread.
   [[nodiscard]] ContactReport report() const;

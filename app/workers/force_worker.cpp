@@ -7,14 +7,12 @@
 
 namespace cellmirror::app {
 
-ForceWorker::ForceWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+ForceWorker::ForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                          Nanoseconds tick_period, const Eigen::Vector3d& gravity_W)
     : clock_(clock),
       gravity_W_(gravity_W),
       computation_(gravity_W),
-      worker_(
-          "forces", *this, [&engine]() -> const engine::TickState& { return engine.force_view(); }, cell_states, clock,
-          tick_period) {}
+      worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 void ForceWorker::take_cell(const CellState& cell_state) {
   if (!computation_.take_cell(cell_state.cell)) return;

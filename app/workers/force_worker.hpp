@@ -13,7 +13,7 @@
 #include "app/workers/result_age.hpp"
 #include "app/workers/tick_worker.hpp"
 #include "rt_core/dynamics/force_computation.hpp"
-#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
 namespace cellmirror::app {
@@ -21,8 +21,8 @@ namespace cellmirror::app {
 class ForceWorker final : private TickJob {
  public:
   // But for gravity_W (m/s2, in the world) not owned; they outlive the worker.
-  ForceWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock, Nanoseconds tick_period,
-              const Eigen::Vector3d& gravity_W);
+  ForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
+              Nanoseconds tick_period, const Eigen::Vector3d& gravity_W);
 
   // Any thread.
   [[nodiscard]] ForceReport report() const;

@@ -6,13 +6,9 @@
 
 namespace cellmirror::app {
 
-RangingWorker::RangingWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+RangingWorker::RangingWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                              Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
-    : clock_(clock),
-      finder_(std::move(solids)),
-      worker_(
-          "ranging", *this, [&engine]() -> const engine::TickState& { return engine.ranging_view(); }, cell_states,
-          clock, tick_period) {}
+    : clock_(clock), finder_(std::move(solids)), worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 bool RangingWorker::wanted(const CellState& cell_state) {
   const bool wanted =

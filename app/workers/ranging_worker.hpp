@@ -13,7 +13,7 @@
 #include "app/snapshot/range_report.hpp"
 #include "app/workers/result_age.hpp"
 #include "app/workers/tick_worker.hpp"
-#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/geometry/solid.hpp"
 #include "rt_core/ranging/range_finder.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
@@ -23,7 +23,7 @@ namespace cellmirror::app {
 class RangingWorker final : private TickJob {
  public:
   // All but `solids` are not owned and outlive the worker.
-  RangingWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+  RangingWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                 Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids);
 
   // Any thread.

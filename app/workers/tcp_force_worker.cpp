@@ -46,11 +46,9 @@ TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick
   return out;
 }
 
-TcpForceWorker::TcpForceWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+TcpForceWorker::TcpForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                                Nanoseconds tick_period)
-    : worker_(
-          "tcp-force", *this, [&engine]() -> const engine::TickState& { return engine.tcp_force_view(); }, cell_states,
-          clock, tick_period) {}
+    : worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 void TcpForceWorker::run(const CellState& cell_state, const engine::TickState& tick) {
   TcpForce force = tcp_force_of(cell_state, tick);

@@ -6,7 +6,7 @@
 #include "app/snapshot/cell_state.hpp"
 #include "app/workers/tick_worker.hpp"
 #include "ipc/wire/tcp_force_block.hpp"
-#include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 
 namespace cellmirror::app {
 
@@ -16,7 +16,7 @@ namespace cellmirror::app {
 class TcpForceWorker final : private TickJob {
  public:
   // All are not owned and outlive the worker.
-  TcpForceWorker(engine::Engine& engine, const Board<CellState>& cell_states, const Clock& clock,
+  TcpForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                  Nanoseconds tick_period);
 
  private:

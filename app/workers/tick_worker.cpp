@@ -1,7 +1,6 @@
 #include "app/workers/tick_worker.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "rt_core/rt/scheduling.hpp"
 
@@ -15,11 +14,10 @@ constexpr int kMostDoublings = 4;
 
 }  // namespace
 
-TickWorker::TickWorker(std::string name, TickJob& job, std::function<const engine::TickState&()> view,
-                       const Board<CellState>& board, const Clock& clock, Nanoseconds tick_period)
-    : name_(std::move(name)),
-      job_(job),
-      view_(std::move(view)),
+TickWorker::TickWorker(TickJob& job, engine::TickReader& ticks, const Board<CellState>& board, const Clock& clock,
+                       Nanoseconds tick_period)
+    : job_(job),
+      ticks_(ticks),
       board_(board),
       clock_(clock),
       tick_period_(tick_period),
@@ -49,7 +47,7 @@ void TickWorker::rest() {
 }
 
 void TickWorker::loop(const std::stop_token& stop) {
-  set_thread_name(name_);
+  set_thread_name(ticks_.name());
   std::uint64_t done = 0;
   bool first = true;
   int tries = 0;
@@ -61,7 +59,7 @@ void TickWorker::loop(const std::stop_token& stop) {
       rest();
       continue;
     }
-    const engine::TickState& tick = view_();
+    const engine::TickState& tick = ticks_.newest();
     if (!tick.time.known() || (!first && tick.tick == done)) {
       wait_for_tick(tick, tries++);
       continue;

@@ -4,14 +4,12 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
-#include <string>
 #include <thread>
 
 #include "app/snapshot/cell_state.hpp"
 #include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/time.hpp"
-#include "rt_core/engine/tick_state.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/rt/wake_signal.hpp"
 
 namespace cellmirror::app {
@@ -29,9 +27,9 @@ class TickWorker {
  public:
   static constexpr Nanoseconds kIdle{20'000'000};
 
-  // `view` gives the newest tick; it, `job`, `board` and `clock` outlive the worker.
-  TickWorker(std::string name, TickJob& job, std::function<const engine::TickState&()> view,
-             const Board<CellState>& board, const Clock& clock, Nanoseconds tick_period);
+  // All are not owned and outlive the worker. Its thread has the name of the reader.
+  TickWorker(TickJob& job, engine::TickReader& ticks, const Board<CellState>& board, const Clock& clock,
+             Nanoseconds tick_period);
   // Waits for the end of the job under way.
   ~TickWorker();
   TickWorker(const TickWorker&) = delete;
@@ -50,9 +48,8 @@ class TickWorker {
   void count_run();
   void rest();
 
-  std::string name_;
   TickJob& job_;
-  std::function<const engine::TickState&()> view_;
+  engine::TickReader& ticks_;
   const Board<CellState>& board_;
   const Clock& clock_;
   Nanoseconds tick_period_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "rt_core/base/contract.hpp"
 
@@ -29,14 +30,20 @@ void forget_samples(Fifo<JointSample, kSampleQueue>& queue) CELL_RT {
 
 }  // namespace
 
-Engine::Engine(Watchdog& watchdog, Readers readers)
-    : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog), readers_(readers) {
+Engine::Engine(Watchdog& watchdog) : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog) {
   for (std::size_t i = 0; i < kMoveCommands; ++i) free_moves_.push(static_cast<std::uint16_t>(i));
   inlets_.reserve(kMaxRobots);
   for (std::size_t i = 0; i < kMaxRobots; ++i) inlets_.push_back(std::make_unique<Inlet>());
 }
 
+TickReader& Engine::subscribe(std::string name) {
+  CELLMIRROR_EXPECTS(!started_.load(std::memory_order_relaxed));
+  return readers_.emplace_back(std::move(name), states_.subscribe());
+}
+
 void Engine::run(const CycleContext& context) CELL_RT {
+  // Relaxed: only the check of a contract reads it.
+  started_.store(true, std::memory_order_relaxed);
   head_.tick = context.cycle;
   head_.time = context.now;
   head_.missed_periods += context.missed;
@@ -48,8 +55,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
     if (slot.used()) slot.update(context.now);
   }
   follow_masters(context, dt);
-  publish(for_owner_);
-  if (readers_ == Readers::all) publish_to_workers();
+  if (states_.has_readers()) publish();
   record_tick(context, commands, samples);
   watchdog_.beat();
 }
@@ -144,26 +150,14 @@ int Engine::step_haptics(const CycleContext& context) CELL_RT {
   return taken;
 }
 
-void Engine::publish_to_workers() CELL_RT {
-  publish(for_publisher_);
-  publish(for_status_);
-  publish(for_collision_);
-  publish(for_ranging_);
-  publish(for_contacts_);
-  publish(for_forces_);
-  publish(for_tcp_force_);
-  publish(for_pictures_);
-}
-
-void Engine::publish(Latest<TickState>& edge) CELL_RT {
-  TickState& out = edge.writable();
+void Engine::publish() CELL_RT {
+  TickState& out = states_.writable();
   out.tick = head_.tick;
   out.time = head_.time;
   out.missed_periods = head_.missed_periods;
   out.commands_done = head_.commands_done;
   out.commands_refused = head_.commands_refused;
-  // Each buffer of the edge remembers an older state of its own, so a slot that is not used any more has to be cleared
-  // in every one of them.
+  // Each buffer holds an older state, so a slot that is no longer used is cleared in each of them.
   for (std::size_t i = 0; i < kMaxRobots; ++i) {
     if (slots_[i].used()) {
       out.robots[i] = slots_[i].state();
@@ -172,7 +166,7 @@ void Engine::publish(Latest<TickState>& edge) CELL_RT {
     }
   }
   haptics_.publish(out.haptics);
-  edge.publish();
+  states_.publish();
 }
 
 void Engine::record_tick(const CycleContext& context, int commands, int samples) CELL_RT {

@@ -1,8 +1,9 @@
 // The tick: in, update, limit, out.
 #pragma once
 
-#include <array>
+#include <atomic>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,8 +15,10 @@
 #include "rt_core/engine/flight_record.hpp"
 #include "rt_core/engine/haptic_channels.hpp"
 #include "rt_core/engine/robot_slot.hpp"
+#include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/rt/broadcast.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
 #include "rt_core/rt/fifo.hpp"
 #include "rt_core/rt/latest.hpp"
@@ -41,21 +44,18 @@ struct QueueStatus {
   std::uint64_t dropped = 0;
 };
 
-// Who is there to look at what the tick publishes.
-enum class Readers : std::uint8_t {
-  all,
-  owner,  // off line: publishing to the others as well would take longer than all the rest of the tick
-};
-
-// Made with all the memory it will ever use. Threads: run() belongs to the tick; send() to the owner of the cell;
-// owner_view() to the owner; publisher_view() to the publisher; status_view() to the thread that answers questions;
-// collision_view(), ranging_view(), contact_view(), force_view(), tcp_force_view() and picture_view() to the workers of
-// that name, contact_inlet() to that of contacts; each inlet() to the one driver thread of its stream; the rest to any
-// thread.
+// Holds all the memory that it will ever use once its readers have subscribed. Threads: run() belongs to the tick;
+// send() to the owner of the cell; subscribe() to the thread that sets up; each reader to a thread of its own;
+// contact_inlet() to the worker that finds contacts; each inlet() to the one driver thread of its stream; the rest to
+// any thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick.
-  explicit Engine(Watchdog& watchdog, Readers readers = Readers::all);
+  explicit Engine(Watchdog& watchdog);
+
+  // Before the first tick. The reader belongs to the engine. The tick publishes once for all readers, and not at all
+  // where there are none. `name`: of the reader, for people and for the thread that reads.
+  TickReader& subscribe(std::string name);
 
   void run(const CycleContext& context) CELL_RT override;
 
@@ -68,17 +68,6 @@ class Engine final : public Cycle {
   [[nodiscard]] JointSampleSink& inlet(std::size_t slot);
   // Where the surroundings of the instrument of a haptic channel are put.
   [[nodiscard]] Latest<haptics::ContactModel>& contact_inlet(std::size_t channel) { return haptics_.inlet(channel); }
-
-  // The newest published state. The reference stays valid and unchanged until the same reader asks again.
-  [[nodiscard]] const TickState& owner_view() { return for_owner_.read().value; }
-  [[nodiscard]] const TickState& publisher_view() { return for_publisher_.read().value; }
-  [[nodiscard]] const TickState& status_view() { return for_status_.read().value; }
-  [[nodiscard]] const TickState& collision_view() { return for_collision_.read().value; }
-  [[nodiscard]] const TickState& ranging_view() { return for_ranging_.read().value; }
-  [[nodiscard]] const TickState& contact_view() { return for_contacts_.read().value; }
-  [[nodiscard]] const TickState& force_view() { return for_forces_.read().value; }
-  [[nodiscard]] const TickState& tcp_force_view() { return for_tcp_force_.read().value; }
-  [[nodiscard]] const TickState& picture_view() { return for_pictures_.read().value; }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -100,8 +89,7 @@ class Engine final : public Cycle {
   bool apply_to_robot(const Command& command) CELL_RT;
   void move_robots(const CycleContext& context, double dt) CELL_RT;
   void follow_masters(const CycleContext& context, double dt) CELL_RT;
-  void publish(Latest<TickState>& edge) CELL_RT;
-  void publish_to_workers() CELL_RT;
+  void publish() CELL_RT;
   void record_tick(const CycleContext& context, int commands, int samples) CELL_RT;
   void record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT;
 
@@ -114,19 +102,12 @@ class Engine final : public Cycle {
   std::vector<motion::Move> moves_;
   Fifo<std::uint16_t, kMoveCommands> free_moves_;
   std::vector<std::unique_ptr<Inlet>> inlets_;
-  Latest<TickState> for_owner_;
-  Latest<TickState> for_publisher_;
-  Latest<TickState> for_status_;
-  Latest<TickState> for_collision_;
-  Latest<TickState> for_ranging_;
-  Latest<TickState> for_contacts_;
-  Latest<TickState> for_forces_;
-  Latest<TickState> for_tcp_force_;
-  Latest<TickState> for_pictures_;
+  Broadcast<TickState> states_;
+  std::deque<TickReader> readers_;
+  std::atomic<bool> started_{false};  // by the first tick
   HapticChannels haptics_;
   Couplings couplings_;
   Watchdog& watchdog_;
-  Readers readers_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;
 };

@@ -24,11 +24,7 @@ constexpr std::chrono::milliseconds kResetPatience{30};
 }  // namespace
 
 HapticService::HapticService(Parts parts)
-    : cell_(parts.cell),
-      fleet_(parts.fleet),
-      engine_(parts.engine),
-      clock_(parts.clock),
-      instance_(std::move(parts.instance)) {
+    : cell_(parts.cell), fleet_(parts.fleet), clock_(parts.clock), instance_(std::move(parts.instance)) {
   for (RobotHaptic& device : parts.devices) add(std::move(device));
   fleet_.set_device_streams([this](std::string_view robot) -> std::shared_ptr<JointStream> {
     const auto found = devices_.find(robot);
@@ -207,7 +203,7 @@ Result<void> HapticService::reset(std::string_view robot) {
   Device& device = found->second;
   if (!device.online)
     return fail(fmt::format("the robot {} is not online", robot), fmt::format("ROBOT {} online", robot));
-  const HapticState before = engine_.owner_view().haptics[device.channel];
+  const HapticState before = fleet_.tick().haptics[device.channel];
   if (before.phase != HapticPhase::faulted) return {};
   follow_process(device, before);
   follow_cell(device);
@@ -227,7 +223,7 @@ Result<HapticState> HapticService::try_reset(Device& device) {
   auto sent = fleet_.send(command_for(device, engine::CommandKind::reset_haptic));
   if (!sent) return std::unexpected(sent.error());
   if (auto settled = fleet_.settle(); !settled) return std::unexpected(settled.error());
-  return engine_.owner_view().haptics[device.channel];
+  return fleet_.tick().haptics[device.channel];
 }
 
 void HapticService::follow() {
@@ -236,7 +232,7 @@ void HapticService::follow() {
   last_check_ = now;
   for (auto& [robot, device] : devices_) {
     if (!device.segment) continue;
-    const HapticState state = engine_.owner_view().haptics[device.channel];
+    const HapticState state = fleet_.tick().haptics[device.channel];
     follow(device, state);
   }
 }

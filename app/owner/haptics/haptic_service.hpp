@@ -30,7 +30,6 @@ class HapticService {
   struct Parts {
     const Cell& cell;
     Fleet& fleet;
-    engine::Engine& engine;
     const Clock& clock;
     std::string instance;
     std::vector<RobotHaptic> devices;  // of the cell file
@@ -102,7 +101,6 @@ class HapticService {
 
   const Cell& cell_;
   Fleet& fleet_;
-  engine::Engine& engine_;
   const Clock& clock_;
   std::string instance_;
   std::map<std::string, Device, std::less<>> devices_;

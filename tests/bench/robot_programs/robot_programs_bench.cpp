@@ -85,7 +85,7 @@ class EngineMotion final : public program::ProgramMotion {
   }
   [[nodiscard]] std::size_t moving() {
     return static_cast<std::size_t>(
-        std::ranges::count_if(engine_->owner_view().robots, [](const auto& robot) { return robot.motion.moving; }));
+        std::ranges::count_if(ticks_.newest().robots, [](const auto& robot) { return robot.motion.moving; }));
   }
 
   Result<void> check(std::string_view /*robot*/) const override { return {}; }
@@ -137,7 +137,7 @@ class EngineMotion final : public program::ProgramMotion {
     return static_cast<std::size_t>(std::atoi(std::string(robot.substr(1)).c_str()));
   }
   [[nodiscard]] const engine::RobotTickState& state(std::string_view robot) const {
-    return engine_->owner_view().robots[slot(robot)];
+    return ticks_.newest().robots[slot(robot)];
   }
   [[nodiscard]] Pose tcp(const JointValues& q) const { return kinematics::forward(chain_, std::span(q).first(7)); }
   static Pose relative(const Pose& X, const Pose& by) {
@@ -181,6 +181,7 @@ class EngineMotion final : public program::ProgramMotion {
   kinematics::Chain chain_ = motion::test_arms::panda();
   Watchdog watchdog_{std::chrono::seconds(1), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
+  engine::TickReader& ticks_ = engine_->subscribe("bench");
   RobotParameters parameters_;
   std::array<JointValues, kRobots> ends_{};
   std::array<std::uint32_t, kRobots> ids_{};

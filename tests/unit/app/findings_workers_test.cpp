@@ -86,6 +86,7 @@ struct FindingsWorkersTest : testing::Test {
   SystemClock clock;
   Watchdog watchdog{std::chrono::seconds(100), {}};
   engine::Engine engine{watchdog};
+  engine::TickReader& ticks = engine.subscribe("test");
   std::uint64_t cycle = 0;
   std::optional<Cell> cell;
   collision::Settings settings;
@@ -102,7 +103,7 @@ struct CollisionWorkerTest : FindingsWorkersTest {
     const auto found = sut.board().latest();
     return found && found->pairs == 0 && found->touching.empty() && found->near.empty();
   }
-  CollisionWorker sut{engine, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
+  CollisionWorker sut{ticks, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
 };
 
 TEST_F(CollisionWorkerTest, ShowsNothingWhileTestsAreSwitchedOff) {
@@ -157,7 +158,7 @@ struct ContactWorkerTest : FindingsWorkersTest {
 
   SilentDevice device;
   std::shared_ptr<const haptics::Instrument> instrument;
-  ContactWorker sut{engine, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
+  ContactWorker sut{engine, ticks, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
 };
 
 TEST_F(ContactWorkerTest, FindsThePlanesForTheNewToolCentrePoint) {
@@ -169,7 +170,7 @@ TEST_F(ContactWorkerTest, FindsThePlanesForTheNewToolCentrePoint) {
 }
 
 TEST_F(FindingsWorkersTest, ForcesOfTheLastRobotGoWithIt) {
-  ForceWorker sut(engine, cell_states, clock, kTick, Eigen::Vector3d(0, 0, -9.80665));
+  ForceWorker sut(ticks, cell_states, clock, kTick, Eigen::Vector3d(0, 0, -9.80665));
   ASSERT_TRUE(comes([&] {
     const auto found = sut.board().latest();
     return found && found->robots.size() == 1;

@@ -47,12 +47,13 @@ class RenderServiceTest : public testing::Test {
   SystemClock clock_;
   Watchdog watchdog_{std::chrono::seconds(10), {}};
   engine::Engine engine_{watchdog_};
+  engine::TickReader& ticks_ = engine_.subscribe("test");
   Board<CellState> pictures_;
   ProximityBoard proximity_;
   Board<RangeReadings> ranges_;
   Board<ForceState> forces_;
   PictureCounter updates_;
-  SceneSource::Boards boards_{engine_, pictures_, proximity_, ranges_, forces_, clock_};
+  SceneSource::Boards boards_{ticks_, pictures_, proximity_, ranges_, forces_, clock_};
   std::atomic<int> tries_{0};
 };
 

@@ -9,7 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "rt_core/rt/latest.hpp"
+#include "rt_core/engine/tick_reader.hpp"
+#include "rt_core/rt/broadcast.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -49,14 +50,13 @@ struct TickWorkerTest : testing::Test, TickJob {
     news.notify_all();
   }
   std::unique_ptr<TickWorker> start() {
-    return std::make_unique<TickWorker>(
-        "test", *this, [this]() -> const engine::TickState& { return ticks.read().value; }, board, clock,
-        std::chrono::milliseconds(1));
+    return std::make_unique<TickWorker>(*this, reader, board, clock, std::chrono::milliseconds(1));
   }
 
   SystemClock clock;
   Board<CellState> board;
-  Latest<engine::TickState> ticks;
+  Broadcast<engine::TickState> ticks;
+  engine::TickReader reader{"test", ticks.subscribe()};
   std::mutex mutex;
   std::condition_variable news;
   bool want = true;

@@ -59,10 +59,10 @@ class CouplingTest : public testing::Test {
 
   // Whether the tick took the command.
   bool accepts(const Command& command) {
-    const std::uint64_t before = sut_->owner_view().commands_refused;
+    const std::uint64_t before = ticks_.newest().commands_refused;
     sut_->send(command);
     tick();
-    return sut_->owner_view().commands_refused == before;
+    return ticks_.newest().commands_refused == before;
   }
 
   void tick(int count = 1) {
@@ -77,7 +77,7 @@ class CouplingTest : public testing::Test {
     }
   }
 
-  const RobotTickState& robot(std::uint8_t slot) { return sut_->owner_view().robots[slot]; }
+  const RobotTickState& robot(std::uint8_t slot) { return ticks_.newest().robots[slot]; }
   double position(std::uint8_t slot, std::size_t joint) { return robot(slot).joints[joint].position; }
 
   void mirror_master() {
@@ -96,6 +96,7 @@ class CouplingTest : public testing::Test {
 
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  TickReader& ticks_ = sut_->subscribe("test");
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
 };

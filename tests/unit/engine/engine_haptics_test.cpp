@@ -133,11 +133,13 @@ class EngineHapticsTest : public testing::Test {
     ASSERT_EQ(haptic().phase, HapticPhase::active);
   }
 
-  const HapticState& haptic() { return sut_->owner_view().haptics[kChannel]; }
-  const RobotTickState& robot() { return sut_->owner_view().robots[kSlot]; }
+  const HapticState& haptic() { return ticks_.newest().haptics[kChannel]; }
+  const RobotTickState& robot() { return ticks_.newest().robots[kSlot]; }
 
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  TickReader& ticks_ = sut_->subscribe("test");
+  TickReader& second_ = sut_->subscribe("second");
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
   std::uint64_t model_sequence_ = 0;
@@ -155,7 +157,7 @@ TEST_F(EngineHapticsTest, InstrumentFollowsTheHandAsAMirroredRobot) {
   EXPECT_NEAR((haptic().x_proxy - haptic().x_device).norm(), 0.0, 1e-6);
   EXPECT_EQ(haptic().slot, kSlot);
   EXPECT_EQ(haptic().device_writer, 4711U);
-  EXPECT_EQ(sut_->status_view().haptics[kChannel].samples, haptic().samples);
+  EXPECT_EQ(second_.newest().haptics[kChannel].samples, haptic().samples);
 }
 
 TEST_F(EngineHapticsTest, EveryTickIsAnsweredInTheSameTick) {
@@ -200,10 +202,10 @@ TEST_F(EngineHapticsTest, FaultTakesTheForceWithinTwoTicksAndStaysUntilReset) {
   EXPECT_EQ(haptic().phase, HapticPhase::faulted);
   EXPECT_EQ(haptic().fault, HapticFault::not_finite);
   EXPECT_EQ(device_.last.force_D, Eigen::Vector3d::Zero());
-  const std::uint64_t refused = sut_->owner_view().commands_refused;
+  const std::uint64_t refused = ticks_.newest().commands_refused;
   send(CommandKind::reset_haptic);
   run(1);
-  EXPECT_EQ(sut_->owner_view().commands_refused, refused + 1);  // the cause is still there
+  EXPECT_EQ(ticks_.newest().commands_refused, refused + 1);  // the cause is still there
   device_.sample.p_DH.y() = 0;
   run(50);
   EXPECT_EQ(haptic().phase, HapticPhase::faulted);
@@ -256,9 +258,9 @@ TEST_F(EngineHapticsTest, CommandsThatNameNothingAreRefused) {
   command.device = &device_;
   sut_->send(command);
   send(CommandKind::reset_haptic);
-  const std::uint64_t before = sut_->owner_view().commands_refused;
+  const std::uint64_t before = ticks_.newest().commands_refused;
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_refused, before + 3);
+  EXPECT_EQ(ticks_.newest().commands_refused, before + 3);
   EXPECT_EQ(haptic().phase, HapticPhase::closed);
 }
 

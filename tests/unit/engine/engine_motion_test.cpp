@@ -60,7 +60,7 @@ class EngineMotionTest : public testing::Test {
     return move;
   }
 
-  const RobotTickState& robot() { return sut_->owner_view().robots[kSlot]; }
+  const RobotTickState& robot() { return ticks_.newest().robots[kSlot]; }
 
   // Ticks until the robot stands; how many it took.
   int run_until_it_stands(int most = 20'000) {
@@ -74,6 +74,7 @@ class EngineMotionTest : public testing::Test {
 
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  TickReader& ticks_ = sut_->subscribe("test");
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
 };
@@ -133,7 +134,7 @@ TEST_F(EngineMotionTest, RobotThatGoesOnlineStopsAtOnceAndTakesNoMoves) {
   sut_->send(command_of(CommandKind::set_chain));
   sut_->send(command_of(CommandKind::stop_motion));
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_refused, 3U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 3U);
   EXPECT_EQ(robot().joints[0].position, where);
 }
 
@@ -199,7 +200,7 @@ TEST_F(EngineMotionTest, MoveThatIsNoNumberIsRefusedAndEndsAsBlocked) {
   sut_->send_move(kSlot, move);
   tick();
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
   EXPECT_EQ(robot().motion.finished, 1U);
   EXPECT_EQ(robot().motion.outcome, motion::Outcome::blocked);
   EXPECT_FALSE(robot().motion.moving);
@@ -261,14 +262,14 @@ class EngineLinearTest : public EngineMotionTest {
     move.start = motion::Start::queue;
     return move;
   }
-  const RobotTickState& gantry() { return sut_->owner_view().robots[kGantry]; }
+  const RobotTickState& gantry() { return ticks_.newest().robots[kGantry]; }
   const kinematics::Chain chain_ = motion::test_arms::gantry();
 };
 
 TEST_F(EngineLinearTest, LineIsRefusedWithoutAChainAndCarriedOutWithOne) {
   sut_->send_move(kGantry, line_to(0.3, 0.1, 1));
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
   set_chain(&chain_);
   sut_->send_move(kGantry, line_to(0.3, 0.1, 2));
   int ticks = 0;
@@ -286,7 +287,7 @@ TEST_F(EngineLinearTest, ChainOfAnotherNumberOfJointsIsRefused) {
   const kinematics::Chain six = motion::test_arms::puma();
   set_chain(&six);
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
 }
 
 TEST_F(EngineLinearTest, TickWithLinesInCornersLeavesTheHeapAlone) {
@@ -321,19 +322,19 @@ TEST_F(EngineMotionTest, PaceHoldsARobotOnItsWayAndTellsSo) {
   pace.pace = 0;
   ASSERT_NE(sut_->send(pace), 0U);
   for (int i = 0; i < 300; ++i) tick();
-  const RobotTickState held = sut_->owner_view().robots[kSlot];
+  const RobotTickState held = ticks_.newest().robots[kSlot];
   EXPECT_EQ(held.motion.pace, 0);
   EXPECT_TRUE(held.motion.moving);
   EXPECT_EQ(held.joints[0].velocity, 0);
   for (int i = 0; i < 100; ++i) tick();
-  EXPECT_EQ(sut_->owner_view().robots[kSlot].joints[0].position, held.joints[0].position);
+  EXPECT_EQ(ticks_.newest().robots[kSlot].joints[0].position, held.joints[0].position);
   pace.pace = 1;
   ASSERT_NE(sut_->send(pace), 0U);
   for (int i = 0; i < 3000; ++i) tick();
-  const RobotTickState& there = sut_->owner_view().robots[kSlot];
+  const RobotTickState& there = ticks_.newest().robots[kSlot];
   EXPECT_NEAR(there.joints[0].position, 0.9, 1e-12);
   EXPECT_EQ(there.motion.finished, 1U);
-  EXPECT_EQ(sut_->owner_view().commands_refused, 0U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 0U);
 }
 
 TEST_F(EngineMotionTest, MovesEndBetweenTicksByTheSlotsOfTheirPeriods) {
@@ -341,7 +342,7 @@ TEST_F(EngineMotionTest, MovesEndBetweenTicksByTheSlotsOfTheirPeriods) {
   const Timestamp begun = now_;  // the first tick leads from here to the next one
   for (int i = 0; i < 3000; ++i) tick();
   // 0.5 rad at 0.5 rad/s and 2 rad/s2
-  EXPECT_NEAR(seconds(sut_->owner_view().robots[kSlot].motion.finished_time - begun), 1.25, 1e-8);
+  EXPECT_NEAR(seconds(ticks_.newest().robots[kSlot].motion.finished_time - begun), 1.25, 1e-8);
 }
 
 }  // namespace

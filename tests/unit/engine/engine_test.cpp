@@ -63,10 +63,12 @@ class EngineTest : public testing::Test {
     return out;
   }
 
-  const RobotTickState& robot(std::size_t slot = 3) { return sut_->owner_view().robots[slot]; }
+  const RobotTickState& robot(std::size_t slot = 3) { return ticks_.newest().robots[slot]; }
 
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
+  TickReader& ticks_ = sut_->subscribe("test");
+  TickReader& second_ = sut_->subscribe("second");
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
 };
@@ -74,10 +76,36 @@ class EngineTest : public testing::Test {
 TEST_F(EngineTest, PublishesAnAddedRobotWithItsPositions) {
   const std::uint64_t id = add_robot();
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_done, id);
+  EXPECT_EQ(ticks_.newest().commands_done, id);
   EXPECT_EQ(robot().mode, RobotMode::simulated);
   EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.2);
-  EXPECT_EQ(sut_->publisher_view().robots[3].joint_count, 2);
+  EXPECT_EQ(second_.newest().robots[3].joint_count, 2);
+}
+
+TEST_F(EngineTest, ReadersKeepTheirStateWhileOthersGoOn) {
+  EXPECT_EQ(second_.name(), "second");
+  tick();
+  const TickState& held = second_.newest();
+  for (int i = 0; i < 5; ++i) {
+    tick();
+    EXPECT_EQ(ticks_.newest().tick, cycle_ - 1);
+  }
+  EXPECT_EQ(held.tick, 0U);
+  EXPECT_EQ(second_.newest().tick, 5U);
+}
+
+TEST_F(EngineTest, SubscribingAfterTheFirstTickBreaksTheContract) {
+  tick();
+  EXPECT_DEATH(sut_->subscribe("late"), "contract broken");
+}
+
+TEST_F(EngineTest, RunsWithoutReaders) {
+  const auto alone = std::make_unique<Engine>(watchdog_);
+  CycleContext context;
+  context.period = kPeriod;
+  alone->run(context);
+  EXPECT_EQ(alone->flight_ticks().size(), 1U);
+  EXPECT_DEATH(alone->subscribe("late"), "contract broken");
 }
 
 TEST_F(EngineTest, RemovedRobotStaysAbsentInEveryBufferOfTheEdge) {
@@ -103,8 +131,8 @@ TEST_F(EngineTest, SetPointsPassTheLimiterAsAWholeOrNotAtAll) {
   EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.5);
   EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.6);
   EXPECT_EQ(robot().refused_setpoints, 1U);
-  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
-  EXPECT_EQ(sut_->owner_view().commands_done, refused);
+  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
+  EXPECT_EQ(ticks_.newest().commands_done, refused);
 }
 
 TEST_F(EngineTest, AJointThatTheStreamDoesNotGiveSaysNothingAboutTheStream) {
@@ -138,7 +166,7 @@ TEST_F(EngineTest, MirroredRobotFollowsItsStreamAndRefusesSetPoints) {
   EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.3);
   EXPECT_DOUBLE_EQ(robot().joints[1].position, 5.0);
   EXPECT_EQ(robot().state, DataState::fresh);
-  EXPECT_EQ(sut_->owner_view().commands_refused, 1U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
 }
 
 TEST_F(EngineTest, StandingStillButSendingIsFreshAndSilenceAges) {
@@ -265,9 +293,9 @@ TEST_F(EngineTest, CommandFloodIsTakenABoundedNumberATick) {
   std::uint64_t last = 0;
   for (int i = 0; i < kCommandsPerTick + 10; ++i) last = set_positions(0, 0);
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_done, last - 10);
+  EXPECT_EQ(ticks_.newest().commands_done, last - 10);
   tick();
-  EXPECT_EQ(sut_->owner_view().commands_done, last);
+  EXPECT_EQ(ticks_.newest().commands_done, last);
 }
 
 TEST_F(EngineTest, FullCommandQueueRefuses) {
