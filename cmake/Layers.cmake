@@ -54,7 +54,7 @@ set(CELLMIRROR_LAYERS
   "app/owner: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/motion rt_core/cell rt_core/planning rt_core/collision rt_core/haptics rt_core/scene rt_core/engine config drivers/footswitch ipc/sysv scripts/programs/program scripts/programs/jet scripts/programs/languages scripts/lang scripts/commands scripts/runner scripts/programs/controller app/snapshot app/io"
   "app/workers: rt_core/base rt_core/rt ipc/wire rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/engine app/snapshot"
   "app/render: rt_core/base rt_core/rt rt_core/ports rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine config drivers/display app/snapshot"
-  "app/report: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine ipc/sysv ipc/control ipc/web app/snapshot"
+  "app/report: rt_core/base rt_core/rt rt_core/ports rt_core/motion ipc/wire rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine ipc/sysv ipc/control ipc/web app/snapshot"
   "app/kinematics: rt_core/base rt_core/ports rt_core/kinematics rt_core/inverse_kinematics rt_core/cell config config/command_line app/plot"
   "app/proximity: rt_core/base rt_core/rt rt_core/ports rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging config app/plot app/console"
   "app/pictures: rt_core/base rt_core/ports rt_core/cell rt_core/scene config drivers/display ipc/runtime ipc/control app/owner app/render"

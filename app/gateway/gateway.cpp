@@ -404,7 +404,8 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->loop_settings = loaded->loop;
   parts->queues = default_queues(options.instance);
   loaded->queues.apply_to(parts->queues);
-  parts->engine = std::make_unique<engine::Engine>(parts->watchdog);
+  parts->engine =
+      std::make_unique<engine::Engine>(parts->watchdog, engine::capacity_for(loaded->cell.robot_ids().size()));
   parts->readers.emplace(*parts->engine);
   const DdsOutputConfig dds = loaded->dds;
   const PictureSettings pictures = loaded->pictures;

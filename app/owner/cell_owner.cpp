@@ -40,10 +40,16 @@ Result<std::filesystem::path> startup_file(const KismetHome& home, const std::st
   return found;
 }
 
+// More robots than the engine has slots for are refused where they would be loaded.
+Cell with_capacity_of(const engine::Engine& engine, Cell cell) {
+  cell.set_robot_capacity(engine.capacity().robots);
+  return cell;
+}
+
 }  // namespace
 
 CellOwner::CellOwner(Parts parts)
-    : cell_(std::move(parts.cell)),
+    : cell_(with_capacity_of(parts.engine, std::move(parts.cell))),
       home_(std::move(parts.home)),
       board_(parts.board),
       clock_(parts.clock),

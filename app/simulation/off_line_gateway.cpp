@@ -23,7 +23,7 @@ bool any_moves(const engine::TickState& tick, const CellState& cell_state) {
 OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
     : observer_(std::move(observer)),
       watchdog_(kNeverWatched, {}),
-      engine_(watchdog_),
+      engine_(watchdog_, engine::capacity_for(cell.cell.robot_ids().size())),
       ticks_(engine_.subscribe("observer")),
       period_(std::llround(1e9 / cell.loop.rate_hz)) {
   clock_.set(kBegin);

@@ -169,6 +169,12 @@ std::vector<JointValues> Cell::start_positions() const {
   return positions;
 }
 
+void Cell::set_robot_capacity(std::size_t robots) {
+  CELLMIRROR_EXPECTS(robots <= kMaxRobots);
+  for (std::size_t slot = robots; slot < kMaxRobots; ++slot) CELLMIRROR_EXPECTS(!state_->robots[slot]);
+  state_->robot_capacity = robots;
+}
+
 void Cell::set_online_query(std::function<bool(std::string_view)> query) { state_->is_online = std::move(query); }
 
 std::uint64_t Cell::revision() const { return state_->revision; }

@@ -138,8 +138,13 @@ void CellBuilder::plan_robot(const Component& component, const AbstractReference
                        "give one of them another name with robot_id at the node that loads it");
     return;
   }
-  if (robots_planned_.size() >= kMaxRobots) {
-    diagnostics_.error(place, fmt::format("the cell would have more than {} robots", kMaxRobots));
+  if (robots_planned_.size() >= state_.robot_capacity) {
+    diagnostics_.error(place, fmt::format("the cell would have more than {} robots", state_.robot_capacity),
+                       state_.robot_capacity < kMaxRobots
+                           ? fmt::format("a gateway has room for the robots with which its cell begins and {} more: "
+                                         "delete a robot first, or load this one at the start",
+                                         kSpareRobots)
+                           : std::string());
     return;
   }
   robots_planned_.push_back(id);
@@ -190,11 +195,11 @@ std::size_t CellBuilder::take_slot(const std::string& id) {
   std::array<bool, kMaxRobots> reserved{};
   for (const auto& [name, slot] : state_.slots) reserved[slot] = true;
   std::size_t slot = static_cast<std::size_t>(std::ranges::find(reserved, false) - reserved.begin());
-  if (slot == kMaxRobots) {
+  if (slot >= state_.robot_capacity) {
     // Every slot was given out once: take that of a robot that is not there any more.
     slot = 0;
     while (state_.robots[slot]) ++slot;
-    CELLMIRROR_EXPECTS(slot < kMaxRobots);
+    CELLMIRROR_EXPECTS(slot < state_.robot_capacity);
     std::erase_if(state_.slots, [slot](const auto& entry) { return entry.second == slot; });
   }
   state_.slots.emplace(id, slot);

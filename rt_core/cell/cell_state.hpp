@@ -35,7 +35,8 @@ struct Cell::State {
   std::size_t node_count = 0;
   NameIndex names;
   std::array<std::unique_ptr<RobotModel>, kMaxRobots> robots;
-  TextMap<std::size_t> slots;  // by robot id; stays when the robot is deleted
+  TextMap<std::size_t> slots;               // by robot id; stays when the robot is deleted
+  std::size_t robot_capacity = kMaxRobots;  // slots 0 to robot_capacity - 1 may be used
   std::function<bool(std::string_view)> is_online = [](std::string_view) { return false; };
   std::uint64_t revision = 1;
   std::uint64_t structure_revision = 1;  // changes of nodes and predecessors: the order of the compiled arrays

@@ -1,12 +1,13 @@
 #include "rt_core/engine/coupling.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "rt_core/engine/robot_slot.hpp"
 
 namespace cellmirror::engine {
 
-static_assert(kMaxRobots <= 64, "step() has a bit for each");
+static_assert(kMaxRobots <= 256, "slots are numbers of 8 bits");
 static_assert(kMaxJointsPerRobot <= 16, "joints of a slave are bits of 16");
 
 namespace {
@@ -53,14 +54,15 @@ bool Couplings::uncouple(std::uint8_t slave, std::span<RobotSlot> slots) CELL_RT
 
 void Couplings::remove(std::uint8_t slot, std::span<RobotSlot> slots) CELL_RT {
   if (slot >= slots.size()) return;
-  for (std::uint8_t slave = 0; slave < kMaxCouplings; ++slave) {
-    if (of_slave_[slave].count > 0 && (slave == slot || of_slave_[slave].master == slot)) uncouple(slave, slots);
+  for (std::size_t slave = 0; slave < of_slave_.size(); ++slave) {
+    if (of_slave_[slave].count > 0 && (slave == slot || of_slave_[slave].master == slot))
+      uncouple(static_cast<std::uint8_t>(slave), slots);
   }
 }
 
 // Through however many others. There are no circles yet, so that the way up ends.
-bool Couplings::follows(std::uint8_t slave, std::uint8_t master) const CELL_RT {
-  for (std::size_t up = 0; up < kMaxCouplings && of_slave_[slave].count > 0; ++up) {
+bool Couplings::follows(std::size_t slave, std::size_t master) const CELL_RT {
+  for (std::size_t up = 0; up < of_slave_.size() && of_slave_[slave].count > 0; ++up) {
     slave = of_slave_[slave].master;
     if (slave == master) return true;
   }
@@ -69,29 +71,28 @@ bool Couplings::follows(std::uint8_t slave, std::uint8_t master) const CELL_RT {
 
 // By how many masters are above a slave.
 void Couplings::sort() CELL_RT {
-  std::array<std::uint8_t, kMaxCouplings> depth{};
   std::size_t deepest = 0;
-  for (std::size_t slave = 0; slave < kMaxCouplings; ++slave) {
-    for (std::size_t at = slave; of_slave_[at].count > 0 && depth[slave] < kMaxCouplings; at = of_slave_[at].master)
-      ++depth[slave];
-    deepest = depth[slave] > deepest ? depth[slave] : deepest;
+  for (std::size_t slave = 0; slave < of_slave_.size(); ++slave) {
+    depth_[slave] = 0;
+    for (std::size_t at = slave; of_slave_[at].count > 0 && depth_[slave] < of_slave_.size(); at = of_slave_[at].master)
+      ++depth_[slave];
+    deepest = std::max<std::size_t>(deepest, depth_[slave]);
   }
   count_ = 0;
   for (std::size_t level = 1; level <= deepest; ++level) {
-    for (std::size_t slave = 0; slave < kMaxCouplings; ++slave) {
-      if (depth[slave] == level) order_[count_++] = static_cast<std::uint8_t>(slave);
+    for (std::size_t slave = 0; slave < of_slave_.size(); ++slave) {
+      if (depth_[slave] == level) order_[count_++] = static_cast<std::uint8_t>(slave);
     }
   }
 }
 
-std::uint64_t Couplings::step(double dt, std::span<RobotSlot> slots) CELL_RT {
-  std::uint64_t moved = 0;
+std::span<const std::uint8_t> Couplings::step(double dt, std::span<RobotSlot> slots) CELL_RT {
+  std::size_t moved = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Coupling& coupling = of_slave_[order_[i]];
-    if (slots[coupling.slave].follow(slots[coupling.master].state(), coupling, dt))
-      moved |= std::uint64_t{1} << coupling.slave;
+    if (slots[coupling.slave].follow(slots[coupling.master].state(), coupling, dt)) moved_[moved++] = coupling.slave;
   }
-  return moved;
+  return std::span(moved_).first(moved);
 }
 
 }  // namespace cellmirror::engine

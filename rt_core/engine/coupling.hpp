@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/real_time.hpp"
@@ -36,11 +37,12 @@ struct Coupling {
   }
 };
 
-inline constexpr std::size_t kMaxCouplings = kMaxRobots;
-
 // All couplings of the cell. Tick thread only. A slave has one master; masters may be slaves themselves.
 class Couplings {
  public:
+  // All of `robots` may be slaves. Every `slots` below has that many elements.
+  explicit Couplings(std::size_t robots) : of_slave_(robots), depth_(robots), order_(robots), moved_(robots) {}
+
   // Takes the place of the slave's coupling to the same master. False where it is not sound: slots that are not used, a
   // slave that is not simulated, joints that are not there or driven twice, a velocity that is not positive, another
   // master, a circle.
@@ -52,16 +54,18 @@ class Couplings {
 
   // Moves the slaves on by `dt` seconds, masters before their slaves, so that a value passes through all of a chain
   // within one tick. After samples and moves, and after the states of the joints were brought up to date: a slave holds
-  // where the master's data are not fresh. Returns the slots that have moved, one bit each.
-  std::uint64_t step(double dt, std::span<RobotSlot> slots) CELL_RT;
+  // where the master's data are not fresh. Returns the slots that have moved, valid until the next step.
+  std::span<const std::uint8_t> step(double dt, std::span<RobotSlot> slots) CELL_RT;
 
  private:
-  [[nodiscard]] bool follows(std::uint8_t slave, std::uint8_t master) const CELL_RT;
+  [[nodiscard]] bool follows(std::size_t slave, std::size_t master) const CELL_RT;
   void sort() CELL_RT;
 
-  std::array<Coupling, kMaxCouplings> of_slave_{};  // by the slave's slot; count 0: it follows nobody
-  std::array<std::uint8_t, kMaxCouplings> order_{};
+  std::vector<Coupling> of_slave_;    // by the slave's slot; count 0: it follows no master
+  std::vector<std::uint16_t> depth_;  // by slot: how many masters are above it
+  std::vector<std::uint8_t> order_;   // of the slaves, masters first; the first count_ count
   std::size_t count_ = 0;
+  std::vector<std::uint8_t> moved_;  // in the last step
 };
 
 }  // namespace cellmirror::engine

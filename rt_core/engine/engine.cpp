@@ -30,10 +30,20 @@ void forget_samples(Fifo<JointSample, kSampleQueue>& queue) CELL_RT {
 
 }  // namespace
 
-Engine::Engine(Watchdog& watchdog) : slots_(kMaxRobots), moves_(kMoveCommands), watchdog_(watchdog) {
+EngineCapacity capacity_for(std::size_t robots) { return {.robots = std::min(robots + kSpareRobots, kMaxRobots)}; }
+
+Engine::Engine(Watchdog& watchdog, const EngineCapacity& capacity)
+    : capacity_(capacity),
+      slots_(capacity.robots),
+      moves_(kMoveCommands),
+      states_(TickState(capacity.robots)),
+      haptics_(capacity.haptic_devices),
+      couplings_(capacity.robots),
+      watchdog_(watchdog) {
+  CELLMIRROR_EXPECTS(capacity.robots <= kMaxRobots && capacity.haptic_devices <= kMaxHapticDevices);
   for (std::size_t i = 0; i < kMoveCommands; ++i) free_moves_.push(static_cast<std::uint16_t>(i));
-  inlets_.reserve(kMaxRobots);
-  for (std::size_t i = 0; i < kMaxRobots; ++i) inlets_.push_back(std::make_unique<Inlet>());
+  inlets_.reserve(capacity.robots);
+  for (std::size_t i = 0; i < capacity.robots; ++i) inlets_.push_back(std::make_unique<Inlet>());
 }
 
 TickReader& Engine::subscribe(std::string name) {
@@ -76,8 +86,8 @@ int Engine::take_commands(Timestamp now) CELL_RT {
 }
 
 bool Engine::carry_out(const Command& command) CELL_RT {
-  if (HapticChannels::concerns(command)) return haptics_.apply(command, head_.time);
-  if (command.kind != CommandKind::add_move) return command.slot < kMaxRobots && apply_to_robot(command);
+  if (HapticChannels::concerns(command)) return haptics_.apply(command, head_.time, slots_.size());
+  if (command.kind != CommandKind::add_move) return is_slot(command.slot) && apply_to_robot(command);
   const bool done = slots_[command.slot].add_move(moves_[command.move]);
   free_moves_.push(command.move);
   return done;
@@ -104,16 +114,13 @@ bool Engine::apply_to_robot(const Command& command) CELL_RT {
 }
 
 void Engine::follow_masters(const CycleContext& context, double dt) CELL_RT {
-  const std::uint64_t moved = couplings_.step(dt, slots_);
-  for (std::size_t i = 0; moved != 0 && i < kMaxRobots; ++i) {
-    if ((moved >> i & 1U) != 0) record_robot(FlightEvent::setpoint, i, context.now, 0);
-  }
+  for (const std::uint8_t slot : couplings_.step(dt, slots_)) record_robot(FlightEvent::setpoint, slot, context.now, 0);
 }
 
 void Engine::move_robots(const CycleContext& context, double dt) CELL_RT {
   // The slot of the period rather than when the thread woke up in it: the times of moves are whole periods apart.
   const Timestamp now = context.scheduled.known() ? context.scheduled : context.now;
-  for (std::size_t i = 0; i < kMaxRobots; ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (!slots_[i].used() || !slots_[i].move(dt, now)) continue;
     record_robot(FlightEvent::setpoint, i, context.now, slots_[i].state().motion.running);
   }
@@ -122,7 +129,7 @@ void Engine::move_robots(const CycleContext& context, double dt) CELL_RT {
 int Engine::take_samples() CELL_RT {
   int taken = 0;
   JointSample sample;
-  for (std::size_t slot = 0; slot < kMaxRobots; ++slot) {
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
     // A stream is opened before its robot is mirrored, since it may fail to open: what it brings until then waits.
     if (slots_[slot].state().mode == RobotMode::simulated) continue;
     int of_this_robot = 0;
@@ -139,7 +146,7 @@ int Engine::take_samples() CELL_RT {
 int Engine::step_haptics(const CycleContext& context) CELL_RT {
   int taken = 0;
   JointSample sample;
-  for (std::size_t channel = 0; channel < kMaxHapticDevices; ++channel) {
+  for (std::size_t channel = 0; channel < haptics_.size(); ++channel) {
     if (!haptics_.used(channel)) continue;
     const std::size_t slot = haptics_.slot(channel);
     if (!haptics_.step(channel, context, slots_[slot].state(), sample)) continue;
@@ -158,9 +165,9 @@ void Engine::publish() CELL_RT {
   out.commands_done = head_.commands_done;
   out.commands_refused = head_.commands_refused;
   // Each buffer holds an older state, so a slot that is no longer used is cleared in each of them.
-  for (std::size_t i = 0; i < kMaxRobots; ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i].used()) {
-      out.robots[i] = slots_[i].state();
+      slots_[i].publish(out.robots[i]);
     } else {
       out.robots[i].mode = RobotMode::absent;
     }
@@ -189,7 +196,7 @@ void Engine::record_robot(FlightEvent event, std::size_t slot, Timestamp time, s
   record.sequence = sequence;
   record.event = event;
   record.slot = static_cast<std::uint8_t>(slot);
-  if (slot < kMaxRobots) {
+  if (is_slot(slot)) {
     const RobotTickState& state = slots_[slot].state();
     record.joint_count = state.joint_count;
     for (std::size_t i = 0; i < state.joint_count; ++i)
@@ -210,7 +217,7 @@ std::uint64_t Engine::enqueue(Command command) {
 }
 
 std::uint64_t Engine::send_move(std::size_t slot, const motion::Move& move) {
-  CELLMIRROR_EXPECTS(slot < kMaxRobots);
+  CELLMIRROR_EXPECTS(is_slot(slot));
   Command command;
   if (commands_.full() || !free_moves_.pop(command.move)) return 0;
   moves_[command.move] = move;
@@ -220,7 +227,7 @@ std::uint64_t Engine::send_move(std::size_t slot, const motion::Move& move) {
 }
 
 JointSampleSink& Engine::inlet(std::size_t slot) {
-  CELLMIRROR_EXPECTS(slot < kMaxRobots);
+  CELLMIRROR_EXPECTS(is_slot(slot));
   return *inlets_[slot];
 }
 
@@ -233,7 +240,7 @@ QueueStatus Engine::command_queue() const {
 }
 
 QueueStatus Engine::sample_queue(std::size_t slot) const {
-  CELLMIRROR_EXPECTS(slot < kMaxRobots);
+  CELLMIRROR_EXPECTS(is_slot(slot));
   const auto& queue = inlets_[slot]->queue;
   return {"samples", queue.capacity(), queue.high_water(), queue.pushed(), queue.dropped()};
 }

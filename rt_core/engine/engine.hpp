@@ -36,6 +36,14 @@ inline constexpr int kSamplesPerTick = 64;         // of each robot
 // that the robots make no leap after a pause of the machine: their paths last longer then.
 inline constexpr Nanoseconds kLongestStep{10'000'000};
 
+// What an engine takes memory for.
+struct EngineCapacity {
+  std::size_t robots = 64;  // slots 0 to robots - 1; at most kMaxRobots
+  std::size_t haptic_devices = kMaxHapticDevices;
+};
+// For a cell that begins with so many robots: kSpareRobots more, at most kMaxRobots.
+[[nodiscard]] EngineCapacity capacity_for(std::size_t robots);
+
 struct QueueStatus {
   std::string name;
   std::uint64_t capacity = 0;
@@ -50,8 +58,10 @@ struct QueueStatus {
 // any thread.
 class Engine final : public Cycle {
  public:
-  // `watchdog` (not owned, outlives the engine) gets a beat a tick.
-  explicit Engine(Watchdog& watchdog);
+  // `watchdog` (not owned, outlives the engine) gets a beat a tick. A robot takes about 90 kB: its queue of samples and
+  // its moves that wait.
+  explicit Engine(Watchdog& watchdog, const EngineCapacity& capacity = {});
+  [[nodiscard]] const EngineCapacity& capacity() const { return capacity_; }
 
   // Before the first tick. The reader belongs to the engine. The tick publishes once for all readers, and not at all
   // where there are none. `name`: of the reader, for people and for the thread that reads.
@@ -87,13 +97,15 @@ class Engine final : public Cycle {
   int take_samples() CELL_RT;
   int step_haptics(const CycleContext& context) CELL_RT;
   bool apply_to_robot(const Command& command) CELL_RT;
+  [[nodiscard]] bool is_slot(std::size_t slot) const CELL_RT { return slot < slots_.size(); }
   void move_robots(const CycleContext& context, double dt) CELL_RT;
   void follow_masters(const CycleContext& context, double dt) CELL_RT;
   void publish() CELL_RT;
   void record_tick(const CycleContext& context, int commands, int samples) CELL_RT;
   void record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT;
 
-  std::vector<RobotSlot> slots_;    // with the moves that wait, some 2 MB
+  const EngineCapacity capacity_;
+  std::vector<RobotSlot> slots_;
   TickState head_;                  // everything of the published state but the robots
   std::uint64_t next_command_ = 1;  // owner's
   Fifo<Command, kCommandQueue> commands_;

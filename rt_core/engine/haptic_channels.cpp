@@ -7,12 +7,12 @@ bool HapticChannels::concerns(const Command& command) CELL_RT {
          command.kind == CommandKind::reset_haptic || command.kind == CommandKind::haptic_device;
 }
 
-bool HapticChannels::apply(const Command& command, Timestamp now) CELL_RT {
-  if (command.channel >= kMaxHapticDevices) return false;
+bool HapticChannels::apply(const Command& command, Timestamp now, std::size_t robots) CELL_RT {
+  if (command.channel >= channels_.size()) return false;
   Entry& entry = channels_[command.channel];
   switch (command.kind) {
     case CommandKind::open_haptic:
-      if (command.instrument == nullptr || command.device == nullptr || command.instrument->slot >= kMaxRobots)
+      if (command.instrument == nullptr || command.device == nullptr || command.instrument->slot >= robots)
         return false;
       open(entry, command, now);
       return true;
@@ -64,8 +64,8 @@ bool HapticChannels::step(std::size_t channel, const CycleContext& context, cons
 }
 
 void HapticChannels::publish(std::span<HapticState, kMaxHapticDevices> out) const CELL_RT {
-  for (std::size_t i = 0; i < kMaxHapticDevices; ++i) {
-    // Each buffer of an edge remembers an older state of its own: closed channels are cleared in every one.
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    // Each buffer holds an older state, so closed channels are cleared in each of them.
     out[i] = used(i) ? channels_[i].channel.state() : HapticState{};
   }
 }

@@ -1,10 +1,10 @@
 // The haptic devices inside the tick: a channel each, with the newest surroundings of its instrument.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "rt_core/base/contract.hpp"
 #include "rt_core/base/real_time.hpp"
@@ -20,9 +20,14 @@ namespace cellmirror::engine {
 // Tick thread only, but for inlet().
 class HapticChannels {
  public:
+  // As many channels as the engine was made for; at most kMaxHapticDevices.
+  explicit HapticChannels(std::size_t channels) : channels_(channels) {}
+
+  [[nodiscard]] std::size_t size() const CELL_RT { return channels_.size(); }
   [[nodiscard]] static bool concerns(const Command& command) CELL_RT;
-  // False where the command names no channel, no instrument or no device, or reset_haptic was refused.
-  bool apply(const Command& command, Timestamp now) CELL_RT;
+  // False where the command names no channel, no instrument or no device, or reset_haptic was refused. `robots`: slots
+  // that there are.
+  bool apply(const Command& command, Timestamp now, std::size_t robots) CELL_RT;
 
   [[nodiscard]] bool used(std::size_t channel) const CELL_RT { return channels_[channel].channel.used(); }
   // Of the instrument's robot.
@@ -33,7 +38,7 @@ class HapticChannels {
 
   // For one worker thread.
   [[nodiscard]] Latest<haptics::ContactModel>& inlet(std::size_t channel) {
-    CELLMIRROR_EXPECTS(channel < kMaxHapticDevices);
+    CELLMIRROR_EXPECTS(channel < channels_.size());
     return channels_[channel].inlet;
   }
 
@@ -49,7 +54,7 @@ class HapticChannels {
 
   static void open(Entry& entry, const Command& command, Timestamp now) CELL_RT;
 
-  std::array<Entry, kMaxHapticDevices> channels_;
+  std::vector<Entry> channels_;
 };
 
 }  // namespace cellmirror::engine

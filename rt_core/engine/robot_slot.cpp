@@ -269,4 +269,9 @@ void RobotSlot::update(Timestamp now) CELL_RT {
   state_.state = worst;
 }
 
+void RobotSlot::publish(RobotTickState& out) const CELL_RT {
+  static_cast<RobotTickHead&>(out) = state_;
+  std::copy_n(state_.joints.begin(), state_.joint_count, out.joints.begin());
+}
+
 }  // namespace cellmirror::engine

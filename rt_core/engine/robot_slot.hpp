@@ -30,6 +30,8 @@ class RobotSlot {
   void update(Timestamp now) CELL_RT;
 
   [[nodiscard]] const RobotTickState& state() const CELL_RT { return state_; }
+  // Into a buffer that holds an older state.
+  void publish(RobotTickState& out) const CELL_RT;
   [[nodiscard]] bool used() const CELL_RT { return state_.mode != RobotMode::absent; }
 
  private:

@@ -1,8 +1,9 @@
-// What the tick publishes: the state of every robot at one instant. Fixed size, so that it crosses threads in a Latest.
+// What the tick publishes: the state of every robot at one instant.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/time.hpp"
@@ -38,7 +39,8 @@ struct FollowTickState {
   [[nodiscard]] bool follows() const { return joints != 0; }
 };
 
-struct RobotTickState {
+// All of a robot but its joints.
+struct RobotTickHead {
   RobotMode mode = RobotMode::absent;
   std::uint8_t joint_count = 0;
   DataState state = DataState::none;    // the worst of the joints whose position the stream gives
@@ -49,16 +51,21 @@ struct RobotTickState {
   std::uint64_t refused_setpoints = 0;  // by the limiter
   motion::MotionState motion;           // of a simulated robot
   FollowTickState follow;               // of a simulated robot
-  std::array<JointTickState, kMaxJointsPerRobot> joints{};
+};
+
+struct RobotTickState : RobotTickHead {
+  std::array<JointTickState, kMaxJointsPerRobot> joints{};  // the first joint_count count
 };
 
 struct TickState {
+  explicit TickState(std::size_t robot_capacity = 0) : robots(robot_capacity) {}
+
   std::uint64_t tick = 0;
   Timestamp time;                    // the one reading of the clock of that tick
   std::uint64_t missed_periods = 0;  // since the start
   std::uint64_t commands_done = 0;   // id of the newest command that was carried out
   std::uint64_t commands_refused = 0;
-  std::array<RobotTickState, kMaxRobots> robots{};
+  std::vector<RobotTickState> robots;  // by slot; the size never changes
   std::array<HapticState, kMaxHapticDevices> haptics{};
 };
 

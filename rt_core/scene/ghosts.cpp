@@ -32,9 +32,9 @@ Eigen::Vector3d place_of_label(const CompiledRobot& robot, const Bodies& bodies,
 }  // namespace
 
 RobotSet ghosts_of(std::span<const RobotCondition> robots) {
-  RobotSet ghosts = 0;
+  RobotSet ghosts;
   for (const RobotCondition& robot : robots) {
-    if (is_ghost(robot) && robot.slot < kMaxRobots) ghosts |= only(robot.slot);
+    if (is_ghost(robot) && robot.slot < kMaxRobots) ghosts.set(robot.slot);
   }
   return ghosts;
 }
@@ -42,9 +42,9 @@ RobotSet ghosts_of(std::span<const RobotCondition> robots) {
 void mark_ghosts(const CompiledCell& cell, std::span<const RobotCondition> robots, const Bodies& bodies,
                  const RobotParts& parts, Scene& scene) {
   const RobotSet ghosts = ghosts_of(robots);
-  if (ghosts == 0) return;
+  if (ghosts.none()) return;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if ((parts.decide(bodies.node(i)) & ghosts) == 0) continue;
+    if ((parts.decide(bodies.node(i)) & ghosts).none()) continue;
     scene.bodies[i].mark = Mark::ghost;
     scene.bodies[i].casts_shadow = false;
   }

@@ -1,6 +1,7 @@
 // Which robots decide where a node is, and whose part it is.
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,10 +11,7 @@
 
 namespace cellmirror::scene {
 
-using RobotSet = std::uint64_t;  // bit: slot
-static_assert(kMaxRobots <= 64);
-
-[[nodiscard]] constexpr RobotSet only(std::size_t slot) { return RobotSet{1} << slot; }
+using RobotSet = std::bitset<kMaxRobots>;  // by slot
 
 class RobotParts {
  public:

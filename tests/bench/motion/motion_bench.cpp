@@ -91,7 +91,7 @@ void tick_of_32_robots(benchmark::State& state, bool moving, bool linear) {
   constexpr std::size_t kRobots = 32;
   const kinematics::Chain chain = motion::test_arms::panda();
   Watchdog watchdog(std::chrono::milliseconds(100), {});
-  const auto engine = std::make_unique<engine::Engine>(watchdog);
+  const auto engine = std::make_unique<engine::Engine>(watchdog, engine::EngineCapacity{.robots = kRobots});
   engine->subscribe("bench");
   Shuttle shuttle(chain, motion::test_arms::panda_posture(), linear);
   for (std::size_t slot = 0; slot < kRobots; ++slot) {

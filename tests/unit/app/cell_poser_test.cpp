@@ -39,7 +39,7 @@ struct CellFollowerTest : testing::Test {
   }
   engine::RobotTickState& robot() { return tick.robots[cell->robot("ARM")->slot()]; }
   std::optional<Cell> cell;
-  engine::TickState tick;
+  engine::TickState tick{8};
   CellPoser sut{false};
   CellPoser with_sensors{true};
 };

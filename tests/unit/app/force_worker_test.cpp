@@ -79,7 +79,7 @@ abstract = "weight.mpc"
   void next(std::int64_t ms) { tick.time = tick.time + Nanoseconds(ms * 1'000'000); }
 
   std::optional<Cell> cell;
-  engine::TickState tick;
+  engine::TickState tick{8};
   ForceState state;
   std::shared_ptr<const CompiledCell> compiled;
   std::vector<dynamics::RobotMotion> motions;

@@ -46,7 +46,7 @@ struct Haptics : testing::Test {
   }
 
   CellState cell_state;
-  engine::TickState tick;
+  engine::TickState tick{8};
   ContactReport contacts;
 };
 

@@ -67,7 +67,7 @@ class LiveDocument : public testing::Test {
   Idle idle_;
   CyclicThread loop_{idle_, {}};
   CellState picture_;
-  engine::TickState tick_;
+  engine::TickState tick_{8};
   std::vector<RobotState> robots_;
   std::shared_ptr<ProximityState> proximity_;
   std::shared_ptr<RangeReadings> ranges_;

@@ -92,7 +92,7 @@ class ChainKeeperTest : public ::testing::Test {
     return std::make_shared<const kinematics::Chain>(std::move(made.value()));
   }
   ChainCache sut_;
-  engine::TickState tick_;
+  engine::TickState tick_{8};
 };
 
 TEST_F(ChainKeeperTest, KeepsAChainUntilTheNextIsInForceAndItsMovesHaveEnded) {

@@ -142,12 +142,30 @@ TEST_F(Robot, incrementsAddToWhereTheRobotStands) {
 TEST_F(Robot, slotsAreCounted) {
   Diagnostics diagnostics;
   std::string nodes;
-  for (int i = 0; i < 65; ++i) {
+  for (int i = 0; i < 257; ++i) {
     nodes += "[[node]]\nname = \"N" + std::to_string(i) + "\"\nabstract = \"arm.mpc\"\nrobot_id = \"R" +
              std::to_string(i) + "\"\n";
   }
   EXPECT_FALSE(build_cell(nodes, files, diagnostics));
-  EXPECT_THAT(diagnostics.text(), HasSubstr("more than 64 robots"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("more than 256 robots"));
+}
+
+TEST_F(Robot, aRunningGatewayHasRoomForAFewMoreOnly) {
+  Diagnostics diagnostics;
+  auto cell = build_cell(
+      "[[node]]\nname = \"A\"\nabstract = \"arm.mpc\"\nrobot_id = \"R0\"\n"
+      "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"R1\"\nloaded = false\n"
+      "[[node]]\nname = \"C\"\nabstract = \"arm.mpc\"\nrobot_id = \"R2\"\nloaded = false\n",
+      files, diagnostics);
+  ASSERT_TRUE(cell) << diagnostics.text();
+  cell->set_robot_capacity(2);
+  ASSERT_TRUE(cell->activate("B"));
+  const auto refused = cell->activate("C");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("more than 2 robots"));
+  ASSERT_TRUE(cell->delete_node("A"));
+  ASSERT_TRUE(cell->activate("C"));
+  EXPECT_LT(cell->robot("R2")->slot(), 2U) << "the slot of the robot that was deleted";
 }
 
 }  // namespace

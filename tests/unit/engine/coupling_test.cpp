@@ -277,6 +277,13 @@ TEST_F(CouplingTest, ARobotThatVanishesTakesItsCouplingsAlong) {
   EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0);
 }
 
+TEST_F(CouplingTest, SlotsBeyondTheCapacityAreRefused) {
+  const auto capacity = static_cast<std::uint8_t>(sut_->capacity().robots);
+  EXPECT_FALSE(accepts(coupling(capacity, kSlave)));
+  EXPECT_FALSE(accepts(coupling(kMaster, capacity)));
+  EXPECT_FALSE(accepts(of(CommandKind::uncouple, capacity)));
+}
+
 TEST_F(CouplingTest, CouplingAndFollowingAllocateNothing) {
   ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in";
   sut_->send(coupling(kMaster, kSlave));

@@ -15,6 +15,11 @@ constexpr Nanoseconds kPeriod{1'000'000};
 
 class EngineTest : public testing::Test {
  protected:
+  void make(const EngineCapacity& capacity) {
+    sut_ = std::make_unique<Engine>(watchdog_, capacity);
+    ticks_ = &sut_->subscribe("test");
+  }
+
   void tick(Nanoseconds after = kPeriod) {
     now_ = now_ + after;
     CycleContext context;
@@ -63,12 +68,12 @@ class EngineTest : public testing::Test {
     return out;
   }
 
-  const RobotTickState& robot(std::size_t slot = 3) { return ticks_.newest().robots[slot]; }
+  const RobotTickState& robot(std::size_t slot = 3) { return ticks_->newest().robots[slot]; }
 
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
-  TickReader& ticks_ = sut_->subscribe("test");
-  TickReader& second_ = sut_->subscribe("second");
+  TickReader* ticks_ = &sut_->subscribe("test");
+  TickReader* second_ = &sut_->subscribe("second");
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
 };
@@ -76,22 +81,22 @@ class EngineTest : public testing::Test {
 TEST_F(EngineTest, PublishesAnAddedRobotWithItsPositions) {
   const std::uint64_t id = add_robot();
   tick();
-  EXPECT_EQ(ticks_.newest().commands_done, id);
+  EXPECT_EQ(ticks_->newest().commands_done, id);
   EXPECT_EQ(robot().mode, RobotMode::simulated);
   EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.2);
-  EXPECT_EQ(second_.newest().robots[3].joint_count, 2);
+  EXPECT_EQ(second_->newest().robots[3].joint_count, 2);
 }
 
 TEST_F(EngineTest, ReadersKeepTheirStateWhileOthersGoOn) {
-  EXPECT_EQ(second_.name(), "second");
+  EXPECT_EQ(second_->name(), "second");
   tick();
-  const TickState& held = second_.newest();
+  const TickState& held = second_->newest();
   for (int i = 0; i < 5; ++i) {
     tick();
-    EXPECT_EQ(ticks_.newest().tick, cycle_ - 1);
+    EXPECT_EQ(ticks_->newest().tick, cycle_ - 1);
   }
   EXPECT_EQ(held.tick, 0U);
-  EXPECT_EQ(second_.newest().tick, 5U);
+  EXPECT_EQ(second_->newest().tick, 5U);
 }
 
 TEST_F(EngineTest, SubscribingAfterTheFirstTickBreaksTheContract) {
@@ -131,8 +136,8 @@ TEST_F(EngineTest, SetPointsPassTheLimiterAsAWholeOrNotAtAll) {
   EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.5);
   EXPECT_DOUBLE_EQ(robot().joints[1].position, 0.6);
   EXPECT_EQ(robot().refused_setpoints, 1U);
-  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
-  EXPECT_EQ(ticks_.newest().commands_done, refused);
+  EXPECT_EQ(ticks_->newest().commands_refused, 1U);
+  EXPECT_EQ(ticks_->newest().commands_done, refused);
 }
 
 TEST_F(EngineTest, AJointThatTheStreamDoesNotGiveSaysNothingAboutTheStream) {
@@ -166,7 +171,7 @@ TEST_F(EngineTest, MirroredRobotFollowsItsStreamAndRefusesSetPoints) {
   EXPECT_DOUBLE_EQ(robot().joints[0].position, 0.3);
   EXPECT_DOUBLE_EQ(robot().joints[1].position, 5.0);
   EXPECT_EQ(robot().state, DataState::fresh);
-  EXPECT_EQ(ticks_.newest().commands_refused, 1U);
+  EXPECT_EQ(ticks_->newest().commands_refused, 1U);
 }
 
 TEST_F(EngineTest, StandingStillButSendingIsFreshAndSilenceAges) {
@@ -293,9 +298,9 @@ TEST_F(EngineTest, CommandFloodIsTakenABoundedNumberATick) {
   std::uint64_t last = 0;
   for (int i = 0; i < kCommandsPerTick + 10; ++i) last = set_positions(0, 0);
   tick();
-  EXPECT_EQ(ticks_.newest().commands_done, last - 10);
+  EXPECT_EQ(ticks_->newest().commands_done, last - 10);
   tick();
-  EXPECT_EQ(ticks_.newest().commands_done, last);
+  EXPECT_EQ(ticks_->newest().commands_done, last);
 }
 
 TEST_F(EngineTest, FullCommandQueueRefuses) {
@@ -323,8 +328,59 @@ TEST_F(EngineTest, FlightRecorderHoldsTicksSamplesAndSetPoints) {
   EXPECT_FLOAT_EQ(robots[1].position[0], 0.6F);
 }
 
+TEST(EngineCapacity, HasRoomForTheRobotsOfTheCellAndAFewMore) {
+  EXPECT_EQ(capacity_for(0).robots, kSpareRobots);
+  EXPECT_EQ(capacity_for(20).robots, 20 + kSpareRobots);
+  EXPECT_EQ(capacity_for(kMaxRobots - kSpareRobots).robots, kMaxRobots);
+  EXPECT_EQ(capacity_for(kMaxRobots).robots, kMaxRobots);
+}
+
+TEST_F(EngineTest, SlotsBeyondTheCapacityAreRefusedAndRecordedWithoutJoints) {
+  make({.robots = 4, .haptic_devices = 1});
+  add_robot(3);
+  tick();
+  EXPECT_EQ(ticks_->newest().commands_refused, 0U);
+  EXPECT_EQ(ticks_->newest().robots.size(), 4U);
+  add_robot(4);
+  set_positions(0, 0, 4);
+  set_positions(0, 0, 255);
+  tick();
+  EXPECT_EQ(ticks_->newest().commands_refused, 3U);
+  const auto records = sut_->flight_robots();
+  ASSERT_EQ(records.size(), 3U);
+  for (const FlightRobot& record : records) {
+    EXPECT_EQ(record.event, FlightEvent::refused_command);
+    EXPECT_EQ(record.joint_count, 0U);
+  }
+  EXPECT_EQ(records[0].slot, 4U);
+  EXPECT_DEATH(static_cast<void>(sut_->inlet(4)), "contract broken");
+  EXPECT_DEATH(static_cast<void>(sut_->sample_queue(4)), "contract broken");
+  EXPECT_DEATH(static_cast<void>(sut_->contact_inlet(1)), "contract broken");
+}
+
+TEST_F(EngineTest, MoreThanTheGreatestCapacityBreaksTheContract) {
+  EXPECT_DEATH(make({.robots = kMaxRobots + 1}), "contract broken");
+  EXPECT_DEATH(make({.haptic_devices = kMaxHapticDevices + 1}), "contract broken");
+}
+
+TEST_F(EngineTest, TheLastOf256RobotsIsAsGoodAsTheFirst) {
+  make({.robots = kMaxRobots});
+  for (const std::size_t slot : {std::size_t{0}, kMaxRobots - 1}) {
+    add_robot(slot);
+    mirror(slot);
+    sut_->inlet(slot).push(sample(1, 0.3, 0.4));
+  }
+  tick();
+  for (const std::size_t slot : {std::size_t{0}, kMaxRobots - 1}) {
+    EXPECT_EQ(robot(slot).state, DataState::fresh);
+    EXPECT_DOUBLE_EQ(robot(slot).joints[1].position, 0.4);
+  }
+  EXPECT_EQ(robot(1).mode, RobotMode::absent);
+}
+
 TEST_F(EngineTest, TickTouchesNoHeap) {
   ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in";
+  make({.robots = kMaxRobots});
   for (std::size_t slot = 0; slot < kMaxRobots; ++slot) {
     add_robot(slot, kMaxJointsPerRobot);
     mirror(slot);
