@@ -82,8 +82,8 @@ class Cell {
   [[nodiscard]] std::vector<std::string> robot_ids() const;  // in the order of the slots
   // Start positions of all robots by slot, kMaxRobots entries; zero where there is no robot.
   [[nodiscard]] std::vector<JointValues> start_positions() const;
-  // The largest number of robots, including those present; at most kMaxRobots, the default. A component that would exceed
-  // it is refused.
+  // The largest number of robots, including those present; at most kMaxRobots, the default. A component that would
+  // exceed it is refused.
   void set_robot_capacity(std::size_t robots);
   // Called before a component with a robot is deleted: true if that robot is on line. Default: none is.
   void set_online_query(std::function<bool(std::string_view robot)> query);

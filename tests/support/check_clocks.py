@@ -18,7 +18,6 @@ EXCEPTIONS = {
     "drivers/can/channel": "I/O: receive time stamps and waiting with a limit, on the thread of a channel",
     "drivers/dds/internal/findings_writer.hpp": "I/O: how often diagnostics and markers are written, on the publisher's thread",
     "ipc/control": "I/O: time limits of the control socket, on the threads of server and client",
-    "ipc/web": "I/O: time limits of connections and the date of answers, on the server's thread; it is being replaced",
     "ipc/sysv/script_client.cpp": "I/O: how long the client waits for an answer, on its own thread",
     "config/mesh_process.cpp": "I/O: how long the process that reads a mesh may take, on the thread that waits for it",
     "app/gateway/gateway.cpp": "wiring: makes the clock of the gateway",

@@ -247,12 +247,12 @@ void ProgramService::follow_cell() {
   for (const LoadSnapshot& load : loads_.snapshots()) {
     if (parts_.cell.robot(load.robot) == nullptr) loads_.give_up_robot(load.robot, why(load.robot));
   }
-  for (const std::string& robot : gone) controllers_.give_up(robot, why(robot), true);
+  for (const std::string& robot : gone) controllers_.cancel(robot, why(robot), true);
 }
 
 void ProgramService::cancel(std::string_view robot, const Error& why) {
   give_up_waiting(robot, why);
-  controllers_.give_up(robot, why, false);
+  controllers_.cancel(robot, why, false);
 }
 
 void ProgramService::shut_down() {

@@ -145,11 +145,11 @@ void Controllers::stop_all() {
   look_again();
 }
 
-void Controllers::give_up(std::string_view robot, const Error& why, bool forget) {
+void Controllers::cancel(std::string_view robot, const Error& why, bool forget) {
   const auto found = robots_.find(robot);
   if (found == robots_.end()) return;
   const std::shared_ptr<VirtualController> controller = found->second;
-  controller->give_up(why.text());
+  controller->cancel(why.text());
   if (forget) {
     robots_.erase(found);
     for (const auto& [name, program] : controller->programs()) {

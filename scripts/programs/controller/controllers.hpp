@@ -60,7 +60,7 @@ class Controllers {
   Result<void> stop(std::string_view robot);
   void stop_all();
   // The robot is gone, or was put online: its programs end with that reason, as failed; `forget`: and are deleted.
-  void give_up(std::string_view robot, const Error& why, bool forget);
+  void cancel(std::string_view robot, const Error& why, bool forget);
 
   // Refused: unknown robots, numbers beyond 1 .. kMostPorts, values that are not finite.
   Result<void> set_digital_input(std::string_view robot, std::size_t number, bool on);

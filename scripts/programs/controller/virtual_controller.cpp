@@ -120,7 +120,7 @@ Result<void> VirtualController::stop() {
   return {};
 }
 
-void VirtualController::give_up(const std::string& why) {
+void VirtualController::cancel(const std::string& why) {
   if (run_) {
     const std::shared_ptr<ProgramRun> run = std::exchange(run_, nullptr);
     run->fail_now(why);

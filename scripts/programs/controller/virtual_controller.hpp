@@ -36,7 +36,7 @@ class VirtualController {
   Result<void> resume();
   Result<void> step(Direction direction);
   Result<void> stop();
-  void give_up(const std::string& why);
+  void cancel(const std::string& why);
 
   void begin_turn();
   bool follow();

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "ipc/wire/script_message.hpp"
-#include "rt_core/base/utf8.hpp"
 #include "rt_core/base/contract.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace {
 

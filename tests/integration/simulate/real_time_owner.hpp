@@ -89,9 +89,9 @@ class RealTimeOwner {
 // False: it did not come. How long it takes is the machine's affair.
 inline bool await(const std::function<bool()>& condition) {
   constexpr std::chrono::seconds kObserverTimeout{120};
-  const auto give_up = std::chrono::steady_clock::now() + kObserverTimeout;
+  const auto cancel = std::chrono::steady_clock::now() + kObserverTimeout;
   while (!condition()) {
-    if (std::chrono::steady_clock::now() > give_up) return false;
+    if (std::chrono::steady_clock::now() > cancel) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return true;

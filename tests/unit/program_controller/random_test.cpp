@@ -147,7 +147,7 @@ class Chaos {
         static_cast<void>(cell_.sut.set_digital_input(where, 1, number(2) == 0));
         return;
       case 9:
-        if (number(8) == 0) cell_.sut.give_up(where, {"gone", {}}, number(2) == 0);
+        if (number(8) == 0) cell_.sut.cancel(where, {"gone", {}}, number(2) == 0);
         return;
       case 10:
         load(where, number(4));

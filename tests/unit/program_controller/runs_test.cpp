@@ -288,12 +288,12 @@ TEST(ProgramRuns, OfRobotsThatAreGivenUpFail) {
   cell.load("A", "p", maker.move(5));
   cell.run("A", "p");
   cell.pass(1);
-  cell.sut.give_up("A", {"A is online", {}}, false);
+  cell.sut.cancel("A", {"A is online", {}}, false);
   EXPECT_FALSE(cell.sut.busy());
   EXPECT_EQ(cell.status("A", "p").error, "A is online");
   cell.motion.robot("A").known = false;
   EXPECT_FALSE(cell.sut.run("A", "p", Controllers::Begin::now));
-  cell.sut.give_up("A", {"A is deleted", {}}, true);
+  cell.sut.cancel("A", {"A is deleted", {}}, true);
   EXPECT_TRUE(cell.sut.status().empty());
 }
 

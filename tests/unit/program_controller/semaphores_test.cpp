@@ -187,7 +187,7 @@ TEST(ProgramDeadlock, EndsWithTheCommandThatEndsIt) {
   cross(cell);
   cell.pass(2);
   ASSERT_TRUE(cell.sut.deadlock());
-  cell.sut.give_up("A", {"gone", {}}, true);
+  cell.sut.cancel("A", {"gone", {}}, true);
   EXPECT_FALSE(cell.sut.deadlock());
 }
 

@@ -67,7 +67,7 @@ TEST(ProgramComments, MayStopHoldOrDeleteTheirOwnProgram) {
       if (what == "hold") done = cell.sut.hold("A");
       if (what == "run") done = cell.sut.run("A", "p", Controllers::Begin::exec_wait);
       if (what == "remove") done = cell.sut.remove("A", "p");
-      if (what == "forget") cell.sut.give_up("A", {"gone", {}}, true);
+      if (what == "forget") cell.sut.cancel("A", {"gone", {}}, true);
       if (what == "stop all") cell.sut.stop_all();
       if (!done) return std::unexpected(done.error());
       return nullptr;
