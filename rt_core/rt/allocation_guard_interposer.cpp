@@ -1,4 +1,4 @@
-// The C library's heap functions, with a look at the allocation guard before each. Linked into a program, these
+// The C library's heap functions, each with a check of the allocation guard before it. Linked into a program, these
 // definitions come before the C library's own for the program and all its shared libraries ("Replacing malloc", glibc
 // manual 3.2.5: a replacement has to define all of them).
 #include "rt_core/rt/allocation_guard.hpp"

@@ -15,7 +15,7 @@ namespace cellmirror {
 // Newest wins: one writer thread, any number of readers with a thread each. The writer fills one buffer for all of
 // them, and neither side ever waits for the other or tries twice. Latest, for more than one reader: each reader owns a
 // buffer and has a mailbox with another one, writer and reader exchange them by single atomic exchanges. The writer
-// alone counts who holds which buffer; one that nobody holds is free. With a buffer for each reader, one for each
+// alone counts the holders of each buffer; one without holders is free. With a buffer for each reader, one for each
 // mailbox and one for the writer there is always a free one.
 //
 // Readers subscribe before the first publication, by one thread. All memory is taken then. Readers belong to the

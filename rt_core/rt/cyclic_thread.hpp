@@ -19,7 +19,7 @@
 
 namespace cellmirror {
 
-// What a cycle is told.
+// What a cycle is given.
 struct CycleContext {
   Timestamp now;             // when the thread woke up; the one reading of the clock in this cycle
   Timestamp scheduled;       // the slot of this cycle: first slot + a whole number of periods
@@ -45,7 +45,7 @@ struct CyclicThreadOptions {
   std::size_t stack_bytes = std::size_t{1024} * 1024;  // at least 256 KiB
 };
 
-// Counters of the kernel about one thread since its start. Several of them at two times tell what happened between.
+// Counters of the kernel about one thread since its start. Several of them at two times show what happened between.
 struct ThreadUsage {
   std::uint64_t voluntary_switches = 0;    // it waited: in a cyclic thread once a cycle, more is a lock or I/O
   std::uint64_t involuntary_switches = 0;  // something of higher priority took its place
@@ -62,7 +62,7 @@ struct ThreadUsage {
 // - it wakes up late by whole periods (the machine was busy): it runs at once, for the newest slot that has passed;
 // - a cycle takes longer than its period: the slots that passed meanwhile are skipped and it sleeps until the next one.
 //   It never runs two cycles without a sleep between them, so that it cannot take a processor for itself.
-// The skipped slots are counted, and told to the next cycle.
+// The skipped slots are counted, and passed to the next cycle.
 class CyclicThread {
  public:
   static constexpr Nanoseconds kShortestPeriod{250'000};    // 4 kHz
@@ -77,7 +77,7 @@ class CyclicThread {
   // Starts the thread; returns when its scheduling is settled, shortly before the first cycle. Fails for a period or
   // stack out of range, where no thread can be made, and where policy is `require` and SCHED_FIFO is refused; nothing
   // runs then. start() and stop() belong to one thread. A stopped thread may be started again (cycle numbers and
-  // counters start anew, the histograms go on).
+  // counters start again, the histograms go on).
   [[nodiscard]] Result<void> start();
   // Lets the cycle that is running end, starts no other, and joins: takes at most a period and a cycle. May be called
   // when nothing runs; not from within the cycle.

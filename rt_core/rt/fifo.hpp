@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include "rt_core/base/real_time.hpp"
 
@@ -16,7 +17,7 @@ namespace cellmirror {
 // refused and counted, what is already inside stays. All memory is inside the object (Capacity * sizeof(T)) and touched
 // by the constructor, so that no push meets a page fault: put large ones on the heap as part of their owner.
 //
-// A ring buffer between two counters (Lamport 1977), where each side keeps a copy of the other's counter and looks at
+// A ring buffer between two counters (Lamport 1977), where each side keeps a copy of the other's counter and reads
 // the real one only when the copy says full or empty (Lee, Bu, Chandranmenon, ANCS 2009): in the usual case no cache
 // line but that of the data moves between processors. docs/decisions/0002-queues.md says why it is our own.
 //
@@ -25,7 +26,7 @@ namespace cellmirror {
 template <class T, std::size_t Capacity>
 class Fifo {
   static_assert(Capacity > 0);
-  static_assert(std::is_trivially_copyable_v<T>, "values cross threads on the tick: no heap, no destructor");
+  static_assert(std::is_nothrow_move_assignable_v<T>, "values are moved into and out of the queue on the tick");
 
  public:
   Fifo() = default;
@@ -33,22 +34,14 @@ class Fifo {
   Fifo& operator=(const Fifo&) = delete;
 
   // Producer. False where the queue was full: the value was dropped and counted.
-  bool push(const T& value) CELL_RT {
-    const std::uint64_t pushed = pushed_.load(std::memory_order_relaxed);  // only this thread writes it
-    if (pushed - popped_seen_ == Capacity) {
-      // Acquire: pairs with the release in pop(); the consumer's last look at the slot is over before it is reused.
-      popped_seen_ = popped_.load(std::memory_order_acquire);
-      if (pushed - popped_seen_ == Capacity) {
-        dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-        return false;
-      }
-    }
-    slots_[next_in_] = value;
-    next_in_ = next_in_ + 1 == Capacity ? 0 : next_in_ + 1;
-    // Release: pairs with the acquire in pop(); the slot is written before the consumer may see it.
-    pushed_.store(pushed + 1, std::memory_order_release);
-    note_fill_level(pushed + 1);
-    return true;
+  bool push(const T& value) CELL_RT
+    requires std::is_trivially_copyable_v<T>
+  {
+    return push_with([&value](T& slot) { slot = value; });
+  }
+  // The same for what can only be moved. `value` is untouched where the queue was full.
+  bool push_from(T& value) CELL_RT {
+    return push_with([&value](T& slot) { slot = std::move(value); });
   }
 
   // Producer. Whether a push would be refused now; only the consumer can change a yes.
@@ -67,9 +60,9 @@ class Fifo {
         return false;
       }
     }
-    value = slots_[next_out_];
+    value = std::move(slots_[next_out_]);
     next_out_ = next_out_ + 1 == Capacity ? 0 : next_out_ + 1;
-    // Release: pairs with the acquire in push(); our look at the slot is over before the producer reuses it.
+    // Release: pairs with the acquire in push(); our access to the slot is over before the producer reuses it.
     popped_.store(popped + 1, std::memory_order_release);
     return true;
   }
@@ -91,9 +84,28 @@ class Fifo {
   [[nodiscard]] std::size_t high_water() const CELL_RT { return high_water_.load(std::memory_order_relaxed); }
 
  private:
+  template <class Put>
+  bool push_with(const Put& put) CELL_RT {
+    const std::uint64_t pushed = pushed_.load(std::memory_order_relaxed);  // only this thread writes it
+    if (pushed - popped_seen_ == Capacity) {
+      // Acquire: pairs with the release in pop(); the consumer's last access to the slot is over before it is reused.
+      popped_seen_ = popped_.load(std::memory_order_acquire);
+      if (pushed - popped_seen_ == Capacity) {
+        dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+        return false;
+      }
+    }
+    put(slots_[next_in_]);
+    next_in_ = next_in_ + 1 == Capacity ? 0 : next_in_ + 1;
+    // Release: pairs with the acquire in pop(); the slot is written before the consumer may see it.
+    pushed_.store(pushed + 1, std::memory_order_release);
+    note_fill_level(pushed + 1);
+    return true;
+  }
+
   void note_fill_level(std::uint64_t pushed) noexcept {
     const std::size_t known = high_water_.load(std::memory_order_relaxed);
-    // The copy of the consumer's counter may be old, so the level by it may be too high: only then look at the real
+    // The copy of the consumer's counter may be old, so the level by it may be too high: only then read the real
     // one.
     if (pushed - popped_seen_ > known) {
       // Acquire, although this is statistics: push() goes on to rely on the copy.

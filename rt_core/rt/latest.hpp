@@ -45,8 +45,8 @@ class Latest {
   void publish() CELL_RT {
     slots_[writer_slot_].sequence = ++published_count_;
     // Release: what was written into the slot is visible to the reader whose acquire exchange in read() takes it.
-    // Acquire: pairs with the release in read() that handed the returned slot back, so that the reader's last look at
-    // it is over before we write into it again.
+    // Acquire: pairs with the release in read() that handed the returned slot back, so that the reader's last access
+    // is over before we write into it again.
     const std::uint8_t previous =
         middle_.exchange(static_cast<std::uint8_t>(writer_slot_ | kFresh), std::memory_order_acq_rel);
     writer_slot_ = previous & kSlotMask;
@@ -64,7 +64,7 @@ class Latest {
     // this load does not see yet is seen by the next read().
     if ((middle_.load(std::memory_order_relaxed) & kFresh) != 0) {
       // Acquire: pairs with the release in publish(), makes the slot's content visible. Release: pairs with the acquire
-      // in publish(), tells that our reading of the slot that we hand back is over.
+      // in publish(), our last access to the slot that we hand back is over.
       const std::uint8_t previous = middle_.exchange(reader_slot_, std::memory_order_acq_rel);
       reader_slot_ = previous & kSlotMask;
       is_new = true;

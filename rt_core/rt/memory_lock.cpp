@@ -100,7 +100,7 @@ void failed(MemoryLockOutcome& outcome, MemoryLockLevel reached, int error) {
 }
 
 // Freed memory stays with the process, and large blocks come from the heap instead of mappings of their own: neither
-// gives page faults anew for memory that was already touched.
+// gives page faults again for memory that was already touched.
 void keep_malloc_from_giving_back() {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);

@@ -29,12 +29,12 @@ struct MemoryLockOutcome {
 
 // Locks the process's memory, unless the policy is `off`. Call it once, early, before threads are started (their whole
 // stacks count as mapped): everything mapped then is read in and locked; what is mapped later is locked page by page as
-// it is first touched (MCL_ONFAULT), so that the reserved but unused parts of thread stacks cost nothing. Whoever hands
-// memory to the tick therefore writes it first, which filling it does anyway.
+// it is first touched (MCL_ONFAULT), so that the reserved but unused parts of thread stacks cost nothing. Memory
+// for the tick is therefore written first, which filling it does anyway.
 //
 // The soft limit is raised to the hard one. Later memory is locked only where no limit binds the process (CAP_IPC_LOCK
 // or an unlimited RLIMIT_MEMLOCK): with a small limit the kernel would refuse later mappings and malloc would fail.
-// Unless `off`, malloc is also told to keep freed memory and to use no separate mappings. Not for the tick.
+// Unless `off`, malloc is also set to keep freed memory and to use no separate mappings. Not for the tick.
 [[nodiscard]] MemoryLockOutcome lock_memory(RealTimePolicy policy);
 // A failure where `policy` is `require` and the outcome is not ok.
 [[nodiscard]] Result<void> enforce(RealTimePolicy policy, const MemoryLockOutcome& outcome);
@@ -52,7 +52,7 @@ void prefault_stack(std::size_t bytes = kStackPrefault);
 // it lives, by /dev/cpu_dma_latency. Where that is not allowed or not there, it does nothing and says so.
 class CpuLatencyRequest {
  public:
-  // Asks for a wake-up latency of at most `microseconds`; 0: no idle states.
+  // Requests a wake-up latency of at most `microseconds`; 0: no idle states.
   explicit CpuLatencyRequest(std::int32_t microseconds);
   ~CpuLatencyRequest();
   CpuLatencyRequest(const CpuLatencyRequest&) = delete;

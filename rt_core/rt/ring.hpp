@@ -1,4 +1,4 @@
-// The edge for history: the last values of a thread that never waits, copied out by whoever wants to know (the flight
+// The edge for history: the last values of a thread that never waits, copied out by any thread (the flight
 // recorder).
 #pragma once
 
@@ -39,7 +39,7 @@ class Ring {
     const std::uint64_t number = written_.load(std::memory_order_relaxed);
     Slot& slot = slots_[number % Capacity];
     // Odd: being written. Relaxed is enough: the release of every word below keeps this store before it, so that a
-    // reader that sees one new word also sees (by its second look) that the sequence has moved on.
+    // reader that sees one new word also sees (when it loads the sequence again) that the sequence has moved on.
     slot.sequence.store(2 * number + 1, std::memory_order_relaxed);
     const auto* source = reinterpret_cast<const unsigned char*>(&entry);
     for (std::size_t i = 0; i < kWords; ++i) {
@@ -109,7 +109,7 @@ class Ring {
     }
     std::array<std::uint64_t, kWords> words;
     for (std::size_t i = 0; i < kWords; ++i) {
-      // Acquire: pairs with the writer's store of the word; keeps the second look at the sequence behind it.
+      // Acquire: pairs with the writer's store of the word; keeps the second load of the sequence behind it.
       words[i] = slot.words[i].load(std::memory_order_acquire);
     }
     // Relaxed: if any word above was of a newer entry, its acquire has made that entry's odd sequence visible here.

@@ -18,7 +18,7 @@ struct SchedulingOutcome {
   int priority = 0;                   // 1..99 for SCHED_FIFO and SCHED_RR, else 0
   bool ok = false;                    // what was asked for is in force (always so with RealTimePolicy::off)
   std::string why_not;                // empty where ok
-  std::string remedy;                 // commands or settings that mend it; empty where ok
+  std::string remedy;                 // commands or settings that correct it; empty where ok
 };
 
 // Gives the calling thread SCHED_FIFO at `priority` (1..99), unless the policy is `off`: then nothing is changed. Any

@@ -54,7 +54,7 @@ Result<ThreadUsage> thread_usage(pid_t tid) {
   // parenthesis: 3 state, ..., 10 minflt, 11 cminflt, 12 majflt.
   const std::size_t comm_end = stat->rfind(')');
   if (!voluntary || !involuntary || comm_end == std::string::npos) {
-    return fail(fmt::format("{} does not look as proc(5) says", folder));
+    return fail(fmt::format("{} does not have the format of proc(5)", folder));
   }
   std::istringstream fields(stat->substr(comm_end + 1));
   std::string skipped;
@@ -64,7 +64,7 @@ Result<ThreadUsage> thread_usage(pid_t tid) {
   ThreadUsage usage{.voluntary_switches = *voluntary, .involuntary_switches = *involuntary};
   fields >> usage.minor_faults >> skipped >> usage.major_faults;
   if (!fields) {
-    return fail(fmt::format("{}stat does not look as proc(5) says", folder));
+    return fail(fmt::format("{}stat does not have the format of proc(5)", folder));
   }
   return usage;
 }

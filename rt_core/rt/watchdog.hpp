@@ -29,14 +29,14 @@ class Watchdog {
 
   // The watched thread: once a cycle.
   void beat() CELL_RT {
-    // Relaxed: the checker wants to know that the counter moves, not what was done meanwhile. One writer: a plain load
+    // Relaxed: the checker needs to know only that the counter moves. One writer: a plain load
     // and store saves the locked instruction.
     beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
 
   // The checking thread, several times a timeout. True while all is well or nothing is watched. If the checks
-  // themselves came late by more than half a timeout (the whole machine stood still), the silence is counted anew from
-  // here: it says nothing about the watched thread.
+  // themselves came late by more than half a timeout (the whole machine stood still), the silence is counted from
+  // here again: it says nothing about the watched thread.
   bool check(Timestamp now);
 
   // Any thread but the tick. Watching begins with arm() (silence counts from then) and ends with disarm().
