@@ -32,6 +32,12 @@ StreamAges ages_of(const StreamConfig& config) {
       config);
 }
 
+std::uint8_t slot_number(std::size_t slot) { return static_cast<std::uint8_t>(slot); }
+
+engine::JointLimits limits_of(const RobotModel& robot) {
+  return {.lower = robot.parameters().min_range, .upper = robot.parameters().max_range};
+}
+
 }  // namespace
 
 Fleet::Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
@@ -61,14 +67,10 @@ const FleetRobot* Fleet::find(std::string_view id) const {
   return found == robots_.end() ? nullptr : &found->second;
 }
 
-Result<std::uint64_t> Fleet::send(const engine::Command& command) {
-  return patiently([&] { return engine_.send(command); });
-}
-
-Result<std::uint64_t> Fleet::patiently(const std::function<std::uint64_t()>& give) {
+Result<std::uint64_t> Fleet::send(engine::Command command) {
   const Timestamp deadline = clock_.now() + kTickPatience;
   for (;;) {
-    const std::uint64_t id = give();
+    const std::uint64_t id = engine_.send(command);
     if (id != 0) {
       last_command_ = id;
       return id;
@@ -89,6 +91,7 @@ Result<void> Fleet::settle() {
     if (clock_.now() > deadline) return std::unexpected(tick_stands_still());
     wait_for_tick();
   }
+  engine_.free_returned();
   return {};
 }
 
@@ -98,12 +101,8 @@ Result<void> Fleet::follow_cell() {
       ++robot;
       continue;
     }
-    engine::Command command;
-    command.kind = engine::CommandKind::remove_robot;
-    command.slot = static_cast<std::uint8_t>(robot->second.slot);
-    const auto sent = send(command);
+    const auto sent = send(engine::RemoveRobot{slot_number(robot->second.slot)});
     if (!sent) return std::unexpected(sent.error());
-    chains_.removed(robot->second.slot, *sent);
     robot = robots_.erase(robot);
   }
   for (const std::string& id : cell_.robot_ids()) {
@@ -114,14 +113,11 @@ Result<void> Fleet::follow_cell() {
 }
 
 Result<void> Fleet::add(const RobotModel& robot) {
-  engine::Command command;
-  command.kind = engine::CommandKind::add_robot;
-  command.slot = static_cast<std::uint8_t>(robot.slot());
-  command.joint_count = static_cast<std::uint8_t>(robot.joint_count());
-  command.values = robot.parameters().start_position;
-  command.lower = robot.parameters().min_range;
-  command.upper = robot.parameters().max_range;
-  const auto sent = send(command);
+  const engine::RobotSetup setup{.joint_count = static_cast<std::uint8_t>(robot.joint_count()),
+                                 .positions = robot.parameters().start_position,
+                                 .limits = limits_of(robot)};
+  const auto sent = send(engine::AddRobot{.slot = slot_number(robot.slot()),
+                                          .robot = lend(std::make_shared<const engine::RobotSetup>(setup))});
   if (!sent) return std::unexpected(sent.error());
   FleetRobot added;
   added.id = robot.id();
@@ -133,12 +129,10 @@ Result<void> Fleet::add(const RobotModel& robot) {
 }
 
 Result<void> Fleet::update_limits(const RobotModel& robot) {
-  engine::Command command;
-  command.kind = engine::CommandKind::set_limits;
-  command.slot = static_cast<std::uint8_t>(robot.slot());
-  command.lower = robot.parameters().min_range;
-  command.upper = robot.parameters().max_range;
-  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  const auto sent =
+      send(engine::SetLimits{.slot = slot_number(robot.slot()),
+                             .limits = lend(std::make_shared<const engine::JointLimits>(limits_of(robot)))});
+  if (!sent) return std::unexpected(sent.error());
   return {};
 }
 
@@ -170,10 +164,7 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
   if (!robot.stream) {
     if (auto made = make_stream(robot); !made) return made;
   }
-  engine::Command command;
-  command.kind = engine::CommandKind::set_mode;
-  command.slot = static_cast<std::uint8_t>(robot.slot);
-  command.mode = engine::RobotMode::mirrored;
+  engine::SetMode command{.slot = slot_number(robot.slot), .mode = engine::RobotMode::mirrored};
   if (const auto config = streams_.find(robot.id); config != streams_.end()) {
     command.ages = ages_of(config->second);
     command.given = static_cast<std::uint16_t>(joints_given_by(config->second));
@@ -192,11 +183,8 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
 Result<void> Fleet::take_offline(FleetRobot& robot) {
   robot.stream->close();
   robot.online = false;
-  engine::Command command;
-  command.kind = engine::CommandKind::set_mode;
-  command.slot = static_cast<std::uint8_t>(robot.slot);
-  command.mode = engine::RobotMode::simulated;
-  if (auto sent = send(command); !sent) return std::unexpected(sent.error());
+  const auto sent = send(engine::SetMode{.slot = slot_number(robot.slot), .mode = engine::RobotMode::simulated});
+  if (!sent) return std::unexpected(sent.error());
   // The model stays where the real robot was seen last: once this is carried out, no sample moves it any more.
   return settle();
 }
@@ -242,57 +230,41 @@ std::span<const JointValues> Fleet::positions() {
 }
 
 Result<void> Fleet::set_chain(std::string_view id, std::shared_ptr<const kinematics::Chain> chain) {
-  engine::Command command = command_for(id, engine::CommandKind::set_chain);
-  command.chain = chain.get();
-  const auto sent = send(command);
+  const auto sent = send(engine::SetChain{.slot = slot_of(id), .chain = lend(std::move(chain))});
   if (!sent) return std::unexpected(sent.error());
-  chains_.replaced(command.slot, std::move(chain), *sent, find(id)->newest_move);
-  chains_.release(ticks_.newest());
   return {};
 }
 
 Result<void> Fleet::add_move(std::string_view id, const motion::Move& move) {
-  FleetRobot& robot = robots_.find(id)->second;
-  const auto sent = patiently([&] { return engine_.send_move(robot.slot, move); });
+  const auto sent =
+      send(engine::AddMove{.slot = slot_of(id), .move = lend(std::make_shared<const motion::Move>(move))});
   if (!sent) return std::unexpected(sent.error());
-  robot.newest_move = move.id;
   if (move_given_) move_given_(id, move);
   return {};
 }
 
 Result<void> Fleet::stop_motion(std::string_view id) {
-  const auto sent = send(command_for(id, engine::CommandKind::stop_motion));
+  const auto sent = send(engine::StopMotion{slot_of(id)});
   if (!sent) return std::unexpected(sent.error());
   return {};
 }
 
 Result<void> Fleet::set_pace(std::string_view id, double pace) {
-  engine::Command command = command_for(id, engine::CommandKind::set_pace);
-  command.pace = pace;
-  const auto sent = send(command);
+  const auto sent = send(engine::SetPace{.slot = slot_of(id), .pace = pace});
   if (!sent) return std::unexpected(sent.error());
   return {};
 }
 
 Result<void> Fleet::hold_behind(std::string_view id, std::uint32_t move) {
-  engine::Command command = command_for(id, engine::CommandKind::hold_behind);
-  command.last_move = move;
-  const auto sent = send(command);
+  const auto sent = send(engine::HoldBehind{.slot = slot_of(id), .move = move});
   if (!sent) return std::unexpected(sent.error());
   return {};
 }
 
-engine::Command Fleet::command_for(std::string_view id, engine::CommandKind kind) const {
-  engine::Command command;
-  command.kind = kind;
-  command.slot = static_cast<std::uint8_t>(find(id)->slot);
-  return command;
-}
+std::uint8_t Fleet::slot_of(std::string_view id) const { return slot_number(find(id)->slot); }
 
 Result<void> Fleet::jump(std::string_view id, const JointValues& positions) {
-  engine::Command command = command_for(id, engine::CommandKind::set_positions);
-  command.values = positions;
-  const auto sent = send(command);
+  const auto sent = send(engine::SetPositions{.slot = slot_of(id), .positions = positions});
   if (!sent) return std::unexpected(sent.error());
   FleetRobot& robot = robots_.find(id)->second;
   robot.put_at = positions;

@@ -8,9 +8,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "app/owner/chain_cache.hpp"
 #include "app/owner/motion/motion_port.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -30,7 +30,6 @@ struct FleetRobot {
   // rad or m: where a command to the tick puts it, and the id of that command.
   JointValues put_at{};
   std::uint64_t put_command = 0;
-  std::uint32_t newest_move = 0;        // id of the move that was given last
   std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
 };
 
@@ -88,23 +87,25 @@ class Fleet final : public MotionPort {
 
   // The newest state that the tick published; valid until the next call of any function of the fleet.
   [[nodiscard]] const engine::TickState& tick() { return ticks_.newest(); }
-  // Any command but add_move; waits while the tick's queue is full. Its id.
-  Result<std::uint64_t> send(const engine::Command& command);
-  // Waits until the tick has carried out everything that was sent so far.
+  // Waits while the tick's queue is full. Its id.
+  Result<std::uint64_t> send(engine::Command command);
+  // For a command: Engine::lend().
+  template <class T>
+  [[nodiscard]] Lease<T> lend(std::shared_ptr<T> object) {
+    return engine_.lend(std::move(object));
+  }
+  // Waits until the tick has carried out everything that was sent so far, and frees what it gave back.
   Result<void> settle();
 
  private:
   // A moment, for the tick to take commands.
   void wait_for_tick() const;
-  // Asks `give` for the id of a command again while the tick's queue is full.
-  Result<std::uint64_t> patiently(const std::function<std::uint64_t()>& give);
   Result<void> add(const RobotModel& robot);
   Result<void> bring_online(FleetRobot& robot);
   // The stream of the cell file, else that of the robot's device.
   Result<void> make_stream(FleetRobot& robot);
   Result<void> take_offline(FleetRobot& robot);
-  // A command for a robot of the fleet.
-  [[nodiscard]] engine::Command command_for(std::string_view id, engine::CommandKind kind) const;
+  [[nodiscard]] std::uint8_t slot_of(std::string_view id) const;
 
   Cell& cell_;
   engine::Engine& engine_;
@@ -118,7 +119,6 @@ class Fleet final : public MotionPort {
   std::map<std::string, FleetRobot, std::less<>> robots_;
   std::vector<JointValues> positions_;
   std::uint64_t last_command_ = 0;
-  ChainCache chains_;
 };
 
 }  // namespace cellmirror::app

@@ -47,7 +47,7 @@ class Couplings {
   // slave that is not simulated, joints that are not there or driven twice, a velocity that is not positive, another
   // master, a circle.
   bool couple(const Coupling& coupling, std::span<RobotSlot> slots) CELL_RT;
-  // False where it follows nobody. It stays where it is.
+  // False where it follows no master. It stays where it is.
   bool uncouple(std::uint8_t slave, std::span<RobotSlot> slots) CELL_RT;
   // The robot in this slot is gone: so are the couplings in which it has a part.
   void remove(std::uint8_t slot, std::span<RobotSlot> slots) CELL_RT;

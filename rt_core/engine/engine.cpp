@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include "rt_core/base/contract.hpp"
 
@@ -28,6 +29,21 @@ void forget_samples(Fifo<JointSample, kSampleQueue>& queue) CELL_RT {
   for (std::size_t i = 0; i < kSampleQueue && queue.pop(sample); ++i) continue;
 }
 
+// For the flight recorder; 0 for haptic devices.
+std::uint8_t slot_of(const Command& command) CELL_RT {
+  return std::visit(
+      [](const auto& one) CELL_RT -> std::uint8_t {
+        if constexpr (requires { one.slot; }) {
+          return one.slot;
+        } else if constexpr (requires { one.coupling; }) {
+          return one.coupling ? one.coupling->slave : std::uint8_t{0};
+        } else {
+          return 0;
+        }
+      },
+      command);
+}
+
 }  // namespace
 
 EngineCapacity capacity_for(std::size_t robots) { return {.robots = std::min(robots + kSpareRobots, kMaxRobots)}; }
@@ -35,13 +51,11 @@ EngineCapacity capacity_for(std::size_t robots) { return {.robots = std::min(rob
 Engine::Engine(Watchdog& watchdog, const EngineCapacity& capacity)
     : capacity_(capacity),
       slots_(capacity.robots),
-      moves_(kMoveCommands),
       states_(TickState(capacity.robots)),
       haptics_(capacity.haptic_devices),
       couplings_(capacity.robots),
       watchdog_(watchdog) {
   CELLMIRROR_EXPECTS(capacity.robots <= kMaxRobots && capacity.haptic_devices <= kMaxHapticDevices);
-  for (std::size_t i = 0; i < kMoveCommands; ++i) free_moves_.push(static_cast<std::uint16_t>(i));
   inlets_.reserve(capacity.robots);
   for (std::size_t i = 0; i < capacity.robots; ++i) inlets_.push_back(std::make_unique<Inlet>());
 }
@@ -72,45 +86,87 @@ void Engine::run(const CycleContext& context) CELL_RT {
 
 int Engine::take_commands(Timestamp now) CELL_RT {
   int taken = 0;
-  Command command;
-  while (taken < kCommandsPerTick && commands_.pop(command)) {
+  Sent sent;
+  while (taken < kCommandsPerTick && commands_.pop(sent)) {
     ++taken;
-    const bool done = carry_out(command);
-    head_.commands_done = command.id;
+    const std::uint8_t slot = slot_of(sent.command);
+    const bool done = std::visit([this](auto& command) CELL_RT { return carry_out(command); }, sent.command);
+    head_.commands_done = sent.id;
     if (!done) ++head_.commands_refused;
-    if (!done || command.kind == CommandKind::set_positions) {
-      record_robot(done ? FlightEvent::setpoint : FlightEvent::refused_command, command.slot, now, command.id);
-    }
+    if (!done || std::holds_alternative<SetPositions>(sent.command))
+      record_robot(done ? FlightEvent::setpoint : FlightEvent::refused_command, slot, now, sent.id);
   }
   return taken;
 }
 
-bool Engine::carry_out(const Command& command) CELL_RT {
-  if (HapticChannels::concerns(command)) return haptics_.apply(command, head_.time, slots_.size());
-  if (command.kind != CommandKind::add_move) return is_slot(command.slot) && apply_to_robot(command);
-  const bool done = slots_[command.slot].add_move(moves_[command.move]);
-  free_moves_.push(command.move);
-  return done;
+bool Engine::carry_out(AddRobot& command) CELL_RT {
+  if (!is_slot(command.slot) || !command.robot) return false;
+  if (!slots_[command.slot].add(*command.robot)) return false;
+  couplings_.remove(command.slot, slots_);
+  return true;
 }
 
-bool Engine::apply_to_robot(const Command& command) CELL_RT {
-  switch (command.kind) {
-    case CommandKind::couple:
-      return couplings_.couple({command.master, command.slot, command.joint_count, command.coupled, command.values},
-                               slots_);
-    case CommandKind::uncouple:
-      return couplings_.uncouple(command.slot, slots_);
-    case CommandKind::set_mode:
-      if (command.mode == RobotMode::simulated) forget_samples(inlets_[command.slot]->queue);
-      return slots_[command.slot].apply(command);
-    case CommandKind::add_robot:
-    case CommandKind::remove_robot:
-      if (command.kind == CommandKind::remove_robot) forget_samples(inlets_[command.slot]->queue);
-      couplings_.remove(command.slot, slots_);
-      return slots_[command.slot].apply(command);
-    default:
-      return slots_[command.slot].apply(command);
-  }
+bool Engine::carry_out(const RemoveRobot& command) CELL_RT {
+  if (!is_slot(command.slot)) return false;
+  forget_samples(inlets_[command.slot]->queue);
+  couplings_.remove(command.slot, slots_);
+  slots_[command.slot].remove();
+  return true;
+}
+
+bool Engine::carry_out(const SetMode& command) CELL_RT {
+  if (!is_slot(command.slot)) return false;
+  if (command.mode == RobotMode::simulated) forget_samples(inlets_[command.slot]->queue);
+  slots_[command.slot].set_mode(command);
+  return true;
+}
+
+bool Engine::carry_out(const SetPositions& command) CELL_RT {
+  return is_slot(command.slot) && slots_[command.slot].set_positions(command.positions);
+}
+
+bool Engine::carry_out(const SetLimits& command) CELL_RT {
+  if (!is_slot(command.slot) || !command.limits) return false;
+  slots_[command.slot].set_limits(*command.limits);
+  return true;
+}
+
+bool Engine::carry_out(SetChain& command) CELL_RT {
+  return is_slot(command.slot) && slots_[command.slot].set_chain(std::move(command.chain));
+}
+
+bool Engine::carry_out(const AddMove& command) CELL_RT {
+  return is_slot(command.slot) && command.move && slots_[command.slot].add_move(*command.move);
+}
+
+bool Engine::carry_out(const StopMotion& command) CELL_RT {
+  return is_slot(command.slot) && slots_[command.slot].stop_motion();
+}
+
+bool Engine::carry_out(const SetPace& command) CELL_RT {
+  return is_slot(command.slot) && slots_[command.slot].set_pace(command.pace);
+}
+
+bool Engine::carry_out(const HoldBehind& command) CELL_RT {
+  return is_slot(command.slot) && slots_[command.slot].hold_behind(command.move);
+}
+
+bool Engine::carry_out(const Couple& command) CELL_RT {
+  return command.coupling && couplings_.couple(*command.coupling, slots_);
+}
+
+bool Engine::carry_out(const Uncouple& command) CELL_RT { return couplings_.uncouple(command.slot, slots_); }
+
+bool Engine::carry_out(OpenHaptic& command) CELL_RT {
+  return command.instrument && is_slot(command.instrument->slot) && haptics_.open(command, head_.time);
+}
+
+bool Engine::carry_out(const CloseHaptic& command) CELL_RT { return haptics_.close(command.channel); }
+
+bool Engine::carry_out(const ResetHaptic& command) CELL_RT { return haptics_.reset(command.channel); }
+
+bool Engine::carry_out(const SetDeviceGone& command) CELL_RT {
+  return haptics_.set_device_gone(command.channel, command.gone);
 }
 
 void Engine::follow_masters(const CycleContext& context, double dt) CELL_RT {
@@ -135,7 +191,7 @@ int Engine::take_samples() CELL_RT {
     int of_this_robot = 0;
     while (of_this_robot < kSamplesPerTick && inlets_[slot]->queue.pop(sample)) {
       ++of_this_robot;
-      slots_[slot].take(sample);
+      slots_[slot].take(sample, head_.time);
       record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
     }
     taken += of_this_robot;
@@ -151,7 +207,7 @@ int Engine::step_haptics(const CycleContext& context) CELL_RT {
     const std::size_t slot = haptics_.slot(channel);
     if (!haptics_.step(channel, context, slots_[slot].state(), sample)) continue;
     ++taken;
-    slots_[slot].take(sample);
+    slots_[slot].take(sample, head_.time);
     record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
   }
   return taken;
@@ -205,25 +261,14 @@ void Engine::record_robot(FlightEvent event, std::size_t slot, Timestamp time, s
   flight_robots_.push(record);
 }
 
-std::uint64_t Engine::send(Command command) {
-  CELLMIRROR_EXPECTS(command.kind != CommandKind::add_move);
-  return enqueue(command);
-}
-
-std::uint64_t Engine::enqueue(Command command) {
-  command.id = next_command_;
-  if (!commands_.push(command)) return 0;
+std::uint64_t Engine::send(Command& command) {
+  free_returned();
+  Sent sent{next_command_, std::move(command)};
+  if (!commands_.push_from(sent)) {
+    command = std::move(sent.command);
+    return 0;
+  }
   return next_command_++;
-}
-
-std::uint64_t Engine::send_move(std::size_t slot, const motion::Move& move) {
-  CELLMIRROR_EXPECTS(is_slot(slot));
-  Command command;
-  if (commands_.full() || !free_moves_.pop(command.move)) return 0;
-  moves_[command.move] = move;
-  command.kind = CommandKind::add_move;
-  command.slot = static_cast<std::uint8_t>(slot);
-  return enqueue(command);
 }
 
 JointSampleSink& Engine::inlet(std::size_t slot) {

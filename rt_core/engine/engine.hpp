@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rt_core/base/real_time.hpp"
@@ -22,16 +23,16 @@
 #include "rt_core/rt/cyclic_thread.hpp"
 #include "rt_core/rt/fifo.hpp"
 #include "rt_core/rt/latest.hpp"
+#include "rt_core/rt/lease.hpp"
 #include "rt_core/rt/ring.hpp"
 #include "rt_core/rt/watchdog.hpp"
 
 namespace cellmirror::engine {
 
 inline constexpr std::size_t kCommandQueue = 4096;
-inline constexpr std::size_t kSampleQueue = 128;   // of each robot: a quarter of a second at 500 Hz
-inline constexpr std::size_t kMoveCommands = 256;  // moves on their way to the tick, of all robots together
-inline constexpr int kCommandsPerTick = 256;       // keeps the tick bounded while a script floods it
-inline constexpr int kSamplesPerTick = 64;         // of each robot
+inline constexpr std::size_t kSampleQueue = 128;  // of each robot: a quarter of a second at 500 Hz
+inline constexpr int kCommandsPerTick = 256;      // keeps the tick bounded while a script floods it
+inline constexpr int kSamplesPerTick = 64;        // of each robot
 // After missed periods a move goes on by the time that has really passed, but by no more than this or one period, so
 // that the robots make no leap after a pause of the machine: their paths last longer then.
 inline constexpr Nanoseconds kLongestStep{10'000'000};
@@ -69,11 +70,18 @@ class Engine final : public Cycle {
 
   void run(const CycleContext& context) CELL_RT override;
 
-  // Hands a command (any but add_move) to the tick and gives it its id. 0 where the queue is full: wait a tick and try
-  // again.
-  std::uint64_t send(Command command);
-  // The same for a move (kind add_move). 0 too where kMoveCommands are on their way.
-  std::uint64_t send_move(std::size_t slot, const motion::Move& move);
+  // Hands a command to the tick and gives its id, which ascends. 0, and the command is untouched, where the queue is
+  // full: try again after the next tick.
+  std::uint64_t send(Command& command);
+  std::uint64_t send(Command&& command) { return send(command); }
+  // For a command. The tick uses the object until it gives it back; it is freed with a later call of send() or
+  // free_returned(), or with the engine. Only the owner's thread frees.
+  template <class T>
+  [[nodiscard]] Lease<T> lend(std::shared_ptr<T> object) {
+    return lender_.lend(std::move(object));
+  }
+  void free_returned() { lender_.collect(); }
+  [[nodiscard]] std::size_t lent() const { return lender_.outstanding(); }
   // Where the stream of the robot in this slot puts its samples.
   [[nodiscard]] JointSampleSink& inlet(std::size_t slot);
   // Where the surroundings of the instrument of a haptic channel are put.
@@ -91,12 +99,31 @@ class Engine final : public Cycle {
     Fifo<JointSample, kSampleQueue> queue;
   };
 
-  std::uint64_t enqueue(Command command);
+  struct Sent {
+    std::uint64_t id = 0;
+    Command command;
+  };
+
   int take_commands(Timestamp now) CELL_RT;
-  bool carry_out(const Command& command) CELL_RT;
+  // False where the command was refused.
+  bool carry_out(AddRobot& command) CELL_RT;
+  bool carry_out(const RemoveRobot& command) CELL_RT;
+  bool carry_out(const SetMode& command) CELL_RT;
+  bool carry_out(const SetPositions& command) CELL_RT;
+  bool carry_out(const SetLimits& command) CELL_RT;
+  bool carry_out(SetChain& command) CELL_RT;
+  bool carry_out(const AddMove& command) CELL_RT;
+  bool carry_out(const StopMotion& command) CELL_RT;
+  bool carry_out(const SetPace& command) CELL_RT;
+  bool carry_out(const HoldBehind& command) CELL_RT;
+  bool carry_out(const Couple& command) CELL_RT;
+  bool carry_out(const Uncouple& command) CELL_RT;
+  bool carry_out(OpenHaptic& command) CELL_RT;
+  bool carry_out(const CloseHaptic& command) CELL_RT;
+  bool carry_out(const ResetHaptic& command) CELL_RT;
+  bool carry_out(const SetDeviceGone& command) CELL_RT;
   int take_samples() CELL_RT;
   int step_haptics(const CycleContext& context) CELL_RT;
-  bool apply_to_robot(const Command& command) CELL_RT;
   [[nodiscard]] bool is_slot(std::size_t slot) const CELL_RT { return slot < slots_.size(); }
   void move_robots(const CycleContext& context, double dt) CELL_RT;
   void follow_masters(const CycleContext& context, double dt) CELL_RT;
@@ -105,14 +132,11 @@ class Engine final : public Cycle {
   void record_robot(FlightEvent event, std::size_t slot, Timestamp time, std::uint64_t sequence) CELL_RT;
 
   const EngineCapacity capacity_;
+  Lender lender_;  // before all that holds leases
   std::vector<RobotSlot> slots_;
   TickState head_;                  // everything of the published state but the robots
   std::uint64_t next_command_ = 1;  // owner's
-  Fifo<Command, kCommandQueue> commands_;
-  // A move is too large for the command queue: the owner takes a free place, writes the move there and sends its
-  // number; the tick gives the place back when it has taken the move.
-  std::vector<motion::Move> moves_;
-  Fifo<std::uint16_t, kMoveCommands> free_moves_;
+  Fifo<Sent, kCommandQueue> commands_;
   std::vector<std::unique_ptr<Inlet>> inlets_;
   Broadcast<TickState> states_;
   std::deque<TickReader> readers_;

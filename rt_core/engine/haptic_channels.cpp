@@ -1,47 +1,45 @@
 #include "rt_core/engine/haptic_channels.hpp"
 
+#include <utility>
+
 namespace cellmirror::engine {
 
-bool HapticChannels::concerns(const Command& command) CELL_RT {
-  return command.kind == CommandKind::open_haptic || command.kind == CommandKind::close_haptic ||
-         command.kind == CommandKind::reset_haptic || command.kind == CommandKind::haptic_device;
-}
-
-bool HapticChannels::apply(const Command& command, Timestamp now, std::size_t robots) CELL_RT {
-  if (command.channel >= channels_.size()) return false;
+bool HapticChannels::open(OpenHaptic& command, Timestamp now) CELL_RT {
+  if (command.channel >= channels_.size() || !command.instrument || !command.device) return false;
   Entry& entry = channels_[command.channel];
-  switch (command.kind) {
-    case CommandKind::open_haptic:
-      if (command.instrument == nullptr || command.device == nullptr || command.instrument->slot >= robots)
-        return false;
-      open(entry, command, now);
-      return true;
-    case CommandKind::close_haptic:
-      if (entry.channel.used()) entry.channel.close();
-      entry.instrument = nullptr;
-      entry.device = nullptr;
-      return true;
-    case CommandKind::reset_haptic:
-      return entry.channel.used() && !entry.device_gone && entry.channel.reset();
-    case CommandKind::haptic_device:
-      entry.device_gone = command.device_gone;
-      return true;
-    default:
-      return false;
+  if (entry.channel.used() && entry.device.get() == command.device.get()) {
+    entry.channel.exchange(*command.instrument);
+  } else {
+    if (entry.channel.used()) entry.channel.close();
+    entry.device_gone = false;
+    entry.channel.open(*command.instrument, *command.device);
   }
+  // Only now: until here the channel has used the ones before.
+  entry.instrument = std::move(command.instrument);
+  entry.device = std::move(command.device);
+  entry.opened = now;
+  return true;
 }
 
-void HapticChannels::open(Entry& entry, const Command& command, Timestamp now) CELL_RT {
-  entry.instrument = command.instrument;
-  entry.opened = now;
-  if (entry.channel.used() && entry.device == command.device) {
-    entry.channel.exchange(*command.instrument);
-    return;
-  }
+bool HapticChannels::close(std::size_t channel) CELL_RT {
+  if (channel >= channels_.size()) return false;
+  Entry& entry = channels_[channel];
   if (entry.channel.used()) entry.channel.close();
-  entry.device = command.device;
-  entry.device_gone = false;
-  entry.channel.open(*command.instrument, *command.device);
+  entry.instrument.give_back();
+  entry.device.give_back();
+  return true;
+}
+
+bool HapticChannels::reset(std::size_t channel) CELL_RT {
+  if (channel >= channels_.size()) return false;
+  Entry& entry = channels_[channel];
+  return entry.channel.used() && !entry.device_gone && entry.channel.reset();
+}
+
+bool HapticChannels::set_device_gone(std::size_t channel, bool gone) CELL_RT {
+  if (channel >= channels_.size()) return false;
+  channels_[channel].device_gone = gone;
+  return true;
 }
 
 bool HapticChannels::step(std::size_t channel, const CycleContext& context, const RobotTickState& robot,

@@ -24,10 +24,13 @@ class HapticChannels {
   explicit HapticChannels(std::size_t channels) : channels_(channels) {}
 
   [[nodiscard]] std::size_t size() const CELL_RT { return channels_.size(); }
-  [[nodiscard]] static bool concerns(const Command& command) CELL_RT;
-  // False where the command names no channel, no instrument or no device, or reset_haptic was refused. `robots`: slots
-  // that there are.
-  bool apply(const Command& command, Timestamp now, std::size_t robots) CELL_RT;
+  // These give false where there is no such channel. `now`: the time of the tick.
+  // False too without an instrument or a device.
+  bool open(OpenHaptic& command, Timestamp now) CELL_RT;
+  bool close(std::size_t channel) CELL_RT;
+  // False too where the reset was refused.
+  bool reset(std::size_t channel) CELL_RT;
+  bool set_device_gone(std::size_t channel, bool gone) CELL_RT;
 
   [[nodiscard]] bool used(std::size_t channel) const CELL_RT { return channels_[channel].channel.used(); }
   // Of the instrument's robot.
@@ -45,14 +48,12 @@ class HapticChannels {
  private:
   struct Entry {
     haptics::HapticChannel channel;
-    const haptics::Instrument* instrument = nullptr;
-    const HapticDevicePort* device = nullptr;
+    Lease<const haptics::Instrument> instrument;
+    Lease<HapticDevicePort> device;
     Timestamp opened;
     bool device_gone = false;
     Latest<haptics::ContactModel> inlet;
   };
-
-  static void open(Entry& entry, const Command& command, Timestamp now) CELL_RT;
 
   std::vector<Entry> channels_;
 };

@@ -1,277 +1,177 @@
 #include "rt_core/engine/robot_slot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
-
-#include "rt_core/engine/limiter.hpp"
+#include <utility>
 
 namespace cellmirror::engine {
 
-namespace {
-
-// By gravity, not by the order of the enumeration: nothing at all is the worst, then invalid, lost, stale, fresh.
-int gravity_of(DataState state) CELL_RT {
-  constexpr std::array<int, 5> kGravity = {4, 0, 1, 2, 3};  // none, fresh, stale, lost, invalid
-  return kGravity[static_cast<std::size_t>(state)];
+bool RobotSlot::add(const RobotSetup& robot) CELL_RT {
+  const std::uint8_t joints = std::min(robot.joint_count, static_cast<std::uint8_t>(kMaxJointsPerRobot));
+  if (gate_.add(joints, robot.positions, robot.limits) != LimiterVerdict::passed) return false;
+  executor_.reset(joints);
+  chain_.give_back();
+  give_back_chains();
+  return true;
 }
 
-}  // namespace
-
-bool RobotSlot::apply(const Command& command) CELL_RT {
-  switch (command.kind) {
-    case CommandKind::add_robot:
-      add(command);
-      return true;
-    case CommandKind::remove_robot:
-      state_ = RobotTickState{};
-      executor_.reset(0);
-      return true;
-    case CommandKind::set_mode:
-      set_mode(command);
-      return true;
-    case CommandKind::set_positions:
-      return set_positions(command);
-    case CommandKind::set_limits:
-      lower_ = command.lower;
-      upper_ = command.upper;
-      return true;
-    case CommandKind::set_chain:
-      return set_chain(command.chain);
-    case CommandKind::stop_motion:
-      if (!simulated()) return false;
-      executor_.stop();
-      return true;
-    case CommandKind::set_pace:
-      if (!simulated()) return false;
-      executor_.set_pace(command.pace);
-      return true;
-    case CommandKind::hold_behind:
-      if (!simulated()) return false;
-      executor_.hold_behind(command.last_move);
-      return true;
-    case CommandKind::open_haptic:
-    case CommandKind::close_haptic:
-    case CommandKind::reset_haptic:
-    case CommandKind::haptic_device:
-    case CommandKind::couple:
-    case CommandKind::uncouple:
-      return false;  // the engine asks its couplings
-    case CommandKind::add_move:
-      return false;  // the engine carries them out itself
-  }
-  return false;
+void RobotSlot::remove() CELL_RT {
+  gate_.remove();
+  executor_.reset(0);
+  chain_.give_back();
+  give_back_chains();
 }
 
-void RobotSlot::add(const Command& command) CELL_RT {
-  state_ = RobotTickState{};
-  state_.mode = RobotMode::simulated;
-  state_.joint_count = std::min(command.joint_count, static_cast<std::uint8_t>(kMaxJointsPerRobot));
-  executor_.reset(state_.joint_count);
-  lower_ = command.lower;
-  upper_ = command.upper;
-  for (std::size_t i = 0; i < state_.joint_count; ++i) state_.joints[i].position = command.values[i];
-}
-
-void RobotSlot::set_mode(const Command& command) CELL_RT {
+void RobotSlot::set_mode(const SetMode& command) CELL_RT {
   if (!used()) return;
-  state_.mode = command.mode;
+  gate_.set_mode(command.mode, command.ages, command.given);
   executor_.abort(motion::Outcome::stopped);
   if (!simulated()) {
     executor_.set_chain(nullptr);
-    state_.follow = {};
+    chain_.give_back();
+    gate_.set_follow(FollowTickState{});
   }
-  state_.motion = executor_.state();
-  ages_ = command.ages;
-  const auto all = static_cast<std::uint16_t>((1U << state_.joint_count) - 1U);
-  given_ = (command.given & all) != 0 ? command.given : all;
-  state_.sequence = 0;
-  state_.receive_time = Timestamp{};
-  state_.samples = 0;
-  state_.refused_values = 0;
-  state_.state = DataState::none;
-  // Positions stay: a robot that goes offline stays where it was, one that goes online stays until its first sample.
-  for (JointTickState& joint : state_.joints) {
-    joint.velocity = 0;
-    joint.effort = 0;
-    joint.receive_time = Timestamp{};
-    joint.source_time = Timestamp{};
-    joint.state = DataState::none;
-  }
+  give_back_chains();
+  gate_.set_motion(executor_.state());
 }
 
-bool RobotSlot::set_positions(const Command& command) CELL_RT {
-  if (!simulated()) return false;
-  const std::size_t n = state_.joint_count;
-  const LimiterVerdict verdict =
-      check_setpoints(std::span(command.values).first(n), std::span(lower_).first(n), std::span(upper_).first(n));
-  if (verdict != LimiterVerdict::passed) {
-    ++state_.refused_setpoints;
-    return false;
-  }
+bool RobotSlot::set_positions(const JointValues& positions) CELL_RT {
+  if (!simulated() || gate_.jump(positions, free_joints()) != LimiterVerdict::passed) return false;
   executor_.abort(motion::Outcome::stopped);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (follows(i)) continue;
-    state_.joints[i].position = command.values[i];
-    state_.joints[i].velocity = 0;
-  }
   return true;
 }
 
-bool RobotSlot::set_chain(const kinematics::Chain* chain) CELL_RT {
-  if (!simulated() || (chain != nullptr && chain->variable_count() != state_.joint_count)) return false;
-  executor_.set_chain(chain);
+bool RobotSlot::set_chain(Lease<const kinematics::Chain> chain) CELL_RT {
+  if (!simulated() || (chain && chain->variable_count() != state().joint_count)) return false;
+  executor_.set_chain(chain.get());
+  std::swap(chain_, chain);
+  retire(std::move(chain));
   return true;
+}
+
+// Once for each chain that moves need beside the present one, so that there is always a place.
+void RobotSlot::retire(Lease<const kinematics::Chain> chain) CELL_RT {
+  give_back_chains();
+  if (!chain || chain.get() == chain_.get() || !executor_.uses(*chain)) return;
+  for (std::size_t i = 0; i < retired_; ++i) {
+    if (retired_chains_[i].get() == chain.get()) return;
+  }
+  retired_chains_[retired_++] = std::move(chain);
+}
+
+void RobotSlot::give_back_chains() CELL_RT {
+  for (std::size_t i = 0; i < retired_;) {
+    const kinematics::Chain* const chain = retired_chains_[i].get();
+    if (chain != chain_.get() && executor_.uses(*chain)) {
+      ++i;
+      continue;
+    }
+    retired_chains_[i].give_back();
+    std::swap(retired_chains_[i], retired_chains_[--retired_]);
+  }
 }
 
 bool RobotSlot::add_move(const motion::Move& move) CELL_RT { return simulated() && executor_.add(move); }
 
+bool RobotSlot::stop_motion() CELL_RT {
+  if (simulated()) executor_.stop();
+  return simulated();
+}
+
+bool RobotSlot::set_pace(double pace) CELL_RT {
+  if (simulated()) executor_.set_pace(pace);
+  return simulated();
+}
+
+bool RobotSlot::hold_behind(std::uint32_t move) CELL_RT {
+  if (simulated()) executor_.hold_behind(move);
+  return simulated();
+}
+
 bool RobotSlot::move(double dt, Timestamp now) CELL_RT {
   if (!simulated()) return false;
-  const std::size_t n = state_.joint_count;
-  JointValues present{};
+  const std::size_t n = state().joint_count;
+  GatedStep step{.joints = free_joints(), .dt = dt};
   JointValues lower{};
   JointValues upper{};
   for (std::size_t i = 0; i < n; ++i) {
-    present[i] = state_.joints[i].position;
-    // A joint that stands beyond its range, since that was narrowed, may come back into it, and not go further.
-    lower[i] = std::min(lower_[i], present[i]);
-    upper[i] = std::max(upper_[i], present[i]);
+    step.next[i] = state().joints[i].position;
+    // As in the gate: a joint that stands beyond its range may come back into it.
+    lower[i] = std::min(gate_.limits().lower[i], step.next[i]);
+    upper[i] = std::max(gate_.limits().upper[i], step.next[i]);
   }
-  JointValues next = present;
-  JointValues velocity{};
   const bool moved = executor_.step(dt, now, {std::span(lower).first(n), std::span(upper).first(n)},
-                                    std::span(next).first(n), std::span(velocity).first(n));
+                                    std::span(step.next).first(n), std::span(step.velocity).first(n));
   if (moved) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (follows(i)) next[i] = present[i];
-    }
-    LimiterVerdict verdict =
-        check_setpoints(std::span(next).first(n), std::span(lower).first(n), std::span(upper).first(n));
-    if (verdict == LimiterVerdict::passed) {
-      verdict = check_rates(std::span(present).first(n), std::span(next).first(n),
-                            std::span(executor_.fastest()).first(n), dt);
-    }
-    if (verdict != LimiterVerdict::passed) {
-      ++state_.refused_setpoints;
-      executor_.abort(motion::Outcome::blocked);
-      next = present;
-      velocity.fill(0);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      if (follows(i)) continue;
-      state_.joints[i].position = next[i];
-      state_.joints[i].velocity = velocity[i];
-    }
+    step.fastest = executor_.fastest();
+    if (gate_.step(step) != LimiterVerdict::passed) executor_.abort(motion::Outcome::blocked);
+  } else {
+    gate_.stand(step.joints);
   }
-  state_.motion = executor_.state();
+  gate_.set_motion(executor_.state());
+  give_back_chains();
   return moved;
 }
 
-void RobotSlot::set_follow(std::uint8_t master, std::uint16_t joints) CELL_RT {
+void RobotSlot::set_follow(std::uint8_t master, JointSet joints) CELL_RT {
   // Joints that become free are elsewhere than the move under way has them: it ends where the robot stands.
-  if ((state_.follow.joints & ~joints) != 0) {
+  const JointSet before = state().follow.joints;
+  if ((before & ~joints) != 0) {
     executor_.abort(motion::Outcome::stopped);
   } else {
     executor_.stop();
   }
-  for (std::size_t i = 0; i < state_.joint_count; ++i) {
-    if (follows(i)) state_.joints[i].velocity = 0;
-  }
-  state_.follow = {};
-  state_.follow.master = master;
-  state_.follow.joints = joints;
+  gate_.stand(before);
+  FollowTickState follow;
+  follow.master = master;
+  follow.joints = joints;
+  gate_.set_follow(follow);
 }
 
 bool RobotSlot::follow(const RobotTickState& master, const Coupling& coupling, double dt) CELL_RT {
   if (!simulated()) return false;
-  state_.follow.holding = false;
-  state_.follow.limited = 0;
+  FollowTickState follow = state().follow;
+  follow.holding = false;
+  follow.limited = 0;
   bool moved = false;
   for (std::size_t i = 0; i < coupling.count; ++i) {
     const CoupledJoint& pair = coupling.joints[i];
     const JointTickState& of_master = master.joints[pair.master_joint];
     const bool known = master.mode == RobotMode::simulated ||
                        (master.mode == RobotMode::mirrored && of_master.state == DataState::fresh);
-    if (!known) {
-      state_.follow.holding = true;
-      state_.joints[pair.slave_joint].velocity = 0;
-      continue;
+    if (known) {
+      const double max_velocity = coupling.max_velocity[pair.slave_joint];
+      moved = follow_joint(of_master.position, pair.slave_joint, max_velocity, dt, follow) || moved;
+    } else {
+      follow.holding = true;
+      gate_.stand(static_cast<JointSet>(1U << pair.slave_joint));
     }
-    const double max_step = coupling.max_velocity[pair.slave_joint] * dt;
-    moved = follow_joint(of_master, pair.slave_joint, max_step, dt) || moved;
   }
+  gate_.set_follow(follow);
   return moved;
 }
 
-bool RobotSlot::follow_joint(const JointTickState& master, std::size_t joint, double max_step, double dt) CELL_RT {
-  JointTickState& own = state_.joints[joint];
-  const double present = own.position;
-  // One that stands beyond its range, since that was narrowed, may come back into it, and not go further.
-  const double lower = std::min(lower_[joint], present);
-  const double upper = std::max(upper_[joint], present);
-  const double wanted = std::clamp(master.position, lower, upper);
-  const double next = present + std::clamp(wanted - present, -max_step, max_step);
-  if (check_setpoints(std::span(&next, 1), std::span(&lower, 1), std::span(&upper, 1)) != LimiterVerdict::passed) {
-    ++state_.refused_setpoints;
-    own.velocity = 0;
-    return false;
-  }
-  if (std::abs(master.position - next) > kLimitSlack)
-    state_.follow.limited = static_cast<std::uint16_t>(state_.follow.limited | 1U << joint);
-  own.position = std::abs(wanted - present) <= max_step ? wanted : next;
-  own.velocity = dt > 0.0 ? (own.position - present) / dt : 0.0;
-  return own.position != present;
-}
-
-void RobotSlot::take(const JointSample& sample) CELL_RT {
-  if (state_.mode != RobotMode::mirrored) return;
-  ++state_.samples;
-  state_.sequence = sample.sequence;
-  state_.receive_time = sample.receive_time;
-  for (std::size_t i = 0; i < state_.joint_count; ++i) {
-    JointTickState& joint = state_.joints[i];
-    const bool present = (sample.present >> i & 1U) != 0;
-    const bool finite =
-        std::isfinite(sample.position[i]) && std::isfinite(sample.velocity[i]) && std::isfinite(sample.effort[i]);
-    if ((sample.refused >> i & 1U) != 0 || (present && !finite)) {
-      ++state_.refused_values;
-      joint.state = DataState::invalid;
-      continue;
-    }
-    if (!present) continue;
-    joint.position = sample.position[i];
-    joint.velocity = sample.velocity[i];
-    joint.effort = sample.effort[i];
-    joint.receive_time = sample.receive_time;
-    joint.source_time = sample.source_time;
-    joint.state = DataState::fresh;
-  }
-}
-
-void RobotSlot::update(Timestamp now) CELL_RT {
-  if (state_.mode != RobotMode::mirrored) return;
-  DataState worst = DataState::fresh;
-  for (std::size_t i = 0; i < state_.joint_count; ++i) {
-    JointTickState& joint = state_.joints[i];
-    if (joint.receive_time.known()) {
-      const Nanoseconds age = now - joint.receive_time;
-      if (age > ages_.lost_after) {
-        joint.state = DataState::lost;
-      } else if (age > ages_.stale_after) {
-        joint.state = joint.state == DataState::invalid ? DataState::invalid : DataState::stale;
-      }
-    }
-    // One that nothing gives stays as it is for ever: it says nothing about the stream.
-    if (gives(i) && gravity_of(joint.state) > gravity_of(worst)) worst = joint.state;
-  }
-  state_.state = worst;
+bool RobotSlot::follow_joint(double wanted, std::size_t joint, double max_velocity, double dt,
+                             FollowTickState& follow) CELL_RT {
+  const double present = state().joints[joint].position;
+  const double within = std::clamp(wanted, std::min(gate_.limits().lower[joint], present),
+                                   std::max(gate_.limits().upper[joint], present));
+  const double max_step = max_velocity * dt;
+  const bool arrives = std::abs(within - present) <= max_step;
+  const double next = arrives ? within : present + std::clamp(within - present, -max_step, max_step);
+  GatedStep step{.joints = static_cast<JointSet>(1U << joint), .dt = dt};
+  step.next[joint] = next;
+  step.velocity[joint] = dt > 0.0 ? (next - present) / dt : 0.0;
+  step.fastest[joint] = max_velocity;
+  if (gate_.step(step) != LimiterVerdict::passed) return false;
+  if (std::abs(wanted - next) > kLimitSlack) follow.limited = static_cast<JointSet>(follow.limited | 1U << joint);
+  return next != present;
 }
 
 void RobotSlot::publish(RobotTickState& out) const CELL_RT {
-  static_cast<RobotTickHead&>(out) = state_;
-  std::copy_n(state_.joints.begin(), state_.joint_count, out.joints.begin());
+  static_cast<RobotTickHead&>(out) = state();
+  std::copy_n(state().joints.begin(), state().joint_count, out.joints.begin());
 }
 
 }  // namespace cellmirror::engine

@@ -1,8 +1,13 @@
-// One robot inside the tick: its mode, its newest joint values and how old they are.
+// One robot inside the tick: its mode, its moves and its coupling. Its joint values belong to its gate.
 #pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/engine/command.hpp"
+#include "rt_core/engine/joint_gate.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/motion/executor.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -12,44 +17,47 @@ namespace cellmirror::engine {
 // Tick thread only.
 class RobotSlot {
  public:
-  // False where the command does not fit the slot's mode or the limiter refused it.
-  bool apply(const Command& command) CELL_RT;
-  // Takes over a sample of the stream. Values that are not finite are refused joint by joint; the joint keeps its last
-  // good value and becomes invalid.
-  void take(const JointSample& sample) CELL_RT;
+  // Those that answer give false where the command does not fit the slot's mode, or the gate refused it.
+  bool add(const RobotSetup& robot) CELL_RT;
+  void remove() CELL_RT;
+  void set_mode(const SetMode& command) CELL_RT;
+  bool set_positions(const JointValues& positions) CELL_RT;
+  void set_limits(const JointLimits& limits) CELL_RT { gate_.set_limits(limits); }
+  bool set_chain(Lease<const kinematics::Chain> chain) CELL_RT;
   bool add_move(const motion::Move& move) CELL_RT;
+  bool stop_motion() CELL_RT;
+  bool set_pace(double pace) CELL_RT;
+  bool hold_behind(std::uint32_t move) CELL_RT;
+  // Takes over a sample of the stream: JointGate::take().
+  void take(const JointSample& sample, Timestamp now) CELL_RT { gate_.take(sample, now); }
   // Moves a simulated robot on by `dt` seconds, to the instant `now`. True where it moved.
   bool move(double dt, Timestamp now) CELL_RT;
-  // The joints (bits) that follow a master from now on; 0: none. What moves is braked, or ends
-  // at once where joints become free. Joints that follow are moved by
-  // follow() alone: moves and positions leave them as they are.
-  void set_follow(std::uint8_t master, std::uint16_t joints) CELL_RT;
+  // The joints that follow a master from now on. What moves is braked, or ends at once where joints become free. Joints
+  // that follow are moved by follow() alone: moves and positions leave them as they are.
+  void set_follow(std::uint8_t master, JointSet joints) CELL_RT;
   // Moves the coupled joints towards the master's. True where one moved.
   bool follow(const RobotTickState& master, const Coupling& coupling, double dt) CELL_RT;
   // Ages every joint by `now`.
-  void update(Timestamp now) CELL_RT;
+  void update(Timestamp now) CELL_RT { gate_.age(now); }
 
-  [[nodiscard]] const RobotTickState& state() const CELL_RT { return state_; }
+  [[nodiscard]] const RobotTickState& state() const CELL_RT { return gate_.state(); }
   // Into a buffer that holds an older state.
   void publish(RobotTickState& out) const CELL_RT;
-  [[nodiscard]] bool used() const CELL_RT { return state_.mode != RobotMode::absent; }
+  [[nodiscard]] bool used() const CELL_RT { return state().mode != RobotMode::absent; }
 
  private:
-  bool set_positions(const Command& command) CELL_RT;
-  void add(const Command& command) CELL_RT;
-  void set_mode(const Command& command) CELL_RT;
-  bool set_chain(const kinematics::Chain* chain) CELL_RT;
-  bool follow_joint(const JointTickState& master, std::size_t joint, double max_step, double dt) CELL_RT;
-  [[nodiscard]] bool follows(std::size_t joint) const CELL_RT { return ((state_.follow.joints >> joint) & 1U) != 0; }
-  [[nodiscard]] bool gives(std::size_t joint) const CELL_RT { return ((given_ >> joint) & 1U) != 0; }
-  [[nodiscard]] bool simulated() const CELL_RT { return state_.mode == RobotMode::simulated; }
+  void retire(Lease<const kinematics::Chain> chain) CELL_RT;
+  void give_back_chains() CELL_RT;
+  bool follow_joint(double wanted, std::size_t joint, double max_velocity, double dt, FollowTickState& follow) CELL_RT;
+  [[nodiscard]] JointSet free_joints() const CELL_RT { return static_cast<JointSet>(~state().follow.joints); }
+  [[nodiscard]] bool simulated() const CELL_RT { return state().mode == RobotMode::simulated; }
 
-  RobotTickState state_;
-  StreamAges ages_;
-  std::uint16_t given_ = 0xFFFF;  // joints (bits) whose position the stream gives; never 0
-  JointValues lower_{};
-  JointValues upper_{};
+  JointGate gate_;
   motion::MoveExecutor executor_;
+  Lease<const kinematics::Chain> chain_;
+  // Chains that were replaced while moves needed them: at most one of each move that runs or waits.
+  std::array<Lease<const kinematics::Chain>, motion::kMoveQueue + 1> retired_chains_;
+  std::size_t retired_ = 0;
 };
 
 }  // namespace cellmirror::engine

@@ -24,8 +24,8 @@ struct JointTickState {
   double position = 0;  // rad or m; the last good value, whatever its age
   double velocity = 0;  // rad/s or m/s; of a simulated robot that of its move
   double effort = 0;    // Nm or N
-  Timestamp receive_time;
-  Timestamp source_time;
+  Timestamp receive_time = {};
+  Timestamp source_time = {};
   DataState state = DataState::none;
 };
 

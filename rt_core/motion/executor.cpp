@@ -33,6 +33,16 @@ void MoveExecutor::reset(std::size_t joints) CELL_RT {
   come_to_rest();
 }
 
+bool MoveExecutor::uses(const kinematics::Chain& chain) const CELL_RT {
+  if (chain_ == &chain) return true;
+  if (activity_ == Activity::path && linear_.chain() == &chain) return true;
+  if (activity_ == Activity::joints && ptp_.chain() == &chain) return true;
+  for (std::size_t i = 0; i < state_.waiting; ++i) {
+    if (queue_[(first_ + i) % kMoveQueue].chain == &chain) return true;
+  }
+  return false;
+}
+
 void MoveExecutor::set_pace(double pace) CELL_RT {
   if (std::isfinite(pace)) wanted_pace_ = std::clamp(pace, 0.0, 1.0);
 }

@@ -43,10 +43,11 @@ class MoveExecutor {
  public:
   // Another robot: everything is forgotten, the ids too.
   void reset(std::size_t joints) CELL_RT;
-  // For the linear moves that are added from now on; null: linear moves are refused. Not owned: must outlive the
-  // setting of another one, and every move that was added before has ended by its id (MotionState::finished), seen
-  // after a step.
+  // For the linear moves that are added from now on; null: linear moves are refused. Not owned: must stay valid as long
+  // as uses() returns true for it.
   void set_chain(const kinematics::Chain* chain) CELL_RT { chain_ = chain; }
+  // Whether moves that run, wait or may still be added need this chain.
+  [[nodiscard]] bool uses(const kinematics::Chain& chain) const CELL_RT;
 
   // False where the queue is full or the move is not sound; its id ends as blocked, when everything before it has
   // ended.

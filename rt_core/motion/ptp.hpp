@@ -47,6 +47,7 @@ class PtpMotion {
   [[nodiscard]] double duration() const CELL_RT { return duration_; }  // s; of the slowest axis
   // How long ago it ended, where it has, s.
   [[nodiscard]] double overrun() const CELL_RT { return t_ > duration_ ? t_ - duration_ : 0; }
+  [[nodiscard]] const kinematics::Chain* chain() const CELL_RT { return chain_; }  // of the fly point
   [[nodiscard]] const Profile& axis(std::size_t joint) const CELL_RT { return axes_[joint]; }
 
  private:

@@ -66,13 +66,6 @@ void HapticService::shut_down() {
   }
 }
 
-engine::Command HapticService::command_for(const Device& device, engine::CommandKind kind) const {
-  engine::Command command;
-  command.kind = kind;
-  command.channel = device.channel;
-  return command;
-}
-
 Result<std::shared_ptr<const Instrument>> HapticService::instrument_of(const Device& device) {
   const RobotModel* robot = cell_.robot(device.config.robot);
   if (robot == nullptr) return std::unexpected(cell_.explain_robot(device.config.robot));
@@ -104,12 +97,11 @@ void HapticService::place_at_tip(Device& device) {
 }
 
 Result<void> HapticService::send_open(Device& device, std::shared_ptr<const Instrument> instrument) {
-  engine::Command command = command_for(device, engine::CommandKind::open_haptic);
-  command.instrument = instrument.get();
-  command.device = device.port.get();
-  if (auto sent = fleet_.send(command); !sent) return std::unexpected(sent.error());
-  // The tick looks into the one before until it has taken the command.
-  if (device.instrument && !fleet_.settle()) kept_.push_back(device.instrument);
+  const auto sent =
+      fleet_.send(engine::OpenHaptic{.channel = device.channel,
+                                     .instrument = fleet_.lend(instrument),
+                                     .device = fleet_.lend(std::static_pointer_cast<HapticDevicePort>(device.port))});
+  if (!sent) return std::unexpected(sent.error());
   device.instrument = std::move(instrument);
   device.revision = cell_.revision();
   return {};
@@ -118,15 +110,9 @@ Result<void> HapticService::send_open(Device& device, std::shared_ptr<const Inst
 void HapticService::close(Device& device) {
   if (!device.online) return;
   device.online = false;
-  const auto sent = fleet_.send(command_for(device, engine::CommandKind::close_haptic));
-  if (sent && fleet_.settle()) {
-    device.instrument.reset();
-    return;
-  }
-  // The loop stands still: whatever it may still look into stays until the end.
-  kept_.push_back(std::move(device.instrument));
-  kept_ports_.push_back(std::move(device.port));
-  kept_segments_.push_back(std::move(device.segment));
+  device.instrument.reset();
+  // Once the tick has carried it out, it has given back the device. Where the loop stands still, that stays with it.
+  if (fleet_.send(engine::CloseHaptic{device.channel})) static_cast<void>(fleet_.settle());
 }
 
 void HapticService::drop_memory(Device& device) {
@@ -145,8 +131,11 @@ Result<void> HapticService::make_memory(Device& device, std::int32_t key, std::s
                                       .instance = instance_});
   if (!segment) return std::unexpected(segment.error());
   device.segment = std::move(*segment);
-  device.port = std::make_unique<MeteredDevice>(device.segment->memory(), joints, static_cast<std::uint32_t>(getpid()),
-                                                clock_, device.meter);
+  // The memory outlives the device, which the tick may keep longer than we do.
+  const auto memory = std::make_shared<std::pair<std::shared_ptr<SharedSegment>, std::optional<MeteredDevice>>>();
+  memory->first = device.segment;
+  memory->second.emplace(device.segment->memory(), joints, static_cast<std::uint32_t>(getpid()), clock_, device.meter);
+  device.port = std::shared_ptr<MeteredDevice>(memory, &*memory->second);
   device.users = device.segment->users();
   device.stream->set_memory("shared memory " + key_text(key), device.meter);
   if (bytes < haptic_block_offset::kSize) {
@@ -220,7 +209,7 @@ Result<void> HapticService::reset(std::string_view robot) {
 }
 
 Result<HapticState> HapticService::try_reset(Device& device) {
-  auto sent = fleet_.send(command_for(device, engine::CommandKind::reset_haptic));
+  auto sent = fleet_.send(engine::ResetHaptic{device.channel});
   if (!sent) return std::unexpected(sent.error());
   if (auto settled = fleet_.settle(); !settled) return std::unexpected(settled.error());
   return fleet_.tick().haptics[device.channel];
@@ -270,9 +259,8 @@ void HapticService::follow_process(Device& device, const HapticState& state) {
   }
   if (gone == device.gone) return;
   device.gone = gone;
-  engine::Command command = command_for(device, engine::CommandKind::haptic_device);
-  command.device_gone = gone;
-  if (auto sent = fleet_.send(command); !sent) log_error("haptic.loop", "{}", sent.error().text());
+  const auto sent = fleet_.send(engine::SetDeviceGone{.channel = device.channel, .gone = gone});
+  if (!sent) log_error("haptic.loop", "{}", sent.error().text());
   if (gone) {
     log_warning("haptic.device", "the process {} of the haptic device of {} {}", state.device_writer,
                 device.config.robot, ended ? "has ended" : "is no longer attached to its memory");
@@ -301,7 +289,7 @@ void HapticService::follow_cell(Device& device) {
   device.revision = cell_.revision();
   if (!instrument) {
     log_error("haptic.instrument", "{} is no instrument any more: {}", device.config.robot, instrument.error().text());
-    const auto sent = fleet_.send(command_for(device, engine::CommandKind::close_haptic));
+    const auto sent = fleet_.send(engine::CloseHaptic{device.channel});
     if (!sent) log_error("haptic.loop", "{}", sent.error().text());
     return;
   }

@@ -36,7 +36,7 @@ class HapticService {
   };
 
   explicit HapticService(Parts parts);
-  // The loop stands still, or shut_down() was called. Leaves zero forces in the memories.
+  // Leaves zero forces in the memories; of a channel that is still open, when the engine ends.
   ~HapticService();
   HapticService(const HapticService&) = delete;
   HapticService& operator=(const HapticService&) = delete;
@@ -67,8 +67,8 @@ class HapticService {
     RobotHaptic config;
     std::uint8_t channel = 0;
     bool online = false;
-    std::unique_ptr<SharedSegment> segment;
-    std::unique_ptr<MeteredDevice> port;
+    std::shared_ptr<SharedSegment> segment;
+    std::shared_ptr<MeteredDevice> port;  // with the segment
     std::shared_ptr<HapticMeter> meter;
     std::shared_ptr<const haptics::Instrument> instrument;
     std::shared_ptr<HapticStream> stream;
@@ -97,17 +97,12 @@ class HapticService {
   void follow_process(Device& device, const HapticState& state);
   void follow_cell(Device& device);
   void report_faults(Device& device, const HapticState& state);
-  [[nodiscard]] engine::Command command_for(const Device& device, engine::CommandKind kind) const;
 
   const Cell& cell_;
   Fleet& fleet_;
   const Clock& clock_;
   std::string instance_;
   std::map<std::string, Device, std::less<>> devices_;
-  // What the tick may still use, where it has not confirmed its release.
-  std::vector<std::shared_ptr<const void>> kept_;
-  std::vector<std::unique_ptr<SharedSegment>> kept_segments_;
-  std::vector<std::unique_ptr<MeteredDevice>> kept_ports_;  // before the segments in destruction
   Timestamp last_check_;
 };
 

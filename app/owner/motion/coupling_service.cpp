@@ -165,22 +165,20 @@ Result<void> CouplingService::uncouple(std::string_view master_name, std::span<c
 
 Result<void> CouplingService::send(std::string_view slave, const Coupled& coupled) {
   const RobotModel& robot = *cell_.robot(slave);
-  engine::Command command;
-  command.kind = engine::CommandKind::couple;
-  command.slot = static_cast<std::uint8_t>(robot.slot());
-  command.master = static_cast<std::uint8_t>(cell_.robot(coupled.master)->slot());
-  command.joint_count = static_cast<std::uint8_t>(coupled.joints.size());
-  std::ranges::copy(coupled.joints, command.coupled.begin());
-  command.values = robot.parameters().max_velocity;
-  if (auto sent = fleet_.send(command); !sent) return std::unexpected(std::move(sent.error()));
+  engine::Coupling coupling{.master = static_cast<std::uint8_t>(cell_.robot(coupled.master)->slot()),
+                            .slave = static_cast<std::uint8_t>(robot.slot()),
+                            .count = static_cast<std::uint8_t>(coupled.joints.size()),
+                            .joints = {},
+                            .max_velocity = robot.parameters().max_velocity};
+  std::ranges::copy(coupled.joints, coupling.joints.begin());
+  auto sent = fleet_.send(engine::Couple{fleet_.lend(std::make_shared<const engine::Coupling>(coupling))});
+  if (!sent) return std::unexpected(std::move(sent.error()));
   return {};
 }
 
 Result<void> CouplingService::send_free(std::string_view slave) {
-  engine::Command command;
-  command.kind = engine::CommandKind::uncouple;
-  command.slot = static_cast<std::uint8_t>(cell_.robot(slave)->slot());
-  if (auto sent = fleet_.send(command); !sent) return std::unexpected(std::move(sent.error()));
+  auto sent = fleet_.send(engine::Uncouple{static_cast<std::uint8_t>(cell_.robot(slave)->slot())});
+  if (!sent) return std::unexpected(std::move(sent.error()));
   return {};
 }
 

@@ -50,12 +50,12 @@ struct Setting {
   ~Setting() { std::filesystem::remove(dbc_file); }
 };
 
-engine::Command mirrored_robot(engine::CommandKind kind) {
-  engine::Command command;
-  command.kind = kind;
-  command.joint_count = 1;
-  command.mode = engine::RobotMode::mirrored;
-  return command;
+void add_mirrored_robot(engine::Engine& engine) {
+  engine.send(engine::AddRobot{
+      .slot = 0,
+      .robot = engine.lend(std::make_shared<const engine::RobotSetup>(engine::RobotSetup{.joint_count = 1})),
+  });
+  engine.send(engine::SetMode{.slot = 0, .mode = engine::RobotMode::mirrored});
 }
 
 void print(const char* name, std::vector<double> us) {
@@ -88,8 +88,7 @@ int main(int argc, char** argv) {
   Watchdog watchdog(std::chrono::milliseconds(100), {});
   const auto engine = std::make_unique<engine::Engine>(watchdog);
   CyclicThread loop(*engine, {.name = "tick", .period = kPeriod});
-  engine->send(mirrored_robot(engine::CommandKind::add_robot));
-  engine->send(mirrored_robot(engine::CommandKind::set_mode));
+  add_mirrored_robot(*engine);
   DbcStreamConfig config;
   config.channel.endpoint = kEndpoint;
   config.dbc_file = setting.dbc_file;

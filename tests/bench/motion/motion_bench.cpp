@@ -89,23 +89,19 @@ BENCHMARK(seven_joints_linear);
 // The whole tick with 32 robots that move: what it takes beside 32 that stand is the motion.
 void tick_of_32_robots(benchmark::State& state, bool moving, bool linear) {
   constexpr std::size_t kRobots = 32;
-  const kinematics::Chain chain = motion::test_arms::panda();
+  const auto chain = std::make_shared<const kinematics::Chain>(motion::test_arms::panda());
   Watchdog watchdog(std::chrono::milliseconds(100), {});
   const auto engine = std::make_unique<engine::Engine>(watchdog, engine::EngineCapacity{.robots = kRobots});
   engine->subscribe("bench");
-  Shuttle shuttle(chain, motion::test_arms::panda_posture(), linear);
+  Shuttle shuttle(*chain, motion::test_arms::panda_posture(), linear);
   for (std::size_t slot = 0; slot < kRobots; ++slot) {
-    engine::Command command;
-    command.kind = engine::CommandKind::add_robot;
-    command.slot = static_cast<std::uint8_t>(slot);
-    command.joint_count = 7;
-    command.values = motion::test_arms::panda_posture();
-    std::copy(chain.lower().begin(), chain.lower().end(), command.lower.begin());
-    std::copy(chain.upper().begin(), chain.upper().end(), command.upper.begin());
-    engine->send(command);
-    command.kind = engine::CommandKind::set_chain;
-    command.chain = &chain;
-    engine->send(command);
+    engine::RobotSetup setup{.joint_count = 7, .positions = motion::test_arms::panda_posture()};
+    std::ranges::copy(chain->lower(), setup.limits.lower.begin());
+    std::ranges::copy(chain->upper(), setup.limits.upper.begin());
+    const auto number = static_cast<std::uint8_t>(slot);
+    engine->send(
+        engine::AddRobot{.slot = number, .robot = engine->lend(std::make_shared<const engine::RobotSetup>(setup))});
+    engine->send(engine::SetChain{.slot = number, .chain = engine->lend(chain)});
   }
   CycleContext context;
   context.period = Nanoseconds(1'000'000);
@@ -113,7 +109,10 @@ void tick_of_32_robots(benchmark::State& state, bool moving, bool linear) {
     if (moving && context.cycle % 500 == 0) {
       state.PauseTiming();
       const Move& move = shuttle.next();
-      for (std::size_t slot = 0; slot < kRobots; ++slot) engine->send_move(slot, move);
+      for (std::size_t slot = 0; slot < kRobots; ++slot) {
+        engine->send(engine::AddMove{.slot = static_cast<std::uint8_t>(slot),
+                                     .move = engine->lend(std::make_shared<const Move>(move))});
+      }
       state.ResumeTiming();
     }
     context.now = Timestamp(static_cast<std::int64_t>(1'000'000 * (context.cycle + 1)));

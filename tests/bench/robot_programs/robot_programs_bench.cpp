@@ -57,17 +57,14 @@ class EngineMotion final : public program::ProgramMotion {
  public:
   EngineMotion() {
     for (std::size_t i = 0; i < kRobots; ++i) {
-      engine::Command command;
-      command.kind = engine::CommandKind::add_robot;
-      command.slot = static_cast<std::uint8_t>(i);
-      command.joint_count = 7;
-      command.values = ends_[i] = motion::test_arms::panda_posture();
-      std::ranges::copy(chain_.lower(), command.lower.begin());
-      std::ranges::copy(chain_.upper(), command.upper.begin());
-      engine_->send(command);
-      command.kind = engine::CommandKind::set_chain;
-      command.chain = &chain_;
-      engine_->send(command);
+      ends_[i] = motion::test_arms::panda_posture();
+      engine::RobotSetup setup{.joint_count = 7, .positions = ends_[i]};
+      std::ranges::copy(chain_->lower(), setup.limits.lower.begin());
+      std::ranges::copy(chain_->upper(), setup.limits.upper.begin());
+      const auto slot = static_cast<std::uint8_t>(i);
+      engine_->send(
+          engine::AddRobot{.slot = slot, .robot = engine_->lend(std::make_shared<const engine::RobotSetup>(setup))});
+      engine_->send(engine::SetChain{.slot = slot, .chain = engine_->lend(chain_)});
     }
     parameters_.max_velocity.fill(2.0);
     parameters_.max_acceleration.fill(8.0);
@@ -139,7 +136,7 @@ class EngineMotion final : public program::ProgramMotion {
   [[nodiscard]] const engine::RobotTickState& state(std::string_view robot) const {
     return ticks_.newest().robots[slot(robot)];
   }
-  [[nodiscard]] Pose tcp(const JointValues& q) const { return kinematics::forward(chain_, std::span(q).first(7)); }
+  [[nodiscard]] Pose tcp(const JointValues& q) const { return kinematics::forward(*chain_, std::span(q).first(7)); }
   static Pose relative(const Pose& X, const Pose& by) {
     Pose out = X;
     out.translation() += by.translation();
@@ -157,15 +154,15 @@ class EngineMotion final : public program::ProgramMotion {
     }
     if (command.target.kind == TargetKind::joints_relative) {
       for (std::size_t i = 0; i < 7; ++i) end[i] += command.target.joints[i];
-      auto move = motion::plan_joint_move(chain_, parameters, end);
+      auto move = motion::plan_joint_move(*chain_, parameters, end);
       if (move) move->fly_parameter = parameters.fly_parameter;
       return move;
     }
     const Pose X = tcp(end);
     const Pose X_BG = relative(X, command.target.pose);
-    auto planned = command.via ? motion::plan_circular_move(chain_, parameters, end,
+    auto planned = command.via ? motion::plan_circular_move(*chain_, parameters, end,
                                                             relative(X, command.via->pose).translation(), X_BG)
-                               : motion::plan_linear_move(chain_, parameters, end, X_BG);
+                               : motion::plan_linear_move(*chain_, parameters, end, X_BG);
     if (!planned) return std::unexpected(planned.error());
     end = planned->end;
     return planned->move;
@@ -174,11 +171,14 @@ class EngineMotion final : public program::ProgramMotion {
     move.start = motion::Start::queue;
     move.follows_on = true;
     move.id = ++ids_[i];
-    while (engine_->send_move(i, move) == 0) tick();
+    engine::Command command = engine::AddMove{.slot = static_cast<std::uint8_t>(i),
+                                              .move = engine_->lend(std::make_shared<const motion::Move>(move))};
+    while (engine_->send(command) == 0) tick();
     return move.id;
   }
 
-  kinematics::Chain chain_ = motion::test_arms::panda();
+  std::shared_ptr<const kinematics::Chain> chain_ =
+      std::make_shared<const kinematics::Chain>(motion::test_arms::panda());
   Watchdog watchdog_{std::chrono::seconds(1), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
   engine::TickReader& ticks_ = engine_->subscribe("bench");

@@ -50,13 +50,12 @@ struct FindingsWorkersTest : testing::Test {
         "[[node]]\nname = \"Post\"\ngeometry = [{ name = \"post\", box_m = [0.1, 0.1, 0.1] }]\n",
         files, diagnostics);
     EXPECT_TRUE(cell) << diagnostics.text();
-    engine::Command command;
-    command.kind = engine::CommandKind::add_robot;
-    command.slot = static_cast<std::uint8_t>(cell->robot("SLEDGE")->slot());
-    command.joint_count = 1;
-    command.lower.fill(-1.0);
-    command.upper.fill(1.0);
-    engine.send(command);
+    engine::RobotSetup setup;
+    setup.joint_count = 1;
+    setup.limits.lower.fill(-1.0);
+    setup.limits.upper.fill(1.0);
+    engine.send(engine::AddRobot{.slot = static_cast<std::uint8_t>(cell->robot("SLEDGE")->slot()),
+                                 .robot = engine.lend(std::make_shared<const engine::RobotSetup>(setup))});
     publish(settings);
   }
 
@@ -142,11 +141,9 @@ struct ContactWorkerTest : FindingsWorkersTest {
     auto made = make_instrument(*cell, *cell->robot("SLEDGE"), {}, cell->start_positions());
     EXPECT_TRUE(made) << made.error().text();
     instrument = *made;
-    engine::Command open;
-    open.kind = engine::CommandKind::open_haptic;
-    open.instrument = instrument.get();
-    open.device = &device;
-    engine.send(open);
+    engine.send(engine::OpenHaptic{.channel = 0,
+                                   .instrument = engine.lend(instrument),
+                                   .device = engine.lend<HapticDevicePort>(std::make_shared<SilentDevice>())});
     HapticSnapshot haptic;
     haptic.slot = instrument->slot;
     haptic.online = true;
@@ -156,7 +153,6 @@ struct ContactWorkerTest : FindingsWorkersTest {
   }
   haptics::ContactModel newest() { return sut.report().newest[0]; }
 
-  SilentDevice device;
   std::shared_ptr<const haptics::Instrument> instrument;
   ContactWorker sut{engine, ticks, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
 };

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "app/owner/chain_cache.hpp"
-
 namespace cellmirror::app {
 namespace {
 
@@ -82,48 +80,6 @@ TEST(PendingMoves, GivenUpMovesStayEndedWhateverTheTickShowsAndIdsGoOn) {
   sut.superseded_all_by_next();
   EXPECT_FALSE(sut.follow(ended(0, 0, Outcome::none)));  // the robot was loaded again and has forgotten its ids
   EXPECT_TRUE(sut.in_flight());
-}
-
-class ChainKeeperTest : public ::testing::Test {
- protected:
-  static ChainCache::Chain chain() {
-    kinematics::ChainJoint joint;
-    auto made = kinematics::Chain::make({{"J", JointKind::revolute, -1, 1}}, std::span(&joint, 1), Pose::Identity());
-    return std::make_shared<const kinematics::Chain>(std::move(made.value()));
-  }
-  ChainCache sut_;
-  engine::TickState tick_{8};
-};
-
-TEST_F(ChainKeeperTest, KeepsAChainUntilTheNextIsInForceAndItsMovesHaveEnded) {
-  auto first = chain();
-  const std::weak_ptr<const kinematics::Chain> watched = first;
-  sut_.replaced(3, std::move(first), 10, 0);
-  sut_.replaced(3, chain(), 20, 7);
-  tick_.commands_done = 19;
-  tick_.robots[3].motion.finished = 7;
-  sut_.release(tick_);
-  EXPECT_FALSE(watched.expired());
-  tick_.commands_done = 20;
-  tick_.robots[3].motion.finished = 6;
-  sut_.release(tick_);
-  EXPECT_FALSE(watched.expired());
-  tick_.robots[3].motion.finished = 7;
-  sut_.release(tick_);
-  EXPECT_TRUE(watched.expired());
-  EXPECT_EQ(sut_.kept(), 1U);
-}
-
-TEST_F(ChainKeeperTest, LetsTheChainsOfARemovedRobotGoWhenItIsOut) {
-  sut_.replaced(3, chain(), 10, 0);
-  sut_.replaced(3, chain(), 20, 7);
-  sut_.removed(3, 30);
-  tick_.commands_done = 29;
-  sut_.release(tick_);
-  EXPECT_EQ(sut_.kept(), 2U);
-  tick_.commands_done = 30;  // and the tick has forgotten which moves have ended
-  sut_.release(tick_);
-  EXPECT_EQ(sut_.kept(), 0U);
 }
 
 }  // namespace

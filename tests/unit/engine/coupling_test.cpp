@@ -7,6 +7,7 @@
 
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
+#include "tests/unit/engine/commands.hpp"
 
 namespace cellmirror::engine {
 namespace {
@@ -24,45 +25,30 @@ class CouplingTest : public testing::Test {
     tick();
   }
 
-  void add(std::uint8_t slot) {
-    Command command = of(CommandKind::add_robot, slot);
-    command.joint_count = 3;
-    command.lower.fill(-0.5);
-    command.upper.fill(0.5);
-    if (slot == kMaster) command.upper.fill(10.0);
-    sut_->send(command);
-  }
-
-  static Command of(CommandKind kind, std::uint8_t slot) {
-    Command command;
-    command.kind = kind;
-    command.slot = slot;
-    return command;
-  }
+  void add(std::uint8_t slot) { send_robot(*sut_, slot, robot_of(3, -0.5, slot == kMaster ? 10.0 : 0.5)); }
 
   // The slave's joints 0 and 2 follow the master's 1 and 0.
-  static Command coupling(std::uint8_t master, std::uint8_t slave, double max_velocity = kFast) {
-    Command command = of(CommandKind::couple, slave);
-    command.master = master;
-    command.joint_count = 2;
-    command.coupled[0] = {1, 0};
-    command.coupled[1] = {0, 2};
-    command.values.fill(max_velocity);
-    return command;
+  static Coupling coupling(std::uint8_t master, std::uint8_t slave, double max_velocity = kFast) {
+    Coupling coupling{.master = master, .slave = slave, .count = 2};
+    coupling.joints[0] = {.master_joint = 1, .slave_joint = 0};
+    coupling.joints[1] = {.master_joint = 0, .slave_joint = 2};
+    coupling.max_velocity.fill(max_velocity);
+    return coupling;
   }
 
   void put(std::uint8_t slot, double a, double b, double c) {
-    Command command = of(CommandKind::set_positions, slot);
-    command.values = {a, b, c};
-    sut_->send(command);
+    sut_->send(SetPositions{.slot = slot, .positions = {a, b, c}});
   }
 
   // Whether the tick took the command.
-  bool accepts(const Command& command) {
+  bool accepts(Command command) {
     const std::uint64_t before = ticks_.newest().commands_refused;
     sut_->send(command);
     tick();
     return ticks_.newest().commands_refused == before;
+  }
+  bool accepts(const Coupling& coupling) {
+    return accepts(Couple{sut_->lend(std::make_shared<const Coupling>(coupling))});
   }
 
   void tick(int count = 1) {
@@ -81,10 +67,8 @@ class CouplingTest : public testing::Test {
   double position(std::uint8_t slot, std::size_t joint) { return robot(slot).joints[joint].position; }
 
   void mirror_master() {
-    Command command = of(CommandKind::set_mode, kMaster);
-    command.mode = RobotMode::mirrored;
-    command.ages = {Nanoseconds(10'000'000), Nanoseconds(50'000'000)};
-    sut_->send(command);
+    sut_->send(SetMode{
+        .slot = kMaster, .mode = RobotMode::mirrored, .ages = {Nanoseconds(10'000'000), Nanoseconds(50'000'000)}});
   }
   void sample(double value) {
     JointSample sample;
@@ -195,7 +179,7 @@ TEST_F(CouplingTest, MovesLeaveCoupledJointsAndOneUnderWayIsBraked) {
   move.velocity = {0.5, 0.5, 0.5};
   move.max_velocity = move.velocity;
   move.acceleration = {2.0, 2.0, 2.0};
-  sut_->send_move(kSlave, move);
+  send_move(*sut_, kSlave, move);
   tick(300);
   ASSERT_TRUE(robot(kSlave).motion.moving);
   ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
@@ -206,7 +190,7 @@ TEST_F(CouplingTest, MovesLeaveCoupledJointsAndOneUnderWayIsBraked) {
   EXPECT_GT(position(kSlave, 1), 0.05);
   EXPECT_LT(position(kSlave, 1), 0.35);
   move.id = 2;
-  sut_->send_move(kSlave, move);
+  send_move(*sut_, kSlave, move);
   tick(2000);
   EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.0);
   EXPECT_NEAR(position(kSlave, 1), 0.4, 1e-12);
@@ -222,7 +206,7 @@ TEST_F(CouplingTest, AnUncoupledSlaveStaysWhereItIsAndIsFree) {
   ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
   put(kMaster, 0.2, 0.1, 0.0);
   tick(300);
-  ASSERT_TRUE(accepts(of(CommandKind::uncouple, kSlave)));
+  ASSERT_TRUE(accepts(Uncouple{kSlave}));
   put(kMaster, 0.0, 0.0, 0.0);
   tick(300);
   EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.1);
@@ -230,7 +214,7 @@ TEST_F(CouplingTest, AnUncoupledSlaveStaysWhereItIsAndIsFree) {
   put(kSlave, 0.3, 0.3, 0.3);
   tick();
   EXPECT_DOUBLE_EQ(position(kSlave, 0), 0.3);
-  EXPECT_FALSE(accepts(of(CommandKind::uncouple, kSlave)));
+  EXPECT_FALSE(accepts(Uncouple{kSlave}));
 }
 
 TEST_F(CouplingTest, WhatIsNotSoundIsRefused) {
@@ -240,16 +224,17 @@ TEST_F(CouplingTest, WhatIsNotSoundIsRefused) {
   EXPECT_FALSE(accepts(coupling(kMaster, 40)));
   EXPECT_FALSE(accepts(coupling(kMaster, kSlave, 0.0)));
   EXPECT_FALSE(accepts(coupling(kMaster, kSlave, std::numeric_limits<double>::infinity())));
-  Command command = coupling(kMaster, kSlave);
-  command.joint_count = 0;
-  EXPECT_FALSE(accepts(command));
-  command.joint_count = 17;
-  EXPECT_FALSE(accepts(command));
-  command = coupling(kMaster, kSlave);
-  command.coupled[0] = {3, 0};
-  EXPECT_FALSE(accepts(command));
-  command.coupled[0] = {1, 2};  // 2 is driven already
-  EXPECT_FALSE(accepts(command));
+  EXPECT_FALSE(accepts(Couple{}));
+  Coupling wrong = coupling(kMaster, kSlave);
+  wrong.count = 0;
+  EXPECT_FALSE(accepts(wrong));
+  wrong.count = 17;
+  EXPECT_FALSE(accepts(wrong));
+  wrong = coupling(kMaster, kSlave);
+  wrong.joints[0] = {3, 0};
+  EXPECT_FALSE(accepts(wrong));
+  wrong.joints[0] = {1, 2};  // 2 is driven already
+  EXPECT_FALSE(accepts(wrong));
   mirror_master();
   EXPECT_FALSE(accepts(coupling(kSlave, kMaster)));  // a mirrored slave
 }
@@ -266,7 +251,7 @@ TEST_F(CouplingTest, CirclesAndSecondMastersAreRefused) {
 TEST_F(CouplingTest, ARobotThatVanishesTakesItsCouplingsAlong) {
   ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
   ASSERT_TRUE(accepts(coupling(kSlave, kSecond)));
-  sut_->send(of(CommandKind::remove_robot, kSlave));
+  sut_->send(RemoveRobot{kSlave});
   tick();
   EXPECT_FALSE(robot(kSecond).follow.follows());
   add(kSlave);
@@ -281,13 +266,13 @@ TEST_F(CouplingTest, SlotsBeyondTheCapacityAreRefused) {
   const auto capacity = static_cast<std::uint8_t>(sut_->capacity().robots);
   EXPECT_FALSE(accepts(coupling(capacity, kSlave)));
   EXPECT_FALSE(accepts(coupling(kMaster, capacity)));
-  EXPECT_FALSE(accepts(of(CommandKind::uncouple, capacity)));
+  EXPECT_FALSE(accepts(Uncouple{capacity}));
 }
 
 TEST_F(CouplingTest, CouplingAndFollowingAllocateNothing) {
   ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in";
-  sut_->send(coupling(kMaster, kSlave));
-  sut_->send(coupling(kSlave, kSecond));
+  send_coupling(*sut_, coupling(kMaster, kSlave));
+  send_coupling(*sut_, coupling(kSlave, kSecond));
   put(kMaster, 0.3, 0.3, 0.3);
   const AllocationGuard guard;
   tick(100);

@@ -6,20 +6,14 @@
 
 #include "rt_core/engine/coupling.hpp"
 #include "rt_core/engine/robot_slot.hpp"
+#include "tests/unit/engine/commands.hpp"
 
 namespace cellmirror::engine {
 namespace {
 
 std::vector<RobotSlot> robots(std::size_t count) {
   std::vector<RobotSlot> slots(count);
-  for (RobotSlot& slot : slots) {
-    Command command;
-    command.kind = CommandKind::add_robot;
-    command.joint_count = 1;
-    command.lower.fill(-1.0);
-    command.upper.fill(1.0);
-    slot.apply(command);
-  }
+  for (RobotSlot& slot : slots) slot.add(robot_of(1, -1.0, 1.0));
   return slots;
 }
 
@@ -50,10 +44,7 @@ TEST(Couplings, AValuePassesThroughAChainOf256RobotsWithinOneStep) {
   for (std::size_t slave = kMaxRobots - 1; slave > 0; --slave)
     ASSERT_TRUE(sut.couple(first_joints(slave - 1, slave), slots));
   EXPECT_FALSE(sut.couple(first_joints(kMaxRobots - 1, 0), slots)) << "a circle";
-  Command jump;
-  jump.kind = CommandKind::set_positions;
-  jump.values = {0.0005};
-  ASSERT_TRUE(slots[0].apply(jump));
+  ASSERT_TRUE(slots[0].set_positions({0.0005}));
   const auto moved = sut.step(1e-3, slots);
   ASSERT_EQ(moved.size(), kMaxRobots - 1);
   EXPECT_EQ(moved.front(), 1);

@@ -8,6 +8,7 @@
 
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
+#include "tests/unit/engine/commands.hpp"
 
 namespace cellmirror::engine {
 namespace {
@@ -66,18 +67,8 @@ class EngineHapticsTest : public testing::Test {
     instrument_.lower.fill(-1.0);
     instrument_.upper.fill(1.0);
     for (std::uint8_t i = 0; i < 3; ++i) instrument_.variable_joint[i] = i;
-    Command add;
-    add.kind = CommandKind::add_robot;
-    add.slot = kSlot;
-    add.joint_count = 3;
-    add.lower.fill(-1.0);
-    add.upper.fill(1.0);
-    sut_->send(add);
-    Command mirror;
-    mirror.kind = CommandKind::set_mode;
-    mirror.slot = kSlot;
-    mirror.mode = RobotMode::mirrored;
-    sut_->send(mirror);
+    send_robot(*sut_, kSlot, robot_of(3, -1.0, 1.0));
+    sut_->send(SetMode{.slot = kSlot, .mode = RobotMode::mirrored});
     tick();
   }
 
@@ -117,18 +108,14 @@ class EngineHapticsTest : public testing::Test {
     }
   }
 
-  void send(CommandKind kind, bool gone = false) {
-    Command command;
-    command.kind = kind;
-    command.channel = kChannel;
-    command.instrument = kind == CommandKind::open_haptic ? &instrument_ : nullptr;
-    command.device = kind == CommandKind::open_haptic ? &device_ : nullptr;
-    command.device_gone = gone;
-    sut_->send(command);
+  OpenHaptic open(std::uint8_t channel, std::shared_ptr<TestDevice> device) {
+    return {.channel = channel,
+            .instrument = sut_->lend(std::make_shared<const haptics::Instrument>(instrument_)),
+            .device = sut_->lend<HapticDevicePort>(std::move(device))};
   }
 
   void engage() {
-    send(CommandKind::open_haptic);
+    sut_->send(open(kChannel, shared_device_));
     run(50);
     ASSERT_EQ(haptic().phase, HapticPhase::active);
   }
@@ -144,7 +131,8 @@ class EngineHapticsTest : public testing::Test {
   std::uint64_t cycle_ = 0;
   std::uint64_t model_sequence_ = 0;
   haptics::Instrument instrument_{kSlot, 3, slides(), {}, Pose::Identity(), {}, {}, {}};
-  TestDevice device_;
+  std::shared_ptr<TestDevice> shared_device_ = std::make_shared<TestDevice>();
+  TestDevice& device_ = *shared_device_;
 };
 
 TEST_F(EngineHapticsTest, InstrumentFollowsTheHandAsAMirroredRobot) {
@@ -183,7 +171,7 @@ TEST_F(EngineHapticsTest, WallPushesBack) {
 
 TEST_F(EngineHapticsTest, ClosingWritesZeroAndClearsTheStateInEveryBuffer) {
   engage();
-  send(CommandKind::close_haptic);
+  sut_->send(CloseHaptic{kChannel});
   tick();
   EXPECT_EQ(device_.last.force_D, Eigen::Vector3d::Zero());
   const std::uint64_t written = device_.written;
@@ -203,13 +191,13 @@ TEST_F(EngineHapticsTest, FaultTakesTheForceWithinTwoTicksAndStaysUntilReset) {
   EXPECT_EQ(haptic().fault, HapticFault::not_finite);
   EXPECT_EQ(device_.last.force_D, Eigen::Vector3d::Zero());
   const std::uint64_t refused = ticks_.newest().commands_refused;
-  send(CommandKind::reset_haptic);
+  sut_->send(ResetHaptic{kChannel});
   run(1);
   EXPECT_EQ(ticks_.newest().commands_refused, refused + 1);  // the cause is still there
   device_.sample.p_DH.y() = 0;
   run(50);
   EXPECT_EQ(haptic().phase, HapticPhase::faulted);
-  send(CommandKind::reset_haptic);
+  sut_->send(ResetHaptic{kChannel});
   run(60);
   EXPECT_EQ(haptic().phase, HapticPhase::active);
 }
@@ -218,81 +206,102 @@ TEST_F(EngineHapticsTest, DeviceThatIsKnownToHaveEndedIsAFaultThatCannotBeResetB
   instrument_.settings.stale_after = Nanoseconds(1'000'000'000);
   engage();
   device_.silent = true;
-  send(CommandKind::haptic_device, true);
+  sut_->send(SetDeviceGone{.channel = kChannel, .gone = true});
   run(3);
   EXPECT_EQ(haptic().fault, HapticFault::vanished);
   run(50);
-  send(CommandKind::reset_haptic);
+  sut_->send(ResetHaptic{kChannel});
   run(2);
   EXPECT_EQ(haptic().phase, HapticPhase::faulted);
   device_.silent = false;
-  send(CommandKind::haptic_device, false);
+  sut_->send(SetDeviceGone{.channel = kChannel, .gone = false});
   run(50);
-  send(CommandKind::reset_haptic);
+  sut_->send(ResetHaptic{kChannel});
   run(60);
   EXPECT_EQ(haptic().phase, HapticPhase::active);
 }
 
 TEST_F(EngineHapticsTest, FaultOutlivesAnotherInstrumentOfTheSameDevice) {
   engage();
-  send(CommandKind::haptic_device, true);
-  send(CommandKind::open_haptic);  // in the same instant
+  sut_->send(SetDeviceGone{.channel = kChannel, .gone = true});
+  sut_->send(open(kChannel, shared_device_));  // in the same instant
   run(1);
   ASSERT_EQ(haptic().fault, HapticFault::vanished);
-  send(CommandKind::open_haptic);
+  sut_->send(open(kChannel, shared_device_));
   run(50);
   EXPECT_EQ(haptic().phase, HapticPhase::faulted);
-  send(CommandKind::close_haptic);
-  send(CommandKind::open_haptic);
+  sut_->send(CloseHaptic{kChannel});
+  sut_->send(open(kChannel, shared_device_));
   run(50);
   EXPECT_EQ(haptic().phase, HapticPhase::active) << "offline and online begins anew";
 }
 
 TEST_F(EngineHapticsTest, CommandsThatNameNothingAreRefused) {
-  Command command;
-  command.kind = CommandKind::open_haptic;
-  command.channel = kChannel;
-  sut_->send(command);
-  command.channel = kMaxHapticDevices;
-  command.instrument = &instrument_;
-  command.device = &device_;
-  sut_->send(command);
-  send(CommandKind::reset_haptic);
+  sut_->send(OpenHaptic{.channel = kChannel});
+  sut_->send(open(kMaxHapticDevices, shared_device_));
+  sut_->send(OpenHaptic{.channel = kChannel, .device = sut_->lend<HapticDevicePort>(shared_device_)});
+  sut_->send(CloseHaptic{kMaxHapticDevices});
+  sut_->send(ResetHaptic{kMaxHapticDevices});
+  sut_->send(SetDeviceGone{.channel = kMaxHapticDevices, .gone = true});
+  sut_->send(ResetHaptic{kChannel});
   const std::uint64_t before = ticks_.newest().commands_refused;
   tick();
-  EXPECT_EQ(ticks_.newest().commands_refused, before + 3);
+  EXPECT_EQ(ticks_.newest().commands_refused, before + 7);
   EXPECT_EQ(haptic().phase, HapticPhase::closed);
 }
 
 TEST_F(EngineHapticsTest, ModelOfAnInstrumentThatHadTheChannelBeforeIsNotUsed) {
   give_model(0.5);
   tick();
-  send(CommandKind::open_haptic);
+  sut_->send(open(kChannel, shared_device_));
   tick(2);
   EXPECT_FALSE(haptic().model_time.known());
   run(2);
   EXPECT_TRUE(haptic().model_time.known());
 }
 
+TEST_F(EngineHapticsTest, InstrumentAndDeviceAreGivenBackWhenTheChannelHasNoUseForThem) {
+  engage();
+  ASSERT_EQ(sut_->lent(), 2U);
+  sut_->send(open(kChannel, shared_device_));  // another instrument
+  run(1);
+  sut_->free_returned();
+  EXPECT_EQ(sut_->lent(), 2U);
+  sut_->send(open(kChannel, std::make_shared<TestDevice>(device_)));  // another device
+  run(1);
+  sut_->free_returned();
+  EXPECT_EQ(sut_->lent(), 2U);
+  EXPECT_EQ(shared_device_.use_count(), 1) << "the first device is free";
+  sut_->send(CloseHaptic{kChannel});
+  run(1);
+  sut_->free_returned();
+  EXPECT_EQ(sut_->lent(), 0U);
+}
+
+TEST_F(EngineHapticsTest, WhatTheTickStillHasIsFreedWithTheEngine) {
+  engage();
+  const std::weak_ptr<TestDevice> watched = shared_device_;
+  sut_->send(open(kChannel, shared_device_));  // waits in the queue
+  shared_device_.reset();
+  EXPECT_FALSE(watched.expired());
+  sut_.reset();
+  EXPECT_TRUE(watched.expired());
+}
+
 TEST_F(EngineHapticsTest, FourOpenChannelsTakeNoHeapMemory) {
   ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in";
-  std::array<TestDevice, kMaxHapticDevices> devices;
+  std::array<std::shared_ptr<TestDevice>, kMaxHapticDevices> devices;
   for (std::uint8_t i = 0; i < kMaxHapticDevices; ++i) {
-    devices[i] = device_;
-    Command command;
-    command.kind = CommandKind::open_haptic;
-    command.channel = i;
-    command.instrument = &instrument_;
-    command.device = &devices[i];
-    sut_->send(command);
+    devices[i] = std::make_shared<TestDevice>(device_);
+    sut_->send(open(i, devices[i]));
   }
   const AllocationGuard guard;
   run(300, 0.0);
-  for (TestDevice& device : devices) device.sample.p_DH.x() = 0.002;
+  for (const auto& device : devices) device->sample.p_DH.x() = 0.002;
   run(300, 0.0);
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_EQ(guard.frees(), 0U);
-  EXPECT_LT(devices[kChannel].last.force_D.x(), -1.0);
+  EXPECT_LT(devices[kChannel]->last.force_D.x(), -1.0);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "rt_core/engine/limiter.hpp"
 #include "rt_core/motion/planner.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
+#include "tests/unit/engine/commands.hpp"
 
 namespace cellmirror::engine {
 namespace {
@@ -22,20 +23,8 @@ constexpr std::uint8_t kJoints = 2;
 class EngineMotionTest : public testing::Test {
  protected:
   EngineMotionTest() {
-    Command command = command_of(CommandKind::add_robot);
-    command.joint_count = kJoints;
-    command.values = {0.1, 0.2};
-    command.lower.fill(-1.0);
-    command.upper.fill(1.0);
-    sut_->send(command);
+    send_robot(*sut_, kSlot, robot_of(kJoints, -1.0, 1.0, {0.1, 0.2}));
     tick();
-  }
-
-  static Command command_of(CommandKind kind) {
-    Command command;
-    command.kind = kind;
-    command.slot = kSlot;
-    return command;
   }
 
   void tick(std::uint64_t missed = 0) {
@@ -80,7 +69,7 @@ class EngineMotionTest : public testing::Test {
 };
 
 TEST_F(EngineMotionTest, MoveArrivesAtItsTargetInItsTimeAndTellsItsId) {
-  ASSERT_NE(sut_->send_move(kSlot, to(0.9, -0.8, 1)), 0U);
+  ASSERT_NE(send_move(*sut_, kSlot, to(0.9, -0.8, 1)), 0U);
   const int ticks = run_until_it_stands();
   EXPECT_NEAR(ticks, (1.0 / 0.5 + 0.25) * 1000, 1.5);  // the second joint goes furthest
   EXPECT_NEAR(robot().joints[0].position, 0.9, 1e-12);
@@ -92,7 +81,7 @@ TEST_F(EngineMotionTest, MoveArrivesAtItsTargetInItsTimeAndTellsItsId) {
 }
 
 TEST_F(EngineMotionTest, VelocitiesArePublishedWhileItMoves) {
-  sut_->send_move(kSlot, to(0.9, -0.8, 1));
+  send_move(*sut_, kSlot, to(0.9, -0.8, 1));
   for (int i = 0; i < 1000; ++i) tick();
   EXPECT_TRUE(robot().motion.moving);
   EXPECT_EQ(robot().motion.running, 1U);
@@ -100,15 +89,12 @@ TEST_F(EngineMotionTest, VelocitiesArePublishedWhileItMoves) {
 }
 
 TEST_F(EngineMotionTest, PositionsAndMovesAreCarriedOutInTheOrderInWhichTheyWereSent) {
-  Command jump = command_of(CommandKind::set_positions);
-  jump.values = {0.0, 0.0};
-  sut_->send(jump);
-  sut_->send_move(kSlot, to(0.5, 0.5, 1));
+  sut_->send(SetPositions{.slot = kSlot, .positions = {0.0, 0.0}});
+  send_move(*sut_, kSlot, to(0.5, 0.5, 1));
   tick();
   EXPECT_TRUE(robot().motion.moving);
-  jump.values = {-0.5, -0.5};
-  sut_->send_move(kSlot, to(0.9, 0.9, 2));
-  sut_->send(jump);
+  send_move(*sut_, kSlot, to(0.9, 0.9, 2));
+  sut_->send(SetPositions{.slot = kSlot, .positions = {-0.5, -0.5}});
   tick();
   EXPECT_FALSE(robot().motion.moving);
   EXPECT_EQ(robot().joints[0].position, -0.5);
@@ -119,30 +105,31 @@ TEST_F(EngineMotionTest, PositionsAndMovesAreCarriedOutInTheOrderInWhichTheyWere
 }
 
 TEST_F(EngineMotionTest, RobotThatGoesOnlineStopsAtOnceAndTakesNoMoves) {
-  sut_->send_move(kSlot, to(0.9, 0.9, 1));
+  send_move(*sut_, kSlot, to(0.9, 0.9, 1));
   for (int i = 0; i < 500; ++i) tick();
   const double where = robot().joints[0].position;
-  Command online = command_of(CommandKind::set_mode);
-  online.mode = RobotMode::mirrored;
-  online.ages = {std::chrono::milliseconds(10), std::chrono::milliseconds(50)};
-  sut_->send(online);
+  sut_->send(SetMode{.slot = kSlot,
+                     .mode = RobotMode::mirrored,
+                     .ages = {std::chrono::milliseconds(10), std::chrono::milliseconds(50)}});
   tick();
   EXPECT_EQ(robot().joints[0].position, where);
   EXPECT_FALSE(robot().motion.moving);
   EXPECT_EQ(robot().motion.finished, 1U);
-  sut_->send_move(kSlot, to(0.9, 0.9, 2));
-  sut_->send(command_of(CommandKind::set_chain));
-  sut_->send(command_of(CommandKind::stop_motion));
+  send_move(*sut_, kSlot, to(0.9, 0.9, 2));
+  sut_->send(SetChain{.slot = kSlot});
+  sut_->send(StopMotion{kSlot});
+  sut_->send(SetPace{.slot = kSlot, .pace = 0});
+  sut_->send(HoldBehind{.slot = kSlot, .move = 1});
   tick();
-  EXPECT_EQ(ticks_.newest().commands_refused, 3U);
+  EXPECT_EQ(ticks_.newest().commands_refused, 5U);
   EXPECT_EQ(robot().joints[0].position, where);
 }
 
 TEST_F(EngineMotionTest, StopBrakesWithinTheAcceleration) {
-  sut_->send_move(kSlot, to(0.9, 0.9, 1));
+  send_move(*sut_, kSlot, to(0.9, 0.9, 1));
   for (int i = 0; i < 600; ++i) tick();
   const double where = robot().joints[0].position;
-  sut_->send(command_of(CommandKind::stop_motion));
+  sut_->send(StopMotion{kSlot});
   const int ticks = run_until_it_stands();
   EXPECT_NEAR(ticks, 250, 2);
   EXPECT_NEAR(robot().joints[0].position, where + 0.5 * 0.5 / (2 * 2.0), 1e-9);
@@ -150,7 +137,7 @@ TEST_F(EngineMotionTest, StopBrakesWithinTheAcceleration) {
 }
 
 TEST_F(EngineMotionTest, MissedPeriodsAreCaughtUpToABound) {
-  sut_->send_move(kSlot, to(0.9, 0.9, 1));
+  send_move(*sut_, kSlot, to(0.9, 0.9, 1));
   for (int i = 0; i < 600; ++i) tick();
   double before = robot().joints[1].position;
   tick();
@@ -166,12 +153,9 @@ TEST_F(EngineMotionTest, MissedPeriodsAreCaughtUpToABound) {
 }
 
 TEST_F(EngineMotionTest, LimitThatIsNarrowedUnderAMoveBlocksIt) {
-  sut_->send_move(kSlot, to(0.9, 0.9, 1));
+  send_move(*sut_, kSlot, to(0.9, 0.9, 1));
   for (int i = 0; i < 300; ++i) tick();
-  Command limits = command_of(CommandKind::set_limits);
-  limits.lower.fill(-1.0);
-  limits.upper.fill(0.5);
-  sut_->send(limits);
+  send_limits(*sut_, kSlot, robot_of(kJoints, -1.0, 0.5).limits);
   run_until_it_stands();
   EXPECT_EQ(robot().motion.outcome, motion::Outcome::blocked);
   EXPECT_EQ(robot().refused_setpoints, 1U);
@@ -180,15 +164,14 @@ TEST_F(EngineMotionTest, LimitThatIsNarrowedUnderAMoveBlocksIt) {
 }
 
 TEST_F(EngineMotionTest, JointBeyondANarrowedLimitCanBeMovedBackAndNotFurther) {
-  Command limits = command_of(CommandKind::set_limits);
-  limits.lower.fill(-1.0);
-  limits.upper = {0.0, 1.0};  // it stands at 0.1
-  sut_->send(limits);
-  sut_->send_move(kSlot, to(0.15, 0.2, 1));
+  JointLimits limits = robot_of(kJoints, -1.0, 1.0).limits;
+  limits.upper[0] = 0.0;  // it stands at 0.1
+  send_limits(*sut_, kSlot, limits);
+  send_move(*sut_, kSlot, to(0.15, 0.2, 1));
   run_until_it_stands();
   EXPECT_EQ(robot().motion.outcome, motion::Outcome::blocked);
   EXPECT_EQ(robot().joints[0].position, 0.1);
-  sut_->send_move(kSlot, to(-0.1, 0.2, 2));
+  send_move(*sut_, kSlot, to(-0.1, 0.2, 2));
   run_until_it_stands();
   EXPECT_EQ(robot().motion.outcome, motion::Outcome::arrived);
   EXPECT_NEAR(robot().joints[0].position, -0.1, 1e-12);
@@ -197,7 +180,7 @@ TEST_F(EngineMotionTest, JointBeyondANarrowedLimitCanBeMovedBackAndNotFurther) {
 TEST_F(EngineMotionTest, MoveThatIsNoNumberIsRefusedAndEndsAsBlocked) {
   motion::Move move = to(0.9, 0.9, 1);
   move.target[1] = std::numeric_limits<double>::quiet_NaN();
-  sut_->send_move(kSlot, move);
+  send_move(*sut_, kSlot, move);
   tick();
   tick();
   EXPECT_EQ(ticks_.newest().commands_refused, 1U);
@@ -206,25 +189,21 @@ TEST_F(EngineMotionTest, MoveThatIsNoNumberIsRefusedAndEndsAsBlocked) {
   EXPECT_FALSE(robot().motion.moving);
 }
 
-TEST_F(EngineMotionTest, MoreMovesThanTheirStoreAreRefusedUntilATickHasTakenThem) {
-  for (std::size_t i = 0; i < kMoveCommands; ++i)
-    ASSERT_NE(sut_->send_move(kSlot, to(0.9, 0.9, static_cast<std::uint32_t>(i + 1))), 0U);
-  EXPECT_EQ(sut_->send_move(kSlot, to(0.9, 0.9, 1000)), 0U);
+TEST_F(EngineMotionTest, MovesAreGivenBackWhenTheTickHasTakenThem) {
+  for (std::uint32_t id = 1; id <= 100; ++id) ASSERT_NE(send_move(*sut_, kSlot, to(0.9, 0.9, id)), 0U);
+  EXPECT_EQ(sut_->lent(), 100U);
   tick();
-  EXPECT_NE(sut_->send_move(kSlot, to(0.9, 0.9, 1000)), 0U);
+  sut_->free_returned();
+  EXPECT_EQ(sut_->lent(), 0U);
 }
 
 TEST_F(EngineMotionTest, RemovedRobotForgetsItsMoves) {
-  sut_->send_move(kSlot, to(0.9, 0.9, 1));
+  send_move(*sut_, kSlot, to(0.9, 0.9, 1));
   tick();
-  sut_->send(command_of(CommandKind::remove_robot));
+  sut_->send(RemoveRobot{kSlot});
   tick();
   EXPECT_EQ(robot().mode, RobotMode::absent);
-  Command add = command_of(CommandKind::add_robot);
-  add.joint_count = kJoints;
-  add.lower.fill(-1.0);
-  add.upper.fill(1.0);
-  sut_->send(add);
+  send_robot(*sut_, kSlot, robot_of(kJoints, -1.0, 1.0));
   tick();
   EXPECT_FALSE(robot().motion.moving);
   EXPECT_EQ(robot().motion.finished, 0U);
@@ -235,19 +214,17 @@ TEST_F(EngineMotionTest, RemovedRobotForgetsItsMoves) {
 class EngineLinearTest : public EngineMotionTest {
  protected:
   static constexpr std::uint8_t kGantry = 5;
-  EngineLinearTest() {
-    Command command = command_of(CommandKind::add_robot);
-    command.slot = kGantry;
-    command.joint_count = 3;
-    command.lower.fill(-2.0);
-    command.upper.fill(2.0);
-    sut_->send(command);
+  EngineLinearTest() { send_robot(*sut_, kGantry, robot_of(3, -2.0, 2.0)); }
+  std::uint64_t set_chain(std::shared_ptr<const kinematics::Chain> chain) {
+    return sut_->send(SetChain{.slot = kGantry, .chain = sut_->lend(std::move(chain))});
   }
-  std::uint64_t set_chain(const kinematics::Chain* chain) {
-    Command command = command_of(CommandKind::set_chain);
-    command.slot = kGantry;
-    command.chain = chain;
-    return sut_->send(command);
+  static std::shared_ptr<const kinematics::Chain> copy_of(const kinematics::Chain& chain) {
+    return std::make_shared<const kinematics::Chain>(chain);
+  }
+  std::size_t lent_after_a_tick() {
+    tick();
+    sut_->free_returned();
+    return sut_->lent();
   }
   motion::Move line_to(double x, double y, std::uint32_t id) {
     RobotParameters parameters;
@@ -267,11 +244,11 @@ class EngineLinearTest : public EngineMotionTest {
 };
 
 TEST_F(EngineLinearTest, LineIsRefusedWithoutAChainAndCarriedOutWithOne) {
-  sut_->send_move(kGantry, line_to(0.3, 0.1, 1));
+  send_move(*sut_, kGantry, line_to(0.3, 0.1, 1));
   tick();
   EXPECT_EQ(ticks_.newest().commands_refused, 1U);
-  set_chain(&chain_);
-  sut_->send_move(kGantry, line_to(0.3, 0.1, 2));
+  set_chain(copy_of(chain_));
+  send_move(*sut_, kGantry, line_to(0.3, 0.1, 2));
   int ticks = 0;
   do {
     tick();
@@ -284,16 +261,61 @@ TEST_F(EngineLinearTest, LineIsRefusedWithoutAChainAndCarriedOutWithOne) {
 }
 
 TEST_F(EngineLinearTest, ChainOfAnotherNumberOfJointsIsRefused) {
-  const kinematics::Chain six = motion::test_arms::puma();
-  set_chain(&six);
+  set_chain(copy_of(motion::test_arms::puma()));
   tick();
   EXPECT_EQ(ticks_.newest().commands_refused, 1U);
 }
 
+TEST_F(EngineLinearTest, ChainStaysAsLongAsMovesNeedIt) {
+  const auto first = copy_of(chain_);
+  set_chain(first);
+  send_move(*sut_, kGantry, line_to(0.3, 0.1, 1));
+  send_move(*sut_, kGantry, line_to(0.6, 0.1, 2));
+  EXPECT_EQ(lent_after_a_tick(), 1U);
+  set_chain(copy_of(chain_));
+  set_chain(copy_of(chain_));
+  EXPECT_EQ(lent_after_a_tick(), 2U) << "the one between has no moves";
+  for (int i = 0; i < 5000 && gantry().motion.finished < 2; ++i) {
+    const std::size_t lent = lent_after_a_tick();
+    ASSERT_EQ(lent, gantry().motion.finished < 2 ? 2U : 1U);
+  }
+  EXPECT_EQ(first.use_count(), 1);
+  EXPECT_EQ(gantry().motion.outcome, motion::Outcome::arrived);
+}
+
+TEST_F(EngineLinearTest, ChainsOfMovesThatWaitDoNotAddUp) {
+  const auto one = copy_of(chain_);
+  const auto other = copy_of(chain_);
+  for (std::uint32_t id = 1; id <= motion::kMoveQueue; ++id) {
+    set_chain(id % 2 == 0 ? one : other);
+    send_move(*sut_, kGantry, line_to(0.1, 0.1, id));
+  }
+  EXPECT_EQ(lent_after_a_tick(), 2U);
+  set_chain(one);
+  set_chain({});
+  EXPECT_EQ(lent_after_a_tick(), 2U);
+  for (std::uint32_t id = 1; id <= 2 * motion::kMoveQueue; ++id) {
+    set_chain(copy_of(chain_));
+    send_move(*sut_, kGantry, line_to(0.1, 0.1, motion::kMoveQueue + id));
+  }
+  EXPECT_LE(lent_after_a_tick(), motion::kMoveQueue + 2);
+  sut_->send(SetMode{.slot = kGantry, .mode = RobotMode::mirrored});
+  EXPECT_EQ(lent_after_a_tick(), 0U);
+}
+
+TEST_F(EngineLinearTest, ARobotThatIsRemovedGivesItsChainsBack) {
+  set_chain(copy_of(chain_));
+  send_move(*sut_, kGantry, line_to(0.3, 0.1, 1));
+  set_chain(copy_of(chain_));
+  EXPECT_EQ(lent_after_a_tick(), 2U);
+  sut_->send(RemoveRobot{kGantry});
+  EXPECT_EQ(lent_after_a_tick(), 0U);
+}
+
 TEST_F(EngineLinearTest, TickWithLinesInCornersLeavesTheHeapAlone) {
   ASSERT_TRUE(AllocationGuard::armed()) << "the interposer is not linked in";
-  set_chain(&chain_);
-  for (std::uint32_t id = 1; id <= 12; ++id) sut_->send_move(kGantry, line_to(0.1 * id, id % 2 == 0 ? 0.1 : -0.1, id));
+  set_chain(copy_of(chain_));
+  for (std::uint32_t id = 1; id <= 12; ++id) send_move(*sut_, kGantry, line_to(0.1 * id, id % 2 == 0 ? 0.1 : -0.1, id));
   const AllocationGuard guard;
   for (int i = 0; i < 3000; ++i) tick();
   EXPECT_EQ(guard.allocations(), 0U);
@@ -307,7 +329,7 @@ TEST_F(EngineMotionTest, TickWithMovingRobotsLeavesTheHeapAlone) {
   for (std::uint32_t id = 1; id < 20; ++id) {
     motion::Move move = to(id % 2 == 0 ? 0.4 : 0.5, 0.2, id);
     move.start = id % 4 == 0 ? motion::Start::supersede : motion::Start::queue;
-    sut_->send_move(kSlot, move);
+    send_move(*sut_, kSlot, move);
   }
   const AllocationGuard guard;
   for (int i = 0; i < 2000; ++i) tick();
@@ -316,11 +338,9 @@ TEST_F(EngineMotionTest, TickWithMovingRobotsLeavesTheHeapAlone) {
 }
 
 TEST_F(EngineMotionTest, PaceHoldsARobotOnItsWayAndTellsSo) {
-  ASSERT_NE(sut_->send_move(kSlot, to(0.9, 0.2, 1)), 0U);
+  ASSERT_NE(send_move(*sut_, kSlot, to(0.9, 0.2, 1)), 0U);
   for (int i = 0; i < 600; ++i) tick();
-  Command pace = command_of(CommandKind::set_pace);
-  pace.pace = 0;
-  ASSERT_NE(sut_->send(pace), 0U);
+  ASSERT_NE(sut_->send(SetPace{.slot = kSlot, .pace = 0}), 0U);
   for (int i = 0; i < 300; ++i) tick();
   const RobotTickState held = ticks_.newest().robots[kSlot];
   EXPECT_EQ(held.motion.pace, 0);
@@ -328,8 +348,7 @@ TEST_F(EngineMotionTest, PaceHoldsARobotOnItsWayAndTellsSo) {
   EXPECT_EQ(held.joints[0].velocity, 0);
   for (int i = 0; i < 100; ++i) tick();
   EXPECT_EQ(ticks_.newest().robots[kSlot].joints[0].position, held.joints[0].position);
-  pace.pace = 1;
-  ASSERT_NE(sut_->send(pace), 0U);
+  ASSERT_NE(sut_->send(SetPace{.slot = kSlot, .pace = 1}), 0U);
   for (int i = 0; i < 3000; ++i) tick();
   const RobotTickState& there = ticks_.newest().robots[kSlot];
   EXPECT_NEAR(there.joints[0].position, 0.9, 1e-12);
@@ -338,7 +357,7 @@ TEST_F(EngineMotionTest, PaceHoldsARobotOnItsWayAndTellsSo) {
 }
 
 TEST_F(EngineMotionTest, MovesEndBetweenTicksByTheSlotsOfTheirPeriods) {
-  ASSERT_NE(sut_->send_move(kSlot, to(0.6, 0.2, 1)), 0U);
+  ASSERT_NE(send_move(*sut_, kSlot, to(0.6, 0.2, 1)), 0U);
   const Timestamp begun = now_;  // the first tick leads from here to the next one
   for (int i = 0; i < 3000; ++i) tick();
   // 0.5 rad at 0.5 rad/s and 2 rad/s2

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "rt_core/rt/allocation_guard.hpp"
+#include "tests/unit/engine/commands.hpp"
 
 namespace cellmirror::engine {
 namespace {
@@ -31,32 +32,18 @@ class EngineTest : public testing::Test {
   }
 
   std::uint64_t add_robot(std::size_t slot = 3, std::uint8_t joints = 2) {
-    Command command;
-    command.kind = CommandKind::add_robot;
-    command.slot = static_cast<std::uint8_t>(slot);
-    command.joint_count = joints;
-    command.values = {0.1, 0.2};
-    command.lower.fill(-1.0);
-    command.upper.fill(1.0);
-    return sut_->send(command);
+    return send_robot(*sut_, slot, robot_of(joints, -1.0, 1.0, {0.1, 0.2}));
   }
 
   void mirror(std::size_t slot = 3, std::uint16_t given = 0xFFFF) {
-    Command command;
-    command.kind = CommandKind::set_mode;
-    command.slot = static_cast<std::uint8_t>(slot);
-    command.mode = RobotMode::mirrored;
-    command.ages = {std::chrono::milliseconds(10), std::chrono::milliseconds(50)};
-    command.given = given;
-    sut_->send(command);
+    sut_->send(SetMode{.slot = slot_number(slot),
+                       .mode = RobotMode::mirrored,
+                       .given = given,
+                       .ages = {std::chrono::milliseconds(10), std::chrono::milliseconds(50)}});
   }
 
   std::uint64_t set_positions(double a, double b, std::size_t slot = 3) {
-    Command command;
-    command.kind = CommandKind::set_positions;
-    command.slot = static_cast<std::uint8_t>(slot);
-    command.values = {a, b};
-    return sut_->send(command);
+    return sut_->send(SetPositions{.slot = slot_number(slot), .positions = {a, b}});
   }
 
   [[nodiscard]] JointSample sample(std::uint64_t sequence, double a, double b, std::uint32_t present = 3) const {
@@ -116,10 +103,7 @@ TEST_F(EngineTest, RunsWithoutReaders) {
 TEST_F(EngineTest, RemovedRobotStaysAbsentInEveryBufferOfTheEdge) {
   add_robot();
   for (int i = 0; i < 5; ++i) tick();
-  Command command;
-  command.kind = CommandKind::remove_robot;
-  command.slot = 3;
-  sut_->send(command);
+  sut_->send(RemoveRobot{3});
   for (int i = 0; i < 5; ++i) {
     tick();
     EXPECT_EQ(robot().mode, RobotMode::absent);
@@ -238,11 +222,7 @@ TEST_F(EngineTest, RobotThatGoesOfflineStaysWhereItWas) {
   mirror();
   sut_->inlet(3).push(sample(1, 0.7, -0.7));
   tick();
-  Command command;
-  command.kind = CommandKind::set_mode;
-  command.slot = 3;
-  command.mode = RobotMode::simulated;
-  sut_->send(command);
+  sut_->send(SetMode{.slot = 3, .mode = RobotMode::simulated});
   sut_->inlet(3).push(sample(2, 0.9, 0.9));  // left behind by a stream that is closed
   tick();
   EXPECT_EQ(robot().mode, RobotMode::simulated);
@@ -268,11 +248,8 @@ TEST_F(EngineTest, RobotThatTakesTheSlotOfAnotherGetsNoneOfItsSamples) {
   add_robot();
   mirror();
   tick();
-  Command command;
-  command.kind = CommandKind::remove_robot;
-  command.slot = 3;
   sut_->inlet(3).push(sample(1, 0.9, 0.9));
-  sut_->send(command);
+  sut_->send(RemoveRobot{3});
   add_robot();
   tick();
   mirror();
@@ -307,6 +284,11 @@ TEST_F(EngineTest, FullCommandQueueRefuses) {
   for (std::size_t i = 0; i < kCommandQueue; ++i) ASSERT_NE(set_positions(0, 0), 0U);
   EXPECT_EQ(set_positions(0, 0), 0U);
   EXPECT_EQ(sut_->command_queue().dropped, 1U);
+  Command move = AddMove{.slot = 3, .move = sut_->lend(std::make_shared<const motion::Move>())};
+  EXPECT_EQ(sut_->send(move), 0U);
+  EXPECT_TRUE(std::get<AddMove>(move).move) << "it can be sent again";
+  tick();
+  EXPECT_NE(sut_->send(move), 0U);
 }
 
 TEST_F(EngineTest, FlightRecorderHoldsTicksSamplesAndSetPoints) {

@@ -1,0 +1,41 @@
+// Commands as tests give them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "rt_core/engine/engine.hpp"
+
+namespace cellmirror::engine {
+
+inline std::uint8_t slot_number(std::size_t slot) { return static_cast<std::uint8_t>(slot); }
+
+// Of joints that all have the same range.
+inline RobotSetup robot_of(std::uint8_t joints, double lower, double upper, const JointValues& positions = {}) {
+  RobotSetup robot{.joint_count = joints, .positions = positions};
+  robot.limits.lower.fill(lower);
+  robot.limits.upper.fill(upper);
+  return robot;
+}
+
+inline std::uint64_t send_robot(Engine& engine, std::size_t slot, const RobotSetup& robot) {
+  return engine.send(
+      AddRobot{.slot = slot_number(slot), .robot = engine.lend(std::make_shared<const RobotSetup>(robot))});
+}
+
+inline std::uint64_t send_limits(Engine& engine, std::size_t slot, const JointLimits& limits) {
+  return engine.send(
+      SetLimits{.slot = slot_number(slot), .limits = engine.lend(std::make_shared<const JointLimits>(limits))});
+}
+
+inline std::uint64_t send_move(Engine& engine, std::size_t slot, const motion::Move& move) {
+  return engine.send(
+      AddMove{.slot = slot_number(slot), .move = engine.lend(std::make_shared<const motion::Move>(move))});
+}
+
+inline std::uint64_t send_coupling(Engine& engine, const Coupling& coupling) {
+  return engine.send(Couple{engine.lend(std::make_shared<const Coupling>(coupling))});
+}
+
+}  // namespace cellmirror::engine
