@@ -11,7 +11,12 @@ namespace {
 
 constexpr double kTipPlayed = 1e-6;  // m, between the proxy and the tip: as good as equal
 
-double period_of(const TickInput& input) CELL_RT { return std::clamp(seconds(input.period), 1e-5, 0.1); }
+// s
+double period_of(Nanoseconds period) CELL_RT { return std::clamp(seconds(period), 1e-5, 0.1); }
+
+ForceLimits force_limits(const HapticSettings& settings) CELL_RT {
+  return {.largest = settings.max_force, .largest_rate = settings.max_slew};
+}
 
 JudgeSettings judge_settings(const HapticSettings& settings) CELL_RT {
   return {
@@ -50,7 +55,7 @@ void HapticChannel::open(const Instrument& instrument, HapticDevicePort& port) C
   output_ = HapticOutput{};
   output_.sequence = outputs;
   instrument_ = &instrument;
-  port_ = &port;
+  gate_.open(port);
   state_.phase = HapticPhase::waiting;
   state_.slot = instrument.slot;
   judge_.restart(Timestamp{});
@@ -69,7 +74,7 @@ void HapticChannel::close() CELL_RT {
   state_.phase = HapticPhase::closed;
   write(last_tick_, output_.period);
   instrument_ = nullptr;
-  port_ = nullptr;
+  gate_.close();
 }
 
 void HapticChannel::exchange(const Instrument& instrument) CELL_RT {
@@ -95,7 +100,7 @@ bool HapticChannel::reset() CELL_RT {
 
 void HapticChannel::restart_force() CELL_RT {
   coupling_.restart();
-  limit_.restart();
+  gate_.restart();
   held_force_.setZero();
   stored_energy_ = 0;
   passivity_.restart(wish_.p_handle);
@@ -106,7 +111,7 @@ void HapticChannel::restart_force() CELL_RT {
 HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
   const HapticSettings& settings = instrument_->settings;
   HapticSample sample;
-  const HapticRead read = port_->read(sample);
+  const HapticRead read = gate_.read(sample);
   const Verdict verdict = judge_.judge(read, sample, input.now, judge_settings(settings));
   HapticFault moved = HapticFault::none;
   if (verdict.fresh) {
@@ -210,6 +215,10 @@ bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
   const bool driving = state_.phase != HapticPhase::waiting && state_.phase != HapticPhase::faulted;
   if (driving && !waiting && models_.appeared()) yield_to_what_appeared();
   if (driving) move_and_answer(input);
+  if (!gate_.admits(output_, force_limits(instrument_->settings), period_of(input.period))) {
+    last_bad_ = input.now;
+    latch(HapticFault::not_finite);
+  }
   tell();
   write(input.now, input.period);
   if (!driving || state_.phase == HapticPhase::faulted) return false;
@@ -219,7 +228,7 @@ bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
 
 void HapticChannel::move_and_answer(const TickInput& input) CELL_RT {
   const HapticSettings& settings = instrument_->settings;
-  const double period = period_of(input);
+  const double period = period_of(input.period);
   passivity_.observe(wish_.p_handle, held_force_, stored_energy_, passivity_settings(settings), period);
   work_clutch();
   ProxyContact contact;
@@ -294,8 +303,8 @@ Eigen::Vector3d HapticChannel::answer(const ProxyContact& contact, double period
     stored_energy_ = recoverable(contact.elongation.norm(), settings);
   }
   force = passivity_.control(force, passivity_settings(settings), period);
-  force = limit_.limit(force, settings.max_force, settings.max_slew, period);
-  if (limit_.cut()) ++state_.saturated;
+  force = gate_.limit(force, force_limits(settings), period);
+  if (gate_.cut()) ++state_.saturated;
   return force;
 }
 
@@ -310,6 +319,7 @@ void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& f
     state_.joint_torques = JointValues{};
     output_.gripper_torque = 0;
     output_.force_D.setZero();
+    output_.force_E.setZero();
     output_.torque_D.setZero();
     output_.joint_torques = JointValues{};
     return;
@@ -344,6 +354,7 @@ void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& f
   const Eigen::Matrix3d R_DW = settings.X_WD.linear().transpose();
   const double torque_scale = scale / scale_of(settings);
   output_.force_D = R_DW * force_device;
+  output_.force_E = state_.force_E;
   output_.torque_D = R_DW * (axis_W * (state_.axis_torque * torque_scale));
   output_.gripper_torque = 0;
   if (settings.gripper_joint >= 0) {
@@ -359,10 +370,9 @@ void HapticChannel::write(Timestamp now, Nanoseconds period) CELL_RT {
   output_.answers = judge_.sample().sequence;
   output_.phase = static_cast<std::uint32_t>(state_.phase);
   output_.fault = static_cast<std::uint32_t>(state_.fault);
-  output_.force_E = state_.force_E;
   output_.joint_count = instrument_->joint_count;
   output_.max_force = instrument_->settings.max_force;
-  port_->write(output_);
+  gate_.write(output_, force_limits(instrument_->settings), period_of(period));
 }
 
 void HapticChannel::tell() CELL_RT {

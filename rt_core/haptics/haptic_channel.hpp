@@ -8,6 +8,7 @@
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/haptics/contact_model.hpp"
 #include "rt_core/haptics/device_judge.hpp"
+#include "rt_core/haptics/force_gate.hpp"
 #include "rt_core/haptics/instrument.hpp"
 #include "rt_core/haptics/instrument_map.hpp"
 #include "rt_core/haptics/model_watch.hpp"
@@ -74,13 +75,12 @@ class HapticChannel {
 
   HapticState state_;
   const Instrument* instrument_ = nullptr;
-  HapticDevicePort* port_ = nullptr;
+  ForceGate gate_;
   DeviceJudge judge_;
   ModelWatch models_;
   InstrumentMap map_;
   Proxy proxy_;
   VirtualCoupling coupling_;
-  ForceLimit limit_;
   Passivity passivity_;
   Wish wish_;
   Posture posture_;

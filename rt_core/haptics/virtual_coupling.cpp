@@ -33,23 +33,4 @@ Eigen::Vector3d VirtualCoupling::force(const Eigen::Vector3d& elongation, const 
   return force;
 }
 
-Eigen::Vector3d ForceLimit::limit(const Eigen::Vector3d& force, double largest, double largest_rate,
-                                  double period) CELL_RT {
-  cut_ = false;
-  Eigen::Vector3d allowed = force.allFinite() ? force : Eigen::Vector3d::Zero();
-  const double size = allowed.norm();
-  if (size > largest) {
-    allowed *= largest / size;
-    cut_ = true;
-  }
-  const Eigen::Vector3d change = allowed - last_;
-  const double step = change.norm();
-  if (step > largest_rate * period) {
-    allowed = last_ + change * (largest_rate * period / step);
-    cut_ = true;
-  }
-  last_ = allowed;
-  return allowed;
-}
-
 }  // namespace cellmirror::haptics

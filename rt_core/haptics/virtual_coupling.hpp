@@ -1,4 +1,4 @@
-// The spring and damper between hand and proxy, and the limits on what reaches the hand. Forces are those on the hand.
+// The spring and damper between hand and proxy. Forces are those on the hand.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,19 +28,6 @@ class VirtualCoupling {
   double share_ = 0;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();  // m
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();  // m/s
-};
-
-// Keeps a force within its length and its rate of change.
-class ForceLimit {
- public:
-  void restart() CELL_RT { last_.setZero(); }
-  // N, N/s, s. What it gives is what the hand gets until the next tick. A force that is no number becomes zero.
-  Eigen::Vector3d limit(const Eigen::Vector3d& force, double largest, double largest_rate, double period) CELL_RT;
-  [[nodiscard]] bool cut() const CELL_RT { return cut_; }  // in the last tick
-
- private:
-  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
-  bool cut_ = false;
 };
 
 }  // namespace cellmirror::haptics

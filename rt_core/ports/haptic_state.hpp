@@ -23,7 +23,7 @@ enum class HapticFault : std::uint8_t {
   none,
   stale,        // no new sample for longer than stale_after, or samples whose time is older than that
   vanished,     // the device's process is gone
-  not_finite,   // a value was no number, or the quaternion no rotation
+  not_finite,   // a value was no number, or the quaternion no rotation; of the device, or of the answer to it
   invalid,      // the device says so itself
   jump,         // faster than a hand can be
   two_writers,  // two processes write into the same block
