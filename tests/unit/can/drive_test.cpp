@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "drivers/can/cia402/state.hpp"
 #include "tests/unit/can/frames.hpp"
@@ -33,17 +36,76 @@ TEST(Statusword, DecodesTheStatesOfTheStandard) {
   }
 }
 
-TEST(Controlword, TakesTheTransitionsOfTheStandard) {
+// Whether the lowest bits of a word are as `pattern` says, most significant first; x: either.
+bool fits(unsigned word, std::string_view pattern) {
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const char bit = (word >> (pattern.size() - 1 - i) & 1U) != 0 ? '1' : '0';
+    if (pattern[i] != 'x' && pattern[i] != bit) return false;
+  }
+  return true;
+}
+
+// Every word, against the table of state coding (CiA 402-2, 6.4.3) as it is printed there.
+TEST(Statusword, DecodesEveryWordAsTheTableOfTheStandard) {
   using enum Cia402State;
-  EXPECT_EQ(next_state(switch_on_disabled, 0, 0x06), ready_to_switch_on);
-  EXPECT_EQ(next_state(switch_on_disabled, 0, 0x0F), switch_on_disabled);
-  EXPECT_EQ(next_state(ready_to_switch_on, 0, 0x07), switched_on);
-  EXPECT_EQ(next_state(switched_on, 0, 0x0F), operation_enabled);
-  EXPECT_EQ(next_state(operation_enabled, 0, 0x07), switched_on);
-  EXPECT_EQ(next_state(operation_enabled, 0, 0x06), ready_to_switch_on);
-  EXPECT_EQ(next_state(operation_enabled, 0, 0x02), quick_stop_active);
-  EXPECT_EQ(next_state(operation_enabled, 0, 0x00), switch_on_disabled);
-  EXPECT_EQ(next_state(quick_stop_active, 0, 0x0F), operation_enabled);
+  const std::vector<std::pair<std::string_view, Cia402State>> table = {
+      {"x0xx0000", not_ready_to_switch_on}, {"x1xx0000", switch_on_disabled},
+      {"x01x0001", ready_to_switch_on},     {"x01x0011", switched_on},
+      {"x01x0111", operation_enabled},      {"x00x0111", quick_stop_active},
+      {"x0xx1111", fault_reaction_active},  {"x0xx1000", fault}};
+  for (unsigned word = 0; word <= 0xFFFF; ++word) {
+    Cia402State expected = unknown;
+    for (const auto& [pattern, state] : table) {
+      if (fits(word, pattern)) expected = state;
+    }
+    ASSERT_EQ(decode_statusword(static_cast<std::uint16_t>(word)), expected) << std::hex << word;
+  }
+}
+
+// Every controlword in every state, against the commands and transitions of the standard (CiA 402-2, 6.4.2). Bit 7 off
+// and on before makes no difference but to a fault.
+TEST(Controlword, TakesEveryTransitionOfTheStandardAndNoOther) {
+  using enum Cia402State;
+  const std::string_view shutdown = "0xxxx110";
+  const std::string_view switch_on = "0xxx0111";
+  const std::string_view enable_operation = "0xxx1111";
+  const std::string_view disable_voltage = "0xxxxx0x";
+  const std::string_view quick_stop = "0xxxx01x";
+  struct Transition {
+    Cia402State from;
+    std::string_view command;
+    Cia402State to;
+  };
+  const std::vector<Transition> transitions = {
+      {switch_on_disabled, shutdown, ready_to_switch_on},
+      {ready_to_switch_on, switch_on, switched_on},
+      {ready_to_switch_on, enable_operation, operation_enabled},  // through "switched on"
+      {ready_to_switch_on, quick_stop, switch_on_disabled},
+      {ready_to_switch_on, disable_voltage, switch_on_disabled},
+      {switched_on, shutdown, ready_to_switch_on},
+      {switched_on, enable_operation, operation_enabled},
+      {switched_on, quick_stop, switch_on_disabled},
+      {switched_on, disable_voltage, switch_on_disabled},
+      {operation_enabled, switch_on, switched_on},
+      {operation_enabled, shutdown, ready_to_switch_on},
+      {operation_enabled, quick_stop, quick_stop_active},
+      {operation_enabled, disable_voltage, switch_on_disabled},
+      {quick_stop_active, enable_operation, operation_enabled},
+      {quick_stop_active, disable_voltage, switch_on_disabled}};
+  for (int s = 0; s <= 8; ++s) {
+    const auto state = static_cast<Cia402State>(s);
+    for (unsigned word = 0; word <= 0xFFFF; ++word) {
+      for (const std::uint16_t before : {std::uint16_t{0}, std::uint16_t{0xFFFF}}) {
+        Cia402State expected = state;
+        for (const Transition& one : transitions) {
+          if (one.from == state && fits(word, one.command)) expected = one.to;
+        }
+        if (state == fault && before == 0 && fits(word, "1xxxxxxx")) expected = switch_on_disabled;
+        ASSERT_EQ(next_state(state, before, static_cast<std::uint16_t>(word)), expected)
+            << words(state) << ", " << std::hex << word << " after " << before;
+      }
+    }
+  }
   EXPECT_EQ(next_state(fault, 0x00, 0x80), switch_on_disabled);
   EXPECT_EQ(next_state(fault, 0x80, 0x80), fault) << "a fault is reset by the rising edge alone";
 }

@@ -200,13 +200,19 @@ TEST(LinearMove, NewMoveForAnotherToolLeavesTheOldChainAtOnce) {
   Ride ride(puma(), puma_posture());
   auto old_chain = std::make_unique<kinematics::Chain>(puma());
   ride.sut().set_chain(old_chain.get());
-  ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.q(), moved_by(ride.X_BT(), {0.0, -0.25, 0.0}))));
+  const Move line = *ride.line_to(ride.q(), moved_by(ride.X_BT(), {0.0, -0.25, 0.0}));
+  ASSERT_TRUE(ride.sut().add(line));
   while (ride.now() < 0.4) ride.tick();
   ride.sut().set_chain(&ride.chain());
   const Pose to = moved_by(ride.X_BT(), {0.0, 0.1, 0.0});
   ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.q(), to)));
+  const JointValues speed = ride.qd();
   ride.tick();
   EXPECT_EQ(ride.state().finished, 1U);
+  for (std::size_t i = 0; i < ride.joints(); ++i) {
+    EXPECT_EQ(ride.sut().fastest()[i], std::max(line.max_velocity[i], std::abs(speed[i])))
+        << "it brakes as fast as the line allowed it to be, and as it was";
+  }
   old_chain.reset();  // what its owner may do now: a sanitizer sees whether it is still read
   ride.run();
   EXPECT_LT((ride.X_BT().translation() - to.translation()).norm(), 1e-9);
