@@ -24,7 +24,8 @@ using Columns =
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kinematics::kMaxVariables), 1>;
 
 Eigen::Matrix3d damped_inverse(const Columns& J, double damping) CELL_RT {
-  Eigen::Matrix3d A = J * J.transpose();
+  // Coefficient by coefficient: for long chains Eigen would take its blocked product, which may use the heap.
+  Eigen::Matrix3d A = J.lazyProduct(J.transpose());
   A.diagonal().array() += damping;
   return A.inverse();
 }
@@ -62,7 +63,8 @@ class Stepper {
 
   // Takes what can be taken off the orientation's error (rad) by motions that leave the place alone.
   void turn(const Eigen::Vector3d& error) CELL_RT {
-    const Columns projected = turn_ - (turn_ * place_.transpose()) * damped_inverse(place_, kPlaceDamping) * place_;
+    const Columns projected =
+        turn_ - turn_.lazyProduct(place_.transpose()).eval() * damped_inverse(place_, kPlaceDamping) * place_;
     const Eigen::Vector3d left = error - all_turn_ * step_;
     Step wanted = projected.transpose() * (damped_inverse(projected, kTurnDamping) * left);
     // Once more, since damping has let a trace of what moves the place through.
