@@ -52,7 +52,7 @@ bool may_be_sent(std::uint16_t code) {
   return (code >= 1000 && code <= 1003) || (code >= 1007 && code <= 1014) || (code >= 3000 && code <= 4999);
 }
 
-std::optional<CloseCode> mistake_in(const WebSocketMessage& message) {
+std::optional<CloseCode> error_in(const WebSocketMessage& message) {
   if (message.opcode == Opcode::text)
     return is_utf8(message.payload) ? std::nullopt : std::optional(CloseCode::bad_text);
   if (message.opcode != Opcode::close || message.payload.empty()) return std::nullopt;
@@ -178,7 +178,7 @@ std::optional<WebSocketMessage> FrameReader::take(const Header& header) {
 }
 
 std::optional<WebSocketMessage> FrameReader::take_checked(WebSocketMessage message) {
-  error_ = mistake_in(message);
+  error_ = error_in(message);
   if (error_) return std::nullopt;
   return message;
 }

@@ -19,8 +19,8 @@ GLOSSARY = Path("docs/glossary.md")
 DOCUMENTATION = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "run", "check", "docs", "config/**README.md",
                  "drivers/**README.md", "ipc/**README.md", "rt_core/**README.md", "scripts/**README.md",
                  "sim_devices/**README.md", ":!docs/decisions", ":!docs/examples", ":!docs/script-reference.md",
-                 ":!drivers/can", ":!drivers/dds", ":!ipc/web", ":!rt_core/engine", ":!rt_core/rt")
-FOLDERS = ("app", "rt_core/planning")
+                 ":!drivers/can", ":!drivers/dds", ":!rt_core/engine", ":!rt_core/rt")
+FOLDERS = ("app", "ipc/web", "rt_core/planning")
 EXCLUDED = (":!*.png", ":!*.jpg", ":!*.stl", ":!*.ttf", f":!{GLOSSARY}")
 
 C_SOURCES = {".cpp", ".hpp", ".h", ".c", ".js", ".css", ".inc"}

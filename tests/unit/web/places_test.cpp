@@ -18,7 +18,7 @@ TEST(Places, OfOneUserEndBeforeThoseOfTheServer) {
   }
   EXPECT_FALSE(sut.take("uid 1000", false));
   EXPECT_TRUE(sut.take("uid 1001", false)) << "another user still gets one";
-  EXPECT_TRUE(sut.take("uid 1000", true)) << "whoever has the token is not counted by user";
+  EXPECT_TRUE(sut.take("uid 1000", true)) << "a client with the token is not counted by user";
   taken.pop_back();
   EXPECT_TRUE(sut.take("uid 1000", false)) << "there is room again";
 }

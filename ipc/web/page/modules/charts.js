@@ -97,7 +97,7 @@ export class Charts {
   }
 
   // Whether live messages have stopped: the newest value shown is old.
-  tell_quiet(quiet) {
+  show_quiet(quiet) {
     if (this.quiet_ === quiet) return;
     this.quiet_ = quiet;
     if (this.robots_) this.draw_all_();

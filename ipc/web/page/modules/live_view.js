@@ -100,10 +100,10 @@ export class LiveView {
     connection.on("refused", (message) => !/token/.test(message.text) && this.refused_(message));
     connection.on("closed", () => {
       this.sent_ = "";
-      this.tell_age();
+      this.show_age();
     });
     setInterval(() => {
-      this.tell_age();
+      this.show_age();
       // Where there were too many pictures there may be room now.
       if (this.problem_ && performance.now() - this.asked_at_ > kAskAgain_ms) this.ask_(true);
     }, 250);
@@ -213,11 +213,11 @@ export class LiveView {
 
   refused_(message) {
     this.problem_ = message.text ?? "the gateway refused";
-    this.tell_age();
+    this.show_age();
   }
 
   // Shows every problem as text; a picture without text beside it is current.
-  tell_age() {
+  show_age() {
     const note = byId("view-note");
     const now = performance.now();
     const since = this.shown_ ? (now - this.shown_.at) / 1000 : null;

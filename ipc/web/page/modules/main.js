@@ -4,7 +4,7 @@ import {Charts} from "./charts.js";
 import {Connection} from "./connection.js";
 import {Console} from "./console.js";
 import {byId, setText} from "./dom.js";
-import {Findings} from "./findings.js";
+import {Proximity} from "./proximity.js";
 import {LiveView} from "./live_view.js";
 import {watch_menus} from "./menus.js";
 import {Messages} from "./messages.js";
@@ -30,7 +30,7 @@ live_address.protocol = live_address.protocol === "https:" ? "wss:" : "ws:";
 live_address.hash = "";
 const connection = new Connection(live_address.href, kept_token);
 
-const presence = new Presence(connection, {quiet: (whether) => charts.tell_quiet(whether)});
+const presence = new Presence(connection, {quiet: (whether) => charts.show_quiet(whether)});
 const script = new Console(connection, {
   may_command: () => presence.may_command, why_not: () => presence.why_not()});
 const command = (text) => script.run(text);
@@ -44,7 +44,7 @@ const tree = new Tree({command});
 const names = new ShortNames();
 const charts = new Charts({names});
 const robots = new Robots({select: (id) => charts.select(id), command});
-const findings = new Findings({show_node, names});
+const proximity = new Proximity({show_node, names});
 const programs = new Programs({command});
 const system = new System();
 const messages = new Messages({
@@ -83,7 +83,7 @@ function draw() {
   const live = newest;
   newest = null;
   robots.update(live);
-  findings.update(live, tabs.current === "tab-near");
+  proximity.update(live, tabs.current === "tab-near");
   programs.update(live, tabs.current === "tab-programs");
   system.update(live, tabs.current === "tab-system");
   view.update(live);

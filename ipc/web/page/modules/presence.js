@@ -10,7 +10,7 @@ export class Presence {
   // `quiet(whether)`: all but the picture is what was last known, or no longer.
   constructor(connection, {quiet = () => {}} = {}) {
     this.connection_ = connection;
-    this.tell_quiet_ = quiet;
+    this.show_quiet_ = quiet;
     this.quiet_ = false;
     this.may_command = false;
     this.read_only = false;
@@ -126,6 +126,6 @@ export class Presence {
     if (quiet === this.quiet_) return;
     this.quiet_ = quiet;
     document.documentElement.classList.toggle("last-known", quiet);
-    this.tell_quiet_(quiet);
+    this.show_quiet_(quiet);
   }
 }

@@ -64,7 +64,7 @@ export class StripChart {
       this.plot_.setScale("x", {min: until - span, max: until});
     });
     if (renamed) this.plot_.redraw(false, true);  // the same times would keep their names
-    this.tell_values_(columns);
+    this.show_values_(columns);
   }
 
   restyle() {
@@ -104,7 +104,7 @@ export class StripChart {
     }));
   }
 
-  tell_values_(columns) {
+  show_values_(columns) {
     const texts = this.values_.map((node, i) => {
       const column = columns[i + 1];
       const text = number(column.length ? column[column.length - 1] : null, this.digits_);
@@ -112,9 +112,9 @@ export class StripChart {
       return text;
     });
     const now = Date.now();
-    if (this.end_ === this.told_end_ && now - (this.told_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
-    this.told_ = now;
-    this.told_end_ = this.end_;
+    if (this.end_ === this.announced_end_ && now - (this.announced_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
+    this.announced_ = now;
+    this.announced_end_ = this.end_;
     const until = this.end_ === "now" ? "" : `, until ${this.end_}`;
     this.node.setAttribute("aria-label", `${this.name_}${until}: ${texts.slice(0, 8).join(", ")}`);
   }

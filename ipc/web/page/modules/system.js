@@ -9,15 +9,15 @@ export class System {
 
   update(live, visible) {
     const dropped = (live.queues ?? []).reduce((sum, queue) => sum + (queue.dropped ?? 0), 0);
-    this.tell_loop_(live.loop ?? {});
+    this.show_loop_(live.loop ?? {});
     setText(byId("uptime"), Number.isFinite(live.uptime_s) ? `up ${duration(live.uptime_s)}` : "");
     if (!visible) return;
     this.queues_.show(live.queues ?? [], (queue) => queue.name);
     setText(byId("drop-total"), dropped ? `${count(dropped)} dropped in all` : "nothing was dropped");
-    this.tell_facts_(live);
+    this.show_facts_(live);
   }
 
-  tell_loop_(loop) {
+  show_loop_(loop) {
     const badge = byId("loop-badge");
     setText(badge, Number.isFinite(loop.rate_hz) ? `${number(loop.rate_hz, 0)} Hz, p99 ${microseconds(loop.latency_p99_us)}` : "");
     const late = loop.missed > (this.missed_ ?? loop.missed ?? 0);
@@ -26,7 +26,7 @@ export class System {
     setAttribute(badge, "data-state", performance.now() < (this.late_until_ ?? 0) ? "stale" : "fresh");
   }
 
-  tell_facts_(live) {
+  show_facts_(live) {
     const loop = live.loop ?? {};
     const facts = {
       "fact-rate": `${number(loop.rate_hz, 0)} Hz`, "fact-latency": microseconds(loop.latency_p99_us),

@@ -20,7 +20,7 @@ export class Tree {
     for (const [id, command_name] of Object.entries(kActions)) {
       byId(id).addEventListener("click", () => this.chosen_ && command(`${command_name} ${this.chosen_}`));
     }
-    this.tell_chosen_();
+    this.show_chosen_();
   }
 
   set(tree) {
@@ -31,7 +31,7 @@ export class Tree {
     if (first && roots.length < 3) for (const root of roots) this.model_.set_open(root.path, true);
     if (this.chosen_ && !this.model_.get(this.chosen_)) this.chosen_ = null;
     this.draw_();
-    this.tell_chosen_();
+    this.show_chosen_();
   }
 
   show(path) {
@@ -114,11 +114,11 @@ export class Tree {
   choose_(path) {
     if (this.chosen_ === path) return;
     this.chosen_ = path;
-    this.tell_chosen_();
+    this.show_chosen_();
     this.selected_?.(path);
   }
 
-  tell_chosen_() {
+  show_chosen_() {
     const node = this.chosen_ && this.model_.get(this.chosen_);
     setText(byId("tree-chosen"), node ? node.path : "Choose a node to switch its detail.");
     for (const id of Object.keys(kActions)) byId(id).disabled = !node;

@@ -1,5 +1,5 @@
-// What the picture shows, and how it is drawn: the bar above it. Looking is everybody's; what changes the gateway's own
-// display (STDP, STVW, SET_MODE) goes as a SCRIPT command.
+// The bar above the picture: what it shows and how it is drawn. Viewing needs no token; changes of the gateway's own
+// display (STDP, STVW, SET_MODE) are sent as SCRIPT commands.
 import {byId, element, setText, setAttribute} from "./dom.js";
 import {as_command} from "./view_math.js";
 
@@ -62,7 +62,7 @@ export class ViewChoice {
     this.display_choice_.value = display;
   }
 
-  // The free view becomes view N of the gateway, for everybody.
+  // The free view becomes view N of the gateway, for all users.
   keep_() {
     const choice = this.current_();
     if (choice.kind === "free") this.command_(as_command(choice.view, byId("view-keep-id").value));

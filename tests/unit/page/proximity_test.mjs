@@ -1,12 +1,12 @@
 // What the head of the page says of collisions.
 import test from "node:test";
 import assert from "node:assert/strict";
-import {collisions_in_brief, cut_note, range_in_words, warned_count} from "./modules/findings.js";
+import {collisions_in_brief, cut_note, range_in_words, warned_count} from "./modules/proximity.js";
 import {ShortNames} from "./modules/short_names.js";
 
 const pair = {a: "Arm.J_1", b: "Table", depth_m: 0.01};
 
-test("fresh findings are told as they are", () => {
+test("fresh results are shown as they are", () => {
   assert.deepEqual(collisions_in_brief({touching: [], collision_age_s: 0.003}), {text: "nothing touches", state: "fresh", title: null});
   assert.deepEqual(collisions_in_brief({touching: [pair], touching_count: 70, collision_age_s: 0.003}),
     {text: "70 touching", state: "lost", title: null});

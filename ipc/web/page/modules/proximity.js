@@ -39,7 +39,7 @@ export function warned_count(live) {
   return live.within_warning_count ?? (live.near ?? []).filter((pair) => warned_of(pair, live.warning_distance_m)).length;
 }
 
-export class Findings {
+export class Proximity {
   // `names`: ShortNames.
   constructor({show_node, names}) {
     const opened = (event) => {
@@ -71,7 +71,7 @@ export class Findings {
     const touching = live.touching ?? [];
     const near = live.near ?? [];
     this.warning_m_ = live.warning_distance_m;
-    this.tell_counts_(live.touching_count ?? touching.length, live.near_count ?? near.length, live);
+    this.show_counts_(live.touching_count ?? touching.length, live.near_count ?? near.length, live);
     if (!visible) return;
     this.touching_.show(touching.slice(0, kMostRows), pair_key);
     this.near_.show(near.slice(0, kMostRows), pair_key);
@@ -92,7 +92,7 @@ export class Findings {
     setText(byId("force-note"), cut_note(shown(live.forces), live.forces?.length ?? 0));
   }
 
-  tell_counts_(touching, near, live) {
+  show_counts_(touching, near, live) {
     const badge = byId("touching-badge");
     const brief = collisions_in_brief(live);
     setText(badge, brief.text);
