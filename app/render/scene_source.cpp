@@ -16,16 +16,6 @@ Result<std::vector<Pane>> panes_of(const scene::PaneInput& input, const PictureR
   return std::vector<Pane>{std::move(pane)};
 }
 
-bool SceneSource::take_posture(const CompiledCell& cell, const engine::TickState& tick) {
-  for (const CompiledRobot& robot : cell.robots) {
-    const engine::RobotTickState& from = tick.robots[robot.slot];
-    if (from.mode == engine::RobotMode::absent || from.joint_count != robot.joint_names.size()) return false;
-    for (std::size_t i = 0; i < from.joint_count; ++i) positions_[robot.slot][i] = from.joints[i].position;
-  }
-  compute_poses(cell, positions_, poses_);
-  return true;
-}
-
 void SceneSource::take_conditions(const engine::TickState& tick, Timestamp now) {
   conditions_.clear();
   for (const CompiledRobot& robot : cell_->robots) {
@@ -42,7 +32,7 @@ void SceneSource::take_conditions(const engine::TickState& tick, Timestamp now) 
 bool SceneSource::refresh() {
   std::shared_ptr<const CellState> picture = boards_.pictures.latest();
   const engine::TickState& tick = boards_.ticks.newest();
-  if (!picture || !picture->display || !tick.time.known() || !take_posture(*picture->cell, tick)) return false;
+  if (!picture || !picture->display || !tick.time.known() || !poser_.take(*picture->cell, tick)) return false;
   picture_ = std::move(picture);
   cell_ = picture_->cell;
   now_ = boards_.clock.now();
@@ -54,7 +44,7 @@ bool SceneSource::refresh() {
   if (forces) arrows = dynamics::force_arrows(picture_->forces.arrows, *forces);
   scene::SceneInput input;
   input.cell = cell_.get();
-  input.poses = &poses_;
+  input.poses = &poser_.poses();
   input.display = picture_->display.get();
   input.active_robot = picture_->active_robot;
   input.robots = conditions_;
@@ -69,7 +59,7 @@ bool SceneSource::refresh() {
 }
 
 Result<std::vector<Pane>> SceneSource::panes(const PictureRequest& request, std::uint64_t updates) const {
-  return panes_of({*cell_, poses_, *picture_->display, now_, updates}, request);
+  return panes_of({*cell_, poser_.poses(), *picture_->display, now_, updates}, request);
 }
 
 }  // namespace cellmirror::app

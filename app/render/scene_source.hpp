@@ -9,6 +9,7 @@
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/proximity_board.hpp"
 #include "app/snapshot/range_readings.hpp"
+#include "app/snapshot/tick_poser.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/tick_reader.hpp"
@@ -47,14 +48,12 @@ class SceneSource {
   [[nodiscard]] Result<std::vector<Pane>> panes(const PictureRequest& request, std::uint64_t updates) const;
 
  private:
-  bool take_posture(const CompiledCell& cell, const engine::TickState& tick);
   void take_conditions(const engine::TickState& tick, Timestamp now);
 
   Boards boards_;
   std::shared_ptr<const CellState> picture_;
   std::shared_ptr<const CompiledCell> cell_;
-  std::vector<JointValues> positions_ = std::vector<JointValues>(kMaxRobots);
-  CellPoses poses_;
+  TickPoser poser_;
   std::vector<scene::RobotCondition> conditions_;
   scene::SceneBuilder builder_;
   Scene scene_;

@@ -60,18 +60,8 @@ bool CellPoser::take_cell(const std::shared_ptr<const CompiledCell>& cell) {
   newest_ = cell;
   if (!news) return false;
   cell_ = cell;
-  poses_.reserve(cell->size());
+  poser_.reserve(cell->size());
   later_.reserve(cell->size());
-  return true;
-}
-
-bool CellPoser::take_posture(const engine::TickState& tick) {
-  for (const CompiledRobot& robot : cell_->robots) {
-    const engine::RobotTickState& from = tick.robots[robot.slot];
-    if (from.mode == engine::RobotMode::absent || from.joint_count != robot.joint_names.size()) return false;
-    for (std::size_t i = 0; i < from.joint_count; ++i) positions_[robot.slot][i] = from.joints[i].position;
-  }
-  compute_poses(*cell_, positions_, poses_);
   return true;
 }
 
@@ -82,7 +72,7 @@ const CellPoses* CellPoser::later(const engine::TickState& tick, Nanoseconds ahe
     const bool known = from.mode == engine::RobotMode::simulated || from.state == DataState::fresh;
     for (std::size_t i = 0; i < from.joint_count; ++i) {
       const double step = known ? from.joints[i].velocity * seconds(ahead) : 0.0;
-      later_positions_[robot.slot][i] = positions_[robot.slot][i] + step;
+      later_positions_[robot.slot][i] = poser_.positions()[robot.slot][i] + step;
       moves = moves || step != 0.0;
     }
   }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/snapshot/tick_poser.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/engine/tick_state.hpp"
@@ -29,12 +30,12 @@ class CellPoser {
   [[nodiscard]] bool differs(const std::shared_ptr<const CompiledCell>& cell) const;
   // Computes the poses at that tick. False, and nothing computed, where the tick does not know all robots of the cell
   // yet: a component was just loaded.
-  bool take_posture(const engine::TickState& tick);
+  bool take_posture(const engine::TickState& tick) { return poser_.take(*cell_, tick); }
 
   // Null before the first take_cell().
   [[nodiscard]] const std::shared_ptr<const CompiledCell>& cell() const { return cell_; }
   // As of the last take_posture() that was true.
-  [[nodiscard]] const CellPoses& poses() const { return poses_; }
+  [[nodiscard]] const CellPoses& poses() const { return poser_.poses(); }
   // Where everything will be `ahead` later at present velocities, those of mirrored robots only while their data is
   // fresh; null where nothing moves.
   [[nodiscard]] const CellPoses* later(const engine::TickState& tick, Nanoseconds ahead);
@@ -44,9 +45,8 @@ class CellPoser {
   bool tool_points_;
   std::shared_ptr<const CompiledCell> newest_;  // that was found to be the same as cell_
   std::shared_ptr<const CompiledCell> cell_;
-  std::vector<JointValues> positions_ = std::vector<JointValues>(kMaxRobots);
+  TickPoser poser_;
   std::vector<JointValues> later_positions_ = std::vector<JointValues>(kMaxRobots);
-  CellPoses poses_;
   CellPoses later_;
 };
 

@@ -29,16 +29,12 @@ void fill(RobotState& out, const CompiledRobot& robot, const engine::RobotTickSt
 
 std::span<const RobotState> RobotStateBuilder::build(const CellState& cell_state, const engine::TickState& state) {
   const CompiledCell& cell = *cell_state.cell;
-  for (const CompiledRobot& robot : cell.robots) {
-    const engine::RobotTickState& from = state.robots[robot.slot];
-    for (std::size_t i = 0; i < from.joint_count; ++i) positions_[robot.slot][i] = from.joints[i].position;
-  }
-  compute_poses(cell, positions_, poses_);
+  poser_.take_known(cell, state);
   robots_.resize(cell.robots.size());
   for (std::size_t i = 0; i < cell.robots.size(); ++i) {
     const CompiledRobot& robot = cell.robots[i];
     fill(robots_[i], robot, state.robots[robot.slot], state);
-    const TcpPoses tcp = tcp_poses(robot, poses_);
+    const TcpPoses tcp = tcp_poses(robot, poses());
     robots_[i].X_BT = tcp.X_BT;
     robots_[i].X_WT = tcp.X_WT;
   }
@@ -58,7 +54,7 @@ std::span<const FramePose> RobotStateBuilder::frames(const CellState& cell_state
       parent = child;
       X_WP = X_WC;
     };
-    const auto X_WN = [&](std::int32_t node) -> const Pose& { return poses_.X_WN[static_cast<std::size_t>(node)]; };
+    const auto X_WN = [&](std::int32_t node) -> const Pose& { return poses().X_WN[static_cast<std::size_t>(node)]; };
     link(robot.id + "/base", X_WN(robot.base));
     for (std::size_t j = 0; j < robot.joint_nodes.size(); ++j) {
       link(robot.id + "/" + robot.joint_names[j], X_WN(robot.joint_nodes[j]));

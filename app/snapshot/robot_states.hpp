@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/snapshot/cell_state.hpp"
+#include "app/snapshot/tick_poser.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
@@ -21,11 +22,10 @@ class RobotStateBuilder {
   // `wanted` says for each robot of the cell whether it is in.
   std::span<const FramePose> frames(const CellState& cell_state, const std::vector<bool>& wanted);
   // Of all nodes, at the tick of the last build().
-  [[nodiscard]] const CellPoses& poses() const { return poses_; }
+  [[nodiscard]] const CellPoses& poses() const { return poser_.poses(); }
 
  private:
-  std::vector<JointValues> positions_ = std::vector<JointValues>(kMaxRobots);
-  CellPoses poses_;
+  TickPoser poser_;
   std::vector<RobotState> robots_;
   std::vector<FramePose> frames_;
 };
