@@ -114,7 +114,6 @@ struct Gateway::Parts {
   Board<CellState> board;
   PictureCounter picture_counter;
   std::unique_ptr<ScriptMessageReceiver> messages;
-  PageCommands page_commands;
   std::unique_ptr<CellOwner> owner;
   std::unique_ptr<CyclicThread> loop;
   std::unique_ptr<CollisionWorker> collisions;
@@ -195,18 +194,27 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     if (!written) return std::unexpected(written.error());
     return {};
   };
-  const auto reply = [this](std::int64_t tag, const ScriptReply& text) {
-    if (PageCommands::owns(tag)) return page_commands.answer(tag, text);
-    messages->reply(tag, text);
-  };
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
-  owner = std::make_unique<CellOwner>(CellOwner::Parts{
-      std::move(loaded.cell), loaded.home, std::move(streams), std::move(loaded.haptics), std::move(loaded.views),
-      std::move(loaded.layout), std::move(loaded.collision), loaded.foot_switches, *engine, board, clock,
-      stream_priority, instance->info().name, queues.tcp_force_key, queues.mode, save, reply,
-      [this] { return picture_counter.count(); }, options.bell});
+  owner = std::make_unique<CellOwner>(CellOwner::Parts{.cell = std::move(loaded.cell),
+                                                       .home = loaded.home,
+                                                       .streams = std::move(streams),
+                                                       .haptics = std::move(loaded.haptics),
+                                                       .views = std::move(loaded.views),
+                                                       .layout = std::move(loaded.layout),
+                                                       .collision = std::move(loaded.collision),
+                                                       .foot_switches = loaded.foot_switches,
+                                                       .engine = *engine,
+                                                       .board = board,
+                                                       .clock = clock,
+                                                       .stream_priority = stream_priority,
+                                                       .instance = instance->info().name,
+                                                       .tcp_force_key = queues.tcp_force_key,
+                                                       .memory_mode = queues.mode,
+                                                       .save_flight_record = save,
+                                                       .picture_updates = [this] { return picture_counter.count(); },
+                                                       .bell = options.bell});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -240,7 +248,15 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
 
 Result<void> Gateway::Parts::start_messages() {
   messages = std::make_unique<ScriptMessageReceiver>(queues, instance->info().name);
-  return messages->start([this](const ScriptMessage& message) { owner->submit(message); });
+  return messages->start([this](ScriptMessage message) {
+    script::CommandReply reply;
+    if (message.tag != 0) {
+      reply = [to = messages.get(), tag = message.tag](const Result<std::string>& result) {
+        to->reply(tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
+      };
+    }
+    owner->submit({std::move(message.text), script::CommandSource::message(message.sender_pid), std::move(reply)});
+  });
 }
 
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
@@ -320,7 +336,6 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.home = home->root();
   parts.board = &board;
   parts.owner = owner.get();
-  parts.commands = &page_commands;
   parts.renderer = renderer.get();
   parts.status = [this] { return status(); };
   parts.at = [this](const std::function<void(const LiveSources&)>& look) { look_at(look); };

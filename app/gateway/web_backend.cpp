@@ -42,18 +42,21 @@ std::string WebBackend::metrics_text() {
 }
 
 void WebBackend::execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) {
-  ScriptMessage message;
   // The same checks as for messages; a tag is not for people.
   const ScriptEnvelope envelope = parse_script_message(command);
   if (command.starts_with('@')) return reply({false, "a command does not begin with @"});
   if (!envelope.text) return reply({false, envelope.text.error().text()});
-  message.text = *envelope.text;
-  const auto tag = parts_.commands->add(reply);
-  if (!tag) return reply({false, "too many commands wait for their acknowledgement; try again"});
-  message.tag = *tag;
-  if (parts_.owner->offer(message)) return;
-  if (const auto back = parts_.commands->take(*tag))
-    (*back)({false, "too many commands wait to be executed; try again"});
+  if (commands_waiting_->fetch_add(1, std::memory_order_relaxed) >= kMostCommandsWaiting) {
+    commands_waiting_->fetch_sub(1, std::memory_order_relaxed);
+    return reply({false, "too many commands wait for their acknowledgement; try again"});
+  }
+  script::ScriptCommand queued{
+      *envelope.text, script::CommandSource::page(),
+      [waiting = commands_waiting_, answer = std::move(reply)](const Result<std::string>& result) {
+        waiting->fetch_sub(1, std::memory_order_relaxed);
+        answer(result ? web::CommandReply{true, *result} : web::CommandReply{false, result.error().text()});
+      }};
+  if (!parts_.owner->offer(queued)) queued.reply(fail("too many commands wait to be executed; try again"));
 }
 
 void WebBackend::expect_pictures() {

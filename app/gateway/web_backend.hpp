@@ -1,6 +1,8 @@
 // The gateway as the monitor page's server sees it.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -8,7 +10,6 @@
 #include <string>
 #include <string_view>
 
-#include "app/gateway/page_commands.hpp"
 #include "app/owner/cell_owner.hpp"
 #include "app/render/render_service.hpp"
 #include "app/report/live_document.hpp"
@@ -26,7 +27,6 @@ class WebBackend final : public web::Backend {
     std::filesystem::path home;
     const Board<CellState>* board = nullptr;
     CellOwner* owner = nullptr;
-    PageCommands* commands = nullptr;
     RenderService* renderer = nullptr;                                       // null: no pictures
     std::function<std::string()> status;                                     // as `cellmirror status --json`
     std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
@@ -49,7 +49,11 @@ class WebBackend final : public web::Backend {
   void ask_pick(const PictureRequest& request, int x, int y, PickReply reply) override;
 
  private:
+  static constexpr std::uint64_t kMostCommandsWaiting = 512;  // for their acknowledgement
+
   Parts parts_;
+  // Replies outlive the backend: the owner, which ends after it, answers what it still has.
+  std::shared_ptr<std::atomic<std::uint64_t>> commands_waiting_ = std::make_shared<std::atomic<std::uint64_t>>(0);
   TreeRevision tree_revision_;
   std::mutex mutex_;  // of the window
   LoopWindow window_;

@@ -53,18 +53,20 @@ CellOwner::CellOwner(Parts parts)
       home_(std::move(parts.home)),
       board_(parts.board),
       clock_(parts.clock),
-      reply_(std::move(parts.reply)),
       names_(cell_),
-      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority)),
+      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority,
+                                     Fleet::Events{parts.let_tick_pass, std::move(parts.move_given)})),
       display_(
           {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
            std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},
           parts.views, std::move(parts.layout)),
       motion_(
-          cell_, names_, [this] { return display_.screen_axes(); }, *fleet_, clock_),
+          cell_, names_, [this] { return display_.screen_axes(); }, *fleet_, clock_,
+          [this]() -> const CoupledRobots& { return couplings_; }),
       couplings_(cell_, *fleet_, motion_),
       program_motion_(cell_, motion_, *fleet_, clock_),
-      programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_, std::move(parts.program_event),
+      programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_,
+                 [this]() -> script::ScriptRunner& { return *runner_; }, std::move(parts.program_event),
                  !parts.let_tick_pass}),
       guarded_motion_(motion_, programs_),
       world_(cell_, *fleet_, motion_, programs_, [this] { publish_state(); }),
@@ -73,22 +75,17 @@ CellOwner::CellOwner(Parts parts)
       haptics_({cell_, *fleet_, clock_, parts.instance, std::move(parts.haptics)}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
                [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
-      interaction_(cell_, names_, haptics_, forces_),
+      interaction_(cell_, names_,
+                   {haptics_, forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
+                   static_cast<bool>(parts.let_tick_pass)),
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
       home_, clock_);
-  programs_.set_runner(*runner_);
   switches_ = std::make_unique<FootSwitchService>(
       FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
       *runner_, home_, clock_);
-  interaction_.set_services(*switches_, couplings_);
-  motion_.set_coupled(&couplings_);
   if (parts.refused) runner_->on_refused(std::move(parts.refused));
-  fleet_->on_move(std::move(parts.move_given));
-  if (!parts.let_tick_pass) return;
-  fleet_->set_off_line(std::move(parts.let_tick_pass));
-  interaction_.set_off_line();
 }
 
 CellOwner::~CellOwner() { stop(); }
@@ -121,52 +118,23 @@ void CellOwner::stop() {
   thread_.join();
 }
 
-bool CellOwner::put(const ScriptMessage& message) {
-  QueuedCommand queued;
-  queued.text.assign(message.text);
-  queued.tag = message.tag;
-  queued.sender_pid = message.sender_pid;
-  const std::scoped_lock lock(producers_);
-  return !queue_.full() && queue_.push(queued);
-}
-
-void CellOwner::submit(const ScriptMessage& message) {
-  while (!put(message) && !stopping_.stop_requested()) {
-    room_.wait(std::chrono::milliseconds(10));
-  }
+void CellOwner::submit(script::ScriptCommand command) {
+  while (!queue_.push(command) && !stopping_.stop_requested()) room_.wait(std::chrono::milliseconds(10));
   wake_.wake();
 }
 
-bool CellOwner::offer(const ScriptMessage& message) {
-  const bool taken = put(message);
+bool CellOwner::offer(script::ScriptCommand& command) {
+  const bool taken = queue_.push(command);
   wake_.wake();
   return taken;
 }
 
-engine::QueueStatus CellOwner::command_queue() const {
-  return {"script", kCommandQueue, queue_.high_water(), queue_.pushed(), queue_.dropped()};
-}
-
-void CellOwner::execute(const QueuedCommand& queued) {
-  const std::string source = queued.tag < 0          ? std::string("monitor page")
-                             : queued.sender_pid > 0 ? fmt::format("message from process {}", queued.sender_pid)
-                                                     : std::string("message");
-  if (queued.tag == 0) {
-    // Nobody is answered, and nobody waits for a robot to arrive. What was refused stands in the status.
-    [[maybe_unused]] const auto unanswered = runner_->execute_message(queued.text.view(), source);
-    return;
-  }
-  runner_->execute_message(queued.text.view(), source, [this, tag = queued.tag](const Result<std::string>& result) {
-    reply_(tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
-  });
-}
-
 bool CellOwner::execute_messages() {
-  QueuedCommand queued;
   int executed = 0;
-  while (executed < kMessageBudget && queue_.pop(queued)) {
-    execute(queued);
-    ++executed;
+  for (; executed < kMessageBudget; ++executed) {
+    auto command = queue_.pop();
+    if (!command) break;
+    runner_->execute(std::move(*command));
   }
   if (executed > 0) room_.wake();
   return executed > 0;

@@ -7,12 +7,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "app/owner/command_queue.hpp"
 #include "app/owner/display/display_service.hpp"
 #include "app/owner/fleet.hpp"
 #include "app/owner/foot_switch_service.hpp"
@@ -28,22 +28,12 @@
 #include "app/owner/sensing.hpp"
 #include "app/owner/tcp_force_service.hpp"
 #include "app/snapshot/cell_state.hpp"
-#include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/base/capacity.hpp"
-#include "rt_core/base/fixed_text.hpp"
 #include "rt_core/base/home.hpp"
-#include "rt_core/rt/fifo.hpp"
 #include "rt_core/rt/wake_signal.hpp"
 #include "scripts/runner/script_runner.hpp"
 
 namespace cellmirror::app {
-
-// A command on its way from the receiver's thread to the owner.
-struct QueuedCommand {
-  FixedText<8192> text;
-  std::int64_t tag = 0;
-  std::int32_t sender_pid = 0;
-};
 
 class CellOwner {
  public:
@@ -66,7 +56,6 @@ class CellOwner {
     std::int32_t tcp_force_key = kTcpForceKey;
     std::uint32_t memory_mode = 0600;
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
-    std::function<void(std::int64_t tag, const ScriptReply& reply)> reply;
     std::function<std::uint64_t()> picture_updates = {};  // so far; empty: counted by the clock
     std::function<void()> bell = {};                      // with a message while BEEP is on
     // Off line nothing runs beside the owner: where it waits for the tick it lets one pass with this. Robots cannot be
@@ -98,11 +87,12 @@ class CellOwner {
   // No script, no move, no robot program and no script of a foot switch is under way.
   [[nodiscard]] bool quiet() const;
 
-  // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up.
-  void submit(const ScriptMessage& message);
-  // From any other thread: false, at once, where the queue is full.
-  [[nodiscard]] bool offer(const ScriptMessage& message);
-  [[nodiscard]] engine::QueueStatus command_queue() const;
+  // From the receiver's thread: waits while the queue is full, so that the senders see the System V queue fill up. At
+  // the end of the owner what is left is answered as refused.
+  void submit(script::ScriptCommand command);
+  // From any other thread: false, at once, and `command` as it was, where the queue is full.
+  [[nodiscard]] bool offer(script::ScriptCommand& command);
+  [[nodiscard]] engine::QueueStatus command_queue() const { return queue_.status(); }
   // For tests with a manual clock, from any thread: makes the owner take a turn at once instead of within a
   // millisecond, and tells how many it has begun. Once that has risen by two, what lay before the owner then has been
   // seen to.
@@ -113,10 +103,8 @@ class CellOwner {
 
  private:
   void loop(const std::stop_token& stop);
-  [[nodiscard]] bool put(const ScriptMessage& message);
   bool execute_messages();
   bool execute_files();
-  void execute(const QueuedCommand& queued);
   void publish_state();
   [[nodiscard]] bool is_online(std::size_t slot) const;
 
@@ -124,7 +112,6 @@ class CellOwner {
   KismetHome home_;
   Board<CellState>& board_;
   const Clock& clock_;
-  std::function<void(std::int64_t tag, const ScriptReply& reply)> reply_;
   CellNames names_;
   std::unique_ptr<Fleet> fleet_;
   DisplayService display_;
@@ -141,8 +128,7 @@ class CellOwner {
   CellInteraction interaction_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;
-  std::mutex producers_;  // of the queue, which takes one at a time
-  Fifo<QueuedCommand, kCommandQueue> queue_;
+  CommandQueue queue_{kCommandQueue};
   NodeLevels levels_;
   WakeSignal wake_;
   std::unique_ptr<FootSwitchService> switches_;  // its thread wakes the owner's

@@ -41,13 +41,14 @@ engine::JointLimits limits_of(const RobotModel& robot) {
 }  // namespace
 
 Fleet::Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
-             const Clock& clock, int stream_priority)
+             const Clock& clock, int stream_priority, Events events)
     : cell_(cell),
       engine_(engine),
       ticks_(engine.subscribe("owner")),
       streams_(std::move(streams)),
       clock_(clock),
       stream_priority_(stream_priority),
+      events_(std::move(events)),
       positions_(cell.start_positions()) {
   cell_.set_online_query([this](std::string_view id) {
     const FleetRobot* robot = find(id);
@@ -81,7 +82,7 @@ Result<std::uint64_t> Fleet::send(engine::Command command) {
 }
 
 void Fleet::wait_for_tick() const {
-  if (let_tick_pass_) return let_tick_pass_();
+  if (events_.let_tick_pass) return events_.let_tick_pass();
   std::this_thread::sleep_for(kTickPoll);
 }
 
@@ -145,7 +146,7 @@ Result<void> Fleet::set_online(std::string_view id, bool online) {
 }
 
 Result<void> Fleet::make_stream(FleetRobot& robot) {
-  if (let_tick_pass_) return fail(fmt::format("off line there is no controller that {} could follow", robot.id));
+  if (events_.let_tick_pass) return fail(fmt::format("off line there is no controller that {} could follow", robot.id));
   const auto config = streams_.find(robot.id);
   if (config == streams_.end()) {
     robot.stream = device_streams_ ? device_streams_(robot.id) : nullptr;
@@ -239,7 +240,7 @@ Result<void> Fleet::add_move(std::string_view id, const motion::Move& move) {
   const auto sent =
       send(engine::AddMove{.slot = slot_of(id), .move = lend(std::make_shared<const motion::Move>(move))});
   if (!sent) return std::unexpected(sent.error());
-  if (move_given_) move_given_(id, move);
+  if (events_.move_given) events_.move_given(id, move);
   return {};
 }
 

@@ -36,22 +36,24 @@ struct FleetRobot {
 // Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.
 class Fleet final : public MotionPort {
  public:
+  struct Events {
+    // Off line: a call that waits for the tick runs one with this, and streams are refused. Empty: the tick has its
+    // own thread.
+    std::function<void()> let_tick_pass = {};
+    // With every move that is given to the tick.
+    std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};
+  };
   // Before the first tick, since it subscribes to the engine. `stream_priority`: SCHED_FIFO priority of the streams'
   // threads; 0: none.
   Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
-        const Clock& clock, int stream_priority);
+        const Clock& clock, int stream_priority, Events events);
+  Fleet(Cell& cell, engine::Engine& engine, std::map<std::string, StreamConfig, std::less<>> streams,
+        const Clock& clock, int stream_priority)
+      : Fleet(cell, engine, std::move(streams), clock, stream_priority, Events()) {}
   // Closes all streams.
   ~Fleet() override;
   Fleet(const Fleet&) = delete;
   Fleet& operator=(const Fleet&) = delete;
-
-  // Off line: a call that waits for the tick runs one with this, and streams are refused.
-  void set_off_line(std::function<void()> let_tick_pass) { let_tick_pass_ = std::move(let_tick_pass); }
-
-  // Told of every move that is given to the tick.
-  void on_move(std::function<void(std::string_view robot, const motion::Move& move)> callback) {
-    move_given_ = std::move(callback);
-  }
 
   // Adds robots that came with a component to the tick, and removes those that were deleted. After every change of the
   // tree.
@@ -114,8 +116,7 @@ class Fleet final : public MotionPort {
   std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_streams_;
   const Clock& clock_;
   int stream_priority_;
-  std::function<void()> let_tick_pass_;  // empty: the tick has its own thread
-  std::function<void(std::string_view robot, const motion::Move& move)> move_given_;
+  Events events_;
   std::map<std::string, FleetRobot, std::less<>> robots_;
   std::vector<JointValues> positions_;
   std::uint64_t last_command_ = 0;

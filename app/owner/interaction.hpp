@@ -2,7 +2,9 @@
 // that it concerns. Belongs to the thread that owns the cell.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "app/owner/foot_switch_service.hpp"
 #include "app/owner/haptics/haptic_service.hpp"
@@ -16,17 +18,17 @@ namespace cellmirror::app {
 
 class CellInteraction final : public InteractionHost {
  public:
-  CellInteraction(const Cell& cell, const NameDirectory& names, HapticService& haptics, TcpForceService& forces)
-      : cell_(cell), names_(names), haptics_(haptics), forces_(forces) {}
-  // Before the first command. The services outlive this.
-  void set_services(FootSwitchService& switches, CouplingService& couplings) {
-    switches_ = &switches;
-    couplings_ = &couplings;
-  }
-
-  // Memories that other processes attach to are not made, and nobody is listened to: what asks for them is taken and
-  // has no effect.
-  void set_off_line() { off_line_ = true; }
+  // What is referred to outlives this.
+  struct Services {
+    HapticService& haptics;
+    TcpForceService& forces;
+    CouplingService& couplings;
+    std::function<FootSwitchService&()> switches;  // asked at each command: they start scripts, which begin here
+  };
+  // `off_line`: memories that other processes attach to are not made, and no device is read: commands that ask for them
+  // are accepted and have no effect.
+  CellInteraction(const Cell& cell, const NameDirectory& names, Services services, bool off_line)
+      : cell_(cell), names_(names), services_(std::move(services)), off_line_(off_line) {}
 
   Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
   Result<void> reset_haptic(std::string_view robot) override;
@@ -42,11 +44,8 @@ class CellInteraction final : public InteractionHost {
  private:
   const Cell& cell_;
   const NameDirectory& names_;
-  HapticService& haptics_;
-  TcpForceService& forces_;
-  FootSwitchService* switches_ = nullptr;
-  CouplingService* couplings_ = nullptr;
-  bool off_line_ = false;
+  Services services_;
+  bool off_line_;
 };
 
 }  // namespace cellmirror::app

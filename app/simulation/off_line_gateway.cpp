@@ -44,7 +44,6 @@ OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
       .save_flight_record = [](std::string_view) -> Result<void> {
         return fail("off line there is no flight recorder");
       },
-      .reply = [](std::int64_t, const ScriptReply&) {},
       .let_tick_pass = [this] { tick(); },
       .refused = [this](const Diagnostics& findings) { observer_.refused(findings); },
       .move_given = [this](std::string_view robot, const motion::Move& move) { observer_.move(robot, move); },

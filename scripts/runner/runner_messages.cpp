@@ -38,52 +38,60 @@ bool ScriptRunner::may_be_wrong_later(FormId id) {
 
 Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
   ActivityHandle activity;
-  auto result = begin_message(command_, CommandSource::message, text, source, activity);
+  auto result = begin_message(command_, CommandSource::Kind::message, text, source, activity);
   if (result) return *std::move(result);
   const Result<std::string> begun;
   if (may_be_wrong_later(command_.id())) {
     const Place place{std::string(source), command_.begin().line, command_.begin().column};
-    waiting_messages_.push_back({CommandSource::message, std::move(activity), place, [](const auto&) {}});
+    waiting_messages_.push_back({CommandSource::Kind::message, std::move(activity), place, {}});
   } else {
-    count_message(CommandSource::message, begun, {});
+    count_message(CommandSource::Kind::message, begun, {});
   }
   return begun;
 }
 
-void ScriptRunner::execute_message(std::string_view text, std::string_view source, Answer answer) {
+void ScriptRunner::execute_message(std::string_view text, std::string_view source, CommandReply reply) {
   ActivityHandle activity;
-  if (const auto result = begin_message(command_, CommandSource::message, text, source, activity)) {
-    answer(*result);
+  if (const auto result = begin_message(command_, CommandSource::Kind::message, text, source, activity)) {
+    reply(*result);
     return;
   }
   const Place place{std::string(source), command_.begin().line, command_.begin().column};
-  waiting_messages_.push_back({CommandSource::message, std::move(activity), place, std::move(answer)});
+  waiting_messages_.push_back({CommandSource::Kind::message, std::move(activity), place, std::move(reply)});
+}
+
+void ScriptRunner::execute(ScriptCommand command) {
+  const std::string source = command.source.text();
+  if (command.reply.wanted()) return execute_message(command.text, source, std::move(command.reply));
+  // Without a reply nothing waits for a robot to arrive. Refusals are listed in status.
+  [[maybe_unused]] const auto unanswered = execute_message(command.text, source);
 }
 
 Result<ActivityHandle> ScriptRunner::execute_program_command(std::string_view text, std::string_view source) {
   ActivityHandle activity;
-  if (auto result = begin_message(program_command_, CommandSource::program, text, source, activity)) {
+  if (auto result = begin_message(program_command_, CommandSource::Kind::program, text, source, activity)) {
     if (!*result) return std::unexpected(std::move(result->error()));
     return ActivityHandle();
   }
   const Place place{std::string(source), program_command_.begin().line, program_command_.begin().column};
-  waiting_messages_.push_back({CommandSource::program, activity, place, [](const Result<std::string>&) {}});
+  waiting_messages_.push_back({CommandSource::Kind::program, activity, place, {}});
   return activity;
 }
 
-SourceCounters& ScriptRunner::counters_of(CommandSource from) {
+SourceCounters& ScriptRunner::counters_of(CommandSource::Kind from) {
   switch (from) {
-    case CommandSource::file:
+    case CommandSource::Kind::file:
       return counters_.file;
-    case CommandSource::message:
+    case CommandSource::Kind::message:
+    case CommandSource::Kind::page:
       return counters_.message;
-    case CommandSource::program:
+    case CommandSource::Kind::program:
       return counters_.program;
   }
   return counters_.message;
 }
 
-std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& command, CommandSource from,
+std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& command, CommandSource::Kind from,
                                                                std::string_view text, std::string_view source,
                                                                ActivityHandle& activity) {
   ++counters_of(from).received;
@@ -96,11 +104,12 @@ std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& co
     return std::unexpected(as_error(findings));
   }
   Result<std::string> result;
-  if (step == CommandReader::Step::command && from == CommandSource::program && waits_for_programs(command.id())) {
+  if (step == CommandReader::Step::command && from == CommandSource::Kind::program &&
+      waits_for_programs(command.id())) {
     result = fail(fmt::format("{}: a robot program cannot wait for programs", command.form().name),
                   "synchronise programs by semaphores");
   } else if (step == CommandReader::Step::command) {
-    Outcome outcome = execute(command, host_);
+    Outcome outcome = script::execute(command, host_);
     if (outcome.kind == Outcome::Kind::pending) {
       activity = std::move(outcome.activity);
       return std::nullopt;
@@ -111,7 +120,7 @@ std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& co
   return result;
 }
 
-void ScriptRunner::count_message(CommandSource from, const Result<std::string>& result, const Place& place) {
+void ScriptRunner::count_message(CommandSource::Kind from, const Result<std::string>& result, const Place& place) {
   SourceCounters& counters = counters_of(from);
   ++(result ? counters.done : counters.refused);
   if (!result) remember({Severity::error, place, result.error().what, result.error().remedy});
@@ -146,20 +155,27 @@ std::size_t ScriptRunner::answer_messages() {
     }
     Result<std::string> result;
     if (activity.state() == Activity::State::refused) result = std::unexpected(activity.error());
-    count_message(waiting_messages_[i].from, result, waiting_messages_[i].place);
-    waiting_messages_[i].answer(result);
+    // Taken out first: the reply may begin something.
+    WaitingMessage ended = std::move(waiting_messages_[i]);
     waiting_messages_.erase(waiting_messages_.begin() + static_cast<std::ptrdiff_t>(i));
+    end_message(ended, result);
     ++answered;
   }
   return answered;
 }
 
+void ScriptRunner::end_message(WaitingMessage& message, const Result<std::string>& result) {
+  count_message(message.from, result, message.place);
+  message.reply(result);
+  if (result || !message.of_stopped_file || !refused_) return;
+  Diagnostics findings;
+  findings.error(message.place, result.error().what, result.error().remedy);
+  refused_(findings);
+}
+
 void ScriptRunner::refuse_waiting_messages() {
   const Result<std::string> result = fail("the gateway ends");
-  for (const WaitingMessage& waiting : waiting_messages_) {
-    count_message(waiting.from, result, waiting.place);
-    waiting.answer(result);
-  }
+  for (WaitingMessage& waiting : waiting_messages_) end_message(waiting, result);
   waiting_messages_.clear();
 }
 

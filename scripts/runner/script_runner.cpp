@@ -197,7 +197,7 @@ void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
 void ScriptRunner::execute_command(ScriptRun& run) {
   const ScriptFile& file = *run.stack.back();
   const Position place = command_.begin();
-  Outcome outcome = execute(command_, host_);
+  Outcome outcome = script::execute(command_, host_);
   Diagnostics findings;
   if (outcome.kind == Outcome::Kind::wait) {
     run.waiting = true;
@@ -285,14 +285,11 @@ void ScriptRunner::leave_activity(const ScriptRun& run) {
     ++counters_.file.done;
     return;
   }
-  const Place place = run.activity_place;
-  waiting_messages_.push_back(
-      {CommandSource::file, run.activity, place, [this, place](const Result<std::string>& result) {
-         if (result || !refused_) return;
-         Diagnostics findings;
-         findings.error(place, result.error().what, result.error().remedy);
-         refused_(findings);
-       }});
+  waiting_messages_.push_back({.from = CommandSource::Kind::file,
+                               .activity = run.activity,
+                               .place = run.activity_place,
+                               .reply = {},
+                               .of_stopped_file = true});
 }
 
 bool ScriptRunner::stop(std::uint64_t id) {

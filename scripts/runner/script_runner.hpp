@@ -21,13 +21,12 @@
 #include "scripts/commands/execute.hpp"
 #include "scripts/commands/host.hpp"
 #include "scripts/lang/parsed_command.hpp"
+#include "scripts/runner/script_command.hpp"
 
 namespace cellmirror::script {
 
 class ScriptFile;
 class ScriptRun;
-
-enum class CommandSource : std::uint8_t { file, message, program };
 
 // received = done + refused, but for a command that is being executed.
 struct SourceCounters {
@@ -99,8 +98,9 @@ class ScriptRunner {
   // errors. A robot program that cannot be loaded or run later is counted and remembered as refused then.
   Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
   // The same for a client that gets one answer: now, or within a step() when the command's activity has ended.
-  using Answer = std::function<void(const Result<std::string>& result)>;
-  void execute_message(std::string_view text, std::string_view source, Answer answer);
+  void execute_message(std::string_view text, std::string_view source, CommandReply reply);
+  // The same for a command from outside, whether its sender is answered or not.
+  void execute(ScriptCommand command);
 
   // A command from inside a robot program, executed now as a message is; `source` names program and line in errors.
   // WAIT and TF_WAIT are refused: the program would wait for itself. The activity is that of what the command began;
@@ -134,6 +134,17 @@ class ScriptRunner {
   void on_refused(std::function<void(const Diagnostics&)> callback) { refused_ = std::move(callback); }
 
  private:
+  // A message that is answered or counted when its activity has ended, a command of a robot program, or of a script
+  // that was stopped. At most one a robot runs, of TF_WAIT there is one per client, and the number of loads is bounded,
+  // so they stay few.
+  struct WaitingMessage {
+    CommandSource::Kind from;
+    ActivityHandle activity;
+    Place place;
+    CommandReply reply;
+    bool of_stopped_file = false;  // where it is refused, refused_ is called
+  };
+
   Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
   Result<std::unique_ptr<ScriptFile>> load(const std::filesystem::path& path, Diagnostics& findings);
   void step_run(ScriptRun& run, std::size_t until);
@@ -145,14 +156,16 @@ class ScriptRunner {
   Result<void> call(ScriptRun& run, std::string_view name, Diagnostics& findings);
   void refuse(ScriptRun& run, const Diagnostics& findings);
   // The answer; none where `activity` was set: it comes when that ends.
-  std::optional<Result<std::string>> begin_message(ParsedCommand& command, CommandSource from, std::string_view text,
-                                                   std::string_view source, ActivityHandle& activity);
+  std::optional<Result<std::string>> begin_message(ParsedCommand& command, CommandSource::Kind from,
+                                                   std::string_view text, std::string_view source,
+                                                   ActivityHandle& activity);
   Result<std::string> accept_message(const Outcome& outcome);
-  void count_message(CommandSource from, const Result<std::string>& result, const Place& place);
-  [[nodiscard]] SourceCounters& counters_of(CommandSource from);
+  void count_message(CommandSource::Kind from, const Result<std::string>& result, const Place& place);
+  [[nodiscard]] SourceCounters& counters_of(CommandSource::Kind from);
   std::size_t answer_messages();
   [[nodiscard]] static bool may_be_wrong_later(FormId id);
   void refuse_waiting_messages();
+  void end_message(WaitingMessage& message, const Result<std::string>& result);
   void end_run(std::size_t index, bool stopped);
   void leave_activity(const ScriptRun& run);
   void note_first_command(ScriptRun& run);
@@ -161,16 +174,6 @@ class ScriptRunner {
   CommandHost host_;
   const KismetHome& home_;
   const Clock& clock_;
-  // A message that is answered or counted when its activity has ended, a command of a robot program, or of a script
-  // that was stopped. At most one a robot runs, of TF_WAIT there is one per client, and the number of loads is bounded,
-  // so they stay few.
-  struct WaitingMessage {
-    CommandSource from;
-    ActivityHandle activity;
-    Place place;
-    Answer answer;
-  };
-
   std::vector<std::unique_ptr<ScriptRun>> runs_;
   std::vector<WaitingMessage> waiting_messages_;
   std::deque<std::pair<std::uint64_t, RunProgress>> ended_;  // newest last

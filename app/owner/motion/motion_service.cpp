@@ -134,7 +134,7 @@ Result<void> MotionService::set_positioning(Positioning positioning) {
 }
 
 unsigned MotionService::coupled_joints(std::string_view robot) const {
-  return coupled_ == nullptr ? 0U : coupled_->coupled_joints(robot);
+  return coupled_ ? coupled_().coupled_joints(robot) : 0U;
 }
 
 MotionGoal MotionService::goal_of(const RobotModel& robot, const MotionRecord& record,
@@ -265,7 +265,7 @@ Result<void> MotionService::check_coupled(const RobotModel& robot, const JointVa
     if ((coupled >> i & 1U) == 0) continue;
     if (std::abs(goal[i] - from[i]) > kSame) {
       return fail(fmt::format("joint {} ({}) of {} follows {}; nothing was moved", i + 1, robot.joints()[i].name,
-                              robot.id(), coupled_->master_of(robot.id())),
+                              robot.id(), coupled_().master_of(robot.id())),
                   "move the master, or free the joint with MASTER_SLAVE off");
     }
     goal[i] = from[i];
@@ -276,14 +276,14 @@ Result<void> MotionService::check_coupled(const RobotModel& robot, const JointVa
 Result<void> MotionService::check_uncoupled(const RobotModel& robot) const {
   if (coupled_joints(robot.id()) == 0) return {};
   return fail(fmt::format("joints of {} follow {}, so its TCP cannot keep to a line; nothing was moved", robot.id(),
-                          coupled_->master_of(robot.id())),
+                          coupled_().master_of(robot.id())),
               "move the master, or free the joints with MASTER_SLAVE off");
 }
 
 Result<void> MotionService::check_free(const RobotModel& robot) const {
   if (coupled_joints(robot.id()) == 0) return {};
   return fail(
-      fmt::format("joints of {} follow {}, so no program can move it", robot.id(), coupled_->master_of(robot.id())),
+      fmt::format("joints of {} follow {}, so no program can move it", robot.id(), coupled_().master_of(robot.id())),
       "free them with MASTER_SLAVE off");
 }
 

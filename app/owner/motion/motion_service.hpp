@@ -20,13 +20,17 @@ namespace cellmirror::app {
 
 class MotionService final : public MotionHost {
  public:
-  // `screen_axes`: R_WS of the current view as it is now, for SCREEN_INC.
+  using Coupled = std::function<const CoupledRobots&()>;
+  // `screen_axes`: R_WS of the current view as it is now, for SCREEN_INC. `coupled`: asked at each command, since
+  // couplings are made by a service that moves robots with this one; empty: no robot follows another.
   MotionService(const Cell& cell, const NameDirectory& names, std::function<Eigen::Matrix3d()> screen_axes,
-                MotionPort& port, const Clock& clock)
-      : cell_(cell), names_(names), screen_axes_(std::move(screen_axes)), port_(port), clock_(clock) {}
-
-  // Null, as in the beginning: no robot follows another. They outlive the service.
-  void set_coupled(const CoupledRobots* coupled) { coupled_ = coupled; }
+                MotionPort& port, const Clock& clock, Coupled coupled = {})
+      : cell_(cell),
+        names_(names),
+        screen_axes_(std::move(screen_axes)),
+        port_(port),
+        clock_(clock),
+        coupled_(std::move(coupled)) {}
 
   Result<ActivityHandle> position(std::string_view robot, const MotionTarget& target) override;
   Result<void> queue_move(std::string_view robot, MovePath path, const MotionTarget& target) override;
@@ -82,7 +86,7 @@ class MotionService final : public MotionHost {
   std::function<Eigen::Matrix3d()> screen_axes_;
   MotionPort& port_;
   const Clock& clock_;  // for the time limits of inverse kinematics
-  const CoupledRobots* coupled_ = nullptr;
+  Coupled coupled_;
   std::map<std::string, MotionRecord, std::less<>> records_;
 };
 

@@ -223,8 +223,8 @@ Result<void> ProgramService::verdict(std::uint64_t since) const {
 }
 
 Result<ActivityHandle> ProgramService::execute(std::string_view text, std::string_view source) {
-  CELLMIRROR_EXPECTS(runner_ != nullptr);
-  return runner_->execute_program_command(text, source);
+  CELLMIRROR_EXPECTS(parts_.runner);
+  return parts_.runner().execute_program_command(text, source);
 }
 
 bool ProgramService::follow() {

@@ -42,13 +42,14 @@ class ProgramService final : public ProgramHost, public program::ProgramScripts 
     const DisplayService& display;
     program::ProgramMotion& moves;
     const Clock& clock;
-    std::function<void(const program::ProgramEvent&)> event = {};  // told of all that happens
+    // Executes the SCRIPT commands of programs. Asked then: the runner hands commands to this service, so it is made
+    // later. Empty: programs have none.
+    std::function<script::ScriptRunner&()> runner = {};
+    std::function<void(const program::ProgramEvent&)> event = {};  // with all that happens
     // Long programs are read in a thread of their own. Not off line, where no time passes meanwhile.
     bool read_aside = false;
   };
   explicit ProgramService(Parts parts);
-  // Before the first program runs; it outlives the service's last follow().
-  void set_runner(script::ScriptRunner& runner) { runner_ = &runner; }
 
   Result<void> set_language(std::string_view language) override;
   Result<ActivityHandle> load_program(std::string_view program, std::string_view robot) override;
@@ -108,7 +109,6 @@ class ProgramService final : public ProgramHost, public program::ProgramScripts 
   [[nodiscard]] bool loaded(std::string_view program, std::string_view robot) const;
 
   Parts parts_;
-  script::ScriptRunner* runner_ = nullptr;
   program::Controllers controllers_;
   ProgramRecordings recordings_;
   ProgramLoads loads_;

@@ -14,6 +14,7 @@
 
 #include "app/owner/cell_owner.hpp"
 #include "config/cell_file.hpp"
+#include "ipc/wire/script_message.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
 #include "rt_core/rt/watchdog.hpp"
 
@@ -35,9 +36,8 @@ inline std::filesystem::path source_folder() {
 using Reply = std::function<void(std::int64_t tag, const ScriptReply& reply)>;
 using ProgramEvents = std::function<void(const program::ProgramEvent& event)>;
 
-// Both functions are called on the owner's thread.
 inline CellOwner::Parts owner_parts(LoadedCell loaded, engine::Engine& engine, Board<CellState>& board,
-                                    const Clock& clock, Reply reply, ProgramEvents event) {
+                                    const Clock& clock, ProgramEvents event) {
   return {.cell = std::move(loaded.cell),
           .home = loaded.home,
           .streams = {},
@@ -50,21 +50,24 @@ inline CellOwner::Parts owner_parts(LoadedCell loaded, engine::Engine& engine, B
           .clock = clock,
           .instance = {},
           .save_flight_record = [](std::string_view) -> Result<void> { return {}; },
-          .reply = std::move(reply),
           .program_event = std::move(event)};
 }
 
 class RealTimeOwner {
  public:
   RealTimeOwner(LoadedCell loaded, Reply reply, ProgramEvents event)
-      : owner_(owner_parts(std::move(loaded), *engine_, board_, clock_, std::move(reply), std::move(event))) {}
+      : reply_(std::move(reply)), owner_(owner_parts(std::move(loaded), *engine_, board_, clock_, std::move(event))) {}
   ~RealTimeOwner() { stop(); }
   RealTimeOwner(const RealTimeOwner&) = delete;
   RealTimeOwner& operator=(const RealTimeOwner&) = delete;
 
   // Before start(): it waits in the queue, so that the owner executes what was put together in one turn.
   void put(std::int64_t tag, std::string text) {
-    EXPECT_TRUE(owner_.offer({.text = std::move(text), .tag = tag, .sender_pid = 0}));
+    script::ScriptCommand command{
+        .text = std::move(text), .source = script::CommandSource::page(), .reply = [this, tag](const auto& result) {
+          reply_(tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
+        }};
+    EXPECT_TRUE(owner_.offer(command));
   }
   // `script`: a path; empty: none.
   void start(const std::string& script) {
@@ -82,6 +85,7 @@ class RealTimeOwner {
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
   Board<CellState> board_;
+  Reply reply_;
   CellOwner owner_;
   CyclicThread loop_{*engine_, {.name = "tick", .period = Nanoseconds(1'000'000), .policy = RealTimePolicy::prefer}};
 };

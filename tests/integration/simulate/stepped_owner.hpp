@@ -28,8 +28,8 @@ class SteppedClock final : public Clock {
 
 class SteppedOwner {
  public:
-  SteppedOwner(LoadedCell loaded, Reply reply, ProgramEvents event)
-      : owner_(owner_parts(std::move(loaded), *engine_, board_, clock_, std::move(reply), std::move(event))) {}
+  SteppedOwner(LoadedCell loaded, const Reply& /*it takes no commands*/, ProgramEvents event)
+      : owner_(owner_parts(std::move(loaded), *engine_, board_, clock_, std::move(event))) {}
 
   // `script`: a path.
   void start(const std::string& script) {

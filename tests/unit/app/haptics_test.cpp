@@ -149,12 +149,12 @@ TEST(HapticWords, EveryFaultHasAWordAnExplanationAndARemedy) {
   std::set<std::string> words;
   for (int i = 1; i <= static_cast<int>(HapticFault::not_passive); ++i) {
     const auto fault = static_cast<HapticFault>(i);
-    EXPECT_TRUE(words.insert(word(fault)).second) << i;
+    EXPECT_TRUE(words.emplace(word(fault)).second) << i;
     EXPECT_NE(std::string(explanation(fault)), "") << i;
     EXPECT_NE(std::string(remedy(fault)), "") << i;
   }
   for (int i = 0; i <= static_cast<int>(HapticPhase::faulted); ++i)
-    EXPECT_TRUE(words.insert(word(static_cast<HapticPhase>(i))).second) << i;
+    EXPECT_TRUE(words.emplace(word(static_cast<HapticPhase>(i))).second) << i;
 }
 
 }  // namespace
