@@ -36,12 +36,12 @@ class ProgressOfFiles {
       total = components.files().size() + meshes_.counted();
     }
     meshes_.count_only(false);
-    meshes_.tell([&progress, total, done = std::size_t{0}](const fs::path& path) mutable {
+    meshes_.set_progress([&progress, total, done = std::size_t{0}](const fs::path& path) mutable {
       progress(done, std::max(total, done + 1), path.filename().string());
       ++done;
     });
   }
-  ~ProgressOfFiles() { meshes_.tell({}); }
+  ~ProgressOfFiles() { meshes_.set_progress({}); }
   ProgressOfFiles(const ProgressOfFiles&) = delete;
   ProgressOfFiles& operator=(const ProgressOfFiles&) = delete;
 
@@ -49,7 +49,7 @@ class ProgressOfFiles {
   MeshLibrary& meshes_;
 };
 
-// What is wrong in the cell file itself is put to its other findings.
+// Errors in the cell file itself are added to its other diagnostics.
 void check_streams(const CellReader& reader, const std::string& file, const StreamCheck& check, Diagnostics& of_cell,
                    Diagnostics& of_others) {
   if (!check) return;
@@ -88,7 +88,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
     reader.read_streams(source->robots(), true);
     reader.read_haptics(source->robots(), true);
     check_streams(reader, path.string(), check_stream, of_streams, of_bus_files);
-    // Findings so far keep Cell::build() from giving a cell, but not from looking on.
+    // With earlier errors Cell::build() returns no cell, but continues to check.
     Diagnostics building = of_components;
     building.take(reader.findings);
     const std::size_t before = building.all().size();
@@ -174,7 +174,7 @@ void check_file(const fs::path& path, Diagnostics& diagnostics, const LoadProgre
   }
   const HomeFiles files(*home);
   if (progress) {
-    files.meshes().tell([&progress, done = std::size_t{0}](const fs::path& file) mutable {
+    files.meshes().set_progress([&progress, done = std::size_t{0}](const fs::path& file) mutable {
       progress(done, done + 1, file.filename().string());
       ++done;
     });

@@ -98,7 +98,7 @@ using LoadProgress = std::function<void(std::size_t done, std::size_t total, std
 // Called for each valid stream, also if the cell has errors: its driver's diagnostics.
 using StreamCheck = std::function<void(const RobotStream& stream, Diagnostics& diagnostics)>;
 
-// Nothing where there is any error; all findings of all files in `diagnostics`, each with file:line:column.
+// Nothing if there is any error; all diagnostics of all files in `diagnostics`, each with file:line:column.
 [[nodiscard]] std::optional<LoadedCell> load_cell(const std::filesystem::path& path, Diagnostics& diagnostics,
                                                   const LoadProgress& progress = {},
                                                   const StreamCheck& check_stream = {});

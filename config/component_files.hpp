@@ -32,9 +32,8 @@ class ComponentFiles final : public ComponentSource {
   Result<std::shared_ptr<const Component>> component(std::string_view file) override;
   Result<std::shared_ptr<const Component>> component_for(const AbstractReference& reference) override;
 
-  // Reads every file that `root` names, directly or through others, and reports all findings; also of those that are
-  // not loaded at the start. Between load() and release() everything stays in memory, faulty files as far as
-  // understood.
+  // Reads every file that `root` names, directly or through others, and reports all errors; also of those that are not
+  // loaded at the start. Between load() and release() everything stays in memory, faulty files as far as understood.
   void load(const Component& root, Diagnostics& diagnostics);
   void release();
   // The robots that are there at the start.
@@ -64,7 +63,7 @@ class ComponentFiles final : public ComponentSource {
   std::size_t visits_ = 0;
 };
 
-// Reads a component or URDF by its extension. What could be understood, even where there are findings.
+// Reads a component or URDF by its extension. The valid part, even with errors.
 [[nodiscard]] std::shared_ptr<const Component> read_component_file(const std::filesystem::path& path,
                                                                    const FileFinder& files, Diagnostics& diagnostics);
 

@@ -19,8 +19,8 @@ inline constexpr std::size_t kLongestLayoutName = 40;      // bytes, of a view o
 inline constexpr double kSmallestPane = 0.05;              // of the picture, in each direction
 inline constexpr double kPaneTolerance = 1e-9;             // panes that only touch do not overlap
 
-// What the text does not name is as in the standard setting. Nothing, and all findings with file:line:column, where
-// anything is wrong. Any bytes are allowed as text.
+// Missing values are as in the standard setting. Nothing, and all diagnostics with file:line:column, where anything is
+// wrong. Any bytes are allowed as text.
 [[nodiscard]] std::optional<DisplayLayout> parse_layout(std::string_view text, const std::string& file,
                                                         Diagnostics& diagnostics);
 // The same of a file, 65,536 bytes at most. `shown` is its name for messages.

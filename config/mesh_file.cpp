@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "config/file_finder.hpp"
+#include "config/mesh_appearance.hpp"
 #include "config/mesh_check.hpp"
 #include "config/mesh_finish.hpp"
-#include "config/mesh_looks.hpp"
 #include "config/mesh_process.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -77,14 +77,14 @@ Result<std::string> read_neighbour(const fs::path& folder, const std::string& na
 
 Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extension, std::string name,
                                 const Eigen::Vector3d& scale, const Neighbours& neighbours, MeshFindings& findings,
-                                LookRequest* looks) {
+                                AppearanceRequest* looks) {
   findings = MeshFindings();
   const auto refuse = [&](const Error& error) {
     return fail(fmt::format("the mesh {} is refused: {}", name, error.what), error.remedy);
   };
   if (std::ranges::find(kFormats, extension) == kFormats.end()) return refuse({"its kind is unknown", {}});
   if (auto checked = check_mesh_bytes(bytes, extension); !checked) return refuse(checked.error());
-  LookRequest* const wanted = may_have_looks(extension) ? looks : nullptr;
+  AppearanceRequest* const wanted = may_have_looks(extension) ? looks : nullptr;
   auto polygons = polygons_of(bytes, extension, scale, neighbours, wanted != nullptr);
   if (!polygons) return refuse(polygons.error());
   auto mesh = finish_mesh(std::move(*polygons), bytes, extension, name, findings, wanted);
@@ -93,7 +93,7 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extensi
 }
 
 Result<TriangleMesh> read_mesh_file(const fs::path& file, const Eigen::Vector3d& scale, MeshFindings& findings,
-                                    LookRequest* looks) {
+                                    AppearanceRequest* looks) {
   const auto bytes = read_text_file(file, kLargestMesh);
   if (!bytes) return std::unexpected(bytes.error());
   const fs::path folder = file.parent_path();

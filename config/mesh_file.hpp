@@ -13,7 +13,7 @@
 
 namespace cellmirror {
 
-struct LookRequest;
+struct AppearanceRequest;
 
 // Gives the content of another file that the mesh file names, by its name there.
 using Neighbours = std::function<Result<std::string>(const std::string& name)>;
@@ -25,12 +25,12 @@ using Neighbours = std::function<Result<std::string>(const std::string& name)>;
 [[nodiscard]] Result<geometry::TriangleMesh> parse_mesh(std::string_view bytes, std::string_view extension,
                                                         std::string name, const Eigen::Vector3d& scale,
                                                         const Neighbours& neighbours, geometry::MeshFindings& findings,
-                                                        LookRequest* looks = nullptr);
+                                                        AppearanceRequest* looks = nullptr);
 
 // The same from a file; neighbours must be in its folder or below.
 [[nodiscard]] Result<geometry::TriangleMesh> read_mesh_file(const std::filesystem::path& file,
                                                             const Eigen::Vector3d& scale,
                                                             geometry::MeshFindings& findings,
-                                                            LookRequest* looks = nullptr);
+                                                            AppearanceRequest* looks = nullptr);
 
 }  // namespace cellmirror

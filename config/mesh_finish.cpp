@@ -12,7 +12,7 @@ using geometry::MeshFindings;
 using geometry::TriangleMesh;
 
 Result<TriangleMesh> finish_mesh(ScenePolygons polygons, std::string_view bytes, std::string_view extension,
-                                 const std::string& name, MeshFindings& findings, LookRequest* looks) {
+                                 const std::string& name, MeshFindings& findings, AppearanceRequest* looks) {
   std::optional<std::vector<MeshMaterial>> palette;
   if (looks != nullptr) {
     if (extension == ".obj") name_obj_pictures(bytes, *looks, polygons);
@@ -23,7 +23,8 @@ Result<TriangleMesh> finish_mesh(ScenePolygons polygons, std::string_view bytes,
   if (!palette) return geometry::make_mesh(name, std::move(polygons.vertices), std::move(polygons.triangles), findings);
   std::vector<std::uint32_t> origins;
   auto mesh = geometry::make_mesh(name, polygons.vertices, polygons.triangles, findings, &origins);
-  if (mesh) looks->look = std::make_shared<const MeshLook>(lay_over(*mesh, origins, polygons, std::move(*palette)));
+  if (mesh)
+    looks->look = std::make_shared<const MeshAppearance>(lay_over(*mesh, origins, polygons, std::move(*palette)));
   return mesh;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "config/mesh_looks.hpp"
+#include "config/mesh_appearance.hpp"
 #include "config/mesh_message/scene_polygons.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/geometry/mesh_repair.hpp"
@@ -15,6 +15,6 @@ namespace cellmirror {
 // and `extension` of the mesh file.
 [[nodiscard]] Result<geometry::TriangleMesh> finish_mesh(ScenePolygons polygons, std::string_view bytes,
                                                          std::string_view extension, const std::string& name,
-                                                         geometry::MeshFindings& findings, LookRequest* looks);
+                                                         geometry::MeshFindings& findings, AppearanceRequest* looks);
 
 }  // namespace cellmirror

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/mesh_appearance.hpp"
 #include "config/mesh_file.hpp"
-#include "config/mesh_looks.hpp"
 #include "config/picture_library.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/geometry/convex_hull.hpp"
@@ -19,8 +19,8 @@ using geometry::TriangleMesh;
 
 namespace {
 
-void tell_findings(const TriangleMesh& mesh, const MeshFindings& findings, const Place& place,
-                   Diagnostics& diagnostics) {
+void report_findings(const TriangleMesh& mesh, const MeshFindings& findings, const Place& place,
+                     Diagnostics& diagnostics) {
   std::string all;
   for (const std::string& repair : findings.repairs()) all += (all.empty() ? "" : ", ") + repair;
   if (all.empty()) return;
@@ -29,7 +29,8 @@ void tell_findings(const TriangleMesh& mesh, const MeshFindings& findings, const
                    lost ? "repair it in the program that made it" : "it was repaired while reading"});
 }
 
-void tell_left_out(const TriangleMesh& mesh, const LookRequest& looks, const Place& place, Diagnostics& diagnostics) {
+void report_left_out(const TriangleMesh& mesh, const AppearanceRequest& looks, const Place& place,
+                     Diagnostics& diagnostics) {
   for (const Error& error : looks.left_out)
     diagnostics.add({Severity::warning, place, fmt::format("the mesh {}: {}", mesh.name, error.what), error.remedy});
 }
@@ -65,7 +66,7 @@ Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, 
   about_to_read(file);
   constexpr std::size_t kLargestText = 4UL << 20U;
   pictures_->begin_mesh();
-  LookRequest looks;
+  AppearanceRequest looks;
   looks.text = [&](const std::string& name) -> Result<std::string> {
     const auto at = beside(name);
     if (!at) return std::unexpected(at.error());
@@ -80,8 +81,8 @@ Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, 
   MeshFindings findings;
   auto mesh = read_mesh_file(file, scale, findings, &looks);
   if (!mesh) return std::unexpected(mesh.error());
-  tell_findings(*mesh, findings, place, diagnostics);
-  tell_left_out(*mesh, looks, place, diagnostics);
+  report_findings(*mesh, findings, place, diagnostics);
+  report_left_out(*mesh, looks, place, diagnostics);
   out.mesh = std::make_shared<const TriangleMesh>(std::move(*mesh));
   out.look = std::move(looks.look);
   entry.mesh = out.mesh;

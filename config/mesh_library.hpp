@@ -23,7 +23,7 @@ class PictureLibrary;
 struct CollisionMesh {
   CollideAs collide_as = CollideAs::exact;
   std::shared_ptr<const geometry::TriangleMesh> mesh;
-  std::shared_ptr<const MeshLook> look;
+  std::shared_ptr<const MeshAppearance> look;
   std::vector<std::shared_ptr<const geometry::TriangleMesh>> pieces;  // for CollideAs::hull and parts
 };
 
@@ -47,7 +47,7 @@ class MeshLibrary {
   [[nodiscard]] std::size_t counted() const { return counted_; }
   // `reading` is called before each file that is read. May be empty.
   using Reading = std::function<void(const std::filesystem::path& file)>;
-  void tell(Reading reading) { reading_ = std::move(reading); }
+  void set_progress(Reading reading) { reading_ = std::move(reading); }
   void about_to_read(const std::filesystem::path& file) const {
     if (reading_ && !counting_) reading_(file);
   }
@@ -57,7 +57,7 @@ class MeshLibrary {
   struct Entry {
     std::weak_ptr<const geometry::TriangleMesh> mesh;
     // May be released before the mesh: users of the shape alone keep no appearance.
-    std::weak_ptr<const MeshLook> look;
+    std::weak_ptr<const MeshAppearance> look;
     bool had_look = false;
     // By kind: only while the pieces are used.
     std::map<CollideAs, std::vector<std::weak_ptr<const geometry::TriangleMesh>>> pieces;

@@ -129,14 +129,14 @@ class Outgoing {
   std::deque<std::string_view> parts_;
 };
 
-enum class Talk { ended, too_late, too_long };
+enum class ExchangeResult { ended, too_late, too_long };
 
 // Sends and receives at the same time, so that neither side waits for the other for ever, until the other end is shut.
-Talk talk(int fd, Outgoing request, Steady::time_point until, std::size_t most, std::string& answer) {
+ExchangeResult exchange(int fd, Outgoing request, Steady::time_point until, std::size_t most, std::string& answer) {
   std::vector<char> part(256UL << 10U);
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Steady::now()).count();
-    if (left <= 0) return Talk::too_late;
+    if (left <= 0) return ExchangeResult::too_late;
     pollfd wait{fd, static_cast<short>(request.empty() ? POLLIN : POLLIN | POLLOUT), 0};
     if (poll(&wait, 1, static_cast<int>(std::min<decltype(left)>(left, 1000))) <= 0) continue;
     if (!request.empty() && (wait.revents & POLLOUT) != 0) {
@@ -146,8 +146,8 @@ Talk talk(int fd, Outgoing request, Steady::time_point until, std::size_t most, 
     if ((wait.revents & (POLLIN | POLLHUP | POLLERR)) == 0) continue;
     const ssize_t count = recv(fd, part.data(), part.size(), MSG_DONTWAIT);
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) continue;
-    if (count <= 0) return Talk::ended;
-    if (answer.size() + static_cast<std::size_t>(count) > most) return Talk::too_long;
+    if (count <= 0) return ExchangeResult::ended;
+    if (answer.size() + static_cast<std::size_t>(count) > most) return ExchangeResult::too_long;
     answer.append(part.data(), static_cast<std::size_t>(count));
   }
 }
@@ -221,11 +221,11 @@ Result<ScenePolygons> read_mesh_apart(const MeshRequest& request, const MeshRead
   theirs.reset();
   const MeshMessage message = encode_mesh_request(request);
   std::string answer;
-  const Talk talked = talk(own.get(), Outgoing(message.parts()), until, reader.most_bytes, answer);
+  const ExchangeResult result = exchange(own.get(), Outgoing(message.parts()), until, reader.most_bytes, answer);
   own.reset();
   const std::optional<int> status = child.end();
-  if (talked == Talk::too_late) return took_too_long(seconds(reader.longest));
-  if (talked == Talk::too_long)
+  if (result == ExchangeResult::too_late) return took_too_long(seconds(reader.longest));
+  if (result == ExchangeResult::too_long)
     return fail(fmt::format("it cannot be read: it contains more than {} MiB", reader.most_bytes >> 20U),
                 "reduce the mesh");
   if (auto polygons = decode_mesh_answer(answer, request.with_looks)) return std::move(*polygons);

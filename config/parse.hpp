@@ -1,6 +1,5 @@
 // Turns the text of a component file or a URDF into a Component. No file is opened but by the FileFinder: to see
-// whether named ones exist, and to read the meshes of what collides. All findings in one pass; any bytes are allowed as
-// text.
+// whether named ones exist, and to read colliding meshes. All diagnostics in one pass; any bytes are allowed as text.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +15,7 @@ namespace cellmirror {
 
 inline constexpr std::size_t kLargestText = 16UL << 20U;  // bytes of a cell, component or URDF file
 
-// What could be understood, even where there are findings; nothing where the text is no TOML or XML at all.
+// The valid part, even with errors; nothing if the text is not TOML or XML.
 [[nodiscard]] std::optional<Component> parse_component(std::string_view text, const std::string& file,
                                                        const FileFinder& files, Diagnostics& diagnostics);
 // `path` is the path of the URDF, for its meshes.
@@ -30,7 +29,7 @@ inline constexpr std::size_t kLargestText = 16UL << 20U;  // bytes of a cell, co
                                                           std::string_view base, std::string_view tip,
                                                           Diagnostics& diagnostics);
 
-// Appends findings in the order of their places in the file.
+// Appends diagnostics in the order of their places in the file.
 void take_sorted(Diagnostics& to, const Diagnostics& from);
 
 }  // namespace cellmirror

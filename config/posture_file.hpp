@@ -29,10 +29,10 @@ class PostureReader {
   // `in`, `diagnostics` and `cell` are used until the last call.
   PostureReader(std::istream& in, std::string file, const Cell& cell, Diagnostics& diagnostics);
 
-  // False, and all findings about it, where the header is wrong: nothing can be read then.
+  // False, and all its errors, if the header is wrong: nothing can be read then.
   bool read_header();
   // Writes the columns of the next row into q[slot][joint] and leaves the others as they are. False: there is no
-  // further row. A row that is wrong gives its findings, leaves `q` as it is, and counts.
+  // further row. An invalid row gives its errors, leaves `q` unchanged, and counts.
   bool read_row(std::span<JointValues> q);
   // Reports errors of the whole file: no rows, values beyond ranges.
   void finish();

@@ -20,8 +20,8 @@ inline constexpr double kFarthestTarget = 1e6;                   // m, of each c
 // How far the norm of a quaternion may be from 1; within that it is normalised (files often carry few digits).
 inline constexpr double kQuaternionSlack = 1e-3;
 
-// The targets X_BG in the order of the rows, or nothing and all findings with file:line:column. Accepted: LF and CRLF,
-// a UTF-8 byte order mark, blanks around the numbers, blank lines at the end. Any bytes are allowed as text.
+// The targets X_BG in the order of the rows, or nothing and all diagnostics with file:line:column. Accepted: LF and
+// CRLF, a UTF-8 byte order mark, blanks around the numbers, blank lines at the end. Any bytes are allowed as text.
 [[nodiscard]] std::optional<std::vector<Pose>> parse_targets(std::string_view text, const std::string& file,
                                                              Diagnostics& diagnostics);
 

@@ -34,7 +34,7 @@ struct UrdfModel {
   std::vector<UrdfJoint> joints;
 };
 
-// Reads all <link> and <joint> elements; those that cannot be understood are left out, with findings.
+// Reads all <link> and <joint> elements; invalid ones are left out, with diagnostics.
 [[nodiscard]] UrdfModel read_urdf_elements(const tinyxml2::XMLElement& robot, const UrdfXml& xml,
                                            const std::filesystem::path& path, const FileFinder& files);
 [[nodiscard]] std::optional<UrdfJoint> read_urdf_joint(const tinyxml2::XMLElement& element, const UrdfXml& xml);

@@ -39,10 +39,10 @@ struct ViewFile {
   std::vector<StoredView> views;  // each of another id
 };
 
-// "a.vws:3:5", as findings have it.
+// "a.vws:3:5", as in diagnostics.
 [[nodiscard]] std::string text_of(const Place& place);
 
-// Nothing, and all findings with file:line:column, where anything is wrong. Any bytes are allowed as text.
+// Nothing, and all diagnostics with file:line:column, after any error. Any bytes are allowed as text.
 [[nodiscard]] std::optional<ViewFile> parse_views(std::string_view text, const std::string& file,
                                                   Diagnostics& diagnostics);
 // parse_views() of it gives the very same numbers again.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "rt_core/geometry/triangle_mesh.hpp"
-#include "rt_core/ports/mesh_look.hpp"
+#include "rt_core/ports/mesh_appearance.hpp"
 
 namespace cellmirror {
 
@@ -29,7 +29,7 @@ struct ScenePolygons {
   std::vector<geometry::TriangleIndices> triangles;
   // Appearance. By vertex, as in assimp (v upwards); empty if no mesh of the file has it.
   std::vector<Eigen::Vector2f> places;
-  std::vector<MeshLook::Rgba> colours;
+  std::vector<MeshAppearance::Rgba> colours;
   std::vector<std::uint16_t> materials;  // by triangle, index in `palette`; empty if the appearance is not requested
   std::vector<SceneMaterial> palette;
   std::vector<std::string> embedded;  // the bytes of the pictures that the mesh file holds itself

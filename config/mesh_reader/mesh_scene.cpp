@@ -100,15 +100,15 @@ class Collector {
       std::transform(places, places + mesh.mNumVertices, std::back_inserter(out_.places), place_of);
     }
     if (const aiColor4D* colours = mesh.mColors[0]; colours != nullptr) {
-      out_.colours.resize(known, MeshLook::Rgba{255, 255, 255, 255});
+      out_.colours.resize(known, MeshAppearance::Rgba{255, 255, 255, 255});
       std::transform(colours, colours + mesh.mNumVertices, std::back_inserter(out_.colours),
                      [this](const aiColor4D& given) {
                        const aiColor4D c = linear_ ? root_of(given) : given;
-                       return MeshLook::Rgba{byte_of(c.r), byte_of(c.g), byte_of(c.b), 255};
+                       return MeshAppearance::Rgba{byte_of(c.r), byte_of(c.g), byte_of(c.b), 255};
                      });
     }
     if (!out_.places.empty()) out_.places.resize(out_.vertices.size(), Eigen::Vector2f::Zero());
-    if (!out_.colours.empty()) out_.colours.resize(out_.vertices.size(), MeshLook::Rgba{255, 255, 255, 255});
+    if (!out_.colours.empty()) out_.colours.resize(out_.vertices.size(), MeshAppearance::Rgba{255, 255, 255, 255});
   }
 
   static bool picture_of(const aiMaterial& material, aiString& path, unsigned& channel) {

@@ -163,7 +163,7 @@ static inline int cellmirror_copy_section(const void* memory, size_t words, size
 
 /* 1: `force` is the gateway's answer. 0: the memory holds no block of this version, or the gateway was writing in every
  * try (or died doing so): treat it as "no force". `bytes`: of the memory (shmctl IPC_STAT). Look at force->time_ns:
- * whoever renders a force that is older than some milliseconds renders the past. */
+ * do not render a force that is older than some milliseconds. */
 static inline int cellmirror_read_force(const void* memory, size_t bytes, struct cellmirror_haptic_force* force) {
   if (bytes < CELLMIRROR_HAPTIC_BYTES) return 0;
   if (!cellmirror_copy_section(memory, sizeof *force / 8, CELLMIRROR_HAPTIC_OFFSET_FORCE_LOCK / 8, force)) return 0;

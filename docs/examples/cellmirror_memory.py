@@ -61,7 +61,7 @@ class Memory:
         _libc.shmdt(self._address)
 
     def removed(self):
-        """The gateway ended: whoever looks for the key now does not find this one."""
+        """The gateway ended: a look-up of the key no longer finds this memory."""
         return _libc.shmget(self._key, 0, 0) != self._id
 
     def read(self, begin, end, lock):

@@ -138,7 +138,7 @@
 
 /* Flags of a range. */
 #define CELLMIRROR_RANGE_SEEN 1u          /* something is in the cone */
-#define CELLMIRROR_RANGE_IN_BLIND_ZONE 2u /* so near that a real sensor could not tell */
+#define CELLMIRROR_RANGE_IN_BLIND_ZONE 2u /* nearer than a real sensor can measure */
 #define CELLMIRROR_RANGE_DOUBTFUL 4u      /* something nearer may be there */
 
 /* Flags of a camera. */

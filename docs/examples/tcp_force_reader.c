@@ -24,7 +24,7 @@ static const char* const kUsage =
     "Prints the force at the TCP as it changes: N times (default: without end), waiting at most SECONDS for a "
     "change.\n";
 
-/* 1 kHz is enough for whoever only looks. */
+/* 1 kHz is enough for monitoring. */
 static void pause_a_little(void) {
   const struct timespec millisecond = {0, 1000000};
   nanosleep(&millisecond, NULL);

@@ -29,14 +29,14 @@ class SwitchEdges {
   void look(std::span<const std::uint8_t> bytes, Timestamp now, std::vector<SwitchEdge>& edges);
   [[nodiscard]] std::uint64_t bounces() const { return bounces_; }
   // Last reported states; bit 0 of the first byte is input 1.
-  [[nodiscard]] std::span<const std::uint8_t> told() const { return told_; }
+  [[nodiscard]] std::span<const std::uint8_t> reported() const { return reported_; }
 
  private:
-  void look_at_input(std::size_t byte, unsigned bit, bool raw, Timestamp now, std::vector<SwitchEdge>& edges);
-  void tell(std::size_t byte, unsigned bit, bool on, Timestamp time, std::vector<SwitchEdge>& edges);
+  void read_input(std::size_t byte, unsigned bit, bool raw, Timestamp now, std::vector<SwitchEdge>& edges);
+  void report(std::size_t byte, unsigned bit, bool on, Timestamp time, std::vector<SwitchEdge>& edges);
 
   std::vector<std::uint8_t> seen_;      // as of the last reading
-  std::vector<std::uint8_t> told_;      // what counts
+  std::vector<std::uint8_t> reported_;  // what counts
   std::vector<std::uint8_t> settling_;  // changed within the last `debounce`
   std::vector<Timestamp> changed_at_;   // of each input
   Nanoseconds debounce_;

@@ -84,8 +84,8 @@ void SwitchReader::look(Timestamp now) {
   bounces_.store(edges_.bounces(), std::memory_order_relaxed);
   if (found_.empty() && !first) return;
   for (const SwitchEdge& edge : found_) queue_.push(edge);
-  std::copy_n(edges_.told().begin(), memory_.size(), told_.writable().begin());  // the rest is 0 for ever
-  told_.publish();
+  std::copy_n(edges_.reported().begin(), memory_.size(), reported_.writable().begin());  // the rest is 0 for ever
+  reported_.publish();
   if (!found_.empty() && options_.wake) options_.wake();
 }
 
@@ -96,9 +96,9 @@ SwitchReader::Counters SwitchReader::counters() const {
 
 std::vector<std::uint32_t> SwitchReader::inputs_on(std::size_t most) {
   std::vector<std::uint32_t> inputs;
-  const Inputs& told = told_.read().value;
+  const Inputs& reported = reported_.read().value;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
-    const std::uint8_t byte = told[i];
+    const std::uint8_t byte = reported[i];
     for (std::size_t bit = 0; bit < kBits && inputs.size() < most; ++bit) {
       if (((byte >> bit) & 1U) != 0) inputs.push_back(static_cast<std::uint32_t>(i * kBits + bit + 1));
     }

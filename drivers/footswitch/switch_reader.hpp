@@ -65,7 +65,7 @@ class SwitchReader {
   std::vector<std::uint8_t> copy_;
   std::vector<SwitchEdge> found_;
   Fifo<SwitchEdge, kEdgeQueue> queue_;
-  Latest<Inputs> told_;
+  Latest<Inputs> reported_;
   std::atomic<std::uint64_t> looks_{0};
   std::atomic<std::uint64_t> bounces_{0};
   std::unique_ptr<Thread> thread_;  // last: ends before what it uses

@@ -20,9 +20,9 @@
 namespace cellmirror {
 namespace {
 
-class Inquiry {
+class RequestExchange {
  public:
-  Inquiry(std::string_view who, Nanoseconds timeout)
+  RequestExchange(std::string_view who, Nanoseconds timeout)
       : who_(who), timeout_(timeout), deadline_(SystemClock().now() + timeout) {}
 
   Result<std::string> run(const std::filesystem::path& path, std::string line) {
@@ -136,7 +136,7 @@ Result<std::string> control_request(std::string_view instance, std::string_view 
 
 Result<std::string> control_request_at(const std::filesystem::path& socket, std::string_view who,
                                        std::string_view request, Nanoseconds timeout) {
-  return Inquiry(who, timeout).run(socket, std::string(request));
+  return RequestExchange(who, timeout).run(socket, std::string(request));
 }
 
 }  // namespace cellmirror

@@ -51,9 +51,9 @@ std::string answer_of(const ControlServer::Handler& handler, std::string_view re
 }  // namespace
 
 // Outlives the server as long as an answer is pending.
-class ControlReply::Desk {
+class ControlReply::Answers {
  public:
-  Desk() : wake_up_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+  Answers() : wake_up_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
 
   void hand_in(std::uint64_t client, std::string text) {
     {
@@ -82,18 +82,19 @@ class ControlReply::Desk {
   std::vector<std::pair<std::uint64_t, std::string>> answers_;
 };
 
-ControlReply::ControlReply(std::shared_ptr<Desk> desk, std::uint64_t client)
-    : desk_(std::move(desk)), client_(client) {}
+ControlReply::ControlReply(std::shared_ptr<Answers> answers, std::uint64_t client)
+    : answers_(std::move(answers)), client_(client) {}
 
-ControlReply::ControlReply(ControlReply&& other) noexcept : desk_(std::move(other.desk_)), client_(other.client_) {}
+ControlReply::ControlReply(ControlReply&& other) noexcept
+    : answers_(std::move(other.answers_)), client_(other.client_) {}
 
 ControlReply::~ControlReply() {
-  if (desk_) (*this)(control_error({"the request was not answered", "ask again"}));
+  if (answers_) (*this)(control_error({"the request was not answered", "ask again"}));
 }
 
 void ControlReply::operator()(std::string text) {
-  const auto desk = std::exchange(desk_, nullptr);
-  if (desk) desk->hand_in(client_, std::move(text));
+  const auto answers = std::exchange(answers_, nullptr);
+  if (answers) answers->hand_in(client_, std::move(text));
 }
 
 struct ControlServer::Impl {
@@ -109,7 +110,7 @@ struct ControlServer::Impl {
   LaterHandler handler;
   Nanoseconds client_timeout{0};
   Descriptor listener;
-  std::shared_ptr<ControlReply::Desk> desk = std::make_shared<ControlReply::Desk>();
+  std::shared_ptr<ControlReply::Answers> answers = std::make_shared<ControlReply::Answers>();
   std::vector<Client> connections;
   std::uint64_t clients = 0;  // so far
   std::thread thread;
@@ -124,7 +125,7 @@ struct ControlServer::Impl {
   // False: the connection is over.
   bool go_on(Client& client, short events);
   bool respond(Client& client, std::string text);
-  void hand_over(Client& client);
+  void take_answer(Client& client);
   void hand_out();
   [[nodiscard]] int poll_timeout_ms() const;
   void cut_off_late();
@@ -138,7 +139,7 @@ Result<void> ControlServer::Impl::listen() {
   const auto failed = [&] {
     return fail(fmt::format("cannot listen at {}: {}", path.native(), system_error_text(errno)));
   };
-  if (!listener.valid() || !desk->wake_up().valid()) return failed();
+  if (!listener.valid() || !answers->wake_up().valid()) return failed();
   ::unlink(path.c_str());
   if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) return failed();
   // The folder excludes other users; the mode is a second barrier.
@@ -152,7 +153,7 @@ void ControlServer::Impl::serve() {
   std::vector<pollfd> polled;
   while (!stopping.load(std::memory_order_acquire)) {
     polled.clear();
-    polled.push_back({desk->wake_up().get(), POLLIN, 0});
+    polled.push_back({answers->wake_up().get(), POLLIN, 0});
     polled.push_back({listener.get(), POLLIN, 0});
     for (const Client& client : connections) {
       const int events = client.asked ? 0 : client.connection.answering() ? POLLOUT : POLLIN;
@@ -193,7 +194,7 @@ void ControlServer::Impl::accept_one() {
 bool ControlServer::Impl::go_on(Client& client, short events) {
   if (events == 0) return true;
   ControlConnection& connection = client.connection;
-  if (client.asked) {  // it has hung up
+  if (client.asked) {  // it has disconnected
     cut.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
@@ -207,7 +208,7 @@ bool ControlServer::Impl::go_on(Client& client, short events) {
     case Progress::waiting:
       return true;
     case Progress::request_complete:
-      hand_over(client);
+      take_answer(client);
       return true;
     case Progress::too_long:
       refused.fetch_add(1, std::memory_order_relaxed);
@@ -228,11 +229,11 @@ bool ControlServer::Impl::respond(Client& client, std::string text) {
   return client.connection.write_some() == Progress::waiting;
 }
 
-void ControlServer::Impl::hand_over(Client& client) {
+void ControlServer::Impl::take_answer(Client& client) {
   client.asked = true;
   client.deadline = now() + kLongestAnswer;
   try {
-    handler(client.connection.request(), ControlReply(desk, client.number));
+    handler(client.connection.request(), ControlReply(answers, client.number));
   } catch (const std::exception& error) {  // the released reply has informed the client
     log_error("ipc.control-request", "{}", error.what());
   }
@@ -240,7 +241,7 @@ void ControlServer::Impl::hand_over(Client& client) {
 
 // Of a client that was answered twice the first answer counts; one that has gone gets none.
 void ControlServer::Impl::hand_out() {
-  for (auto& [number, text] : desk->collect()) {
+  for (auto& [number, text] : answers->collect()) {
     const auto found = std::ranges::find_if(
         connections, [wanted = number](const Client& client) { return client.number == wanted && client.asked; });
     if (found == connections.end()) continue;
@@ -306,7 +307,7 @@ ControlServer::ControlServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)
 
 ControlServer::~ControlServer() {
   impl_->stopping.store(true, std::memory_order_release);
-  impl_->desk->wake();
+  impl_->answers->wake();
   impl_->thread.join();
   ::unlink(impl_->path.c_str());
 }

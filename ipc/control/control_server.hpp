@@ -22,15 +22,15 @@ inline constexpr std::size_t kMaxControlReplyBytes = std::size_t{16} * 1024 * 10
 // Released without an answer it is answered as failed.
 class ControlReply {
  public:
-  class Desk;  // receives answers
-  ControlReply(std::shared_ptr<Desk> desk, std::uint64_t client);
+  class Answers;  // receives answers
+  ControlReply(std::shared_ptr<Answers> answers, std::uint64_t client);
   ~ControlReply();
   ControlReply(ControlReply&& other) noexcept;
   ControlReply& operator=(ControlReply&&) = delete;
   void operator()(std::string text);
 
  private:
-  std::shared_ptr<Desk> desk_;  // null: answered
+  std::shared_ptr<Answers> answers_;  // null: answered
   std::uint64_t client_;
 };
 

@@ -73,8 +73,8 @@ Result<void> KeyLock::confirm() {
   return {};
 }
 
-bool KeyLock::held_by_anybody(std::int32_t key) {
-  if (KeySemaphore::held_by_anybody(key)) return true;
+bool KeyLock::is_held(std::int32_t key) {
+  if (KeySemaphore::is_held(key)) return true;
   const auto runtime = runtime_folder_for_client();
   return runtime && lock_holder(lock_path(*runtime, key)).has_value();
 }

@@ -28,7 +28,7 @@ class KeyLock {
   [[nodiscard]] std::int32_t key() const { return key_; }
 
   // Whether any process holds the key, as far as visible to this user.
-  [[nodiscard]] static bool held_by_anybody(std::int32_t key);
+  [[nodiscard]] static bool is_held(std::int32_t key);
 
  private:
   KeyLock(LockFile file, KeySemaphore semaphore, std::int32_t key, std::string instance)

@@ -88,7 +88,7 @@ void KeySemaphore::release() {
   if (id_ >= 0) ::semctl(std::exchange(id_, -1), 0, IPC_RMID);
 }
 
-bool KeySemaphore::held_by_anybody(std::int32_t key) {
+bool KeySemaphore::is_held(std::int32_t key) {
   const int id = ::semget(key, 1, 0400);
   return id >= 0 && ::semctl(id, 0, GETVAL) > 0;
 }

@@ -25,7 +25,7 @@ class KeySemaphore {
   void release();
 
   // Whether any process holds it, as far as visible to this user.
-  [[nodiscard]] static bool held_by_anybody(std::int32_t key);
+  [[nodiscard]] static bool is_held(std::int32_t key);
 
  private:
   explicit KeySemaphore(int id) : id_(id) {}

@@ -173,7 +173,7 @@ class Exchange {
 
   // A gateway that was killed leaves its queue behind.
   [[nodiscard]] std::string holder_text() const {
-    return KeyLock::held_by_anybody(queues_.script_key) ? "" : " (no gateway of this user holds the queue)";
+    return KeyLock::is_held(queues_.script_key) ? "" : " (no gateway of this user holds the queue)";
   }
 
   QueueConfig queues_;

@@ -1,4 +1,4 @@
-// Findings in input text (SCRIPT, cell files, URDF, DBC, ...), collected so that one pass shows them all.
+// Diagnostics of input text (SCRIPT, cell files, URDF, DBC, ...), collected so that one pass shows all.
 #pragma once
 
 #include <cstddef>

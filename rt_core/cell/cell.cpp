@@ -24,7 +24,7 @@ bool Cell::State::visible(NodeId id) const {
   return true;
 }
 
-bool Cell::State::hangs_on(NodeId node, NodeId above) const {
+bool Cell::State::is_below(NodeId node, NodeId above) const {
   for (NodeId up = node; up != kNoNode; up = at(up).predecessor) {
     if (up == above) return true;
   }
@@ -94,10 +94,10 @@ std::optional<Cell> Cell::build(std::shared_ptr<const Component> root, std::shar
   state->nodes.emplace_back(std::move(node));
   state->node_count = 1;
   CellBuilder builder(*state, diagnostics);
-  const auto graft = builder.plan_root();
-  if (!graft) return std::nullopt;
+  const auto pending = builder.plan_root();
+  if (!pending) return std::nullopt;
   // Predecessors are checked even after other errors, so that one pass reports all.
-  builder.commit(kRootNode, *graft);
+  builder.commit(kRootNode, *pending);
   builder.connect_predecessors();
   if (!diagnostics.ok()) return std::nullopt;
   return Cell(std::move(state));

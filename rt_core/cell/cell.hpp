@@ -28,7 +28,7 @@ namespace cellmirror {
 class Cell {
  public:
   // The cell that `root` (the cell file) describes, with every component that is to be loaded at the start. Nothing,
-  // and all findings in `diagnostics`, where something is wrong.
+  // and all errors in `diagnostics`.
   static std::optional<Cell> build(std::shared_ptr<const Component> root, std::shared_ptr<ComponentSource> source,
                                    Diagnostics& diagnostics);
   Cell(Cell&&) noexcept;

@@ -35,7 +35,7 @@ CellBuilder::CellBuilder(Cell::State& state, Diagnostics& diagnostics)
   }
 }
 
-std::unique_ptr<Graft> CellBuilder::plan(NodeId node) {
+std::unique_ptr<PendingComponent> CellBuilder::plan(NodeId node) {
   const Node& at = state_.at(node);
   CELLMIRROR_EXPECTS(at.has_abstract());
   files_above_.clear();
@@ -43,22 +43,22 @@ std::unique_ptr<Graft> CellBuilder::plan(NodeId node) {
     const auto& content = state_.at(above).content;
     if (content) files_above_.push_back(content->file);
   }
-  auto graft = plan_file(*at.definition->abstract, at.declared_in->place(*at.definition));
-  if (!graft) return nullptr;
-  for (const ComponentNode& below : graft->component->nodes) {
+  auto pending = plan_file(*at.definition->abstract, at.declared_in->place(*at.definition));
+  if (!pending) return nullptr;
+  for (const ComponentNode& below : pending->component->nodes) {
     if (below.parent == -1 && state_.names.child(node, below.name) != kNoNode) {
-      diagnostics_.error(graft->component->place(below),
+      diagnostics_.error(pending->component->place(below),
                          fmt::format("{} already has a node {}", state_.names.path(node), below.name));
     }
   }
-  return diagnostics_.ok() ? std::move(graft) : nullptr;
+  return diagnostics_.ok() ? std::move(pending) : nullptr;
 }
 
-std::unique_ptr<Graft> CellBuilder::plan_root() {
+std::unique_ptr<PendingComponent> CellBuilder::plan_root() {
   return plan_component(state_.root, nullptr, {state_.root->file, 0, 0});
 }
 
-std::unique_ptr<Graft> CellBuilder::plan_file(const AbstractReference& reference, const Place& place) {
+std::unique_ptr<PendingComponent> CellBuilder::plan_file(const AbstractReference& reference, const Place& place) {
   auto component = state_.source->component_for(reference);
   if (!component) {
     // The loader of the cell file has reported it already when it read the file.
@@ -77,8 +77,8 @@ std::unique_ptr<Graft> CellBuilder::plan_file(const AbstractReference& reference
   return plan_component(*component, &reference, place);
 }
 
-std::unique_ptr<Graft> CellBuilder::plan_component(const std::shared_ptr<const Component>& component,
-                                                   const AbstractReference* reference, const Place& place) {
+std::unique_ptr<PendingComponent> CellBuilder::plan_component(const std::shared_ptr<const Component>& component,
+                                                              const AbstractReference* reference, const Place& place) {
   nodes_planned_ += component->nodes.size();
   if (nodes_planned_ > kMaxNodes) {
     diagnostics_.error(place, fmt::format("the cell would have more than {} nodes", kMaxNodes),
@@ -86,23 +86,23 @@ std::unique_ptr<Graft> CellBuilder::plan_component(const std::shared_ptr<const C
     return nullptr;
   }
   plan_robot(*component, reference, place);
-  auto graft = std::make_unique<Graft>();
-  graft->component = component;
-  graft->reference = reference;
+  auto pending = std::make_unique<PendingComponent>();
+  pending->component = component;
+  pending->reference = reference;
   files_above_.push_back(component->file);
   for (std::size_t i = 0; i < component->nodes.size(); ++i) {
     const ComponentNode& node = component->nodes[i];
     if (!node.abstract || !node.abstract->loaded) continue;
     if (auto below = plan_file(*node.abstract, component->place(node))) {
       check_names_below(*component, i, *below->component);
-      graft->nested.emplace_back(i, std::move(below));
+      pending->nested.emplace_back(i, std::move(below));
     } else {
       incomplete_ = true;
     }
     if (nodes_planned_ > kMaxNodes) break;
   }
   files_above_.pop_back();
-  return graft;
+  return pending;
 }
 
 void CellBuilder::check_names_below(const Component& component, std::size_t node, const Component& below) {
@@ -150,16 +150,16 @@ void CellBuilder::plan_robot(const Component& component, const AbstractReference
   robots_planned_.push_back(id);
 }
 
-void CellBuilder::commit(NodeId at, const Graft& graft) {
-  state_.at(at).content = graft.component;
+void CellBuilder::commit(NodeId at, const PendingComponent& pending) {
+  state_.at(at).content = pending.component;
   std::vector<NodeId> ids;
-  ids.reserve(graft.component->nodes.size());
-  for (const ComponentNode& definition : graft.component->nodes) {
+  ids.reserve(pending.component->nodes.size());
+  for (const ComponentNode& definition : pending.component->nodes) {
     const NodeId parent = definition.parent < 0 ? at : ids[static_cast<std::size_t>(definition.parent)];
-    ids.push_back(add_node(parent, graft.component, definition));
+    ids.push_back(add_node(parent, pending.component, definition));
   }
-  if (graft.component->robot && diagnostics_.ok()) add_robot(at, graft, ids);
-  for (const auto& [index, nested] : graft.nested) commit(ids[index], *nested);
+  if (pending.component->robot && diagnostics_.ok()) add_robot(at, pending, ids);
+  for (const auto& [index, nested] : pending.nested) commit(ids[index], *nested);
   state_.changed_structure();
 }
 
@@ -206,23 +206,23 @@ std::size_t CellBuilder::take_slot(const std::string& id) {
   return slot;
 }
 
-void CellBuilder::add_robot(NodeId at, const Graft& graft, const std::vector<NodeId>& ids) {
-  const Component& component = *graft.component;
+void CellBuilder::add_robot(NodeId at, const PendingComponent& pending, const std::vector<NodeId>& ids) {
+  const Component& component = *pending.component;
   const RobotDefinition& definition = *component.robot;
   const auto id_at = [&](int index) { return index < 0 ? at : ids[static_cast<std::size_t>(index)]; };
-  const bool renamed = graft.reference != nullptr && !graft.reference->robot_id.empty();
-  const std::string& name = renamed ? graft.reference->robot_id : definition.id;
+  const bool renamed = pending.reference != nullptr && !pending.reference->robot_id.empty();
+  const std::string& name = renamed ? pending.reference->robot_id : definition.id;
   auto robot = std::make_unique<RobotModel>(name, take_slot(name), definition.parameters);
   robot->component_ = at;
   robot->base_ = id_at(definition.base);
   robot->zero_point_ = id_at(definition.zero_point);
   robot->flange_ = id_at(definition.flange);
-  if (graft.reference != nullptr && !graft.reference->robot_base.empty()) {
-    robot->base_ = id_at(node_named(component, graft.reference->robot_base));
+  if (pending.reference != nullptr && !pending.reference->robot_base.empty()) {
+    robot->base_ = id_at(node_named(component, pending.reference->robot_base));
     robot->zero_point_ = robot->base_;
   }
-  if (graft.reference != nullptr && !graft.reference->robot_flange.empty())
-    robot->flange_ = id_at(node_named(component, graft.reference->robot_flange));
+  if (pending.reference != nullptr && !pending.reference->robot_flange.empty())
+    robot->flange_ = id_at(node_named(component, pending.reference->robot_flange));
   CELLMIRROR_EXPECTS(definition.joints.size() <= kMaxJointsPerRobot);
   for (const int index : definition.joints) {
     const ComponentNode& node = component.nodes[static_cast<std::size_t>(index)];
@@ -266,7 +266,7 @@ void CellBuilder::connect_predecessors() {
       diagnostics_.error(place, predecessor.error().what, predecessor.error().remedy);
       continue;
     }
-    if (state_.hangs_on(*predecessor, id)) {
+    if (state_.is_below(*predecessor, id)) {
       diagnostics_.error(place, fmt::format("{} would be its own ancestor: its predecessor {} is below it", node.name,
                                             node.definition->predecessor));
       continue;

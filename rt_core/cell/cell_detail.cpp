@@ -52,7 +52,7 @@ struct DetailLevels {
 
   // Shows these nodes in detail; loads what is not in memory. All or nothing.
   Result<void> show_in_detail(const std::vector<NodeId>& ids) {
-    std::vector<std::pair<NodeId, std::unique_ptr<Graft>>> plans;
+    std::vector<std::pair<NodeId, std::unique_ptr<PendingComponent>>> plans;
     Diagnostics diagnostics;
     CellBuilder builder(state, diagnostics);
     for (const NodeId id : ids) {

@@ -28,7 +28,7 @@ Result<void> check_connection(const Cell::State& state, NodeId part, NodeId pred
                 fmt::format("SWAP_NODE {} first", name));
   }
   if (part == predecessor) return fail(fmt::format("{} cannot be its own predecessor", name));
-  if (state.hangs_on(predecessor, part)) {
+  if (state.is_below(predecessor, part)) {
     return fail(
         fmt::format("{} is attached to {} and cannot become its predecessor", state.names.path(predecessor), name));
   }

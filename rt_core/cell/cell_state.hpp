@@ -61,7 +61,7 @@ struct Cell::State {
   }
 
   // `above` is `node` or an ancestor of it, by predecessors or by names.
-  [[nodiscard]] bool hangs_on(NodeId node, NodeId above) const;
+  [[nodiscard]] bool is_below(NodeId node, NodeId above) const;
   [[nodiscard]] bool named_within(NodeId node, NodeId above) const;
   // The robot to whose mechanism the node belongs: its base, joints, flange, ZP frame and what lies between; null:
   // none.

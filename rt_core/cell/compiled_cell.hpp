@@ -73,7 +73,7 @@ struct CompiledInertia {
 // Arrays are indexed by node. Parents come before their children; nodes that no joint can move come first.
 struct CompiledCell {
   std::uint64_t revision = 0;
-  std::string name = "world";        // of the cell, and so of its own geometry in findings: the world has no path
+  std::string name = "world";        // of the cell, and so of its own geometry in results: the world has no path
   std::vector<std::int32_t> parent;  // kinematic predecessor; -1 for the world (index 0)
   std::vector<std::int32_t> naming_parent;
   std::vector<Pose> X_PF;              // pose in the predecessor, at joint position zero

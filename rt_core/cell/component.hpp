@@ -134,7 +134,7 @@ struct RobotDefinition {
 struct Component {
   std::string file;  // for messages, and to notice that a component would contain itself
   std::string description;
-  std::string name = {};           // of a cell file: the cell's; also that of its own geometry in findings
+  std::string name = {};           // of a cell file: the cell's; also that of its own geometry in results
   std::vector<Geometry> geometry;  // of the component's root
   BodyInertia inertia;             // of the component's root
   std::vector<ComponentNode> nodes;

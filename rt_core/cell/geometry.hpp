@@ -14,7 +14,7 @@
 
 namespace cellmirror {
 
-struct MeshLook;
+struct MeshAppearance;
 
 // Substitute for a mesh in collision tests and ranging. Others than `exact` are used only if the cell or component file
 // selects them.
@@ -34,7 +34,7 @@ struct Geometry {
   // Shape mesh: the file's triangles, scaled, in frame G; shared by all that use the file with the same scale. Null
   // only where the geometry was made without reading files (tests).
   std::shared_ptr<const geometry::TriangleMesh> mesh;
-  std::shared_ptr<const MeshLook> look;  // its pictures and colours, for drawing alone; null where it has none
+  std::shared_ptr<const MeshAppearance> look;  // its pictures and colours, for drawing alone; null where it has none
   CollideAs collide_as = CollideAs::exact;
   std::vector<std::shared_ptr<const geometry::TriangleMesh>> pieces;  // convex; for `hull` (one) and `parts`
   Pose X_NG = Pose::Identity();                                       // pose in the node

@@ -57,12 +57,12 @@ struct Checker::State {
   ProximityState findings;
   CheckCounters counters;
 
-  void judge(const Found& found, const geometry::Contact* contact, bool its_turn, const CellPoses& poses);
+  void classify(const Found& found, const geometry::Contact* contact, bool its_turn, const CellPoses& poses);
   void ask(const Found& found, const geometry::Contact* contact, PairHistory& pair, const CellPoses& poses);
   void change_zone(const Found& found, PairHistory& pair, Zone zone);
-  void tell(ProximityChange change, const Found& found);
-  void tell_touching(const Found& found, const geometry::Contact* contact, bool doubtful);
-  void tell_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later, Nanoseconds ahead);
+  void add_event(ProximityChange change, const Found& found);
+  void add_touching(const Found& found, const geometry::Contact* contact, bool doubtful);
+  void add_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later, Nanoseconds ahead);
   void doubt(std::string text);
   void choose_stale_contacts(const std::vector<Found>& found);
   // Null: they do not touch, or there is no telling.
@@ -139,7 +139,7 @@ void Checker::State::ask(const Found& found, const geometry::Contact* contact, P
   if (pair.disputed) ++counters.disagreements;
 }
 
-void Checker::State::tell(ProximityChange change, const Found& found) {
+void Checker::State::add_event(ProximityChange change, const Found& found) {
   const auto& pair = search.tracker().pairs()[found.pair];
   findings.events.push_back({next_event++, change, name(pair.a), name(pair.b), found.at.distance, findings.posture_time,
                              short_name(pair.a), short_name(pair.b)});
@@ -147,16 +147,16 @@ void Checker::State::tell(ProximityChange change, const Found& found) {
 
 // Events nest: a pair that jumps from far to touching has entered the warning distance as well.
 void Checker::State::change_zone(const Found& found, PairHistory& pair, Zone zone) {
-  if (pair.zone == Zone::touching && zone != Zone::touching) tell(ProximityChange::parted, found);
-  if (pair.zone != Zone::far && zone == Zone::far) tell(ProximityChange::left_warning, found);
-  if (pair.zone == Zone::far && zone != Zone::far) tell(ProximityChange::entered_warning, found);
-  if (pair.zone != Zone::touching && zone == Zone::touching) tell(ProximityChange::touched, found);
+  if (pair.zone == Zone::touching && zone != Zone::touching) add_event(ProximityChange::parted, found);
+  if (pair.zone != Zone::far && zone == Zone::far) add_event(ProximityChange::left_warning, found);
+  if (pair.zone == Zone::far && zone != Zone::far) add_event(ProximityChange::entered_warning, found);
+  if (pair.zone != Zone::touching && zone == Zone::touching) add_event(ProximityChange::touched, found);
   pair.zone = zone;
   watched[found.pair] = zone == Zone::far ? 0 : 1;
 }
 
-void Checker::State::judge(const Found& found, const geometry::Contact* contact, bool its_turn,
-                           const CellPoses& poses) {
+void Checker::State::classify(const Found& found, const geometry::Contact* contact, bool its_turn,
+                              const CellPoses& poses) {
   PairHistory& pair = history[found.pair];
   const bool settled = found.usable && found.at.plausible;
   const bool touching = !settled || found.at.distance <= geometry::kTouchDistance;
@@ -181,7 +181,7 @@ void Checker::State::judge(const Found& found, const geometry::Contact* contact,
   change_zone(found, pair, taken_as_touching ? Zone::touching : within ? Zone::warning : Zone::far);
 }
 
-void Checker::State::tell_touching(const Found& found, const geometry::Contact* contact, bool doubtful) {
+void Checker::State::add_touching(const Found& found, const geometry::Contact* contact, bool doubtful) {
   const auto& pair = search.tracker().pairs()[found.pair];
   TouchingPair& touching = findings.touching.emplace_back();
   touching.a = pair.a;
@@ -197,8 +197,8 @@ void Checker::State::tell_touching(const Found& found, const geometry::Contact* 
   for (const auto& point : contact->points) touching.points.push_back({point.p_W, point.normal, point.depth});
 }
 
-void Checker::State::tell_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later,
-                               Nanoseconds ahead) {
+void Checker::State::add_near(const Found& found, bool doubtful, const CellPoses& poses, const CellPoses* later,
+                              Nanoseconds ahead) {
   const auto& pair = search.tracker().pairs()[found.pair];
   const bool touching = history[found.pair].zone == Zone::touching;
   NearPair& near = findings.near.emplace_back();
@@ -281,12 +281,12 @@ const ProximityState& Checker::check(const CellPoses& poses, Timestamp posture_t
     state.disputes_left = kMostDisputes;
     state.choose_stale_contacts(found);
     const std::size_t turn = found.empty() ? 0 : state.round_robin++ % found.size();
-    for (std::size_t i = 0; i < found.size(); ++i) state.judge(found[i], state.contact(found[i]), i == turn, poses);
+    for (std::size_t i = 0; i < found.size(); ++i) state.classify(found[i], state.contact(found[i]), i == turn, poses);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const PairHistory& pair = state.history[found[i].pair];
       const bool doubtful = pair.disputed || !found[i].usable || !found[i].at.plausible;
-      if (pair.zone == Zone::touching) state.tell_touching(found[i], state.contact(found[i]), doubtful);
-      state.tell_near(found[i], doubtful, poses, later, ahead);
+      if (pair.zone == Zone::touching) state.add_touching(found[i], state.contact(found[i]), doubtful);
+      state.add_near(found[i], doubtful, poses, later, ahead);
     }
     std::ranges::sort(findings.near, {},
                       [](const NearPair& near) { return std::tuple(near.distance_m, near.a, near.b); });

@@ -15,8 +15,8 @@
 
 namespace cellmirror::collision {
 
-// Findings by what decides about them: the relative motion and the shapes, bit by bit. The shapes are kept alive, so
-// that no other one gets the address of one that is known.
+// Results keyed by the relative motion and the shapes, bit by bit. The shapes are kept alive, so that no other one gets
+// the address of one that is known.
 struct PairDerivation::Memory {
   struct Entry {
     SampledFinding finding;
@@ -54,9 +54,9 @@ std::string always_text(const SampledFinding& finding) {
 }
 
 // Some postures of the whole cell, to see cheaply which pairs cannot be touching always.
-class Glance {
+class ProximityTest {
  public:
-  Glance(const CompiledCell& cell, const std::vector<Body>& bodies) {
+  ProximityTest(const CompiledCell& cell, const std::vector<Body>& bodies) {
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       const double fraction = 0.2 + 0.2 * static_cast<double>(i);
       std::vector<JointValues> q(kMaxRobots);
@@ -98,18 +98,19 @@ class Glance {
 }  // namespace
 
 // One run of derive().
-class PairJudge {
+class PairClassifier {
  public:
-  PairJudge(const CompiledCell& cell, const Settings& settings, const PairTable& table, PairDerivation::Memory& memory)
+  PairClassifier(const CompiledCell& cell, const Settings& settings, const PairTable& table,
+                 PairDerivation::Memory& memory)
       : cell_(cell),
         table_(table),
         memory_(memory),
         mechanism_(cell),
         rules_(settings.rules, table),
-        glance_(cell, table.bodies) {}
+        proximity_test_(cell, table.bodies) {}
 
   // Nothing: rigid.
-  std::optional<Pair> judge(std::uint32_t a, std::uint32_t b) {
+  std::optional<Pair> classifier(std::uint32_t a, std::uint32_t b) {
     const std::int32_t node_a = table_.bodies[a].node;
     const std::int32_t node_b = table_.bodies[b].node;
     if (mechanism_.rigid(node_a, node_b)) return std::nullopt;
@@ -128,7 +129,7 @@ class PairJudge {
                                 (*cell_.paths)[static_cast<std::size_t>(joint)]);
       return pair;
     }
-    if (one_robot || glance_.may_touch_always(a, b)) decide_by_sampling(pair, one_robot);
+    if (one_robot || proximity_test_.may_touch_always(a, b)) decide_by_sampling(pair, one_robot);
     return pair;
   }
 
@@ -165,7 +166,7 @@ class PairJudge {
   PairDerivation::Memory& memory_;
   Mechanism mechanism_;
   RuleFinder rules_;
-  Glance glance_;
+  ProximityTest proximity_test_;
 };
 
 PairDerivation::PairDerivation(std::shared_ptr<geometry::SolidLibrary> solids)
@@ -188,11 +189,11 @@ std::shared_ptr<const PairTable> PairDerivation::derive(const CompiledCell& cell
   }
   table->names = std::move(names);
   table->short_names = std::make_shared<const std::vector<std::string>>(short_body_names(cell, nodes));
-  PairJudge judge(cell, settings, *table, *memory_);
+  PairClassifier classifier(cell, settings, *table, *memory_);
   const auto count = static_cast<std::uint32_t>(table->bodies.size());
   for (std::uint32_t a = 0; a < count; ++a) {
     for (std::uint32_t b = a + 1; b < count; ++b) {
-      auto pair = judge.judge(a, b);
+      auto pair = classifier.classifier(a, b);
       if (pair)
         table->pairs.push_back(std::move(*pair));
       else

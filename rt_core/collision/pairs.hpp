@@ -71,7 +71,7 @@ class PairDerivation {
   [[nodiscard]] std::shared_ptr<const PairTable> derive(const CompiledCell& cell, const Settings& settings);
 
  private:
-  friend class PairJudge;
+  friend class PairClassifier;
   struct Memory;
   std::shared_ptr<geometry::SolidLibrary> solids_;
   std::unique_ptr<Memory> memory_;

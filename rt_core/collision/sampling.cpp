@@ -14,7 +14,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Not std::uniform_real_distribution, whose numbers differ from one standard library to another.
-class Dice {
+class RandomSource {
  public:
   double fraction() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
 
@@ -56,7 +56,7 @@ class Sampler {
   void anywhere() {
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const SampledRange& range = motion_.variables[i];
-      const double fraction = std::clamp(1.2 * dice_.fraction() - 0.1, 0.0, 1.0);
+      const double fraction = std::clamp(1.2 * random_.fraction() - 0.1, 0.0, 1.0);
       values_[i] = range.lower + fraction * (range.upper - range.lower);
     }
   }
@@ -64,7 +64,7 @@ class Sampler {
   void around_nearest(double width) {
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const SampledRange& range = motion_.variables[i];
-      const double step = width * (2.0 * dice_.fraction() - 1.0) * (range.upper - range.lower);
+      const double step = width * (2.0 * random_.fraction() - 1.0) * (range.upper - range.lower);
       values_[i] = std::clamp(nearest_[i] + step, range.lower, range.upper);
     }
   }
@@ -80,7 +80,7 @@ class Sampler {
 
   const RelativeMotion& motion_;
   BodyProximity proximity_;
-  Dice dice_;
+  RandomSource random_;
   std::vector<double> values_;
   std::vector<double> nearest_;
   double least_ = kInfinity;

@@ -152,7 +152,7 @@ void PairQuery::consider(const Piece& instrument, const Piece& obstacle, const T
     return;
   }
   const Vector3d d = between / distance;
-  const ObstaclePlace place = look_at_obstacle(obstacle, touch, d, distance);
+  const ObstaclePlace place = query_obstacle(obstacle, touch, d, distance);
   if (place.behind) return;
   const bool nearest_i = nearest_on_instrument(instrument, touch, d);
   Candidate found;
@@ -171,8 +171,8 @@ void PairQuery::consider(const Piece& instrument, const Piece& obstacle, const T
   }
 }
 
-PairQuery::ObstaclePlace PairQuery::look_at_obstacle(const Piece& obstacle, const Touch& touch, const Vector3d& d,
-                                                     double distance) {
+PairQuery::ObstaclePlace PairQuery::query_obstacle(const Piece& obstacle, const Touch& touch, const Vector3d& d,
+                                                   double distance) {
   ObstaclePlace out;
   out.normal = d;
   out.nearest = true;

@@ -61,8 +61,8 @@ class PairQuery {
   void mesh_near_primitive(const Piece& instrument, const Piece& obstacle);  // whichever of them is the mesh
   void mesh_near_mesh(const Piece& instrument, const Piece& obstacle);
   void consider(const Piece& instrument, const Piece& obstacle, const Touch& touch);
-  [[nodiscard]] ObstaclePlace look_at_obstacle(const Piece& obstacle, const Touch& touch, const Eigen::Vector3d& d,
-                                               double distance);
+  [[nodiscard]] ObstaclePlace query_obstacle(const Piece& obstacle, const Touch& touch, const Eigen::Vector3d& d,
+                                             double distance);
   [[nodiscard]] bool nearest_on_instrument(const Piece& instrument, const Touch& touch, const Eigen::Vector3d& d);
   void add_ends(const Piece& instrument, const Piece& obstacle, const Touch& touch, const Candidate& found);
   [[nodiscard]] bool over_face(const Piece& obstacle, std::uint32_t triangle, const Eigen::Vector3d& p_W) const;

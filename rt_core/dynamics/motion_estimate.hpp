@@ -53,7 +53,7 @@ class MotionEstimate {
 
   Timestamp time_;
   std::size_t joints_ = 0;
-  bool velocities_told_ = false;
+  bool velocities_given_ = false;
   JointValues position_{};  // of the newest sample
   JointValues velocity_{};
   JointValues acceleration_{};

@@ -151,12 +151,12 @@ class Decomposition {
     piece.cuts = std::move(cuts);
     piece.hull = std::move(hull);
     piece.volume = signed_volume(piece.hull);
-    judge(piece);
+    rate(piece);
     return piece;
   }
 
   // How far the hull stands off the surface, seen from the surface along its normals.
-  static void judge(Piece& piece) {
+  static void rate(Piece& piece) {
     std::vector<Plane> planes;
     for (const auto& [a, b, c] : piece.hull.triangles) {
       const auto& v = piece.hull.vertices;

@@ -49,7 +49,7 @@ class DegenerateRemover {
     constexpr int kMostPasses = 64;
     for (int pass = 0; pass < kMostPasses && split_neighbours(); ++pass) drop_lines();
     drop_flat();
-    tell_lost(findings);
+    report_lost(findings);
   }
 
  private:
@@ -135,7 +135,7 @@ class DegenerateRemover {
     drop([&](const TriangleIndices& t) { return is_flat(t); });
   }
 
-  void tell_lost(MeshFindings& findings) const {
+  void report_lost(MeshFindings& findings) const {
     const std::vector<EdgeUse> uses = edge_uses(triangles_);
     std::vector<bool> used(vertices_.size());
     for (const TriangleIndices& t : triangles_) {

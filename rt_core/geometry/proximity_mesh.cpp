@@ -80,7 +80,7 @@ Separation mesh_mesh_separation(const MeshTree& a, const MeshTree& b, const Pose
   Nearest nearest(up_to, a.wide().reach() + b.wide().reach());
   PairWalk walk(a.wide(), b.wide(), X_AB);
   walk.set_limit(up_to);
-  const auto look_at = [&](std::uint32_t i, std::uint32_t k) {
+  const auto examine = [&](std::uint32_t i, std::uint32_t k) {
     const Triangle in_a = moved(b.triangles()[k], X_AB);
     if (nearest.apart(a.triangles()[i], in_a)) return;
     const ClosestPoints points = triangle_triangle(a.triangles()[i], in_a, nearest.distance());
@@ -89,11 +89,11 @@ Separation mesh_mesh_separation(const MeshTree& a, const MeshTree& b, const Pose
     walk.set_direction(nearest.direction());
   };
   if (hint.known && hint.feature_a < a.triangles().size() && hint.feature_b < b.triangles().size()) {
-    look_at(hint.feature_a, hint.feature_b);
+    examine(hint.feature_a, hint.feature_b);
   }
   std::uint32_t i = 0;
   std::uint32_t k = 0;
-  while (!nearest.within(enough) && walk.next(i, k)) look_at(i, k);
+  while (!nearest.within(enough) && walk.next(i, k)) examine(i, k);
   return nearest.answer(walk.least_left_out());
 }
 
@@ -104,16 +104,16 @@ Separation mesh_primitive_separation(const MeshTree& mesh, const ConvexCore& pri
   walk.set_limit(up_to);
   ConvexCore triangle;
   triangle.kind = CoreKind::triangle;
-  const auto look_at = [&](std::uint32_t i) {
+  const auto examine = [&](std::uint32_t i) {
     triangle.corners = mesh.triangles()[i];
     const ConvexDistance found = convex_distance(triangle, Pose::Identity(), primitive, X_MP, nearest.distance());
     if (!nearest.offer(found.points, found.certain, {i, 0, true}, hint)) return;
     walk.set_limit(nearest.limit());
     walk.set_direction(nearest.direction());
   };
-  if (hint.known && hint.feature_a < mesh.triangles().size()) look_at(hint.feature_a);
+  if (hint.known && hint.feature_a < mesh.triangles().size()) examine(hint.feature_a);
   std::uint32_t i = 0;
-  while (!nearest.within(enough) && walk.next(i)) look_at(i);
+  while (!nearest.within(enough) && walk.next(i)) examine(i);
   return nearest.answer(walk.least_left_out());
 }
 

@@ -18,7 +18,7 @@ ForceLimits force_limits(const HapticSettings& settings) CELL_RT {
   return {.largest = settings.max_force, .largest_rate = settings.max_slew};
 }
 
-JudgeSettings judge_settings(const HapticSettings& settings) CELL_RT {
+SampleLimits sample_limits(const HapticSettings& settings) CELL_RT {
   return {
       .uses_pose = settings.drive == Drive::pose, .stale_after = settings.stale_after, .max_speed = settings.max_speed};
 }
@@ -58,10 +58,10 @@ void HapticChannel::open(const Instrument& instrument, HapticDevicePort& port) C
   gate_.open(port);
   state_.phase = HapticPhase::waiting;
   state_.slot = instrument.slot;
-  judge_.restart(Timestamp{});
+  validator_.restart(Timestamp{});
   models_.restart();
   map_.restart();
-  wish_ = Wish{};
+  target_ = TipTarget{};
   posture_ = Posture{};
   was_engaged_ = false;
   last_bad_ = Timestamp{};
@@ -83,14 +83,14 @@ void HapticChannel::exchange(const Instrument& instrument) CELL_RT {
   instrument_ = &instrument;
   state_.slot = instrument.slot;
   models_.restart();
-  judge_.forget_place();
+  validator_.forget_place();
   if (state_.phase != HapticPhase::faulted) state_.phase = HapticPhase::waiting;
   restart_force();
 }
 
 bool HapticChannel::reset() CELL_RT {
   if (state_.phase != HapticPhase::faulted) return false;
-  if (!judge_.seen() || last_tick_ - last_bad_ < kQuietBeforeReset) return false;
+  if (!validator_.seen() || last_tick_ - last_bad_ < kQuietBeforeReset) return false;
   state_.phase = HapticPhase::waiting;
   state_.fault = HapticFault::none;
   was_engaged_ = false;
@@ -103,7 +103,7 @@ void HapticChannel::restart_force() CELL_RT {
   gate_.restart();
   held_force_.setZero();
   stored_energy_ = 0;
-  passivity_.restart(wish_.p_handle);
+  passivity_.restart(target_.p_handle);
   spread({}, Eigen::Vector3d::Zero());
 }
 
@@ -112,14 +112,15 @@ HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
   const HapticSettings& settings = instrument_->settings;
   HapticSample sample;
   const HapticRead read = gate_.read(sample);
-  const Verdict verdict = judge_.judge(read, sample, input.now, judge_settings(settings));
+  const Verdict verdict = validator_.validate(read, sample, input.now, sample_limits(settings));
   HapticFault moved = HapticFault::none;
   if (verdict.fresh) {
-    const Wish wish = map_.wish(*instrument_, judge_.sample(), posture_.q);
-    moved = judge_.moved_to(settings.drive == Drive::pose ? judge_.sample().p_DH : wish.x_WE, judge_settings(settings));
-    if (moved == HapticFault::none) wish_ = wish;
+    const TipTarget target = map_.target(*instrument_, validator_.sample(), posture_.q);
+    moved = validator_.moved_to(settings.drive == Drive::pose ? validator_.sample().p_DH : target.x_WE,
+                                sample_limits(settings));
+    if (moved == HapticFault::none) target_ = target;
   }
-  models_.look_at(input.model, *instrument_, proxy_.x());
+  models_.update(input.model, *instrument_, proxy_.x());
   fresh = verdict.fresh && moved == HapticFault::none;
   if (input.missed > settings.allowed_missed_periods) return HapticFault::late_tick;
   if (input.device_gone) return HapticFault::vanished;
@@ -151,7 +152,7 @@ void HapticChannel::latch(HapticFault fault) CELL_RT {
 void HapticChannel::wait_or_engage(const TickInput& input, bool ready) CELL_RT {
   const bool surroundings_known =
       models_.model() != nullptr && !models_.stale(input.now, instrument_->settings.model_stale_after);
-  state_.awaits_surroundings = judge_.seen() && !surroundings_known;
+  state_.awaits_surroundings = validator_.seen() && !surroundings_known;
   if (ready && surroundings_known) engage(input);
 }
 
@@ -165,10 +166,10 @@ void HapticChannel::engage(const TickInput& input) CELL_RT {
   tip_ = TipPosture{};
   tip_.X_BE = kinematics::forward(instrument_->chain, values, tip_.J);
   posture_.X_WE = instrument_->X_WB * tip_.X_BE;
-  map_.anchor_orientation(*instrument_, judge_.sample(), posture_);
-  wish_ = map_.wish(*instrument_, judge_.sample(), posture_.q);
+  map_.anchor_orientation(*instrument_, validator_.sample(), posture_);
+  target_ = map_.target(*instrument_, validator_.sample(), posture_.q);
   proxy_.start(posture_.X_WE.translation());
-  judge_.forget_place();  // joints without an axis are not where they were assumed
+  validator_.forget_place();  // joints without an axis are not where they were assumed
   restart_force();
   was_engaged_ = true;
   state_.phase = HapticPhase::engaging;
@@ -187,13 +188,13 @@ void HapticChannel::yield_to_what_appeared() CELL_RT {
 // is.
 void HapticChannel::work_clutch() CELL_RT {
   const int button = instrument_->settings.clutch_button;
-  const bool pressed = button >= 0 && button < 32 && (judge_.sample().buttons >> button & 1U) != 0;
+  const bool pressed = button >= 0 && button < 32 && (validator_.sample().buttons >> button & 1U) != 0;
   if (pressed) {
     state_.phase = HapticPhase::clutched;
   } else if (state_.phase == HapticPhase::clutched) {
-    map_.anchor(*instrument_, judge_.sample(), posture_);
-    judge_.forget_place();
-    wish_ = map_.wish(*instrument_, judge_.sample(), posture_.q);
+    map_.anchor(*instrument_, validator_.sample(), posture_);
+    validator_.forget_place();
+    target_ = map_.target(*instrument_, validator_.sample(), posture_.q);
     proxy_.start(posture_.X_WE.translation());
     restart_force();
     state_.phase = HapticPhase::engaging;
@@ -219,7 +220,7 @@ bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
     last_bad_ = input.now;
     latch(HapticFault::not_finite);
   }
-  tell();
+  write_forces();
   write(input.now, input.period);
   if (!driving || state_.phase == HapticPhase::faulted) return false;
   fill(sample);
@@ -229,18 +230,18 @@ bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
 void HapticChannel::move_and_answer(const TickInput& input) CELL_RT {
   const HapticSettings& settings = instrument_->settings;
   const double period = period_of(input.period);
-  passivity_.observe(wish_.p_handle, held_force_, stored_energy_, passivity_settings(settings), period);
+  passivity_.observe(target_.p_handle, held_force_, stored_energy_, passivity_settings(settings), period);
   work_clutch();
   ProxyContact contact;
   if (state_.phase != HapticPhase::clutched) {
     const Eigen::Vector3d before = proxy_.x();
-    contact = proxy_.follow(models_.model(), wish_.x_WE,
+    contact = proxy_.follow(models_.model(), target_.x_WE,
                             {.at_rest = settings.static_friction, .sliding = settings.dynamic_friction},
                             settings.max_speed * scale_of(settings) * period);
     stand_at(before);
   }
   if (settings.gripper_joint >= 0 && variable_of(*instrument_, settings.gripper_joint) < 0) {
-    posture_.q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(*instrument_, judge_.sample());
+    posture_.q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(*instrument_, validator_.sample());
   }
   const Eigen::Vector3d force = answer(contact, period);
   if (passivity_.lost(passivity_settings(settings))) {
@@ -263,15 +264,15 @@ void HapticChannel::stand_at(const Eigen::Vector3d& x_before) CELL_RT {
   const Pose X_BW = instrument.X_WB.inverse();
   JointValues q = posture_.q;
   if (settings.drive == Drive::joints) {
-    q = wish_.q;
+    q = target_.q;
   } else if (settings.gripper_joint >= 0) {
-    q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(instrument, judge_.sample());
+    q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(instrument, validator_.sample());
   }
   JointValues values = chain_values(instrument, q);
   const JointValues lower = chain_values(instrument, instrument.lower);
   const JointValues upper = chain_values(instrument, instrument.upper);
   const int gripper = settings.gripper_joint >= 0 ? variable_of(instrument, settings.gripper_joint) : -1;
-  const TipGoal goal{.p_BE = X_BW * proxy_.x(), .R_BE = X_BW.linear() * wish_.R_WE};
+  const TipGoal goal{.p_BE = X_BW * proxy_.x(), .R_BE = X_BW.linear() * target_.R_WE};
   const TipPosture tip = solve_tip(
       instrument.chain, goal, {.lower = lower, .upper = upper, .fixed = gripper >= 0 ? 1U << gripper : 0U}, values);
   const Pose X_WE = instrument.X_WB * tip.X_BE;
@@ -367,7 +368,7 @@ void HapticChannel::write(Timestamp now, Nanoseconds period) CELL_RT {
   ++output_.sequence;
   output_.time = now;
   output_.period = period;
-  output_.answers = judge_.sample().sequence;
+  output_.answers = validator_.sample().sequence;
   output_.phase = static_cast<std::uint32_t>(state_.phase);
   output_.fault = static_cast<std::uint32_t>(state_.fault);
   output_.joint_count = instrument_->joint_count;
@@ -375,16 +376,16 @@ void HapticChannel::write(Timestamp now, Nanoseconds period) CELL_RT {
   gate_.write(output_, force_limits(instrument_->settings), period_of(period));
 }
 
-void HapticChannel::tell() CELL_RT {
-  const HapticSample& sample = judge_.sample();
+void HapticChannel::write_forces() CELL_RT {
+  const HapticSample& sample = validator_.sample();
   state_.device_sequence = sample.sequence;
   state_.device_writer = sample.writer;
   state_.device_time = sample.time;
   state_.buttons = sample.buttons;
-  state_.samples = judge_.samples();
-  state_.skipped = judge_.skipped();
-  state_.torn = judge_.torn();
-  state_.x_device = wish_.x_WE;
+  state_.samples = validator_.samples();
+  state_.skipped = validator_.skipped();
+  state_.torn = validator_.torn();
+  state_.x_device = target_.x_WE;
   state_.x_proxy = proxy_.x();
   state_.energy = passivity_.energy();
   state_.model_time = models_.model() != nullptr ? models_.model()->posture_time : Timestamp{};
@@ -392,9 +393,9 @@ void HapticChannel::tell() CELL_RT {
 
 void HapticChannel::fill(JointSample& sample) const CELL_RT {
   sample = JointSample{};
-  sample.receive_time = judge_.received();
-  sample.source_time = judge_.sample().time;
-  sample.sequence = judge_.sample().sequence;
+  sample.receive_time = validator_.received();
+  sample.source_time = validator_.sample().time;
+  sample.sequence = validator_.sample().sequence;
   const std::size_t joints = std::min<std::size_t>(instrument_->joint_count, kMaxJointsPerRobot);
   sample.present = static_cast<std::uint32_t>((std::uint64_t{1} << joints) - 1);
   for (std::size_t i = 0; i < joints; ++i) sample.position[i] = within_limits(*instrument_, i, posture_.q[i]);

@@ -7,13 +7,13 @@
 
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/haptics/contact_model.hpp"
-#include "rt_core/haptics/device_judge.hpp"
 #include "rt_core/haptics/force_gate.hpp"
 #include "rt_core/haptics/instrument.hpp"
 #include "rt_core/haptics/instrument_map.hpp"
 #include "rt_core/haptics/model_watch.hpp"
 #include "rt_core/haptics/passivity.hpp"
 #include "rt_core/haptics/proxy.hpp"
+#include "rt_core/haptics/sample_validator.hpp"
 #include "rt_core/haptics/tip_solver.hpp"
 #include "rt_core/haptics/virtual_coupling.hpp"
 #include "rt_core/ports/haptic_device.hpp"
@@ -70,19 +70,19 @@ class HapticChannel {
   Eigen::Vector3d answer(const ProxyContact& contact, double period) CELL_RT;
   void spread(const ProxyContact& contact, const Eigen::Vector3d& force_device) CELL_RT;
   void write(Timestamp now, Nanoseconds period) CELL_RT;
-  void tell() CELL_RT;
+  void write_forces() CELL_RT;
   void fill(JointSample& sample) const CELL_RT;
 
   HapticState state_;
   const Instrument* instrument_ = nullptr;
   ForceGate gate_;
-  DeviceJudge judge_;
+  SampleValidator validator_;
   ModelWatch models_;
   InstrumentMap map_;
   Proxy proxy_;
   VirtualCoupling coupling_;
   Passivity passivity_;
-  Wish wish_;
+  TipTarget target_;
   Posture posture_;
   TipPosture tip_;                                        // of posture_, in the base
   Eigen::Vector3d held_force_ = Eigen::Vector3d::Zero();  // N, at the device, world axes: what it has now

@@ -45,29 +45,30 @@ JointValues chain_values(const Instrument& instrument, const JointValues& q) CEL
   return values;
 }
 
-Wish InstrumentMap::wish(const Instrument& instrument, const HapticSample& sample, const JointValues& q) const CELL_RT {
+TipTarget InstrumentMap::target(const Instrument& instrument, const HapticSample& sample,
+                                const JointValues& q) const CELL_RT {
   const HapticSettings& settings = instrument.settings;
-  Wish wish;
+  TipTarget target;
   if (settings.drive == Drive::pose) {
-    wish.p_handle = settings.X_WD.linear() * sample.p_DH;
-    wish.x_WE = settings.X_WD.translation() + offset_W_ + settings.workspace_scale * wish.p_handle;
-    wish.R_WE = handle_orientation(instrument, sample) * R_HE_;
-    return wish;
+    target.p_handle = settings.X_WD.linear() * sample.p_DH;
+    target.x_WE = settings.X_WD.translation() + offset_W_ + settings.workspace_scale * target.p_handle;
+    target.R_WE = handle_orientation(instrument, sample) * R_HE_;
+    return target;
   }
-  wish.q = q;
+  target.q = q;
   for (std::size_t axis = 0; axis < sample.axis_count; ++axis) {
     const std::size_t joint = joint_of_axis(instrument, axis);
     if (joint >= instrument.joint_count) break;
-    wish.q[joint] = within_limits(instrument, joint, sample.axes[axis] + joint_offset_[joint]);
+    target.q[joint] = within_limits(instrument, joint, sample.axes[axis] + joint_offset_[joint]);
   }
   if (settings.gripper_joint >= 0) {
-    wish.q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(instrument, sample);
+    target.q[static_cast<std::size_t>(settings.gripper_joint)] = gripper_value(instrument, sample);
   }
-  const Pose X_WE = instrument.X_WB * kinematics::forward(instrument.chain, chain_values(instrument, wish.q));
-  wish.x_WE = X_WE.translation();
-  wish.R_WE = X_WE.linear();
-  wish.p_handle = wish.x_WE;
-  return wish;
+  const Pose X_WE = instrument.X_WB * kinematics::forward(instrument.chain, chain_values(instrument, target.q));
+  target.x_WE = X_WE.translation();
+  target.R_WE = X_WE.linear();
+  target.p_handle = target.x_WE;
+  return target;
 }
 
 void InstrumentMap::anchor_orientation(const Instrument& instrument, const HapticSample& sample,

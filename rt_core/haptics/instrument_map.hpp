@@ -12,7 +12,7 @@
 namespace cellmirror::haptics {
 
 // Commanded motion of the hand.
-struct Wish {
+struct TipTarget {
   Eigen::Vector3d x_WE = Eigen::Vector3d::Zero();      // m: the tip's origin
   Eigen::Matrix3d R_WE = Eigen::Matrix3d::Identity();  // drive pose: followed in what freedom the tip's place leaves
   JointValues q{};                                     // drive joints: what the axes say, within the limits
@@ -31,7 +31,8 @@ class InstrumentMap {
   void restart() CELL_RT { *this = InstrumentMap{}; }
 
   // `q`: joint positions; joints without an axis of the device stay.
-  [[nodiscard]] Wish wish(const Instrument& instrument, const HapticSample& sample, const JointValues& q) const CELL_RT;
+  [[nodiscard]] TipTarget target(const Instrument& instrument, const HapticSample& sample,
+                                 const JointValues& q) const CELL_RT;
   // From now on the sample corresponds to the instrument's present posture.
   void anchor(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT;
   // The same for the orientation alone; the place stays that of the cell file.

@@ -43,7 +43,7 @@ void ModelWatch::restart() CELL_RT {
   appearance_.restart();
 }
 
-void ModelWatch::look_at(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT {
+void ModelWatch::update(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT {
   appeared_ = false;
   if (newest == nullptr || newest->sequence == 0 || newest->slot != instrument.slot) return;
   if (known_ && newest->sequence == model_.sequence && newest->posture_time == model_.posture_time) return;

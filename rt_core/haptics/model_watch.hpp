@@ -17,7 +17,7 @@ class ModelWatch {
   // `newest` null: none exists. A model that is not finite, not of this instrument, or without sequence is ignored;
   // then the last one ages. In a model that is not certain, everything near counts as touching. `x` (m, world):
   // position of the tip.
-  void look_at(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT;
+  void update(const ContactModel* newest, const Instrument& instrument, const Eigen::Vector3d& x) CELL_RT;
   // In the last model a body appeared at the tip (appearance.hpp).
   [[nodiscard]] bool appeared() const CELL_RT { return appeared_; }
   // Null where none ever came.

@@ -48,7 +48,7 @@ double Proxy::felt_share(double depth) CELL_RT {
 // the position without friction; up to `limit_at_rest` it sticks, beyond that it slides until `limit_sliding` is left
 // (Salisbury, Tarr, ASME DSC 61, 1997; Hayward, Armstrong, Experimental Robotics VI, 2000). Both limits are m:
 // coefficient times the depth that is felt.
-Eigen::Vector3d Proxy::cling(const ContactModel& model, const NearestPoint& nearest, double limit_at_rest,
+Eigen::Vector3d Proxy::stick(const ContactModel& model, const NearestPoint& nearest, double limit_at_rest,
                              double limit_sliding) CELL_RT {
   const Eigen::Vector3d back = held_directions(model, nearest).free_part(x_ - nearest.x);
   const double length = back.norm();
@@ -95,7 +95,7 @@ ProxyContact Proxy::press(const ContactModel& model, const Eigen::Vector3d& hand
   contact.held = nearest;
   contact.contacts = nearest.active_count;
   contact.normal = push / depth;
-  const Eigen::Vector3d back = cling(model, nearest, friction.at_rest * pressure, friction.sliding * pressure);
+  const Eigen::Vector3d back = stick(model, nearest, friction.at_rest * pressure, friction.sliding * pressure);
   contact.elongation = push * share;
   if (back.squaredNorm() > 0) {
     // Friction may not hold the proxy in a place that another constraint forbids.

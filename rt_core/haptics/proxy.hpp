@@ -49,7 +49,7 @@ class Proxy {
   ProxyContact jammed(const Eigen::Vector3d& hand) CELL_RT;
   double felt_share(double depth) CELL_RT;
   void settle(const ContactModel& model) CELL_RT;
-  Eigen::Vector3d cling(const ContactModel& model, const NearestPoint& nearest, double limit_at_rest,
+  Eigen::Vector3d stick(const ContactModel& model, const NearestPoint& nearest, double limit_at_rest,
                         double limit_sliding) CELL_RT;
 
   Eigen::Vector3d x_ = Eigen::Vector3d::Zero();

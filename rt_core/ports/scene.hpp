@@ -20,7 +20,7 @@ namespace geometry {
 struct TriangleMesh;
 }
 enum class Shape : std::uint8_t;
-struct MeshLook;
+struct MeshAppearance;
 
 using Colour = std::array<float, 4>;
 
@@ -37,7 +37,7 @@ struct SceneBody {
   Shape shape{};             // sizes as Geometry (rt_core/cell/geometry.hpp)
   Eigen::Vector3d size = Eigen::Vector3d::Ones();
   std::shared_ptr<const geometry::TriangleMesh> mesh;  // Shape::mesh, scale applied; the same pointer: the same upload
-  std::shared_ptr<const MeshLook> look;  // of the mesh, shown with DisplayMode::textures; null: it has none
+  std::shared_ptr<const MeshAppearance> look;  // of the mesh, shown with DisplayMode::textures; null: it has none
   Pose X_WG = Pose::Identity();
   Colour rgba{0.72F, 0.72F, 0.74F, 1.0F};
   DrawMode mode = DrawMode::gouraud;

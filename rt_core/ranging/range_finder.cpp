@@ -133,9 +133,9 @@ void RangeFinder::State::read(Sensor& sensor, const Pose& X_WS, RangeReading& ou
   const Nearest found = nearest(sensor, X_WS);
   if (!found.found) return;
   const double exact = std::min(found.distance, settings.range_m);
-  const double told = std::max(0.0, exact + noise);
-  if (told > settings.range_m) return;  // the echo comes after the sensor has stopped to listen
-  out.distance_m = told;
+  const double measured = std::max(0.0, exact + noise);
+  if (measured > settings.range_m) return;  // the echo comes after the sensor has stopped to listen
+  out.distance_m = measured;
   out.point_m = X_WS * found.p;
   out.object = body_name(*cell, parts.part(sensor.part).node);
   out.short_object = short_names[sensor.part];

@@ -33,7 +33,7 @@ class PairMarks {
   void draw_touching(const ProximityState& proximity, std::string_view age, Scene& scene);
 
   std::shared_ptr<const std::vector<std::string>> paths_;
-  std::string cell_name_;  // how findings name the cell's own geometry
+  std::string cell_name_;  // name of the cell's own geometry in results
   std::size_t node_count_ = 0;
   std::unordered_map<std::string_view, std::int32_t> node_of_path_;  // into *paths_
   BodyNames names_;

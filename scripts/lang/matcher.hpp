@@ -16,7 +16,7 @@
 
 namespace cellmirror::script {
 
-// Where findings go, and the command they concern.
+// Destination of diagnostics, and their command.
 class Findings {
  public:
   Findings(Diagnostics& diagnostics, const std::string& source, std::string_view command)

@@ -40,7 +40,7 @@ void InputScripts::forget() {
 }
 
 bool InputScripts::follow() {
-  look_at_run();
+  check_run();
   for (int looked_for = 0; looked_for < kFilesInATurn; ++looked_for) {
     if (run_ != 0 || waiting_.empty() || runner_.full()) return false;
     const InputChange change = waiting_.front();
@@ -50,7 +50,7 @@ bool InputScripts::follow() {
   return false;
 }
 
-void InputScripts::look_at_run() {
+void InputScripts::check_run() {
   if (run_ == 0) return;
   const RunProgress progress = runner_.progress(run_);
   if (since_.known() && progress.first_command.known()) {

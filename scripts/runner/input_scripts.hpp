@@ -67,7 +67,7 @@ class InputScripts {
 
  private:
   bool start(const InputChange& change);
-  void look_at_run();
+  void check_run();
 
   ScriptRunner& runner_;
   const KismetHome& home_;

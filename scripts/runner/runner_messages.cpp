@@ -12,7 +12,7 @@ namespace cellmirror::script {
 
 namespace {
 
-// All findings in one line, for the answer to a message: "1:9: what; remedy | 1:20: ...".
+// All diagnostics in one line, for the answer to a message: "1:9: what; remedy | 1:20: ...".
 Error as_error(const Diagnostics& findings) {
   constexpr std::size_t kShown = 8;
   Error error;

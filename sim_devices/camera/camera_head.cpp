@@ -47,7 +47,7 @@ void CameraHead::work(Timestamp now) {
     looks_.advance(now);
     if (const auto record = reader_.newest(now)) {
       heard_ = now;
-      head_.obey(*record, now);
+      head_.follow(*record, now);
     }
   }
   head_.advance(now);
@@ -56,18 +56,18 @@ void CameraHead::work(Timestamp now) {
 
 Timestamp CameraHead::next() const { return std::min(looks_.next(), drives_->next()); }
 
-Result<std::string> CameraHead::obey(const ControlCommand& command, Timestamp now) {
+Result<std::string> CameraHead::execute(const ControlCommand& command, Timestamp now) {
   if (const auto* held = std::get_if<SetHeld>(&command)) head_.hold(held->held);
   const auto* end = std::get_if<EndFaults>(&command);
-  if (end == nullptr || end->kind) return drives_->obey(command, now);
+  if (end == nullptr || end->kind) return drives_->execute(command, now);
   const std::size_t ended = head_.end_faults(end->id, {}, now);
   if (end->id != 0 && ended > 0) return std::to_string(ended) + " ended";
-  const auto others = drives_->obey(command, now);
+  const auto others = drives_->execute(command, now);
   if (!others || ended == 0) return others;
   return std::to_string(ended) + " of the head and " + *others;
 }
 
-std::optional<Result<std::string>> CameraHead::obey_own(std::string_view line, Timestamp now) {
+std::optional<Result<std::string>> CameraHead::execute_own(std::string_view line, Timestamp now) {
   line = trimmed(line);
   const std::size_t end = std::min(line.find(' '), line.size());
   const std::string_view verb = line.substr(0, end);

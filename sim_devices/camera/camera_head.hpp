@@ -29,9 +29,9 @@ class CameraHead final : public SimulatedDevice {
   void work(Timestamp now) override;
   [[nodiscard]] Timestamp next() const override;
   void wait_until(Timestamp t) override { drives_->wait_until(t); }
-  Result<std::string> obey(const ControlCommand& command, Timestamp now) override;
+  Result<std::string> execute(const ControlCommand& command, Timestamp now) override;
   // "fault stuck:joint=1", "clear stuck", "clear 1001".
-  std::optional<Result<std::string>> obey_own(std::string_view line, Timestamp now) override;
+  std::optional<Result<std::string>> execute_own(std::string_view line, Timestamp now) override;
   [[nodiscard]] DeviceStatus status(Timestamp now) const override;
 
   Result<int> add_fault(const HeadFaultSpec& spec, Timestamp now) { return head_.add_fault(spec, now); }

@@ -34,11 +34,11 @@ bool CameraReader::attach(Timestamp now) {
   return true;
 }
 
-void CameraReader::let_go() { queue_ = -1; }
+void CameraReader::detach() { queue_ = -1; }
 
 std::optional<CameraRecord> CameraReader::newest(Timestamp now) {
   if (!attach(now)) return {};
-  return take_ ? take_all() : look_back();
+  return take_ ? take_all() : newest_record();
 }
 
 std::optional<CameraRecord> CameraReader::match(std::size_t bytes) {
@@ -63,7 +63,7 @@ std::optional<CameraRecord> CameraReader::take_all() {
     }
     if (errno != ENOMSG && errno != EINTR) {
       reason_ = fmt::format("the SENSOR queue cannot be read: {}", std::generic_category().message(errno));
-      let_go();
+      detach();
     }
     break;
   }
@@ -72,11 +72,11 @@ std::optional<CameraRecord> CameraReader::take_all() {
 
 // From the newest message back to what was seen before. Messages may come and go meanwhile: the next call gets those
 // that this one missed.
-std::optional<CameraRecord> CameraReader::look_back() {
+std::optional<CameraRecord> CameraReader::newest_record() {
   msqid_ds state{};
   if (::msgctl(queue_, IPC_STAT, &state) != 0) {
     reason_ = fmt::format("the SENSOR queue is gone: {}", std::generic_category().message(errno));
-    let_go();
+    detach();
     return {};
   }
   const std::size_t waiting = std::min<std::size_t>(state.msg_qnum, kMostAtOnce);
@@ -90,7 +90,7 @@ std::optional<CameraRecord> CameraReader::look_back() {
       reason_ = errno == ENOSYS
                     ? "this kernel cannot peek at messages; use --take"
                     : fmt::format("the SENSOR queue cannot be read: {}", std::generic_category().message(errno));
-      let_go();
+      detach();
       break;
     }
     if (buffer_.type != kSensorMessageType) continue;

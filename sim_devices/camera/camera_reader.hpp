@@ -41,8 +41,8 @@ class CameraReader {
   };
 
   bool attach(Timestamp now);
-  void let_go();
-  [[nodiscard]] std::optional<CameraRecord> look_back();
+  void detach();
+  [[nodiscard]] std::optional<CameraRecord> newest_record();
   [[nodiscard]] std::optional<CameraRecord> take_all();
   // Of message `bytes` long in the buffer: whether it is this camera's.
   [[nodiscard]] std::optional<CameraRecord> match(std::size_t bytes);

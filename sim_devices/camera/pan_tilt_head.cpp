@@ -24,7 +24,7 @@ HeadFault* PanTiltHead::in_force(HeadFaultKind kind, int joint, Timestamp now) {
   return &*found;
 }
 
-void PanTiltHead::obey(const CameraRecord& record, Timestamp now) {
+void PanTiltHead::follow(const CameraRecord& record, Timestamp now) {
   if (record.mirrored && !record.tracking) {
     ++counters_.echoes;
     return;

@@ -38,7 +38,7 @@ class PanTiltHead {
   explicit PanTiltHead(const HeadConfig& config);
 
   void start(Timestamp now);
-  void obey(const CameraRecord& record, Timestamp now);
+  void follow(const CameraRecord& record, Timestamp now);
   // Moves until `now`; an earlier time than in the last call has no effect.
   void advance(Timestamp now);
   void hold(bool held) { held_ = held; }

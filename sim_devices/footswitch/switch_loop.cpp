@@ -63,16 +63,16 @@ Result<std::unique_ptr<SwitchLoop>> SwitchLoop::make(FootSwitchOptions options) 
 
 bool SwitchLoop::wait_for_memory() {
   const Timestamp begin = clock_.now();
-  bool told = options_.quiet;
+  bool announced = options_.quiet;
   while (!seeker_.look(clock_.now())) {
     const double waited = seconds(clock_.now() - begin);
     if (signalled() || (options_.wait_s > 0 && waited > options_.wait_s)) {
       fmt::print(stderr, "sim_footswitch: {}\n", seeker_.reason());
       return false;
     }
-    if (!told && waited > 1) {
+    if (!announced && waited > 1) {
       fmt::print(stderr, "sim_footswitch: waiting: {}\n", seeker_.reason());
-      told = true;
+      announced = true;
     }
     sleep_until(clock_.now() + kNap);
   }

@@ -37,8 +37,10 @@ void add_hand(cli::Command& app, HandParameters& hand) {
   app.option("--mass", hand.held.mass, "kg, of hand and handle").between(0.01, 100.0).show_default();
   app.option("--damping", hand.held.damping, "Ns/m, of the hand").between(0.0, 1000.0).show_default();
   app.option("--stiffness", hand.held.stiffness, "N/m, of the hand").between(0.0, 1e5).show_default();
-  app.option("--device-mass", hand.let_go.mass, "kg, of the handle alone").between(0.01, 100.0).show_default();
-  app.option("--device-damping", hand.let_go.damping, "Ns/m, of the handle alone").between(0.0, 1000.0).show_default();
+  app.option("--device-mass", hand.released.mass, "kg, of the handle alone").between(0.01, 100.0).show_default();
+  app.option("--device-damping", hand.released.damping, "Ns/m, of the handle alone")
+      .between(0.0, 1000.0)
+      .show_default();
   app.option("--arm", hand.arm, "m, from the trocar to the hand (4 and 5 axes)").between(0.01, 2.0).show_default();
   app.option("--tremor", hand.tremor, "m, amplitude").between(0.0, 0.01).show_default();
   app.option("--seed", hand.seed, "of the tremor").show_default();

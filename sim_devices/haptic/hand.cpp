@@ -16,8 +16,8 @@ Impedance turned(const Impedance& linear, double arm) {
 
 // The share of the wrist that the device alone has, as with the straight axes.
 Impedance wrist_let_go(const HandParameters& p) {
-  return {p.wrist.mass * p.let_go.mass / p.held.mass,
-          p.wrist.damping * p.let_go.damping / std::max(p.held.damping, 1e-9), 0};
+  return {p.wrist.mass * p.released.mass / p.held.mass,
+          p.wrist.damping * p.released.damping / std::max(p.held.damping, 1e-9), 0};
 }
 
 }  // namespace
@@ -29,9 +29,9 @@ Hand::Hand(const AxisLayout& layout, const HandParameters& parameters, const Coo
     const bool on_arm = layout.is_trocar() && axis < 2;
     const bool straight = layout.kind(axis) == AxisKind::length;
     held_[axis] = straight ? parameters.held : on_arm ? turned(parameters.held, parameters.arm) : parameters.wrist;
-    let_go_[axis] = straight ? parameters.let_go
-                    : on_arm ? turned(parameters.let_go, parameters.arm)
-                             : wrist_let_go(parameters);
+    released_[axis] = straight ? parameters.released
+                      : on_arm ? turned(parameters.released, parameters.arm)
+                               : wrist_let_go(parameters);
     amplitude_[axis] = layout.kind(axis) == AxisKind::gripper ? 0
                        : straight                             ? parameters.tremor
                                                               : parameters.tremor / parameters.arm;
@@ -56,7 +56,7 @@ void Hand::step(const Coordinates& wish, const Coordinates& wish_rate, const Coo
   for (int i = 0; i < steps; ++i) {
     for (std::size_t axis = 0; axis < axes_; ++axis) {
       const double wished = wish[axis] + wish_rate[axis] * h * i + (amplitude_[axis] > 0 ? tremor(axis, t_) : 0);
-      const OscillatorState next = advance({x_[axis], v_[axis]}, holding ? held_[axis] : let_go_[axis],
+      const OscillatorState next = advance({x_[axis], v_[axis]}, holding ? held_[axis] : released_[axis],
                                            {wished, holding ? wish_rate[axis] : 0}, efforts[axis], h);
       work_ += efforts[axis] * (next.x - x_[axis]);
       x_[axis] = next.x;

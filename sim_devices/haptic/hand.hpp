@@ -13,12 +13,12 @@ namespace cellmirror::sim {
 // Of a length axis, with the handle in it; angles are turned at an arm of `arm`, wrists and grippers see the small
 // ones. Sizes as in the literature on grasped haptic devices (a few 0.1 kg, some Ns/m, some 100 N/m).
 struct HandParameters {
-  Impedance held{0.25, 6.0, 300.0};  // kg, Ns/m, N/m
-  Impedance let_go{0.06, 0.1, 0.0};  // the device alone
-  Impedance wrist{1e-3, 0.04, 2.0};  // kg m2, Nms/rad, Nm/rad: handle rotations, roll, gripper
-  double arm = 0.15;                 // m, from the trocar to the hand: yaw and pitch
-  double tremor = 0;                 // m, amplitude at the target; angles: over the arm
-  double tremor_low_hz = 8;          // physiological tremor: 8 to 12 Hz
+  Impedance held{0.25, 6.0, 300.0};    // kg, Ns/m, N/m
+  Impedance released{0.06, 0.1, 0.0};  // the device alone
+  Impedance wrist{1e-3, 0.04, 2.0};    // kg m2, Nms/rad, Nm/rad: handle rotations, roll, gripper
+  double arm = 0.15;                   // m, from the trocar to the hand: yaw and pitch
+  double tremor = 0;                   // m, amplitude at the target; angles: over the arm
+  double tremor_low_hz = 8;            // physiological tremor: 8 to 12 Hz
   double tremor_high_hz = 12;
   std::uint64_t seed = 1;
 };
@@ -48,7 +48,7 @@ class Hand {
 
   std::size_t axes_;
   std::array<Impedance, kMaxHapticAxes> held_{};
-  std::array<Impedance, kMaxHapticAxes> let_go_{};
+  std::array<Impedance, kMaxHapticAxes> released_{};
   std::array<double, kMaxHapticAxes> amplitude_{};
   std::array<std::array<Tone, kTones>, kMaxHapticAxes> tones_{};
   Coordinates x_;

@@ -21,7 +21,7 @@ HapticDevice::HapticDevice(const HapticOptions& options)
 const HapticSample& HapticDevice::step(const HapticOutput& answer, Timestamp now, double since_start, double dt) {
   since_start_ = since_start;
   efforts_ = layout_.efforts(answer);
-  const HandWish& wish = player_.step(hand_.coordinates(), efforts_, dt);
+  const HandTarget& wish = player_.step(hand_.coordinates(), efforts_, dt);
   Coordinates begin = wish.position;
   for (std::size_t i = 0; i < begin.size(); ++i) begin[i] -= wish.rate[i] * dt;
   hand_.step(begin, wish.rate, efforts_, wish.holding, dt);

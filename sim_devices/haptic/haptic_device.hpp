@@ -82,7 +82,7 @@ class HapticLoop {
   void log(Timestamp now);
   void listen(Timestamp now);
   // Why it was refused; empty if accepted.
-  [[nodiscard]] std::string obey(std::string_view line);
+  [[nodiscard]] std::string execute(std::string_view line);
 
   HapticOptions options_;
   HapticLog* log_;

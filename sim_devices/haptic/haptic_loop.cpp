@@ -36,16 +36,16 @@ HapticLoop::HapticLoop(const HapticOptions& options, HapticLog* log, ControlFifo
 
 bool HapticLoop::wait_for_memory() {
   const Timestamp begin = clock_.now();
-  bool told = options_.quiet;
+  bool announced = options_.quiet;
   while (!seeker_.look(clock_.now())) {
     const double waited = seconds(clock_.now() - begin);
     if (signalled() || (options_.wait_s > 0 && waited > options_.wait_s)) {
       fmt::print(stderr, "sim_haptic: {}\n", seeker_.reason());
       return false;
     }
-    if (!told && waited > 1) {
+    if (!announced && waited > 1) {
       fmt::print(stderr, "sim_haptic: waiting: {}\n", seeker_.reason());
-      told = true;
+      announced = true;
     }
     sleep_until(clock_.now() + kWaiting);
   }
@@ -138,11 +138,11 @@ void HapticLoop::listen(Timestamp now) {
   if (control_ == nullptr || now < next_listen_) return;
   next_listen_ = now + kBetweenCommands;
   for (const std::string& line : control_->lines()) {
-    if (const std::string problem = obey(line); !problem.empty()) fmt::print(stderr, "sim_haptic: {}\n", problem);
+    if (const std::string problem = execute(line); !problem.empty()) fmt::print(stderr, "sim_haptic: {}\n", problem);
   }
 }
 
-std::string HapticLoop::obey(std::string_view line) {
+std::string HapticLoop::execute(std::string_view line) {
   line = trimmed(line);
   const std::size_t end = std::min(line.find(' '), line.size());
   const std::string_view word = line.substr(0, end);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace cellmirror;
 
-int tell(const sim::HapticOptions& options, const sim::HapticSummary& summary) {
+int print_summary(const sim::HapticOptions& options, const sim::HapticSummary& summary) {
   const std::string text = sim::to_json(summary);
   if (options.json) {
     fmt::print("{}\n", text);
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   if (options.watch) {
     sim::HapticWatcher watcher(options, log.get());
     watcher.run();
-    return tell(options, watcher.summary());
+    return print_summary(options, watcher.summary());
   }
   std::unique_ptr<sim::ControlFifo> control;
   if (!options.control.empty()) {
@@ -53,5 +53,5 @@ int main(int argc, char** argv) {
   }
   sim::HapticLoop loop(options, log.get(), control.get());
   if (!loop.run()) return 1;
-  return tell(options, loop.summary());
+  return print_summary(options, loop.summary());
 }

@@ -33,7 +33,7 @@ MotionPlayer::MotionPlayer(std::vector<MotionStep> steps, const Coordinates& sta
   wish_.position = start;
 }
 
-const HandWish& MotionPlayer::step(const Coordinates& hand, const Coordinates& efforts, double dt) {
+const HandTarget& MotionPlayer::step(const Coordinates& hand, const Coordinates& efforts, double dt) {
   const Coordinates before = wish_.position;
   t_ += dt;
   // Steps without a duration follow each other in one call, but never the whole list twice.

@@ -8,7 +8,7 @@
 
 namespace cellmirror::sim {
 
-struct HandWish {
+struct HandTarget {
   Coordinates position{};
   Coordinates rate{};  // constant until the next call
   bool holding = true;
@@ -21,11 +21,11 @@ class MotionPlayer {
   MotionPlayer(std::vector<MotionStep> steps, const Coordinates& start, bool repeat);
 
   // The target `dt` seconds after the last one. `efforts` on the hand, `hand` its position.
-  [[nodiscard]] const HandWish& step(const Coordinates& hand, const Coordinates& efforts, double dt);
+  [[nodiscard]] const HandTarget& step(const Coordinates& hand, const Coordinates& efforts, double dt);
   // Continues with other steps from its position; `back` keeps its start position.
   void replace(std::vector<MotionStep> steps);
   [[nodiscard]] bool done() const { return next_ >= steps_.size(); }
-  [[nodiscard]] const HandWish& wish() const { return wish_; }
+  [[nodiscard]] const HandTarget& wish() const { return wish_; }
 
  private:
   void begin(const MotionStep& step);
@@ -38,7 +38,7 @@ class MotionPlayer {
   std::vector<MotionStep> steps_;
   Coordinates start_;
   bool repeat_;
-  HandWish wish_;
+  HandTarget wish_;
   std::size_t next_ = 0;
   bool begun_ = false;
   double t_ = 0;            // s, since the step's begin

@@ -8,7 +8,7 @@ struct Slope {
   double a;
 };
 
-Slope slope(const OscillatorState& s, const Impedance& impedance, const Wish& wish, double effort, double t) {
+Slope slope(const OscillatorState& s, const Impedance& impedance, const AxisTarget& wish, double effort, double t) {
   const double spring = impedance.stiffness * (wish.x + wish.v * t - s.x);
   const double damper = impedance.damping * (wish.v - s.v);
   return {s.v, (spring + damper + effort) / impedance.mass};
@@ -18,7 +18,7 @@ OscillatorState moved(const OscillatorState& s, const Slope& k, double dt) { ret
 
 }  // namespace
 
-OscillatorState advance(const OscillatorState& state, const Impedance& impedance, const Wish& wish, double effort,
+OscillatorState advance(const OscillatorState& state, const Impedance& impedance, const AxisTarget& wish, double effort,
                         double dt) {
   const Slope k1 = slope(state, impedance, wish, effort, 0);
   const Slope k2 = slope(moved(state, k1, dt / 2), impedance, wish, effort, dt / 2);

@@ -14,14 +14,14 @@ struct OscillatorState {
   double v = 0;
 };
 
-struct Wish {
+struct AxisTarget {
   double x = 0;
   double v = 0;
 };
 
 // mass x" = stiffness (wish.x - x) + damping (wish.v - x') + effort, one Runge-Kutta step of fourth order. The target
 // moves with its speed within the step, the effort is constant. Error of a step: of order (dt sqrt(k/m))^5.
-[[nodiscard]] OscillatorState advance(const OscillatorState& state, const Impedance& impedance, const Wish& wish,
+[[nodiscard]] OscillatorState advance(const OscillatorState& state, const Impedance& impedance, const AxisTarget& wish,
                                       double effort, double dt);
 
 }  // namespace cellmirror::sim

@@ -19,7 +19,7 @@ struct MotionTable {
 };
 
 // CSV: "time_s, q1, q2, ..." a row. One heading line, empty lines and lines that begin with # are skipped. At most
-// kMostRows rows, kMostJoints values a row. All findings go to `diagnostics`; the table is usable where ok().
+// kMostRows rows, kMostJoints values a row. All errors go to `diagnostics`; the table is usable where ok().
 inline constexpr std::size_t kMostRows = 1'000'000;
 inline constexpr std::size_t kMostJoints = 128;
 [[nodiscard]] MotionTable read_motion_table(std::string_view text, std::string_view file, Diagnostics& diagnostics);

@@ -85,7 +85,7 @@ void Cia402Robots::start(Timestamp now) {
   start_motion(now);
   ticks_ = Pacer(now, ticks_.period());
   sync_ = Pacer(now, sync_.period());
-  live_and_die(now);
+  update_life(now);
 }
 
 Timestamp Cia402Robots::next() const {
@@ -101,7 +101,7 @@ Timestamp Cia402Robots::next() const {
 void Cia402Robots::work(Timestamp now) {
   now_ = now;
   channel_status_ = channel_->status();
-  live_and_die(now);
+  update_life(now);
   for (const ReceivedCanFrame& received : inbox_) hear(received.frame, now);
   inbox_.clear();
   if (config_.sync_period.count() > 0 && sync_.due(now)) send_sync(now);
@@ -124,7 +124,7 @@ void Cia402Robots::wait_until(Timestamp t) {
   if (inbox_.empty()) sleep_until(t);
 }
 
-void Cia402Robots::live_and_die(Timestamp now) {
+void Cia402Robots::update_life(Timestamp now) {
   for (const auto& node : nodes_) {
     const bool alive = pipeline_.schedule().alive(now, node->source);
     if (alive == node->drive.is_powered()) continue;

@@ -61,7 +61,7 @@ class Cia402Robots final : public FaultyDevice<CanFrame> {
   Result<std::string> send_emergency(const SendEmergency& command, Timestamp now) override;
   bool transmit(const CanFrame& frame) override { return channel_->send(frame); }
 
-  void live_and_die(Timestamp now);
+  void update_life(Timestamp now);
   void hear(const CanFrame& frame, Timestamp now);
   void measure(Node& node, Timestamp now);
   void note_mapping(Node& node);

@@ -53,9 +53,9 @@ class SimulatedDevice {
   virtual void wait_until(Timestamp t) = 0;
 
   // One sentence what was done, or why not.
-  virtual Result<std::string> obey(const ControlCommand& command, Timestamp now) = 0;
+  virtual Result<std::string> execute(const ControlCommand& command, Timestamp now) = 0;
   // A line for this kind of device only; none: it is for execute().
-  virtual std::optional<Result<std::string>> obey_own(std::string_view /*line*/, Timestamp /*now*/) { return {}; }
+  virtual std::optional<Result<std::string>> execute_own(std::string_view /*line*/, Timestamp /*now*/) { return {}; }
   [[nodiscard]] virtual DeviceStatus status(Timestamp now) const = 0;
 };
 
@@ -67,7 +67,7 @@ class FaultyDevice : public SimulatedDevice {
 
   explicit FaultyDevice(std::uint64_t seed) : pipeline_(seed) {}
 
-  Result<std::string> obey(const ControlCommand& command, Timestamp now) override {
+  Result<std::string> execute(const ControlCommand& command, Timestamp now) override {
     if (const auto* add = std::get_if<AddFault>(&command)) {
       if (pipeline_.schedule().all().size() >= kMostFaults) {
         return fail("there are " + std::to_string(kMostFaults) + " faults already", "`clear` ends them");

@@ -77,7 +77,7 @@ Result<std::unique_ptr<Runner>> Runner::make(RunnerConfig config,
   if (runner->config_.watch_standard_input) runner->control_.watch_standard_input();
   runner->started_ = runner->clock_.now();
   for (const FaultSpec& fault : runner->config_.faults) {
-    if (auto added = runner->obey(AddFault{fault}); !added) return std::unexpected(added.error());
+    if (auto added = runner->execute(AddFault{fault}); !added) return std::unexpected(added.error());
   }
   return runner;
 }
@@ -117,12 +117,12 @@ void Runner::work(Seat& seat) {
   }
 }
 
-Result<std::string> Runner::obey(const ControlCommand& command) {
+Result<std::string> Runner::execute(const ControlCommand& command) {
   std::string done;
   for (const auto& seat : seats_) {
     const std::lock_guard lock(seat->mutex);
     // Until start, windows count from the start.
-    const auto one = seat->device->obey(command, seat->thread.joinable() ? clock_.now() : started_);
+    const auto one = seat->device->execute(command, seat->thread.joinable() ? clock_.now() : started_);
     if (!one) return one;
     done = *one;
   }
@@ -132,7 +132,7 @@ Result<std::string> Runner::obey(const ControlCommand& command) {
 std::string Runner::answer(std::string_view line) {
   for (const auto& seat : seats_) {
     const std::lock_guard lock(seat->mutex);
-    const auto own = seat->device->obey_own(line, clock_.now());
+    const auto own = seat->device->execute_own(line, clock_.now());
     if (own) return *own ? "ok: " + **own : "error: " + own->error().text();
   }
   const auto command = parse_control_command(line);
@@ -143,7 +143,7 @@ std::string Runner::answer(std::string_view line) {
   }
   if (std::holds_alternative<AskStatus>(*command)) return report();
   if (std::holds_alternative<AskHelp>(*command)) return control_help();
-  const auto done = obey(*command);
+  const auto done = execute(*command);
   return done ? "ok: " + *done : "error: " + done.error().text();
 }
 

@@ -40,7 +40,7 @@ class Runner {
   struct Seat;  // a device, its lock and its thread
   explicit Runner(RunnerConfig config);
   [[nodiscard]] std::string answer(std::string_view line);
-  Result<std::string> obey(const ControlCommand& command);
+  Result<std::string> execute(const ControlCommand& command);
   void work(Seat& seat);
 
   RunnerConfig config_;

@@ -5,7 +5,7 @@
 
 namespace cellmirror::display {
 
-bool sound(const MeshLook& look, std::size_t triangles) {
+bool sound(const MeshAppearance& look, std::size_t triangles) {
   if (look.materials.size() != triangles || look.places.size() != 3 * triangles) return false;
   if (!look.colours.empty() && look.colours.size() != 3 * triangles) return false;
   const auto known = [&](std::uint16_t material) { return material < look.palette.size(); };
@@ -13,7 +13,7 @@ bool sound(const MeshLook& look, std::size_t triangles) {
   return std::ranges::all_of(look.materials, known) && std::ranges::all_of(look.places, finite);
 }
 
-std::vector<Dress> dress(Surface& surface, const MeshLook& look) {
+std::vector<Dress> dress(Surface& surface, const MeshAppearance& look) {
   constexpr auto kNone = std::numeric_limits<Corner>::max();
   constexpr int kMostCompared = 16;  // a vertex of a hostile file may have a million places
   std::vector<Dress> dresses(surface.vertices.size());
@@ -43,7 +43,7 @@ std::vector<Dress> dress(Surface& surface, const MeshLook& look) {
   return dresses;
 }
 
-MaterialOrder order_by_material(const MeshLook& look) {
+MaterialOrder order_by_material(const MeshAppearance& look) {
   MaterialOrder order;
   order.ends.assign(look.palette.size(), 0);
   for (const std::uint16_t material : look.materials) ++order.ends[material];

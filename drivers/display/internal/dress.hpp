@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/display/internal/surface.hpp"
-#include "rt_core/ports/mesh_look.hpp"
+#include "rt_core/ports/mesh_appearance.hpp"
 
 namespace cellmirror::display {
 
@@ -20,17 +20,17 @@ struct Dress {
 static_assert(sizeof(Dress) == 12);
 
 // The appearance from a file matches its mesh; another one must not be read past its end.
-[[nodiscard]] bool sound(const MeshLook& look, std::size_t triangles);
+[[nodiscard]] bool sound(const MeshAppearance& look, std::size_t triangles);
 
 // By vertex of the surface. Vertices of which corners have several dresses are doubled: the surface grows and its
 // corners name the new ones.
-[[nodiscard]] std::vector<Dress> dress(Surface& surface, const MeshLook& look);
+[[nodiscard]] std::vector<Dress> dress(Surface& surface, const MeshAppearance& look);
 
 // The triangles of one material are contiguous.
 struct MaterialOrder {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> ends;  // by material, in `triangles`
 };
-[[nodiscard]] MaterialOrder order_by_material(const MeshLook& look);
+[[nodiscard]] MaterialOrder order_by_material(const MeshAppearance& look);
 
 }  // namespace cellmirror::display

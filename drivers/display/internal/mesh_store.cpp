@@ -80,7 +80,7 @@ bool usable(double size) {
 }  // namespace
 
 StoredMesh::StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh,
-                       std::shared_ptr<const MeshLook> look)
+                       std::shared_ptr<const MeshAppearance> look)
     : gl_(gl),
       mesh_(std::move(mesh)),
       look_(std::move(look)),
@@ -200,7 +200,7 @@ const Buffers& StoredMesh::facing(DrawMode mode, const Eigen::Vector4d& eye) {
 }
 
 StoredMesh* MeshStore::stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
-                              const std::shared_ptr<const MeshLook>& look) {
+                              const std::shared_ptr<const MeshAppearance>& look) {
   if (mesh == nullptr) return nullptr;
   const Key key(mesh.get(), look.get());
   auto entry = meshes_.find(key);

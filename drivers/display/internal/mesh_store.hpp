@@ -34,7 +34,7 @@ struct StoredMaterial {
 class StoredMesh {
  public:
   StoredMesh(const GlApi& gl, std::shared_ptr<const geometry::TriangleMesh> mesh,
-             std::shared_ptr<const MeshLook> look = nullptr);
+             std::shared_ptr<const MeshAppearance> look = nullptr);
   ~StoredMesh();
   StoredMesh(const StoredMesh&) = delete;
   StoredMesh& operator=(const StoredMesh&) = delete;
@@ -63,8 +63,8 @@ class StoredMesh {
 
   const GlApi& gl_;
   std::shared_ptr<const geometry::TriangleMesh> mesh_;
-  std::shared_ptr<const MeshLook> look_;  // may be null
-  bool dressed_ = false;                  // has a valid appearance
+  std::shared_ptr<const MeshAppearance> look_;  // may be null
+  bool dressed_ = false;                        // has a valid appearance
   MaterialOrder order_;
   std::vector<StoredMaterial> materials_;
   BoundingSphere bounds_;
@@ -103,10 +103,10 @@ class MeshStore {
 
  private:
   using Capsule = std::array<double, 2>;
-  using Key = std::pair<const geometry::TriangleMesh*, const MeshLook*>;
+  using Key = std::pair<const geometry::TriangleMesh*, const MeshAppearance*>;
 
   [[nodiscard]] StoredMesh* stored(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
-                                   const std::shared_ptr<const MeshLook>& look);
+                                   const std::shared_ptr<const MeshAppearance>& look);
 
   const GlApi& gl_;
   TextureStore textures_;

@@ -89,30 +89,30 @@ void rounded_rectangle(cairo_t* context, double x, double y, double width, doubl
   cairo_close_path(context);
 }
 
-struct Ink {
+struct TextColours {
   double red = 0, green = 0, blue = 0;
 };
 
 // Dark enough to be read on a pale halo; what they mean is also said by the words.
-Ink ink_of(TextLook look) {
+TextColours colours_of(TextStyle look) {
   switch (look) {
-    case TextLook::near:
+    case TextStyle::near:
       return {0.42, 0.28, 0.0};
-    case TextLook::touching:
+    case TextStyle::touching:
       return {0.62, 0.13, 0.0};
-    case TextLook::ghost:
+    case TextStyle::ghost:
       return {0.30, 0.32, 0.42};
-    case TextLook::title:
+    case TextStyle::title:
       return {0.25, 0.28, 0.34};
-    case TextLook::plain:
+    case TextStyle::plain:
       break;
   }
   return {0.07, 0.09, 0.13};
 }
 
-Sticker draw_label(const std::string& text, TextLook look) {
-  const double size = look == TextLook::title ? kTitleSize : kLabelSize;
-  const bool bold = look == TextLook::touching;
+Sticker draw_label(const std::string& text, TextStyle look) {
+  const double size = look == TextStyle::title ? kTitleSize : kLabelSize;
+  const bool bold = look == TextStyle::touching;
   const TextSize text_size = size_of(text, size, bold);
   const Sheet sheet(static_cast<int>(std::ceil(text_size.width + 2 * kHalo)),
                     static_cast<int>(std::ceil(text_size.ascent + text_size.descent + kHalo)));
@@ -124,7 +124,7 @@ Sticker draw_label(const std::string& text, TextLook look) {
   cairo_set_line_width(context, kHalo);
   cairo_set_source_rgba(context, 1, 1, 1, 0.86);
   cairo_stroke_preserve(context);
-  const Ink ink = ink_of(look);
+  const TextColours ink = colours_of(look);
   cairo_set_source_rgba(context, ink.red, ink.green, ink.blue, 1);
   cairo_fill(context);
   return sheet.sticker();
@@ -273,7 +273,7 @@ const Sticker& TextPress::keep(std::string key, Sticker sticker) {
   return order_.front().sticker;
 }
 
-const Sticker& TextPress::label(std::string_view text, TextLook look) {
+const Sticker& TextPress::label(std::string_view text, TextStyle look) {
   const std::string words = drawable_utf8(text, kLongestLabel);
   std::string key = std::string(1, static_cast<char>('0' + static_cast<int>(look))) + words;
   if (const Sticker* const before = kept(key)) return *before;

@@ -27,7 +27,7 @@ struct Sticker {
 // Over the picture, with its upper left corner there; what is beyond `within` is cut off.
 void stick(Image& picture, const PixelRect& within, const Sticker& sticker, int left, int top);
 
-enum class TextLook : std::uint8_t { plain, near, touching, ghost, title };
+enum class TextStyle : std::uint8_t { plain, near, touching, ghost, title };
 
 class TextPress {
  public:
@@ -37,7 +37,7 @@ class TextPress {
   TextPress& operator=(const TextPress&) = delete;
 
   // Dark letters on a pale halo, readable on anything. The reference holds until the next call.
-  const Sticker& label(std::string_view text, TextLook look);
+  const Sticker& label(std::string_view text, TextStyle look);
   const Sticker& legend(std::span<const LegendEntry> entries);
   // In lines of no more than `width` pixels, frame included, broken at blanks, else within words; what is beyond the
   // fourth line is an ellipsis.

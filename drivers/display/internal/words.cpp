@@ -10,24 +10,24 @@ namespace {
 constexpr std::size_t kMostConsidered = 4000;
 constexpr std::size_t kMostPlaced = 160;  // in a pane: more is a wall of text
 
-TextLook look_of(Mark mark) {
+TextStyle look_of(Mark mark) {
   switch (mark) {
     case Mark::near:
-      return TextLook::near;
+      return TextStyle::near;
     case Mark::touching:
-      return TextLook::touching;
+      return TextStyle::touching;
     case Mark::ghost:
-      return TextLook::ghost;
+      return TextStyle::ghost;
     case Mark::none:
       break;
   }
-  return TextLook::plain;
+  return TextStyle::plain;
 }
 
-int importance(TextLook look) {
-  if (look == TextLook::touching) return 0;
-  if (look == TextLook::near) return 1;
-  return look == TextLook::ghost ? 2 : 3;
+int importance(TextStyle look) {
+  if (look == TextStyle::touching) return 0;
+  if (look == TextStyle::near) return 1;
+  return look == TextStyle::ghost ? 2 : 3;
 }
 
 bool overlap(const PixelRect& a, const PixelRect& b) {
@@ -36,7 +36,7 @@ bool overlap(const PixelRect& a, const PixelRect& b) {
 
 }  // namespace
 
-void Words::want(const Frame& frame, const Eigen::Vector3d& at, const std::string& text, TextLook look) {
+void Words::want(const Frame& frame, const Eigen::Vector3d& at, const std::string& text, TextStyle look) {
   if (text.empty() || wanted_.size() >= kMostConsidered || !at.allFinite()) return;
   const Eigen::Vector4d clip = frame.view.clip(at);
   if (!clip.allFinite() || !(clip.w() > 0) || std::abs(clip.x()) > clip.w() || std::abs(clip.y()) > clip.w() ||
@@ -71,7 +71,7 @@ void Words::draw_pane(const Frame& frame, Image& picture) {
   for (const SceneLabel& label : frame.scene.labels) {
     if (!frame.own(label.camera)) want(frame, label.at, label.text, look_of(label.mark));
   }
-  for (const SceneAxes& axes : frame.scene.axes) want(frame, axes.X_WF.translation(), axes.name, TextLook::plain);
+  for (const SceneAxes& axes : frame.scene.axes) want(frame, axes.X_WF.translation(), axes.name, TextStyle::plain);
   std::stable_sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) {
     return std::pair(importance(a.look), a.distance) < std::pair(importance(b.look), b.distance);
   });
@@ -84,7 +84,7 @@ void Words::draw_pane(const Frame& frame, Image& picture) {
 void Words::draw_title(const Pane& pane, int width, int height, Image& picture) {
   const std::optional<PixelRect> rect = pixels_of(pane, width, height);
   if (!rect || pane.title.empty()) return;
-  stick(picture, *rect, press_.label(pane.title, TextLook::title), rect->x + 8, rect->y + 6);
+  stick(picture, *rect, press_.label(pane.title, TextStyle::title), rect->x + 8, rect->y + 6);
 }
 
 void Words::draw_legend(const Scene& scene, Image& picture) {

@@ -21,12 +21,12 @@ class Words {
  private:
   struct Wanted {
     const std::string* text = nullptr;
-    TextLook look = TextLook::plain;
+    TextStyle look = TextStyle::plain;
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
     double distance = 0;
   };
 
-  void want(const Frame& frame, const Eigen::Vector3d& at, const std::string& text, TextLook look);
+  void want(const Frame& frame, const Eigen::Vector3d& at, const std::string& text, TextStyle look);
   void place(const PixelRect& within, const Wanted& label, Image& picture);
 
   TextPress press_;

@@ -59,7 +59,7 @@ Result<void> Controllers::load(std::string_view robot, std::string_view name, st
   }
   controller.put(name, std::move(program));
   alone_since_ = {};
-  look_again();
+  recheck_deadlock();
   return {};
 }
 
@@ -104,7 +104,7 @@ Result<void> Controllers::run(std::string_view robot, std::string_view name, Beg
     return controller.run(name, begin == Begin::exec_wait, direction);
   });
   alone_since_ = {};
-  look_again();
+  recheck_deadlock();
   return begun;
 }
 
@@ -116,7 +116,7 @@ Result<void> Controllers::remove(std::string_view robot, std::string_view name) 
   for (const std::string& semaphore : (*removed)->used) {
     if (!used(semaphore, **removed, false)) context_.semaphores.forget(semaphore);
   }
-  look_again();
+  recheck_deadlock();
   return {};
 }
 
@@ -134,7 +134,7 @@ Result<void> Controllers::step(std::string_view robot, Direction direction) {
 
 Result<void> Controllers::stop(std::string_view robot) {
   const Result<void> stopped = with(find(robot), [](VirtualController& controller) { return controller.stop(); });
-  look_again();
+  recheck_deadlock();
   return stopped;
 }
 
@@ -142,7 +142,7 @@ void Controllers::stop_all() {
   for (const auto& controller : controllers()) {
     if (controller->busy()) static_cast<void>(controller->stop());
   }
-  look_again();
+  recheck_deadlock();
 }
 
 void Controllers::cancel(std::string_view robot, const Error& why, bool forget) {
@@ -158,7 +158,7 @@ void Controllers::cancel(std::string_view robot, const Error& why, bool forget) 
       }
     }
   }
-  look_again();
+  recheck_deadlock();
 }
 
 Result<SignalBoard*> Controllers::open_signals(std::string_view robot, std::size_t number) {
@@ -211,7 +211,7 @@ bool Controllers::waits_for_time() const {
 bool Controllers::moves(std::string_view robot) const {
   const auto found = robots_.find(robot);
   if (found == robots_.end() || found->second->run() == nullptr) return false;
-  return !found->second->run()->lends_robot();
+  return !found->second->run()->has_lent_robot();
 }
 
 std::vector<ProgramStatus> Controllers::status() const {
@@ -234,7 +234,7 @@ bool Controllers::follow() {
   for (int round = 0; round < kRounds && follow_once(); ++round) any = true;
   following_ = false;
   changed_ = changed_ || any;
-  if (changed_ || alone_since_.known()) look_for_deadlock();
+  if (changed_ || alone_since_.known()) search_deadlock();
   changed_ = false;
   return any;
 }

@@ -103,8 +103,8 @@ class Controllers {
   void set_back_semaphores(const LoadedProgram& gone);
   // By another program; `by_occupied_ones`: that runs or is queued.
   [[nodiscard]] bool used(std::string_view semaphore, const LoadedProgram& except, bool by_occupied_ones) const;
-  void look_for_deadlock();
-  void look_again();
+  void search_deadlock();
+  void recheck_deadlock();
   void report(Deadlock found);
   [[nodiscard]] std::vector<std::string> could_release(std::string_view semaphore) const;
 

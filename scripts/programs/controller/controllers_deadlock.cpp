@@ -12,30 +12,31 @@ namespace cellmirror::program {
 
 namespace {
 
-void append_parties(const VirtualController& controller, const Semaphores& semaphores, std::vector<Party>& parties) {
-  std::size_t behind = Party::kNobody;
+void append_waiting(const VirtualController& controller, const Semaphores& semaphores,
+                    std::vector<WaitingProgram>& programs) {
+  std::size_t behind = WaitingProgram::kNone;
   if (const ProgramRun* run = controller.run(); run != nullptr) {
-    behind = parties.size();
+    behind = programs.size();
     // Held or not: it needs the semaphore first. With a free one it needs only to be resumed.
     const std::string wanted(semaphores.available(run->semaphore()) ? std::string_view{} : run->semaphore());
-    parties.push_back({controller.robot(), &run->loaded(), run->step_name(), wanted, Party::kNobody});
+    programs.push_back({controller.robot(), &run->loaded(), run->step_name(), wanted, WaitingProgram::kNone});
   }
   for (const VirtualController::Queued& queued : controller.queue()) {
-    parties.push_back({controller.robot(), queued.program.get(), {}, {}, behind});
+    programs.push_back({controller.robot(), queued.program.get(), {}, {}, behind});
   }
 }
 
 }  // namespace
 
-void Controllers::look_for_deadlock() {
+void Controllers::search_deadlock() {
   const bool waiting = std::any_of(robots_.begin(), robots_.end(), [](const auto& robot) {
     return robot.second->run() != nullptr && !robot.second->run()->semaphore().empty();
   });
   std::optional<Deadlock> found;
   if (waiting) {
-    std::vector<Party> parties;
-    for (const auto& [robot, controller] : robots_) append_parties(*controller, context_.semaphores, parties);
-    found = find_deadlock(parties);
+    std::vector<WaitingProgram> programs;
+    for (const auto& [robot, controller] : robots_) append_waiting(*controller, context_.semaphores, programs);
+    found = find_deadlock(programs);
   }
   const bool alone = found && std::any_of(found->waiting.begin(), found->waiting.end(),
                                           [](const Deadlock::Waiting& one) { return one.releasers.empty(); });
@@ -54,9 +55,9 @@ void Controllers::look_for_deadlock() {
 }
 
 // After a command: at once, since a script may ask for the deadlock before the next follow().
-void Controllers::look_again() {
+void Controllers::recheck_deadlock() {
   changed_ = true;
-  if (!following_) look_for_deadlock();
+  if (!following_) search_deadlock();
 }
 
 std::vector<std::string> Controllers::could_release(std::string_view semaphore) const {

@@ -11,18 +11,19 @@ namespace {
 
 // All waiting programs count as stuck first; then those are removed whose semaphore a program that is not stuck
 // releases, until nothing changes.
-std::vector<bool> stuck_ones(std::span<const Party> parties) {
-  std::vector<bool> stuck(parties.size());
-  for (std::size_t i = 0; i < parties.size(); ++i) stuck[i] = !parties[i].semaphore.empty();
-  const auto is_stuck = [&](const Party& party) {
-    return stuck[party.behind == Party::kNobody ? static_cast<std::size_t>(&party - parties.data()) : party.behind];
+std::vector<bool> stuck_ones(std::span<const WaitingProgram> programs) {
+  std::vector<bool> stuck(programs.size());
+  for (std::size_t i = 0; i < programs.size(); ++i) stuck[i] = !programs[i].semaphore.empty();
+  const auto is_stuck = [&](const WaitingProgram& program) {
+    return stuck[program.behind == WaitingProgram::kNone ? static_cast<std::size_t>(&program - programs.data())
+                                                         : program.behind];
   };
   for (bool changed = true; changed;) {
     changed = false;
-    for (std::size_t i = 0; i < parties.size(); ++i) {
-      if (!stuck[i] || parties[i].behind != Party::kNobody) continue;
-      const bool freed = std::any_of(parties.begin(), parties.end(), [&](const Party& party) {
-        return !is_stuck(party) && party.program->releases(parties[i].semaphore);
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+      if (!stuck[i] || programs[i].behind != WaitingProgram::kNone) continue;
+      const bool freed = std::any_of(programs.begin(), programs.end(), [&](const WaitingProgram& program) {
+        return !is_stuck(program) && program.program->releases(programs[i].semaphore);
       });
       if (freed) {
         stuck[i] = false;
@@ -35,15 +36,15 @@ std::vector<bool> stuck_ones(std::span<const Party> parties) {
 
 }  // namespace
 
-std::optional<Deadlock> find_deadlock(std::span<const Party> parties) {
-  const std::vector<bool> stuck = stuck_ones(parties);
+std::optional<Deadlock> find_deadlock(std::span<const WaitingProgram> programs) {
+  const std::vector<bool> stuck = stuck_ones(programs);
   Deadlock deadlock;
-  for (std::size_t i = 0; i < parties.size(); ++i) {
+  for (std::size_t i = 0; i < programs.size(); ++i) {
     if (!stuck[i]) continue;
-    const Party& party = parties[i];
-    Deadlock::Waiting waiting{party.robot, party.program->name, party.step, party.semaphore, {}, {}, {}};
-    for (const Party& other : parties) {
-      if (&other == &party || !other.program->releases(party.semaphore)) continue;
+    const WaitingProgram& program = programs[i];
+    Deadlock::Waiting waiting{program.robot, program.program->name, program.step, program.semaphore, {}, {}, {}};
+    for (const WaitingProgram& other : programs) {
+      if (&other == &program || !other.program->releases(program.semaphore)) continue;
       waiting.releasers.push_back(fmt::format("{} {}", other.robot, other.program->name));
     }
     deadlock.waiting.push_back(std::move(waiting));

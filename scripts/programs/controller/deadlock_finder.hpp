@@ -12,18 +12,18 @@
 namespace cellmirror::program {
 
 // A program that runs, or is queued.
-struct Party {
-  static constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+struct WaitingProgram {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
   std::string robot;
   const LoadedProgram* program = nullptr;
   std::string step;
-  std::string semaphore;         // it waits for this one; empty: it does not wait for any
-  std::size_t behind = kNobody;  // queued behind this party
+  std::string semaphore;       // it waits for this one; empty: it does not wait for any
+  std::size_t behind = kNone;  // queued after this program
 };
 
 // The programs that wait for semaphores that only programs among them, or queued behind one of them, release.
 // None: no deadlock.
-[[nodiscard]] std::optional<Deadlock> find_deadlock(std::span<const Party> parties);
+[[nodiscard]] std::optional<Deadlock> find_deadlock(std::span<const WaitingProgram> programs);
 
 }  // namespace cellmirror::program

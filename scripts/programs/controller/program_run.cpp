@@ -27,7 +27,7 @@ ProgramRun::ProgramRun(RunContext& context, std::string robot, SignalBoard& sign
     const Result<void> turned = machine_.set_direction(direction);
     CELLMIRROR_EXPECTS(turned.has_value());
   }
-  tell(ProgramEvent::Kind::started, begin);
+  report(ProgramEvent::Kind::started, begin);
 }
 
 void ProgramRun::begin_turn() {
@@ -61,14 +61,14 @@ bool ProgramRun::collect() {
     finished_ = ended.ticket;
     if (ended.move) at_ = ended.statement;
     newest_ = ended.statement;
-    tell(ProgramEvent::Kind::move_ended, finished_time_, {}, ended.ticket);
+    report(ProgramEvent::Kind::move_ended, finished_time_, {}, ended.ticket);
   }
   if (moving_.empty()) due_ = std::max(due_, deferred_instant());
   return true;
 }
 
 bool ProgramRun::go_on() {
-  if (run_deferred() || look_at_activities()) return true;
+  if (run_deferred() || check_activities()) return true;
   if (stepping_ && step_is_over()) {
     hold_here();
     return true;
@@ -77,7 +77,7 @@ bool ProgramRun::go_on() {
     case Phase::delayed:
       return begin();
     case Phase::condition:
-      return look_at_condition();
+      return check_condition();
     case Phase::semaphore:
     case Phase::activity:
       return false;
@@ -110,7 +110,7 @@ bool ProgramRun::run_deferred() {
   return true;
 }
 
-bool ProgramRun::look_at_activities() {
+bool ProgramRun::check_activities() {
   bool any = false;
   while (!activities_.empty()) {
     const auto& [activity, statement] = activities_.front();
@@ -132,7 +132,7 @@ bool ProgramRun::look_at_activities() {
   return any;
 }
 
-bool ProgramRun::look_at_condition() {
+bool ProgramRun::check_condition() {
   if (machine_.holds(*this)) {
     due_ = std::max({due_, signals_.changed, resumed_});
   } else if (deadline_.known() && context_.clock.now() >= deadline_) {
@@ -142,7 +142,7 @@ bool ProgramRun::look_at_condition() {
     return false;
   }
   phase_ = Phase::running;
-  tell_command(ProgramEvent::Kind::done, due_, *waiting_);
+  report_command(ProgramEvent::Kind::done, due_, *waiting_);
   waiting_.reset();
   return true;
 }
@@ -151,7 +151,7 @@ void ProgramRun::grant(Timestamp when) {
   due_ = std::max({due_, when, resumed_});
   taken_.push_back(std::exchange(semaphore_, {}));
   phase_ = Phase::running;
-  tell_command(ProgramEvent::Kind::done, due_, *waiting_);
+  report_command(ProgramEvent::Kind::done, due_, *waiting_);
   waiting_.reset();
 }
 
@@ -248,7 +248,7 @@ void ProgramRun::finish(End end, Timestamp when) {
                                   ProgramEvent::Kind::failed};
   loaded_->state = kStates[static_cast<std::size_t>(end)];
   const std::string kept = keep_semaphores(end);
-  tell(kEvents[static_cast<std::size_t>(end)], when, end == End::failed ? loaded_->error : kept);
+  report(kEvents[static_cast<std::size_t>(end)], when, end == End::failed ? loaded_->error : kept);
 }
 
 // A stopped program releases nothing: its robot is in the protected space. A program that only acquires, as a signal
@@ -269,13 +269,13 @@ std::string ProgramRun::error_text(StatementId statement, const Error& why) cons
   return Diagnostic{Severity::error, loaded_->program->place(statement), why.what, why.remedy}.text();
 }
 
-void ProgramRun::tell(ProgramEvent::Kind kind, Timestamp when, std::string text, std::uint32_t ticket) {
+void ProgramRun::report(ProgramEvent::Kind kind, Timestamp when, std::string text, std::uint32_t ticket) {
   if (!context_.event) return;
   context_.event({kind, when, robot_, loaded_->name, std::move(text), ticket, line()});
 }
 
-void ProgramRun::tell_command(ProgramEvent::Kind kind, Timestamp when, const CanonicalCommand& command,
-                              std::uint32_t ticket) {
+void ProgramRun::report_command(ProgramEvent::Kind kind, Timestamp when, const CanonicalCommand& command,
+                                std::uint32_t ticket) {
   if (!context_.event) return;
   const auto place_line = static_cast<std::uint32_t>(loaded_->program->place(command.statement).line);
   context_.event({kind, when, robot_, loaded_->name, trace_line(*loaded_->program, command), ticket, place_line});

@@ -59,7 +59,7 @@ class ProgramRun final : private ProgramWorld {
   // Since when it waits.
   [[nodiscard]] Timestamp due() const { return due_; }
   // A SCRIPT comment is being carried out at rest: it may move the robot itself.
-  [[nodiscard]] bool lends_robot() const { return lent_ && moving_.empty(); }
+  [[nodiscard]] bool has_lent_robot() const { return lent_ && moving_.empty(); }
   // It has the semaphore, since this instant.
   void grant(Timestamp when);
 
@@ -118,14 +118,15 @@ class ProgramRun final : private ProgramWorld {
   bool fetch();
   bool close();
   [[nodiscard]] bool rested() const { return moving_.empty() && deferred_.empty() && activities_.empty(); }
-  bool look_at_activities();
-  bool look_at_condition();
+  bool check_activities();
+  bool check_condition();
   [[nodiscard]] Timestamp deferred_instant() const { return std::max(finished_time_, resumed_); }
   void finish(End end, Timestamp when);
   void fail_behind(StatementId statement, const Error& why);
   [[nodiscard]] std::string error_text(StatementId statement, const Error& why) const;
-  void tell(ProgramEvent::Kind kind, Timestamp when, std::string text = {}, std::uint32_t ticket = 0);
-  void tell_command(ProgramEvent::Kind kind, Timestamp when, const CanonicalCommand& command, std::uint32_t ticket = 0);
+  void report(ProgramEvent::Kind kind, Timestamp when, std::string text = {}, std::uint32_t ticket = 0);
+  void report_command(ProgramEvent::Kind kind, Timestamp when, const CanonicalCommand& command,
+                      std::uint32_t ticket = 0);
   [[nodiscard]] std::optional<StatementId> statement() const;
   [[nodiscard]] std::optional<StatementId> failed_statement() const;
 

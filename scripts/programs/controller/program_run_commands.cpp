@@ -57,19 +57,19 @@ void ProgramRun::put_ahead(const Result<std::uint32_t>& ticket, const CanonicalC
   moving_.push_back({*ticket, command.statement, move, fly});
   if (move) turned_.reset();
   if (move && stepping_) step_ticket_ = *ticket;
-  tell_command(ProgramEvent::Kind::command, context_.clock.now(), command, *ticket);
+  report_command(ProgramEvent::Kind::command, context_.clock.now(), command, *ticket);
 }
 
 ProgramRun::Done ProgramRun::begin_to(const ToolCommand& tool, const CanonicalCommand& command) {
   if (!rested()) return Done::not_yet;
   newest_ = command.statement;
-  tell_command(ProgramEvent::Kind::command, due_, command);
+  report_command(ProgramEvent::Kind::command, due_, command);
   tool_set_ = true;
   if (auto set = context_.motion.set_tool(robot_, tool.X_PT); !set) {
     fail_now(error_text(command.statement, set.error()), command.statement);
     return Done::yes;
   }
-  tell_command(ProgramEvent::Kind::done, due_, command);
+  report_command(ProgramEvent::Kind::done, due_, command);
   return Done::yes;
 }
 
@@ -79,7 +79,7 @@ ProgramRun::Done ProgramRun::begin_to(const WaitCommand& wait, const CanonicalCo
   newest_ = command.statement;
   deadline_ = wait.timeout_s ? due_ + nanoseconds_of(*wait.timeout_s) : Timestamp{};
   phase_ = Phase::condition;
-  tell_command(ProgramEvent::Kind::command, due_, command);
+  report_command(ProgramEvent::Kind::command, due_, command);
   return Done::yes;
 }
 
@@ -90,14 +90,14 @@ ProgramRun::Done ProgramRun::begin_to(const AcquireCommand& acquire, const Canon
   newest_ = command.statement;
   semaphore_ = acquire.semaphore;
   phase_ = Phase::semaphore;
-  tell_command(ProgramEvent::Kind::command, due_, command);
+  report_command(ProgramEvent::Kind::command, due_, command);
   return Done::yes;
 }
 
 ProgramRun::Done ProgramRun::begin_to(const PauseCommand& /*pause*/, const CanonicalCommand& command) {
   if (!rested()) return Done::not_yet;
   newest_ = command.statement;
-  tell_command(ProgramEvent::Kind::command, due_, command);
+  report_command(ProgramEvent::Kind::command, due_, command);
   hold_here();
   return Done::yes;
 }
@@ -110,11 +110,11 @@ ProgramRun::Done ProgramRun::carry_out_at_end(const CanonicalCommand& command) {
   const bool flies = !moving_.empty() && moving_.back().fly;
   if (flies && deferred_.size() < kMostDeferred) {
     deferred_.push_back({moving_.back().ticket, command});
-    tell_command(ProgramEvent::Kind::command, context_.clock.now(), command);
+    report_command(ProgramEvent::Kind::command, context_.clock.now(), command);
     return Done::yes;
   }
   if (!rested() || !may_execute(command)) return Done::not_yet;
-  tell_command(ProgramEvent::Kind::command, due_, command);
+  report_command(ProgramEvent::Kind::command, due_, command);
   lent_ = true;
   execute(command, due_);
   // A move of this robot may be all that the comment has begun (MOVE_ROB): then there is no activity.
@@ -143,7 +143,7 @@ void ProgramRun::execute(const CanonicalCommand& command, Timestamp when) {
     fail_now(error_text(command.statement, done.error()), command.statement);
     return;
   }
-  tell_command(ProgramEvent::Kind::done, when, command);
+  report_command(ProgramEvent::Kind::done, when, command);
 }
 
 Result<void> ProgramRun::execute(const OutputCommand& output, Timestamp when) {

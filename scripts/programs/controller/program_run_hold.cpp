@@ -27,7 +27,7 @@ void ProgramRun::hold_here() {
     fail_now(slowed.error().text());
     return;
   }
-  tell(ProgramEvent::Kind::held, held_since_);
+  report(ProgramEvent::Kind::held, held_since_);
 }
 
 Result<void> ProgramRun::resume() {
@@ -151,7 +151,7 @@ void ProgramRun::go() {
   stepping_ = step;
   step_ticket_ = step ? first_move_ahead() : 0;
   held_ = false;
-  tell(ProgramEvent::Kind::resumed, now);
+  report(ProgramEvent::Kind::resumed, now);
   if (auto gated = context_.motion.hold_behind(robot_, step_ticket_); !gated) {
     fail_now(gated.error().text());
     return;

@@ -38,7 +38,7 @@ Translator::Block& Translator::open_block(Operation kind) {
   if (blocks_.size() == kMostBlocks) {
     findings_.error(operation_column_, fmt::format("more than {} blocks are nested", kMostBlocks),
                     "use subprograms; the rest of the text was not read");
-    gave_up_ = true;
+    cancelled_ = true;
   }
   Block block;
   block.kind = kind;

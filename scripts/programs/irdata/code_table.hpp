@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kGreatestCode = 99'999'999;
 class CodeTable {
  public:
   // Lines of columns divided by tabs: code, symbolic name, then anything for people; '#' begins a comment. An operation
-  // may have several codes or none, a code has one operation. All findings name `file`; linear in the text but for a
+  // may have several codes or none, a code has one operation. All diagnostics name `file`; linear in the text but for a
   // sort.
   static CodeTable read(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 

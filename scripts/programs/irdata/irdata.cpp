@@ -28,7 +28,7 @@ std::shared_ptr<const Program> read_program(std::string_view text, const ParseCo
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   translator.expect_lines(static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1);
-  while (!text.empty() && !translator.gave_up()) {
+  while (!text.empty() && !translator.cancelled()) {
     const std::size_t end = text.find('\n');
     translator.read_line(text.substr(0, end));
     if (end == std::string_view::npos) break;

@@ -47,7 +47,7 @@ void Translator::read_line(std::string_view text) {
   if (++records_ > kMostStatements) {
     findings_.error(column_, fmt::format("there are more than {} records", kMostStatements),
                     "divide the program; the rest of the text was not read");
-    gave_up_ = true;
+    cancelled_ = true;
     return;
   }
   read_number();
@@ -237,7 +237,7 @@ Spot Translator::spot(std::uint32_t column) const { return {line_, column, block
 
 std::shared_ptr<const Program> Translator::finish(std::shared_ptr<const Program>* read_part) {
   findings_.at_line(std::max<std::uint32_t>(line_, 1));
-  if (!gave_up_) {
+  if (!cancelled_) {
     switch (section_) {
       case Section::before:
         findings_.error(1, "the text has no program",

@@ -37,7 +37,7 @@ class Translator {
   // The next line, without its end.
   void read_line(std::string_view text);
   // Too many records: the rest of the text is not worth reading.
-  [[nodiscard]] bool gave_up() const { return gave_up_; }
+  [[nodiscard]] bool cancelled() const { return cancelled_; }
   // As ProgramBuilder::build().
   std::shared_ptr<const Program> finish(std::shared_ptr<const Program>* read_part);
 
@@ -176,7 +176,7 @@ class Translator {
   Section section_ = Section::before;
   Spot subprogram_spot_;
   bool strayed_ = false;  // records behind END were reported
-  bool gave_up_ = false;
+  bool cancelled_ = false;
 
   // The record that is being read.
   Cursor cursor_;

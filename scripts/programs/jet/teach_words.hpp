@@ -1,4 +1,4 @@
-// Reads the words of one statement of a teach file, with findings about those that are wrong.
+// Reads the words of one statement of a teach file, with diagnostics of invalid ones.
 #pragma once
 
 #include <cstddef>

@@ -47,7 +47,7 @@ void write(const Program& program, ExpressionId id, bool within, std::string& ou
     out += fmt::format(" {} ", name_of(node.which));
     write(program, operand(1), true, out);
     if (within) out += ")";
-  } else if (node.which == Operator::logical_not || looks_at_world(node.which)) {
+  } else if (node.which == Operator::logical_not || reads_world(node.which)) {
     out += name_of(node.which);
     if (node.operands == 0) return;
     out += " ";

@@ -121,7 +121,7 @@ std::unexpected<Error> refuse(const Row& row, std::string_view what, std::span<c
 
 std::string_view name_of(Operator which) { return row_of(which).name; }
 Arity arity_of(Operator which) { return row_of(which).arity; }
-bool looks_at_world(Operator which) { return row_of(which).looks; }
+bool reads_world(Operator which) { return row_of(which).looks; }
 
 Result<ValueType> result_type(Operator which, std::span<const ValueType> operands) {
   const Row& row = row_of(which);

@@ -79,7 +79,7 @@ struct Arity {
 };
 [[nodiscard]] Arity arity_of(Operator which);
 // Whether the value depends on the robot or on what is connected to it.
-[[nodiscard]] bool looks_at_world(Operator which);
+[[nodiscard]] bool reads_world(Operator which);
 // The type of the result for operands of these types. Refused: types that it does not take. Not for constant, variable
 // and element, whose types are those of what they name.
 [[nodiscard]] Result<ValueType> result_type(Operator which, std::span<const ValueType> operands);

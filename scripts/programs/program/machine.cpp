@@ -36,7 +36,7 @@ Machine::Machine(std::shared_ptr<const Program> program, std::span<const JointKi
   looks_.reserve(program_->expressions.size());
   for (const ExpressionNode& node : program_->expressions) {
     const auto operands = std::span(program_->operands).subspan(node.first_operand, node.operands);
-    looks_.push_back(looks_at_world(node.which) ||
+    looks_.push_back(reads_world(node.which) ||
                      std::any_of(operands.begin(), operands.end(), [&](ExpressionId id) { return looks_[id]; }));
   }
 }

@@ -79,7 +79,7 @@ Result<void> Machine::evaluate_node(const ProgramWorld& world, const ExpressionN
   if (auto done = evaluate_operands(world, node); !done) return done;
   const std::span<const Value> operands = std::span<const Value>(stack_).subspan(base);
   auto value = node.which == Operator::element ? element(node, operands[0])
-               : looks_at_world(node.which)    ? look(world, node, operands.empty() ? nullptr : &operands[0])
+               : reads_world(node.which)       ? look(world, node, operands.empty() ? nullptr : &operands[0])
                                                : apply(node.which, operands, node.payload);
   if (!value) return std::unexpected(value.error());
   stack_.resize(base);

@@ -91,7 +91,7 @@ std::size_t ProgramBuilder::foldable_tail(std::span<const ExpressionId> operands
 
 Result<std::optional<ExpressionId>> ProgramBuilder::fold(Operator which, std::span<const ExpressionId> operands,
                                                          std::uint32_t payload) {
-  if (looks_at_world(which) || names_something(which)) return std::nullopt;
+  if (reads_world(which) || names_something(which)) return std::nullopt;
   const std::size_t count = foldable_tail(operands);
   if (count == 0) return std::nullopt;
   auto value = apply(which, std::span<const Value>(program_->constants).last(count), payload);

@@ -128,7 +128,7 @@ std::optional<Operand> ExpressionReader::named() {
   switch (declared->kind) {
     case Declared::Kind::variable:
       if (lexer_.token().sign == Sign::open) {
-        tell_no_list(name);
+        report_no_list(name);
         return std::nullopt;
       }
       return emitter_.node(Operator::variable, declared->type, {}, declared->variable);
@@ -146,7 +146,7 @@ std::optional<Operand> ExpressionReader::named() {
   return operand;
 }
 
-void ExpressionReader::tell_no_list(const Token& name) {
+void ExpressionReader::report_no_list(const Token& name) {
   faults_.add(lexer_.token(), fmt::format("{} is not a list", shown(name)),
               "delete the index, or declare it with LISTE");
 }

@@ -39,7 +39,7 @@ class ExpressionReader {
   // "(index)" of a list.
   std::optional<Operand> read_index(const Declared& list);
   // An index after an operand without one.
-  void tell_no_list(const Token& name);
+  void report_no_list(const Token& name);
   // ".X"; the token is the point.
   std::optional<Component> read_component(ValueType type);
   // Of a declared name; else the error is reported.

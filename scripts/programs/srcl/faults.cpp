@@ -26,7 +26,7 @@ std::string Faults::proposal(std::string_view wrong, const std::vector<std::stri
   return text.empty() ? std::string(otherwise) : text;
 }
 
-void Faults::hand_over(Diagnostics& diagnostics) const {
+void Faults::move_to(Diagnostics& diagnostics) const {
   const std::vector<Diagnostic>& found = found_.all();
   std::vector<std::size_t> order(found.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

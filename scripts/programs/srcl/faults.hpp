@@ -27,7 +27,7 @@ class Faults {
   // Whether the number of candidates permits a search for proposals.
   [[nodiscard]] bool may_propose(std::size_t candidates) const { return candidates <= proposals_left_; }
   [[nodiscard]] std::size_t count() const { return found_.errors(); }
-  void hand_over(Diagnostics& diagnostics) const;
+  void move_to(Diagnostics& diagnostics) const;
 
  private:
   static constexpr std::size_t kMostComparisons = 100'000;

@@ -63,7 +63,7 @@ constexpr auto kRows = std::to_array<KeywordRow>({
     {"ENDE", Keyword::end, true},
     {"WARTE", Keyword::wait, true},
     {"HOECHSTENS", Keyword::at_most},
-    {"MELDE", Keyword::tell},
+    {"MELDE", Keyword::notify},
     {"BELEGE", Keyword::acquire, true},
     {"FREI", Keyword::release, true},
     {"EINGANG", Keyword::digital_input},

@@ -69,7 +69,7 @@ enum class Keyword : std::uint8_t {
   // waits and semaphores
   wait,
   at_most,
-  tell,
+  notify,
   acquire,
   release,
   // inputs and outputs

@@ -44,7 +44,7 @@ std::shared_ptr<const Program> Parser::run(Diagnostics& diagnostics) {
     }
   }
   blocks_.finish();
-  faults_.hand_over(diagnostics);
+  faults_.move_to(diagnostics);
   const bool faulty = faults_.count() > 0;
   if (faulty && read_part_ == nullptr) return nullptr;
   Diagnostics last;  // bounds that only the whole program shows
@@ -227,7 +227,7 @@ bool Parser::assign(const Token& name) {
     if (!read) return false;
     if (read->known()) index = emitter_.expression(*read);
   } else if (lexer_.token().sign == Sign::open) {
-    expressions_.tell_no_list(name);
+    expressions_.report_no_list(name);
     return false;
   }
   std::uint32_t component = kNone;

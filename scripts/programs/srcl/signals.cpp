@@ -78,7 +78,7 @@ bool Parser::wait_limit(WaitStatement& statement, const Token& at, std::optional
     statement.timed_out = emitter_.add_variable(fmt::format("#time is over in line {}", at.line), ValueType::boolean);
     return jump_to.has_value();
   }
-  if (lexer_.token().keyword != Keyword::tell) return true;
+  if (lexer_.token().keyword != Keyword::notify) return true;
   lexer_.advance();
   const std::optional<Token> name = read_name("the variable");
   if (!name) return false;

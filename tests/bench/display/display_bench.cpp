@@ -12,7 +12,7 @@
 #include "drivers/display/internal/surface.hpp"
 #include "drivers/display/internal/view_transform.hpp"
 #include "drivers/display/renderer.hpp"
-#include "rt_core/ports/mesh_look.hpp"
+#include "rt_core/ports/mesh_appearance.hpp"
 #include "tests/bench/display/bare_program.hpp"
 #include "tests/unit/display/test_scenes.hpp"
 
@@ -107,7 +107,7 @@ void time_textured(Renderer& renderer, int rounds) {
     image->rgba.insert(image->rgba.end(), {value, value, value, 255});
   }
   const auto mesh = torus(1, 0.42, 500, 100);
-  auto look = std::make_shared<MeshLook>();
+  auto look = std::make_shared<MeshAppearance>();
   look->materials.assign(mesh->triangles.size(), 0);
   look->palette = {{std::move(image), {1, 1, 1}}};
   for (const geometry::TriangleIndices& triangle : mesh->triangles) {

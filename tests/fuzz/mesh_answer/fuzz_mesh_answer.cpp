@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "config/mesh_appearance.hpp"
 #include "config/mesh_finish.hpp"
-#include "config/mesh_looks.hpp"
 #include "config/mesh_message/mesh_message.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/geometry/convex_hull.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 using namespace cellmirror;
 
-void check_look(const MeshLook& look, const geometry::TriangleMesh& mesh) {
+void check_look(const MeshAppearance& look, const geometry::TriangleMesh& mesh) {
   CELLMIRROR_EXPECTS(look.materials.size() == mesh.triangles.size());
   CELLMIRROR_EXPECTS(look.places.size() == 3 * mesh.triangles.size());
   CELLMIRROR_EXPECTS(look.colours.empty() || look.colours.size() == look.places.size());
@@ -58,7 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   geometry::MeshFindings findings;
   PictureLibrary pictures;
-  LookRequest looks;
+  AppearanceRequest looks;
   looks.text = [&](const std::string&) { return Result<std::string>(bytes); };
   looks.picture = [&](const std::string&) { return Result<Picture>(std::make_shared<const Image>()); };
   looks.embedded = [&](std::string_view picture) { return pictures.of_bytes(picture); };

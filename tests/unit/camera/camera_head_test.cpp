@@ -133,29 +133,29 @@ TEST_P(CameraHeadTest, AGatewayThatCameBackIsFollowedAgain) {
 }
 
 TEST_P(CameraHeadTest, FaultsOfTheHeadAndOfItsDrivesCanBeOrdered) {
-  const auto stuck = sut_->obey_own("fault stuck:joint=1", now_);
+  const auto stuck = sut_->execute_own("fault stuck:joint=1", now_);
   ASSERT_TRUE(stuck && *stuck);
   EXPECT_EQ(**stuck, "fault 1001");
-  EXPECT_FALSE(sut_->obey_own("fault jump:by=0.5,joint=2", now_)) << "of the drives";
-  EXPECT_FALSE(sut_->obey_own("status", now_));
-  EXPECT_FALSE(*sut_->obey_own("fault stuck:joint=7", now_));
-  ASSERT_TRUE(sut_->obey(*parse_control_command("fault jump:by=0.5,joint=2"), now_));
+  EXPECT_FALSE(sut_->execute_own("fault jump:by=0.5,joint=2", now_)) << "of the drives";
+  EXPECT_FALSE(sut_->execute_own("status", now_));
+  EXPECT_FALSE(*sut_->execute_own("fault stuck:joint=7", now_));
+  ASSERT_TRUE(sut_->execute(*parse_control_command("fault jump:by=0.5,joint=2"), now_));
   send("C", 0.5, 0.25);
   run_ms(2000);
   EXPECT_EQ(sut_->head().axis(0).position(), 0);
   EXPECT_EQ(position_of(22), 750) << "the drive is off by the jump";
   EXPECT_EQ(sut_->status(now_).faults.size(), 2U);
-  ASSERT_TRUE(sut_->obey(*parse_control_command("clear"), now_));
+  ASSERT_TRUE(sut_->execute(*parse_control_command("clear"), now_));
   run_ms(2000);
   EXPECT_EQ(position_of(21), 500);
 }
 
 TEST_P(CameraHeadTest, HoldStopsIt) {
-  ASSERT_TRUE(sut_->obey(*parse_control_command("hold"), now_));
+  ASSERT_TRUE(sut_->execute(*parse_control_command("hold"), now_));
   send("C", 0.5, 0);
   run_ms(500);
   EXPECT_EQ(sut_->head().axis(0).position(), 0);
-  ASSERT_TRUE(sut_->obey(*parse_control_command("go"), now_));
+  ASSERT_TRUE(sut_->execute(*parse_control_command("go"), now_));
   run_ms(2000);
   EXPECT_EQ(sut_->head().axis(0).position(), 0.5);
 }

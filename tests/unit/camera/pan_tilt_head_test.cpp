@@ -48,7 +48,7 @@ class PanTiltHeadTest : public ::testing::Test {
 };
 
 TEST_F(PanTiltHeadTest, GoesWhereTheRecordSays) {
-  sut.obey(record(0.5, -0.25), now);
+  sut.follow(record(0.5, -0.25), now);
   run_ms(3000);
   EXPECT_EQ(pan(), 0.5);
   EXPECT_EQ(tilt(), -0.25);
@@ -56,17 +56,17 @@ TEST_F(PanTiltHeadTest, GoesWhereTheRecordSays) {
 }
 
 TEST_F(PanTiltHeadTest, FollowsASimulatedHeadButNotItsOwnEcho) {
-  sut.obey(record(0.5, 0, false, true), now);  // mirrored, tracks nothing: that is where it was itself
+  sut.follow(record(0.5, 0, false, true), now);  // mirrored, tracks nothing: that is where it was itself
   run_ms(1000);
   EXPECT_EQ(pan(), 0);
   EXPECT_EQ(sut.counters().echoes, 1U);
-  sut.obey(record(0.5, 0, false, false), now);  // moved in the model alone
+  sut.follow(record(0.5, 0, false, false), now);  // moved in the model alone
   run_ms(2000);
   EXPECT_EQ(pan(), 0.5);
 }
 
 TEST_F(PanTiltHeadTest, StopsHoldAndAreCounted) {
-  sut.obey(record(9, -9), now);
+  sut.follow(record(9, -9), now);
   run_ms(5000);
   EXPECT_EQ(pan(), 3.0);
   EXPECT_EQ(tilt(), -1.4);
@@ -74,8 +74,8 @@ TEST_F(PanTiltHeadTest, StopsHoldAndAreCounted) {
 }
 
 TEST_F(PanTiltHeadTest, WhatIsNotFiniteIsIgnored) {
-  sut.obey(record(std::numeric_limits<double>::quiet_NaN(), 0), now);
-  sut.obey(record(0, std::numeric_limits<double>::infinity()), now);
+  sut.follow(record(std::numeric_limits<double>::quiet_NaN(), 0), now);
+  sut.follow(record(0, std::numeric_limits<double>::infinity()), now);
   run_ms(100);
   EXPECT_EQ(pan(), 0);
   EXPECT_EQ(sut.counters().ignored, 2U);
@@ -83,7 +83,7 @@ TEST_F(PanTiltHeadTest, WhatIsNotFiniteIsIgnored) {
 
 TEST_F(PanTiltHeadTest, AStuckAxisStandsUntilTheWindowEnds) {
   order("stuck:joint=1@0..1");
-  sut.obey(record(0.5, 0.5), now);
+  sut.follow(record(0.5, 0.5), now);
   run_ms(900);
   EXPECT_EQ(pan(), 0);
   EXPECT_GT(tilt(), 0.4);
@@ -94,7 +94,7 @@ TEST_F(PanTiltHeadTest, AStuckAxisStandsUntilTheWindowEnds) {
 
 TEST_F(PanTiltHeadTest, ASlowAxisComesLate) {
   order("slow:by=0.1,joint=1");
-  sut.obey(record(1, 1), now);
+  sut.follow(record(1, 1), now);
   run_ms(1500);
   EXPECT_LT(pan(), 0.25);
   EXPECT_GT(tilt(), 0.9);
@@ -112,18 +112,18 @@ TEST_F(PanTiltHeadTest, ARunawayEndsAtTheStopAndComesBack) {
 
 TEST_F(PanTiltHeadTest, ADeafHeadIgnoresRecords) {
   order("deaf@0..1");
-  sut.obey(record(0.5, 0), now);
+  sut.follow(record(0.5, 0), now);
   run_ms(1100);
   EXPECT_EQ(pan(), 0);
   EXPECT_EQ(sut.counters().ignored, 1U);
-  sut.obey(record(0.5, 0), now);
+  sut.follow(record(0.5, 0), now);
   run_ms(2000);
   EXPECT_EQ(pan(), 0.5);
 }
 
 TEST_F(PanTiltHeadTest, ALateHeadObeysLater) {
   order("late:s=1");
-  sut.obey(record(0.5, 0), now);
+  sut.follow(record(0.5, 0), now);
   run_ms(990);
   EXPECT_EQ(pan(), 0);
   run_ms(2000);
@@ -132,7 +132,7 @@ TEST_F(PanTiltHeadTest, ALateHeadObeysLater) {
 
 TEST_F(PanTiltHeadTest, HeldItStands) {
   sut.hold(true);
-  sut.obey(record(0.5, 0), now);
+  sut.follow(record(0.5, 0), now);
   run_ms(500);
   EXPECT_EQ(pan(), 0);
   sut.hold(false);

@@ -9,14 +9,14 @@
 
 #include "config/cell_file.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
-#include "rt_core/ports/mesh_look.hpp"
+#include "rt_core/ports/mesh_appearance.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
 namespace cellmirror {
 
 struct MeshLooks : testing::Test {
   // The look of the only mesh of a cell.
-  std::shared_ptr<const MeshLook> look_of(const std::string& mesh) {
+  std::shared_ptr<const MeshAppearance> look_of(const std::string& mesh) {
     diagnostics = {};
     loaded =
         load_cell(home.write("cell.toml", "format = 1\nname = \"c\"\n[[node]]\nname = \"A\"\ngeometry = [{ mesh = \"" +

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "config/mesh_appearance.hpp"
 #include "config/mesh_file.hpp"
-#include "config/mesh_looks.hpp"
 #include "rt_core/geometry/mesh_repair.hpp"
-#include "tests/unit/config/mesh_looks.hpp"
+#include "tests/unit/config/mesh_appearance.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/picture_bytes.hpp"
 
@@ -63,7 +63,7 @@ struct Gltf {
 };
 
 struct MeshLooksOfGltf : MeshLooks {
-  std::shared_ptr<const MeshLook> look_of(const std::string& file, const Gltf& gltf) {
+  std::shared_ptr<const MeshAppearance> look_of(const std::string& file, const Gltf& gltf) {
     const bool binary = file.ends_with(".glb");
     home.write("envlib/t.bin", gltf.buffer());
     home.write("envlib/" + file, binary ? gltf.glb() : gltf.json(R"("uri":"t.bin",)"));
@@ -99,7 +99,7 @@ TEST_F(MeshLooksOfGltf, a_picture_in_the_file_is_decoded_once_for_all_materials_
   gltf.shown = {0, 1, 0};
   int asked = 0;
   PictureLibrary pictures;
-  LookRequest looks;
+  AppearanceRequest looks;
   looks.embedded = [&](std::string_view bytes) { return ++asked, pictures.of_bytes(bytes); };
   geometry::MeshFindings findings;
   const auto mesh = parse_mesh(gltf.glb(), ".glb", "t.glb", Eigen::Vector3d::Ones(), {}, findings, &looks);
@@ -120,7 +120,7 @@ TEST_F(MeshLooksOfGltf, colours_of_corners_are_linear_light) {
   const auto sut = look_of("t.glb", gltf);
   ASSERT_TRUE(sut) << finding();
   ASSERT_EQ(sut->colours.size(), 12U);
-  const std::array<MeshLook::Rgba, 4> wanted{
+  const std::array<MeshAppearance::Rgba, 4> wanted{
       {{128, 255, 0, 255}, {180, 180, 180, 255}, {255, 255, 255, 255}, {0, 0, 0, 255}}};
   for (std::size_t i = 0; i < 12; ++i) {
     const Eigen::Vector3d& p = geometry().mesh->vertices[geometry().mesh->triangles[i / 3][i % 3]];

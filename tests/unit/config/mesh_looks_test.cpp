@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "config/mesh_appearance.hpp"
 #include "config/mesh_file.hpp"
 #include "config/mesh_library.hpp"
-#include "config/mesh_looks.hpp"
 #include "rt_core/geometry/mesh_repair.hpp"
-#include "tests/unit/config/mesh_looks.hpp"
+#include "tests/unit/config/mesh_appearance.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/picture_bytes.hpp"
 
@@ -41,7 +41,7 @@ std::string square_mtl(const std::string& picture) {
 }
 
 struct MeshLooksOfObj : MeshLooks {
-  std::shared_ptr<const MeshLook> square(const std::string& picture) {
+  std::shared_ptr<const MeshAppearance> square(const std::string& picture) {
     home.write("envlib/square.obj", kSquareObj);
     home.write("envlib/square.mtl", square_mtl(picture));
     return look_of("square.obj");
@@ -131,7 +131,7 @@ TEST(MeshLooksOfMaterials, a_picture_that_many_name_is_asked_for_once_and_told_o
   }
   const auto read = [&](const Result<Picture>& answer) {
     int asked = 0;
-    LookRequest looks;
+    AppearanceRequest looks;
     looks.text = [&](const std::string&) { return Result<std::string>(mtl); };
     looks.picture = [&](const std::string&) { return ++asked, answer; };
     geometry::MeshFindings findings;
@@ -140,10 +140,10 @@ TEST(MeshLooksOfMaterials, a_picture_that_many_name_is_asked_for_once_and_told_o
     return looks;
   };
   const Picture picture = std::make_shared<const Image>();
-  const LookRequest good = read(picture);
+  const AppearanceRequest good = read(picture);
   ASSERT_TRUE(good.look);
   EXPECT_EQ(std::ranges::count(good.look->palette, picture, &MeshMaterial::picture), 3);
-  const LookRequest bad = read(fail("it is damaged"));
+  const AppearanceRequest bad = read(fail("it is damaged"));
   ASSERT_EQ(bad.left_out.size(), 1U);
   EXPECT_EQ(bad.left_out[0].what, "its texture four.png (all.mtl:2): it is damaged");
 }
@@ -229,7 +229,7 @@ TEST_F(MeshLooks, ply_has_colours_at_its_corners) {
   ASSERT_EQ(sut->colours.size(), 12U);
   for (std::size_t i = 0; i < 12; ++i) {
     const Eigen::Vector3d& p = geometry().mesh->vertices[geometry().mesh->triangles[i / 3][i % 3]];
-    const std::array<MeshLook::Rgba, 4> wanted{
+    const std::array<MeshAppearance::Rgba, 4> wanted{
         {{255, 0, 10, 255}, {0, 255, 10, 255}, {0, 0, 255, 255}, {9, 9, 9, 255}}};
     EXPECT_EQ(sut->colours[i], wanted[static_cast<std::size_t>(p.x() + 2 * p.y() + 3 * p.z())]);
   }

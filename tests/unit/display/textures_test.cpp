@@ -1,6 +1,6 @@
 // Pictures and colours on meshes, and what TEXTURES switches.
 #include "rt_core/geometry/shape.hpp"
-#include "rt_core/ports/mesh_look.hpp"
+#include "rt_core/ports/mesh_appearance.hpp"
 #include "tests/unit/display/renderer_fixture.hpp"
 
 namespace cellmirror::display {
@@ -37,18 +37,18 @@ class Textures : public RendererTest {
   }
 
   // The picture once over the sheet, upright.
-  static MeshLook look_of(std::shared_ptr<const Image> image) {
-    MeshLook look;
+  static MeshAppearance look_of(std::shared_ptr<const Image> image) {
+    MeshAppearance look;
     look.places = {{0, 1}, {1, 1}, {1, 0}, {0, 1}, {1, 0}, {0, 0}};
     look.materials = {0, 0};
     look.palette = {{std::move(image), {1, 1, 1}}};
     return look;
   }
-  static std::shared_ptr<const MeshLook> shared_look(MeshLook look) {
-    return std::make_shared<const MeshLook>(std::move(look));
+  static std::shared_ptr<const MeshAppearance> shared_look(MeshAppearance look) {
+    return std::make_shared<const MeshAppearance>(std::move(look));
   }
 
-  static Scene textured(std::shared_ptr<const MeshLook> look) {
+  static Scene textured(std::shared_ptr<const MeshAppearance> look) {
     Scene scene;
     add_mesh(scene, sheet(), at(0, 0, 0)).look = std::move(look);
     set(scene, DisplayMode::textures);
@@ -144,7 +144,7 @@ TEST_F(Textures, TheOwnColourShowsWhereAPictureIsSeeThrough) {
 }
 
 TEST_F(Textures, EachTriangleHasItsMaterialAndEachCornerItsColour) {
-  MeshLook look = look_of(red_green_blue_white());
+  MeshAppearance look = look_of(red_green_blue_white());
   look.palette = {{nullptr, {0.9F, 0.1F, 0.1F}}, {nullptr, {1, 1, 1}}};
   look.materials = {1, 0};
   look.colours.assign(6, {30, 30, 230, 255});
@@ -175,15 +175,15 @@ TEST_F(Textures, APictureIsUploadedOnceAndOnlyWhenItIsSeen) {
 }
 
 TEST_F(Textures, ALookThatDoesNotFitItsMeshIsLeftOut) {
-  const MeshLook good = look_of(red_green_blue_white());
-  std::vector<MeshLook> bad(5, good);
+  const MeshAppearance good = look_of(red_green_blue_white());
+  std::vector<MeshAppearance> bad(5, good);
   bad[0].materials = {0, 7};
   bad[1].places.pop_back();
   bad[2].materials.clear();
   bad[3].colours.resize(1);
   bad[4].places[0].x() = std::nanf("");
   const Image without = picture(textured(nullptr));
-  for (const MeshLook& look : bad) EXPECT_EQ(count_different(picture(textured(shared_look(look))), without), 0);
+  for (const MeshAppearance& look : bad) EXPECT_EQ(count_different(picture(textured(shared_look(look))), without), 0);
   auto broken = red_green_blue_white();
   broken->height = 1000;
   EXPECT_TRUE(picture(textured(shared_look(look_of(broken)))).width > 0);  // white, and nothing is read past its end
@@ -194,7 +194,7 @@ TEST_F(Textures, ASeamKeepsBothOfItsPlaces) {
   auto mesh = std::make_shared<geometry::TriangleMesh>();
   mesh->vertices = {{-1, 0, -1}, {0, 0, -1}, {1, 0, -1}, {1, 0, 1}, {0, 0, 1}, {-1, 0, 1}};
   mesh->triangles = {{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}};
-  MeshLook look = look_of(red_green_blue_white());
+  MeshAppearance look = look_of(red_green_blue_white());
   look.materials = {0, 0, 0, 0};
   look.places = {{0, 0.4F},    {0.4F, 0.4F}, {0.4F, 0.1F}, {0, 0.4F},    {0.4F, 0.1F}, {0, 0.1F},
                  {0.6F, 0.4F}, {0.9F, 0.4F}, {0.9F, 0.1F}, {0.6F, 0.4F}, {0.9F, 0.1F}, {0.6F, 0.1F}};

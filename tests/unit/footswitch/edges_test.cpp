@@ -28,7 +28,7 @@ TEST(SwitchEdges, TheFirstStateIsNoChange) {
   Looks sut(2, 10);
   EXPECT_TRUE(sut.at(0, {0xff, 0x01}).empty());
   EXPECT_TRUE(sut.at(1, {0xff, 0x01}).empty());
-  EXPECT_EQ(sut.sut.told()[0], 0xff);
+  EXPECT_EQ(sut.sut.reported()[0], 0xff);
 }
 
 TEST(SwitchEdges, AChangeIsToldAtOnceWithItsTimeAndTheLookBefore) {
@@ -76,11 +76,11 @@ TEST(SwitchEdges, AShorterCopyLeavesTheRestAsItWas) {
   Looks sut(2, 0);
   sut.at(0, {0, 0xff});
   EXPECT_EQ(sut.at(1, {1}).size(), 1U);
-  EXPECT_EQ(sut.sut.told()[1], 0xff);
+  EXPECT_EQ(sut.sut.reported()[1], 0xff);
 }
 
-// For any row of looks: what is told alternates, is never more than what changed, comes in order, and ends, when the
-// bits have been quiet for long enough, with the bits as they are.
+// For any row of looks: what is reported alternates, is never more than what changed, comes in order, and ends, when
+// the bits have been quiet for long enough, with the bits as they are.
 TEST(SwitchEdges, HoldTheirPromisesForAnyTimeline) {
   rc::check([] {
     const auto debounce_ms = *rc::gen::inRange(0, 20);
@@ -91,7 +91,7 @@ TEST(SwitchEdges, HoldTheirPromisesForAnyTimeline) {
     Looks sut(count, debounce_ms);
     std::vector<std::uint8_t> last(count, 0);
     sut.at(0, last);
-    std::map<std::uint32_t, bool> told;
+    std::map<std::uint32_t, bool> reported;
     std::map<std::uint32_t, Timestamp> told_at;
     std::size_t changes = 0;
     std::size_t edges_told = 0;
@@ -106,8 +106,8 @@ TEST(SwitchEdges, HoldTheirPromisesForAnyTimeline) {
         RC_ASSERT(edge.input >= 1U && edge.input <= 8 * count);
         RC_ASSERT(edge.input >= before);
         before = edge.input;
-        RC_ASSERT(edge.on != told[edge.input]);
-        told[edge.input] = edge.on;
+        RC_ASSERT(edge.on != reported[edge.input]);
+        reported[edge.input] = edge.on;
         RC_ASSERT(edge.time > told_at[edge.input]);
         RC_ASSERT(edge.time <= Looks::when(ms));
         RC_ASSERT(edge.not_told < Looks::when(ms));
@@ -123,9 +123,9 @@ TEST(SwitchEdges, HoldTheirPromisesForAnyTimeline) {
     RC_ASSERT(edges_told <= changes);
     RC_ASSERT(edges_told + sut.sut.bounces() >= changes);
     for (std::size_t i = 0; i < count; ++i) {
-      RC_ASSERT(sut.sut.told()[i] == last[i]);
+      RC_ASSERT(sut.sut.reported()[i] == last[i]);
       for (unsigned bit = 0; bit < 8; ++bit)
-        RC_ASSERT(told[static_cast<std::uint32_t>(8 * i + bit + 1)] == (((last[i] >> bit) & 1U) != 0));
+        RC_ASSERT(reported[static_cast<std::uint32_t>(8 * i + bit + 1)] == (((last[i] >> bit) & 1U) != 0));
     }
   });
 }

@@ -148,7 +148,7 @@ TEST_F(Cia402RobotsTest, ProducesSyncAndAnswersItItself) {
 
 TEST_F(Cia402RobotsTest, DeathSilencesOneDriveAtOnceAndItsReturnIsABootUp) {
   make(config());
-  ASSERT_TRUE(sut->obey(AddFault{*parse_fault("death:joint=2@0.1..0.3")}, kStart));
+  ASSERT_TRUE(sut->execute(AddFault{*parse_fault("death:joint=2@0.1..0.3")}, kStart));
   run_until_ms(99);
   (void)heard();
   run_until_ms(299);
@@ -163,9 +163,9 @@ TEST_F(Cia402RobotsTest, DeathSilencesOneDriveAtOnceAndItsReturnIsABootUp) {
 TEST_F(Cia402RobotsTest, HeldMotionGoesOnWhereItStood) {
   make(config());
   run_until_ms(100);
-  ASSERT_TRUE(sut->obey(SetHeld{true}, now));
+  ASSERT_TRUE(sut->execute(SetHeld{true}, now));
   run_until_ms(500);
-  ASSERT_TRUE(sut->obey(SetHeld{false}, now));
+  ASSERT_TRUE(sut->execute(SetHeld{false}, now));
   (void)heard();
   run_until_ms(600);
   const std::vector<std::int32_t> positions = positions_of(1);
@@ -177,21 +177,21 @@ TEST_F(Cia402RobotsTest, HeldMotionGoesOnWhereItStood) {
 TEST_F(Cia402RobotsTest, EmergencyConcernsTheJointThatIsNamed) {
   make(config());
   (void)heard();
-  ASSERT_TRUE(sut->obey(SendEmergency{0x8611, 0x21, {0, 2}}, now));
+  ASSERT_TRUE(sut->execute(SendEmergency{0x8611, 0x21, {0, 2}}, now));
   sut->work(now);
   std::vector<std::uint32_t> ids;
   for (const CanFrame& frame : heard()) {
     if (frame.id < 0x100) ids.push_back(frame.id);
   }
   EXPECT_THAT(ids, ElementsAre(0x82U));
-  EXPECT_FALSE(sut->obey(SendEmergency{0x8611, 0x21, {9, 0}}, now));
+  EXPECT_FALSE(sut->execute(SendEmergency{0x8611, 0x21, {9, 0}}, now));
 }
 
 TEST_F(Cia402RobotsTest, RefusesWhatItCannotDo) {
   make(config());
-  EXPECT_FALSE(sut->obey(AddFault{*parse_fault("nan")}, now));
-  EXPECT_FALSE(sut->obey(EndFaults{7, std::nullopt}, now));
-  EXPECT_TRUE(sut->obey(EndFaults{}, now));
+  EXPECT_FALSE(sut->execute(AddFault{*parse_fault("nan")}, now));
+  EXPECT_FALSE(sut->execute(EndFaults{7, std::nullopt}, now));
+  EXPECT_TRUE(sut->execute(EndFaults{}, now));
 }
 
 TEST_F(Cia402RobotsTest, FramesThatABusRefusesAreCounted) {

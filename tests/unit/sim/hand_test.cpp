@@ -60,7 +60,7 @@ TEST(Hand, StandsWhereSpringAndPushAreEqual) {
 
 TEST(Hand, LetGoIsADeviceOfItsOwnMassAndFriction) {
   HandParameters parameters;
-  parameters.let_go = {0.06, 0.0, 0};
+  parameters.released = {0.06, 0.0, 0};
   Hand sut(AxisLayout(6), parameters, {});
   Coordinates push{};
   push[0] = 0.6;

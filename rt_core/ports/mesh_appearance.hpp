@@ -19,7 +19,7 @@ struct MeshMaterial {
 };
 
 // Of one geometry::TriangleMesh.
-struct MeshLook {
+struct MeshAppearance {
   using Rgba = std::array<std::uint8_t, 4>;  // sRGB
 
   // By corner (3 * triangle + corner): texture coordinates; (0, 0) is the upper left corner of the texture, (1, 1) the

@@ -11,7 +11,7 @@
 
 namespace cellmirror::haptics {
 
-struct JudgeSettings {
+struct SampleLimits {
   bool uses_pose = true;  // the orientation has to be one
   Nanoseconds stale_after{};
   double max_speed = 0;  // m/s
@@ -24,15 +24,15 @@ struct Verdict {
 
 // Checks counters, ages and differences without knowledge of the instrument. Continues while a fault is latched, to
 // detect whether the cause persists.
-class DeviceJudge {
+class SampleValidator {
  public:
   void restart(Timestamp now) CELL_RT;
 
   // What port.read() gave in this tick.
-  Verdict judge(HapticRead read, const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT;
+  Verdict validate(HapticRead read, const HapticSample& sample, Timestamp now, const SampleLimits& settings) CELL_RT;
   // The position (m) of the fresh sample if the device's own position does not move: `jump` if no hand can get there
   // from the last one in that time.
-  HapticFault moved_to(const Eigen::Vector3d& p, const JudgeSettings& settings) CELL_RT;
+  HapticFault moved_to(const Eigen::Vector3d& p, const SampleLimits& settings) CELL_RT;
   // Forgets the last place, after its meaning has changed.
   void forget_place() CELL_RT { place_known_ = false; }
 
@@ -44,9 +44,9 @@ class DeviceJudge {
   [[nodiscard]] std::uint64_t torn() const CELL_RT { return torn_; }
 
  private:
-  Verdict judge_new(const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT;
-  [[nodiscard]] bool others_wrote(const HapticSample& sample) const CELL_RT;
-  [[nodiscard]] bool old(Timestamp now, const JudgeSettings& settings) const CELL_RT;
+  Verdict validate_new(const HapticSample& sample, Timestamp now, const SampleLimits& settings) CELL_RT;
+  [[nodiscard]] bool has_other_writer(const HapticSample& sample) const CELL_RT;
+  [[nodiscard]] bool old(Timestamp now, const SampleLimits& settings) const CELL_RT;
   void take(const HapticSample& sample, Timestamp now) CELL_RT;
 
   bool seen_ = false;

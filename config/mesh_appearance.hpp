@@ -14,29 +14,29 @@
 namespace cellmirror {
 
 // Input and output of parse_mesh() for the appearance.
-struct LookRequest {
+struct AppearanceRequest {
   // Text that the mesh names beside itself (MTL), a picture by its name in the mesh, and one by its bytes.
   std::function<Result<std::string>(const std::string& name)> text;
   std::function<Result<Picture>(const std::string& name)> picture;
   std::function<Result<Picture>(std::string_view bytes)> embedded;
 
-  std::shared_ptr<const MeshLook> look;  // null: there is nothing to show but the shape
-  std::vector<Error> left_out;           // what could not be had, at most kMostLeftOut
+  std::shared_ptr<const MeshAppearance> look;  // null: there is nothing to show but the shape
+  std::vector<Error> left_out;                 // what could not be had, at most kMostLeftOut
   static constexpr std::size_t kMostLeftOut = 16;
 };
 
 // `bytes`: of the mesh file.
-void name_obj_pictures(std::string_view bytes, LookRequest& request, ScenePolygons& polygons);
+void name_obj_pictures(std::string_view bytes, AppearanceRequest& request, ScenePolygons& polygons);
 // For formats in which the names of pictures are URIs.
 void decode_picture_names(ScenePolygons& polygons);
 
 // Loads what the used part of the palette names, each picture once. Empty where no triangle shows a picture and no
 // vertex has a colour.
 [[nodiscard]] std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polygons,
-                                                                    LookRequest& request);
+                                                                    AppearanceRequest& request);
 
 // `from`: the polygons as they were before repair; `origins` as make_mesh() gives them.
-[[nodiscard]] MeshLook lay_over(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& origins,
-                                const ScenePolygons& from, std::vector<MeshMaterial> palette);
+[[nodiscard]] MeshAppearance lay_over(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& origins,
+                                      const ScenePolygons& from, std::vector<MeshMaterial> palette);
 
 }  // namespace cellmirror

@@ -1,4 +1,4 @@
-#include "config/mesh_looks.hpp"
+#include "config/mesh_appearance.hpp"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@ namespace cellmirror {
 
 namespace {
 
-void leave_out(LookRequest& request, std::string what, std::string remedy) {
-  if (request.left_out.size() < LookRequest::kMostLeftOut)
+void leave_out(AppearanceRequest& request, std::string what, std::string remedy) {
+  if (request.left_out.size() < AppearanceRequest::kMostLeftOut)
     request.left_out.push_back({std::move(what), remedy.empty() ? "it is drawn without it" : std::move(remedy)});
 }
 
@@ -55,7 +55,7 @@ std::string decoded(const std::string& text) {
 }
 
 // Null if it is not available, which is reported.
-Picture load_picture(const SceneMaterial& from, const ScenePolygons& polygons, LookRequest& request) {
+Picture load_picture(const SceneMaterial& from, const ScenePolygons& polygons, AppearanceRequest& request) {
   std::string name = from.embedded ? "in the file" : from.picture;
   std::ranges::replace(name, '\\', '/');
   auto picture = from.embedded ? request.embedded(polygons.embedded[*from.embedded]) : request.picture(name);
@@ -68,7 +68,7 @@ Picture load_picture(const SceneMaterial& from, const ScenePolygons& polygons, L
 
 }  // namespace
 
-void name_obj_pictures(std::string_view bytes, LookRequest& request, ScenePolygons& polygons) {
+void name_obj_pictures(std::string_view bytes, AppearanceRequest& request, ScenePolygons& polygons) {
   const bool has_places = !polygons.places.empty();
   ObjMaterials known;
   for (const std::string& name : material_files(bytes)) {
@@ -91,11 +91,13 @@ void decode_picture_names(ScenePolygons& polygons) {
   for (SceneMaterial& material : polygons.palette) material.picture = decoded(material.picture);
 }
 
-std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polygons, LookRequest& request) {
+std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polygons, AppearanceRequest& request) {
   std::vector<bool> used(polygons.palette.size());
   for (const std::uint16_t material : polygons.materials) used[material] = true;
   std::vector<MeshMaterial> palette(polygons.palette.size());
-  const auto is_white = [](const MeshLook::Rgba& colour) { return colour == MeshLook::Rgba{255, 255, 255, 255}; };
+  const auto is_white = [](const MeshAppearance::Rgba& colour) {
+    return colour == MeshAppearance::Rgba{255, 255, 255, 255};
+  };
   bool anything = !std::ranges::all_of(polygons.colours, is_white);
   // Null where a picture cannot be had: thousands of materials may name it.
   std::map<std::pair<std::optional<std::size_t>, std::string>, Picture> known;
@@ -113,9 +115,9 @@ std::optional<std::vector<MeshMaterial>> load_palette(const ScenePolygons& polyg
   return anything ? std::optional(std::move(palette)) : std::nullopt;
 }
 
-MeshLook lay_over(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& origins,
-                  const ScenePolygons& from, std::vector<MeshMaterial> palette) {
-  MeshLook look;
+MeshAppearance lay_over(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& origins,
+                        const ScenePolygons& from, std::vector<MeshMaterial> palette) {
+  MeshAppearance look;
   look.palette = std::move(palette);
   const std::size_t count = mesh.triangles.size();
   look.materials.reserve(count);
@@ -139,7 +141,7 @@ MeshLook lay_over(const geometry::TriangleMesh& mesh, const std::vector<std::uin
       // assimp's v goes up from the lower edge.
       look.places.emplace_back(static_cast<float>(place.x()), static_cast<float>(1.0 - place.y()));
       if (from.colours.empty()) continue;
-      MeshLook::Rgba& to = look.colours.emplace_back();
+      MeshAppearance::Rgba& to = look.colours.emplace_back();
       for (std::size_t c = 0; c < 4; ++c)
         to[c] = static_cast<std::uint8_t>(std::clamp(std::lround(colour[static_cast<Eigen::Index>(c)]), 0L, 255L));
     }

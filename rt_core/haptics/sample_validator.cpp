@@ -1,4 +1,4 @@
-#include "rt_core/haptics/device_judge.hpp"
+#include "rt_core/haptics/sample_validator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,12 +36,12 @@ Nanoseconds distance(Timestamp a, Timestamp b) CELL_RT { return a < b ? b - a : 
 
 }  // namespace
 
-void DeviceJudge::restart(Timestamp now) CELL_RT {
-  *this = DeviceJudge{};
+void SampleValidator::restart(Timestamp now) CELL_RT {
+  *this = SampleValidator{};
   received_ = now;
 }
 
-void DeviceJudge::take(const HapticSample& sample, Timestamp now) CELL_RT {
+void SampleValidator::take(const HapticSample& sample, Timestamp now) CELL_RT {
   last_ = sample;
   seen_ = true;
   received_ = now;
@@ -49,21 +49,21 @@ void DeviceJudge::take(const HapticSample& sample, Timestamp now) CELL_RT {
 }
 
 // A timestamp ahead of our clock by more than the permitted age is from another clock and gives no age.
-bool DeviceJudge::old(Timestamp now, const JudgeSettings& settings) const CELL_RT {
+bool SampleValidator::old(Timestamp now, const SampleLimits& settings) const CELL_RT {
   return distance(now, last_.time) > settings.stale_after || now - received_ > settings.stale_after;
 }
 
 // Two processes that write in exact step show one of them in every tick; but more was written than this one counts.
-bool DeviceJudge::others_wrote(const HapticSample& sample) const CELL_RT {
+bool SampleValidator::has_other_writer(const HapticSample& sample) const CELL_RT {
   if (sample.writer != writer_ || sample.sequence <= count_ || sample.writes <= writes_ || writes_ == 0) return false;
   return sample.writes - writes_ > sample.sequence - count_;
 }
 
-Verdict DeviceJudge::judge_new(const HapticSample& sample, Timestamp now, const JudgeSettings& settings) CELL_RT {
+Verdict SampleValidator::validate_new(const HapticSample& sample, Timestamp now, const SampleLimits& settings) CELL_RT {
   const bool another_writer = writer_known_ && sample.writer != writer_;
   const bool backwards = writer_known_ && !another_writer && sample.sequence < count_;
   const bool standing_still = writer_known_ && !another_writer && sample.sequence == count_;
-  const bool in_step = writer_known_ && others_wrote(sample);
+  const bool in_step = writer_known_ && has_other_writer(sample);
   const std::uint64_t before = count_;
   writes_ = sample.writes;
   writer_ = sample.writer;
@@ -85,11 +85,11 @@ Verdict DeviceJudge::judge_new(const HapticSample& sample, Timestamp now, const 
   return {.fresh = true};
 }
 
-Verdict DeviceJudge::judge(HapticRead read, const HapticSample& sample, Timestamp now,
-                           const JudgeSettings& settings) CELL_RT {
+Verdict SampleValidator::validate(HapticRead read, const HapticSample& sample, Timestamp now,
+                                  const SampleLimits& settings) CELL_RT {
   if (read == HapticRead::fresh) {
     tearing_ = false;
-    return judge_new(sample, now, settings);
+    return validate_new(sample, now, settings);
   }
   if (read == HapticRead::torn) ++torn_;
   tearing_ = read == HapticRead::torn;
@@ -97,7 +97,7 @@ Verdict DeviceJudge::judge(HapticRead read, const HapticSample& sample, Timestam
   return {.fault = tearing_ ? HapticFault::torn : HapticFault::stale};
 }
 
-HapticFault DeviceJudge::moved_to(const Eigen::Vector3d& p, const JudgeSettings& settings) CELL_RT {
+HapticFault SampleValidator::moved_to(const Eigen::Vector3d& p, const SampleLimits& settings) CELL_RT {
   const bool known = place_known_;
   const double way = (p - place_).norm();
   const Nanoseconds between = last_.time - place_time_;
