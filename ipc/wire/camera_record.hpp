@@ -37,7 +37,7 @@ inline constexpr std::size_t kBytes = 384;
 struct CameraRecord {
   RecordHeader header;
   std::string id;             // name of the camera's workframe
-  std::string tracks;         // dotted path of the frame that it is to look at; empty: it tracks nothing
+  std::string tracks;         // dotted path of the tracked frame; empty: none
   PoseRecord pose;            // X_WC: commanded pose
   PoseRecord mount;           // X_WM: pose with its pan-tilt head at zero
   double pan = 0;             // rad, about y of the mount

@@ -136,7 +136,7 @@ Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_
 }
 
 Result<std::string> read_text_file(const fs::path& path, std::size_t limit) {
-  // O_NONBLOCK: opening a FIFO that somebody put in place of a file must not wait for its writer.
+  // O_NONBLOCK: opening a FIFO in place of a file must not wait for its writer.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.valid()) return fail(fmt::format("{} cannot be opened: {}", path.string(), std::strerror(errno)));
   struct stat info{};

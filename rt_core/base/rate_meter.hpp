@@ -41,7 +41,7 @@ class RateMeter {
   std::array<Slice, kSlices> slices_{};
 };
 
-// The rate of a counter that somebody else counts up, from readings of it.
+// The rate of a counter from readings of it.
 class CounterRate {
  public:
   // The rate is that between two readings which are at least `window` apart; 0 before the second one.

@@ -9,8 +9,8 @@
 
 namespace cellmirror {
 
-// Bytes of the well-formed character at the start of `text` and its code point; none where there is none (overlong
-// forms, surrogates, beyond U+10FFFF, cut short, empty).
+// Bytes of the well-formed character at the start of `text` and its code point; none if invalid (overlong forms,
+// surrogates, beyond U+10FFFF, cut short, empty).
 struct Utf8Character {
   std::size_t bytes = 0;
   char32_t code = 0;

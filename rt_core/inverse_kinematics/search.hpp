@@ -20,8 +20,8 @@ class Search {
   // Steps from `start`. Whether that led to a solution.
   bool descend(const JointValues& start, int max_iterations, FoundBy by);
 
-  // Keeps a posture found elsewhere, after checking it by the plain forward kinematics and the limits. Of those
-  // that count as one, the better one stays.
+  // Keeps a posture found elsewhere, after checking it by the plain forward kinematics and the limits. Of equal ones,
+  // the better one is kept.
   bool keep(const JointValues& q, FoundBy by);
 
   // Remembers the posture for the case that none is found.

@@ -51,8 +51,8 @@ struct CanChannelStatus {
 
 enum class CanReceive : std::uint8_t { frame, timeout, down, end };
 
-// All calls on one thread at a time. The channel recovers by itself from ENETDOWN, a removed interface and the like:
-// meanwhile receive() returns `down` (after its timeout) and send() refuses.
+// All calls on one thread at a time. The channel recovers from ENETDOWN, a removed interface and the like: meanwhile
+// receive() returns `down` (after its timeout) and send() refuses.
 class CanChannel {
  public:
   virtual ~CanChannel() = default;

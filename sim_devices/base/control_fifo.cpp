@@ -22,7 +22,7 @@ Result<std::unique_ptr<ControlFifo>> ControlFifo::open(const std::string& path) 
   if (::stat(path.c_str(), &found) != 0 || !S_ISFIFO(found.st_mode)) {
     return fail(fmt::format("--control {}: no FIFO", path), fmt::format("mkfifo {}", path));
   }
-  // Open for writing too: else each reader of a FIFO that nobody writes to sees its end.
+  // Open for writing too: otherwise a FIFO without a writer reads as ended.
   Descriptor fifo(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
   if (!fifo.valid()) {
     return fail(fmt::format("--control {}: {}", path, std::generic_category().message(errno)));
