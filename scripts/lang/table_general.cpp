@@ -14,7 +14,7 @@ using namespace parts;
 
 constexpr std::string_view kSection = "1.2.1";
 
-constexpr Choice kExecWait[] = {{"exec_wait", "queue behind the robot's running program"}};
+constexpr Choice kExecWait[] = {{"exec_wait", "queue after the robot's running program"}};
 
 constexpr Parameter kComment[] = {{.name = "text", .meaning = "comment", .kind = ParameterKind::text}};
 constexpr Parameter kFrame[] = {frame()};
