@@ -129,7 +129,7 @@ class BadInput(unittest.TestCase):
         self.refused(REFUSED, ["ik", "--urdf", str(DEMO_ARM), "--base", "flange", "--tip", "tool0", "--samples", "3"],
                      "flange", "tool0")
         self.refused_robot(urdf(joint("j", "a", "b")), "c is a root link")
-        self.refused_robot(urdf(joint("j", "a", "b"), joint("k", "b", "d")), "robot.urdf:6", "d is no link")
+        self.refused_robot(urdf(joint("j", "a", "b"), joint("k", "b", "d")), "robot.urdf:6", "d is not a link")
         self.refused_robot(urdf(joint("j", "b", "c"), joint("k", "c", "b")), "circle")
 
     def test_joints_that_cannot_be(self):

@@ -113,7 +113,7 @@ class Files(unittest.TestCase):
         self.assertRegex(text, r"the mesh odd_mime_type_glb.glb is refused: it cannot be read: ")
         status, text = self.check("huge_list_ply")
         self.assertEqual(status, 1)
-        self.assertIn("the mesh huge_list_ply.ply is refused: it cannot be read: its reader ran out of memory; export it anew, "
+        self.assertIn("the mesh huge_list_ply.ply is refused: it cannot be read: its reader ran out of memory; export it again, "
                       "or reduce the mesh", text)
 
 

@@ -32,7 +32,7 @@ class BadInput(unittest.TestCase):
             self.refused(REFUSED, [command, "--cell", self.home.cell, "--poses", path], *words)
 
     def test_all_mistakes_in_one_pass_with_their_places(self):
-        self.refused_postures("S1.Slide,S1.Turn\nx,1\n1\n0,inf\n", "postures.csv:2:1: error: S1.Slide is no finite",
+        self.refused_postures("S1.Slide,S1.Turn\nx,1\n1\n0,inf\n", "postures.csv:2:1: error: S1.Slide is not a finite",
                               "postures.csv:3:2: error: 1 columns, the header has 2",
                               "postures.csv:4:3: error: S1.Turn is not a finite number: inf")
 

@@ -167,7 +167,7 @@ class RealRobots(unittest.TestCase):
     def test_they_are_tested_link_by_link(self):
         robots = [r for r in ("ur5e", "tx90", "irb120") if (s.SHARED / "robots" / r).is_dir()]
         if not robots:
-            self.skipTest("skipped: shared/data/robots is not there")
+            self.skipTest("skipped: shared/data/robots does not exist")
         (self.home.root / "robots").mkdir()
         for robot in robots:
             shutil.copytree(s.SHARED / "robots" / robot, self.home.root / "robots" / robot)
