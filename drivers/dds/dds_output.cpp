@@ -19,7 +19,7 @@ namespace {
 // A transform takes some 120 bytes: so many stay within one UDP datagram.
 constexpr std::size_t kTransformsInMessage = 256;
 // Readers confirm some milliseconds after a heartbeat. At higher rates there is always a sample on its way, so that one
-// cannot tell a reader that stands still from one that follows.
+// cannot distinguish a reader that stands still from one that follows.
 constexpr double kMostCountedRateHz = 100;
 constexpr int kLeastDepth = 32;
 constexpr int kMostDepth = 400;

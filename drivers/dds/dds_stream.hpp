@@ -12,7 +12,7 @@ namespace cellmirror::dds {
 
 // The stream of one robot, closed. Streams with the same domain, interface, topic and reliability share one DDS reader,
 // each taking the joints that it knows. Fails where the configuration is wrong in itself (domain, topic, joints); what
-// the machine lacks (the interface's address) is told by open(). `clock` outlives the stream.
+// the machine lacks (the interface's address) is reported by open(). `clock` outlives the stream.
 // Samples are pushed on a thread of the DDS library, one at a time.
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_dds_stream(const DdsStreamConfig& config, const Clock& clock);
 

@@ -15,7 +15,7 @@ namespace cellmirror::dds {
 inline constexpr std::size_t kMaxDrawnPairs = 256;
 inline constexpr std::size_t kMaxDrawnContacts = 512;
 inline constexpr std::size_t kMaxDrawnCones = 64;
-// A viewer removes what is not drawn anew for so long.
+// A viewer removes a marker that was not refreshed for this time.
 inline constexpr std::int64_t kMarkerLifetimeNs = 2'000'000'000;
 
 // "distances": lines between the nearest points, orange within the warning distance, else green; "contacts": red

@@ -11,7 +11,7 @@ namespace cellmirror::haptics {
 // Of the force at the device.
 struct ForceLimits {
   double largest = 0;       // N
-  double largest_rate = 0;  // N/s; a force that is released, or that begins anew from zero, is not slowed
+  double largest_rate = 0;  // N/s; a force that is released, or that starts again from zero, is not slowed
 };
 
 // Tick thread only.
@@ -22,7 +22,7 @@ class ForceGate {
   void close() CELL_RT { port_ = nullptr; }
   [[nodiscard]] HapticRead read(HapticSample& sample) CELL_RT { return port_->read(sample); }
 
-  // The force begins anew from zero.
+  // The force starts again from zero.
   void restart() CELL_RT { limited_.setZero(); }
   // Keeps a force [N] within its limits. What it gives is what the hand gets until the next tick, `period` s later. A
   // force that is no number becomes zero.

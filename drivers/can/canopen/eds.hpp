@@ -20,7 +20,7 @@ struct DeviceDescription {
   ObjectDictionary objects;
 };
 
-// `node_id` 1..127 takes the place of $NODEID. All mistakes in one pass; what could be read is returned all the same.
+// `node_id` 1..127 takes the place of $NODEID. All errors in one pass; what could be read is returned all the same.
 [[nodiscard]] DeviceDescription parse_eds(std::string_view text, const std::string& file, std::uint8_t node_id,
                                           Diagnostics& diagnostics);
 // The same from a file; none where it cannot be read (told in `diagnostics`). At most 16 MiB.

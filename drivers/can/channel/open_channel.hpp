@@ -9,7 +9,7 @@
 
 namespace cellmirror::can {
 
-// "socketcan:can0", "udp:GROUP:PORT" (IPv6 groups in brackets) or "log:FILE". Fails for what cannot mend itself: a text
+// "socketcan:can0", "udp:GROUP:PORT" (IPv6 groups in brackets) or "log:FILE". Fails for what cannot recover: a text
 // that is no endpoint, a kernel without CAN, an interface or file that does not exist, no permission. An interface that
 // is down is no failure. Not for the tick.
 [[nodiscard]] Result<std::unique_ptr<CanChannel>> open_can_channel(const CanChannelConfig& config);

@@ -23,7 +23,7 @@ namespace cellmirror::can {
 struct Cia402DriveConfig {
   std::uint8_t node_id = 1;
   std::string name = "simulated drive";  // object 0x1008
-  std::uint16_t heartbeat_ms = 0;        // object 0x1017 at power-on; 0: none until somebody writes it
+  std::uint16_t heartbeat_ms = 0;        // object 0x1017 at power-on; 0: none until it is written
   // At most 4 of each, numbers 1..4. Empty: TPDO1 = 0x6041 + 0x6064 with every SYNC; RPDO1 = 0x6040 + 0x607A.
   std::vector<TpdoConfig> tpdos;
   std::vector<TpdoConfig> rpdos;

@@ -20,8 +20,8 @@ struct Cia402Plan {
 };
 
 // Reads the EDS or DCF of each node. The mapping of the cell file wins over the EDS; without both it is
-// TPDO1 = 0x6041:00/16 + 0x6064:00/32, with every SYNC where this stream produces SYNC, else event driven. All mistakes
-// are told; none where there was one.
+// TPDO1 = 0x6041:00/16 + 0x6064:00/32, with every SYNC where this stream produces SYNC, else event driven. All errors
+// are reported; no plan where there was one.
 [[nodiscard]] std::optional<Cia402Plan> plan_cia402(const Cia402StreamConfig& config, Diagnostics& diagnostics);
 
 }  // namespace cellmirror::can

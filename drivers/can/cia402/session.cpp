@@ -198,7 +198,7 @@ void Cia402Session::count_missing() {
   for (Tpdo& tpdo : tpdos_) {
     if (!tpdo.expected) continue;
     ++counters_.lost;
-    tell(Cia402EventKind::tpdo_missing, tpdo.node, fmt::format("TPDO{} did not follow a SYNC", tpdo.number));
+    report(Cia402EventKind::tpdo_missing, tpdo.node, fmt::format("TPDO{} did not follow a SYNC", tpdo.number));
   }
 }
 
@@ -252,10 +252,10 @@ Timestamp Cia402Session::next_due() const {
 
 void Cia402Session::reject(std::size_t node, std::string why) {
   ++counters_.rejected;
-  tell(Cia402EventKind::rejected, node, std::move(why));
+  report(Cia402EventKind::rejected, node, std::move(why));
 }
 
-void Cia402Session::tell(Cia402EventKind kind, std::size_t node, std::string what) {
+void Cia402Session::report(Cia402EventKind kind, std::size_t node, std::string what) {
   const Cia402NodeStatus& status = nodes_[node].status;
   output_->event({kind, node, fmt::format("node {} ({}): {}", status.node_id, status.joint_name, what)});
 }

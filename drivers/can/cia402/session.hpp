@@ -142,7 +142,7 @@ class Cia402Session {
   void emit();
   void produce_sync(Timestamp now);
   void reject(std::size_t node, std::string why);
-  void tell(Cia402EventKind kind, std::size_t node, std::string what);
+  void report(Cia402EventKind kind, std::size_t node, std::string what);
   // session_nodes.cpp
   void on_heartbeat(std::size_t index, NmtState state, Timestamp now);
   void on_boot_up(std::size_t index, Timestamp now);

@@ -1,6 +1,6 @@
 // Nodes that are lost are asked by SDO now and then. A drive that was off while its boot-up could not be heard is
 // pre-operational and as its maker made it: it may send nothing by itself (object 0x1017 is 0), but answers SDO. One
-// that somebody stopped does not answer (CiA 301, 7.3.2.2.4), so that it is left stopped.
+// that was stopped does not answer (CiA 301, 7.3.2.2.4), so that it is left stopped.
 #include <algorithm>
 #include <span>
 
@@ -24,7 +24,7 @@ bool Cia402Session::asks_lost_nodes(const Node& node) const {
   return plan_.config.heartbeat_timeout.count() > 0 && (plan_.config.start_nodes || !node.steps.empty());
 }
 
-// One that was told to send its heartbeat and does not is no more what it was, whatever else it sends.
+// A node that was configured to send its heartbeat and does not is lost, whatever else it sends.
 bool Cia402Session::is_silent(const Node& node, Timestamp now) const {
   if (!node.steps.empty() && plan_.config.heartbeat_producer_ms > 0) return true;
   return !node.status.last_tpdo.known() || now - node.status.last_tpdo >= plan_.config.heartbeat_timeout;
@@ -95,7 +95,7 @@ void Cia402Session::on_forgotten(std::size_t index, Timestamp now) {
   node.status.state = Cia402State::unknown;
   node.status.statusword = 0;
   node.configured = false;
-  tell(Cia402EventKind::boot_up, index, "answers, but not as it was configured: its boot-up was missed");
+  report(Cia402EventKind::boot_up, index, "answers, but not as it was configured: its boot-up was missed");
   bring_up(index, now);
 }
 

@@ -87,7 +87,7 @@ void Cia402Session::next_step(std::size_t index, Timestamp now) {
     node.configured = true;
     node.status.configuring = false;
     node.status.configuration_error.clear();
-    tell(Cia402EventKind::configured, index, "configured");
+    report(Cia402EventKind::configured, index, "configured");
     start_node(node, now);
     return;
   }
@@ -128,7 +128,7 @@ void Cia402Session::fail_configuration(std::size_t index, const std::string& why
   node.status.configuring = false;
   const bool silent = node.sdo->abort() == SdoAbort::timed_out;
   node.retry = now + (silent ? kRetrySilent : kRetryRefused);
-  if (node.status.configuration_error != why) tell(Cia402EventKind::configuration_failed, index, why);
+  if (node.status.configuration_error != why) report(Cia402EventKind::configuration_failed, index, why);
   node.status.configuration_error = why;
 }
 
@@ -145,14 +145,14 @@ void Cia402Session::on_heartbeat(std::size_t index, NmtState state, Timestamp no
     node.status.heartbeat_lost = false;
     node.ask = {};
     if (std::exchange(node.asking, false)) node.sdo->reset();
-    tell(Cia402EventKind::node_resolved, index, "the heartbeat is back");
+    report(Cia402EventKind::node_resolved, index, "the heartbeat is back");
   }
   if (state == NmtState::boot_up) {
     on_boot_up(index, now);
     return;
   }
   if (state != NmtState::operational) node.answering = false;
-  // Whoever stopped a node meant it; pre-operational is what a node is left in that missed its start.
+  // A stopped node was stopped on purpose; a node that missed its start stays pre-operational.
   const bool waits = state == NmtState::pre_operational && !node.status.configuring && !node.retry.known();
   if (waits && now - node.start_sent >= kStartAgain) bring_up(index, now);
 }
@@ -164,7 +164,7 @@ void Cia402Session::on_boot_up(std::size_t index, Timestamp now) {
   node.status.statusword = 0;
   node.answering = false;
   node.configured = false;  // a reset forgets what SDO wrote
-  tell(Cia402EventKind::boot_up, index, "boot-up");
+  report(Cia402EventKind::boot_up, index, "boot-up");
   bring_up(index, now);
 }
 
@@ -172,7 +172,7 @@ void Cia402Session::on_emcy(std::size_t index, const Emcy& emcy) {
   Node& node = nodes_[index];
   node.status.heard = true;
   node.status.last_emcy = emcy;
-  tell(Cia402EventKind::emcy, index, "EMCY " + text(emcy));
+  report(Cia402EventKind::emcy, index, "EMCY " + text(emcy));
 }
 
 void Cia402Session::watch(std::size_t index, Timestamp now) {
@@ -183,7 +183,7 @@ void Cia402Session::watch(std::size_t index, Timestamp now) {
   node.status.nmt.reset();
   node.answering = false;
   if (asks_lost_nodes(node)) node.ask = now + kAskLost;
-  tell(Cia402EventKind::node_lost, index, node.status.last_heartbeat.known() ? "no heartbeat" : "not heard");
+  report(Cia402EventKind::node_lost, index, node.status.last_heartbeat.known() ? "no heartbeat" : "not heard");
 }
 
 std::string words(const Cia402NodeStatus& node, Timestamp now) {

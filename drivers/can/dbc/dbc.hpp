@@ -59,7 +59,7 @@ struct Dbc {
   [[nodiscard]] const DbcMessage* find(std::string_view message) const;
 };
 
-// Reads the whole text; finds all mistakes in one pass. What could be read is returned even where there were errors.
+// Reads the whole text; finds all errors in one pass. What could be read is returned even where there were errors.
 // Signals that reach beyond their message, doubled names and numbers out of range are errors; the signal is left out.
 [[nodiscard]] Dbc parse_dbc(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 // The same from a file; none where it cannot be read (told in `diagnostics`). At most 16 MiB.

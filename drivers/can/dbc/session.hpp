@@ -29,8 +29,9 @@ struct DbcPlan {
   std::vector<Mapped> mapped;
 };
 
-// Reads the DBC and finds the configured signals in it; unknown names are answered with the nearest ones. All mistakes
-// are told; none where there was one. Warns of signals in a unit that is not SI where the cell file gives no scale.
+// Reads the DBC and finds the configured signals in it; unknown names are answered with the nearest ones. All errors
+// are reported; no plan where there was one. Warns of signals in a unit that is not SI where the cell file gives no
+// scale.
 [[nodiscard]] std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Diagnostics& diagnostics);
 // The same with a DBC that was read already.
 [[nodiscard]] std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics);
@@ -73,7 +74,7 @@ class DbcSession {
     JointQuantity quantity = JointQuantity::position;
     double scale = 1.0;
     double offset = 0.0;
-    bool outside = false;  // and that was told
+    bool outside = false;  // and that was reported
     Timestamp told;
   };
   struct Source {

@@ -22,7 +22,7 @@ struct CanStreamOptions {
   ChannelOpener open_channel;       // empty: open_can_channel(); tests give a virtual bus
 };
 
-// Reads and checks the EDS, DCF or DBC files now; the channel is opened by open(). Fails with all mistakes found.
+// Reads and checks the EDS, DCF or DBC files now; the channel is opened by open(). Fails with all errors found.
 // `clock` outlives the stream. Latency from a frame's arrival to the sample in the sink: microseconds after the wake-up
 // of the stream's thread, which blocks in poll; SYNC is produced by the poll's timeout.
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_stream(const Cia402StreamConfig& config,
@@ -33,7 +33,7 @@ struct CanStreamOptions {
 
 // Everything that would keep such a stream from being made, and what makes its values doubtful, at its place in the
 // cell file or in the EDS, DCF or DBC file. What the reader of the cell file refused (empty names, no node, twice the
-// same) is left out: it was told.
+// same) is left out: it was reported.
 void check_stream(const Cia402StreamConfig& config, Diagnostics& diagnostics);
 void check_stream(const DbcStreamConfig& config, Diagnostics& diagnostics);
 

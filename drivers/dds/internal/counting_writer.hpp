@@ -31,8 +31,8 @@ class CountingWriter {
  public:
   struct Options {
     int depth = 1;
-    // At high rates there is always a sample on its way, so that one cannot tell a reader that stands still from one
-    // that follows.
+    // At high rates there is always a sample on its way, so that a reader that stands still cannot be distinguished
+    // from one that follows.
     bool counts_overwritten = true;
     bool large = false;  // as EndpointConfig
   };

@@ -48,7 +48,7 @@ class FindingsWriter {
   CountingWriter::Options range_options_;
   std::unique_ptr<CountingWriter> diagnostics_;                    // null where the topic is switched off
   std::unique_ptr<CountingWriter> markers_;                        // likewise
-  mutable std::mutex ranges_mutex_;                                // the map grows while somebody counts
+  mutable std::mutex ranges_mutex_;                                // the map grows while another thread counts
   std::map<std::string, std::unique_ptr<CountingWriter>> ranges_;  // by id; null where DDS refused the topic
   Counter ranges_refused_;
 

@@ -34,7 +34,7 @@ struct EndpointConfig {
 [[nodiscard]] Result<void> check_domain(int domain);
 [[nodiscard]] Result<void> check_topic(std::string_view topic);
 
-// One for each domain and interface in use; lives as long as somebody holds it. Any thread.
+// One for each domain and interface in use; lives as long as it is referenced. Any thread.
 class Participant {
  public:
   // `interface_address`: an IPv4 address of this machine; nothing leaves by other interfaces.

@@ -18,7 +18,7 @@ namespace cellmirror::dds {
 // One calling thread, but for add_counters().
 class WrenchWriter {
  public:
-  // A robot's topic is <prefix>/<robot>, made when there is first something to tell; an empty prefix: never.
+  // A robot's topic is <prefix>/<robot>, created with the first value; an empty prefix: never.
   WrenchWriter(std::shared_ptr<Participant> participant, std::string prefix, CountingWriter::Options options)
       : participant_(std::move(participant)), prefix_(std::move(prefix)), options_(options) {}
 
@@ -33,7 +33,7 @@ class WrenchWriter {
   std::shared_ptr<Participant> participant_;
   std::string prefix_;
   CountingWriter::Options options_;
-  mutable std::mutex mutex_;                                        // the map grows while somebody counts
+  mutable std::mutex mutex_;                                        // the map grows while another thread counts
   std::map<std::string, std::unique_ptr<CountingWriter>> writers_;  // by robot; null where DDS refused the topic
   WrenchStamped message_;                                           // reused
 };
