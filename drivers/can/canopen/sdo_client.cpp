@@ -84,7 +84,7 @@ std::optional<CanFrame> SdoClient::receive(const CanFrame& frame, Timestamp now)
 }
 
 std::optional<CanFrame> SdoClient::on_download_started(const CanFrame& frame) {
-  if (frame.data[0] >> 5 != kDownloadStarted) return abort(SdoAbort::unknown_command);
+  if (frame.data[0] >> 5 != kDownloadStarted) return abort_with(SdoAbort::unknown_command);
   if (sdo_address(frame) != address_) return {};  // a late answer to an earlier transfer
   if (value_.size() <= 4) {
     state_ = State::done;
@@ -97,8 +97,8 @@ std::optional<CanFrame> SdoClient::on_download_started(const CanFrame& frame) {
 }
 
 std::optional<CanFrame> SdoClient::on_download_segment(const CanFrame& frame) {
-  if (frame.data[0] >> 5 != kDownloadSegmentTaken) return abort(SdoAbort::unknown_command);
-  if (((frame.data[0] >> 4 & 1U) != 0) != toggle_) return abort(SdoAbort::toggle_not_alternated);
+  if (frame.data[0] >> 5 != kDownloadSegmentTaken) return abort_with(SdoAbort::unknown_command);
+  if (((frame.data[0] >> 4 & 1U) != 0) != toggle_) return abort_with(SdoAbort::toggle_not_alternated);
   sent_ += std::min(kSegment, value_.size() - sent_);
   toggle_ = !toggle_;
   if (sent_ == value_.size()) {
@@ -119,7 +119,7 @@ CanFrame SdoClient::next_download_segment() {
 
 std::optional<CanFrame> SdoClient::on_upload_started(const CanFrame& frame) {
   const unsigned command = frame.data[0];
-  if (command >> 5 != kUploadStarted) return abort(SdoAbort::unknown_command);
+  if (command >> 5 != kUploadStarted) return abort_with(SdoAbort::unknown_command);
   if (sdo_address(frame) != address_) return {};
   const bool expedited = (command & 2U) != 0;
   const bool size_told = (command & 1U) != 0;
@@ -130,7 +130,7 @@ std::optional<CanFrame> SdoClient::on_upload_started(const CanFrame& frame) {
     return {};
   }
   announced_ = size_told ? get_le32(std::span(frame.data).subspan(4)) : 0;
-  if (announced_ > kMaxSdoValue) return abort(SdoAbort::out_of_memory);
+  if (announced_ > kMaxSdoValue) return abort_with(SdoAbort::out_of_memory);
   phase_ = Phase::upload_segment;
   toggle_ = false;
   return next_upload_segment();
@@ -143,13 +143,13 @@ CanFrame SdoClient::next_upload_segment() const {
 
 std::optional<CanFrame> SdoClient::on_upload_segment(const CanFrame& frame) {
   const unsigned command = frame.data[0];
-  if (command >> 5 != kUploadSegmentGiven) return abort(SdoAbort::unknown_command);
-  if (((command >> 4 & 1U) != 0) != toggle_) return abort(SdoAbort::toggle_not_alternated);
+  if (command >> 5 != kUploadSegmentGiven) return abort_with(SdoAbort::unknown_command);
+  if (((command >> 4 & 1U) != 0) != toggle_) return abort_with(SdoAbort::toggle_not_alternated);
   const std::size_t size = kSegment - (command >> 1 & 7U);
-  if (value_.size() + size > kMaxSdoValue) return abort(SdoAbort::out_of_memory);
+  if (value_.size() + size > kMaxSdoValue) return abort_with(SdoAbort::out_of_memory);
   value_.insert(value_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + static_cast<std::ptrdiff_t>(size));
   if ((command & 1U) != 0) {
-    if (announced_ != 0 && announced_ != value_.size()) return abort(SdoAbort::length_mismatch);
+    if (announced_ != 0 && announced_ != value_.size()) return abort_with(SdoAbort::length_mismatch);
     state_ = State::done;
     return {};
   }
@@ -159,10 +159,10 @@ std::optional<CanFrame> SdoClient::on_upload_segment(const CanFrame& frame) {
 
 std::optional<CanFrame> SdoClient::advance(Timestamp now) {
   if (state_ != State::busy || now < deadline_) return {};
-  return abort(SdoAbort::timed_out);
+  return abort_with(SdoAbort::timed_out);
 }
 
-CanFrame SdoClient::abort(SdoAbort abort) {
+CanFrame SdoClient::abort_with(SdoAbort abort) {
   state_ = State::failed;
   abort_ = abort;
   return encode_sdo_abort(kSdoRequestBase + node_, address_, abort);

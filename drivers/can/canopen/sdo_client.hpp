@@ -45,7 +45,7 @@ class SdoClient {
   [[nodiscard]] std::optional<CanFrame> on_upload_segment(const CanFrame& frame);
   [[nodiscard]] CanFrame next_download_segment();
   [[nodiscard]] CanFrame next_upload_segment() const;
-  CanFrame abort(SdoAbort abort);
+  CanFrame abort_with(SdoAbort abort);
 
   std::uint8_t node_;
   Nanoseconds timeout_;
