@@ -5,54 +5,52 @@ namespace cellmirror::script {
 
 namespace {
 
-// Slots and parameters of STVW, in the order of the table.
-constexpr std::size_t kStepsParameter = 7;
-constexpr std::size_t kTimeParameter = 8;
-constexpr std::size_t kStepsSlot = 11;
-constexpr std::size_t kTimeSlot = 12;
-
 // SET_MODE's identifiers: those of the manual in the order of DisplayMode, then ours.
 constexpr std::size_t kLegend = kDisplayModes;
 
 ViewPace pace_of(const ParsedCommand& command) {
-  if (command.given(kStepsParameter)) return InSteps{static_cast<std::uint64_t>(command.integer(kStepsSlot))};
-  if (command.given(kTimeParameter))
-    return InTime{Nanoseconds(static_cast<std::int64_t>(command.number(kTimeSlot) * 1e9))};
+  if (command.given(slots::stvw::steps))
+    return InSteps{static_cast<std::uint64_t>(command.integer(slots::stvw::steps))};
+  if (command.given(slots::stvw::time))
+    return InTime{Nanoseconds(static_cast<std::int64_t>(command.number(slots::stvw::time) * 1e9))};
   return AtOnce{};
 }
 
 Outcome set_display(const ParsedCommand& command, CommandHost& host) {
-  const bool full_screen = command.given(1) && command.choice(1) == 0;
-  return Outcome::of(host.display.set_display(static_cast<int>(command.integer(0)), full_screen));
+  const bool full_screen = command.given(slots::stdp::screen) && command.choice(slots::stdp::screen) == 0;
+  return Outcome::of(host.display.set_display(static_cast<int>(command.integer(slots::stdp::display)), full_screen));
 }
 
 Outcome set_view(const ParsedCommand& command, CommandHost& host) {
-  const auto vector = [&](std::size_t parameter, std::size_t slot) -> std::optional<Eigen::Vector3d> {
-    if (!command.given(parameter)) return std::nullopt;
-    return Eigen::Vector3d(command.number(slot), command.number(slot + 1), command.number(slot + 2));
+  const auto vector = [&](const Slot& slot) -> std::optional<Eigen::Vector3d> {
+    if (!command.given(slot)) return std::nullopt;
+    return vector_at(command, slot);
   };
-  const auto number = [&](std::size_t parameter, std::size_t slot) -> std::optional<double> {
-    if (!command.given(parameter)) return std::nullopt;
+  const auto number = [&](const Slot& slot) -> std::optional<double> {
+    if (!command.given(slot)) return std::nullopt;
     return command.number(slot);
   };
-  const ViewChange change{vector(1, 1), vector(2, 4), number(3, 7), number(4, 8), number(5, 9), number(6, 10)};
-  return Outcome::of(host.display.set_view(static_cast<int>(command.integer(0)), change, pace_of(command)));
+  namespace at = slots::stvw;
+  const ViewChange change{vector(at::viewpoint), vector(at::lookpoint),   number(at::twist),
+                          number(at::angle),     number(at::front_plane), number(at::back_plane)};
+  return Outcome::of(host.display.set_view(static_cast<int>(command.integer(at::view)), change, pace_of(command)));
 }
 
 Outcome connect_view(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.connect_view(static_cast<int>(command.integer(0)), command.text(1)));
+  return Outcome::of(host.display.connect_view(static_cast<int>(command.integer(slots::covw::view)),
+                                               command.text(slots::covw::camera)));
 }
 
 // The first choice of all switches is "on".
 Outcome set_mode(const ParsedCommand& command, CommandHost& host) {
-  const bool on = command.choice(1) == 0;
-  if (command.choice(0) == kLegend) return Outcome::of(host.display.set_legend(on));
-  return Outcome::of(host.display.set_mode(static_cast<DisplayMode>(command.choice(0)), on));
+  const bool on = command.choice(slots::set_mode::on) == 0;
+  if (command.choice(slots::set_mode::mode) == kLegend) return Outcome::of(host.display.set_legend(on));
+  return Outcome::of(host.display.set_mode(static_cast<DisplayMode>(command.choice(slots::set_mode::mode)), on));
 }
 
 template <DisplayMode mode>
 Outcome switch_mode(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_mode(mode, command.choice(0) == 0));
+  return Outcome::of(host.display.set_mode(mode, command.choice(kOnlySlot) == 0));
 }
 
 Outcome wait(const ParsedCommand& /*command*/, CommandHost& /*host*/) {

@@ -11,7 +11,7 @@ namespace {
 
 // The text may run over several lines of a SCRIPT file; it is shown on one.
 Outcome show_message(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.show_message(joined_lines(command.text(0))));
+  return Outcome::of(host.display.show_message(joined_lines(command.text(kOnlySlot))));
 }
 
 // A System V key is a 32-bit pattern; the command accepts the whole of it as a positive number.
@@ -20,20 +20,22 @@ std::int32_t key_of(const ParsedCommand& command, std::size_t slot) {
 }
 
 Outcome set_force_memory(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.interaction.set_force_memory(static_cast<std::uint64_t>(command.integer(0)),
-                                                       key_of(command, 1),
-                                                       static_cast<std::size_t>(command.integer(2))));
+  return Outcome::of(
+      host.interaction.set_force_memory(static_cast<std::uint64_t>(command.integer(slots::force_memory::send_type)),
+                                        key_of(command, slots::force_memory::key),
+                                        static_cast<std::size_t>(command.integer(slots::force_memory::bytes))));
 }
 
 Outcome set_switch_memory(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.interaction.set_switch_memory(static_cast<std::uint64_t>(command.integer(0)),
-                                                        key_of(command, 1),
-                                                        static_cast<std::size_t>(command.integer(2))));
+  return Outcome::of(
+      host.interaction.set_switch_memory(static_cast<std::uint64_t>(command.integer(slots::switch_memory::send_type)),
+                                         key_of(command, slots::switch_memory::key),
+                                         static_cast<std::size_t>(command.integer(slots::switch_memory::bytes))));
 }
 
 Outcome set_switches_online(const ParsedCommand& command, CommandHost& host) {
   constexpr std::size_t kOnline = 0;
-  return Outcome::of(host.interaction.set_switches_online(command.choice(0) == kOnline));
+  return Outcome::of(host.interaction.set_switches_online(command.choice(kOnlySlot) == kOnline));
 }
 
 constexpr Registration kHandlers[] = {

@@ -14,33 +14,33 @@ constexpr std::size_t kOn = 0;  // of [on | off]
 
 Outcome set_force_arrows(const ParsedCommand& command, CommandHost& host) {
   ForceArrowSettings settings;
-  settings.joint_forces = static_cast<ArrowComponent>(command.choice(0));
-  settings.joint_torques = static_cast<ArrowComponent>(command.choice(1));
-  settings.tcp_force = static_cast<ArrowComponent>(command.choice(2));
+  settings.joint_forces = static_cast<ArrowComponent>(command.choice(slots::force_arrow::joint_forces));
+  settings.joint_torques = static_cast<ArrowComponent>(command.choice(slots::force_arrow::joint_torques));
+  settings.tcp_force = static_cast<ArrowComponent>(command.choice(slots::force_arrow::tcp_force));
   return Outcome::with_remark(host.interaction.set_force_arrows(settings));
 }
 
 Outcome set_force_limits(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.interaction.set_force_limits({command.number(0), command.number(1)}));
+  return Outcome::of(host.interaction.set_force_limits(
+      {command.number(slots::torque_limit::force), command.number(slots::torque_limit::torque)}));
 }
 
 Outcome set_tcp_test(const ParsedCommand& command, CommandHost& host) {
   std::array<double, 4> values{};
-  command.numbers(1, values);
-  return Outcome::of(host.interaction.set_tcp_test(command.choice(0) == kOn, values));
+  command.numbers(slots::tcp_test::first_value, values);
+  return Outcome::of(host.interaction.set_tcp_test(command.choice(slots::tcp_test::on) == kOn, values));
 }
 
 Outcome set_motor_forces_only(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.interaction.set_motor_forces_only(command.choice(0) == kOn));
+  return Outcome::of(host.interaction.set_motor_forces_only(command.choice(kOnlySlot) == kOn));
 }
 
 // The slaves of MASTER_SLAVE, as the matcher has laid them out: name, count, and as many pairs of joints.
 class SlaveList {
  public:
   explicit SlaveList(const ParsedCommand& command) {
-    constexpr std::size_t kCountSlot = 2;
-    const auto slaves = static_cast<std::size_t>(command.integer(kCountSlot));
-    std::size_t slot = kCountSlot + 1;
+    const auto slaves = static_cast<std::size_t>(command.integer(slots::master_slave::slaves));
+    std::size_t slot = slots::master_slave::first_slave;
     std::size_t first_pair = 0;
     while (count_ < slaves) {
       const std::string_view robot = command.text(slot);
@@ -65,9 +65,9 @@ class SlaveList {
 
 Outcome master_slave(const ParsedCommand& command, CommandHost& host) {
   const SlaveList list(command);
-  const std::string_view master = command.text(1);
-  return Outcome::of(command.choice(0) == kOn ? host.interaction.couple(master, list.slaves())
-                                              : host.interaction.uncouple(master, list.slaves()));
+  const std::string_view master = command.text(slots::master_slave::master);
+  return Outcome::of(command.choice(slots::master_slave::on) == kOn ? host.interaction.couple(master, list.slaves())
+                                                                    : host.interaction.uncouple(master, list.slaves()));
 }
 
 constexpr Registration kHandlers[] = {

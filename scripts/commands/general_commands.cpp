@@ -10,99 +10,111 @@ namespace cellmirror::script {
 namespace {
 
 Outcome activate(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.activate(command.text(0)));
+  return Outcome::of(host.world.activate(command.text(kOnlySlot)));
 }
 Outcome deactivate(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.deactivate(command.text(0)));
+  return Outcome::of(host.world.deactivate(command.text(kOnlySlot)));
 }
 Outcome delete_node(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.delete_node(command.text(0)));
+  return Outcome::of(host.world.delete_node(command.text(kOnlySlot)));
 }
 Outcome swap_node(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.swap_node(command.text(0)));
+  return Outcome::of(host.world.swap_node(command.text(kOnlySlot)));
 }
 Outcome level_down(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.level_down(command.text(0)));
+  return Outcome::of(host.world.level_down(command.text(kOnlySlot)));
 }
 Outcome level_up(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.level_up(command.text(0)));
+  return Outcome::of(host.world.level_up(command.text(kOnlySlot)));
 }
 
 Outcome robot_language(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.set_language(command.text(0)));
+  return Outcome::of(host.programs.set_language(command.text(kOnlySlot)));
 }
 
 Outcome robact(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_active_robot(command.text(0)));
+  return Outcome::of(host.robots.set_active_robot(command.text(kOnlySlot)));
 }
 
 Outcome exec_script(const ParsedCommand& command, CommandHost& /*host*/) {
   Outcome outcome;
   outcome.kind = Outcome::Kind::call_script;
-  outcome.script = command.text(0);
+  outcome.script = command.text(kOnlySlot);
   return outcome;
 }
 
 Outcome draw_scene(const ParsedCommand& /*command*/, CommandHost& host) { return Outcome::of(host.world.draw_scene()); }
 
 Outcome connect(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.connect(command.text(0), command.text(1)));
+  return Outcome::of(
+      host.world.connect(command.text(slots::connect::attached), command.text(slots::connect::predecessor)));
 }
 
 Outcome frame_to_workframe(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.attach_at_workframe(command.text(0), command.text(1), command.text(2)));
+  return Outcome::of(host.world.attach_at_workframe(command.text(slots::connect::attached),
+                                                    command.text(slots::connect::predecessor),
+                                                    command.text(slots::connect::workframe)));
 }
 
 Outcome set_placement(const ParsedCommand& command, CommandHost& host) {
-  const Eigen::Vector3d rpy(command.number(1), command.number(2), command.number(3));
-  const Eigen::Vector3d xyz(command.number(4), command.number(5), command.number(6));
-  return Outcome::of(host.world.set_placement(command.text(0), pose_from_xyz_rpy(xyz, rpy)));
+  const Eigen::Vector3d rpy = vector_at(command, slots::placement::rotation);
+  const Eigen::Vector3d xyz = vector_at(command, slots::placement::translation);
+  return Outcome::of(host.world.set_placement(command.text(slots::placement::frame), pose_from_xyz_rpy(xyz, rpy)));
 }
 
 // The first choice of both switches is "on".
 Outcome set_online(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_online(command.text(0), command.choice(1) == 0));
+  return Outcome::of(host.robots.set_online(command.text(slots::robot_online::robot),
+                                            command.choice(slots::robot_online::online) == 0));
 }
 Outcome set_sending(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_sending(command.text(0), command.choice(1) == 0));
+  return Outcome::of(host.robots.set_sending(command.text(slots::robot_sending::robot),
+                                             command.choice(slots::robot_sending::sending) == 0));
 }
 
 Outcome set_camera(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_camera(command.text(0), command.number(1), command.number(2)));
+  return Outcome::of(host.display.set_camera(command.text(slots::campar::camera),
+                                             command.number(slots::campar::focal_distance),
+                                             command.number(slots::campar::opening_angle)));
 }
 
 // In the order of the table.
-DrawMode draw_mode(const ParsedCommand& command, std::size_t slot) {
+DrawMode draw_mode(const ParsedCommand& command) {
   constexpr std::array<DrawMode, 4> kModes = {DrawMode::wireframe, DrawMode::flat, DrawMode::gouraud,
                                               DrawMode::transparent};
-  return kModes[command.choice(slot)];
+  return kModes[command.choice(slots::render::mode)];
 }
 
 Outcome set_frame_render(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::with_remark(host.display.set_draw_mode(command.text(0), false, draw_mode(command, 1)));
+  return Outcome::with_remark(
+      host.display.set_draw_mode(command.text(slots::render::frame), false, draw_mode(command)));
 }
 Outcome set_abstract_render(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::with_remark(host.display.set_draw_mode(command.text(0), true, draw_mode(command, 1)));
+  return Outcome::with_remark(host.display.set_draw_mode(command.text(slots::render::frame), true, draw_mode(command)));
 }
 
 Outcome load_views(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.load_views(command.text(0)));
+  return Outcome::of(host.display.load_views(command.text(kOnlySlot)));
 }
 
 Outcome tag_drawlen(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_tag_length(command.number(0)));
+  return Outcome::of(host.display.set_tag_length(command.number(kOnlySlot)));
 }
 
 // The first choice of all three switches is "on"; the parser ensures that a target comes with "on" only.
 Outcome cam_tracking(const ParsedCommand& command, CommandHost& host) {
-  const std::optional<std::string_view> target = command.choice(1) == 0 ? std::optional(command.text(2)) : std::nullopt;
-  return Outcome::of(host.display.track(command.text(0), target));
+  const std::optional<std::string_view> target = command.choice(slots::camera_switch::on) == 0
+                                                     ? std::optional(command.text(slots::camera_switch::target))
+                                                     : std::nullopt;
+  return Outcome::of(host.display.track(command.text(slots::camera_switch::camera), target));
 }
 Outcome cam_view_pyramid(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.show_pyramid(command.text(0), command.choice(1) == 0));
+  return Outcome::of(host.display.show_pyramid(command.text(slots::camera_switch::camera),
+                                               command.choice(slots::camera_switch::on) == 0));
 }
 Outcome cam_online(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_camera_online(command.text(0), command.choice(1) == 0));
+  return Outcome::of(host.display.set_camera_online(command.text(slots::camera_switch::camera),
+                                                    command.choice(slots::camera_switch::on) == 0));
 }
 
 constexpr Registration kHandlers[] = {

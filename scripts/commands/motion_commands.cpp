@@ -42,8 +42,7 @@ class TargetReader {
  private:
   // Translation first, then roll, pitch, yaw.
   static Pose pose_at(const ParsedCommand& command, std::size_t slot) {
-    return pose_from_xyz_rpy({command.number(slot), command.number(slot + 1), command.number(slot + 2)},
-                             {command.number(slot + 3), command.number(slot + 4), command.number(slot + 5)});
+    return pose_from_xyz_rpy(vector_at(command, slot), vector_at(command, slot + 3));
   }
 
   std::array<double, kMaxJointsPerRobot> joints_;
@@ -52,23 +51,25 @@ class TargetReader {
 
 template <TargetMode mode>
 Outcome position(const ParsedCommand& command, CommandHost& host) {
-  const TargetReader reader(command, mode, 1);
-  auto begun = host.motion.position(command.text(0), reader.target());
+  const TargetReader reader(command, mode, slots::pos_rob::target);
+  auto begun = host.motion.position(command.text(slots::pos_rob::robot), reader.target());
   if (!begun) return Outcome::refused(std::move(begun.error()));
   return *begun ? Outcome::pending(std::move(*begun)) : Outcome::done();
 }
 
 template <TargetMode mode>
 Outcome queue_move(const ParsedCommand& command, CommandHost& host) {
-  const TargetReader reader(command, mode, 2);
-  const auto path = static_cast<MovePath>(command.choice(1));
-  return Outcome::of(host.motion.queue_move(command.text(0), path, reader.target()));
+  const TargetReader reader(command, mode, slots::move_rob::target);
+  const auto path = static_cast<MovePath>(command.choice(slots::move_rob::path));
+  return Outcome::of(host.motion.queue_move(command.text(slots::move_rob::robot), path, reader.target()));
 }
 
-Outcome stop(const ParsedCommand& command, CommandHost& host) { return Outcome::of(host.motion.stop(command.text(0))); }
+Outcome stop(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.motion.stop(command.text(kOnlySlot)));
+}
 
 Outcome set_positioning(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.motion.set_positioning(static_cast<Positioning>(command.choice(0))));
+  return Outcome::of(host.motion.set_positioning(static_cast<Positioning>(command.choice(kOnlySlot))));
 }
 
 constexpr Registration kHandlers[] = {

@@ -6,15 +6,15 @@ namespace cellmirror::script {
 namespace {
 
 Outcome save_flight(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.diagnosis.save_flight_record(command.text(0)));
+  return Outcome::of(host.diagnosis.save_flight_record(command.text(kOnlySlot)));
 }
 
 Outcome reset_haptic(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.interaction.reset_haptic(command.text(0)));
+  return Outcome::of(host.interaction.reset_haptic(command.text(kOnlySlot)));
 }
 
 Outcome save_views(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.save_views(command.text(0)));
+  return Outcome::of(host.display.save_views(command.text(kOnlySlot)));
 }
 
 constexpr Registration kHandlers[] = {

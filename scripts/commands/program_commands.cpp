@@ -12,59 +12,66 @@ Outcome begun(Result<ActivityHandle> result) {
 }
 
 Outcome load(const ParsedCommand& command, CommandHost& host) {
-  return begun(host.programs.load_program(command.text(0), command.text(1)));
+  return begun(host.programs.load_program(command.text(slots::program::program), command.text(slots::program::robot)));
 }
 
-// A third slot is exec_wait.
 Outcome run(const ParsedCommand& command, CommandHost& host) {
-  const ProgramBegin begin = command.given(2) ? ProgramBegin::exec_wait : ProgramBegin::now;
-  return begun(host.programs.run_program(command.text(0), command.text(1), begin));
+  const ProgramBegin begin = command.given(slots::program::exec_wait) ? ProgramBegin::exec_wait : ProgramBegin::now;
+  return begun(
+      host.programs.run_program(command.text(slots::program::program), command.text(slots::program::robot), begin));
 }
 
 Outcome run_backward(const ParsedCommand& command, CommandHost& host) {
-  return begun(host.programs.run_program(command.text(0), command.text(1), ProgramBegin::backward));
+  return begun(host.programs.run_program(command.text(slots::program::program), command.text(slots::program::robot),
+                                         ProgramBegin::backward));
 }
 
 Outcome delete_program(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.delete_program(command.text(0), command.text(1)));
+  return Outcome::of(
+      host.programs.delete_program(command.text(slots::program::program), command.text(slots::program::robot)));
 }
 
 Outcome hold(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.hold_program(command.text(0)));
+  return Outcome::of(host.programs.hold_program(command.text(kOnlySlot)));
 }
 Outcome resume(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.resume_program(command.text(0)));
+  return Outcome::of(host.programs.resume_program(command.text(kOnlySlot)));
 }
 Outcome step(const ParsedCommand& command, CommandHost& host) {
-  const bool backward = command.given(1) && command.choice(1) == 1;
-  return Outcome::of(host.programs.step_program(command.text(0), backward));
+  const bool backward =
+      command.given(slots::program_step::direction) && command.choice(slots::program_step::direction) == 1;
+  return Outcome::of(host.programs.step_program(command.text(slots::program_step::robot), backward));
 }
 Outcome stop(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.programs.stop_programs(command.text(0)));
+  return Outcome::of(host.programs.stop_programs(command.text(kOnlySlot)));
 }
 
 Outcome await(const ParsedCommand& command, CommandHost& host) {
-  return begun(host.programs.await_programs(command.text(0)));
+  return begun(host.programs.await_programs(command.text(kOnlySlot)));
 }
 
 Outcome record(const ParsedCommand& command, CommandHost& host) {
-  const auto what = static_cast<RecordStep>(command.choice(2));
-  const std::string_view point = command.given(3) ? command.text(3) : std::string_view();
+  const auto what = static_cast<RecordStep>(command.choice(slots::program::record_step));
+  const std::string_view point =
+      command.given(slots::program::point) ? command.text(slots::program::point) : std::string_view();
   if (!point.empty() && what != RecordStep::point) {
     return Outcome::refused(
         {"TF_RECORD: a name is allowed with POINT only", "e.g. TF_RECORD taught PUMA_762 POINT grip"});
   }
-  return Outcome::of(host.programs.record_program(command.text(0), command.text(1), what, point));
+  return Outcome::of(host.programs.record_program(command.text(slots::program::program),
+                                                  command.text(slots::program::robot), what, point));
 }
 
 // The first choice is "on".
 Outcome set_input(const ParsedCommand& command, CommandHost& host) {
-  const auto number = static_cast<std::size_t>(command.integer(1));
-  return Outcome::of(host.programs.set_digital_input(command.text(0), number, command.choice(2) == 0));
+  const auto number = static_cast<std::size_t>(command.integer(slots::program_input::number));
+  return Outcome::of(host.programs.set_digital_input(command.text(slots::program_input::robot), number,
+                                                     command.choice(slots::program_input::on) == 0));
 }
 Outcome set_analogue_input(const ParsedCommand& command, CommandHost& host) {
-  const auto number = static_cast<std::size_t>(command.integer(1));
-  return Outcome::of(host.programs.set_analogue_input(command.text(0), number, command.number(2)));
+  const auto number = static_cast<std::size_t>(command.integer(slots::program_input::number));
+  return Outcome::of(host.programs.set_analogue_input(command.text(slots::program_input::robot), number,
+                                                      command.number(slots::program_input::value)));
 }
 
 constexpr Registration kHandlers[] = {

@@ -11,36 +11,36 @@ namespace {
 
 template <ScalarParameter which>
 Outcome set_scalar(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_scalar_parameter(which, command.number(0)));
+  return Outcome::of(host.robots.set_scalar_parameter(which, command.number(kOnlySlot)));
 }
 
 template <JointParameter which>
 Outcome set_joints(const ParsedCommand& command, CommandHost& host) {
   std::array<double, kMaxJointsPerRobot> storage;
-  const std::size_t n = command.numbers(0, storage);
+  const std::size_t n = command.numbers(kOnlySlot, storage);
   return Outcome::of(host.robots.set_joint_parameter(which, std::span(storage).first(n)));
 }
 
 Outcome set_fly(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_fly(static_cast<FlyType>(command.integer(0)), command.number(1)));
+  return Outcome::of(host.robots.set_fly(static_cast<FlyType>(command.integer(slots::fly::type)),
+                                         command.number(slots::fly::parameter)));
 }
 
 Outcome set_ptp_mode(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_ptp_mode(static_cast<PtpMode>(command.choice(0))));
+  return Outcome::of(host.robots.set_ptp_mode(static_cast<PtpMode>(command.choice(kOnlySlot))));
 }
 
 Outcome set_profile(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_velocity_profile(static_cast<VelocityProfile>(command.choice(0))));
+  return Outcome::of(host.robots.set_velocity_profile(static_cast<VelocityProfile>(command.choice(kOnlySlot))));
 }
 
 Outcome set_inverse_class(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_inverse_class(static_cast<InverseClass>(command.choice(0))));
+  return Outcome::of(host.robots.set_inverse_class(static_cast<InverseClass>(command.choice(kOnlySlot))));
 }
 
 // Translation first, then roll, pitch, yaw.
 Pose offset(const ParsedCommand& command) {
-  return pose_from_xyz_rpy({command.number(0), command.number(1), command.number(2)},
-                           {command.number(3), command.number(4), command.number(5)});
+  return pose_from_xyz_rpy(vector_at(command, slots::offset::translation), vector_at(command, slots::offset::rotation));
 }
 
 Outcome set_point_of_reference(const ParsedCommand& command, CommandHost& host) {
@@ -53,7 +53,7 @@ Outcome set_tool_center_point(const ParsedCommand& command, CommandHost& host) {
 
 // The first choice is "on".
 Outcome set_arc(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_arc(command.choice(0) == 0));
+  return Outcome::of(host.display.set_arc(command.choice(kOnlySlot) == 0));
 }
 
 constexpr Registration kHandlers[] = {

@@ -7,28 +7,31 @@ namespace {
 
 // The choices of both switches are 0 and 1, in this order.
 Outcome set_sensor_active(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_sensor_active(command.text(0), command.choice(1) == 1));
+  return Outcome::of(host.sensing.set_sensor_active(command.text(slots::sensor_active::sensor),
+                                                    command.choice(slots::sensor_active::on) == 1));
 }
 
 Outcome set_send_mode(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_range_send_mode(static_cast<RangeSendMode>(command.choice(0))));
+  return Outcome::of(host.sensing.set_range_send_mode(static_cast<RangeSendMode>(command.choice(kOnlySlot))));
 }
 
 Outcome set_sensor_range(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_sensor_range(command.text(0), command.number(1)));
+  return Outcome::of(host.sensing.set_sensor_range(command.text(slots::sensor_range::sensor),
+                                                   command.number(slots::sensor_range::range)));
 }
 
 Outcome set_collision_active(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_collision_active(command.choice(0) == 1));
+  return Outcome::of(host.sensing.set_collision_active(command.choice(kOnlySlot) == 1));
 }
 
 Outcome set_collision_warning(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_collision_warning(command.number(0)));
+  return Outcome::of(host.sensing.set_collision_warning(command.number(kOnlySlot)));
 }
 
 Outcome set_collision_pair(const ParsedCommand& command, CommandHost& host) {
-  const auto treatment = static_cast<PairTreatment>(command.choice(2));
-  return Outcome::of(host.sensing.set_collision_pair(command.text(0), command.text(1), treatment));
+  const auto treatment = static_cast<PairTreatment>(command.choice(slots::collision_pair::treatment));
+  return Outcome::of(host.sensing.set_collision_pair(command.text(slots::collision_pair::a),
+                                                     command.text(slots::collision_pair::b), treatment));
 }
 
 constexpr Registration kHandlers[] = {

@@ -29,6 +29,16 @@ struct Value {
 inline constexpr std::size_t kMaxSlaves = 5;
 inline constexpr std::size_t kMaxValues = 3 + kMaxSlaves * (2 + 2 * kMaxJointsPerRobot);
 
+// A named place of a value; slots.hpp has those of the forms.
+// Converts to the number of the slot, for ParsedCommand::text(), number(), ...
+struct Slot {
+  std::size_t first;      // of `width` slots
+  std::size_t parameter;  // index in the form's list, for ParsedCommand::given()
+  std::string_view name;  // the parameter's label; where it has none, its name
+
+  constexpr operator std::size_t() const { return first; }  // NOLINT: it stands for its number
+};
+
 class ParsedCommand {
  public:
   [[nodiscard]] const Form& form() const {
@@ -53,6 +63,7 @@ class ParsedCommand {
   }
   // Whether the parameter at this index of the form's list was given (optional and labelled ones).
   [[nodiscard]] bool given(std::size_t parameter) const { return ((given_ >> parameter) & 1U) != 0; }
+  [[nodiscard]] bool given(const Slot& slot) const { return given(slot.parameter); }
   // False if joint values are still in the text's unit because no directory gave the kinds of the joints. Such a
   // command can be checked, but not executed.
   [[nodiscard]] bool converted() const { return converted_; }

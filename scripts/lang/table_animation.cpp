@@ -1,5 +1,6 @@
 // Manual 1.2.3: commands for animation.
 #include "rt_core/ports/words.hpp"
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -49,6 +50,14 @@ constexpr Parameter kStvw[] = {
 constexpr Parameter kCovw[] = {integer("view_id", "view", kViewIds), camera()};
 constexpr Parameter kMode[] = {choice("mode", "mode", kModes), on_off()};
 constexpr Parameter kSwitch[] = {on_off()};
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kDisplay, {slots::stdp::display, slots::stdp::screen}));
+static_assert(has_slots(kStvw, {slots::stvw::view, slots::stvw::viewpoint, slots::stvw::lookpoint, slots::stvw::twist,
+                                slots::stvw::angle, slots::stvw::front_plane, slots::stvw::back_plane,
+                                slots::stvw::steps, slots::stvw::time}));
+static_assert(has_slots(kCovw, {slots::covw::view, slots::covw::camera}));
+static_assert(has_slots(kMode, {slots::set_mode::mode, slots::set_mode::on}));
 
 constexpr Form kForms[] = {
     {.id = FormId::stdp,

@@ -1,5 +1,6 @@
 // Manual 1.2.6: control of deformable objects, and the I/O channels.
 #include "rt_core/base/capacity.hpp"
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -50,6 +51,12 @@ constexpr Parameter kSwitchMemory[] = {integer("send_type", "protocol", kUnsigne
                                        integer("be_buflen", "size", kSwitchBytes, Unit::byte)};
 constexpr Parameter kBinary[] = {choice("online | offline", "processing", kOnlineOffline)};
 constexpr Parameter kMessage[] = {{.name = "text", .meaning = "message", .kind = ParameterKind::text}};
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kForceMemory,
+                        {slots::force_memory::send_type, slots::force_memory::key, slots::force_memory::bytes}));
+static_assert(has_slots(kSwitchMemory,
+                        {slots::switch_memory::send_type, slots::switch_memory::key, slots::switch_memory::bytes}));
 
 constexpr Form kForms[] = {
     {.id = FormId::eladyn_calc,

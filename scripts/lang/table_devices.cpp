@@ -1,4 +1,5 @@
 // Manual 1.2.1: the general commands that concern one robot, frame, camera or sensor.
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -74,6 +75,25 @@ constexpr std::string_view kScreenIncNote =
     "a linear move from the last commanded position; the rotation is about the TCP, in the axes of the current view "
     "(the first of the display selected by STDP) at that moment, also in a sequence or at a camera. The groups come in "
     "any order, each at most once, with or without commas between them";
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kRender, {slots::render::frame, slots::render::mode}));
+static_assert(has_slots(kPlacement,
+                        {slots::placement::frame, slots::placement::rotation, slots::placement::translation}));
+static_assert(has_slots(kRobotOnline, {slots::robot_online::robot, slots::robot_online::online}));
+static_assert(has_slots(kRobotSending, {slots::robot_sending::robot, slots::robot_sending::sending}));
+static_assert(has_slots(kCameraParameters,
+                        {slots::campar::camera, slots::campar::focal_distance, slots::campar::opening_angle}));
+static_assert(has_slots(kSensorActive, {slots::sensor_active::sensor, slots::sensor_active::on}));
+static_assert(has_slots(kSensorRange, {slots::sensor_range::sensor, slots::sensor_range::range}));
+static_assert(has_slots(kTracking,
+                        {slots::camera_switch::camera, slots::camera_switch::on, slots::camera_switch::target}));
+static_assert(has_slots(kCameraSwitch, {slots::camera_switch::camera, slots::camera_switch::on}));
+static_assert(has_slots(kJointAbs, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "j1 ... jn"}}));
+static_assert(has_slots(kFrameAbs, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "x"}}));
+static_assert(has_slots(kFrameInc, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "X"}}));
+static_assert(has_slots(kToolInc, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "X"}}));
+static_assert(has_slots(kScreenInc, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "X"}}));
 
 constexpr Form kForms[] = {
     {.id = FormId::pos_rob_joint_abs,

@@ -1,5 +1,6 @@
 // Manual 1.2.4: commands for the simulation of multibody dynamics.
 #include "scripts/lang/parsed_command.hpp"
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -29,6 +30,14 @@ constexpr Parameter kMasterSlave[] = {on_off("coupling"), robot("master_robot", 
                                       Parameter{.name = "slave_robot n_dof master_joint slave_joint ...",
                                                 .meaning = "slaves with their pairs of joints",
                                                 .kind = ParameterKind::slaves}};
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kForceArrow, {slots::force_arrow::joint_forces, slots::force_arrow::joint_torques,
+                                      slots::force_arrow::tcp_force}));
+static_assert(has_slots(kTorqueLimit, {slots::torque_limit::force, slots::torque_limit::torque}));
+static_assert(has_slots(kTcpTest, {slots::tcp_test::on, slots::tcp_test::first_value}));
+static_assert(has_slots(kMasterSlave, {slots::master_slave::on, slots::master_slave::master,
+                                       slots::master_slave::slaves, slots::master_slave::first_slave}));
 
 constexpr Form kForms[] = {
     {.id = FormId::set_force_arrow,

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 #include "scripts/programs/languages/languages.hpp"
 
@@ -35,6 +36,13 @@ constexpr Parameter kConnect[] = {frame("frame_2", "frame to attach"), word("TO"
 constexpr Parameter kFrameToWorkframe[] = {frame("frame_2", "frame to attach"), word("TO"),
                                            frame("frame_1", "its new predecessor"),
                                            named(NameKind::workframe, "WFRM_name1", "workframe")};
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kProgramOfRobot, {slots::program::program, slots::program::robot}));
+static_assert(has_slots(kRun, {slots::program::program, slots::program::robot, slots::program::exec_wait}));
+static_assert(has_slots(kConnect, {slots::connect::attached, slots::connect::predecessor}));
+static_assert(has_slots(kFrameToWorkframe,
+                        {slots::connect::attached, slots::connect::predecessor, slots::connect::workframe}));
 
 constexpr Form kForms[] = {
     {.id = FormId::comment,

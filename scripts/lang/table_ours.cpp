@@ -1,4 +1,5 @@
 // Commands that the manual does not have.
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -100,6 +101,25 @@ constexpr Form increment_form(FormId id, std::string_view syntax, std::span<cons
   form.at_least_one = true;
   return form;
 }
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kCollisionPair,
+                        {slots::collision_pair::a, slots::collision_pair::b, slots::collision_pair::treatment}));
+static_assert(has_slots(kProgramOfRobot, {slots::program::program, slots::program::robot}));
+static_assert(has_slots(kStep, {slots::program_step::robot, slots::program_step::direction}));
+static_assert(has_slots(kRecord, {slots::program::program, slots::program::robot, slots::program::record_step,
+                                  slots::program::point}));
+static_assert(has_slots(kDigitalInput,
+                        {slots::program_input::robot, slots::program_input::number, slots::program_input::on}));
+static_assert(has_slots(kAnalogueInput,
+                        {slots::program_input::robot, slots::program_input::number, slots::program_input::value}));
+static_assert(has_slots(kJointAbs,
+                        {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "j1 ... jn"}}));
+static_assert(has_slots(kFrameAbs, {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "x"}}));
+static_assert(has_slots(kFrameInc, {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "X"}}));
+static_assert(has_slots(kToolInc, {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "X"}}));
+static_assert(has_slots(kScreenInc,
+                        {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "X"}}));
 
 constexpr Form kForms[] = {
     {.id = FormId::save_flight,

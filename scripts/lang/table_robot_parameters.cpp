@@ -1,5 +1,6 @@
 // Manual 1.2.2: parameters of the active robot.
 #include "rt_core/ports/words.hpp"
+#include "scripts/lang/slots.hpp"
 #include "scripts/lang/table_parts.hpp"
 
 namespace cellmirror::script {
@@ -99,6 +100,10 @@ constexpr Form scalar_form(FormId id, std::string_view name, std::string_view sy
           .effect = LoopEffect::queued,
           .needs_active_robot = true};
 }
+
+// The slots by which scripts/commands reads the values.
+static_assert(has_slots(kFly, {slots::fly::type, slots::fly::parameter}));
+static_assert(has_slots(kOffset, {{slots::offset::translation, 0, "X"}, {slots::offset::rotation, 3, "P"}}));
 
 constexpr Form kForms[] = {
     scalar_form(FormId::rob_cart_lin_vel, "rob_cart_lin_vel", "rob_cart_lin_vel <lin_vel>", kLinearVelocity,
