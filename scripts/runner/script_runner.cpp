@@ -108,7 +108,7 @@ Result<std::unique_ptr<ScriptFile>> ScriptRunner::load(const fs::path& path, Dia
   if (errors != 0) {
     const auto first = std::find_if(findings.all().begin(), findings.all().end(),
                                     [](const Diagnostic& d) { return d.severity == Severity::error; });
-    return refused({fmt::format("{} has {} error{}and is not run; the first: {}", name, errors, errors == 1 ? "" : "s",
+    return refused({fmt::format("{} has {} error{} and is not run; the first: {}", name, errors, errors == 1 ? "" : "s",
                                 first->text()),
                     "`cellmirror check` shows all of them"});
   }
