@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "drivers/dds/rate_meter.hpp"
 #include "drivers/dds/ros2_messages.hpp"
+#include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/stream_config.hpp"

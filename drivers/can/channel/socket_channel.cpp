@@ -29,20 +29,6 @@ std::int64_t now_ns(clockid_t clock) {
 
 }  // namespace
 
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  if (this != &other) {
-    reset();
-    fd_ = other.fd_;
-    other.fd_ = -1;
-  }
-  return *this;
-}
-
-void Descriptor::reset() {
-  if (fd_ >= 0) close(fd_);
-  fd_ = -1;
-}
-
 void set_receive_buffer(int fd, int bytes) {
   if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes) == 0) return;
   setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
@@ -76,15 +62,15 @@ CanReceive SocketChannel::receive(ReceivedCanFrame& frame, Nanoseconds timeout) 
   if (give(frame)) return CanReceive::frame;
   const Timestamp deadline = clock_.now() + timeout;
   for (;;) {
-    if (socket_.is_open() && !fill()) socket_.reset();
+    if (socket_.valid() && !fill()) socket_.reset();
     if (give(frame)) return CanReceive::frame;
     const Timestamp now = clock_.now();
     check_interface(now);
     if (now >= deadline) break;
-    if (!socket_.is_open()) reopen_when_due(now);
+    if (!socket_.valid()) reopen_when_due(now);
     wait(deadline - now);
   }
-  const bool down = !socket_.is_open() || status_.bus == CanBusState::down;
+  const bool down = !socket_.valid() || status_.bus == CanBusState::down;
   return down ? CanReceive::down : CanReceive::timeout;
 }
 
@@ -103,7 +89,7 @@ void SocketChannel::put(const CanFrame& frame, Timestamp receive_time) {
 }
 
 void SocketChannel::wait(Nanoseconds time) {
-  if (!socket_.is_open()) {
+  if (!socket_.valid()) {
     std::this_thread::sleep_for(std::min(time, kFirstBackOff));
     return;
   }
@@ -118,7 +104,7 @@ void SocketChannel::wait(Nanoseconds time) {
 void SocketChannel::check_interface(Timestamp now) {
   if (now < next_check_) return;
   next_check_ = now + kCheckPeriod;
-  if (socket_.is_open() && !is_current()) socket_.reset();
+  if (socket_.valid() && !is_current()) socket_.reset();
 }
 
 void SocketChannel::reopen_when_due(Timestamp now) {

@@ -8,29 +8,11 @@
 #include <cstddef>
 #include <string>
 
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/can_channel.hpp"
 
 namespace cellmirror::can {
-
-// A file descriptor that is closed with its owner.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() { reset(); }
-  Descriptor(Descriptor&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
-  Descriptor& operator=(Descriptor&& other) noexcept;
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  [[nodiscard]] int get() const { return fd_; }
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-  void reset();
-
- private:
-  int fd_ = -1;
-};
 
 // As large as the machine allows, at most `bytes`; privileged first.
 void set_receive_buffer(int fd, int bytes);

@@ -73,7 +73,7 @@ class SocketCanChannel final : public SocketChannel {
 
 Result<void> SocketCanChannel::open_socket() {
   Descriptor fd(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
-  if (!fd.is_open()) {
+  if (!fd.valid()) {
     if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
       return fail("this kernel has no CAN (AF_CAN)",
                   "load it with 'modprobe can_raw', boot a kernel that has it, or use a udp: or log: channel");
@@ -193,7 +193,7 @@ bool SocketCanChannel::send(const CanFrame& frame) {
   const std::size_t bytes = frame.fd ? CANFD_MTU : CAN_MTU;
   ssize_t written = -1;
   int error = frame.error ? EINVAL : ENOTCONN;  // error frames are a controller's to send
-  if (socket_.is_open() && !frame.error) {
+  if (socket_.valid() && !frame.error) {
     written = ::send(socket_.get(), &raw, bytes, MSG_DONTWAIT);
     error = errno;
   }

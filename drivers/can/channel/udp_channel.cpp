@@ -100,7 +100,7 @@ class UdpChannel final : public SocketChannel {
 
 Result<Descriptor> UdpChannel::open_receiver() const {
   Descriptor fd(socket(family(), SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!fd.is_open()) return socket_failure("no socket");
+  if (!fd.valid()) return socket_failure("no socket");
   const int on = 1;
   setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   setsockopt(fd.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
@@ -127,7 +127,7 @@ Result<Descriptor> UdpChannel::open_receiver() const {
 
 Result<Descriptor> UdpChannel::open_sender() const {
   Descriptor fd(socket(family(), SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!fd.is_open()) return socket_failure("no socket");
+  if (!fd.valid()) return socket_failure("no socket");
   const int one = 1;
   if (endpoint_.ipv6) {
     setsockopt(fd.get(), IPPROTO_IPV6, IPV6_MULTICAST_HOPS, &one, sizeof one);
@@ -225,7 +225,7 @@ bool UdpChannel::send(const CanFrame& frame) {
   const UdpDatagram datagram = encode_udp_datagram(frame, now_s);
   ssize_t written = -1;
   int error = ENOTCONN;
-  if (sender_.is_open()) {
+  if (sender_.valid()) {
     written = ::send(sender_.get(), datagram.bytes.data(), datagram.size, MSG_DONTWAIT);
     error = errno;
   }

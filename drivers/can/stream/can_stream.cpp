@@ -140,7 +140,7 @@ void CanStream::watch_bus(std::optional<CanBusState> reported) {
 bool CanStream::send(const CanFrame& frame) { return channel_->send(frame); }
 
 void CanStream::push(const JointSample& sample) {
-  rate_.note(clock_->now());
+  rate_.count(clock_->now());
   sink_->push(sample);
 }
 
@@ -173,7 +173,7 @@ JointStreamStatus CanStream::status() const {
     return status;
   }
   const auto& [bus, rate, ended] = published_.read().value;
-  status.rate_hz = rate.hz(now);
+  status.rate_hz = rate.per_second(now);
   status.lost += bus.receive_dropped;
   status.rejected += bus.malformed;
   if (const std::string condition = bus_condition(bus, ended); !condition.empty()) status.condition = condition;

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/can/stream/rate_meter.hpp"
 #include "drivers/can/stream/streams.hpp"
 #include "rt_core/base/diagnostics.hpp"
+#include "rt_core/base/rate_meter.hpp"
 #include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::can {

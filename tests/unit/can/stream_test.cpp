@@ -12,7 +12,6 @@
 
 #include "drivers/can/channel/virtual_bus.hpp"
 #include "drivers/can/cia402/drive.hpp"
-#include "drivers/can/stream/rate_meter.hpp"
 #include "drivers/can/stream/streams.hpp"
 #include "tests/unit/can/frames.hpp"
 #include "tests/unit/can/test_data.hpp"
@@ -411,13 +410,6 @@ TEST_F(DbcStream, TellsValuesBeyondTheLimitsOfTheDbc) {
   const JointStreamStatus status = sut->status();
   EXPECT_THAT(status.last_errors, testing::ElementsAre(HasSubstr("Axis_1.Position is 200 deg, beyond -180 .. 180")));
   EXPECT_THAT(status.details, testing::Contains(testing::Pair("beyond the DBC's limits", "1 value")));
-}
-
-TEST(RateMeter, CountsTheLastSecond) {
-  RateMeter sut;
-  for (int i = 0; i < 3000; ++i) sut.note({i * 1'000'000LL});
-  EXPECT_NEAR(sut.hz({3'000'000'000}), 1000.0, 0.1);
-  EXPECT_EQ(sut.hz({5'000'000'000}), 0.0);
 }
 
 }  // namespace

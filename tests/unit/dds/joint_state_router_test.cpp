@@ -253,18 +253,5 @@ TEST(RobotFeed, RefusesMappingsThatCannotBeMeant) {
   EXPECT_FALSE(RobotFeed::make({{"a", 0, 1.0, 0.0}, {"b", 0, 1.0, 0.0}}).has_value());
 }
 
-TEST(RateMeter, TellsEventsOfTheLastSecond) {
-  RateMeter sut;
-  Timestamp now{5'000'000'000};
-  for (int i = 0; i < 2000; ++i) {
-    now = now + Nanoseconds(2'000'000);
-    sut.count(now);
-  }
-  EXPECT_NEAR(sut.per_second(now), 500.0, 1.0);
-  EXPECT_NEAR(sut.per_second(now + Nanoseconds(500'000'000)), 250.0, 51.0);
-  EXPECT_EQ(sut.per_second(now + Nanoseconds(1'200'000'000)), 0.0);
-  EXPECT_EQ(sut.per_second(now + Nanoseconds(100'000'000'000)), 0.0);
-}
-
 }  // namespace
 }  // namespace cellmirror::dds::test
