@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "ipc/runtime/descriptor.hpp"
 #include "ipc/web/live_session.hpp"
 #include "ipc/web/routes.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror::web {
 

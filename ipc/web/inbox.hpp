@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/runtime/descriptor.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror::web {
 

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "ipc/runtime/descriptor.hpp"
 #include "ipc/runtime/system_error.hpp"
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/home.hpp"
 
 namespace cellmirror::web {

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <optional>
 
-#include "ipc/runtime/descriptor.hpp"
+#include "rt_core/base/descriptor.hpp"
 
 namespace cellmirror::web {
 

@@ -5,6 +5,7 @@
 
 #include "ipc/web/sha1.hpp"
 #include "rt_core/base/base64.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace cellmirror::web {
 
@@ -18,34 +19,6 @@ bool is_control(Opcode opcode) { return static_cast<std::uint8_t>(opcode) >= 8; 
 bool is_known(std::uint8_t opcode) { return opcode <= 2 || (opcode >= 8 && opcode <= 10); }
 
 std::uint8_t byte_of(std::string_view text, std::size_t i) { return static_cast<std::uint8_t>(text[i]); }
-
-// Bytes of the well-formed character at `i`; 0: there is none (RFC 3629, section 4).
-std::size_t character_bytes(std::string_view text, std::size_t i) {
-  const std::uint8_t first = byte_of(text, i);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xC2 && first <= 0xDF ? 2
-                             : (first >> 4U) == 0xE         ? 3
-                             : (first & 0xF8U) == 0xF0      ? 4
-                                                            : 0;
-  if (length == 0 || text.size() - i < length) return 0;
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte_of(text, i + k) & 0xC0U) != 0x80) return 0;
-  }
-  // Overlong forms, surrogates, and what is beyond U+10FFFF.
-  const std::uint8_t second = byte_of(text, i + 1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool no_character = (first == 0xED && second >= 0xA0) || (first == 0xF4 && second >= 0x90) || first > 0xF4;
-  return overlong || no_character ? 0 : length;
-}
-
-bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t bytes = character_bytes(text, i);
-    if (bytes == 0) return false;
-    i += bytes;
-  }
-  return true;
-}
 
 // Section 7.4: those that a close frame may carry; 1004 to 1006 and 1015 are reserved.
 bool may_be_sent(std::uint16_t code) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "ipc/runtime/descriptor.hpp"
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror::web {
