@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(!first || edges.empty());
     if (first) {
       for (std::size_t i = 0; i < 8 * bytes; ++i)
-        told[static_cast<std::uint32_t>(i + 1)] = ((sut.told()[i / 8] >> (i % 8)) & 1U) != 0;
+        told[static_cast<std::uint32_t>(i + 1)] = ((sut.reported()[i / 8] >> (i % 8)) & 1U) != 0;
     }
     first = false;
     require(edges.size() <= 16 * bytes);

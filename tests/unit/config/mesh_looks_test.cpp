@@ -171,7 +171,7 @@ TEST_F(MeshLooks, a_mesh_whose_look_nobody_kept_is_read_again) {
   home.write("envlib/l.obj", kLObj);
   MeshLibrary sut;
   int readings = 0;
-  sut.tell([&](const std::filesystem::path&) { ++readings; });
+  sut.set_progress([&](const std::filesystem::path&) { ++readings; });
   const auto mesh = [&](const std::string& name) {
     const std::filesystem::path folder = home.root() / "envlib";
     return sut.mesh(
