@@ -45,7 +45,7 @@ bool flushed(const std::string& what) {
   return false;
 }
 
-int print_pairs(const CollideOptions& options, const std::string& cell, const collision::PairTable& pairs) {
+int report_pairs(const CollideOptions& options, const std::string& cell, const collision::PairTable& pairs) {
   if (options.json) {
     print_pairs_json(cell, pairs, stdout);
   } else {
@@ -54,8 +54,8 @@ int print_pairs(const CollideOptions& options, const std::string& cell, const co
   return flushed("standard output") ? kExitDone : kExitRefused;
 }
 
-int print_frames(const CollideOptions& options, const CollideInput& input, const std::string& cell,
-                 Postures& postures) {
+int report_frames(const CollideOptions& options, const CollideInput& input, const std::string& cell,
+                  Postures& postures) {
   const CollideHeading heading{cell, input.settings.warning_distance_m, postures.count()};
   std::optional<CollideJson> json;
   std::optional<CollideText> text;
@@ -93,8 +93,8 @@ int collide(const CollideOptions& options) {
   if (!options.warning.empty()) input.settings.warning_distance_m = *parse_number(options.warning);
   collision::PairDerivation derivation(std::make_shared<geometry::SolidLibrary>());
   input.pairs = derivation.derive(*input.cell, input.settings);
-  if (options.pairs) return print_pairs(options, cell->loaded.name, *input.pairs);
-  return print_frames(options, input, cell->loaded.name, *postures);
+  if (options.pairs) return report_pairs(options, cell->loaded.name, *input.pairs);
+  return report_frames(options, input, cell->loaded.name, *postures);
 }
 
 }  // namespace
