@@ -54,7 +54,6 @@ class CpuLatencyRequest {
  public:
   // Requests a wake-up latency of at most `microseconds`; 0: no idle states.
   explicit CpuLatencyRequest(std::int32_t microseconds);
-  ~CpuLatencyRequest();
   CpuLatencyRequest(const CpuLatencyRequest&) = delete;
   CpuLatencyRequest& operator=(const CpuLatencyRequest&) = delete;
 
