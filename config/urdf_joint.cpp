@@ -29,7 +29,7 @@ void read_axis(const XMLElement& element, const UrdfXml& xml, JointDefinition& j
   if (axis == nullptr) return;
   const Eigen::Vector3d direction = xml.vector3(*axis, "xyz", joint.axis);
   constexpr double kShortest = 1e-6;
-  if (direction.norm() < kShortest) return xml.error(*axis, "the the axis has length zero");
+  if (direction.norm() < kShortest) return xml.error(*axis, "the axis has length zero");
   joint.axis = direction.normalized();
 }
 

@@ -248,7 +248,7 @@ TEST_F(DetailLevels, aCarriedPartIsNotReplacedByGeometryThatStaysBehind) {
   ASSERT_TRUE(sut->connect(kFlange, "Arm.TIP", sut->start_positions()));
   for (const auto& result : {sut->swap_node(kFlange), sut->level_up("Lab.Holder")}) {
     ASSERT_FALSE(result);
-    EXPECT_THAT(result.error().what, HasSubstr("hangs on Arm.LIFT.TURN.BEND.TIP"));
+    EXPECT_THAT(result.error().what, HasSubstr("is attached to Arm.LIFT.TURN.BEND.TIP"));
   }
 }
 
@@ -284,7 +284,7 @@ TEST_F(DetailLevels, deletingIsRefusedWhereSomethingElseHangsOnTheBranch) {
   ASSERT_TRUE(sut->connect("Plain", "Arm.TIP", sut->start_positions()));
   const auto result = sut->delete_node("Arm");
   ASSERT_FALSE(result);
-  EXPECT_THAT(result.error().what, HasSubstr("Plain hangs on Arm.LIFT.TURN.BEND.TIP"));
+  EXPECT_THAT(result.error().what, HasSubstr("Plain is attached to Arm.LIFT.TURN.BEND.TIP"));
   EXPECT_TRUE(sut->knows("Arm.TIP"));
   EXPECT_NE(sut->robot("ARM"), nullptr);
 }

@@ -107,14 +107,14 @@ TEST_F(Places, connectKeepsTheWorldPoseAndThenFollows) {
 }
 
 TEST_F(Places, connectRefusesWhatWouldBreakTheTreeOrARobot) {
-  EXPECT_THAT(sut->connect("Box", "Box.Edge", q).error().what, HasSubstr("hangs on Box"));
+  EXPECT_THAT(sut->connect("Box", "Box.Edge", q).error().what, HasSubstr("is attached to Box"));
   EXPECT_THAT(sut->connect("Box", "Box", q).error().what, HasSubstr("its own predecessor"));
   EXPECT_THAT(sut->connect("Arm.TURN", "Box", q).error().what, HasSubstr("is a joint"));
   EXPECT_THAT(sut->connect("Arm.TIP", "Box", q).error().what, HasSubstr("part of the mechanism"));
-  EXPECT_THAT(sut->connect("Arm", "Arm.TIP", q).error().what, HasSubstr("hangs on Arm"));
+  EXPECT_THAT(sut->connect("Arm", "Arm.TIP", q).error().what, HasSubstr("is attached to Arm"));
   EXPECT_THAT(sut->connect("Bxo", "Arm.TIP", q).error().remedy, HasSubstr("Box"));
   EXPECT_TRUE(sut->connect("Arm", "Box.Edge", q)) << "a whole robot may stand on something";
-  EXPECT_THAT(sut->connect("Box", "Arm.TIP", q).error().what, HasSubstr("hangs on Box")) << "now a circle";
+  EXPECT_THAT(sut->connect("Box", "Arm.TIP", q).error().what, HasSubstr("is attached to Box")) << "now a circle";
 }
 
 TEST_F(Places, attachingPutsThePartAtTheWorkframe) {
@@ -234,7 +234,7 @@ TEST_F(Places, predecessorsThatAreUnknownOrMakeACircleAreFindings) {
   EXPECT_FALSE(build_cell("[[node]]\nname = \"A\"\n[[node]]\nname = \"B\"\n[[node]]\nname = \"C\"\n", files,
                           diagnostics, {{"A", "B"}, {"B", "A"}, {"C", "D"}}));
   EXPECT_EQ(diagnostics.errors(), 2U) << diagnostics.text();
-  EXPECT_THAT(diagnostics.text(), HasSubstr("would hang on itself"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("would be its own ancestor"));
   EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:6"));
 }
 

@@ -61,7 +61,7 @@ TEST_F(Robot, refusesConflictsAndChangesNothing) {
   EXPECT_THAT(set(JointParameter::min_velocity, {0.0, 2.5, 0.0}), HasSubstr("is above its maximum velocity"));
   EXPECT_THAT(set(JointParameter::active_velocity, {1.6, 1.0, 1.0}), HasSubstr("1.6 m/s"));
   EXPECT_THAT(set(JointParameter::active_acceleration, {1.0, 1.0, 5.0}), HasSubstr("maximum acceleration"));
-  EXPECT_THAT(set(JointParameter::max_acceleration, {1.0, kNaN, 5.0}), HasSubstr("no number"));
+  EXPECT_THAT(set(JointParameter::max_acceleration, {1.0, kNaN, 5.0}), HasSubstr("not a number"));
   EXPECT_EQ(sut->parameters().max_range, before.max_range);
   EXPECT_EQ(sut->parameters().min_range, before.min_range);
   EXPECT_EQ(sut->parameters().max_velocity, before.max_velocity);
@@ -154,8 +154,8 @@ TEST_F(Robot, aRunningGatewayHasRoomForAFewMoreOnly) {
   Diagnostics diagnostics;
   auto cell = build_cell(
       "[[node]]\nname = \"A\"\nabstract = \"arm.mpc\"\nrobot_id = \"R0\"\n"
-      "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"R1\"\nloaded = false\n"
-      "[[node]]\nname = \"C\"\nabstract = \"arm.mpc\"\nrobot_id = \"R2\"\nloaded = false\n",
+      "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"R1\"\nloaded = false\nshown = \"hidden\"\n"
+      "[[node]]\nname = \"C\"\nabstract = \"arm.mpc\"\nrobot_id = \"R2\"\nloaded = false\nshown = \"hidden\"\n",
       files, diagnostics);
   ASSERT_TRUE(cell) << diagnostics.text();
   cell->set_robot_capacity(2);

@@ -146,7 +146,7 @@ TEST_F(ComponentText, charactersOutsideOfAsciiStandInTextsAndCommentsOnly) {
       << findings();
   EXPECT_TRUE(parse("description = '''\n\xC3\xA4\n\xCC\xA2'''\n")) << findings();
   EXPECT_FALSE(parse("description = \xCC\xA2\n"));
-  EXPECT_THAT(findings(), HasSubstr("a.mpc:2:15: error: a character outside of ASCII"));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:2:15: error: a character outside ASCII"));
   EXPECT_FALSE(parse("description = \"\"\"\\\n\xCC\xA2\"\"\"\n"));
 }
 

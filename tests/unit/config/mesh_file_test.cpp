@@ -109,7 +109,7 @@ TEST(MeshFile, scales_and_mirrors) {
 TEST(MeshFile, refuses_damaged_files_with_the_reason) {
   const std::string stl = tetra_stl();
   EXPECT_EQ(refusal(stl.substr(0, stl.size() - 1), ".stl"),
-            "the mesh m is refused: it is not an STL file: 4 triangles make 284 bytes, but there are 283");
+            "the mesh m is refused: it is not an STL file: 4 triangles need 284 bytes, but it has 283");
   EXPECT_EQ(refusal(stl.substr(0, 50), ".stl"), "the mesh m is refused: it is not an STL file");
   EXPECT_EQ(refusal("", ".stl"), "the mesh m is refused: it is empty");
   EXPECT_EQ(refusal("solid\nendsolid\n", ".stl"), "the mesh m is refused: it has no facets");
@@ -134,7 +134,7 @@ TEST(MeshFile, refuses_a_dae_with_a_skin_and_takes_empty_controllers) {
   };
   expect_tetrahedron(parse(with(""), ".dae"), 0.5);
   EXPECT_NE(refusal(with(R"(<controller id="c"><skin source="#g"/></controller>)"), ".dae")
-                .find("bends a mesh by a skeleton"),
+                .find("skins a mesh to a skeleton"),
             std::string::npos);
 }
 

@@ -80,12 +80,12 @@ TEST_F(MeshLooksOfObj, a_picture_may_lie_anywhere_in_the_home_and_nowhere_else) 
   EXPECT_THAT(finding(), HasSubstr("the picture http://localhost/four.png is not a file"));
   std::filesystem::create_symlink("/etc/hostname", home.root() / "envlib/link.png");
   EXPECT_EQ(square("link.png"), nullptr);
-  EXPECT_THAT(finding(), HasSubstr("its picture link.png (square.mtl:6): "));
+  EXPECT_THAT(finding(), HasSubstr("its texture link.png (square.mtl:6): "));
 }
 
 TEST_F(MeshLooksOfObj, what_is_missing_or_broken_is_told_and_the_cell_loads_without) {
   EXPECT_EQ(square("four.png"), nullptr);
-  EXPECT_THAT(finding(), HasSubstr("warning: the mesh square.obj: its picture four.png (square.mtl:6): "));
+  EXPECT_THAT(finding(), HasSubstr("warning: the mesh square.obj: its texture four.png (square.mtl:6): "));
   EXPECT_EQ(geometry().mesh->triangles.size(), 2U);
   home.write("envlib/four.png", four_pixels().substr(0, 60));
   EXPECT_EQ(square("four.png"), nullptr);

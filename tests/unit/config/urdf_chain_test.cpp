@@ -99,7 +99,7 @@ TEST(UrdfBetween, ReadsEverythingWhereTheLinksAreUnknownOrNoTree) {
   EXPECT_THAT(parse(good + joint("k", 'c', 'b', kLimit), "a", "c").diagnostics.text(), HasSubstr("two parents"));
   EXPECT_THAT(
       parse(links("abc") + joint("j", 'a', 'b', kLimit) + joint("k", 'b', 'a', kLimit), "a", "b").diagnostics.text(),
-      HasSubstr("circle"));
+      HasSubstr("loop"));
   EXPECT_THAT(
       parse(links("ab") + joint("j", 'a', 'b', kLimit) + joint("j", 'a', 'x', kLimit), "a", "b").diagnostics.text(),
       HasSubstr("x is not a link"));

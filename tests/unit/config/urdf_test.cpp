@@ -85,10 +85,10 @@ INSTANTIATE_TEST_SUITE_P(
     All, FaultyUrdf,
     testing::Values(
         Fault{"twoRoots", "<link name=\"a\"/><link name=\"b\"/>", "is a root link"},
-        Fault{"circle", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a"), "circle"},
+        Fault{"circle", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a"), "loop"},
         Fault{"circleBesideTheRoot",
               "<link name=\"r\"/><link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a"),
-              "circle"},
+              "loop"},
         Fault{"itself", "<link name=\"a\"/>" + joint("x", "a", "a"), "to itself"},
         Fault{"twoParents",
               "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("x", "a", "c") + joint("y", "b", "c"),
@@ -105,21 +105,21 @@ INSTANTIATE_TEST_SUITE_P(
               "is not below"},
         Fault{"notANumber",
               "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin xyz=\"0 nan 0\"/>"),
-              "no number"},
+              "not a number"},
         Fault{"twoNumbers",
               "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin xyz=\"0 0\"/>"),
-              "must hold 3 numbers"},
+              "must have 3 numbers"},
         Fault{
             "noAxis",
             "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute", "<axis xyz=\"0 0 0\"/>" + kLimit),
-            "no direction"},
+            "has length zero"},
         Fault{"type", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "floating"), "cannot be used"},
         Fault{
             "mimicOfNothing",
             "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute", kLimit + "<mimic joint=\"y\"/>"),
             "does not exist"},
-        Fault{"name", "<link name=\"a.b\"/>", "no name"},
-        Fault{"shape", "<link name=\"a\"><visual><geometry><cone/></geometry></visual></link>", "no shape"},
+        Fault{"name", "<link name=\"a.b\"/>", "not a valid name"},
+        Fault{"shape", "<link name=\"a\"><visual><geometry><cone/></geometry></visual></link>", "not a shape"},
         Fault{"size", "<link name=\"a\"><collision><geometry><sphere radius=\"-1\"/></geometry></collision></link>",
               "must be positive"},
         Fault{"mass", "<link name=\"a\"><inertial><mass value=\"-1\"/></inertial></link>", "mass is negative"},
@@ -134,7 +134,7 @@ TEST(Urdf, hostileTextsAreRefused) {
   };
   refused("", "XML is faulty");
   refused("<robot", "XML is faulty");
-  refused("<!DOCTYPE robot [<!ENTITY x SYSTEM \"file:///etc/passwd\">]><robot name=\"r\">&x;</robot>", "definition");
+  refused("<!DOCTYPE robot [<!ENTITY x SYSTEM \"file:///etc/passwd\">]><robot name=\"r\">&x;</robot>", "declaration");
   refused("<sdf/>", "<robot>");
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";

@@ -76,17 +76,17 @@ twist_rad = nan
 )",
                          diagnostics);
   EXPECT_FALSE(sut);
-  EXPECT_EQ(diagnostics.text(), R"(a.vws:1:10: error: format 2 is not known; this version reads format = 1
-a.vws:3:10: error: [display]: layout is 7, but must lie within 1 and 6
-a.vws:4:1: error: [display]: the key colour is not known; the keys here are full_screen, layout
-a.vws:6:6: error: view 1: id is 7, but must lie within 0 and 6
+  EXPECT_EQ(diagnostics.text(), R"(a.vws:1:10: error: format 2 is unknown; this version reads format = 1
+a.vws:3:10: error: [display]: layout is 7, but must be between 1 and 6
+a.vws:4:1: error: [display]: the key colour is unknown; the keys here are full_screen, layout
+a.vws:6:6: error: view 1: id is 7, but must be between 0 and 6
 a.vws:9:15: error: view 2: viewpoint_m must be an array of 3 numbers, but is an array of 2
 a.vws:10:21: error: view 2: opening_angle_rad is 3.2, but must be above 0 and below 3.14159
 a.vws:12:6: error: view 3: view 3 stands twice
 a.vws:13:15: error: view 3: the viewpoint is the lookpoint; set them apart from each other
 a.vws:15:10: error: view 3: the near plane is not nearer than the far plane
 a.vws:17:14: error: view 3: projection cannot be "fisheye"; it is one of perspective, parallel
-a.vws:18:1: error: view 3: the key twist_deg is not known; files are in SI: write twist_rad = 1.57079633
+a.vws:18:1: error: view 3: the key twist_deg is unknown; files are in SI: write twist_rad = 1.57079633
 a.vws:19:10: error: view 3: the camera's name is empty; leave the key out for a view of its own
 a.vws:20:1: error: view 4: the key id is missing
 a.vws:21:15: error: view 4: viewpoint_m is 20000, but must be at least -10000 and at most 10000
@@ -109,7 +109,7 @@ TEST(ViewFile, TakesOtherCharactersThanAsciiInTextsOnly) {
        {"format = 10!x='\xEF\xB3\xBF'", "format = 1\ntwist=33[\"\xC4\xA4\"]", "format = 3.\"\xC4\xA4\""}) {
     Diagnostics diagnostics;
     EXPECT_FALSE(parse(text, diagnostics)) << text;
-    EXPECT_NE(diagnostics.text().find("outside of ASCII"), std::string::npos) << diagnostics.text();
+    EXPECT_NE(diagnostics.text().find("outside ASCII"), std::string::npos) << diagnostics.text();
   }
   Diagnostics diagnostics;
   const auto sut = parse("format = 1\nview=[{id=0,camera='\xC3\x9C'},{id=1,camera = \"\xC3\x9C\"}]", diagnostics);
