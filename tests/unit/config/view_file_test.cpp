@@ -82,15 +82,15 @@ a.vws:4:1: error: [display]: the key colour is unknown; the keys here are full_s
 a.vws:6:6: error: view 1: id is 7, but must be between 0 and 6
 a.vws:9:15: error: view 2: viewpoint_m must be an array of 3 numbers, but is an array of 2
 a.vws:10:21: error: view 2: opening_angle_rad is 3.2, but must be above 0 and below 3.14159
-a.vws:12:6: error: view 3: view 3 stands twice
-a.vws:13:15: error: view 3: the viewpoint is the lookpoint; set them apart from each other
+a.vws:12:6: error: view 3: view 3 appears twice
+a.vws:13:15: error: view 3: the viewpoint is the lookpoint; choose two different points
 a.vws:15:10: error: view 3: the near plane is not nearer than the far plane
 a.vws:17:14: error: view 3: projection cannot be "fisheye"; it is one of perspective, parallel
 a.vws:18:1: error: view 3: the key twist_deg is unknown; files are in SI: write twist_rad = 1.57079633
-a.vws:19:10: error: view 3: the camera's name is empty; leave the key out for a view of its own
+a.vws:19:10: error: view 3: the camera's name is empty; omit the key for a view without a camera
 a.vws:20:1: error: view 4: the key id is missing
 a.vws:21:15: error: view 4: viewpoint_m is 20000, but must be at least -10000 and at most 10000
-a.vws:22:13: error: view 4: twist_rad is no finite number
+a.vws:22:13: error: view 4: twist_rad is not a finite number
 )");
 }
 
