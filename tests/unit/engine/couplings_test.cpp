@@ -1,7 +1,7 @@
 // The couplings themselves, without an engine around them: what no command can ask for.
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <span>
 #include <vector>
 
 #include "rt_core/engine/coupling.hpp"
@@ -35,6 +35,13 @@ TEST(Couplings, SlotsPastTheEndAreNotTouched) {
   EXPECT_FALSE(sut.uncouple(kRobots, slots));
   ASSERT_TRUE(sut.couple(first_joints(0, 2), slots));
   sut.remove(kRobots, slots);
+  EXPECT_TRUE(slots[2].state().follow.follows());
+  // The same where there is memory behind the end, so that a look past it shows without a sanitizer too.
+  const std::span<RobotSlot> first_two = std::span(slots).first(2);
+  EXPECT_FALSE(sut.uncouple(2, first_two));
+  EXPECT_FALSE(sut.couple(first_joints(0, 2), first_two));
+  EXPECT_FALSE(sut.couple(first_joints(2, 0), first_two));
+  sut.remove(2, first_two);
   EXPECT_TRUE(slots[2].state().follow.follows());
 }
 

@@ -286,7 +286,7 @@ TEST_F(EngineTest, FullCommandQueueRefuses) {
   EXPECT_EQ(sut_->command_queue().dropped, 1U);
   Command move = AddMove{.slot = 3, .move = sut_->lend(std::make_shared<const motion::Move>())};
   EXPECT_EQ(sut_->send(move), 0U);
-  EXPECT_TRUE(std::get<AddMove>(move).move) << "it can be sent again";
+  EXPECT_TRUE(std::get<AddMove>(std::get<MotionCommand>(move)).move) << "it can be sent again";
   tick();
   EXPECT_NE(sut_->send(move), 0U);
 }

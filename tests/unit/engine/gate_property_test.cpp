@@ -334,6 +334,19 @@ class HostileCell {
     }
   }
 
+  // Mostly a good sample of a hand that moves about the wall.
+  void hand() {
+    device_->next = *rc::gen::element(HapticRead::fresh, HapticRead::fresh, HapticRead::fresh, HapticRead::fresh,
+                                      HapticRead::unchanged, HapticRead::torn);
+    ++device_->sample.sequence;
+    device_->sample.time = now_;
+    for (int i = 0; i < 3; ++i)
+      device_->sample.p_DH[i] = std::clamp(
+          (std::isfinite(device_->sample.p_DH[i]) ? device_->sample.p_DH[i] : 0.0) + *rc::gen::inRange(-2, 3) * 1e-3,
+          -0.02, 0.02);
+    if (*rc::gen::inRange(0, 60) == 0) device_->sample.p_DH[0] = hostile(0.1);
+  }
+
   void tick() {
     give_surroundings();
     now_ = now_ + Nanoseconds(1'000'000);
@@ -402,18 +415,6 @@ class HostileCell {
     send_limits(engine_, slot, limits);
   }
 
-  void hand() {
-    device_->next = *rc::gen::element(HapticRead::fresh, HapticRead::fresh, HapticRead::fresh, HapticRead::fresh,
-                                      HapticRead::unchanged, HapticRead::torn);
-    ++device_->sample.sequence;
-    device_->sample.time = now_;
-    for (int i = 0; i < 3; ++i)
-      device_->sample.p_DH[i] = std::clamp(
-          (std::isfinite(device_->sample.p_DH[i]) ? device_->sample.p_DH[i] : 0.0) + *rc::gen::inRange(-2, 3) * 1e-3,
-          -0.02, 0.02);
-    if (*rc::gen::inRange(0, 60) == 0) device_->sample.p_DH[0] = hostile(0.1);
-  }
-
   // A wall through the origin, free on one side; sometimes one that no worker should tell of.
   void give_surroundings() {
     haptics::ContactModel& model = engine_.contact_inlet(0).writable();
@@ -438,10 +439,11 @@ class HostileCell {
       if (to == from) continue;
       RC_ASSERT(std::ranges::any_of(limits_[slot], [&](const JointLimits& limits) {
         const bool near = at_most(to - from, limits.velocity[i] * kPeriod_s, 2 * kLimitSlack);
-        if (!jumped_[slot]) return near && within_reach(from, to, limits.lower[i], limits.upper[i]);
+        if (near && within_reach(from, to, limits.lower[i], limits.upper[i])) return true;
         // It may have moved after the jump, and beyond limits that came after it.
-        const double way = limits.velocity[i] * kPeriod_s * (1 + kRateSlack) + 2 * kLimitSlack;
-        return std::isnan(way) || (to >= limits.lower[i] - way && to <= limits.upper[i] + way);
+        const double way = std::max(0.0, limits.velocity[i]) * kPeriod_s * (1 + kRateSlack) + 2 * kLimitSlack;
+        const bool there = to >= limits.lower[i] - way && to <= limits.upper[i] + way;
+        return jumped_[slot] && (std::isnan(way) || there);
       }));
     }
     limits_[slot].erase(limits_[slot].begin(), limits_[slot].end() - 1);
