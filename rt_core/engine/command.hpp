@@ -2,10 +2,12 @@
 // checks them again. What is large, or has to stay while the tick uses it, is lent (Engine::lend()).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <variant>
 
+#include "rt_core/base/real_time.hpp"
 #include "rt_core/engine/coupling.hpp"
 #include "rt_core/engine/limiter.hpp"
 #include "rt_core/engine/tick_state.hpp"
@@ -110,10 +112,32 @@ struct SetDeviceGone {
   bool gone = false;  // the device's process is known to have ended
 };
 
-using Command =
-    std::variant<AddRobot, RemoveRobot, SetMode, SetPositions, SetLimits, SetChain, AddMove, StopMotion, SetPace,
-                 HoldBehind, Couple, Uncouple, OpenHaptic, CloseHaptic, ResetHaptic, SetDeviceGone>;
-static_assert(sizeof(Command) <= 144, "thousands of them wait in the queue: lend what is larger");
+// In groups, since libstdc++ moves and ends what a variant holds by a branch up to eleven types, and by a table of
+// pointers to functions beyond, which nothing could follow that checks what the tick calls (docs/tick.md).
+using RobotCommand = std::variant<AddRobot, RemoveRobot, SetMode, SetPositions, SetLimits>;
+using MotionCommand = std::variant<SetChain, AddMove, StopMotion, SetPace, HoldBehind>;
+using CouplingCommand = std::variant<Couple, Uncouple>;
+using HapticCommand = std::variant<OpenHaptic, CloseHaptic, ResetHaptic, SetDeviceGone>;
+using Command = std::variant<RobotCommand, MotionCommand, CouplingCommand, HapticCommand>;
+static_assert(sizeof(Command) <= 152, "thousands of them wait in the queue: lend what is larger");
 static_assert(std::is_nothrow_move_assignable_v<Command>);
+
+// Calls `function` with what the variant holds, and gives what it gives. std::visit() is not for the tick: it may
+// throw.
+template <std::size_t I = 0, class Variant, class Function>
+bool with_alternative(Variant& variant, const Function& function) CELL_RT {
+  if constexpr (I < std::variant_size_v<Variant>) {
+    if (auto* const held = std::get_if<I>(&variant)) return function(*held);
+    return with_alternative<I + 1>(variant, function);
+  } else {
+    return false;  // it holds nothing: moving a command never throws
+  }
+}
+
+// The same with the command itself instead of its group.
+template <class AnyCommand, class Function>
+bool with_command(AnyCommand& command, const Function& function) CELL_RT {
+  return with_alternative(command, [&function](auto& group) CELL_RT { return with_alternative(group, function); });
+}
 
 }  // namespace cellmirror::engine

@@ -31,17 +31,18 @@ void forget_samples(Fifo<JointSample, kSampleQueue>& queue) CELL_RT {
 
 // For the flight recorder; 0 for haptic devices.
 std::uint8_t slot_of(const Command& command) CELL_RT {
-  return std::visit(
-      [](const auto& one) CELL_RT -> std::uint8_t {
-        if constexpr (requires { one.slot; }) {
-          return one.slot;
-        } else if constexpr (requires { one.coupling; }) {
-          return one.coupling ? one.coupling->slave : std::uint8_t{0};
-        } else {
-          return 0;
-        }
-      },
-      command);
+  std::uint8_t slot = 0;
+  with_command(command, [&slot](const auto& one) CELL_RT {
+    if constexpr (requires { one.slot; }) slot = one.slot;
+    if constexpr (requires { one.coupling; }) slot = one.coupling ? one.coupling->slave : std::uint8_t{0};
+    return true;
+  });
+  return slot;
+}
+
+bool sets_positions(const Command& command) CELL_RT {
+  const RobotCommand* const robot = std::get_if<RobotCommand>(&command);
+  return robot != nullptr && std::get_if<SetPositions>(robot) != nullptr;
 }
 
 }  // namespace
@@ -90,10 +91,10 @@ int Engine::take_commands(Timestamp now) CELL_RT {
   while (taken < kCommandsPerTick && commands_.pop(sent)) {
     ++taken;
     const std::uint8_t slot = slot_of(sent.command);
-    const bool done = std::visit([this](auto& command) CELL_RT { return carry_out(command); }, sent.command);
+    const bool done = with_command(sent.command, [this](auto& command) CELL_RT { return carry_out(command); });
     head_.commands_done = sent.id;
     if (!done) ++head_.commands_refused;
-    if (!done || std::holds_alternative<SetPositions>(sent.command))
+    if (!done || sets_positions(sent.command))
       record_robot(done ? FlightEvent::setpoint : FlightEvent::refused_command, slot, now, sent.id);
   }
   return taken;
