@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "rt_core/base/base64.hpp"
@@ -100,9 +102,20 @@ Result<SnapshotAnswer> snapshot_answer(std::string_view text) {
     const auto document = nlohmann::json::parse(text);
     SnapshotAnswer answer;
     answer.format = document.at("format").get<std::string>() == "png" ? ImageFormat::png : ImageFormat::jpeg;
-    answer.width = document.at("width").get<int>();
-    answer.height = document.at("height").get<int>();
-    answer.sequence = document.at("sequence").get<std::uint64_t>();
+    const auto whole = [&](const char* name, std::uint64_t most) {
+      const auto& value = document.at(name);
+      const bool fits = value.is_number_unsigned() && value.get<std::uint64_t>() <= most;
+      return fits ? std::optional(value.get<std::uint64_t>()) : std::nullopt;
+    };
+    constexpr std::uint64_t kLongestSide = std::numeric_limits<int>::max();
+    const auto width = whole("width", kLongestSide);
+    const auto height = whole("height", kLongestSide);
+    const auto sequence = whole("sequence", std::numeric_limits<std::uint64_t>::max());
+    if (!width || !height || !sequence)
+      return fail("the gateway's answer is no picture: its numbers do not fit", kRemedy);
+    answer.width = static_cast<int>(*width);
+    answer.height = static_cast<int>(*height);
+    answer.sequence = *sequence;
     answer.posture_age_s = document.at("posture_age_s").get<double>();
     auto bytes = from_base64(document.at("data").get_ref<const std::string&>());
     if (!bytes) return fail("the gateway's picture is damaged", kRemedy);

@@ -60,6 +60,17 @@ Result<void> write_description(const std::filesystem::path& folder, const std::s
   return {};
 }
 
+// A number that does not fit is refused: a conversion of its own would be undefined.
+template <class Integer>
+Integer integer_at(const json& document, const char* name) {
+  const json& value = document.at(name);
+  const bool fits = value.is_number_unsigned()  ? std::in_range<Integer>(value.get<std::uint64_t>())
+                    : value.is_number_integer() ? std::in_range<Integer>(value.get<std::int64_t>())
+                                                : false;
+  if (!fits) throw json::out_of_range::create(406, fmt::format("{} is no number of its type", name), &document);
+  return value.get<Integer>();
+}
+
 Result<InstanceInfo> read_description(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text(kLargestDescription, '\0');
@@ -69,12 +80,12 @@ Result<InstanceInfo> read_description(const std::filesystem::path& file) {
     const json document = json::parse(text);
     InstanceInfo info;
     info.name = document.at("name").get<std::string>();
-    info.pid = document.at("pid").get<pid_t>();
+    info.pid = integer_at<pid_t>(document, "pid");
     info.cell = document.at("cell").get<std::string>();
-    info.queues.script_key = document.at("script_key").get<std::int32_t>();
-    info.queues.sensor_key = document.at("sensor_key").get<std::int32_t>();
-    info.queues.reply_key = document.at("reply_key").get<std::int32_t>();
-    info.queues.mode = document.at("mode").get<std::uint32_t>();
+    info.queues.script_key = integer_at<std::int32_t>(document, "script_key");
+    info.queues.sensor_key = integer_at<std::int32_t>(document, "sensor_key");
+    info.queues.reply_key = integer_at<std::int32_t>(document, "reply_key");
+    info.queues.mode = integer_at<std::uint32_t>(document, "mode");
     info.queues.sensor_rate_hz = document.at("sensor_rate_hz").get<double>();
     return info;
   } catch (const json::exception& error) {

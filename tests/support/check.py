@@ -123,7 +123,10 @@ class Check:
         if self.build("fuzz", "build-fuzz", *SANITIZED_TARGETS):
             seconds = os.environ.get("FUZZ_SECONDS", "1")
             self.tests("address, undefined", "build-fuzz", "-L", "^(unit|golden|fuzz|whole)$", "-LE", "^libfuzzer$", **SANITIZER_OPTIONS)
-            self.tests(f"fuzzing, {seconds} s each", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds, **SANITIZER_OPTIONS)
+            # Another seed each day; what failed can be repeated with the one that is printed.
+            seed = os.environ.get("FUZZ_SEED", time.strftime("%Y%m%d", time.gmtime()))
+            self.tests(f"fuzzing, {seconds} s each, FUZZ_SEED={seed}", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds,
+                       FUZZ_SEED=seed, **SANITIZER_OPTIONS)
         if self.build("tsan", "build-tsan", "tests_stress", "tests_concurrency"):
             self.tests("threads", "build-tsan", "-L", "^(stress|concurrency)$", **SANITIZER_OPTIONS)
 
