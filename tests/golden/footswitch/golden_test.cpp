@@ -178,12 +178,12 @@ TEST(FootSwitchesUnderLoad, TooManyWaitingChangesAreDroppedAndCounted) {
   set_log_level(LogLevel::error);
   Owner sut(golden_folder() / "slow_script");
   constexpr std::size_t kMore = 100;
-  for (std::size_t i = 0; i < InputScripts::kMaxWaiting; ++i) EXPECT_TRUE(sut.scripts.add({1, i % 2 == 0, {}}));
+  for (std::size_t i = 0; i < InputScripts::kMostWaiting; ++i) EXPECT_TRUE(sut.scripts.add({1, i % 2 == 0, {}}));
   for (std::size_t i = 0; i < kMore; ++i) EXPECT_FALSE(sut.scripts.add({1, true, {}}));
   EXPECT_EQ(sut.scripts.counters().dropped, kMore);
   sut.scripts.forget();
   EXPECT_EQ(sut.scripts.waiting(), 0U);
-  EXPECT_EQ(sut.scripts.counters().dropped, kMore + InputScripts::kMaxWaiting);
+  EXPECT_EQ(sut.scripts.counters().dropped, kMore + InputScripts::kMostWaiting);
 }
 
 }  // namespace

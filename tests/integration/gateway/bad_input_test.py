@@ -81,9 +81,9 @@ class BadInput(unittest.TestCase):
         self.refused("EXEC_SCRIPT folder.spt", "folder")
 
     def test_path_out_of_the_home_is_refused(self):
-        self.refused("EXEC_SCRIPT ../../../etc/passwd", "home")
+        self.refused("EXEC_SCRIPT ../../../etc/passwd", "cell folder")
         (self.scripts / "link.spt").symlink_to("/etc/passwd")
-        self.refused("EXEC_SCRIPT link.spt", "home")
+        self.refused("EXEC_SCRIPT link.spt", "cell folder")
 
     def test_unreadable_script_is_refused(self):
         if os.geteuid() == 0:

@@ -130,7 +130,7 @@ class BadInput(unittest.TestCase):
                      "flange", "tool0")
         self.refused_robot(urdf(joint("j", "a", "b")), "c is a root link")
         self.refused_robot(urdf(joint("j", "a", "b"), joint("k", "b", "d")), "robot.urdf:6", "d is not a link")
-        self.refused_robot(urdf(joint("j", "b", "c"), joint("k", "c", "b")), "circle")
+        self.refused_robot(urdf(joint("j", "b", "c"), joint("k", "c", "b")), "form a loop")
 
     def test_joints_that_cannot_be(self):
         ends = joint("j", "a", "b"), "b", "c"

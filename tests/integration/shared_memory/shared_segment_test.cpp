@@ -146,7 +146,7 @@ TEST(SharedSegment, TooSmallAndInUseIsRefusedAndNotTouched) {
     const Stranger device(key);
     const auto sut = SharedSegment::make(options_of(key));
     ASSERT_FALSE(sut);
-    EXPECT_NE(sut.error().what.find("12 bytes where 512"), std::string::npos) << sut.error().text();
+    EXPECT_NE(sut.error().what.find("has 12 bytes, but 512 are needed"), std::string::npos) << sut.error().text();
     EXPECT_NE(sut.error().remedy.find("process " + std::to_string(::getpid())), std::string::npos);
     EXPECT_NE(sut.error().remedy.find("ipcrm -M"), std::string::npos);
   }
@@ -303,11 +303,11 @@ TEST(AttachedSegment, IsRefusedWhereNoneIsThereOrItIsTooSmall) {
   const std::int32_t key = own_key();
   const auto none = AttachedSegment::attach(key, 512, false);
   ASSERT_FALSE(none);
-  EXPECT_NE(none.error().what.find("not there"), std::string::npos) << none.error().text();
+  EXPECT_NE(none.error().what.find("does not exist"), std::string::npos) << none.error().text();
   const auto segment = SharedSegment::make(options_of(key, 12));
   const auto small = AttachedSegment::attach(key, 512, false);
   ASSERT_FALSE(small);
-  EXPECT_NE(small.error().what.find("12 bytes where 512"), std::string::npos) << small.error().text();
+  EXPECT_NE(small.error().what.find("has 12 bytes, but 512 are needed"), std::string::npos) << small.error().text();
 }
 
 TEST(AttachedSegment, SharesTheMemoryUntilItsMakerRemovesIt) {

@@ -84,7 +84,7 @@ class SimHaptic(unittest.TestCase):
         child = self.sim("--wait", 0.1)
         _, err = child.communicate(timeout=10)
         self.assertEqual(child.returncode, 1)
-        self.assertIn("is not there", err)
+        self.assertIn("does not exist", err)
 
     def test_feels_a_wall_and_tells_of_it(self):
         with HapticBlock(self.key, create=True) as block, Wall(block):

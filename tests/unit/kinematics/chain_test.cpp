@@ -137,7 +137,7 @@ TEST(ChainBetween, tellsWhichJointIsFaultyAndWhere) {
   EXPECT_THAT(refused(), AllOf(HasSubstr("test.urdf:12"), HasSubstr("axis of joint lift"), HasSubstr("length zero")));
   lift->joint->axis = Eigen::Vector3d::UnitX();
   std::swap(lift->joint->min_position, lift->joint->max_position);
-  EXPECT_THAT(refused(), AllOf(HasSubstr("test.urdf:12"), HasSubstr("lift"), HasSubstr("wrong way round")));
+  EXPECT_THAT(refused(), AllOf(HasSubstr("test.urdf:12"), HasSubstr("lift"), HasSubstr("swapped limits")));
   lift->joint->min_position = NAN;
   EXPECT_THAT(refused(), AllOf(HasSubstr("test.urdf:12"), HasSubstr("lift")));
   lift->X_PF.translation().x() = NAN;
@@ -296,7 +296,7 @@ TEST(ChainMake, refusesWhatIsNoChain) {
   EXPECT_THAT(refused({good, {"q2", JointKind::revolute, -1, 1}}, {{}}),
               AllOf(HasSubstr("q2"), HasSubstr("does not move")));
   EXPECT_THAT(refused({{"q1", JointKind::revolute, 1, -1}}, {{}}),
-              AllOf(HasSubstr("q1"), HasSubstr("wrong way round")));
+              AllOf(HasSubstr("q1"), HasSubstr("swapped limits")));
   EXPECT_THAT(refused({{"q1", JointKind::revolute, NAN, 1}}, {{}}), AllOf(HasSubstr("q1"), HasSubstr("finite")));
   EXPECT_THAT(refused({good}, std::vector<kinematics::ChainJoint>(kinematics::kMaxChainJoints + 1)),
               HasSubstr("at most"));
