@@ -9,16 +9,16 @@ namespace {
 constexpr std::size_t kLegend = kDisplayModes;
 
 ViewPace pace_of(const ParsedCommand& command) {
-  if (command.given(slots::stvw::steps))
-    return InSteps{static_cast<std::uint64_t>(command.integer(slots::stvw::steps))};
-  if (command.given(slots::stvw::time))
-    return InTime{Nanoseconds(static_cast<std::int64_t>(command.number(slots::stvw::time) * 1e9))};
+  if (command.given(slots::stvw::kSteps))
+    return InSteps{static_cast<std::uint64_t>(command.integer(slots::stvw::kSteps))};
+  if (command.given(slots::stvw::kTime))
+    return InTime{Nanoseconds(static_cast<std::int64_t>(command.number(slots::stvw::kTime) * 1e9))};
   return AtOnce{};
 }
 
 Outcome set_display(const ParsedCommand& command, CommandHost& host) {
-  const bool full_screen = command.given(slots::stdp::screen) && command.choice(slots::stdp::screen) == 0;
-  return Outcome::of(host.display.set_display(static_cast<int>(command.integer(slots::stdp::display)), full_screen));
+  const bool full_screen = command.given(slots::stdp::kScreen) && command.choice(slots::stdp::kScreen) == 0;
+  return Outcome::of(host.display.set_display(static_cast<int>(command.integer(slots::stdp::kDisplay)), full_screen));
 }
 
 Outcome set_view(const ParsedCommand& command, CommandHost& host) {
@@ -31,21 +31,21 @@ Outcome set_view(const ParsedCommand& command, CommandHost& host) {
     return command.number(slot);
   };
   namespace at = slots::stvw;
-  const ViewChange change{vector(at::viewpoint), vector(at::lookpoint),   number(at::twist),
-                          number(at::angle),     number(at::front_plane), number(at::back_plane)};
-  return Outcome::of(host.display.set_view(static_cast<int>(command.integer(at::view)), change, pace_of(command)));
+  const ViewChange change{vector(at::kViewpoint), vector(at::kLookpoint),  number(at::kTwist),
+                          number(at::kAngle),     number(at::kFrontPlane), number(at::kBackPlane)};
+  return Outcome::of(host.display.set_view(static_cast<int>(command.integer(at::kView)), change, pace_of(command)));
 }
 
 Outcome connect_view(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.connect_view(static_cast<int>(command.integer(slots::covw::view)),
-                                               command.text(slots::covw::camera)));
+  return Outcome::of(host.display.connect_view(static_cast<int>(command.integer(slots::covw::kView)),
+                                               command.text(slots::covw::kCamera)));
 }
 
 // The first choice of all switches is "on".
 Outcome set_mode(const ParsedCommand& command, CommandHost& host) {
-  const bool on = command.choice(slots::set_mode::on) == 0;
-  if (command.choice(slots::set_mode::mode) == kLegend) return Outcome::of(host.display.set_legend(on));
-  return Outcome::of(host.display.set_mode(static_cast<DisplayMode>(command.choice(slots::set_mode::mode)), on));
+  const bool on = command.choice(slots::set_mode::kOn) == 0;
+  if (command.choice(slots::set_mode::kMode) == kLegend) return Outcome::of(host.display.set_legend(on));
+  return Outcome::of(host.display.set_mode(static_cast<DisplayMode>(command.choice(slots::set_mode::kMode)), on));
 }
 
 template <DisplayMode mode>

@@ -21,16 +21,16 @@ std::int32_t key_of(const ParsedCommand& command, std::size_t slot) {
 
 Outcome set_force_memory(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(
-      host.interaction.set_force_memory(static_cast<std::uint64_t>(command.integer(slots::force_memory::send_type)),
-                                        key_of(command, slots::force_memory::key),
-                                        static_cast<std::size_t>(command.integer(slots::force_memory::bytes))));
+      host.interaction.set_force_memory(static_cast<std::uint64_t>(command.integer(slots::force_memory::kSendType)),
+                                        key_of(command, slots::force_memory::kKey),
+                                        static_cast<std::size_t>(command.integer(slots::force_memory::kBytes))));
 }
 
 Outcome set_switch_memory(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(
-      host.interaction.set_switch_memory(static_cast<std::uint64_t>(command.integer(slots::switch_memory::send_type)),
-                                         key_of(command, slots::switch_memory::key),
-                                         static_cast<std::size_t>(command.integer(slots::switch_memory::bytes))));
+      host.interaction.set_switch_memory(static_cast<std::uint64_t>(command.integer(slots::switch_memory::kSendType)),
+                                         key_of(command, slots::switch_memory::kKey),
+                                         static_cast<std::size_t>(command.integer(slots::switch_memory::kBytes))));
 }
 
 Outcome set_switches_online(const ParsedCommand& command, CommandHost& host) {

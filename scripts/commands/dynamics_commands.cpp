@@ -14,21 +14,21 @@ constexpr std::size_t kOn = 0;  // of [on | off]
 
 Outcome set_force_arrows(const ParsedCommand& command, CommandHost& host) {
   ForceArrowSettings settings;
-  settings.joint_forces = static_cast<ArrowComponent>(command.choice(slots::force_arrow::joint_forces));
-  settings.joint_torques = static_cast<ArrowComponent>(command.choice(slots::force_arrow::joint_torques));
-  settings.tcp_force = static_cast<ArrowComponent>(command.choice(slots::force_arrow::tcp_force));
+  settings.joint_forces = static_cast<ArrowComponent>(command.choice(slots::force_arrow::kJointForces));
+  settings.joint_torques = static_cast<ArrowComponent>(command.choice(slots::force_arrow::kJointTorques));
+  settings.tcp_force = static_cast<ArrowComponent>(command.choice(slots::force_arrow::kTcpForce));
   return Outcome::with_remark(host.interaction.set_force_arrows(settings));
 }
 
 Outcome set_force_limits(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.interaction.set_force_limits(
-      {command.number(slots::torque_limit::force), command.number(slots::torque_limit::torque)}));
+      {command.number(slots::torque_limit::kForce), command.number(slots::torque_limit::kTorque)}));
 }
 
 Outcome set_tcp_test(const ParsedCommand& command, CommandHost& host) {
   std::array<double, 4> values{};
-  command.numbers(slots::tcp_test::first_value, values);
-  return Outcome::of(host.interaction.set_tcp_test(command.choice(slots::tcp_test::on) == kOn, values));
+  command.numbers(slots::tcp_test::kFirstValue, values);
+  return Outcome::of(host.interaction.set_tcp_test(command.choice(slots::tcp_test::kOn) == kOn, values));
 }
 
 Outcome set_motor_forces_only(const ParsedCommand& command, CommandHost& host) {
@@ -39,8 +39,8 @@ Outcome set_motor_forces_only(const ParsedCommand& command, CommandHost& host) {
 class SlaveList {
  public:
   explicit SlaveList(const ParsedCommand& command) {
-    const auto slaves = static_cast<std::size_t>(command.integer(slots::master_slave::slaves));
-    std::size_t slot = slots::master_slave::first_slave;
+    const auto slaves = static_cast<std::size_t>(command.integer(slots::master_slave::kSlaves));
+    std::size_t slot = slots::master_slave::kFirstSlave;
     std::size_t first_pair = 0;
     while (count_ < slaves) {
       const std::string_view robot = command.text(slot);
@@ -65,9 +65,10 @@ class SlaveList {
 
 Outcome master_slave(const ParsedCommand& command, CommandHost& host) {
   const SlaveList list(command);
-  const std::string_view master = command.text(slots::master_slave::master);
-  return Outcome::of(command.choice(slots::master_slave::on) == kOn ? host.interaction.couple(master, list.slaves())
-                                                                    : host.interaction.uncouple(master, list.slaves()));
+  const std::string_view master = command.text(slots::master_slave::kMaster);
+  return Outcome::of(command.choice(slots::master_slave::kOn) == kOn
+                         ? host.interaction.couple(master, list.slaves())
+                         : host.interaction.uncouple(master, list.slaves()));
 }
 
 constexpr Registration kHandlers[] = {

@@ -47,50 +47,51 @@ Outcome draw_scene(const ParsedCommand& /*command*/, CommandHost& host) { return
 
 Outcome connect(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(
-      host.world.connect(command.text(slots::connect::attached), command.text(slots::connect::predecessor)));
+      host.world.connect(command.text(slots::connect::kAttached), command.text(slots::connect::kPredecessor)));
 }
 
 Outcome frame_to_workframe(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.world.attach_at_workframe(command.text(slots::connect::attached),
-                                                    command.text(slots::connect::predecessor),
-                                                    command.text(slots::connect::workframe)));
+  return Outcome::of(host.world.attach_at_workframe(command.text(slots::connect::kAttached),
+                                                    command.text(slots::connect::kPredecessor),
+                                                    command.text(slots::connect::kWorkframe)));
 }
 
 Outcome set_placement(const ParsedCommand& command, CommandHost& host) {
-  const Eigen::Vector3d rpy = vector_at(command, slots::placement::rotation);
-  const Eigen::Vector3d xyz = vector_at(command, slots::placement::translation);
-  return Outcome::of(host.world.set_placement(command.text(slots::placement::frame), pose_from_xyz_rpy(xyz, rpy)));
+  const Eigen::Vector3d rpy = vector_at(command, slots::placement::kRotation);
+  const Eigen::Vector3d xyz = vector_at(command, slots::placement::kTranslation);
+  return Outcome::of(host.world.set_placement(command.text(slots::placement::kFrame), pose_from_xyz_rpy(xyz, rpy)));
 }
 
 // The first choice of both switches is "on".
 Outcome set_online(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_online(command.text(slots::robot_online::robot),
-                                            command.choice(slots::robot_online::online) == 0));
+  return Outcome::of(host.robots.set_online(command.text(slots::robot_online::kRobot),
+                                            command.choice(slots::robot_online::kOnline) == 0));
 }
 Outcome set_sending(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_sending(command.text(slots::robot_sending::robot),
-                                             command.choice(slots::robot_sending::sending) == 0));
+  return Outcome::of(host.robots.set_sending(command.text(slots::robot_sending::kRobot),
+                                             command.choice(slots::robot_sending::kSending) == 0));
 }
 
 Outcome set_camera(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_camera(command.text(slots::campar::camera),
-                                             command.number(slots::campar::focal_distance),
-                                             command.number(slots::campar::opening_angle)));
+  return Outcome::of(host.display.set_camera(command.text(slots::campar::kCamera),
+                                             command.number(slots::campar::kFocalDistance),
+                                             command.number(slots::campar::kOpeningAngle)));
 }
 
 // In the order of the table.
 DrawMode draw_mode(const ParsedCommand& command) {
   constexpr std::array<DrawMode, 4> kModes = {DrawMode::wireframe, DrawMode::flat, DrawMode::gouraud,
                                               DrawMode::transparent};
-  return kModes[command.choice(slots::render::mode)];
+  return kModes[command.choice(slots::render::kMode)];
 }
 
 Outcome set_frame_render(const ParsedCommand& command, CommandHost& host) {
   return Outcome::with_remark(
-      host.display.set_draw_mode(command.text(slots::render::frame), false, draw_mode(command)));
+      host.display.set_draw_mode(command.text(slots::render::kFrame), false, draw_mode(command)));
 }
 Outcome set_abstract_render(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::with_remark(host.display.set_draw_mode(command.text(slots::render::frame), true, draw_mode(command)));
+  return Outcome::with_remark(
+      host.display.set_draw_mode(command.text(slots::render::kFrame), true, draw_mode(command)));
 }
 
 Outcome load_views(const ParsedCommand& command, CommandHost& host) {
@@ -103,18 +104,18 @@ Outcome tag_drawlen(const ParsedCommand& command, CommandHost& host) {
 
 // The first choice of all three switches is "on"; the parser ensures that a target comes with "on" only.
 Outcome cam_tracking(const ParsedCommand& command, CommandHost& host) {
-  const std::optional<std::string_view> target = command.choice(slots::camera_switch::on) == 0
-                                                     ? std::optional(command.text(slots::camera_switch::target))
+  const std::optional<std::string_view> target = command.choice(slots::camera_switch::kOn) == 0
+                                                     ? std::optional(command.text(slots::camera_switch::kTarget))
                                                      : std::nullopt;
-  return Outcome::of(host.display.track(command.text(slots::camera_switch::camera), target));
+  return Outcome::of(host.display.track(command.text(slots::camera_switch::kCamera), target));
 }
 Outcome cam_view_pyramid(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.show_pyramid(command.text(slots::camera_switch::camera),
-                                               command.choice(slots::camera_switch::on) == 0));
+  return Outcome::of(host.display.show_pyramid(command.text(slots::camera_switch::kCamera),
+                                               command.choice(slots::camera_switch::kOn) == 0));
 }
 Outcome cam_online(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.display.set_camera_online(command.text(slots::camera_switch::camera),
-                                                    command.choice(slots::camera_switch::on) == 0));
+  return Outcome::of(host.display.set_camera_online(command.text(slots::camera_switch::kCamera),
+                                                    command.choice(slots::camera_switch::kOn) == 0));
 }
 
 constexpr Registration kHandlers[] = {

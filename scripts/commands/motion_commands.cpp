@@ -51,17 +51,17 @@ class TargetReader {
 
 template <TargetMode mode>
 Outcome position(const ParsedCommand& command, CommandHost& host) {
-  const TargetReader reader(command, mode, slots::pos_rob::target);
-  auto begun = host.motion.position(command.text(slots::pos_rob::robot), reader.target());
+  const TargetReader reader(command, mode, slots::pos_rob::kTarget);
+  auto begun = host.motion.position(command.text(slots::pos_rob::kRobot), reader.target());
   if (!begun) return Outcome::refused(std::move(begun.error()));
   return *begun ? Outcome::pending(std::move(*begun)) : Outcome::done();
 }
 
 template <TargetMode mode>
 Outcome queue_move(const ParsedCommand& command, CommandHost& host) {
-  const TargetReader reader(command, mode, slots::move_rob::target);
-  const auto path = static_cast<MovePath>(command.choice(slots::move_rob::path));
-  return Outcome::of(host.motion.queue_move(command.text(slots::move_rob::robot), path, reader.target()));
+  const TargetReader reader(command, mode, slots::move_rob::kTarget);
+  const auto path = static_cast<MovePath>(command.choice(slots::move_rob::kPath));
+  return Outcome::of(host.motion.queue_move(command.text(slots::move_rob::kRobot), path, reader.target()));
 }
 
 Outcome stop(const ParsedCommand& command, CommandHost& host) {

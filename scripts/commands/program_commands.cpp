@@ -12,23 +12,24 @@ Outcome begun(Result<ActivityHandle> result) {
 }
 
 Outcome load(const ParsedCommand& command, CommandHost& host) {
-  return begun(host.programs.load_program(command.text(slots::program::program), command.text(slots::program::robot)));
+  return begun(
+      host.programs.load_program(command.text(slots::program::kProgram), command.text(slots::program::kRobot)));
 }
 
 Outcome run(const ParsedCommand& command, CommandHost& host) {
-  const ProgramBegin begin = command.given(slots::program::exec_wait) ? ProgramBegin::exec_wait : ProgramBegin::now;
+  const ProgramBegin begin = command.given(slots::program::kExecWait) ? ProgramBegin::exec_wait : ProgramBegin::now;
   return begun(
-      host.programs.run_program(command.text(slots::program::program), command.text(slots::program::robot), begin));
+      host.programs.run_program(command.text(slots::program::kProgram), command.text(slots::program::kRobot), begin));
 }
 
 Outcome run_backward(const ParsedCommand& command, CommandHost& host) {
-  return begun(host.programs.run_program(command.text(slots::program::program), command.text(slots::program::robot),
+  return begun(host.programs.run_program(command.text(slots::program::kProgram), command.text(slots::program::kRobot),
                                          ProgramBegin::backward));
 }
 
 Outcome delete_program(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(
-      host.programs.delete_program(command.text(slots::program::program), command.text(slots::program::robot)));
+      host.programs.delete_program(command.text(slots::program::kProgram), command.text(slots::program::kRobot)));
 }
 
 Outcome hold(const ParsedCommand& command, CommandHost& host) {
@@ -39,8 +40,8 @@ Outcome resume(const ParsedCommand& command, CommandHost& host) {
 }
 Outcome step(const ParsedCommand& command, CommandHost& host) {
   const bool backward =
-      command.given(slots::program_step::direction) && command.choice(slots::program_step::direction) == 1;
-  return Outcome::of(host.programs.step_program(command.text(slots::program_step::robot), backward));
+      command.given(slots::program_step::kDirection) && command.choice(slots::program_step::kDirection) == 1;
+  return Outcome::of(host.programs.step_program(command.text(slots::program_step::kRobot), backward));
 }
 Outcome stop(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.programs.stop_programs(command.text(kOnlySlot)));
@@ -51,27 +52,27 @@ Outcome await(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome record(const ParsedCommand& command, CommandHost& host) {
-  const auto what = static_cast<RecordStep>(command.choice(slots::program::record_step));
+  const auto what = static_cast<RecordStep>(command.choice(slots::program::kRecordStep));
   const std::string_view point =
-      command.given(slots::program::point) ? command.text(slots::program::point) : std::string_view();
+      command.given(slots::program::kPoint) ? command.text(slots::program::kPoint) : std::string_view();
   if (!point.empty() && what != RecordStep::point) {
     return Outcome::refused(
         {"TF_RECORD: a name is allowed with POINT only", "e.g. TF_RECORD taught PUMA_762 POINT grip"});
   }
-  return Outcome::of(host.programs.record_program(command.text(slots::program::program),
-                                                  command.text(slots::program::robot), what, point));
+  return Outcome::of(host.programs.record_program(command.text(slots::program::kProgram),
+                                                  command.text(slots::program::kRobot), what, point));
 }
 
 // The first choice is "on".
 Outcome set_input(const ParsedCommand& command, CommandHost& host) {
-  const auto number = static_cast<std::size_t>(command.integer(slots::program_input::number));
-  return Outcome::of(host.programs.set_digital_input(command.text(slots::program_input::robot), number,
-                                                     command.choice(slots::program_input::on) == 0));
+  const auto number = static_cast<std::size_t>(command.integer(slots::program_input::kNumber));
+  return Outcome::of(host.programs.set_digital_input(command.text(slots::program_input::kRobot), number,
+                                                     command.choice(slots::program_input::kOn) == 0));
 }
 Outcome set_analogue_input(const ParsedCommand& command, CommandHost& host) {
-  const auto number = static_cast<std::size_t>(command.integer(slots::program_input::number));
-  return Outcome::of(host.programs.set_analogue_input(command.text(slots::program_input::robot), number,
-                                                      command.number(slots::program_input::value)));
+  const auto number = static_cast<std::size_t>(command.integer(slots::program_input::kNumber));
+  return Outcome::of(host.programs.set_analogue_input(command.text(slots::program_input::kRobot), number,
+                                                      command.number(slots::program_input::kValue)));
 }
 
 constexpr Registration kHandlers[] = {

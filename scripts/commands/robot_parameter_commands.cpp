@@ -22,8 +22,8 @@ Outcome set_joints(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome set_fly(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.robots.set_fly(static_cast<FlyType>(command.integer(slots::fly::type)),
-                                         command.number(slots::fly::parameter)));
+  return Outcome::of(host.robots.set_fly(static_cast<FlyType>(command.integer(slots::fly::kType)),
+                                         command.number(slots::fly::kParameter)));
 }
 
 Outcome set_ptp_mode(const ParsedCommand& command, CommandHost& host) {
@@ -40,7 +40,8 @@ Outcome set_inverse_class(const ParsedCommand& command, CommandHost& host) {
 
 // Translation first, then roll, pitch, yaw.
 Pose offset(const ParsedCommand& command) {
-  return pose_from_xyz_rpy(vector_at(command, slots::offset::translation), vector_at(command, slots::offset::rotation));
+  return pose_from_xyz_rpy(vector_at(command, slots::offset::kTranslation),
+                           vector_at(command, slots::offset::kRotation));
 }
 
 Outcome set_point_of_reference(const ParsedCommand& command, CommandHost& host) {

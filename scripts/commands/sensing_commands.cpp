@@ -7,8 +7,8 @@ namespace {
 
 // The choices of both switches are 0 and 1, in this order.
 Outcome set_sensor_active(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_sensor_active(command.text(slots::sensor_active::sensor),
-                                                    command.choice(slots::sensor_active::on) == 1));
+  return Outcome::of(host.sensing.set_sensor_active(command.text(slots::sensor_active::kSensor),
+                                                    command.choice(slots::sensor_active::kOn) == 1));
 }
 
 Outcome set_send_mode(const ParsedCommand& command, CommandHost& host) {
@@ -16,8 +16,8 @@ Outcome set_send_mode(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome set_sensor_range(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(host.sensing.set_sensor_range(command.text(slots::sensor_range::sensor),
-                                                   command.number(slots::sensor_range::range)));
+  return Outcome::of(host.sensing.set_sensor_range(command.text(slots::sensor_range::kSensor),
+                                                   command.number(slots::sensor_range::kRange)));
 }
 
 Outcome set_collision_active(const ParsedCommand& command, CommandHost& host) {
@@ -29,9 +29,9 @@ Outcome set_collision_warning(const ParsedCommand& command, CommandHost& host) {
 }
 
 Outcome set_collision_pair(const ParsedCommand& command, CommandHost& host) {
-  const auto treatment = static_cast<PairTreatment>(command.choice(slots::collision_pair::treatment));
-  return Outcome::of(host.sensing.set_collision_pair(command.text(slots::collision_pair::a),
-                                                     command.text(slots::collision_pair::b), treatment));
+  const auto treatment = static_cast<PairTreatment>(command.choice(slots::collision_pair::kTreatment));
+  return Outcome::of(host.sensing.set_collision_pair(command.text(slots::collision_pair::kA),
+                                                     command.text(slots::collision_pair::kB), treatment));
 }
 
 constexpr Registration kHandlers[] = {

@@ -19,12 +19,12 @@ constexpr Range kSpeedFraction{0, 1};
 constexpr Range kFlyAngle{0, 180};
 
 // Slots of the commands whose values depend on each other.
-constexpr std::size_t kFlyTypeSlot = slots::fly::type;
+constexpr std::size_t kFlyTypeSlot = slots::fly::kType;
 constexpr std::size_t kPlausibilityTokenSlot = 0;
 constexpr std::size_t kEffectorJointSlot = 0;
-constexpr std::size_t kTrackingSwitchSlot = slots::camera_switch::on;
+constexpr std::size_t kTrackingSwitchSlot = slots::camera_switch::kOn;
 constexpr std::size_t kTrackingFrameParameter = 2;
-constexpr std::size_t kTestSwitchSlot = slots::tcp_test::on;
+constexpr std::size_t kTestSwitchSlot = slots::tcp_test::kOn;
 constexpr std::size_t kFirstTestValue = 1;  // parameters of SET_EXT_TCP_TEST
 constexpr std::size_t kLastTestValue = 4;
 constexpr std::size_t kFirstViewParameter = 1;  // parameters of STVW: VP to BCP

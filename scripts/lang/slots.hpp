@@ -34,147 +34,147 @@ namespace slots {
 
 // A namespace a form, or for forms of one shape: STDP, STVW, ... of the synopsis.
 namespace stdp {
-inline constexpr Slot display{0, 0, "display_id"};
-inline constexpr Slot screen{1, 1, "FULL | FULL_OFF"};
+inline constexpr Slot kDisplay{0, 0, "display_id"};
+inline constexpr Slot kScreen{1, 1, "FULL | FULL_OFF"};
 }  // namespace stdp
 namespace stvw {
-inline constexpr Slot view{0, 0, "view_id"};
-inline constexpr Slot viewpoint{1, 1, "VP"};
-inline constexpr Slot lookpoint{4, 2, "LP"};
-inline constexpr Slot twist{7, 3, "TW"};
-inline constexpr Slot angle{8, 4, "VA"};
-inline constexpr Slot front_plane{9, 5, "FCP"};
-inline constexpr Slot back_plane{10, 6, "BCP"};
-inline constexpr Slot steps{11, 7, "STEPS"};
-inline constexpr Slot time{12, 8, "TIME"};
+inline constexpr Slot kView{0, 0, "view_id"};
+inline constexpr Slot kViewpoint{1, 1, "VP"};
+inline constexpr Slot kLookpoint{4, 2, "LP"};
+inline constexpr Slot kTwist{7, 3, "TW"};
+inline constexpr Slot kAngle{8, 4, "VA"};
+inline constexpr Slot kFrontPlane{9, 5, "FCP"};
+inline constexpr Slot kBackPlane{10, 6, "BCP"};
+inline constexpr Slot kSteps{11, 7, "STEPS"};
+inline constexpr Slot kTime{12, 8, "TIME"};
 }  // namespace stvw
 namespace covw {
-inline constexpr Slot view{0, 0, "view_id"};
-inline constexpr Slot camera{1, 1, "cam_id"};
+inline constexpr Slot kView{0, 0, "view_id"};
+inline constexpr Slot kCamera{1, 1, "cam_id"};
 }  // namespace covw
 namespace set_mode {
-inline constexpr Slot mode{0, 0, "mode"};
-inline constexpr Slot on{1, 1, "on | off"};
+inline constexpr Slot kMode{0, 0, "mode"};
+inline constexpr Slot kOn{1, 1, "on | off"};
 }  // namespace set_mode
 
 namespace force_memory {
-inline constexpr Slot send_type{0, 0, "send_type"};
-inline constexpr Slot key{1, 1, "re_shmkey"};
-inline constexpr Slot bytes{2, 2, "re_buflen"};
+inline constexpr Slot kSendType{0, 0, "send_type"};
+inline constexpr Slot kKey{1, 1, "re_shmkey"};
+inline constexpr Slot kBytes{2, 2, "re_buflen"};
 }  // namespace force_memory
 namespace switch_memory {
-inline constexpr Slot send_type{0, 0, "send_type"};
-inline constexpr Slot key{1, 1, "be_shmkey"};
-inline constexpr Slot bytes{2, 2, "be_buflen"};
+inline constexpr Slot kSendType{0, 0, "send_type"};
+inline constexpr Slot kKey{1, 1, "be_shmkey"};
+inline constexpr Slot kBytes{2, 2, "be_buflen"};
 }  // namespace switch_memory
 
 namespace force_arrow {
-inline constexpr Slot joint_forces{0, 0, "int_1"};
-inline constexpr Slot joint_torques{1, 1, "int_2"};
-inline constexpr Slot tcp_force{2, 2, "int_3"};
+inline constexpr Slot kJointForces{0, 0, "int_1"};
+inline constexpr Slot kJointTorques{1, 1, "int_2"};
+inline constexpr Slot kTcpForce{2, 2, "int_3"};
 }  // namespace force_arrow
 namespace torque_limit {
-inline constexpr Slot force{0, 0, "max_force"};
-inline constexpr Slot torque{1, 1, "max_torque"};
+inline constexpr Slot kForce{0, 0, "max_force"};
+inline constexpr Slot kTorque{1, 1, "max_torque"};
 }  // namespace torque_limit
 namespace tcp_test {
-inline constexpr Slot on{0, 0, "on | off"};
-inline constexpr Slot first_value{1, 1, "v1"};
+inline constexpr Slot kOn{0, 0, "on | off"};
+inline constexpr Slot kFirstValue{1, 1, "v1"};
 }  // namespace tcp_test
 namespace master_slave {
-inline constexpr Slot on{0, 0, "on | off"};
-inline constexpr Slot master{1, 1, "master_robot"};
-inline constexpr Slot slaves{2, 2, "n_slaves"};
-inline constexpr Slot first_slave{3, 3, "slave_robot n_dof master_joint slave_joint ..."};
+inline constexpr Slot kOn{0, 0, "on | off"};
+inline constexpr Slot kMaster{1, 1, "master_robot"};
+inline constexpr Slot kSlaves{2, 2, "n_slaves"};
+inline constexpr Slot kFirstSlave{3, 3, "slave_robot n_dof master_joint slave_joint ..."};
 }  // namespace master_slave
 
 // CONNECT, and with the third value FRAME_TO_WFRM.
 namespace connect {
-inline constexpr Slot attached{0, 0, "frame_2"};
-inline constexpr Slot predecessor{1, 2, "frame_1"};
-inline constexpr Slot workframe{2, 3, "WFRM_name1"};
+inline constexpr Slot kAttached{0, 0, "frame_2"};
+inline constexpr Slot kPredecessor{1, 2, "frame_1"};
+inline constexpr Slot kWorkframe{2, 3, "WFRM_name1"};
 }  // namespace connect
 namespace placement {
-inline constexpr Slot frame{0, 0, "frame_node"};
-inline constexpr Slot rotation{1, 2, "wx"};     // and wy, wz
-inline constexpr Slot translation{4, 5, "dx"};  // and dy, dz
+inline constexpr Slot kFrame{0, 0, "frame_node"};
+inline constexpr Slot kRotation{1, 2, "wx"};     // and wy, wz
+inline constexpr Slot kTranslation{4, 5, "dx"};  // and dy, dz
 }  // namespace placement
 namespace render {
-inline constexpr Slot frame{0, 0, "frame_node"};
-inline constexpr Slot mode{1, 2, "mode"};
+inline constexpr Slot kFrame{0, 0, "frame_node"};
+inline constexpr Slot kMode{1, 2, "mode"};
 }  // namespace render
 namespace robot_online {
-inline constexpr Slot robot{0, 0, "Robot_id"};
-inline constexpr Slot online{1, 1, "online | offline"};
+inline constexpr Slot kRobot{0, 0, "Robot_id"};
+inline constexpr Slot kOnline{1, 1, "online | offline"};
 }  // namespace robot_online
 namespace robot_sending {
-inline constexpr Slot robot{0, 0, "Robot_id"};
-inline constexpr Slot sending{1, 1, "send_on | send_off"};
+inline constexpr Slot kRobot{0, 0, "Robot_id"};
+inline constexpr Slot kSending{1, 1, "send_on | send_off"};
 }  // namespace robot_sending
 namespace campar {
-inline constexpr Slot camera{0, 0, "CAM_id"};
-inline constexpr Slot focal_distance{1, 1, "view_dist"};
-inline constexpr Slot opening_angle{2, 2, "fovy_angle"};
+inline constexpr Slot kCamera{0, 0, "CAM_id"};
+inline constexpr Slot kFocalDistance{1, 1, "view_dist"};
+inline constexpr Slot kOpeningAngle{2, 2, "fovy_angle"};
 }  // namespace campar
 // CAM_TRACKING, and without the third value CAM_VIEW_PYRAMID and CAM_ONLINE.
 namespace camera_switch {
-inline constexpr Slot camera{0, 0, "cam_id"};
-inline constexpr Slot on{1, 1, "on | off"};
-inline constexpr Slot target{2, 2, "frame_id"};
+inline constexpr Slot kCamera{0, 0, "cam_id"};
+inline constexpr Slot kOn{1, 1, "on | off"};
+inline constexpr Slot kTarget{2, 2, "frame_id"};
 }  // namespace camera_switch
 
 namespace pos_rob {
-inline constexpr Slot robot{0, 0, "Robot_id"};
-inline constexpr std::size_t target = 1;  // behind the word of the mode
+inline constexpr Slot kRobot{0, 0, "Robot_id"};
+inline constexpr std::size_t kTarget = 1;  // behind the word of the mode
 }  // namespace pos_rob
 namespace move_rob {
-inline constexpr Slot robot{0, 0, "Robot_id"};
-inline constexpr Slot path{1, 1, "PTP | LIN"};
-inline constexpr std::size_t target = 2;  // behind the word of the mode
+inline constexpr Slot kRobot{0, 0, "Robot_id"};
+inline constexpr Slot kPath{1, 1, "PTP | LIN"};
+inline constexpr std::size_t kTarget = 2;  // behind the word of the mode
 }  // namespace move_rob
 
 // TF_LOAD, TF_BACK, TF_DELETE, TF_RUN and TF_RECORD begin so.
 namespace program {
-inline constexpr Slot program{0, 0, "teach_filename"};
-inline constexpr Slot robot{1, 1, "Robot_id"};
-inline constexpr Slot exec_wait{2, 2, "exec_wait"};               // TF_RUN
-inline constexpr Slot record_step{2, 2, "START | POINT | STOP"};  // TF_RECORD
-inline constexpr Slot point{3, 3, "point"};                       // TF_RECORD
+inline constexpr Slot kProgram{0, 0, "teach_filename"};
+inline constexpr Slot kRobot{1, 1, "Robot_id"};
+inline constexpr Slot kExecWait{2, 2, "exec_wait"};               // TF_RUN
+inline constexpr Slot kRecordStep{2, 2, "START | POINT | STOP"};  // TF_RECORD
+inline constexpr Slot kPoint{3, 3, "point"};                      // TF_RECORD
 }  // namespace program
 namespace program_step {
-inline constexpr Slot robot{0, 0, "Robot_id"};
-inline constexpr Slot direction{1, 1, "direction"};
+inline constexpr Slot kRobot{0, 0, "Robot_id"};
+inline constexpr Slot kDirection{1, 1, "direction"};
 }  // namespace program_step
 // SET_INPUT and SET_ANALOG_INPUT.
 namespace program_input {
-inline constexpr Slot robot{0, 0, "Robot_id"};
-inline constexpr Slot number{1, 1, "number"};
-inline constexpr Slot on{2, 2, "on | off"};
-inline constexpr Slot value{2, 2, "value"};
+inline constexpr Slot kRobot{0, 0, "Robot_id"};
+inline constexpr Slot kNumber{1, 1, "number"};
+inline constexpr Slot kOn{2, 2, "on | off"};
+inline constexpr Slot kValue{2, 2, "value"};
 }  // namespace program_input
 
 namespace sensor_active {
-inline constexpr Slot sensor{0, 1, "USS_id"};
-inline constexpr Slot on{1, 2, "0 | 1"};
+inline constexpr Slot kSensor{0, 1, "USS_id"};
+inline constexpr Slot kOn{1, 2, "0 | 1"};
 }  // namespace sensor_active
 namespace sensor_range {
-inline constexpr Slot sensor{0, 1, "USS_id"};
-inline constexpr Slot range{1, 2, "USS_range"};
+inline constexpr Slot kSensor{0, 1, "USS_id"};
+inline constexpr Slot kRange{1, 2, "USS_range"};
 }  // namespace sensor_range
 namespace collision_pair {
-inline constexpr Slot a{0, 1, "node_a"};
-inline constexpr Slot b{1, 2, "node_b"};
-inline constexpr Slot treatment{2, 3, "ignore | test | derive"};
+inline constexpr Slot kA{0, 1, "node_a"};
+inline constexpr Slot kB{1, 2, "node_b"};
+inline constexpr Slot kTreatment{2, 3, "ignore | test | derive"};
 }  // namespace collision_pair
 
 namespace fly {
-inline constexpr Slot type{0, 0, "fly_type"};
-inline constexpr Slot parameter{1, 1, "fly_parameter"};
+inline constexpr Slot kType{0, 0, "fly_type"};
+inline constexpr Slot kParameter{1, 1, "fly_parameter"};
 }  // namespace fly
 // rob_por_def and rob_tcp_def.
 namespace offset {
-inline constexpr std::size_t translation = 0;
-inline constexpr std::size_t rotation = 3;
+inline constexpr std::size_t kTranslation = 0;
+inline constexpr std::size_t kRotation = 3;
 }  // namespace offset
 
 }  // namespace slots

@@ -52,12 +52,12 @@ constexpr Parameter kMode[] = {choice("mode", "mode", kModes), on_off()};
 constexpr Parameter kSwitch[] = {on_off()};
 
 // The slots by which scripts/commands reads the values.
-static_assert(has_slots(kDisplay, {slots::stdp::display, slots::stdp::screen}));
-static_assert(has_slots(kStvw, {slots::stvw::view, slots::stvw::viewpoint, slots::stvw::lookpoint, slots::stvw::twist,
-                                slots::stvw::angle, slots::stvw::front_plane, slots::stvw::back_plane,
-                                slots::stvw::steps, slots::stvw::time}));
-static_assert(has_slots(kCovw, {slots::covw::view, slots::covw::camera}));
-static_assert(has_slots(kMode, {slots::set_mode::mode, slots::set_mode::on}));
+static_assert(has_slots(kDisplay, {slots::stdp::kDisplay, slots::stdp::kScreen}));
+static_assert(has_slots(kStvw, {slots::stvw::kView, slots::stvw::kViewpoint, slots::stvw::kLookpoint,
+                                slots::stvw::kTwist, slots::stvw::kAngle, slots::stvw::kFrontPlane,
+                                slots::stvw::kBackPlane, slots::stvw::kSteps, slots::stvw::kTime}));
+static_assert(has_slots(kCovw, {slots::covw::kView, slots::covw::kCamera}));
+static_assert(has_slots(kMode, {slots::set_mode::kMode, slots::set_mode::kOn}));
 
 constexpr Form kForms[] = {
     {.id = FormId::stdp,

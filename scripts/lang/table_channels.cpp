@@ -54,9 +54,9 @@ constexpr Parameter kMessage[] = {{.name = "text", .meaning = "message", .kind =
 
 // The slots by which scripts/commands reads the values.
 static_assert(has_slots(kForceMemory,
-                        {slots::force_memory::send_type, slots::force_memory::key, slots::force_memory::bytes}));
+                        {slots::force_memory::kSendType, slots::force_memory::kKey, slots::force_memory::kBytes}));
 static_assert(has_slots(kSwitchMemory,
-                        {slots::switch_memory::send_type, slots::switch_memory::key, slots::switch_memory::bytes}));
+                        {slots::switch_memory::kSendType, slots::switch_memory::kKey, slots::switch_memory::kBytes}));
 
 constexpr Form kForms[] = {
     {.id = FormId::eladyn_calc,

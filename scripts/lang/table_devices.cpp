@@ -77,23 +77,23 @@ constexpr std::string_view kScreenIncNote =
     "any order, each at most once, with or without commas between them";
 
 // The slots by which scripts/commands reads the values.
-static_assert(has_slots(kRender, {slots::render::frame, slots::render::mode}));
+static_assert(has_slots(kRender, {slots::render::kFrame, slots::render::kMode}));
 static_assert(has_slots(kPlacement,
-                        {slots::placement::frame, slots::placement::rotation, slots::placement::translation}));
-static_assert(has_slots(kRobotOnline, {slots::robot_online::robot, slots::robot_online::online}));
-static_assert(has_slots(kRobotSending, {slots::robot_sending::robot, slots::robot_sending::sending}));
+                        {slots::placement::kFrame, slots::placement::kRotation, slots::placement::kTranslation}));
+static_assert(has_slots(kRobotOnline, {slots::robot_online::kRobot, slots::robot_online::kOnline}));
+static_assert(has_slots(kRobotSending, {slots::robot_sending::kRobot, slots::robot_sending::kSending}));
 static_assert(has_slots(kCameraParameters,
-                        {slots::campar::camera, slots::campar::focal_distance, slots::campar::opening_angle}));
-static_assert(has_slots(kSensorActive, {slots::sensor_active::sensor, slots::sensor_active::on}));
-static_assert(has_slots(kSensorRange, {slots::sensor_range::sensor, slots::sensor_range::range}));
+                        {slots::campar::kCamera, slots::campar::kFocalDistance, slots::campar::kOpeningAngle}));
+static_assert(has_slots(kSensorActive, {slots::sensor_active::kSensor, slots::sensor_active::kOn}));
+static_assert(has_slots(kSensorRange, {slots::sensor_range::kSensor, slots::sensor_range::kRange}));
 static_assert(has_slots(kTracking,
-                        {slots::camera_switch::camera, slots::camera_switch::on, slots::camera_switch::target}));
-static_assert(has_slots(kCameraSwitch, {slots::camera_switch::camera, slots::camera_switch::on}));
-static_assert(has_slots(kJointAbs, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "j1 ... jn"}}));
-static_assert(has_slots(kFrameAbs, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "x"}}));
-static_assert(has_slots(kFrameInc, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "X"}}));
-static_assert(has_slots(kToolInc, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "X"}}));
-static_assert(has_slots(kScreenInc, {slots::pos_rob::robot, {slots::pos_rob::target, 2, "X"}}));
+                        {slots::camera_switch::kCamera, slots::camera_switch::kOn, slots::camera_switch::kTarget}));
+static_assert(has_slots(kCameraSwitch, {slots::camera_switch::kCamera, slots::camera_switch::kOn}));
+static_assert(has_slots(kJointAbs, {slots::pos_rob::kRobot, {slots::pos_rob::kTarget, 2, "j1 ... jn"}}));
+static_assert(has_slots(kFrameAbs, {slots::pos_rob::kRobot, {slots::pos_rob::kTarget, 2, "x"}}));
+static_assert(has_slots(kFrameInc, {slots::pos_rob::kRobot, {slots::pos_rob::kTarget, 2, "X"}}));
+static_assert(has_slots(kToolInc, {slots::pos_rob::kRobot, {slots::pos_rob::kTarget, 2, "X"}}));
+static_assert(has_slots(kScreenInc, {slots::pos_rob::kRobot, {slots::pos_rob::kTarget, 2, "X"}}));
 
 constexpr Form kForms[] = {
     {.id = FormId::pos_rob_joint_abs,

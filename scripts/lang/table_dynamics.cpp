@@ -32,12 +32,12 @@ constexpr Parameter kMasterSlave[] = {on_off("coupling"), robot("master_robot", 
                                                 .kind = ParameterKind::slaves}};
 
 // The slots by which scripts/commands reads the values.
-static_assert(has_slots(kForceArrow, {slots::force_arrow::joint_forces, slots::force_arrow::joint_torques,
-                                      slots::force_arrow::tcp_force}));
-static_assert(has_slots(kTorqueLimit, {slots::torque_limit::force, slots::torque_limit::torque}));
-static_assert(has_slots(kTcpTest, {slots::tcp_test::on, slots::tcp_test::first_value}));
-static_assert(has_slots(kMasterSlave, {slots::master_slave::on, slots::master_slave::master,
-                                       slots::master_slave::slaves, slots::master_slave::first_slave}));
+static_assert(has_slots(kForceArrow, {slots::force_arrow::kJointForces, slots::force_arrow::kJointTorques,
+                                      slots::force_arrow::kTcpForce}));
+static_assert(has_slots(kTorqueLimit, {slots::torque_limit::kForce, slots::torque_limit::kTorque}));
+static_assert(has_slots(kTcpTest, {slots::tcp_test::kOn, slots::tcp_test::kFirstValue}));
+static_assert(has_slots(kMasterSlave, {slots::master_slave::kOn, slots::master_slave::kMaster,
+                                       slots::master_slave::kSlaves, slots::master_slave::kFirstSlave}));
 
 constexpr Form kForms[] = {
     {.id = FormId::set_force_arrow,

@@ -38,11 +38,11 @@ constexpr Parameter kFrameToWorkframe[] = {frame("frame_2", "frame to attach"), 
                                            named(NameKind::workframe, "WFRM_name1", "workframe")};
 
 // The slots by which scripts/commands reads the values.
-static_assert(has_slots(kProgramOfRobot, {slots::program::program, slots::program::robot}));
-static_assert(has_slots(kRun, {slots::program::program, slots::program::robot, slots::program::exec_wait}));
-static_assert(has_slots(kConnect, {slots::connect::attached, slots::connect::predecessor}));
+static_assert(has_slots(kProgramOfRobot, {slots::program::kProgram, slots::program::kRobot}));
+static_assert(has_slots(kRun, {slots::program::kProgram, slots::program::kRobot, slots::program::kExecWait}));
+static_assert(has_slots(kConnect, {slots::connect::kAttached, slots::connect::kPredecessor}));
 static_assert(has_slots(kFrameToWorkframe,
-                        {slots::connect::attached, slots::connect::predecessor, slots::connect::workframe}));
+                        {slots::connect::kAttached, slots::connect::kPredecessor, slots::connect::kWorkframe}));
 
 constexpr Form kForms[] = {
     {.id = FormId::comment,

@@ -104,22 +104,25 @@ constexpr Form increment_form(FormId id, std::string_view syntax, std::span<cons
 
 // The slots by which scripts/commands reads the values.
 static_assert(has_slots(kCollisionPair,
-                        {slots::collision_pair::a, slots::collision_pair::b, slots::collision_pair::treatment}));
-static_assert(has_slots(kProgramOfRobot, {slots::program::program, slots::program::robot}));
-static_assert(has_slots(kStep, {slots::program_step::robot, slots::program_step::direction}));
-static_assert(has_slots(kRecord, {slots::program::program, slots::program::robot, slots::program::record_step,
-                                  slots::program::point}));
+                        {slots::collision_pair::kA, slots::collision_pair::kB, slots::collision_pair::kTreatment}));
+static_assert(has_slots(kProgramOfRobot, {slots::program::kProgram, slots::program::kRobot}));
+static_assert(has_slots(kStep, {slots::program_step::kRobot, slots::program_step::kDirection}));
+static_assert(has_slots(kRecord, {slots::program::kProgram, slots::program::kRobot, slots::program::kRecordStep,
+                                  slots::program::kPoint}));
 static_assert(has_slots(kDigitalInput,
-                        {slots::program_input::robot, slots::program_input::number, slots::program_input::on}));
+                        {slots::program_input::kRobot, slots::program_input::kNumber, slots::program_input::kOn}));
 static_assert(has_slots(kAnalogueInput,
-                        {slots::program_input::robot, slots::program_input::number, slots::program_input::value}));
+                        {slots::program_input::kRobot, slots::program_input::kNumber, slots::program_input::kValue}));
 static_assert(has_slots(kJointAbs,
-                        {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "j1 ... jn"}}));
-static_assert(has_slots(kFrameAbs, {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "x"}}));
-static_assert(has_slots(kFrameInc, {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "X"}}));
-static_assert(has_slots(kToolInc, {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "X"}}));
+                        {slots::move_rob::kRobot, slots::move_rob::kPath, {slots::move_rob::kTarget, 3, "j1 ... jn"}}));
+static_assert(has_slots(kFrameAbs,
+                        {slots::move_rob::kRobot, slots::move_rob::kPath, {slots::move_rob::kTarget, 3, "x"}}));
+static_assert(has_slots(kFrameInc,
+                        {slots::move_rob::kRobot, slots::move_rob::kPath, {slots::move_rob::kTarget, 3, "X"}}));
+static_assert(has_slots(kToolInc,
+                        {slots::move_rob::kRobot, slots::move_rob::kPath, {slots::move_rob::kTarget, 3, "X"}}));
 static_assert(has_slots(kScreenInc,
-                        {slots::move_rob::robot, slots::move_rob::path, {slots::move_rob::target, 3, "X"}}));
+                        {slots::move_rob::kRobot, slots::move_rob::kPath, {slots::move_rob::kTarget, 3, "X"}}));
 
 constexpr Form kForms[] = {
     {.id = FormId::save_flight,

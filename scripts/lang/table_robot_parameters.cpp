@@ -102,8 +102,8 @@ constexpr Form scalar_form(FormId id, std::string_view name, std::string_view sy
 }
 
 // The slots by which scripts/commands reads the values.
-static_assert(has_slots(kFly, {slots::fly::type, slots::fly::parameter}));
-static_assert(has_slots(kOffset, {{slots::offset::translation, 0, "X"}, {slots::offset::rotation, 3, "P"}}));
+static_assert(has_slots(kFly, {slots::fly::kType, slots::fly::kParameter}));
+static_assert(has_slots(kOffset, {{slots::offset::kTranslation, 0, "X"}, {slots::offset::kRotation, 3, "P"}}));
 
 constexpr Form kForms[] = {
     scalar_form(FormId::rob_cart_lin_vel, "rob_cart_lin_vel", "rob_cart_lin_vel <lin_vel>", kLinearVelocity,

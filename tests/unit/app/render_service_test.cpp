@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/render/render_service.hpp"
+#include "rt_core/engine/engine.hpp"
 #include "rt_core/rt/watchdog.hpp"
 
 namespace cellmirror::app {

@@ -295,8 +295,7 @@ TEST(ChainMake, refusesWhatIsNoChain) {
   EXPECT_THAT(refused({}, {}), HasSubstr("no joint"));
   EXPECT_THAT(refused({good, {"q2", JointKind::revolute, -1, 1}}, {{}}),
               AllOf(HasSubstr("q2"), HasSubstr("does not move")));
-  EXPECT_THAT(refused({{"q1", JointKind::revolute, 1, -1}}, {{}}),
-              AllOf(HasSubstr("q1"), HasSubstr("swapped limits")));
+  EXPECT_THAT(refused({{"q1", JointKind::revolute, 1, -1}}, {{}}), AllOf(HasSubstr("q1"), HasSubstr("swapped limits")));
   EXPECT_THAT(refused({{"q1", JointKind::revolute, NAN, 1}}, {{}}), AllOf(HasSubstr("q1"), HasSubstr("finite")));
   EXPECT_THAT(refused({good}, std::vector<kinematics::ChainJoint>(kinematics::kMaxChainJoints + 1)),
               HasSubstr("at most"));
