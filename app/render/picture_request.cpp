@@ -30,7 +30,7 @@ Result<void> check_free_view(const View& view) {
   if (!(view.opening_angle > 0 && view.opening_angle < std::numbers::pi))
     return fail("the opening angle is not between 0 and pi");
   if (!(view.near_distance >= 0 && view.far_distance > view.near_distance && view.far_distance <= 1e6))
-    return fail("the clipping planes leave nothing between them");
+    return fail("the front clipping plane is not in front of the back one");
   return {};
 }
 

@@ -212,7 +212,7 @@ TEST_F(DisplayDeskTest, ClippingPlanesAloneLeaveAViewAtItsCamera) {
   EXPECT_EQ(shown.near_distance, 1.5);
   EXPECT_EQ(shown.far_distance, 2.5);
   planes.near_distance = 3.0;
-  EXPECT_NE(refusal(sut_->set_view(0, planes, AtOnce{})).find("leave nothing between them"), std::string::npos);
+  EXPECT_NE(refusal(sut_->set_view(0, planes, AtOnce{})).find("is not in front of the back one"), std::string::npos);
   EXPECT_EQ(view(0).view.near_distance, 1.5);
   EXPECT_EQ(view(0).camera, "CAM");
   ASSERT_TRUE(sut_->connect_view(0, "CAM"));

@@ -56,7 +56,7 @@ TEST_F(Home, RefusesWhatIsNoReadableFile) {
   fs::create_directory(root_ / "cell/scripts/folder.spt");
   ASSERT_EQ(mkfifo((root_ / "cell/scripts/pipe.spt").c_str(), 0600), 0);
   EXPECT_NE(refusal("folder.spt").find("is a folder"), std::string::npos);
-  EXPECT_NE(refusal("pipe.spt").find("no regular file"), std::string::npos);
+  EXPECT_NE(refusal("pipe.spt").find("not a regular file"), std::string::npos);
   EXPECT_NE(refusal("missing.spt").find("does not exist"), std::string::npos);
   EXPECT_NE(refusal("").find("empty"), std::string::npos);
   EXPECT_NE(refusal(std::string("a\0b", 3)).find("NUL"), std::string::npos);

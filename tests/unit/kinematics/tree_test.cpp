@@ -193,12 +193,12 @@ TEST(Tree, refusesLinksInTheWrongPlace) {
   EXPECT_THAT(refusal({}, fixed_link("a", 0, Pose::Identity())), HasSubstr("after its parent"));
   Pose mirrored = Pose::Identity();
   mirrored.linear()(2, 2) = -1;
-  EXPECT_THAT(refusal({}, fixed_link("a", -1, mirrored)), HasSubstr("no rotation"));
+  EXPECT_THAT(refusal({}, fixed_link("a", -1, mirrored)), HasSubstr("not a rotation"));
 }
 
 TEST(Tree, refusesLimitsTheWrongWayRound) {
   EXPECT_THAT(refusal({{"wrist", JointKind::revolute, 1, -1}}, fixed_link("a", -1, Pose::Identity())),
-              AllOf(HasSubstr("wrist"), HasSubstr("wrong way round")));
+              AllOf(HasSubstr("wrist"), HasSubstr("swapped limits")));
 }
 
 TEST(Tree, refusesMoreThanItsCapacities) {

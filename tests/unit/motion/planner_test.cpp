@@ -53,7 +53,7 @@ TEST(PlanJointMove, RefusesTargetsBeyondTheRangeAndNamesTheJoint) {
   target[4] = 1.75;
   const auto refused = plan_joint_move(puma(), with_speeds(), target);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().text(), HasSubstr("joint 5 (j5) would stand at 100.268 deg"));
+  EXPECT_THAT(refused.error().text(), HasSubstr("joint 5 (j5) would be at 100.268 deg"));
   target[4] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(plan_joint_move(puma(), with_speeds(), target).error().text(), HasSubstr("joint 5 (j5)"));
 }

@@ -102,7 +102,7 @@ TEST(Motion, RefusesWithTheRemedy) {
   EXPECT_THAT(make_motion("sinus", 1).error().text(), HasSubstr("motions: hold"));
   EXPECT_THAT(make_motion("sine:amplitud=1", 1).error().text(), HasSubstr("amplitude"));
   EXPECT_THAT(make_motion("sine:period=0", 1).error().text(), HasSubstr("above 0"));
-  EXPECT_THAT(make_motion("sine:period=nan", 1).error().text(), HasSubstr("no number"));
+  EXPECT_THAT(make_motion("sine:period=nan", 1).error().text(), HasSubstr("not a number"));
   EXPECT_THAT(make_motion("waypoints:", 1).error().text(), HasSubstr("FILE.csv"));
   EXPECT_FALSE(make_motion("recorded:/nonexistent/file.csv", 1));
   const MotionFile file("0,1\n1,2\n");

@@ -88,7 +88,7 @@ TEST(ControlCommand, RefusesWithWhatWouldBeRight) {
   EXPECT_THAT(parse_control_command("emcy 0x10000").error().text(), HasSubstr("16 bits"));
   EXPECT_THAT(parse_control_command("die node=3").error().text(), HasSubstr("joint=N"));
   EXPECT_THAT(parse_control_command("clear x").error().text(), HasSubstr("clear KIND"));
-  EXPECT_THAT(parse_control_command("quit now").error().text(), HasSubstr("nothing more"));
+  EXPECT_THAT(parse_control_command("quit now").error().text(), HasSubstr("no more parameters"));
   EXPECT_FALSE(parse_control_command(""));
   EXPECT_FALSE(parse_control_command(std::string(5000, 'a')));
   EXPECT_THAT(parse_control_command("\x01\xff").error().text(), HasSubstr("\\x01"));
