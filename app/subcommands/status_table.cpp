@@ -171,6 +171,13 @@ class TableWriter {
          script.at("received").get<std::uint64_t>(), script.at("done").get<std::uint64_t>(),
          script.at("refused").get<std::uint64_t>(), number_of(script.at("running").get<std::uint64_t>(), "file"),
          script.at("language").get<std::string>());
+    for (const json& run : script.value("runs", json::array())) {
+      const json& stack = run.at("stack");
+      std::string files;
+      for (const json& file : stack) files += (files.empty() ? "" : " > ") + file.get<std::string>();
+      line("  run {}: {}{}", run.at("id").get<std::uint64_t>(), files,
+           run.at("waiting").get<bool>() ? ", waits" : "");
+    }
     const json& errors = script.at("last_errors");
     const std::size_t first = errors.size() > kCommandErrorsShown ? errors.size() - kCommandErrorsShown : 0;
     for (std::size_t i = first; i < errors.size(); ++i) line("  {}", errors.at(i).get<std::string>());

@@ -17,10 +17,25 @@ Outcome save_views(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.display.save_views(command.text(kOnlySlot)));
 }
 
+// A robot without a program or a move of ours has nothing to stop: its refusal is no error here.
+Outcome stop_all(const ParsedCommand& /*command*/, CommandHost& host) {
+  for (const std::string& robot : host.names.all(NameKind::robot)) {
+    [[maybe_unused]] const Result<void> programs = host.programs.stop_programs(robot);
+    [[maybe_unused]] const Result<void> moves = host.motion.stop(robot);
+  }
+  return Outcome::stop_runs(Outcome::kAllRuns);
+}
+
+Outcome stop_script(const ParsedCommand& command, CommandHost& /*host*/) {
+  return Outcome::stop_runs(static_cast<std::uint64_t>(command.integer(kOnlySlot)));
+}
+
 constexpr Registration kHandlers[] = {
     {FormId::save_views, save_views},
     {FormId::save_flight, save_flight},
     {FormId::reset_haptic, reset_haptic},
+    {FormId::stop_all, stop_all},
+    {FormId::stop_script, stop_script},
 };
 
 }  // namespace

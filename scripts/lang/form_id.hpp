@@ -138,9 +138,11 @@ enum class FormId : std::uint8_t {
   tf_record,
   set_input,
   set_analog_input,
+  stop_all,
+  stop_script,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::set_analog_input) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::stop_script) + 1;
 
 }  // namespace cellmirror::script

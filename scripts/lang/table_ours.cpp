@@ -63,6 +63,8 @@ constexpr Choice kStepDirections[] = {{"FORWARD", "in program order"},
 constexpr Choice kRecordSteps[] = {{"START", "begins a recording"},
                                    {"POINT", "a check point where the robot is now"},
                                    {"STOP", "ends the recording and writes the file"}};
+constexpr Range kRunNumber{1.0, 9.0e15, false, false};
+constexpr Parameter kRun[] = {integer("run", "number of the run, from `cellmirror status`", kRunNumber)};
 constexpr Parameter kProgramRobot[] = {robot()};
 constexpr Parameter kProgramOfRobot[] = {file("teach_filename", "robot program"), robot()};
 constexpr Parameter kStep[] = {robot(), optional(choice("direction", "direction", kStepDirections), "FORWARD")};
@@ -317,6 +319,26 @@ constexpr Form kForms[] = {
      .help = "sets an analogue input of a robot's virtual controller",
      .example = "SET_ANALOG_INPUT MANTEC_RM3 1 4.75",
      .definition = "initially all are 0; the program defines the unit",
+     .origin = Origin::ours},
+    {.id = FormId::stop_all,
+     .name = "STOP_ALL",
+     .syntax = "STOP_ALL",
+     .section = kSection,
+     .parameters = {},
+     .help = "ends all SCRIPT files and robot programs, and brakes all moves",
+     .example = "STOP_ALL",
+     .definition = "effective at once, also in endless loops; a SCRIPT file that contains it ends, too; moves of "
+                   "mirrored robots are their controllers', and continue; not a safety function",
+     .effect = LoopEffect::queued,
+     .origin = Origin::ours},
+    {.id = FormId::stop_script,
+     .name = "STOP_SCRIPT",
+     .syntax = "STOP_SCRIPT <run>",
+     .section = kSection,
+     .parameters = kRun,
+     .help = "ends a SCRIPT file that is being executed, with the files that it has called",
+     .example = "STOP_SCRIPT 3",
+     .definition = "`cellmirror status` lists the runs and their numbers; what the last command began continues",
      .origin = Origin::ours},
 };
 

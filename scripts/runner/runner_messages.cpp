@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "rt_core/base/counted.hpp"
 #include "scripts/lang/reader.hpp"
 #include "scripts/runner/script_run.hpp"
 #include "scripts/runner/script_runner.hpp"
@@ -36,35 +37,38 @@ bool ScriptRunner::may_be_wrong_later(FormId id) {
   return id == FormId::tf_load || id == FormId::tf_run || id == FormId::tf_back;
 }
 
-Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source) {
+Result<std::string> ScriptRunner::execute_message(std::string_view text, std::string_view source,
+                                                  CommandSource::Kind from) {
   ActivityHandle activity;
-  auto result = begin_message(command_, CommandSource::Kind::message, text, source, activity);
+  auto result = begin_message(command_, from, text, source, activity);
   if (result) return *std::move(result);
   const Result<std::string> begun;
   if (may_be_wrong_later(command_.id())) {
     const Place place{std::string(source), command_.begin().line, command_.begin().column};
-    waiting_messages_.push_back({CommandSource::Kind::message, std::move(activity), place, {}});
+    waiting_messages_.push_back({from, std::move(activity), place, {}});
   } else {
-    count_message(CommandSource::Kind::message, begun, {});
+    count_message(from, begun, {});
   }
   return begun;
 }
 
-void ScriptRunner::execute_message(std::string_view text, std::string_view source, CommandReply reply) {
+void ScriptRunner::execute_message(std::string_view text, std::string_view source, CommandReply reply,
+                                   CommandSource::Kind from) {
   ActivityHandle activity;
-  if (const auto result = begin_message(command_, CommandSource::Kind::message, text, source, activity)) {
+  if (const auto result = begin_message(command_, from, text, source, activity)) {
     reply(*result);
     return;
   }
   const Place place{std::string(source), command_.begin().line, command_.begin().column};
-  waiting_messages_.push_back({CommandSource::Kind::message, std::move(activity), place, std::move(reply)});
+  waiting_messages_.push_back({from, std::move(activity), place, std::move(reply)});
 }
 
 void ScriptRunner::execute(ScriptCommand command) {
   const std::string source = command.source.text();
-  if (command.reply.wanted()) return execute_message(command.text, source, std::move(command.reply));
+  const CommandSource::Kind from = command.source.kind;
+  if (command.reply.wanted()) return execute_message(command.text, source, std::move(command.reply), from);
   // Without a reply nothing waits for a robot to arrive. Refusals are listed in status.
-  [[maybe_unused]] const auto unanswered = execute_message(command.text, source);
+  [[maybe_unused]] const auto unanswered = execute_message(command.text, source, from);
 }
 
 Result<ActivityHandle> ScriptRunner::execute_program_command(std::string_view text, std::string_view source) {
@@ -114,7 +118,7 @@ std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& co
       activity = std::move(outcome.activity);
       return std::nullopt;
     }
-    result = accept_message(outcome);
+    result = accept_message(outcome, from);
   }
   count_message(from, result, {std::string(source), command.begin().line, command.begin().column});
   return result;
@@ -126,7 +130,7 @@ void ScriptRunner::count_message(CommandSource::Kind from, const Result<std::str
   if (!result) remember({Severity::error, place, result.error().what, result.error().remedy});
 }
 
-Result<std::string> ScriptRunner::accept_message(const Outcome& outcome) {
+Result<std::string> ScriptRunner::accept_message(const Outcome& outcome, CommandSource::Kind from) {
   switch (outcome.kind) {
     case Outcome::Kind::done:
     case Outcome::Kind::pending:
@@ -136,13 +140,33 @@ Result<std::string> ScriptRunner::accept_message(const Outcome& outcome) {
     case Outcome::Kind::wait:
       return fail("WAIT suspends the SCRIPT file that contains it; a message has none",
                   "put WAIT into a SCRIPT file and call it with EXEC_SCRIPT");
+    case Outcome::Kind::stop_runs: {
+      const auto stopped = stop_runs(outcome.run);
+      if (!stopped) return std::unexpected(stopped.error());
+      return number_of(*stopped, "SCRIPT file") + " stopped";
+    }
     case Outcome::Kind::call_script: {
+      if (auto room = room_for_run(from); !room) return std::unexpected(std::move(room.error()));
       const auto id = start_file(outcome.script);
       if (!id) return std::unexpected(id.error());
+      runs_.back()->from = from;
       return fmt::format("{} started as run {}", runs_.back()->report.file, *id);
     }
   }
   return std::string{};
+}
+
+// Programs that send messages leave places to people, and both leave places to foot switches, so that none of them can
+// lock the others out.
+Result<void> ScriptRunner::room_for_run(CommandSource::Kind from) {
+  const std::size_t most = from == CommandSource::Kind::page ? kMaxRunsOfPage : kMaxRunsOfMessages;
+  const auto running = static_cast<std::size_t>(
+      std::count_if(runs_.begin(), runs_.end(), [from](const auto& run) { return run->from == from; }));
+  if (running < most) return {};
+  ++counters_.scripts_refused;
+  return fail(fmt::format("{} SCRIPT files that {} are running already", most,
+                          from == CommandSource::Kind::page ? "the monitor page started" : "messages started"),
+              "wait until one of them has ended, or end them: STOP_SCRIPT <run>, STOP_ALL");
 }
 
 std::size_t ScriptRunner::answer_messages() {

@@ -52,6 +52,7 @@ class ScriptRun {
   Place activity_place;
   bool tells_later = false;  // the activity may fail later, which is reported without the run too
   Timestamp first_command;
+  CommandSource::Kind from = CommandSource::Kind::file;  // who started it; file: the start, or a foot switch
   RunReport report;
 };
 

@@ -69,7 +69,7 @@ Result<std::uint64_t> ScriptRunner::start_path(const fs::path& path, Diagnostics
 Result<std::uint64_t> ScriptRunner::start(const fs::path& path, Diagnostics* findings) {
   if (runs_.size() == kMaxRuns) {
     ++counters_.scripts_refused;
-    return fail(fmt::format("{} SCRIPT files are running already", kMaxRuns), "wait until one of them has ended");
+    return fail(fmt::format("{} SCRIPT files are running already", kMaxRuns), "wait until one of them has ended, or end them: STOP_SCRIPT <run>, STOP_ALL");
   }
   Diagnostics own;
   Diagnostics& found = findings == nullptr ? own : *findings;
@@ -120,11 +120,17 @@ std::size_t ScriptRunner::step(std::size_t budget) {
   std::size_t without_progress = 0;
   ended_activities_ = answer_messages();
   work_ = 0;
+  stepping_ = true;
   while (work_ < budget && without_progress < runs_.size()) {
     if (next_run_ >= runs_.size()) next_run_ = 0;
     ScriptRun& run = *runs_[next_run_];
     const std::size_t work_before = work_;
     step_run(run, work_ + std::min(kSlice, budget - work_));
+    if (!stopped_runs_.empty()) {
+      end_stopped_runs();
+      without_progress = 0;
+      continue;
+    }
     if (run.ended()) {
       end_run(next_run_, false);
       without_progress = 0;
@@ -133,6 +139,7 @@ std::size_t ScriptRunner::step(std::size_t budget) {
     without_progress = work_ == work_before ? without_progress + 1 : 0;
     ++next_run_;
   }
+  stepping_ = false;
   return static_cast<std::size_t>(counters_.file.received - received_before) + ended_activities_;
 }
 
@@ -174,7 +181,7 @@ bool ScriptRunner::may_go_on(ScriptRun& run) {
 void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
   if (!may_go_on(run)) return;
   Diagnostics findings;
-  while (work_ < until && !run.stack.empty() && !run.waiting && !run.activity) {
+  while (work_ < until && !run.stack.empty() && !run.waiting && !run.activity && stopped_runs_.empty()) {
     const CommandReader::Step step = run.stack.back()->reader().next(&host_.names, command_, findings);
     if (step == CommandReader::Step::end) {
       run.stack.pop_back();
@@ -210,6 +217,9 @@ void ScriptRunner::execute_command(ScriptRun& run) {
     if (auto called = call(run, outcome.script, findings); !called) {
       findings.error({caller, place.line, place.column}, called.error().what, called.error().remedy);
     }
+  }
+  if (outcome.kind == Outcome::Kind::stop_runs) {
+    if (auto stopped = stop_runs(outcome.run); !stopped) outcome = Outcome::refused(std::move(stopped.error()));
   }
   if (outcome.kind == Outcome::Kind::refused) {
     findings.error({file.name(), place.line, place.column}, std::move(outcome.error.what),
@@ -297,6 +307,28 @@ bool ScriptRunner::stop(std::uint64_t id) {
   if (found == runs_.end()) return false;
   end_run(static_cast<std::size_t>(found - runs_.begin()), true);
   return true;
+}
+
+Result<std::size_t> ScriptRunner::stop_runs(std::uint64_t id) {
+  std::vector<std::uint64_t> ids;
+  for (const auto& run : runs_) {
+    if (id == Outcome::kAllRuns || run->report.id == id) ids.push_back(run->report.id);
+  }
+  if (ids.empty() && id != Outcome::kAllRuns) {
+    return fail(fmt::format("STOP_SCRIPT: there is no run {}", id), "`cellmirror status` lists the runs");
+  }
+  stopped_runs_.insert(stopped_runs_.end(), ids.begin(), ids.end());
+  if (!stepping_) end_stopped_runs();
+  return ids.size();
+}
+
+void ScriptRunner::end_stopped_runs() {
+  // Ending one may call back and stop more.
+  while (!stopped_runs_.empty()) {
+    const std::uint64_t id = stopped_runs_.back();
+    stopped_runs_.pop_back();
+    stop(id);
+  }
 }
 
 void ScriptRunner::give_turn(std::uint64_t id) {

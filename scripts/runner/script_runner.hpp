@@ -75,6 +75,8 @@ struct RunProgress {
 class ScriptRunner {
  public:
   static constexpr std::size_t kMaxRuns = 32;                        // side by side
+  static constexpr std::size_t kMaxRunsOfMessages = 16;              // of these, started by messages or programs
+  static constexpr std::size_t kMaxRunsOfPage = 12;                  // started by the monitor page
   static constexpr std::size_t kMaxTextBytes = 128UL * 1024 * 1024;  // of all files of all runs together
   static constexpr std::size_t kKeptErrors = 20;                     // last_errors
   static constexpr std::size_t kSlice = 64;                          // commands of one run before the next has its turn
@@ -96,9 +98,11 @@ class ScriptRunner {
   // Executes one command now, whatever the files do; returns a text for the acknowledgement. EXEC_SCRIPT starts the
   // file and returns when it was accepted, a motion when it has begun; WAIT is refused. `source` names the sender in
   // errors. A robot program that cannot be loaded or run later is counted and remembered as refused then.
-  Result<std::string> execute_message(std::string_view text, std::string_view source = "message");
+  Result<std::string> execute_message(std::string_view text, std::string_view source = "message",
+                                      CommandSource::Kind from = CommandSource::Kind::message);
   // The same for a client that gets one answer: now, or within a step() when the command's activity has ended.
-  void execute_message(std::string_view text, std::string_view source, CommandReply reply);
+  void execute_message(std::string_view text, std::string_view source, CommandReply reply,
+                       CommandSource::Kind from = CommandSource::Kind::message);
   // The same for a command from outside, whether its sender is answered or not.
   void execute(ScriptCommand command);
 
@@ -114,8 +118,8 @@ class ScriptRunner {
 
   [[nodiscard]] bool idle() const { return runs_.empty(); }
   [[nodiscard]] std::vector<RunStatus> runs() const;
-  // Ends a run, or all of them, before their next command; with all of them, messages that wait are refused. A robot
-  // program that the run was loading or starting still counts, and a later refusal is reported.
+  // Ends a run, or all of them, before their next command; stop_all() also refuses the messages that wait, since the
+  // gateway ends. A robot program that the run was loading or starting still counts, and a later refusal is reported.
   bool stop(std::uint64_t id);
   // The run is the next one to execute commands.
   void give_turn(std::uint64_t id);
@@ -153,13 +157,17 @@ class ScriptRunner {
   // False while the run waits; ends the command it waited for.
   bool may_go_on(ScriptRun& run);
   void execute_command(ScriptRun& run);
+  // STOP_SCRIPT and STOP_ALL. How many runs end; refused where there is no such run.
+  Result<std::size_t> stop_runs(std::uint64_t id);
+  void end_stopped_runs();
   Result<void> call(ScriptRun& run, std::string_view name, Diagnostics& findings);
   void refuse(ScriptRun& run, const Diagnostics& findings);
   // The answer; none where `activity` was set: it comes when that ends.
   std::optional<Result<std::string>> begin_message(ParsedCommand& command, CommandSource::Kind from,
                                                    std::string_view text, std::string_view source,
                                                    ActivityHandle& activity);
-  Result<std::string> accept_message(const Outcome& outcome);
+  Result<std::string> accept_message(const Outcome& outcome, CommandSource::Kind from);
+  Result<void> room_for_run(CommandSource::Kind from);
   void count_message(CommandSource::Kind from, const Result<std::string>& result, const Place& place);
   [[nodiscard]] SourceCounters& counters_of(CommandSource::Kind from);
   std::size_t answer_messages();
@@ -176,6 +184,9 @@ class ScriptRunner {
   const Clock& clock_;
   std::vector<std::unique_ptr<ScriptRun>> runs_;
   std::vector<WaitingMessage> waiting_messages_;
+  // To be ended: a command that runs inside of step() cannot end its own run at once.
+  std::vector<std::uint64_t> stopped_runs_;
+  bool stepping_ = false;
   std::deque<std::pair<std::uint64_t, RunProgress>> ended_;  // newest last
   std::size_t next_run_ = 0;
   std::size_t work_ = 0;              // done in this step

@@ -20,7 +20,7 @@ constexpr const char* kFooter =
 
 void add_common(cli::Command app, CommonOptions& options) {
   app.option("--rate", options.rate_hz, "samples per second and robot").between(0.01, 10000.0).show_default();
-  app.option("--robots", options.robots, "how many robots").between(1, 64).show_default();
+  app.option("--robots", options.robots, "how many robots").between(1, 256).show_default();
   app.option("--first-robot", options.first_robot, "number of the first robot").between(1, 64).show_default();
   app.option("--motion", options.motion,
              "hold, ramp, sine, waypoints:FILE.csv, recorded:FILE.csv; see `sim_robot motions`")

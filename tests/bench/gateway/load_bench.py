@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""32 robots of seven joints at 500 Hz each into the running gateway, over DDS or as CAN FD frames over udp.
+"""Many robots into the running gateway, over DDS or as CAN FD frames over udp: 32 of seven joints at 500 Hz unless said otherwise.
 
-  load_bench.py dds|can [SECONDS=60]
+  load_bench.py dds|can [SECONDS=60] [--robots N] [--joints N] [--rate HZ]
 
 Prints what was sent, what arrived in the tick, what was lost anywhere inside, the processor time of the gateway over
 wall time, and its largest resident memory. Goals: nothing lost, under one core, under 200 MB.
 """
 
+import argparse
 import json
 import os
 import pathlib
@@ -17,8 +18,17 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
 import gateway as g  # noqa: E402
 
-ROBOTS, JOINTS, RATE, BUSES, FIRST_PORT = 32, 7, 500, 8, 43900
+BUSES, FIRST_PORT = 8, 43900
 CLOCK_TICKS = os.sysconf("SC_CLK_TCK")
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("kind", nargs="?", choices=("dds", "can"), default="dds")
+parser.add_argument("seconds", nargs="?", type=float, default=60.0)
+parser.add_argument("--robots", type=int, default=32)
+parser.add_argument("--joints", type=int, default=7)
+parser.add_argument("--rate", type=int, default=500)
+OPTIONS = parser.parse_args()
+ROBOTS, JOINTS, RATE = OPTIONS.robots, OPTIONS.joints, OPTIONS.rate
 
 ARM = "format = 1\n" + "".join(
     f'[[node]]\nname = "J_{j}"\n' + (f'parent = "J_{j - 1}"\n' if j > 1 else "") + 'xyz_m = [0.0, 0.0, 0.2]\n'
@@ -71,8 +81,7 @@ def load(kind, seconds):
 
 
 def main():
-    kind = sys.argv[1] if len(sys.argv) > 1 else "dds"
-    seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 60.0
+    kind, seconds = OPTIONS.kind, OPTIONS.seconds
     scratch = g.Scratch(startup=True)
     write_cell(scratch.home, kind)
     gateway = g.Gateway(scratch)

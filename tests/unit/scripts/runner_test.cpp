@@ -517,6 +517,66 @@ TEST_F(ScriptRunnerTest, OneRunCanBeStopped) {
   EXPECT_EQ(gateway_.calls.size(), 2U);
 }
 
+TEST_F(ScriptRunnerTest, StopAllEndsEveryRunAndStopsEveryRobot) {
+  write("a.spt", "WAIT; DRAW_SCENE;");
+  gateway_.busy_checks = 1 << 30;
+  ASSERT_TRUE(sut_->start_file("a"));
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  const auto answer = sut_->execute_message("STOP_ALL");
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_EQ(*answer, "2 SCRIPT files stopped");
+  EXPECT_TRUE(sut_->idle());
+  ASSERT_EQ(reports_.size(), 2U);
+  EXPECT_TRUE(reports_[0].stopped && reports_[1].stopped);
+  for (const char* call : {"stop_programs PUMA_762", "stop PUMA_762"}) {
+    EXPECT_NE(std::find(gateway_.calls.begin(), gateway_.calls.end(), call), gateway_.calls.end()) << call;
+  }
+  EXPECT_TRUE(sut_->execute_message("EXEC_SCRIPT a"));  // its place is free at once
+}
+
+TEST_F(ScriptRunnerTest, AScriptThatStopsAllEndsItselfBeforeItsNextCommand) {
+  write("a.spt", "STOP_ALL; DRAW_SCENE;");
+  write("b.spt", "hot_message b; WAIT;");
+  gateway_.busy_checks = 1 << 30;
+  ASSERT_TRUE(sut_->start_file("b"));
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  EXPECT_TRUE(sut_->idle());
+  EXPECT_EQ(std::count(gateway_.calls.begin(), gateway_.calls.end(), "draw_scene"), 0);
+  ASSERT_EQ(reports_.size(), 2U);
+  EXPECT_EQ(sut_->counters().file.refused, 0U);
+}
+
+TEST_F(ScriptRunnerTest, ARunawayFamilyOfScriptsCanBeStopped) {
+  write("outer.spt", "EXEC_SCRIPT inner; EXEC_SCRIPT inner; EXEC_SCRIPT inner;");
+  std::string inner;
+  for (int i = 0; i < 2000; ++i) inner += "DRAW_SCENE;";
+  write("inner.spt", inner);
+  for (std::size_t i = 0; i < ScriptRunner::kMaxRunsOfMessages; ++i) ASSERT_TRUE(sut_->execute_message("EXEC_SCRIPT outer"));
+  sut_->step(256);
+  ASSERT_TRUE(sut_->execute_message("STOP_SCRIPT 3"));
+  EXPECT_EQ(sut_->runs().size(), ScriptRunner::kMaxRunsOfMessages - 1);
+  const auto unknown = sut_->execute_message("STOP_SCRIPT 3");
+  ASSERT_FALSE(unknown);
+  EXPECT_NE(unknown.error().what.find("there is no run 3"), std::string::npos);
+  ASSERT_TRUE(sut_->execute_message("STOP_ALL"));
+  EXPECT_TRUE(sut_->idle());
+}
+
+TEST_F(ScriptRunnerTest, MessagesLeavePlacesToThePageAndBothToFootSwitches) {
+  write("a.spt", "WAIT;");
+  gateway_.busy_checks = 1 << 30;
+  const auto start = [&](CommandSource::Kind from) { return sut_->execute_message("EXEC_SCRIPT a", "test", from); };
+  for (std::size_t i = 0; i < ScriptRunner::kMaxRunsOfMessages; ++i) ASSERT_TRUE(start(CommandSource::Kind::message));
+  const auto refused = start(CommandSource::Kind::message);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().remedy.find("STOP_ALL"), std::string::npos);
+  for (std::size_t i = 0; i < ScriptRunner::kMaxRunsOfPage; ++i) ASSERT_TRUE(start(CommandSource::Kind::page));
+  EXPECT_FALSE(start(CommandSource::Kind::page));
+  EXPECT_TRUE(sut_->start_file("a"));
+}
+
 TEST_F(ScriptRunnerTest, LastErrorsAreBoundedAndDated) {
   for (std::size_t i = 0; i < ScriptRunner::kKeptErrors + 10; ++i)
     EXPECT_FALSE(sut_->execute_message("X" + std::to_string(i)));

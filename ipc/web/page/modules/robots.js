@@ -26,6 +26,7 @@ export class Robots {
     this.list_ = byId("robot-list");
     this.visibility_ = new Visibility(null);
     this.cards_ = new KeyedRows(this.list_, (robot) => this.make_card_(robot), (card, robot) => this.update_card_(card, robot));
+    byId("stop-all").addEventListener("click", () => this.command_("STOP_ALL"));
     this.chosen_ = null;
     this.narrow_ = window.matchMedia("(max-width: 759px)").matches;  // a phone shows the list first
   }
