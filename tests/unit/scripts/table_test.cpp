@@ -117,6 +117,8 @@ TEST(CommandTable, AvailableNowIsWhatTheIssuesSoFarAskFor) {
                                             "RESET_HAPTIC",
                                             "LOAD_VIEWS",
                                             "SAVE_VIEWS",
+                                            "STOP_ALL",
+                                            "STOP_SCRIPT",
                                             "TF_LOAD",
                                             "TF_RUN",
                                             "TF_DELETE",
