@@ -54,8 +54,11 @@ CellOwner::CellOwner(Parts parts)
       board_(parts.board),
       clock_(parts.clock),
       names_(cell_),
-      fleet_(std::make_unique<Fleet>(cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority,
-                                     Fleet::Events{parts.let_tick_pass, std::move(parts.move_given)})),
+      fleet_(std::make_unique<Fleet>(
+          cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority,
+          Fleet::Events{.let_tick_pass = parts.let_tick_pass,
+                        .move_given = std::move(parts.move_given),
+                        .device_stream = [this](std::string_view robot) { return haptics_.stream(robot); }})),
       display_(
           {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
            std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},
@@ -81,11 +84,10 @@ CellOwner::CellOwner(Parts parts)
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
-      home_, clock_);
+      home_, clock_, script::ScriptRunner::Events{.refused = std::move(parts.refused)});
   switches_ = std::make_unique<FootSwitchService>(
       FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
       *runner_, home_, clock_);
-  if (parts.refused) runner_->on_refused(std::move(parts.refused));
 }
 
 CellOwner::~CellOwner() { stop(); }

@@ -125,6 +125,7 @@ Result<void> Fleet::add(const RobotModel& robot) {
   added.slot = robot.slot();
   added.put_at = robot.parameters().start_position;
   added.put_command = *sent;
+  added.start = added.put_at;
   robots_.emplace(robot.id(), std::move(added));
   return {};
 }
@@ -149,7 +150,7 @@ Result<void> Fleet::make_stream(FleetRobot& robot) {
   if (events_.let_tick_pass) return fail(fmt::format("off line there is no controller that {} could follow", robot.id));
   const auto config = streams_.find(robot.id);
   if (config == streams_.end()) {
-    robot.stream = device_streams_ ? device_streams_(robot.id) : nullptr;
+    robot.stream = events_.device_stream ? events_.device_stream(robot.id) : nullptr;
     if (robot.stream) return {};
     return fail(
         fmt::format("the cell file names no stream and no haptic device for the robot {}", robot.id),
@@ -178,6 +179,7 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
     return std::unexpected(sent.error());
   }
   robot.online = true;
+  robot.commanded = true;
   return {};
 }
 
@@ -240,6 +242,7 @@ Result<void> Fleet::add_move(std::string_view id, const motion::Move& move) {
   const auto sent =
       send(engine::AddMove{.slot = slot_of(id), .move = lend(std::make_shared<const motion::Move>(move))});
   if (!sent) return std::unexpected(sent.error());
+  robots_.find(id)->second.commanded = true;
   if (events_.move_given) events_.move_given(id, move);
   return {};
 }
@@ -265,12 +268,29 @@ Result<void> Fleet::hold_behind(std::string_view id, std::uint32_t move) {
 std::uint8_t Fleet::slot_of(std::string_view id) const { return slot_number(find(id)->slot); }
 
 Result<void> Fleet::jump(std::string_view id, const JointValues& positions) {
-  const auto sent = send(engine::SetPositions{.slot = slot_of(id), .positions = positions});
-  if (!sent) return std::unexpected(sent.error());
   FleetRobot& robot = robots_.find(id)->second;
+  robot.commanded = true;
+  return put(robot, positions);
+}
+
+Result<void> Fleet::put(FleetRobot& robot, const JointValues& positions) {
+  const auto sent = send(engine::SetPositions{.slot = slot_number(robot.slot), .positions = positions});
+  if (!sent) return std::unexpected(sent.error());
   robot.put_at = positions;
   robot.put_command = *sent;
   return {};
+}
+
+Result<bool> Fleet::begin_at(std::string_view id, const JointValues& start) {
+  FleetRobot& robot = robots_.find(id)->second;
+  // A coupling or a haptic device may have moved it without a command of its own.
+  const JointValues& now = positions()[robot.slot];
+  const std::size_t joints = cell_.robot(id)->joint_count();
+  const bool moved = !std::equal(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(joints), robot.start.begin());
+  if (robot.commanded || moved) return false;
+  if (auto done = put(robot, start); !done) return std::unexpected(done.error());
+  robot.start = start;
+  return true;
 }
 
 }  // namespace cellmirror::app

@@ -30,6 +30,8 @@ struct FleetRobot {
   // rad or m: where a command to the tick puts it, and the id of that command.
   JointValues put_at{};
   std::uint64_t put_command = 0;
+  JointValues start{};                  // where it was put when it was added, rad or m
+  bool commanded = false;               // it has been moved, set to a position, or online since it was added
   std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
 };
 
@@ -42,6 +44,8 @@ class Fleet final : public MotionPort {
     std::function<void()> let_tick_pass = {};
     // With every move that is given to the tick.
     std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};
+    // What a robot without a stream in the cell file follows when it goes online; null: it has nothing of the kind.
+    std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_stream = {};
   };
   // Before the first tick, since it subscribes to the engine. `stream_priority`: SCHED_FIFO priority of the streams'
   // threads; 0: none.
@@ -68,6 +72,8 @@ class Fleet final : public MotionPort {
 
   Result<void> set_online(std::string_view id, bool online);
   Result<void> set_sending(std::string_view id, bool sending);
+  // Puts the robot to `start` while it stands where it was added, since nothing has moved it yet. False: it does not.
+  Result<bool> begin_at(std::string_view id, const JointValues& start);
 
   Result<void> check_simulated(std::string_view id) const override;
   [[nodiscard]] motion::MotionState motion(std::string_view id) override;
@@ -80,11 +86,6 @@ class Fleet final : public MotionPort {
   Result<void> set_pace(std::string_view id, double pace) override;
   Result<void> hold_behind(std::string_view id, std::uint32_t move) override;
 
-  // For robots without a stream in the cell file: what they follow when they go online; gives null for robots that have
-  // nothing of the kind. Empty: none has.
-  void set_device_streams(std::function<std::shared_ptr<JointStream>(std::string_view robot)> streams) {
-    device_streams_ = std::move(streams);
-  }
   [[nodiscard]] bool has_stream(std::string_view id) const { return streams_.find(id) != streams_.end(); }
 
   // The newest state that the tick published; valid until the next call of any function of the fleet.
@@ -100,6 +101,7 @@ class Fleet final : public MotionPort {
   Result<void> settle();
 
  private:
+  Result<void> put(FleetRobot& robot, const JointValues& positions);
   // A moment, for the tick to take commands.
   void wait_for_tick() const;
   Result<void> add(const RobotModel& robot);
@@ -113,7 +115,6 @@ class Fleet final : public MotionPort {
   engine::Engine& engine_;
   engine::TickReader& ticks_;
   std::map<std::string, StreamConfig, std::less<>> streams_;
-  std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_streams_;
   const Clock& clock_;
   int stream_priority_;
   Events events_;

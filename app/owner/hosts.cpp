@@ -118,13 +118,25 @@ Result<RobotModel*> CellRobots::active() {
   return robot;
 }
 
-Result<void> CellRobots::set_joint_parameter(JointParameter which, std::span<const double> values) {
+Result<std::string> CellRobots::set_joint_parameter(JointParameter which, std::span<const double> values) {
   auto robot = active();
   if (!robot) return std::unexpected(robot.error());
-  if (auto set = (*robot)->set_joint_parameter(which, values); !set) return set;
-  if (which == JointParameter::max_velocity) return couplings_.update_velocities(**robot);
-  const bool is_limit = which == JointParameter::max_range || which == JointParameter::min_range;
-  return is_limit ? fleet_.update_limits(**robot) : Result<void>();
+  if (auto set = (*robot)->set_joint_parameter(which, values); !set) return std::unexpected(set.error());
+  if (which == JointParameter::start_position) return begin_at_start(**robot);
+  Result<void> followed;
+  if (which == JointParameter::max_velocity) followed = couplings_.update_velocities(**robot);
+  if (which == JointParameter::max_range || which == JointParameter::min_range)
+    followed = fleet_.update_limits(**robot);
+  if (!followed) return std::unexpected(followed.error());
+  return std::string();
+}
+
+Result<std::string> CellRobots::begin_at_start(const RobotModel& robot) {
+  const auto began = fleet_.begin_at(robot.id(), robot.parameters().start_position);
+  if (!began) return std::unexpected(began.error());
+  if (*began) return std::string();
+  return fmt::format("{} does not stand at its start any more; MOVE_ROB {} PTP START moves it there", robot.id(),
+                     robot.id());
 }
 
 Result<void> CellRobots::set_scalar_parameter(ScalarParameter which, double value) {

@@ -69,7 +69,7 @@ class CellRobots final : public RobotHost {
   Result<void> set_active_robot(std::string_view robot) override;
   Result<void> set_online(std::string_view robot, bool online) override;
   Result<void> set_sending(std::string_view robot, bool sending) override { return fleet_.set_sending(robot, sending); }
-  Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) override;
+  Result<std::string> set_joint_parameter(JointParameter which, std::span<const double> values) override;
   Result<void> set_scalar_parameter(ScalarParameter which, double value) override;
   Result<void> set_fly(FlyType type, double parameter) override;
   Result<void> set_ptp_mode(PtpMode mode) override;
@@ -80,6 +80,8 @@ class CellRobots final : public RobotHost {
 
  private:
   Result<RobotModel*> active();
+  // rob_jnt_start_pos: the robot goes there while the simulation has not begun for it. A remark where it has.
+  Result<std::string> begin_at_start(const RobotModel& robot);
 
   Cell& cell_;
   Fleet& fleet_;

@@ -175,8 +175,7 @@ class TableWriter {
       const json& stack = run.at("stack");
       std::string files;
       for (const json& file : stack) files += (files.empty() ? "" : " > ") + file.get<std::string>();
-      line("  run {}: {}{}", run.at("id").get<std::uint64_t>(), files,
-           run.at("waiting").get<bool>() ? ", waits" : "");
+      line("  run {}: {}{}", run.at("id").get<std::uint64_t>(), files, run.at("waiting").get<bool>() ? ", waits" : "");
     }
     const json& errors = script.at("last_errors");
     const std::size_t first = errors.size() > kCommandErrorsShown ? errors.size() - kCommandErrorsShown : 0;

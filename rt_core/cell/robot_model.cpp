@@ -58,28 +58,29 @@ const char* name_of(JointParameter which) {
   return "parameter";
 }
 
-JointValues RobotParameters::* member_of(JointParameter which) {
+// Where the values given for a parameter are kept.
+JointValues& values_of(RobotParameters& p, JointParameter which) {
   switch (which) {
-    case JointParameter::max_range:
-      return &RobotParameters::max_range;
-    case JointParameter::min_range:
-      return &RobotParameters::min_range;
     case JointParameter::start_position:
-      return &RobotParameters::start_position;
-    case JointParameter::reference_position:
-      return &RobotParameters::reference_position;
-    case JointParameter::max_velocity:
-      return &RobotParameters::max_velocity;
-    case JointParameter::min_velocity:
-      return &RobotParameters::min_velocity;
+      return p.requested.start_position;
     case JointParameter::active_velocity:
-      return &RobotParameters::active_velocity;
-    case JointParameter::max_acceleration:
-      return &RobotParameters::max_acceleration;
+      return p.requested.active_velocity;
     case JointParameter::active_acceleration:
-      return &RobotParameters::active_acceleration;
+      return p.requested.active_acceleration;
+    case JointParameter::max_range:
+      return p.max_range;
+    case JointParameter::min_range:
+      return p.min_range;
+    case JointParameter::reference_position:
+      return p.reference_position;
+    case JointParameter::max_velocity:
+      return p.max_velocity;
+    case JointParameter::min_velocity:
+      return p.min_velocity;
+    case JointParameter::max_acceleration:
+      return p.max_acceleration;
   }
-  return &RobotParameters::max_range;
+  return p.max_range;
 }
 
 // What a value of joint `i` must satisfy against the parameters in force; empty where it does.
@@ -137,12 +138,13 @@ std::string remedy(const RobotParameters& p, JointParameter which, JointKind kin
                      length ? "" : ", not degrees", shown, velocity ? "rob_jnt_max_vel" : "rob_jnt_max_acc");
 }
 
-// A narrowed limit takes along what it bounds, so that the order of the commands of a set-up script does not matter.
-void take_bounded_values_along(RobotParameters& p, std::size_t joints) {
+// What is in force of what was requested.
+void apply_limits(RobotParameters& p, std::size_t joints) {
+  const RequestedParameters& requested = p.requested;
   for (std::size_t i = 0; i < joints; ++i) {
-    p.start_position[i] = std::clamp(p.start_position[i], p.min_range[i], p.max_range[i]);
-    p.active_velocity[i] = std::min(p.active_velocity[i], p.max_velocity[i]);
-    p.active_acceleration[i] = std::min(p.active_acceleration[i], p.max_acceleration[i]);
+    p.start_position[i] = std::clamp(requested.start_position[i], p.min_range[i], p.max_range[i]);
+    p.active_velocity[i] = std::min(requested.active_velocity[i], p.max_velocity[i]);
+    p.active_acceleration[i] = std::min(requested.active_acceleration[i], p.max_acceleration[i]);
   }
 }
 
@@ -187,8 +189,8 @@ Result<void> RobotModel::set_joint_parameter(JointParameter which, std::span<con
                   remedy(parameters_, which, joints_[i].kind, i));
     }
   }
-  std::copy(values.begin(), values.end(), (parameters_.*member_of(which)).begin());
-  take_bounded_values_along(parameters_, joints_.size());
+  std::copy(values.begin(), values.end(), values_of(parameters_, which).begin());
+  apply_limits(parameters_, joints_.size());
   return {};
 }
 

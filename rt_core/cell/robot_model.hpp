@@ -31,7 +31,9 @@ struct RobotJoint {
 class RobotModel {
  public:
   RobotModel(std::string id, std::size_t slot, const RobotParameters& parameters)
-      : id_(std::move(id)), slot_(slot), parameters_(parameters) {}
+      : id_(std::move(id)), slot_(slot), parameters_(parameters) {
+    parameters_.requested = {parameters.start_position, parameters.active_velocity, parameters.active_acceleration};
+  }
 
   [[nodiscard]] const std::string& id() const { return id_; }
   // 0..kMaxRobots-1; the same for the same id as long as the cell lives, also when the robot is deleted and loaded
@@ -50,8 +52,8 @@ class RobotModel {
 
   // One value a joint, SI. Ranges: minimum below maximum. Start position: inside the range. Velocities and
   // accelerations: positive; minimum velocity: zero or more, not above the maximum; active values: not above the
-  // maximum. A limit that is narrowed takes the values that it bounds (start position, active velocity, active
-  // acceleration) along.
+  // maximum. A limit that is narrowed limits what is in force (start position, active velocity, active acceleration),
+  // not what was requested: where it is widened again, that is in force again.
   Result<void> set_joint_parameter(JointParameter which, std::span<const double> values);
   Result<void> set_scalar_parameter(ScalarParameter which, double value);
   Result<void> set_fly(FlyType type, double parameter);

@@ -67,17 +67,24 @@ enum class ScalarParameter : std::uint8_t {
   program_delay,
 };
 
+// What was asked for, of the parameters that others limit: what is in force may be less.
+struct RequestedParameters {
+  JointValues start_position{};
+  JointValues active_velocity{};
+  JointValues active_acceleration{};
+};
+
 struct RobotParameters {
   // Joint space. Positions rad or m; velocities rad/s or m/s; accelerations rad/s2 or m/s2.
   JointValues max_range{};
   JointValues min_range{};
-  JointValues start_position{};
+  JointValues start_position{};  // in force: the requested one, limited to the range
   JointValues reference_position{};
   JointValues max_velocity{};
   JointValues min_velocity{};
-  JointValues active_velocity{};  // in force until a program sets one
+  JointValues active_velocity{};  // in force until a program sets one: the requested one, at most the maximum
   JointValues max_acceleration{};
-  JointValues active_acceleration{};  // in force until a program sets one
+  JointValues active_acceleration{};  // likewise
   // Cartesian space.
   double linear_velocity = 1.0;           // m/s
   double linear_acceleration = 2.0;       // m/s2
@@ -93,6 +100,7 @@ struct RobotParameters {
   InverseClass inverse_class = InverseClass::align_frame;
   Pose X_FP = Pose::Identity();  // point of reference in the flange (rob_por_def)
   Pose X_PT = Pose::Identity();  // tool centre point in the point of reference (rob_tcp_def)
+  RequestedParameters requested;
 };
 
 }  // namespace cellmirror

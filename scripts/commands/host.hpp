@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "rt_core/base/pose.hpp"
@@ -47,7 +48,8 @@ class RobotHost {
   virtual Result<void> set_active_robot(std::string_view robot) = 0;
   virtual Result<void> set_online(std::string_view robot, bool online) = 0;    // ROBOT online / offline
   virtual Result<void> set_sending(std::string_view robot, bool sending) = 0;  // ROBOT send_on / send_off
-  virtual Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) = 0;
+  // A remark where what is in force is not what was given.
+  virtual Result<std::string> set_joint_parameter(JointParameter which, std::span<const double> values) = 0;
   virtual Result<void> set_scalar_parameter(ScalarParameter which, double value) = 0;
   virtual Result<void> set_fly(FlyType type, double parameter) = 0;
   virtual Result<void> set_ptp_mode(PtpMode mode) = 0;

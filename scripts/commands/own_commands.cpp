@@ -31,11 +31,8 @@ Outcome stop_script(const ParsedCommand& command, CommandHost& /*host*/) {
 }
 
 constexpr Registration kHandlers[] = {
-    {FormId::save_views, save_views},
-    {FormId::save_flight, save_flight},
-    {FormId::reset_haptic, reset_haptic},
-    {FormId::stop_all, stop_all},
-    {FormId::stop_script, stop_script},
+    {FormId::save_views, save_views}, {FormId::save_flight, save_flight}, {FormId::reset_haptic, reset_haptic},
+    {FormId::stop_all, stop_all},     {FormId::stop_script, stop_script},
 };
 
 }  // namespace

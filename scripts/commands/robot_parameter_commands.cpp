@@ -18,7 +18,7 @@ template <JointParameter which>
 Outcome set_joints(const ParsedCommand& command, CommandHost& host) {
   std::array<double, kMaxJointsPerRobot> storage;
   const std::size_t n = command.numbers(kOnlySlot, storage);
-  return Outcome::of(host.robots.set_joint_parameter(which, std::span(storage).first(n)));
+  return Outcome::with_remark(host.robots.set_joint_parameter(which, std::span(storage).first(n)));
 }
 
 Outcome set_fly(const ParsedCommand& command, CommandHost& host) {

@@ -72,10 +72,17 @@ constexpr Parameter kInverse[] = {choice("solution_hint", "inverse kinematics cl
 constexpr Parameter kArc[] = {on_off("welding spark")};
 
 constexpr std::string_view kOneForEachJoint = "exactly one value for each joint of the active robot";
+constexpr std::string_view kLimited =
+    "exactly one value for each joint of the active robot; a lower maximum limits it while it is in force, and status "
+    "shows both";
+constexpr std::string_view kStartPosition =
+    "exactly one value for each joint of the active robot; the robot is put there at once while nothing has moved it "
+    "yet, as in a startup script; later the position is only the target of MOVE_ROB ... START, and the answer says so";
 constexpr std::string_view kOffsetOrder = "translation, then roll, pitch, yaw; with or without commas";
 
 constexpr Form joint_form(FormId id, std::string_view name, std::string_view syntax,
-                          std::span<const Parameter> parameters, std::string_view help, std::string_view example) {
+                          std::span<const Parameter> parameters, std::string_view help, std::string_view example,
+                          std::string_view definition = kOneForEachJoint) {
   return {.id = id,
           .name = name,
           .syntax = syntax,
@@ -83,7 +90,7 @@ constexpr Form joint_form(FormId id, std::string_view name, std::string_view syn
           .parameters = parameters,
           .help = help,
           .example = example,
-          .definition = kOneForEachJoint,
+          .definition = definition,
           .effect = LoopEffect::queued,
           .needs_active_robot = true};
 }
@@ -131,7 +138,7 @@ constexpr Form kForms[] = {
                "sets the lower limits of the joints", "rob_jnt_min_range -162.5 -110.0 -145.0 -187.5 -115.5 -270.0"),
     joint_form(FormId::rob_jnt_start_pos, "rob_jnt_start_pos", "rob_jnt_start_pos <n values>", kStart,
                "sets the position at the start of the simulation",
-               "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0"),
+               "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0", kStartPosition),
     joint_form(FormId::rob_jnt_ref_pos, "rob_jnt_ref_pos", "rob_jnt_ref_pos <n values>", kReference,
                "sets the controller's reference position", "rob_jnt_ref_pos 17.35 0 -12.79307 1.507E-03 0.0 15.2003"),
     joint_form(FormId::rob_jnt_max_vel, "rob_jnt_max_vel", "rob_jnt_max_vel <n values>", kMaxVelocity,
@@ -141,13 +148,14 @@ constexpr Form kForms[] = {
                "sets the minimum velocities of the joints (stepper motors)",
                "rob_jnt_min_vel 8.5 3.14159E-04 4.014257E-04"),
     joint_form(FormId::rob_jnt_act_vel, "rob_jnt_act_vel", "rob_jnt_act_vel <n values>", kActiveVelocity,
-               "sets the velocities in force until a program sets others", "rob_jnt_act_vel 1300.0 3.14159 1.5707963"),
+               "sets the velocities in force until a program sets others", "rob_jnt_act_vel 1300.0 3.14159 1.5707963",
+               kLimited),
     joint_form(FormId::rob_jnt_max_acc, "rob_jnt_max_acc", "rob_jnt_max_acc <n values>", kMaxAcceleration,
                "sets the maximum accelerations of the joints",
                "rob_jnt_max_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
     joint_form(FormId::rob_jnt_act_acc, "rob_jnt_act_acc", "rob_jnt_act_acc <n values>", kActiveAcceleration,
                "sets the accelerations in force until a program sets others",
-               "rob_jnt_act_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
+               "rob_jnt_act_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991", kLimited),
     scalar_form(FormId::rob_ptp_mode, "rob_PTPmode", "rob_PTPmode [sync | async]", kPtp,
                 "sets whether the axes of a point-to-point move end together or each at its own time",
                 "rob_PTPmode sync"),

@@ -13,7 +13,8 @@ namespace cellmirror::script {
 
 namespace {
 
-// All diagnostics in one line, for the answer to a message: "1:9: what; remedy | 1:20: ...".
+// All diagnostics in one line, for the answer to a message: "what; remedy | what". A place is given only where the
+// message has several lines: most are one line that their sender sees.
 Error as_error(const Diagnostics& findings) {
   constexpr std::size_t kShown = 8;
   Error error;
@@ -22,7 +23,8 @@ Error as_error(const Diagnostics& findings) {
     if (finding.severity != Severity::error) continue;
     if (++shown > kShown) break;
     if (shown > 1) error.what += " | ";
-    error.what += fmt::format("{}:{}: {}", finding.place.line, finding.place.column, finding.message);
+    if (finding.place.line > 1) error.what += fmt::format("{}:{}: ", finding.place.line, finding.place.column);
+    error.what += finding.message;
     if (shown == 1) error.remedy = finding.remedy;
   }
   return error;
@@ -191,10 +193,10 @@ std::size_t ScriptRunner::answer_messages() {
 void ScriptRunner::end_message(WaitingMessage& message, const Result<std::string>& result) {
   count_message(message.from, result, message.place);
   message.reply(result);
-  if (result || !message.of_stopped_file || !refused_) return;
+  if (result || !message.of_stopped_file || !events_.refused) return;
   Diagnostics findings;
   findings.error(message.place, result.error().what, result.error().remedy);
-  refused_(findings);
+  events_.refused(findings);
 }
 
 void ScriptRunner::refuse_waiting_messages() {

@@ -42,8 +42,8 @@ std::string shown_name(const fs::path& path, const fs::path& home) {
 
 }  // namespace
 
-ScriptRunner::ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock)
-    : host_(host), home_(home), clock_(clock) {}
+ScriptRunner::ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock, Events events)
+    : host_(host), home_(home), clock_(clock), events_(std::move(events)) {}
 
 ScriptRunner::~ScriptRunner() = default;
 
@@ -69,7 +69,8 @@ Result<std::uint64_t> ScriptRunner::start_path(const fs::path& path, Diagnostics
 Result<std::uint64_t> ScriptRunner::start(const fs::path& path, Diagnostics* findings) {
   if (runs_.size() == kMaxRuns) {
     ++counters_.scripts_refused;
-    return fail(fmt::format("{} SCRIPT files are running already", kMaxRuns), "wait until one of them has ended, or end them: STOP_SCRIPT <run>, STOP_ALL");
+    return fail(fmt::format("{} SCRIPT files are running already", kMaxRuns),
+                "wait until one of them has ended, or end them: STOP_SCRIPT <run>, STOP_ALL");
   }
   Diagnostics own;
   Diagnostics& found = findings == nullptr ? own : *findings;
@@ -270,7 +271,7 @@ void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
   ++counters_.file.refused;
   run.report.diagnostics.take(findings);
   for (const Diagnostic& diagnostic : findings.all()) remember(diagnostic);
-  if (refused_) refused_(findings);
+  if (events_.refused) events_.refused(findings);
 }
 
 void ScriptRunner::note_first_command(ScriptRun& run) {
@@ -285,7 +286,7 @@ void ScriptRunner::end_run(std::size_t index, bool stopped) {
   if (ended_.size() > kMaxRuns) ended_.pop_front();
   run->report.stopped = stopped;
   leave_activity(*run);
-  if (run_ended_) run_ended_(run->report);
+  if (events_.run_ended) events_.run_ended(run->report);
 }
 
 // The last command of a stopped run continues; its end counts, and its error is reported.

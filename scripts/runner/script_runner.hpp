@@ -81,8 +81,17 @@ class ScriptRunner {
   static constexpr std::size_t kKeptErrors = 20;                     // last_errors
   static constexpr std::size_t kSlice = 64;                          // commands of one run before the next has its turn
 
+  // Empty: not wanted.
+  struct Events {
+    std::function<void(const RunReport&)> run_ended = {};
+    // A command of a file was refused.
+    std::function<void(const Diagnostics&)> refused = {};
+  };
+
   // The host, the cell folder and the clock must outlive the runner. The clock dates errors and first commands.
-  ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock);
+  ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock, Events events);
+  ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock)
+      : ScriptRunner(host, home, clock, Events()) {}
   ~ScriptRunner();
   ScriptRunner(const ScriptRunner&) = delete;
   ScriptRunner& operator=(const ScriptRunner&) = delete;
@@ -132,10 +141,6 @@ class ScriptRunner {
   [[nodiscard]] const ScriptCounters& counters() const { return counters_; }
   // "2026-11-21T10:00:00Z scripts/a.spt:3:1: error: ...", the newest last; at most kKeptErrors.
   [[nodiscard]] std::vector<std::string> last_errors() const { return {last_errors_.begin(), last_errors_.end()}; }
-  // Called when a run ends.
-  void on_run_ended(std::function<void(const RunReport&)> callback) { run_ended_ = std::move(callback); }
-  // Called when a command of a file is refused.
-  void on_refused(std::function<void(const Diagnostics&)> callback) { refused_ = std::move(callback); }
 
  private:
   // A message that is answered or counted when its activity has ended, a command of a robot program, or of a script
@@ -146,7 +151,7 @@ class ScriptRunner {
     ActivityHandle activity;
     Place place;
     CommandReply reply;
-    bool of_stopped_file = false;  // where it is refused, refused_ is called
+    bool of_stopped_file = false;  // where it is refused, Events::refused is called
   };
 
   Result<std::uint64_t> start(const std::filesystem::path& path, Diagnostics* findings);
@@ -194,8 +199,7 @@ class ScriptRunner {
   std::uint64_t last_id_ = 0;
   ScriptCounters counters_;
   std::deque<std::string> last_errors_;
-  std::function<void(const RunReport&)> run_ended_;
-  std::function<void(const Diagnostics&)> refused_;
+  Events events_;
   ParsedCommand command_;          // reused
   ParsedCommand program_command_;  // likewise: a command of a file may resume a program, which executes its own
 };

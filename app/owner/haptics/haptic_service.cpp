@@ -26,14 +26,14 @@ constexpr std::chrono::milliseconds kResetPatience{30};
 HapticService::HapticService(Parts parts)
     : cell_(parts.cell), fleet_(parts.fleet), clock_(parts.clock), instance_(std::move(parts.instance)) {
   for (RobotHaptic& device : parts.devices) add(std::move(device));
-  fleet_.set_device_streams([this](std::string_view robot) -> std::shared_ptr<JointStream> {
-    const auto found = devices_.find(robot);
-    return found == devices_.end() ? nullptr : found->second.stream;
-  });
+}
+
+std::shared_ptr<JointStream> HapticService::stream(std::string_view robot) const {
+  const auto found = devices_.find(robot);
+  return found == devices_.end() ? nullptr : found->second.stream;
 }
 
 HapticService::~HapticService() {
-  fleet_.set_device_streams({});
   for (auto& [robot, device] : devices_) device.stream->detach();
 }
 

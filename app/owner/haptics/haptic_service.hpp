@@ -55,6 +55,9 @@ class HapticService {
   // RESET_HAPTIC. Without a fault, nothing happens. Refused: the cause is still there.
   Result<void> reset(std::string_view robot);
 
+  // What the robot follows when it is online; null where it has no device.
+  [[nodiscard]] std::shared_ptr<JointStream> stream(std::string_view robot) const;
+
   [[nodiscard]] bool used() const { return !devices_.empty(); }
   [[nodiscard]] bool any_online() const;
   [[nodiscard]] std::vector<HapticSnapshot> snapshots() const;

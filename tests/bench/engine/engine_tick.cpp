@@ -96,8 +96,7 @@ int main(int count, char** arguments) {
     for (const std::size_t robots : kRobots) {
       const TickTimes times = measure(robots, readers);
       table += fmt::format("{},{},{:.2f},{:.2f}\n", robots, readers, times.median_us, times.p99_us);
-      fmt::print("{:3} robots, {}: median {:.1f} us, p99 {:.1f} us\n", robots, words, times.median_us,
-                 times.p99_us);
+      fmt::print("{:3} robots, {}: median {:.1f} us, p99 {:.1f} us\n", robots, words, times.median_us, times.p99_us);
       median.x.push_back(static_cast<double>(robots));
       median.y.push_back(times.median_us);
       p99.x.push_back(static_cast<double>(robots));

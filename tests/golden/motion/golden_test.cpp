@@ -81,13 +81,13 @@ class Stage {
   }
 
   std::string run(const std::string& name) {
-    script::ScriptRunner runner({names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, diagnosis_},
-                                home_, clock_);
     std::string end = "still waiting\n";
-    runner.on_run_ended([&](const script::RunReport& report) {
+    const auto run_ended = [&](const script::RunReport& report) {
       end = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
                         report.diagnostics.text());
-    });
+    };
+    script::ScriptRunner runner({names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, diagnosis_},
+                                home_, clock_, {.run_ended = run_ended});
     Diagnostics findings;
     if (!runner.start_file(name, &findings)) return "nothing of it ran\n" + findings.text();
     do {

@@ -64,15 +64,15 @@ std::string run_script(const Case& test_case, bool& clean) {
   if (!home) return home.error().text();
   cellmirror::testing::RecordingHost gateway;
   const SystemClock clock;
-  ScriptRunner runner(gateway.host(), *home, clock);
   std::string out;
-  runner.on_run_ended([&](const RunReport& report) {
+  const auto run_ended = [&](const RunReport& report) {
     clean = std::all_of(report.diagnostics.all().begin(), report.diagnostics.all().end(), [](const Diagnostic& found) {
       return found.message.find("is not available yet") != std::string::npos;
     });
     out = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
                       report.diagnostics.text());
-  });
+  };
+  ScriptRunner runner(gateway.host(), *home, clock, {.run_ended = run_ended});
   Diagnostics findings;
   if (!runner.start_file(test_case.name, &findings)) {
     clean = false;

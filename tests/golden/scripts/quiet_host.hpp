@@ -54,8 +54,9 @@ class QuietHost final : public WorldHost,
   Result<void> stop(std::string_view /*robot*/) override { return called(); }
   Result<void> set_positioning(Positioning /*positioning*/) override { return called(); }
   [[nodiscard]] bool moving() const override { return false; }
-  Result<void> set_joint_parameter(JointParameter /*which*/, std::span<const double> /*values*/) override {
-    return called();
+  Result<std::string> set_joint_parameter(JointParameter /*which*/, std::span<const double> /*values*/) override {
+    if (auto done = called(); !done) return std::unexpected(done.error());
+    return std::string();
   }
   Result<void> set_scalar_parameter(ScalarParameter /*which*/, double /*value*/) override { return called(); }
   Result<void> set_fly(FlyType /*type*/, double /*parameter*/) override { return called(); }

@@ -87,11 +87,13 @@ class RecordingHost final : public WorldHost,
     return record("set_positioning {}", positioning == Positioning::jumping ? "jump" : "move");
   }
   [[nodiscard]] bool moving() const override { return false; }
-  Result<void> set_joint_parameter(JointParameter which, std::span<const double> values) override {
+  Result<std::string> set_joint_parameter(JointParameter which, std::span<const double> values) override {
     constexpr std::array<std::string_view, 9> kNames = {
         "max_range",    "min_range",       "start_position",   "reference_position", "max_velocity",
         "min_velocity", "active_velocity", "max_acceleration", "active_acceleration"};
-    return record("set_joint_parameter {} {}", kNames[static_cast<std::size_t>(which)], list_text(values));
+    auto done = record("set_joint_parameter {} {}", kNames[static_cast<std::size_t>(which)], list_text(values));
+    if (!done) return std::unexpected(done.error());
+    return std::string();
   }
   Result<void> set_scalar_parameter(ScalarParameter which, double value) override {
     constexpr std::array<std::string_view, 7> kNames = {

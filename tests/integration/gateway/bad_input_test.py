@@ -73,6 +73,25 @@ class BadInput(unittest.TestCase):
         self.scratch.send("EXEC_SCRIPT self.spt")
         self.assertTrue(g.eventually(lambda: any("self.spt" in e for e in self.scratch.status()["script"]["last_errors"])))
 
+    def test_runaway_scripts_leave_places_and_are_stopped(self):
+        for name, called in (("runaway", "called"), ("called", "leaf")):
+            (self.scripts / f"{name}.spt").write_text(f"EXEC_SCRIPT {called};\n" * 2000)
+        (self.scripts / "leaf.spt").write_text("DRAW_SCENE;\n" * 10)
+        started = 0
+        while self.scratch.send("EXEC_SCRIPT runaway").returncode == 0:
+            started += 1
+            self.assertLess(started, 32, "messages took every place")
+        self.refused("EXEC_SCRIPT runaway", "STOP_ALL")
+        runs = self.scratch.status()["script"]["runs"]
+        self.assertEqual(len(runs), started)
+        self.assertIn(f"run {runs[0]['id']}: scripts/runaway.spt:", self.scratch.cellmirror("status").stdout)
+        self.assertEqual(self.scratch.send(f"STOP_SCRIPT {runs[0]['id']}").returncode, 0)
+        self.assertNotIn(runs[0]["id"], [run["id"] for run in self.scratch.status()["script"]["runs"]])
+        done = self.scratch.send("STOP_ALL")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"{started - 1} SCRIPT files stopped", done.stdout)
+        self.assertEqual(self.scratch.status()["script"]["runs"], [])
+
     def test_missing_script_is_refused(self):
         self.refused("EXEC_SCRIPT nowhere.spt", "does not exist")
 

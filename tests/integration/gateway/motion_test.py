@@ -350,5 +350,62 @@ class Motion(unittest.TestCase):
         self.assertIn("still be on its way", done.stderr)
 
 
+class Start(unittest.TestCase):
+    """rob_jnt_start_pos in the startup script sets the posture in which the simulation begins."""
+
+    def begin(self, cell, script):
+        scratch = g.Scratch(cell)
+        self.addCleanup(scratch.remove)
+        (scratch.home / "scripts" / "startup.spt").write_text(script)
+        gateway = g.Gateway(scratch)
+        self.addCleanup(gateway.close)
+        self.assertTrue(g.eventually(lambda: scratch.status()["script"]["running"] == 0))
+        return scratch
+
+    def assert_at(self, scratch, robot, expected):
+        def values():
+            return [joint["position"] for joint in scratch.robot(robot)["joints"]]
+
+        self.assertTrue(g.eventually(lambda: all(abs(a - b) < 1e-9 for a, b in zip(values(), expected))),
+                        f"{robot} is at {values()}, not {expected}")
+
+    def test_robots_begin_where_the_startup_script_says(self):
+        scratch = self.begin("transfer_cell", f"ROBACT {ARM};\nrob_jnt_start_pos 10 40 80 0 30 5;\n")
+        self.assert_at(scratch, ARM, degrees(10, 40, 80, 0, 30, 5))
+        self.assertEqual(scratch.status()["script"]["refused"], 0)
+
+    def test_later_it_is_the_target_of_move_rob_start_and_the_answer_says_so(self):
+        scratch = self.begin("transfer_cell", f"ROBACT {ARM};\n")
+        for command in ("rob_positioning jump", f"POS_ROB {ARM} JOINT_ABS 1"):
+            self.assertEqual(scratch.send(command).returncode, 0)
+        done = scratch.send("rob_jnt_start_pos 10 40 80 0 30 5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"MOVE_ROB {ARM} PTP START", done.stdout)
+        self.assertAlmostEqual(scratch.robot(ARM)["joints"][0]["position"], math.radians(1), delta=1e-9)
+        self.assertEqual(scratch.send(f"MOVE_ROB {ARM} PTP START").returncode, 0)
+        self.assert_at(scratch, ARM, degrees(10, 40, 80, 0, 30, 5))
+
+    def test_a_robot_from_urdf_begins_there_too(self):
+        scratch = self.begin("ros2_cell", "")
+        robot = scratch.status()["robots"][0]
+        count = len(robot["joints"])
+        self.assertEqual({joint["unit"] for joint in robot["joints"]}, {"rad"})
+        for command in (f"ROBACT {robot['id']}", "rob_jnt_start_pos " + " ".join(["5"] * count)):
+            done = scratch.send(command)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_at(scratch, robot["id"], degrees(*[5] * count))
+
+    def test_a_maximum_that_is_raised_again_gives_back_the_requested_velocity(self):
+        scratch = self.begin("transfer_cell", f"ROBACT {ARM};\n")
+        asked = scratch.robot(ARM)["parameters"]["active_velocity"]
+        fastest = scratch.robot(ARM)["parameters"]["max_velocity"]
+        for maximum in ([0.05] * len(fastest), fastest):
+            done = scratch.send("rob_jnt_max_vel " + " ".join(f"{value:.17g}" for value in maximum))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            parameters = scratch.robot(ARM)["parameters"]
+            self.assertEqual(parameters["requested"]["active_velocity"], asked)
+            self.assertEqual(parameters["active_velocity"], [min(a, b) for a, b in zip(asked, maximum)])
+
+
 if __name__ == "__main__":
     g.main()

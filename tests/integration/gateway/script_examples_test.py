@@ -30,6 +30,7 @@ REFUSED = {
     "WAIT": "suspends the SCRIPT file",
     # The manual's own range for this axis, in the examples before, ends at -115.5 degrees.
     "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0": "below its lower limit",
+    "STOP_SCRIPT 3": "there is no run 3",
     "RESET_HAPTIC MANTEC_RM3": "has no haptic device",
 }
 # The examples of 1.2.2 fit robots with so many joints; ROBACT comes first, as the manual says.

@@ -118,6 +118,8 @@ const scenarios = {
     await page.click("#tab-tree");
     await page.locator("#tree-list li").first().waitFor();
     await shot(page, "gateway-console");
+    await page.click("#stop-all");
+    await page.locator("#console-log li", {hasText: "STOP_ALL"}).locator(".answer", {hasText: /SCRIPT files? stopped/}).waitFor();
 
     await outside("gone");
     await page.locator("#gone").waitFor();

@@ -55,14 +55,15 @@ class MotionDeskTest : public testing::Test {
   ManualClock clock_;
   Watchdog watchdog_{std::chrono::seconds(1), {}};
   std::unique_ptr<engine::Engine> engine_ = std::make_unique<engine::Engine>(watchdog_);
-  Fleet fleet_{cell_, *engine_, {}, clock_, 0};
+  Fleet fleet_{cell_, *engine_, {}, clock_, 0, {.device_stream = [](std::string_view) -> std::shared_ptr<JointStream> {
+                 return std::make_shared<StreamOfNothing>();
+               }}};
   NoNames names_;
   MotionService sut_{cell_, names_, [] { return Eigen::Matrix3d::Identity().eval(); }, fleet_, clock_};
   std::uint64_t cycle_ = 0;
 };
 
 TEST_F(MotionDeskTest, RobotThatCannotGoOnlineEndsItsMoveAndGoesStraightAfterwards) {
-  fleet_.set_device_streams([](std::string_view) { return std::make_shared<StreamOfNothing>(); });
   constexpr std::array kBent = {0.1, 0.7, 1.4, 0.0, 0.5, 0.0};
   const auto bent = sut_.position(kMantec, {.mode = TargetMode::joint_abs, .joints = kBent});
   tick(20);
@@ -73,6 +74,38 @@ TEST_F(MotionDeskTest, RobotThatCannotGoOnlineEndsItsMoveAndGoesStraightAfterwar
   EXPECT_NEAR(first_joint(), kBent[0], 1e-9);
   arrive(sut_.position(kMantec,
                        {.mode = TargetMode::tool_inc, .joints = {}, .pose = Pose(Eigen::Translation3d(0, 0, 0.01))}));
+}
+
+TEST_F(MotionDeskTest, RobotBeginsAtItsStartPositionUntilSomethingHasMovedIt) {
+  const JointValues start{0.2, 0.7, 1.4, 0.0, 0.5, 0.1};
+  auto began = fleet_.begin_at(kMantec, start);
+  ASSERT_TRUE(began && *began);
+  EXPECT_EQ(first_joint(), 0.2) << "published before the tick has carried it out";
+  tick();
+  EXPECT_EQ(first_joint(), 0.2);
+  JointValues corrected = start;
+  corrected[0] = -0.3;
+  began = fleet_.begin_at(kMantec, corrected);
+  ASSERT_TRUE(began && *began) << "a start script may correct it";
+  tick();
+  constexpr std::array kStep = {0.01};
+  arrive(sut_.position(kMantec, {.mode = TargetMode::joint_inc, .joints = kStep}));
+  EXPECT_NEAR(first_joint(), -0.29, 1e-9);
+  began = fleet_.begin_at(kMantec, start);
+  ASSERT_TRUE(began);
+  EXPECT_FALSE(*began);
+  tick();
+  EXPECT_NEAR(first_joint(), -0.29, 1e-9);
+}
+
+TEST_F(MotionDeskTest, RobotThatWasSetToAPositionHasBegun) {
+  JointValues there{};
+  there[0] = 0.4;
+  ASSERT_TRUE(fleet_.jump(kMantec, there));
+  const auto began = fleet_.begin_at(kMantec, {});
+  ASSERT_TRUE(began);
+  EXPECT_FALSE(*began);
+  EXPECT_EQ(first_joint(), 0.4);
 }
 
 TEST_F(MotionDeskTest, EveryMoveThatIsAcceptedIsGoneThoughTheTickHasBegunNone) {

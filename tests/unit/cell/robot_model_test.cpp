@@ -68,13 +68,22 @@ TEST_F(Robot, refusesConflictsAndChangesNothing) {
   EXPECT_EQ(sut->parameters().start_position, before.start_position);
 }
 
-TEST_F(Robot, aNarrowedLimitTakesAlongWhatItBounds) {
+TEST_F(Robot, aNarrowedLimitLimitsWhatIsInForceAndNotWhatWasRequested) {
   ASSERT_EQ(set(JointParameter::start_position, {1.5, 2.5, 0.0}), "");
   ASSERT_EQ(set(JointParameter::max_range, {1.0, 2.0, 1.0}), "");
   EXPECT_EQ(sut->parameters().start_position[0], 1.0);
   EXPECT_EQ(sut->parameters().start_position[1], 2.0);
   ASSERT_EQ(set(JointParameter::max_velocity, {0.5, 2.0, 2.0}), "");
   EXPECT_EQ(sut->parameters().active_velocity[0], 0.5);
+  EXPECT_EQ(sut->parameters().requested.active_velocity[0], 1.5);
+  EXPECT_EQ(sut->parameters().requested.start_position[0], 1.5);
+  ASSERT_EQ(set(JointParameter::max_velocity, {1.5, 2.0, 2.0}), "");
+  ASSERT_EQ(set(JointParameter::max_range, {2.0, 3.0, 1.0}), "");
+  EXPECT_EQ(sut->parameters().active_velocity[0], 1.5);
+  EXPECT_EQ(sut->parameters().start_position[0], 1.5);
+  ASSERT_EQ(set(JointParameter::max_acceleration, {0.1, 0.1, 0.1}), "");
+  ASSERT_EQ(set(JointParameter::max_acceleration, {4.0, 4.0, 4.0}), "");
+  EXPECT_EQ(sut->parameters().active_acceleration, sut->parameters().requested.active_acceleration);
 }
 
 TEST_F(Robot, scalarsHaveTheirRanges) {
@@ -152,20 +161,20 @@ TEST_F(Robot, slotsAreCounted) {
 
 TEST_F(Robot, aRunningGatewayHasRoomForAFewMoreOnly) {
   Diagnostics diagnostics;
-  auto cell = build_cell(
+  auto full = build_cell(
       "[[node]]\nname = \"A\"\nabstract = \"arm.mpc\"\nrobot_id = \"R0\"\n"
       "[[node]]\nname = \"B\"\nabstract = \"arm.mpc\"\nrobot_id = \"R1\"\nloaded = false\nshown = \"hidden\"\n"
       "[[node]]\nname = \"C\"\nabstract = \"arm.mpc\"\nrobot_id = \"R2\"\nloaded = false\nshown = \"hidden\"\n",
       files, diagnostics);
-  ASSERT_TRUE(cell) << diagnostics.text();
-  cell->set_robot_capacity(2);
-  ASSERT_TRUE(cell->activate("B"));
-  const auto refused = cell->activate("C");
+  ASSERT_TRUE(full) << diagnostics.text();
+  full->set_robot_capacity(2);
+  ASSERT_TRUE(full->activate("B"));
+  const auto refused = full->activate("C");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("more than 2 robots"));
-  ASSERT_TRUE(cell->delete_node("A"));
-  ASSERT_TRUE(cell->activate("C"));
-  EXPECT_LT(cell->robot("R2")->slot(), 2U) << "the slot of the robot that was deleted";
+  ASSERT_TRUE(full->delete_node("A"));
+  ASSERT_TRUE(full->activate("C"));
+  EXPECT_LT(full->robot("R2")->slot(), 2U) << "the slot of the robot that was deleted";
 }
 
 }  // namespace

@@ -210,6 +210,8 @@ const Example kExamples[] = {
     {"rob_positioning jump", FormId::rob_positioning, {}, {1}},
     {"STOP_ROB MANTEC_RM3", FormId::stop_rob, {"MANTEC_RM3"}, {}},
     {"RESET_HAPTIC MANTEC_RM3", FormId::reset_haptic, {"MANTEC_RM3"}, {}},
+    {"STOP_ALL", FormId::stop_all, {}, {}},
+    {"STOP_SCRIPT 3", FormId::stop_script, {}, {3}},
     {"SET_COLLPAR active 0", FormId::set_collpar_active, {}, {0}},
     {"SET_COLLPAR warning 50.0", FormId::set_collpar_warning, {}, {0.05}},
     {"SET_COLLPAR pair Toolbox.Tool1 Mantec_1.HAND derive",
