@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rt_core/engine/coupling.hpp"
+#include "rt_core/ports/coupled_joint.hpp"
 #include "rt_core/ports/robot_state.hpp"
 
 namespace cellmirror::app {
@@ -13,7 +13,7 @@ namespace cellmirror::app {
 struct CoupledJointSnapshot {
   std::string master;
   std::string slave;
-  engine::CoupledJoint joint;
+  CoupledJoint joint;
   JointKind kind = JointKind::revolute;
 };
 

@@ -8,16 +8,12 @@
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/real_time.hpp"
+#include "rt_core/ports/coupled_joint.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
 namespace cellmirror::engine {
 
 class RobotSlot;
-
-struct CoupledJoint {
-  std::uint8_t master_joint = 0;
-  std::uint8_t slave_joint = 0;
-};
 
 using CoupledJoints = std::array<CoupledJoint, kMaxJointsPerRobot>;
 

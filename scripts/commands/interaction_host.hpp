@@ -7,17 +7,12 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/coupled_joint.hpp"
 #include "rt_core/ports/force_state.hpp"
 
 namespace cellmirror {
-
-struct SlaveJoints {
-  std::string_view robot;
-  std::span<const std::pair<std::string_view, std::string_view>> joints;  // of the master, of the slave
-};
 
 class InteractionHost {
  public:

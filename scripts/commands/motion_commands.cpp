@@ -6,12 +6,6 @@
 
 namespace cellmirror {
 
-std::string_view name_of(TargetMode mode) {
-  constexpr std::array<std::string_view, 8> kNames = {"JOINT_ABS", "JOINT_INC",  "FRAME_ABS", "FRAME_INC",
-                                                      "TOOL_INC",  "SCREEN_INC", "START",     "REFERENCE"};
-  return kNames[static_cast<std::size_t>(mode)];
-}
-
 namespace script {
 
 namespace {

@@ -3,38 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string_view>
 
-#include "rt_core/base/pose.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/motion_target.hpp"
 #include "scripts/commands/activity.hpp"
 
 namespace cellmirror {
 
-enum class TargetMode : std::uint8_t {
-  joint_abs,
-  joint_inc,
-  frame_abs,
-  frame_inc,
-  tool_inc,
-  screen_inc,
-  start_position,      // rob_jnt_start_pos; MOVE_ROB only
-  reference_position,  // rob_jnt_ref_pos; MOVE_ROB only
-};
-// "JOINT_ABS", ..., "START", "REFERENCE".
-[[nodiscard]] std::string_view name_of(TargetMode mode);
-
-struct MotionTarget {
-  TargetMode mode = TargetMode::joint_abs;
-  // joint_abs, joint_inc: rad or m; of the first joints, the others stay.
-  std::span<const double> joints;
-  // frame_abs: X_ZT, the TCP in the robot's ZP frame. frame_inc, tool_inc, screen_inc: a translation and a rotation in
-  // the axes of the ZP frame, of the TCP, or of the screen.
-  Pose pose = Pose::Identity();
-};
-
-enum class MovePath : std::uint8_t { joints, linear };      // PTP, LIN
 enum class Positioning : std::uint8_t { moving, jumping };  // rob_positioning move, jump
 
 class MotionHost {

@@ -7,35 +7,21 @@
 #include <span>
 #include <utility>
 
-#include "app/owner/motion/target_pose.hpp"
 #include "rt_core/engine/limiter.hpp"
-#include "rt_core/motion/planner.hpp"
-#include "rt_core/planning/unreachable.hpp"
 
 namespace cellmirror::app {
 
-namespace {
+using planning::MotionGoal;
+using planning::PlannedMove;
 
-bool is_joint_target(TargetMode mode) {
-  return mode != TargetMode::frame_abs && mode != TargetMode::frame_inc && mode != TargetMode::tool_inc &&
-         mode != TargetMode::screen_inc;
-}
+namespace {
 
 // POS_ROB: the increments of the TCP go straight.
 MovePath path_of(TargetMode mode) {
-  return is_joint_target(mode) || mode == TargetMode::frame_abs ? MovePath::joints : MovePath::linear;
-}
-
-bool is_whole_pose(const kinematics::Task& task) {
-  return task.position_axes == 0b111 && task.orientation == kinematics::OrientationTask::full &&
-         task.orientation_required;
+  return planning::is_joint_target(mode) || mode == TargetMode::frame_abs ? MovePath::joints : MovePath::linear;
 }
 
 }  // namespace
-
-std::optional<Pose> commanded_pose(const kinematics::Task& task, const Pose& X_ZG) {
-  return is_whole_pose(task) ? std::optional(X_ZG) : std::nullopt;
-}
 
 Result<MotionRecord*> MotionService::open(const RobotModel* robot, std::string_view id) {
   if (auto checked = port_.check_simulated(id); !checked) return std::unexpected(checked.error());
@@ -152,24 +138,10 @@ MotionGoal MotionService::goal_of(const RobotModel& robot, const MotionRecord& r
   return goal;
 }
 
-Result<JointValues> MotionService::joint_target(const RobotModel& robot, const MotionTarget& target,
-                                                const MotionGoal& from) const {
-  switch (target.mode) {
-    case TargetMode::joint_abs:
-      return robot.positions_to(target.joints, from.joints);
-    case TargetMode::joint_inc:
-      return robot.positions_by(target.joints, from.joints);
-    case TargetMode::start_position:
-      return robot.parameters().start_position;
-    default:
-      return robot.parameters().reference_position;
-  }
-}
-
 Result<Pose> MotionService::pose_target(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
                                         const MotionGoal& from) {
-  if (is_joint_target(target.mode)) {
-    const auto joints = joint_target(robot, target, from);
+  if (planning::is_joint_target(target.mode)) {
+    const auto joints = planning::target_joints(robot, target, from.joints);
     if (!joints) return std::unexpected(joints.error());
     return record.kinematics.X_ZT(*joints);
   }
@@ -177,53 +149,40 @@ Result<Pose> MotionService::pose_target(const RobotModel& robot, MotionRecord& r
   Eigen::Matrix3d R_ZS = Eigen::Matrix3d::Identity();
   if (target.mode == TargetMode::screen_inc)
     R_ZS = cell_.world_pose(robot.zero_point(), port_.positions()).linear().transpose() * screen_axes_();
-  return target_pose(target.mode, target.pose, X_ZT, R_ZS);
+  return planning::target_pose(target.mode, target.pose, X_ZT, R_ZS);
 }
 
 // Where the joints end when no path is asked for.
 Result<MotionGoal> MotionService::point(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
                                         const MotionGoal& from) {
-  if (is_joint_target(target.mode)) {
-    auto joints = joint_target(robot, target, from);
+  if (planning::is_joint_target(target.mode)) {
+    auto joints = planning::target_joints(robot, target, from.joints);
     if (!joints) return std::unexpected(joints.error());
     if (auto checked = check_limits(robot, *joints); !checked) return std::unexpected(checked.error());
     return MotionGoal{*joints, {}, record.kinematics.chain()};
   }
   const auto X_ZG = pose_target(robot, record, target, from);
   if (!X_ZG) return std::unexpected(X_ZG.error());
-  const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
-  auto answer = record.kinematics.solve(*X_ZG, task, from.joints, clock_);
-  if (!answer) return std::unexpected(answer.error());
-  if (!answer->solved) {
-    const Pose X_ZN = answer->solutions.empty() ? *X_ZG : record.kinematics.X_ZT(answer->solutions.front().q);
-    return std::unexpected(planning::unreachable(robot, *answer, *X_ZG, X_ZN));
-  }
-  return MotionGoal{answer->solutions.front().q, commanded_pose(task, *X_ZG), record.kinematics.chain()};
+  return planning::reach({robot, record.kinematics, robot.parameters(), clock_}, *X_ZG, from.joints);
 }
 
 Result<PlannedMove> MotionService::plan(const RobotModel& robot, MotionRecord& record, MovePath path,
                                         const MotionTarget& target, motion::Start start) {
   if (auto updated = record.kinematics.update(cell_, robot); !updated) return std::unexpected(updated.error());
-  const kinematics::Chain& chain = *record.kinematics.chain();
+  const planning::PlanningContext context{robot, record.kinematics, robot.parameters(), clock_};
   const MotionGoal from = goal_of(robot, record, record.kinematics.chain());
   if (path == MovePath::joints) {
     auto goal = point(robot, record, target, from);
     if (!goal) return std::unexpected(goal.error());
     if (auto free = check_coupled(robot, from.joints, goal->joints); !free) return std::unexpected(free.error());
-    auto move = motion::plan_joint_move(chain, robot.parameters(), goal->joints);
-    if (!move) return std::unexpected(move.error());
-    return PlannedMove{*move, std::move(*goal)};
+    return planning::plan_joints(context, std::move(*goal));
   }
   if (auto free = check_uncoupled(robot); !free) return std::unexpected(free.error());
   const auto X_ZG = pose_target(robot, record, target, from);
   if (!X_ZG) return std::unexpected(X_ZG.error());
   // A move that takes the place of another one begins on the way.
   const bool on_the_way = start == motion::Start::supersede && record.pending.in_flight();
-  const JointValues& first = on_the_way ? port_.positions()[robot.slot()] : from.joints;
-  auto plan = motion::plan_linear_move(chain, robot.parameters(), first, *X_ZG);
-  if (!plan) return std::unexpected(planning::line_refused(robot, std::move(plan.error()), *X_ZG));
-  const kinematics::Task task = record.kinematics.task(robot.parameters().inverse_class);
-  return PlannedMove{plan->move, {plan->end, commanded_pose(task, *X_ZG), record.kinematics.chain()}};
+  return planning::plan_line(context, on_the_way ? port_.positions()[robot.slot()] : from.joints, *X_ZG);
 }
 
 Result<void> MotionService::send(const RobotModel& robot, MotionRecord& record, PlannedMove planned,
@@ -245,7 +204,7 @@ Result<void> MotionService::send(const RobotModel& robot, MotionRecord& record, 
 }
 
 Result<void> MotionService::jump(const RobotModel& robot, MotionRecord& record, const MotionTarget& target) {
-  if (!is_joint_target(target.mode)) {
+  if (!planning::is_joint_target(target.mode)) {
     if (auto updated = record.kinematics.update(cell_, robot); !updated) return updated;
   }
   const MotionGoal from = goal_of(robot, record, record.kinematics.chain());

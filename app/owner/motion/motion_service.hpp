@@ -56,23 +56,22 @@ class MotionService final : public MotionHost {
   // What is known of a robot, as far as the tick has shown. Refused: unknown, online.
   Result<MotionRecord*> open(const RobotModel* robot, std::string_view id);
   // Where the newest move ends, or the robot stands, for plans with `chain`.
-  [[nodiscard]] MotionGoal goal_of(const RobotModel& robot, const MotionRecord& record,
-                                   const std::shared_ptr<const kinematics::Chain>& chain);
+  [[nodiscard]] planning::MotionGoal goal_of(const RobotModel& robot, const MotionRecord& record,
+                                             const std::shared_ptr<const kinematics::Chain>& chain);
   // Gives the move to the tick, with the next id. `goal.chain` null (a delay): the goal stays.
-  Result<void> send(const RobotModel& robot, MotionRecord& record, PlannedMove planned, motion::Start start);
+  Result<void> send(const RobotModel& robot, MotionRecord& record, planning::PlannedMove planned, motion::Start start);
   // Refused: joints of it follow a master.
   [[nodiscard]] Result<void> check_free(const RobotModel& robot) const;
 
  private:
   void follow(const RobotModel& robot, MotionRecord& record);
   // The chain of `record` must be up to date.
-  Result<JointValues> joint_target(const RobotModel& robot, const MotionTarget& target, const MotionGoal& from) const;
   Result<Pose> pose_target(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
-                           const MotionGoal& from);
-  Result<MotionGoal> point(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
-                           const MotionGoal& from);
-  Result<PlannedMove> plan(const RobotModel& robot, MotionRecord& record, MovePath path, const MotionTarget& target,
-                           motion::Start start);
+                           const planning::MotionGoal& from);
+  Result<planning::MotionGoal> point(const RobotModel& robot, MotionRecord& record, const MotionTarget& target,
+                                     const planning::MotionGoal& from);
+  Result<planning::PlannedMove> plan(const RobotModel& robot, MotionRecord& record, MovePath path,
+                                     const MotionTarget& target, motion::Start start);
   Result<void> jump(const RobotModel& robot, MotionRecord& record, const MotionTarget& target);
   // Coupled joints stay with their master: refused where the goal has them elsewhere, or a path would move them.
   [[nodiscard]] Result<void> check_coupled(const RobotModel& robot, const JointValues& from, JointValues& goal) const;

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "app/owner/programs/move_settings.hpp"
-#include "rt_core/motion/planner.hpp"
-#include "rt_core/planning/unreachable.hpp"
+#include "rt_core/planning/move_planner.hpp"
 
 namespace cellmirror::app {
+
+using planning::MotionGoal;
+using planning::PlannedMove;
 
 namespace {
 
@@ -126,47 +128,33 @@ Result<Pose> CellProgramMotion::pose_of(const Scene& scene, const Target& target
 }
 
 Result<PlannedMove> CellProgramMotion::plan_joints(const Scene& scene, const MoveCommand& command) const {
-  const std::shared_ptr<const kinematics::Chain>& chain = scene.arm.kinematics.chain();
-  MotionGoal goal{.joints = {}, .X_ZT = {}, .chain = chain};
+  const planning::PlanningContext context{scene.robot, scene.arm.kinematics, scene.parameters, clock_};
+  Result<MotionGoal> goal = MotionGoal{.joints = {}, .X_ZT = {}, .chain = scene.arm.kinematics.chain()};
   if (of_joints(command.target)) {
-    goal.joints = joints_of(command.target, scene.from.joints);
+    goal->joints = joints_of(command.target, scene.from.joints);
   } else {
     const auto X_ZG = pose_of(scene, command.target);
     if (!X_ZG) return std::unexpected(X_ZG.error());
-    const kinematics::Task task = scene.arm.kinematics.task(scene.parameters.inverse_class);
-    auto answer = scene.arm.kinematics.solve(*X_ZG, task, scene.from.joints, clock_);
-    if (!answer) return std::unexpected(answer.error());
-    if (!answer->solved) {
-      const Pose X_ZN = answer->solutions.empty() ? *X_ZG : scene.arm.kinematics.X_ZT(answer->solutions.front().q);
-      return std::unexpected(planning::unreachable(scene.robot, *answer, *X_ZG, X_ZN));
-    }
-    goal.joints = answer->solutions.front().q;
-    goal.X_ZT = commanded_pose(task, *X_ZG);
+    goal = planning::reach(context, *X_ZG, scene.from.joints);
+    if (!goal) return std::unexpected(goal.error());
   }
-  auto move = motion::plan_joint_move(*chain, scene.parameters, goal.joints);
-  if (!move) return std::unexpected(move.error());
-  move->fly_type = scene.parameters.fly_type;
-  move->fly_parameter = scene.parameters.fly_parameter;
-  return PlannedMove{*move, std::move(goal)};
+  auto planned = planning::plan_joints(context, std::move(*goal));
+  if (!planned) return planned;
+  planned->move.fly_type = scene.parameters.fly_type;
+  planned->move.fly_parameter = scene.parameters.fly_parameter;
+  return planned;
 }
 
 Result<PlannedMove> CellProgramMotion::plan_path(const Scene& scene, const MoveCommand& command) const {
+  const planning::PlanningContext context{scene.robot, scene.arm.kinematics, scene.parameters, clock_};
   const auto X_ZG = pose_of(scene, command.target);
   if (!X_ZG) return std::unexpected(X_ZG.error());
-  const kinematics::Chain& chain = *scene.arm.kinematics.chain();
-  Result<motion::PathPlan> path;
-  if (command.path == PathKind::circular) {
-    if (!command.via) return fail("a circular move needs a via point");
-    if (auto fits = check_joint_count(scene.robot, *command.via); !fits) return std::unexpected(fits.error());
-    const auto X_ZV = pose_of(scene, *command.via);
-    if (!X_ZV) return std::unexpected(X_ZV.error());
-    path = motion::plan_circular_move(chain, scene.parameters, scene.from.joints, X_ZV->translation(), *X_ZG);
-  } else {
-    path = motion::plan_linear_move(chain, scene.parameters, scene.from.joints, *X_ZG);
-  }
-  if (!path) return std::unexpected(planning::line_refused(scene.robot, std::move(path.error()), *X_ZG));
-  const kinematics::Task task = scene.arm.kinematics.task(scene.parameters.inverse_class);
-  return PlannedMove{path->move, {path->end, commanded_pose(task, *X_ZG), scene.arm.kinematics.chain()}};
+  if (command.path != PathKind::circular) return planning::plan_line(context, scene.from.joints, *X_ZG);
+  if (!command.via) return fail("a circular move needs a via point");
+  if (auto fits = check_joint_count(scene.robot, *command.via); !fits) return std::unexpected(fits.error());
+  const auto X_ZV = pose_of(scene, *command.via);
+  if (!X_ZV) return std::unexpected(X_ZV.error());
+  return planning::plan_arc(context, scene.from.joints, *X_ZV, *X_ZG);
 }
 
 Result<std::uint32_t> CellProgramMotion::delay(std::string_view id, double seconds, Timestamp begin) {

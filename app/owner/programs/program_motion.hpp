@@ -54,7 +54,7 @@ class CellProgramMotion final : public program::ProgramMotion {
   struct Scene {
     const RobotModel& robot;
     Arm& arm;
-    MotionGoal from;
+    planning::MotionGoal from;
     Pose X_ZS;  // of `from`
     RobotParameters parameters;
   };
@@ -62,9 +62,9 @@ class CellProgramMotion final : public program::ProgramMotion {
   // Refused: unknown.
   Result<Arm*> arm(std::string_view robot) const;
   [[nodiscard]] Result<Pose> pose_of(const Scene& scene, const program::Target& target) const;
-  Result<PlannedMove> plan(const Scene& scene, const program::MoveCommand& command) const;
-  Result<PlannedMove> plan_joints(const Scene& scene, const program::MoveCommand& command) const;
-  Result<PlannedMove> plan_path(const Scene& scene, const program::MoveCommand& command) const;
+  Result<planning::PlannedMove> plan(const Scene& scene, const program::MoveCommand& command) const;
+  Result<planning::PlannedMove> plan_joints(const Scene& scene, const program::MoveCommand& command) const;
+  Result<planning::PlannedMove> plan_path(const Scene& scene, const program::MoveCommand& command) const;
 
   const Cell& cell_;
   MotionService& motion_;

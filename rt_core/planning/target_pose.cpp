@@ -1,8 +1,9 @@
-#include "app/owner/motion/target_pose.hpp"
-
+// Where the TCP is to go.
 #include <Eigen/Geometry>
 
-namespace cellmirror::app {
+#include "rt_core/planning/move_planner.hpp"
+
+namespace cellmirror::planning {
 
 namespace {
 
@@ -22,6 +23,11 @@ Pose moved_in(const Eigen::Matrix3d& R_ZA, const Pose& given, const Pose& X_ZT) 
 
 }  // namespace
 
+bool is_joint_target(TargetMode mode) {
+  return mode != TargetMode::frame_abs && mode != TargetMode::frame_inc && mode != TargetMode::tool_inc &&
+         mode != TargetMode::screen_inc;
+}
+
 Pose target_pose(TargetMode mode, const Pose& given, const Pose& X_ZT, const Eigen::Matrix3d& R_ZS) {
   switch (mode) {
     case TargetMode::frame_inc:
@@ -35,4 +41,4 @@ Pose target_pose(TargetMode mode, const Pose& given, const Pose& X_ZT, const Eig
   }
 }
 
-}  // namespace cellmirror::app
+}  // namespace cellmirror::planning

@@ -1,11 +1,11 @@
 // The Cartesian modes of POS_ROB, worked out by hand.
-#include "app/owner/motion/target_pose.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-namespace cellmirror::app {
+#include "rt_core/planning/move_planner.hpp"
+
+namespace cellmirror::planning {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 2;
@@ -54,4 +54,4 @@ TEST(TargetPose, ManyIncrementsKeepARotation) {
 }
 
 }  // namespace
-}  // namespace cellmirror::app
+}  // namespace cellmirror::planning
