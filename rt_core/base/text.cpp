@@ -13,17 +13,21 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Levenshtein distance without regard to case, one row at a time. Lengths are bounded by the caller.
+// Levenshtein distance without regard to case, two neighbours in the wrong order being one edit. Row by row. Lengths are
+// bounded by the caller.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto same = [&](std::size_t i, std::size_t j) { return lower(a[i - 1]) == lower(b[j - 1]); };
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  std::vector<std::size_t> above = row;
+  std::vector<std::size_t> two_above = row;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    two_above.swap(above);
+    above.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0U : 1U);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (same(i, j) ? 0U : 1U)});
+      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) row[j] = std::min(row[j], two_above[j - 2] + 1);
     }
   }
   return row[b.size()];
@@ -81,7 +85,8 @@ std::optional<long long> parse_integer(std::string_view text) {
 std::vector<std::string> nearest(std::string_view wrong, std::span<const std::string> candidates, std::size_t most) {
   constexpr std::size_t kLongest = 200;  // keeps the work bounded for hostile names
   if (wrong.size() > kLongest) return {};
-  const std::size_t far = std::max<std::size_t>(2, wrong.size() / 3);
+  // Of a short word half must be right: two letters make any name out of one.
+  const std::size_t far = std::min(wrong.size() / 2, std::max<std::size_t>(2, wrong.size() / 3));
   std::vector<std::pair<std::size_t, const std::string*>> near;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongest || candidate.size() > wrong.size() + far || wrong.size() > candidate.size() + far)

@@ -135,8 +135,10 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kMessage,
      .help = "shows a text for about 5 s",
-     .definition = "the text is the rest of the command, UTF-8; in every picture, on the page, in status and log. With "
-                   "SET_MODE BEEP a bell, too"},
+     .definition =
+         "the text is the rest of the command, UTF-8: in a file up to the next ';', in a message all of it, but "
+         "for one ';' at its end; in every picture, on the page, in status and log. With SET_MODE BEEP a "
+         "bell, too"},
 };
 
 }  // namespace
