@@ -1,7 +1,6 @@
 """Every command and mode of the picture (manual 1.2.1, 1.2.3, 1.2.4, 1.2.6) through the running gateway: the picture changes
 where it should, and comes back when the command is taken back."""
 
-import math
 import time
 import unittest
 
@@ -246,24 +245,6 @@ class Rendering(unittest.TestCase):
         traced = self.after("DRAW_SCENE", options=view, before=plain, at_least=0.001)
         self.assertGreater(p.difference(plain, traced), 0.001)
         self.back("SET_MODE SMEAR off", options=view, to=plain, at_most=0.01)
-
-    def test_the_trace_is_the_path_whatever_the_rate_of_the_pictures(self):
-        """60 degrees of the first axis: an arc about the base, of which the chord is 4.5 % shorter."""
-        self.send(ARM, "ROBACT MANTEC_R3", "POS_ROB MANTEC_R3 JOINT_INC 0 30 0 0 0 0", "SET_MODE SMEAR on",
-                  "POS_ROB MANTEC_R3 JOINT_INC 60 0 0 0 0 0")
-
-        def trace():
-            traces = self.scratch.status()["pictures"]["traces"]
-            return next((one for one in traces if one["robot"] == "MANTEC_R3"), None)
-
-        pose = self.scratch.robot("MANTEC_R3")["tcp"]["position_m"]
-        arc = math.hypot(pose[0] - 2.0, pose[1] + 1.6) * math.pi / 3  # the base stands at 2.0, -1.6
-        self.assertGreater(arc, 0.3)
-        self.assertTrue(g.eventually(lambda: trace() and abs(trace()["length_m"] - arc) < 0.002 * arc), (trace(), arc))
-        self.assertGreaterEqual(trace()["frames"], 5)
-        self.send("SET_MODE SMEAR off")
-        self.assertTrue(g.eventually(lambda: trace() is None))
-        self.send("POS_ROB MANTEC_R3 JOINT_INC -60 -30 0 0 0 0")
 
     def test_floor_shadow_textures(self):
         self.send("SET_MODE LEGEND off", ARM)
