@@ -71,6 +71,7 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "keeps a branch in memory, but out of the picture and of collision tests",
      .example = "DEACTIVATE Testlab_1.FL_Klein.Flansch_Typ1",
+     .definition = "refused on a part that is neither in memory nor shown",
      .effect = LoopEffect::queued},
     {.id = FormId::delete_node,
      .name = "DELETE_NODE",
@@ -79,6 +80,8 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "removes a branch from the model in memory; its file stays",
      .example = "DELETE_NODE Testlab_1.FL_Klein.Flansch_Typ1",
+     .definition = "takes back where SET_FRAME PLACEMENT, CONNECT and FRAME_TO_WFRM have put the part: ACTIVATE brings "
+                   "what the files have",
      .effect = LoopEffect::queued},
     {.id = FormId::swap_node,
      .name = "SWAP_NODE",

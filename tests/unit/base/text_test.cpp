@@ -45,7 +45,7 @@ TEST(Nearest, NamesWhatAPersonMayHaveMeantAndNothingElse) {
   EXPECT_EQ(did_you_mean("a", short_names), "did you mean A?") << "two letters make any name out of one";
   EXPECT_EQ(did_you_mean("x", short_names), "");
   EXPECT_EQ(did_you_mean("ARN", short_names), "did you mean ARM?");
-  EXPECT_EQ(did_you_mean("arx", {}), "");
+  EXPECT_EQ(did_you_mean("xyz", std::vector<std::string>{"xyz_m", "rpy_rad"}), "did you mean xyz_m?");
   EXPECT_EQ(did_you_mean("bus", short_names), "");
   EXPECT_EQ(did_you_mean("AMR", short_names), "did you mean ARM?") << "in the wrong order";
   EXPECT_EQ(did_you_mean("POS_RBO", std::vector<std::string>{"POS_ROB"}), "did you mean POS_ROB?");
