@@ -28,6 +28,7 @@
 #include "app/workers/force_worker.hpp"
 #include "app/workers/ranging_worker.hpp"
 #include "app/workers/tcp_force_worker.hpp"
+#include "app/workers/trace_worker.hpp"
 #include "config/cell_file.hpp"
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
@@ -82,6 +83,7 @@ struct TickReaders {
         contacts(engine.subscribe("contacts")),
         forces(engine.subscribe("forces")),
         tcp_force(engine.subscribe("tcp-force")),
+        traces(engine.subscribe("traces")),
         publisher(engine.subscribe("publisher")),
         pictures(engine.subscribe("pictures")) {}
 
@@ -91,6 +93,7 @@ struct TickReaders {
   engine::TickReader& contacts;
   engine::TickReader& forces;
   engine::TickReader& tcp_force;
+  engine::TickReader& traces;
   engine::TickReader& publisher;
   engine::TickReader& pictures;
 };
@@ -121,6 +124,7 @@ struct Gateway::Parts {
   std::unique_ptr<ContactWorker> contacts;
   std::unique_ptr<ForceWorker> forces;
   std::unique_ptr<TcpForceWorker> tcp_force;
+  std::unique_ptr<TraceWorker> traces;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<RenderService> renderer;
   std::unique_ptr<FaultMonitor> faults;
@@ -244,6 +248,7 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   contacts = std::make_unique<ContactWorker>(*engine, readers->contacts, board, clock, period, solids);
   forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W);
   tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period);
+  traces = std::make_unique<TraceWorker>(readers->traces, board, clock, period);
 }
 
 Result<void> Gateway::Parts::start_messages() {
@@ -272,10 +277,11 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
                                             const DdsOutputConfig& dds) {
   auto outputs = make_picture_outputs(dds);
   if (!outputs) return std::unexpected(outputs.error());
-  renderer = std::make_unique<RenderService>(
-      RenderService::Options{settings, headless, std::move(*outputs), {}},
-      SceneSource::Boards{readers->pictures, board, collisions->board(), ranging->board(), forces->board(), clock},
-      picture_counter);
+  renderer =
+      std::make_unique<RenderService>(RenderService::Options{settings, headless, std::move(*outputs), {}},
+                                      SceneSource::Boards{readers->pictures, board, collisions->board(),
+                                                          ranging->board(), forces->board(), traces->board(), clock},
+                                      picture_counter);
   return {};
 }
 

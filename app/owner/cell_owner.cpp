@@ -78,9 +78,11 @@ CellOwner::CellOwner(Parts parts)
       haptics_({cell_, *fleet_, clock_, parts.instance, std::move(parts.haptics)}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
                [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
-      interaction_(cell_, names_,
-                   {haptics_, forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
-                   static_cast<bool>(parts.let_tick_pass)),
+      robot_forces_({cell_, clock_, parts.memory_mode, parts.instance}),
+      interaction_(
+          cell_, names_,
+          {haptics_, forces_, robot_forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
+          static_cast<bool>(parts.let_tick_pass)),
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
@@ -160,6 +162,7 @@ bool CellOwner::turn() {
   couplings_.follow();
   haptics_.follow();
   forces_.follow();
+  robot_forces_.follow();
   // Not a reason to come back at once: a program that computes without end would keep this thread from ever waiting.
   changed_ = programs_.follow() || changed_;
   // Files first: what a foot switch begins does not wait behind a flood of messages.
@@ -213,6 +216,7 @@ void CellOwner::publish_state() {
   cell_state->haptics = haptics_.snapshots();
   cell_state->forces = forces_.settings();
   cell_state->tcp_force = forces_.memory();
+  cell_state->robot_forces = robot_forces_.snapshots();
   cell_state->active_robot = names_.active_robot();
   cell_state->language = programs_.language();
   cell_state->script = runner_->counters();

@@ -25,6 +25,7 @@
 #include "app/owner/node_levels.hpp"
 #include "app/owner/programs/program_motion.hpp"
 #include "app/owner/programs/program_service.hpp"
+#include "app/owner/robot_force_service.hpp"
 #include "app/owner/sensing.hpp"
 #include "app/owner/tcp_force_service.hpp"
 #include "app/snapshot/cell_state.hpp"
@@ -125,6 +126,7 @@ class CellOwner {
   CellSensing sensing_;
   HapticService haptics_;
   TcpForceService forces_;
+  RobotForceService robot_forces_;
   CellInteraction interaction_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;

@@ -9,6 +9,7 @@
 #include "app/owner/foot_switch_service.hpp"
 #include "app/owner/haptics/haptic_service.hpp"
 #include "app/owner/motion/coupling_service.hpp"
+#include "app/owner/robot_force_service.hpp"
 #include "app/owner/tcp_force_service.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "scripts/commands/interaction_host.hpp"
@@ -22,6 +23,7 @@ class CellInteraction final : public InteractionHost {
   struct Services {
     HapticService& haptics;
     TcpForceService& forces;
+    RobotForceService& robot_forces;
     CouplingService& couplings;
     std::function<FootSwitchService&()> switches;  // asked at each command: they start scripts, which begin here
   };
@@ -30,7 +32,7 @@ class CellInteraction final : public InteractionHost {
   CellInteraction(const Cell& cell, const NameDirectory& names, Services services, bool off_line)
       : cell_(cell), names_(names), services_(std::move(services)), off_line_(off_line) {}
 
-  Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
+  Result<std::string> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
   Result<void> reset_haptic(std::string_view robot) override;
   Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override;
   Result<void> set_switches_online(bool online) override;
@@ -42,6 +44,9 @@ class CellInteraction final : public InteractionHost {
   Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override;
 
  private:
+  Result<std::string> set_plain_memory(const std::string& robot, std::int32_t key, std::size_t bytes);
+  Result<std::string> set_device_memory(const std::string& robot, std::int32_t key, std::size_t bytes);
+
   const Cell& cell_;
   const NameDirectory& names_;
   Services services_;

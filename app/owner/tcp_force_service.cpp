@@ -26,15 +26,15 @@ std::string arrows_without_effect(const ForceArrowSettings& settings, const Comp
                                   bool has_haptic_devices) {
   const bool of_joints =
       settings.joint_forces != ArrowComponent::none || settings.joint_torques != ArrowComponent::none;
+  const bool of_tcps = settings.tcp_force != ArrowComponent::none;
   const auto moves = [&](const CompiledInertia& body) { return is_moved(cell, body.node); };
-  std::string remark;
-  if (of_joints && std::ranges::none_of(cell.inertia, moves))
-    remark = "no joint of the cell moves a part whose mass is known, so joints have no arrows";
-  if (settings.tcp_force != ArrowComponent::none && !has_haptic_devices) {
-    if (!remark.empty()) remark += "; ";
-    remark += "the cell has no haptic device, so TCPs have no arrows";
+  if (std::ranges::any_of(cell.inertia, moves)) return {};
+  constexpr const char* kNoMasses = "no joint of the cell moves a part whose mass is known";
+  if (of_tcps && !has_haptic_devices) {
+    return fmt::format("{} and there is no haptic device, so {} have no arrows", kNoMasses,
+                       of_joints ? "joints and TCPs" : "TCPs");
   }
-  return remark;
+  return of_joints ? fmt::format("{}, so joints have no arrows", kNoMasses) : std::string();
 }
 
 Result<void> TcpForceService::make_memory() {

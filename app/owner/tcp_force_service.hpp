@@ -16,8 +16,8 @@
 
 namespace cellmirror::app {
 
-// What SET_FORCE_ARROW answers where the cell has nothing of what it is to draw: joints bear something by masses that
-// they move, and the force at a TCP is known of haptic devices only. Empty: there is nothing to say.
+// What SET_FORCE_ARROW answers where the cell has nothing of what it is to draw: forces are known of robots whose
+// joints move masses, and at the TCP of a haptic device besides. Empty: there is nothing to say.
 [[nodiscard]] std::string arrows_without_effect(const ForceArrowSettings& settings, const CompiledCell& cell,
                                                 bool has_haptic_devices);
 

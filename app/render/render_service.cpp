@@ -205,7 +205,6 @@ double RenderService::requested_hz(std::span<const PictureRequest> requests) con
 
 void RenderService::round(Timestamp now) {
   if (!report_.on) return;
-  follow_traces();
   const std::vector<PictureRequest> all = requests(now);
   cache_.keep(all);
   const std::vector<Recipient> wanted = recipients(now);
@@ -213,11 +212,6 @@ void RenderService::round(Timestamp now) {
   if (const auto renderer = need_renderer(); !renderer) return report_problem(wanted, renderer.error());
   effort_.begin_cycle(requested_hz(all));
   serve(wanted);
-}
-
-void RenderService::follow_traces() {
-  const auto picture = boards_.pictures.latest();
-  if (picture && picture->display && picture->display->on(DisplayMode::smear)) source_.refresh();
 }
 
 void RenderService::serve(const std::vector<Recipient>& recipients) {
@@ -395,6 +389,17 @@ void RenderService::count(std::uint64_t RenderReport::* counter) {
   ++(report_.*counter);
 }
 
+namespace {
+
+TraceSummary summary_of(const TcpTrace& trace) {
+  TraceSummary summary{.robot = trace.robot, .points = trace.points.size(), .frames = trace.frames.size()};
+  for (std::size_t i = 1; i < trace.points.size(); ++i)
+    summary.length_m += static_cast<double>((trace.points[i] - trace.points[i - 1]).norm());
+  return summary;
+}
+
+}  // namespace
+
 RenderReport RenderService::report() const {
   RenderReport out;
   {
@@ -407,6 +412,9 @@ RenderReport RenderService::report() const {
   out.draw = draw_time_.snapshot();
   out.encode = encode_time_.snapshot();
   out.age = age_.snapshot();
+  if (const auto traces = boards_.traces.latest()) {
+    for (const TcpTrace& trace : traces->traces) out.traces.push_back(summary_of(trace));
+  }
   return out;
 }
 

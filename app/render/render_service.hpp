@@ -87,7 +87,6 @@ class RenderService {
   void cancel_jobs();
   void round(Timestamp now);
   // A trace has a point for each scene that was joined, so one is, also where nobody looks.
-  void follow_traces();
   [[nodiscard]] std::vector<Recipient> recipients(Timestamp now);
   // Of all who look, also of those who get no picture in this round.
   [[nodiscard]] std::vector<PictureRequest> requests(Timestamp now) const;

@@ -40,6 +40,7 @@ bool SceneSource::refresh() {
   const auto proximity = boards_.proximity.latest();
   const auto ranges = boards_.ranges.latest();
   const auto forces = boards_.forces.latest();
+  const auto traces = boards_.traces.latest();
   std::vector<ForceArrow> arrows;
   if (forces) arrows = dynamics::force_arrows(picture_->forces.arrows, *forces);
   scene::SceneInput input;
@@ -52,6 +53,7 @@ bool SceneSource::refresh() {
   if (ranges) input.ranges = ranges->readings;
   input.forces = forces.get();
   input.arrows = arrows;
+  if (traces && traces->smear_ends == picture_->display->smear_ends) input.traces = traces->traces;
   input.posture_time = tick.time;
   input.now = now_;
   builder_.build(input, scene_);

@@ -10,6 +10,7 @@
 #include "app/snapshot/proximity_board.hpp"
 #include "app/snapshot/range_readings.hpp"
 #include "app/snapshot/tick_poser.hpp"
+#include "app/snapshot/trace_state.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/tick_reader.hpp"
@@ -32,6 +33,7 @@ class SceneSource {
     const ProximityBoard& proximity;
     const Board<RangeReadings>& ranges;
     const Board<ForceState>& forces;
+    const Board<TraceState>& traces;
     const Clock& clock;
   };
 

@@ -109,6 +109,18 @@ json tcp_force_json(const CellState& cell_state, Timestamp now) {
           {"age_s", age_json(now, report.newest.time)}};
 }
 
+json robot_forces_json(const CellState& cell_state) {
+  json buffers = json::array();
+  for (const RobotForceSnapshot& buffer : cell_state.robot_forces) {
+    buffers.push_back({{"robot", buffer.robot},
+                       {"key", buffer.key},
+                       {"bytes", buffer.bytes},
+                       {"attached", buffer.attached},
+                       {"renewed", buffer.renewed}});
+  }
+  return buffers;
+}
+
 }  // namespace
 
 json haptics_json(const CellState& cell_state, const engine::TickState& tick, const ContactReport& contacts,
@@ -122,7 +134,8 @@ json haptics_json(const CellState& cell_state, const engine::TickState& tick, co
             {"compute_us", counted_percentiles_us(contacts.compute)},
             {"visible_after_us", counted_percentiles_us(contacts.visible_after)},
             {"adopting_us", counted_percentiles_us(contacts.adopting)}}},
-          {"tcp_force", tcp_force_json(cell_state, now)}};
+          {"tcp_force", tcp_force_json(cell_state, now)},
+          {"robot_forces", robot_forces_json(cell_state)}};
 }
 
 }  // namespace cellmirror::app

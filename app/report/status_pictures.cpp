@@ -1,6 +1,7 @@
 #include "app/report/status_pictures.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/report/status_collisions.hpp"
 
@@ -8,6 +9,11 @@ namespace cellmirror::app {
 
 nlohmann::json pictures_json(const RenderReport& report) {
   using nlohmann::json;
+  json traces = json::array();
+  for (const TraceSummary& trace : report.traces) {
+    traces.push_back(
+        {{"robot", trace.robot}, {"points", trace.points}, {"frames", trace.frames}, {"length_m", trace.length_m}});
+  }
   constexpr Nanoseconds kMillisecond{1'000'000};
   return {{"on", report.on},
           {"renderer", report.renderer.empty() ? json(nullptr) : json(report.renderer)},
@@ -28,6 +34,7 @@ nlohmann::json pictures_json(const RenderReport& report) {
           {"textures", report.counters.textures},
           {"texture_uploads", report.counters.texture_uploads},
           {"texture_bytes", report.counters.texture_bytes},
+          {"traces", std::move(traces)},
           {"scene_ms", percentiles_json(report.scene, kMillisecond)},
           {"draw_ms", percentiles_json(report.draw, kMillisecond)},
           {"encode_ms", percentiles_json(report.encode, kMillisecond)},

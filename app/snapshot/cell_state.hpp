@@ -15,6 +15,7 @@
 #include "app/snapshot/haptic_snapshot.hpp"
 #include "app/snapshot/node_level.hpp"
 #include "app/snapshot/program_snapshot.hpp"
+#include "app/snapshot/robot_force_channel.hpp"
 #include "app/snapshot/tcp_force_channel.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/collision/settings.hpp"
@@ -45,7 +46,8 @@ struct CellState {
   std::vector<RobotSnapshot> robots;  // in the order of the slots
   std::vector<HapticSnapshot> haptics;
   ForceSettings forces;
-  std::shared_ptr<TcpForceChannel> tcp_force;  // null: not made yet
+  std::shared_ptr<TcpForceChannel> tcp_force;    // null: not made yet
+  std::vector<RobotForceSnapshot> robot_forces;  // plain buffers of rob_ela_shm
   std::string active_robot;
   std::string language;  // of robot programs that are loaded now
   script::ScriptCounters script;

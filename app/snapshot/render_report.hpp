@@ -4,11 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "rt_core/ports/renderer_counters.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
 namespace cellmirror::app {
+
+// The trace of a TCP (SMEAR).
+struct TraceSummary {
+  std::string robot;
+  std::size_t points = 0;
+  std::size_t frames = 0;
+  double length_m = 0;  // of the curve
+};
 
 // As of one moment.
 struct RenderReport {
@@ -26,6 +35,7 @@ struct RenderReport {
   std::uint64_t in_haste = 0;   // without anti-aliasing, of `drawn`: there was no time for it
   std::uint64_t failed = 0;
   RendererCounters counters;
+  std::vector<TraceSummary> traces;
   HistogramSnapshot scene;   // how long it took to join the scene,
   HistogramSnapshot draw;    // to draw it,
   HistogramSnapshot encode;  // to encode it

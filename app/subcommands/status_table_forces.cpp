@@ -37,7 +37,8 @@ std::string robot_lines(const json& robot) {
   if (tcp.is_object()) {
     const json& force = tcp.at("force_n");
     const double size = std::hypot(force.at(0).get<double>(), force.at(1).get<double>(), force.at(2).get<double>());
-    out += fmt::format(" TCP {:.2f} N", size);
+    // A robot that holds nothing has none worth a word.
+    if (size > 0.0 || !robot.at("computed").get<bool>()) out += fmt::format(" TCP {:.2f} N", size);
   }
   return out + "\n";
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/workers/robot_force_writer.hpp"
 #include "app/workers/robot_motions.hpp"
 #include "rt_core/base/log.hpp"
 
@@ -24,7 +25,7 @@ void ForceWorker::take_cell(const CellState& cell_state) {
 
 bool ForceWorker::wanted(const CellState& cell_state) {
   take_cell(cell_state);
-  const bool wanted = computation_.has_mechanisms() || !cell_state.haptics.empty();
+  const bool wanted = computation_.has_mechanisms() || !cell_state.haptics.empty() || !cell_state.robot_forces.empty();
   if (!wanted) {
     ages_.paused();
     show_nothing();
@@ -52,6 +53,7 @@ void ForceWorker::run(const CellState& cell_state, const engine::TickState& tick
   std::shared_ptr<ForceState> state = states_.take();
   computation_.compute(tick.time, motions_, tick.haptics, *state);
   compute_.record(clock_.now() - start);
+  write_robot_forces(cell_state, tick, *state);
   state->sequence = ++sequence_;
   board_.publish(std::move(state));
   ages_.shown(tick.time, clock_.now());

@@ -13,17 +13,21 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Levenshtein distance without regard to case, one row at a time. Lengths are bounded by the caller.
+// Levenshtein distance without regard to case, two neighbours in the wrong order being one edit. Row by row. Lengths
+// are bounded by the caller.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto same = [&](std::size_t i, std::size_t j) { return lower(a[i - 1]) == lower(b[j - 1]); };
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  std::vector<std::size_t> above = row;
+  std::vector<std::size_t> two_above = row;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    two_above.swap(above);
+    above.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0U : 1U);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (same(i, j) ? 0U : 1U)});
+      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) row[j] = std::min(row[j], two_above[j - 2] + 1);
     }
   }
   return row[b.size()];
@@ -82,12 +86,19 @@ std::vector<std::string> nearest(std::string_view wrong, std::span<const std::st
   constexpr std::size_t kLongest = 200;  // keeps the work bounded for hostile names
   if (wrong.size() > kLongest) return {};
   const std::size_t far = std::max<std::size_t>(2, wrong.size() / 3);
+  // Of a short word half must be right, since two letters make any name out of one; unless it is how the name begins.
+  const std::size_t far_of_any = std::min(wrong.size() / 2, far);
+  constexpr std::size_t kBeginning = 3;
+  const auto begins = [&](const std::string& candidate) {
+    return wrong.size() >= kBeginning && candidate.size() > wrong.size() &&
+           equal_ignoring_case(std::string_view(candidate).substr(0, wrong.size()), wrong);
+  };
   std::vector<std::pair<std::size_t, const std::string*>> near;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > kLongest || candidate.size() > wrong.size() + far || wrong.size() > candidate.size() + far)
       continue;
     const std::size_t distance = edit_distance(wrong, candidate);
-    if (distance <= far) near.emplace_back(distance, &candidate);
+    if (distance <= (begins(candidate) ? far : far_of_any)) near.emplace_back(distance, &candidate);
   }
   // The pointers go into one array, so they keep the candidates' order among equal distances.
   std::sort(near.begin(), near.end());

@@ -41,6 +41,40 @@ struct DetailLevels {
     return {};
   }
 
+  [[nodiscard]] Result<void> not_in_memory(NodeId id) const {
+    return fail(fmt::format("{} is not in memory", path(id)), "ACTIVATE " + path(id) + " loads it");
+  }
+
+  // Place, camera and sensor of a part as its father's file has them, so that a later ACTIVATE brings the state of the
+  // files. Not back to a predecessor that is gone, or that hangs on the part by now. Refused: something else would move
+  // along.
+  Result<void> take_back_settings(NodeId id) {
+    Node& node = state.at(id);
+    const ComponentNode& definition = *node.definition;
+    const NodeId first = node.first_predecessor;
+    if (first != kNoNode && !state.is_below(first, id)) {
+      const bool moves = node.predecessor != first || node.X_PF.matrix() != definition.X_PF.matrix();
+      if (moves) {
+        if (auto free = check_nothing_attached(id); !free) return free;
+        node.predecessor = first;
+        node.X_PF = definition.X_PF;
+      }
+    }
+    node.camera = definition.camera;
+    node.sensor = definition.sensor;
+    return {};
+  }
+
+  [[nodiscard]] Result<void> check_nothing_attached(NodeId id) const {
+    for (std::size_t i = 1; i < state.nodes.size(); ++i) {
+      if (!state.nodes[i] || state.nodes[i]->predecessor != id || state.nodes[i]->parent == id) continue;
+      return fail(fmt::format("{} is attached to {}, which would go back to the place of its file",
+                              path(static_cast<NodeId>(i)), path(id)),
+                  "CONNECT it to another frame first");
+    }
+    return {};
+  }
+
   // The coarse geometry of a moved part would be at the old place.
   Result<void> check_at_home(NodeId id) const {
     const Node& node = state.at(id);
@@ -142,6 +176,7 @@ Result<void> Cell::deactivate(std::string_view path) {
   const auto id = state_->find(path);
   if (!id) return std::unexpected(id.error());
   Node& node = state_->at(*id);
+  if (!in_memory(node) && node.shown == Shown::hidden) return DetailLevels{*state_}.not_in_memory(*id);
   if (node.shown == Shown::hidden) return {};
   node.shown = Shown::hidden;
   state_->changed();
@@ -153,9 +188,7 @@ Result<void> Cell::delete_node(std::string_view path) {
   const auto id = state_->find(path);
   if (!id) return std::unexpected(id.error());
   Node& node = state_->at(*id);
-  if (node.has_abstract() && !node.content) {
-    return fail(fmt::format("{} is not in memory", levels.path(*id)), "ACTIVATE " + levels.path(*id) + " loads it");
-  }
+  if (!in_memory(node)) return levels.not_in_memory(*id);
   std::vector<NodeId> going;
   if (node.has_abstract()) {
     // The node itself and what its father's file declares below it stay, so that ACTIVATE can load it again.
@@ -173,6 +206,7 @@ Result<void> Cell::delete_node(std::string_view path) {
   }
   if (auto may = levels.check_may_go(going, *id); !may) return may;
   if (node.has_abstract()) {
+    if (auto back = levels.take_back_settings(*id); !back) return back;
     const auto stays = [&](NodeId child) { return state_->at(child).declared_in != node.content; };
     std::erase_if(node.children, [&](NodeId child) { return !stays(child); });
     for (auto& robot : state_->robots) {

@@ -84,7 +84,8 @@ void ForceComputation::compute_robot(const RobotMechanism& robot, RobotForces& o
     qd[i] = slots_[slot].motion.velocity()[joint];
     qdd[i] = slots_[slot].motion.acceleration()[joint];
   }
-  inverse_dynamics(mechanism, {q, qd, qdd, gravity_W_, out.tcp_T.force, out.tcp_T.torque}, output_);
+  const DynamicsInput motion{q, qd, qdd, gravity_W_, out.tcp_T.force, out.tcp_T.torque};
+  inverse_dynamics(mechanism, motion, output_);
   place_links(mechanism, q);
   out.model_kg = robot.model_kg;
   out.payload_kg = robot.payload_kg;
@@ -104,7 +105,23 @@ void ForceComputation::compute_robot(const RobotMechanism& robot, RobotForces& o
     joint.X_WJ = X_WJ_[link];
     joint.axis_J = mechanism.links()[link].axis;
   }
-  if (mechanism.tip_link() >= 0) out.X_WT = X_WJ_[static_cast<std::size_t>(mechanism.tip_link())] * mechanism.X_LT();
+  if (mechanism.tip_link() < 0) return;
+  out.X_WT = X_WJ_[static_cast<std::size_t>(mechanism.tip_link())] * mechanism.X_LT();
+  out.tcp_known = true;
+  if (robot.load) add_load(*robot.load, motion, out);
+}
+
+// What the links give to the load at the tip's joint, the load gives back to them at the TCP.
+void ForceComputation::add_load(const Mechanism& load, const DynamicsInput& motion, RobotForces& out) {
+  DynamicsInput without_contact = motion;
+  without_contact.tip_force_T.setZero();
+  without_contact.tip_torque_T.setZero();
+  inverse_dynamics(load, without_contact, output_);
+  const Wrench& wrench_J = output_.joint_wrench[static_cast<std::size_t>(load.tip_link())];
+  const Pose& X_JT = load.X_LT();
+  const Eigen::Matrix3d R_TJ = X_JT.linear().transpose();
+  out.tcp_T.force -= R_TJ * wrench_J.force;
+  out.tcp_T.torque -= R_TJ * (wrench_J.torque - Eigen::Vector3d(X_JT.translation()).cross(wrench_J.force));
 }
 
 void ForceComputation::check_limits(const RobotForces& robot) {
@@ -122,7 +139,7 @@ void ForceComputation::check_limits(const RobotForces& robot) {
   }
 }
 
-void ForceComputation::compute_tcp(const HapticState* haptic, std::size_t robot, RobotForces& out) {
+void ForceComputation::compute_contact(const HapticState* haptic, std::size_t robot, RobotForces& out) {
   out.tcp_known = haptic != nullptr;
   out.tcp_T = {};
   out.X_WT = Pose::Identity();
@@ -151,7 +168,7 @@ void ForceComputation::compute(Timestamp time, std::span<const RobotMotion> moti
     out.id = robot.id;
     out.slot = static_cast<std::uint8_t>(robot.slot);
     out.computed = has_masses;
-    compute_tcp(haptic, i, out);
+    compute_contact(haptic, i, out);
     if (has_masses) {
       compute_robot(mechanisms_[i], out);
       check_limits(out);

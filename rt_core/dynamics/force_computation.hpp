@@ -42,6 +42,8 @@ class ForceComputation {
 
   // True where the mechanisms are other ones than before.
   bool take_cell(const std::shared_ptr<const CompiledCell>& cell);
+  // Of each robot with masses the force at the TCP is that of the contact of its haptic device, if it has one, and of
+  // what is attached at or beyond the TCP's link (RobotMechanism::load).
   // Robots with masses, or with the instrument of a haptic device, at `time`. `motions` are those of the robots of the
   // cell, in its order; `haptics` the devices. After take_cell().
   void compute(Timestamp time, std::span<const RobotMotion> motions, std::span<const HapticState> haptics,
@@ -63,7 +65,8 @@ class ForceComputation {
   void update_motions(std::span<const RobotMotion> motions);
   void compute_robot(const RobotMechanism& robot, RobotForces& out);
   void place_links(const Mechanism& mechanism, std::span<const double> q);
-  void compute_tcp(const HapticState* haptic, std::size_t robot, RobotForces& out);
+  void compute_contact(const HapticState* haptic, std::size_t robot, RobotForces& out);
+  void add_load(const Mechanism& load, const DynamicsInput& motion, RobotForces& out);
   void check_limits(const RobotForces& robot);
 
   Eigen::Vector3d gravity_W_;

@@ -48,6 +48,7 @@ class Builder {
     if (!has_masses_) return std::move(made_);
     if (auto mechanism = make()) {
       made_.mechanism = std::move(*mechanism);
+      if (has_load_) made_.load = make_load();
     } else {
       made_.why_not = mechanism.error().text();
     }
@@ -85,18 +86,22 @@ class Builder {
 
   void collect_masses() {
     inertia_.resize(made_.link_nodes.size());
+    load_.resize(made_.link_nodes.size());
     for (const CompiledInertia& body : cell_.inertia) {
       const bool is_joint = cell_.joint_of[at(body.node)] >= 0;
       const std::int32_t carrier = is_joint ? body.node : nodes_.carrier[at(body.node)];
       if (carrier < 0 || !feels_[at(carrier)]) continue;
       const Inertia in_node = inertia_of(body.inertia);
-      Inertia& link = inertia_[at(link_of_[at(carrier)])];
-      link = joined(link, is_joint ? in_node : moved(in_node, nodes_.X_CN[at(body.node)]));
+      const Inertia in_link = is_joint ? in_node : moved(in_node, nodes_.X_CN[at(body.node)]);
+      const std::size_t link = at(link_of_[at(carrier)]);
+      inertia_[link] = joined(inertia_[link], in_link);
       if (is_own(carrier) && named_in_model(body.node)) {
         made_.model_kg += in_node.mass;
         has_masses_ = has_masses_ || !is_empty(in_node);
       } else {
         made_.payload_kg += in_node.mass;
+        load_[link] = joined(load_[link], in_link);
+        has_load_ = has_load_ || !is_empty(in_node);
       }
     }
   }
@@ -169,6 +174,16 @@ class Builder {
     return Mechanism::make(drives, links, tip < 0 ? kNone : link_of_[at(tip)], X_LF * robot_.X_FT);
   }
 
+  // Of what passed the checks of the whole: no drives, since the wrenches of the links do not depend on them.
+  [[nodiscard]] std::optional<Mechanism> make_load() const {
+    const Mechanism& whole = *made_.mechanism;
+    std::vector<Link> links(whole.links().begin(), whole.links().end());
+    for (std::size_t i = 0; i < links.size(); ++i) links[i].inertia = load_[i];
+    const std::vector<Drive> drives(whole.variable_count());
+    auto load = Mechanism::make(drives, links, whole.tip_link(), whole.X_LT());
+    return load ? std::optional<Mechanism>(std::move(*load)) : std::nullopt;
+  }
+
   const CompiledCell& cell_;
   const CarriedNodes& nodes_;
   const CompiledRobot& robot_;
@@ -176,7 +191,9 @@ class Builder {
   std::vector<std::int32_t> link_of_;  // by joint node
   std::vector<bool> feels_;            // by joint node: the robot carries what is attached there
   std::vector<Inertia> inertia_;       // by link
+  std::vector<Inertia> load_;          // by link: the part of it that does not belong to the robot's model
   bool has_masses_ = false;
+  bool has_load_ = false;
 };
 
 bool same(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); }

@@ -21,6 +21,8 @@ struct RobotMechanism {
   std::size_t slot = 0;
   std::optional<Mechanism> mechanism;  // the base is the world
   std::string why_not;                 // of a robot with masses without a mechanism
+  // The same links with nothing but what `payload_kg` counts; none where that is nothing.
+  std::optional<Mechanism> load;
   // By variable: first all joints of the robot itself, then those of robots that carry it or that it carries, by slot
   // and joint. All of them together move its links.
   std::vector<VariableSource> variables;

@@ -20,7 +20,7 @@ JointValues wished_posture(const kinematics::Chain& chain, const Request& reques
   JointValues wished = request.present;
   if (request.task.secondary == kinematics::Secondary::nearest_present) return wished;
   for (std::size_t i = 0; i < chain.variable_count(); ++i) {
-    if (chain.rotates(i)) wished[i] = 0;
+    if (kinematics::bends(chain, request.task, i)) wished[i] = 0;
   }
   return wished;
 }

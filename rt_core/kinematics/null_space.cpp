@@ -25,7 +25,9 @@ Values pull_at(const Descent& descent, std::span<const double> present, std::spa
   const bool even = descent.task().secondary == Secondary::even_bend;
   Values pull{};
   for (std::size_t i = 0; i < q.size(); ++i) {
-    const double aim = !even ? present[i] : descent.chain().rotates(i) ? 0.0 : q[i];
+    double aim = present[i];
+    if (even && !descent.chain().rotates(i)) aim = q[i];
+    if (even && bends(descent.chain(), descent.task(), i)) aim = 0.0;
     pull[i] = descent.scaled(i, aim - q[i]);
   }
   return pull;

@@ -71,12 +71,13 @@ Mobility mobility_of(const Chain& chain) {
 
 // The boom's classes: the position as far as the boom can move, then the heading, then an even bend. The heading is the
 // first of the tool's approach, normal and sliding axes that lies in the plane in which the boom turns.
-Task boom_task(const Chain& chain) {
+Task boom_task(const Chain& chain, std::uint8_t bent_joints) {
   const Mobility mobility = mobility_of(chain);
   Task task;
   task.position_axes = mobility.position_axes;
   task.orientation_required = false;
   task.secondary = Secondary::even_bend;
+  task.bent_joints = bent_joints;
   if (!mobility.planar) return task;
   const JointValues middle = chain.middle();
   const Eigen::Matrix3d R = forward(chain, {middle.data(), chain.variable_count()}).linear();
@@ -149,13 +150,25 @@ Task task_of(InverseClass inverse_class, const Chain& chain) {
     case align_yz_a_axis:
       return directed(kY | kZ, approach);
     case edith:
+      return boom_task(chain, 0);
     case boom_3:
+      return boom_task(chain, 3);
     case boom_4:
+      return boom_task(chain, 4);
     case boom_5:
+      return boom_task(chain, 5);
     case boom_6:
-      return boom_task(chain);
+      return boom_task(chain, 6);
   }
   return {};
+}
+
+bool bends(const Chain& chain, const Task& task, std::size_t variable) CELL_RT {
+  if (!chain.rotates(variable)) return false;
+  if (task.bent_joints == 0) return true;
+  std::size_t behind = 0;
+  for (std::size_t i = variable + 1; i < chain.variable_count(); ++i) behind += chain.rotates(i) ? 1U : 0U;
+  return behind < task.bent_joints;
 }
 
 Twist task_error(const Task& task, const Pose& X_BT, const Pose& X_BG) CELL_RT {

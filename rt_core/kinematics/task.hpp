@@ -24,7 +24,9 @@ enum class OrientationTask : std::uint8_t {
 // What decides between postures that meet the task equally well.
 enum class Secondary : std::uint8_t {
   nearest_present,  // smallest sum of squared joint differences from the present posture
-  even_bend,        // smallest sum of squared joint values (rad, from the straight boom): a snake bends evenly
+  // Smallest sum of squared joint values (rad, from the straight boom) of the joints that bends() names, and of
+  // differences from the present posture of the others: a snake bends evenly.
+  even_bend,
 };
 
 struct Task {
@@ -32,10 +34,14 @@ struct Task {
   OrientationTask orientation = OrientationTask::full;
   bool orientation_required = true;  // false: "try to align": as near as possible after everything that is required
   Secondary secondary = Secondary::nearest_present;
+  std::uint8_t bent_joints = 0;  // of even_bend: the last turning joints, so many; 0: all turning joints
 };
 
 // The task of a class on this chain. EDITH and BOOM_n depend on what the chain can do; docs/kinematics.md defines them.
 [[nodiscard]] Task task_of(InverseClass inverse_class, const Chain& chain);
+
+// Of even_bend: whether the variable is one of those that bend evenly.
+[[nodiscard]] bool bends(const Chain& chain, const Task& task, std::size_t variable) CELL_RT;
 
 // The rows of the task as one vector, expressed in the target's reference frame (the base): three of position (m), of
 // which those that the task does not name are zero, and three of orientation (rad). For a vector task the rotation

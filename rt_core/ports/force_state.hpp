@@ -56,9 +56,10 @@ struct RobotForces {
   double model_kg = 0;    // of what its joints move, by its own model
   double payload_kg = 0;  // of what is attached beside
   std::vector<JointForce> joints;
-  Wrench tcp_T;  // of the surroundings on the TCP, in its frame: of a haptic instrument's contact; else zero
+  // Of the surroundings on the TCP, in its frame: of a haptic instrument's contact, and of what the robot holds.
+  Wrench tcp_T;
   Pose X_WT = Pose::Identity();
-  bool tcp_known = false;  // the force is known
+  bool tcp_known = false;  // of a robot that is computed, or has a haptic device
 };
 
 // An arrow to be drawn: from `from_m`, along and as long as `vector` says (N or Nm), in the world.

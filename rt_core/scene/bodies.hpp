@@ -21,7 +21,8 @@ class Bodies {
   // Writes all bodies, unmarked.
   void place(const CellPoses& poses, std::vector<SceneBody>& bodies);
 
-  // By body.
+  [[nodiscard]] std::size_t count() const { return bodies_.size(); }
+  // By body; those of a node follow each other.
   [[nodiscard]] std::int32_t node(std::size_t body) const { return nodes_[body]; }
   [[nodiscard]] const Box& bounds(std::size_t body) const { return boxes_[body]; }
 

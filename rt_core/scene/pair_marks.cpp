@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "rt_core/ports/palette.hpp"
@@ -26,9 +27,13 @@ SceneLine line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Col
 
 }  // namespace
 
-void PairMarks::update(const CompiledCell& cell) {
-  node_count_ = cell.size();
-  mark_of_node_.assign(node_count_, Mark::none);
+void PairMarks::update(const CompiledCell& cell, const Bodies& bodies) {
+  drawn_of_node_.assign(cell.size(), Run());
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    Run& run = drawn_of_node_[static_cast<std::size_t>(bodies.node(i))];
+    if (run.count == 0) run.first = i;
+    run.count = i - run.first + 1;
+  }
   if (paths_ == cell.paths) return;
   paths_ = cell.paths;
   cell_name_ = cell.name;
@@ -50,32 +55,49 @@ void PairMarks::find_nodes(const BodyNames& names) {
   }
 }
 
-void PairMarks::mark(std::uint32_t body, Mark mark) {
+void PairMarks::mark(std::uint32_t body, const Eigen::Vector3d& point_m, Mark mark, const Bodies& bodies,
+                     Scene& scene) const {
   if (body >= node_of_body_.size() || node_of_body_[body] < 0) return;
   const auto node = static_cast<std::size_t>(node_of_body_[body]);
-  if (node < mark_of_node_.size()) mark_of_node_[node] = mark;
+  if (node >= drawn_of_node_.size()) return;
+  const auto [first, count] = drawn_of_node_[node];
+  const auto distance = [&](std::size_t i) {
+    const Box& box = bodies.bounds(i);
+    const Eigen::Vector3d p_G = scene.bodies[i].X_WG.inverse() * point_m;
+    return box.isEmpty() || !p_G.allFinite() ? 0.0 : box.exteriorDistance(p_G);
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < first + count; ++i) nearest = std::min(nearest, distance(i));
+  for (std::size_t i = first; i < first + count; ++i) {
+    if (distance(i) <= nearest + kSameDistance) scene.bodies[i].mark = mark;
+  }
+}
+
+void PairMarks::mark_touching(const TouchingPair& pair, const Bodies& bodies, Scene& scene) const {
+  const auto mark_at = [&](const Eigen::Vector3d& point_m) {
+    mark(pair.a, point_m, Mark::touching, bodies, scene);
+    mark(pair.b, point_m, Mark::touching, bodies, scene);
+  };
+  mark_at(pair.point_m);
+  for (const TouchingPoint& point : pair.points) mark_at(point.point_m);
 }
 
 void PairMarks::draw(const ProximityState& proximity, Timestamp now, const Bodies& bodies, Scene& scene) {
   if (proximity.touching.empty() && proximity.near.empty()) return;
   find_nodes(proximity.names);
-  std::ranges::fill(mark_of_node_, Mark::none);
   const std::string age = age_words(proximity, now);
-  draw_near(proximity, age, scene);
-  draw_touching(proximity, age, scene);
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Mark mark = mark_of_node_[static_cast<std::size_t>(bodies.node(i))];
-    if (mark != Mark::none) scene.bodies[i].mark = mark;
-  }
+  draw_near(proximity, age, bodies, scene);
+  draw_touching(proximity, age, bodies, scene);
 }
 
-void PairMarks::draw_near(const ProximityState& proximity, std::string_view age, Scene& scene) {
+void PairMarks::draw_near(const ProximityState& proximity, std::string_view age, const Bodies& bodies,
+                          Scene& scene) const {
   std::size_t drawn = 0;
   for (const NearPair& pair : proximity.near) {
     if (!pair.within_warning || !(pair.distance_m > 0.0)) continue;
     if (drawn == kPairs) break;
-    mark(pair.a, Mark::near);
-    mark(pair.b, Mark::near);
+    mark(pair.a, pair.point_a_m, Mark::near, bodies, scene);
+    mark(pair.b, pair.point_b_m, Mark::near, bodies, scene);
     scene.lines.push_back(line(pair.point_a_m, pair.point_b_m, palette::kNear, pair.doubtful));
     if (drawn++ >= kLabels) continue;
     scene.labels.push_back(
@@ -84,12 +106,12 @@ void PairMarks::draw_near(const ProximityState& proximity, std::string_view age,
   }
 }
 
-void PairMarks::draw_touching(const ProximityState& proximity, std::string_view age, Scene& scene) {
+void PairMarks::draw_touching(const ProximityState& proximity, std::string_view age, const Bodies& bodies,
+                              Scene& scene) const {
   std::size_t drawn = 0;
   for (const TouchingPair& pair : proximity.touching) {
     if (drawn == kPairs) break;
-    mark(pair.a, Mark::touching);
-    mark(pair.b, Mark::touching);
+    mark_touching(pair, bodies, scene);
     const Eigen::Vector3d half = std::max(0.5 * pair.depth_m, kContactHalfLength) * pair.normal;
     scene.lines.push_back(line(pair.point_m - half, pair.point_m + half, palette::kTouching, pair.doubtful));
     if (drawn++ >= kLabels) continue;

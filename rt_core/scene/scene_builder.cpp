@@ -81,7 +81,6 @@ struct SceneBuilder::Parts {
   Bodies bodies;
   RobotParts robots;
   PairMarks pairs;
-  Traces traces;
   ForceArrows arrows;
 };
 
@@ -97,13 +96,13 @@ void SceneBuilder::build(const SceneInput& input, Scene& scene) {
   scene.modes = input.display->modes;
   if (parts.bodies.update(*input.cell, *input.poses, input.display->draw_rules)) {
     parts.robots.update(*input.cell);
-    parts.pairs.update(*input.cell);
+    parts.pairs.update(*input.cell, parts.bodies);
   }
   parts.bodies.place(*input.poses, scene.bodies);
   mark_ghosts(*input.cell, input.robots, parts.bodies, parts.robots, scene);
   if (input.proximity != nullptr) parts.pairs.draw(*input.proximity, input.now, parts.bodies, scene);
   draw_frames(input, scene);
-  parts.traces.draw(input, scene);
+  draw_traces(input, scene);
   draw_cones(input, scene);
   parts.arrows.draw(input.arrows, longest_arrow(parts.bodies), scene);
   if (input.forces != nullptr) label_overloads(*input.forces, scene);

@@ -14,6 +14,7 @@
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/scene.hpp"
+#include "rt_core/ports/tcp_trace.hpp"
 
 namespace cellmirror::scene {
 
@@ -36,15 +37,14 @@ struct SceneInput {
   std::span<const RangeReading> ranges;
   const ForceState* forces = nullptr;
   std::span<const ForceArrow> arrows;  // rt_core/dynamics/arrows.hpp
+  std::span<const TcpTrace> traces;    // of SMEAR; drawn while the mode is on
   Timestamp posture_time;
   Timestamp now;
 };
 
-// Keeps traces and what does not change from one posture to the next. One thread; not real time.
+// Keeps what does not change from one posture to the next. One thread; not real time.
 class SceneBuilder {
  public:
-  static constexpr std::size_t kTracePoints = 4000;  // of a trace; the oldest go
-
   SceneBuilder();
   ~SceneBuilder();
   SceneBuilder(const SceneBuilder&) = delete;

@@ -20,7 +20,7 @@ std::int32_t key_of(const ParsedCommand& command, std::size_t slot) {
 }
 
 Outcome set_force_memory(const ParsedCommand& command, CommandHost& host) {
-  return Outcome::of(
+  return Outcome::with_remark(
       host.interaction.set_force_memory(static_cast<std::uint64_t>(command.integer(slots::force_memory::kSendType)),
                                         key_of(command, slots::force_memory::kKey),
                                         static_cast<std::size_t>(command.integer(slots::force_memory::kBytes))));

@@ -17,8 +17,10 @@ namespace cellmirror {
 class InteractionHost {
  public:
   virtual ~InteractionHost() = default;
-  // rob_ela_shm of the active robot; the send type is stored and has no effect. Reopens its haptic channel.
-  virtual Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
+  // rob_ela_shm of the active robot; the send type has no effect. With the size of a haptic device's memory it reopens
+  // the robot's haptic channel; a smaller buffer holds force and torques only. Done with a remark on values that do not
+  // fit or stay zero.
+  virtual Result<std::string> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
   virtual Result<void> reset_haptic(std::string_view robot) = 0;  // RESET_HAPTIC, ours
   virtual Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) = 0;
   virtual Result<void> set_switches_online(bool online) = 0;  // BIN_ELA

@@ -114,8 +114,10 @@ struct Form {
   std::string_view syntax;   // the synopsis
   std::string_view section;  // of the manual, or "ours"
   std::span<const Parameter> parameters{};
-  std::string_view help;          // one line
-  std::string_view example{};     // the manual's own where it has one
+  std::string_view help;       // one line
+  std::string_view example{};  // the manual's own where it has one
+  // The manual's example does not go with those before it in the manual: why. Empty: it is done after them.
+  std::string_view conflict{};
   std::string_view missing{};     // the subsystem without which it is refused; empty: available now
   std::string_view definition{};  // what the manual leaves open and we define
   LoopEffect effect = LoopEffect::none;

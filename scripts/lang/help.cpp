@@ -174,6 +174,7 @@ std::string help_text(const Form& form) {
   }
   if (!form.definition.empty()) out += fmt::format("  our definition: {}\n", form.definition);
   if (!form.example.empty()) out += fmt::format("  example: {}\n", form.example);
+  if (!form.conflict.empty()) out += fmt::format("  beside the manual's other examples: {}\n", form.conflict);
   return out;
 }
 
@@ -242,6 +243,7 @@ std::string commands_as_json() {
     row["kind"] = form->kind == FormKind::command ? "command" : "convention";
     if (!form->definition.empty()) row["our_definition"] = form->definition;
     if (!form->example.empty()) row["example"] = form->example;
+    if (!form->conflict.empty()) row["example_conflict"] = form->conflict;
     row["needs_active_robot"] = form->needs_active_robot;
     constexpr std::array<std::string_view, 3> kEffects = {"none", "queued", "blocking"};
     row["loop_effect"] = kEffects[static_cast<std::size_t>(form->effect)];

@@ -88,6 +88,14 @@ std::string_view Lexer::rest_of_command() {
   return trimmed(text_.substr(begin, end - begin));
 }
 
+std::string_view Lexer::rest_of_text() {
+  skip_blank();
+  std::string_view rest = trimmed(text_.substr(offset_));
+  if (rest.ends_with(';')) rest = trimmed(rest.substr(0, rest.size() - 1));
+  while (!at_end()) skip_command();
+  return rest;
+}
+
 void Lexer::skip_command() {
   for (;;) {
     skip_blank();

@@ -40,6 +40,10 @@ class Lexer {
   // blanks around it.
   std::string_view rest_of_command();
 
+  // The rest of the text, with every ';' in it but one at its end, without the blanks around it: of a message, which no
+  // ';' delimits (manual 1.1).
+  std::string_view rest_of_text();
+
   // Skips to after the next ';', or to the end, to continue after an error.
   void skip_command();
   // Behind a UTF-8 byte order mark and a first line that is the format tag RBv01r01.

@@ -96,18 +96,19 @@ const Form* select_form(std::span<const Form* const> forms, std::span<const Toke
   return nullptr;
 }
 
-void unknown_command(const Token& head, Findings& findings) {
-  std::string remedy = did_you_mean(head.text, command_names());
+void unknown_command(const Token& head, bool after_text, Findings& findings) {
+  std::string remedy = after_text ? "in a file a ';' ends the text of hot_message: leave it out of the text"
+                                  : did_you_mean(head.text, command_names());
   if (remedy.empty() && head.text.starts_with('#')) remedy = "a comment line has its # in column 1";
   if (remedy.empty()) remedy = "a comment line has a # in column 1; `cellmirror commands` lists all commands";
   findings.error(head.begin, fmt::format("there is no command {}", printable(head.text)), std::move(remedy));
 }
 
 // hot_message: the rest of the command, verbatim.
-bool read_text(Lexer& lexer, const Form& form, ParsedCommand& out, Findings& findings) {
+bool read_text(Lexer& lexer, TextKind kind, const Form& form, ParsedCommand& out, Findings& findings) {
   lexer.skip_blank();
   const Position begin = lexer.position();
-  const std::string_view text = lexer.rest_of_command();
+  const std::string_view text = kind == TextKind::message ? lexer.rest_of_text() : lexer.rest_of_command();
   if (text.empty()) {
     findings.error(begin, "the text is missing", "expected: " + std::string(form.syntax));
     return false;
@@ -186,7 +187,7 @@ CommandReader::Step CommandReader::read_command(const Token& head, const NameDir
   if (forms.empty() || head.commas_before != 0) {
     Findings findings(diagnostics, source_, {});
     if (forms.empty()) {
-      unknown_command(head, findings);
+      unknown_command(head, head.begin.line == text_end_line_, findings);
     } else {
       findings.error(head.begin, fmt::format("a comma before {} is not allowed here", printable(head.text)));
     }
@@ -196,8 +197,9 @@ CommandReader::Step CommandReader::read_command(const Token& head, const NameDir
   Findings findings(diagnostics, source_, forms.front()->name);
   if (forms.front()->id == FormId::hot_message) {
     out.start(*forms.front(), head.begin);
-    const bool fine = read_text(lexer_, *forms.front(), out, findings);
+    const bool fine = read_text(lexer_, kind_, *forms.front(), out, findings);
     lexer_.skip_command();
+    text_end_line_ = lexer_.position().line;
     return fine ? Step::command : Step::error;
   }
   std::size_t count = 0;

@@ -60,6 +60,7 @@ class CommandReader {
   NameCheck name_check_ = NameCheck::for_execution;
   bool started_ = false;
   bool finished_ = false;
+  int text_end_line_ = 0;  // of the last text of hot_message; 0: none
   Lexer lexer_;
   std::array<Token, kMaxWords> words_;  // of the command that is being read; kept to spare their initialisation
 };

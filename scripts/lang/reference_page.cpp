@@ -88,6 +88,7 @@ std::string form_entry(const Form& form) {
   if (!form.definition.empty()) out += fmt::format("Our definition: {}.\n", form.definition);
   out += parameters_table(form);
   if (!form.example.empty()) out += fmt::format("\nExample: `{}`\n", form.example);
+  if (!form.conflict.empty()) out += fmt::format("\nBeside the manual's other examples: {}.\n", form.conflict);
   return out;
 }
 

@@ -18,7 +18,7 @@ constexpr Choice kFull[] = {{"FULL", "full screen"}, {"FULL_OFF", "normal"}};
 // In the order of DisplayMode, then ours.
 constexpr Choice kModes[] = {
     {cellmirror::word(DisplayMode::workframes), "workframes drawn"},
-    {cellmirror::word(DisplayMode::smear), "trace of the active robot's TCP"},
+    {cellmirror::word(DisplayMode::smear), "trace of the active robot's TCP, with TCP_DRAW also of its orientation"},
     {cellmirror::word(DisplayMode::backface_removal), "backface removal by the graphics system"},
     {cellmirror::word(DisplayMode::cpu_backface_removal), "backface removal by the CPU"},
     {cellmirror::word(DisplayMode::camera_main_view), "camera view in the main display area"},

@@ -101,8 +101,10 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kForceMemory,
      .help = "sets the shared memory for forces and joint torques to a haptic device program",
-     .definition = "of the active robot; at least 12 bytes, force x, y, z as float32, then the joint torques and our "
-                   "extensions as far as they fit; the key also in hexadecimal, not 0",
+     .definition =
+         "of the active robot; at least 12 bytes: force x, y, z as float32, then the joint torques as far as they "
+         "fit (the answer names those that do not), of every robot whose forces are computed; from 512 bytes "
+         "on the memory of a haptic device, with our extensions; the key also in hexadecimal, not 0",
      .effect = LoopEffect::queued,
      .needs_active_robot = true},
     {.id = FormId::bin_ela_shm,
@@ -135,8 +137,10 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kMessage,
      .help = "shows a text for about 5 s",
-     .definition = "the text is the rest of the command, UTF-8; in every picture, on the page, in status and log. With "
-                   "SET_MODE BEEP a bell, too"},
+     .definition =
+         "the text is the rest of the command, UTF-8: in a file up to the next ';', in a message all of it, but "
+         "for one ';' at its end; in every picture, on the page, in status and log. With SET_MODE BEEP a "
+         "bell, too"},
 };
 
 }  // namespace

@@ -71,6 +71,7 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "keeps a branch in memory, but out of the picture and of collision tests",
      .example = "DEACTIVATE Testlab_1.FL_Klein.Flansch_Typ1",
+     .definition = "refused on a part that is neither in memory nor shown",
      .effect = LoopEffect::queued},
     {.id = FormId::delete_node,
      .name = "DELETE_NODE",
@@ -79,6 +80,8 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "removes a branch from the model in memory; its file stays",
      .example = "DELETE_NODE Testlab_1.FL_Klein.Flansch_Typ1",
+     .definition = "takes back where SET_FRAME PLACEMENT, CONNECT and FRAME_TO_WFRM have put the part: ACTIVATE brings "
+                   "what the files have",
      .effect = LoopEffect::queued},
     {.id = FormId::swap_node,
      .name = "SWAP_NODE",
@@ -96,6 +99,7 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "loads and activates one more layer of details below a node and swaps the father's geometry out",
      .example = "LEVEL_DOWN Testlab_1.FL_Klein",
+     .conflict = "refused after the example of SWAP_NODE, which has shown the only details below this node",
      .definition = "refused on a node that has no component file below it",
      .effect = LoopEffect::queued},
     {.id = FormId::level_up,
@@ -129,6 +133,7 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "loads and validates a robot program for a robot without starting it",
      .example = "TF_LOAD r3demo mantec_R3",
+     .conflict = "after the example of ROBOT_LANGUAGE it needs a program in jet_tarm; the r3demo of our cell is irdata",
      .definition =
          "searched in the cell folder's programs, then in scripts, with and without the extensions of the current "
          "language; a program with any error is not loaded; an existing name is replaced unless it runs or is queued"},
@@ -139,6 +144,7 @@ constexpr Form kForms[] = {
      .parameters = kRun,
      .help = "starts a loaded robot program, or queues it after the robot's running one",
      .example = "TF_RUN hs2 ZELLENKRAN exec_wait",
+     .conflict = "no example loads r3demo2, hs1, hs2 and hs3: refused until TF_LOAD has",
      .definition = "refused for a program that is not loaded for that robot, or runs or is queued already, or while "
                    "another program of the robot runs, without exec_wait; done when the program is started or queued; "
                    "WAIT and TF_WAIT wait for its end",
@@ -150,6 +156,7 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "removes a robot program from a robot's virtual controller",
      .example = "TF_DELETE ird_getschr MANTEC_RM3",
+     .conflict = "no example loads ird_getschr: refused until TF_LOAD has",
      .definition = "refused while the program runs or is queued"},
     {.id = FormId::load_views,
      .name = "LOAD_VIEWS",

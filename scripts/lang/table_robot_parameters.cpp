@@ -37,11 +37,12 @@ constexpr Choice kInverseClasses[] = {
     {cellmirror::word(InverseClass::align_yz_n_axis), "position in yz and the n vector"},
     {cellmirror::word(InverseClass::align_yz_s_axis), "position in yz and the s vector"},
     {cellmirror::word(InverseClass::align_yz_a_axis), "position in yz and the a vector"},
-    {cellmirror::word(InverseClass::edith), "redundant boom in the horizontal plane"},
-    {cellmirror::word(InverseClass::boom_3), "redundant boom in the horizontal plane"},
-    {cellmirror::word(InverseClass::boom_4), "redundant boom in the horizontal plane"},
-    {cellmirror::word(InverseClass::boom_5), "redundant boom in the horizontal plane"},
-    {cellmirror::word(InverseClass::boom_6), "redundant boom in the horizontal plane"},
+    {cellmirror::word(InverseClass::edith), "redundant boom in the horizontal plane, all joints evenly bent"},
+    {cellmirror::word(InverseClass::boom_3),
+     "such a boom, the last 3 joints evenly bent, the others near where they are"},
+    {cellmirror::word(InverseClass::boom_4), "the same with the last 4 joints"},
+    {cellmirror::word(InverseClass::boom_5), "the same with the last 5 joints"},
+    {cellmirror::word(InverseClass::boom_6), "the same with the last 6 joints"},
 };
 
 constexpr Parameter kLinearVelocity[] = {number("lin_vel", "velocity", Unit::mm_per_s, kPositive)};
@@ -78,11 +79,13 @@ constexpr std::string_view kLimited =
 constexpr std::string_view kStartPosition =
     "exactly one value for each joint of the active robot; the robot is put there at once while nothing has moved it "
     "yet, as in a startup script; later the position is only the target of MOVE_ROB ... START, and the answer says so";
+constexpr std::string_view kForThreeJoints =
+    "for a robot with three joints, the examples around it for one with six: refused unless ROBACT comes between";
 constexpr std::string_view kOffsetOrder = "translation, then roll, pitch, yaw; with or without commas";
 
 constexpr Form joint_form(FormId id, std::string_view name, std::string_view syntax,
                           std::span<const Parameter> parameters, std::string_view help, std::string_view example,
-                          std::string_view definition = kOneForEachJoint) {
+                          std::string_view definition = kOneForEachJoint, std::string_view conflict = {}) {
   return {.id = id,
           .name = name,
           .syntax = syntax,
@@ -90,6 +93,7 @@ constexpr Form joint_form(FormId id, std::string_view name, std::string_view syn
           .parameters = parameters,
           .help = help,
           .example = example,
+          .conflict = conflict,
           .definition = definition,
           .effect = LoopEffect::queued,
           .needs_active_robot = true};
@@ -138,7 +142,8 @@ constexpr Form kForms[] = {
                "sets the lower limits of the joints", "rob_jnt_min_range -162.5 -110.0 -145.0 -187.5 -115.5 -270.0"),
     joint_form(FormId::rob_jnt_start_pos, "rob_jnt_start_pos", "rob_jnt_start_pos <n values>", kStart,
                "sets the position at the start of the simulation",
-               "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0", kStartPosition),
+               "rob_jnt_start_pos 0.0 50.0 -110.0 0.0 -150.0 -180.0", kStartPosition,
+               "-150 degrees of joint 5 contradict the -115.5 in the example of rob_jnt_min_range"),
     joint_form(FormId::rob_jnt_ref_pos, "rob_jnt_ref_pos", "rob_jnt_ref_pos <n values>", kReference,
                "sets the controller's reference position", "rob_jnt_ref_pos 17.35 0 -12.79307 1.507E-03 0.0 15.2003"),
     joint_form(FormId::rob_jnt_max_vel, "rob_jnt_max_vel", "rob_jnt_max_vel <n values>", kMaxVelocity,
@@ -146,10 +151,10 @@ constexpr Form kForms[] = {
                "rob_jnt_max_vel 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),
     joint_form(FormId::rob_jnt_min_vel, "rob_jnt_min_vel", "rob_jnt_min_vel <n values>", kMinVelocity,
                "sets the minimum velocities of the joints (stepper motors)",
-               "rob_jnt_min_vel 8.5 3.14159E-04 4.014257E-04"),
+               "rob_jnt_min_vel 8.5 3.14159E-04 4.014257E-04", kOneForEachJoint, kForThreeJoints),
     joint_form(FormId::rob_jnt_act_vel, "rob_jnt_act_vel", "rob_jnt_act_vel <n values>", kActiveVelocity,
                "sets the velocities in force until a program sets others", "rob_jnt_act_vel 1300.0 3.14159 1.5707963",
-               kLimited),
+               kLimited, kForThreeJoints),
     joint_form(FormId::rob_jnt_max_acc, "rob_jnt_max_acc", "rob_jnt_max_acc <n values>", kMaxAcceleration,
                "sets the maximum accelerations of the joints",
                "rob_jnt_max_acc 1.919862 1.483553 5.235988 3.14159 4.014257 3.926991"),

@@ -130,8 +130,10 @@ class QuietHost final : public WorldHost,
                                   PairTreatment /*treatment*/) override {
     return called();
   }
-  Result<void> set_force_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/, std::size_t /*bytes*/) override {
-    return called();
+  Result<std::string> set_force_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/,
+                                       std::size_t /*bytes*/) override {
+    ++calls;
+    return std::string();
   }
   Result<void> reset_haptic(std::string_view /*robot*/) override { return called(); }
   Result<void> set_switch_memory(std::uint64_t /*send_type*/, std::int32_t /*key*/, std::size_t /*bytes*/) override {

@@ -244,8 +244,9 @@ class RecordingHost final : public WorldHost,
     constexpr std::array<std::string_view, 3> kNames = {"ignore", "test", "derive"};
     return record("set_collision_pair {} {} {}", a, b, kNames[static_cast<std::size_t>(treatment)]);
   }
-  Result<void> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override {
-    return record("set_force_memory {} {:#x} {}", send_type, static_cast<std::uint32_t>(key), bytes);
+  Result<std::string> set_force_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override {
+    auto done = record("set_force_memory {} {:#x} {}", send_type, static_cast<std::uint32_t>(key), bytes);
+    return done ? Result<std::string>(std::string()) : std::unexpected(std::move(done.error()));
   }
   Result<void> reset_haptic(std::string_view robot) override { return record("reset_haptic {}", robot); }
   Result<void> set_switch_memory(std::uint64_t send_type, std::int32_t key, std::size_t bytes) override {

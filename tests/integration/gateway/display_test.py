@@ -44,6 +44,24 @@ class Display(unittest.TestCase):
     def script(self, name, text):
         (self.scratch.home / "scripts" / name).write_text(text)
 
+    def test_the_trace_is_the_path_whatever_the_rate_of_the_pictures(self):
+        """60 degrees of the first axis: an arc about the base, of which the chord is 4.5 % shorter."""
+        self.done("ROBACT MANTEC_R3", "POS_ROB MANTEC_R3 JOINT_INC 0 30 0 0 0 0", "SET_MODE SMEAR on",
+                  "POS_ROB MANTEC_R3 JOINT_INC 60 0 0 0 0 0")
+
+        def trace():
+            traces = self.scratch.status()["pictures"]["traces"]
+            return next((one for one in traces if one["robot"] == "MANTEC_R3"), None)
+
+        pose = self.scratch.robot("MANTEC_R3")["tcp"]["position_m"]
+        arc = math.hypot(pose[0] - 2.0, pose[1] + 1.6) * math.pi / 3  # the base stands at 2.0, -1.6
+        self.assertGreater(arc, 0.3)
+        self.assertTrue(g.eventually(lambda: trace() and abs(trace()["length_m"] - arc) < 0.002 * arc), (trace(), arc))
+        self.assertGreaterEqual(trace()["frames"], 5)
+        self.done("SET_MODE SMEAR off")
+        self.assertTrue(g.eventually(lambda: trace() is None))
+        self.done("POS_ROB MANTEC_R3 JOINT_INC -60 -30 0 0 0 0")
+
     def test_every_mode_is_switched_and_told(self):
         before = self.display()["modes"]
         others = [mode for mode in before if mode not in ("FLDR", "SHAD")]

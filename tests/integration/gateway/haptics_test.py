@@ -299,8 +299,16 @@ class Processes(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
         memory = h.attach(key, 16)
         self.assertEqual(struct.unpack("<3f", ctypes.string_at(memory._address, 12)), (0.0, 0.0, 0.0))
-        self.assertEqual(self.haptic()["phase"], "waiting")  # such a device moves nothing, so nothing pushes it back
+        # A buffer beside the memory of the device, which stays.
+        self.assertEqual(self.haptic()["memory"]["key"], self.scratch.keys["LAP_LEFT"])
         memory.detach()
+        same = self.scratch.send(f"rob_ela_shm 0 {self.scratch.keys['LAP_LEFT']} 28")
+        self.assertEqual(same.returncode, 0, same.stderr)
+        self.assertIn("begin with these values", same.stdout)
+        self.assertEqual(self.haptic()["memory"]["bytes"], 512)
+        other = self.scratch.send(f"rob_ela_shm 0 {self.scratch.keys['LAP_RIGHT']} 28")
+        self.assertEqual(other.returncode, 1, other.stdout)
+        self.assertIn("LAP_RIGHT", other.stderr)
 
     def test_a_key_that_another_gateway_has(self):
         other = g.Scratch("trainer")

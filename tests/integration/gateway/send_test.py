@@ -39,6 +39,13 @@ class Send(unittest.TestCase):
         self.assertEqual(done.stdout, "done\ndone\ndone\n")
         self.assertEqual(done.stderr, "")
 
+    def test_the_text_of_a_message_may_have_semicolons(self):
+        self.send("hot_message Ready; go", status=0)
+        shown = self.scratch.status()["messages"]
+        self.assertEqual(shown[-1]["text"], "Ready; go")
+        refused = self.send("ACTIVATE a", status=1)
+        self.assertNotIn("did you mean", refused.stderr)
+
     def test_it_ends_at_the_first_that_is_refused(self):
         before = self.received()
         done = self.send("DRAW_SCENE", "ROBACT nobody", "DRAW_SCENE", status=1)

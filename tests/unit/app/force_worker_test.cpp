@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/io/publisher.hpp"
+#include "app/owner/robot_force_service.hpp"
 #include "app/owner/tcp_force_service.hpp"
 #include "app/report/status_forces.hpp"
 #include "app/subcommands/status_table_forces.hpp"
+#include "app/workers/robot_force_writer.hpp"
+#include "rt_core/dynamics/arrows.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
 
 namespace cellmirror::app {
@@ -99,7 +102,8 @@ TEST_F(ForceComputationTest, TellsOfRobotsWithMasses) {
   EXPECT_FALSE(forces.joints[0].beyond_limit);
   EXPECT_NEAR(forces.joints[0].X_WJ.translation().z(), 0.25, 1e-12);
   EXPECT_NEAR(forces.X_WT.translation().z(), 0.75, 1e-12);
-  EXPECT_FALSE(forces.tcp_known);
+  EXPECT_TRUE(forces.tcp_known);
+  EXPECT_EQ(forces.tcp_T.force.norm(), 0.0) << "it holds nothing";
 }
 
 TEST_F(ForceComputationTest, CountsLimitsThatArePassedOnce) {
@@ -117,6 +121,28 @@ TEST_F(ForceComputationTest, CountsLimitsThatArePassedOnce) {
   take_cell();
   computed();
   EXPECT_EQ(sut.limit_warnings(), 2U);
+}
+
+// A weight of 7 kg beside the tip: its force and its moment about the tip, at rest and while the lift accelerates.
+TEST_F(ForceComputationTest, GivesTheForceOfWhatTheRobotHoldsAtTheTcp) {
+  Pose X_PN = Pose::Identity();
+  X_PN.translation() = Eigen::Vector3d(0.3, 0, 0.5);
+  ASSERT_TRUE(cell->set_placement("Weight", X_PN));
+  ASSERT_TRUE(cell->connect("Weight", "TOP", cell->start_positions()));
+  take_cell();
+  EXPECT_TRUE(computed().tcp_T.force.isApprox(Eigen::Vector3d(0, 0, -7.0 * kG), 1e-12));
+  EXPECT_TRUE(state.robots[0].tcp_T.torque.isApprox(Eigen::Vector3d(0, 0.3 * 7.0 * kG, 0), 1e-12));
+  ForceArrowSettings settings;
+  settings.tcp_force = ArrowComponent::resultant;
+  const auto arrows = dynamics::force_arrows(settings, state);
+  ASSERT_EQ(arrows.size(), 1U);
+  EXPECT_NEAR(arrows[0].from_m.z(), 0.5, 1e-12);
+  EXPECT_NEAR(arrows[0].vector.z(), -7.0 * kG, 1e-12);
+  for (int i = 0; i < 200; ++i, next(1)) {
+    lift().joints[0].velocity = 2.0 * 1e-3 * i;
+    computed();
+  }
+  EXPECT_NEAR(state.robots[0].tcp_T.force.z(), -7.0 * (kG + 2.0), 1e-2);
 }
 
 TEST_F(ForceComputationTest, DerivesAccelerationsOfMoves) {
@@ -162,6 +188,58 @@ TEST_F(ForceComputationTest, TakesTheForceAtTheTipOfAnInstrument) {
   EXPECT_NEAR(arm.X_WT.translation().x(), 3.0, 1e-12);
 }
 
+struct WrittenForces final : RobotForceChannel {
+  void write(const Eigen::Vector3d& force_T, std::span<const double> torques) override {
+    force = force_T;
+    efforts.assign(torques.begin(), torques.end());
+  }
+  Eigen::Vector3d force = Eigen::Vector3d::Constant(99);
+  std::vector<double> efforts{99};
+};
+
+TEST_F(ForceComputationTest, GoesIntoThePlainBuffersOfRobots) {
+  ASSERT_TRUE(cell->connect("Weight", "TOP", cell->start_positions()));
+  take_cell();
+  computed();
+  const auto lifter = std::make_shared<WrittenForces>();
+  const auto arm = std::make_shared<WrittenForces>();
+  const auto nobody = std::make_shared<WrittenForces>();
+  CellState cell_state;
+  for (const auto& [robot, channel] : {std::pair("LIFTER", lifter), std::pair("ARM", arm), std::pair("GONE", nobody)})
+    cell_state.robot_forces.push_back({.robot = robot, .channel = channel});
+  write_robot_forces(cell_state, tick, state);
+  EXPECT_NEAR(lifter->force.z(), -7.0 * kG, 1e-12);
+  ASSERT_EQ(lifter->efforts.size(), 1U);
+  EXPECT_NEAR(lifter->efforts[0], 17.0 * kG, 1e-12);
+  for (const auto& unknown : {arm, nobody}) {
+    EXPECT_EQ(unknown->force, Eigen::Vector3d(0, 0, 0));
+    EXPECT_TRUE(unknown->efforts.empty());
+  }
+  // Contacts of a device take the place of what is computed.
+  HapticSnapshot device;
+  device.robot = "ARM";
+  device.channel = 1;
+  cell_state.haptics.push_back(device);
+  tick.haptics[1].phase = HapticPhase::active;
+  tick.haptics[1].slot = static_cast<std::uint8_t>(cell->robot("ARM")->slot());
+  tick.haptics[1].force_E = Eigen::Vector3d(1, 2, 3);
+  tick.haptics[1].joint_torques[0] = 0.5;
+  write_robot_forces(cell_state, tick, state);
+  EXPECT_EQ(arm->force, Eigen::Vector3d(1, 2, 3));
+  ASSERT_EQ(arm->efforts.size(), cell->robot("ARM")->joints().size());
+  EXPECT_EQ(arm->efforts[0], 0.5);
+}
+
+TEST_F(ForceComputationTest, NamesTheTorquesThatABufferHasNoRoomFor) {
+  const CompiledRobot& lifter = *compiled->robot(cell->robot("LIFTER")->slot());
+  EXPECT_EQ(force_memory_remark(*compiled, lifter, 16), "");
+  EXPECT_EQ(force_memory_remark(*compiled, lifter, 15),
+            "15 bytes hold the force and 0 of 1 joint torques; there is no room for LIFT: 16 bytes hold all");
+  const CompiledRobot& arm = *compiled->robot(cell->robot("ARM")->slot());
+  EXPECT_EQ(force_memory_remark(*compiled, arm, 500),
+            "the model of ARM has no masses, so its values are zero unless a haptic device moves it");
+}
+
 TEST_F(ForceComputationTest, WaitsForRobotsThatTheTickDoesNotKnowYet) {
   lift().mode = engine::RobotMode::absent;
   EXPECT_FALSE(read_motions(*compiled, tick, motions));
@@ -194,7 +272,7 @@ TEST_F(ForceComputationTest, IsToldInStatus) {
   const nlohmann::json& forces = status.at("forces");
   EXPECT_NEAR(forces.at("robots").at(0).at("joints").at(0).at("effort_n").get<double>(), 10.0 * kG, 1e-9);
   EXPECT_EQ(forces.at("robots").at(0).at("joints").at(0).at("max_effort_n"), 150.0);
-  EXPECT_TRUE(forces.at("robots").at(0).at("tcp").is_null());
+  EXPECT_EQ(forces.at("robots").at(0).at("tcp").at("force_n").at(2), 0.0);
   EXPECT_EQ(forces.at("arrows").at("shown").size(), 1U);
   EXPECT_EQ(forces.at("arrows").at("joint_forces"), "resultant");
   EXPECT_NEAR(forces.at("age_s").get<double>(), 1e-3, 1e-9);
@@ -218,7 +296,14 @@ TEST(UnseenArrows, AreToldWhereTheCellHasNothingToDraw) {
   cell.inertia.push_back({.node = 2, .inertia = {}});  // behind the joint
   EXPECT_EQ(arrows_without_effect(sut, cell, false), "");
   sut.tcp_force = ArrowComponent::x;
-  EXPECT_EQ(arrows_without_effect(sut, cell, false), "the cell has no haptic device, so TCPs have no arrows");
+  EXPECT_EQ(arrows_without_effect(sut, cell, false), "") << "of the robot with masses";
+  cell.inertia.pop_back();
+  EXPECT_EQ(arrows_without_effect(sut, cell, false),
+            "no joint of the cell moves a part whose mass is known and there is no haptic device, so joints and TCPs "
+            "have no arrows");
+  EXPECT_EQ(arrows_without_effect(sut, cell, true),
+            "no joint of the cell moves a part whose mass is known, so joints have no arrows");
+  sut.joint_torques = ArrowComponent::none;
   EXPECT_EQ(arrows_without_effect(sut, cell, true), "");
 }
 

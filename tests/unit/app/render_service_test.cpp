@@ -53,8 +53,9 @@ class RenderServiceTest : public testing::Test {
   ProximityBoard proximity_;
   Board<RangeReadings> ranges_;
   Board<ForceState> forces_;
+  Board<TraceState> traces_;
   PictureCounter updates_;
-  SceneSource::Boards boards_{ticks_, pictures_, proximity_, ranges_, forces_, clock_};
+  SceneSource::Boards boards_{ticks_, pictures_, proximity_, ranges_, forces_, traces_, clock_};
   std::atomic<int> tries_{0};
 };
 

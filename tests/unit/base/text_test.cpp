@@ -41,6 +41,14 @@ TEST(Nearest, NamesWhatAPersonMayHaveMeantAndNothingElse) {
   EXPECT_EQ(nearest("PUMA_726", names), (std::vector<std::string>{"PUMA_762"}));
   EXPECT_EQ(did_you_mean("puma_762", names), "did you mean PUMA_762 or PUMA_560?");  // the nearest first
   EXPECT_EQ(did_you_mean("Q", names), "");
+  const std::vector<std::string> short_names = {"ARM", "A", "LIFT"};
+  EXPECT_EQ(did_you_mean("a", short_names), "did you mean A?") << "two letters make any name out of one";
+  EXPECT_EQ(did_you_mean("x", short_names), "");
+  EXPECT_EQ(did_you_mean("ARN", short_names), "did you mean ARM?");
+  EXPECT_EQ(did_you_mean("xyz", std::vector<std::string>{"xyz_m", "rpy_rad"}), "did you mean xyz_m?");
+  EXPECT_EQ(did_you_mean("bus", short_names), "");
+  EXPECT_EQ(did_you_mean("AMR", short_names), "did you mean ARM?") << "in the wrong order";
+  EXPECT_EQ(did_you_mean("POS_RBO", std::vector<std::string>{"POS_ROB"}), "did you mean POS_ROB?");
   EXPECT_TRUE(nearest(std::string(100'000, 'P'), names).empty());
 }
 

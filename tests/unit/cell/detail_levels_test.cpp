@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Transition{"present hidden", "ACTIVATE", "present detail"},
                     Transition{"present detail", "ACTIVATE", "present detail"},
                     Transition{"absent coarse", "DEACTIVATE", "absent hidden"},
-                    Transition{"absent hidden", "DEACTIVATE", "absent hidden"},
+                    Transition{"absent hidden", "DEACTIVATE", ""},
                     Transition{"present coarse", "DEACTIVATE", "present hidden"},
                     Transition{"present hidden", "DEACTIVATE", "present hidden"},
                     Transition{"present detail", "DEACTIVATE", "present hidden"},
@@ -272,6 +272,41 @@ TEST_F(DetailLevels, deletingReturnsTheMemoryAndKeepsTheNodeForLoadingAgain) {
   EXPECT_EQ(files->asked["flange.mpc"], 2);
   EXPECT_TRUE(sut->knows("Lab.Holder.Flange.Grip"));
   EXPECT_EQ(sut->node_count(), with);
+}
+
+TEST_F(DetailLevels, aPartThatWasDeletedComesBackAsItsFilesHaveIt) {
+  const auto q = sut->start_positions();
+  const NodeId flange = *sut->find(kFlange);
+  const Pose X_WF = sut->world_pose(flange, q);
+  Pose moved = Pose::Identity();
+  moved.translation() = Eigen::Vector3d(1, 2, 3);
+  reach("present detail");
+  ASSERT_TRUE(sut->set_placement(kFlange, moved));
+  ASSERT_TRUE(sut->connect(kFlange, "Lab.Bench", q));
+  ASSERT_TRUE(sut->delete_node(kFlange));
+  ASSERT_TRUE(sut->activate(kFlange));
+  EXPECT_TRUE(sut->world_pose(flange, q).isApprox(X_WF));
+  EXPECT_EQ(sut->path(sut->node(flange).predecessor), "Lab.Holder");
+  // A later PLACEMENT counts, whether the part is in memory or not.
+  ASSERT_TRUE(sut->delete_node(kFlange));
+  ASSERT_TRUE(sut->set_placement(kFlange, moved));
+  ASSERT_TRUE(sut->activate(kFlange));
+  EXPECT_TRUE(sut->world_pose(flange, q).isApprox(moved));
+}
+
+TEST_F(DetailLevels, aMovedPartIsNotDeletedUnderWhatHangsOnIt) {
+  const auto q = sut->start_positions();
+  reach("present detail");
+  ASSERT_TRUE(sut->connect("Plain", kFlange, q));
+  Pose moved = Pose::Identity();
+  moved.translation().x() = 1;
+  ASSERT_TRUE(sut->set_placement(kFlange, moved));
+  const auto refused = sut->delete_node(kFlange);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("Plain is attached to Lab.Holder.Flange"));
+  EXPECT_EQ(state(), "present detail");
+  ASSERT_TRUE(sut->connect("Plain", "Lab.Bench", q));
+  EXPECT_TRUE(sut->delete_node(kFlange));
 }
 
 TEST_F(DetailLevels, deletingAPlainNodeErasesItForGood) {

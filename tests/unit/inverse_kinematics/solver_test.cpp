@@ -315,6 +315,45 @@ TEST(AutomaticSolver, RedundantBoomMeetsPositionAndHeadingAndBendsEvenly) {
   }
 }
 
+// The last n joints bend evenly, the others stay near to where they are.
+TEST(AutomaticSolver, BoomClassesResolveTheSameTargetDifferently) {
+  const Chain chain = boom(7);
+  const auto sut = make_solver(Method::automatic, chain, test_arms::kClock);
+  Request request = request_for(
+      chain, Pose(Eigen::Translation3d(4.2, 2.6, 0)) * Pose(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ())));
+  request.present = {1.0, -0.9, 0.8, -0.7, 0.6, -0.5, 0.4};
+  std::vector<kinematics::Task> tasks;
+  std::vector<JointValues> postures;
+  for (const auto inverse_class :
+       {InverseClass::boom_3, InverseClass::boom_4, InverseClass::boom_5, InverseClass::boom_6, InverseClass::edith}) {
+    request.task = kinematics::task_of(inverse_class, chain);
+    const Answer answer = sut->solve(request).value();
+    ASSERT_TRUE(answer.solved);
+    EXPECT_LT(answer.solutions[0].error.norm(), 1e-4) << "the heading too";
+    const JointValues& q = answer.solutions[0].q;
+    for (const JointValues& other : postures) {
+      double difference = 0;
+      for (std::size_t i = 0; i < 7; ++i) difference = std::max(difference, std::abs(q[i] - other[i]));
+      EXPECT_GT(difference, 0.05);
+    }
+    postures.push_back(q);
+    tasks.push_back(request.task);
+  }
+  // What a class makes small is smallest in its own posture.
+  const auto objective = [&](const kinematics::Task& task, const JointValues& q) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 7; ++i) {
+      const double aim = kinematics::bends(chain, task, i) ? 0.0 : request.present[i];
+      sum += (q[i] - aim) * (q[i] - aim);
+    }
+    return sum;
+  };
+  for (std::size_t own = 0; own < tasks.size(); ++own) {
+    for (const JointValues& other : postures)
+      EXPECT_LE(objective(tasks[own], postures[own]), objective(tasks[own], other) + 1e-2) << own;
+  }
+}
+
 TEST(AutomaticSolver, FiveJointsAreToldWhichComponentsCannotBeMet) {
   const auto arms = test_arms::unseen_arms();
   const auto five = std::find_if(arms.begin(), arms.end(), [](const auto& arm) { return arm.name == "five-5"; });

@@ -61,6 +61,21 @@ TEST(TaskOfClass, BoomsMoveInTheirPlaneAndBendEvenly) {
   }
 }
 
+TEST(TaskOfClass, BoomsDifferInTheNumberOfJointsThatBend) {
+  const Chain chain = planar_boom(7);
+  const auto bent = [&](InverseClass inverse_class) {
+    const Task task = task_of(inverse_class, chain);
+    std::string bent;
+    for (std::size_t i = 0; i < chain.variable_count(); ++i) bent += bends(chain, task, i) ? '1' : '0';
+    return bent;
+  };
+  EXPECT_EQ(bent(InverseClass::boom_3), "0000111");
+  EXPECT_EQ(bent(InverseClass::boom_4), "0001111");
+  EXPECT_EQ(bent(InverseClass::boom_5), "0011111");
+  EXPECT_EQ(bent(InverseClass::boom_6), "0111111");
+  EXPECT_EQ(bent(InverseClass::edith), "1111111");
+}
+
 TEST(TaskOfClass, BoomOnALiftTakesTheHeightToo) {
   std::vector<ChainJoint> joints(4);
   std::vector<Variable> variables(4);

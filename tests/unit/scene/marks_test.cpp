@@ -151,6 +151,29 @@ TEST_F(MarksTest, TouchingWinsOverNearAndGhost) {
   EXPECT_TRUE(legend_has("touching"));
 }
 
+// A floor and a wall are one body of many a cell.
+TEST_F(MarksTest, OnlyTheGeometryThatTouchesIsMarked) {
+  auto wall = std::make_shared<Geometry>(*cell_.cell.geometry.at(0).geometry);
+  wall->X_NG.translation().x() = 1.0;
+  cell_.cell.geometry.insert(cell_.cell.geometry.begin() + 1, {SmallCell::table, wall});
+  proximity_.names = std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"Table", "Arm"});
+  proximity_.touching = {touching_pair()};
+  TouchingPair& pair = proximity_.touching[0];
+  pair.point_m = {3.0, 0.1, 0.5};  // in the wall; the table is at 2.0
+  const auto& bodies = build().bodies;
+  EXPECT_EQ(bodies.at(0).mark, Mark::none);
+  EXPECT_EQ(bodies.at(1).mark, Mark::touching);
+  EXPECT_EQ(bodies.at(2).mark, Mark::touching) << "the arm has one geometry, wherever the point is";
+  pair.points = {{.point_m = {2.0, 0, 0.5}}};
+  EXPECT_EQ(build().bodies.at(0).mark, Mark::touching) << "each point of a contact counts";
+  EXPECT_EQ(scene_.bodies.at(1).mark, Mark::touching);
+  proximity_.touching.clear();
+  proximity_.near = {near_pair()};
+  proximity_.near[0].point_a_m = {2.1, 0, 0.5};
+  EXPECT_EQ(build().bodies.at(0).mark, Mark::near);
+  EXPECT_EQ(scene_.bodies.at(1).mark, Mark::none);
+}
+
 TEST_F(MarksTest, DoubtAndAgeAreTold) {
   proximity_.near = {near_pair()};
   proximity_.near[0].doubtful = true;

@@ -130,47 +130,31 @@ TEST_F(BuilderTest, FramesOfTheActiveRobotAlone) {
   EXPECT_EQ(axes[1].X_WF.translation(), Eigen::Vector3d::Zero());
 }
 
-TEST_F(BuilderTest, TheTraceGrowsWithTheTcpUntilTheModeIsOff) {
-  input_.active_robot = "ARM";
-  build();
+TEST_F(BuilderTest, TracesAreDrawnWhileTheModeIsOn) {
+  const std::vector<TcpTrace> traces{{.robot = "ARM", .points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, .frames = {}},
+                                     {.robot = "ARM", .points = {{0, 0, 0}}, .frames = {}},
+                                     {.robot = "GONE", .points = {{0, 0, 0}, {1, 0, 0}}, .frames = {}}};
+  input_.traces = traces;
+  EXPECT_TRUE(build().traces.empty());
   set(DisplayMode::smear);
-  for (const double angle : {0.0, 0.1, 0.1, 0.2}) {
-    cell_.pose(angle);
-    build();
-  }
-  ASSERT_EQ(scene_.traces.size(), 1U);
-  EXPECT_EQ(scene_.traces[0].points.size(), 3U) << "standing still is not a point";
-  EXPECT_LT((scene_.traces[0].points[2] - Eigen::Vector3f(std::cos(0.2F), std::sin(0.2F), 0.5F)).norm(), 1e-6F);
+  ASSERT_EQ(build().traces.size(), 1U) << "one point is no curve, and a robot that was deleted has none";
+  EXPECT_EQ(scene_.traces[0].points, traces[0].points);
+}
+
+TEST_F(BuilderTest, TracesShowTheOrientationOfTheTcpWhereItsFrameIsDrawn) {
+  Pose X_WT = Pose::Identity();
+  X_WT.rotate(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()));
+  const std::vector<TcpTrace> traces{{.robot = "ARM", .points = {{0, 0, 0}}, .frames = {Pose::Identity(), X_WT}}};
+  input_.traces = traces;
+  set(DisplayMode::smear);
+  EXPECT_TRUE(build().axes.empty());
+  set(DisplayMode::tcp_frame);
+  ASSERT_EQ(build().axes.size(), 2U);
+  EXPECT_TRUE(scene_.axes[1].X_WF.isApprox(X_WT));
+  EXPECT_LT(scene_.axes[1].length_m, cell_.display.tag_length_m);
+  EXPECT_TRUE(scene_.axes[1].name.empty());
   set(DisplayMode::smear, false);
-  EXPECT_TRUE(build().traces.empty());
-  set(DisplayMode::smear);
-  EXPECT_TRUE(build().traces.empty()) << "a new one begins";
-}
-
-TEST_F(BuilderTest, TheTraceBeginsAnewWhereTheModeWasOffBetweenTwoScenes) {
-  input_.active_robot = "ARM";
-  set(DisplayMode::smear);
-  for (const double angle : {0.0, 0.1}) {
-    cell_.pose(angle);
-    build();
-  }
-  ASSERT_EQ(scene_.traces.size(), 1U);
-  ++cell_.display.smear_ends;
-  cell_.pose(2);
-  EXPECT_TRUE(build().traces.empty());
-  cell_.pose(2.1);
-  ASSERT_EQ(build().traces.size(), 1U);
-  EXPECT_EQ(scene_.traces[0].points.size(), 2U) << "no line from where the trace before ended";
-}
-
-TEST_F(BuilderTest, ATraceStaysBounded) {
-  input_.active_robot = "ARM";
-  set(DisplayMode::smear);
-  for (std::size_t i = 0; i < SceneBuilder::kTracePoints + 10; ++i) {
-    cell_.pose(0.01 * static_cast<double>(i));
-    build();
-  }
-  EXPECT_EQ(scene_.traces.at(0).points.size(), SceneBuilder::kTracePoints);
+  EXPECT_TRUE(build().axes.empty());
 }
 
 TEST_F(BuilderTest, APyramidReachesToTheViewingDistance) {

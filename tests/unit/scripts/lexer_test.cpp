@@ -92,6 +92,32 @@ TEST(Lexer, MessageMayBeACommentAndMayEndWithSemicolonAndNul) {
   EXPECT_TRUE(findings.ok());
 }
 
+std::string text_of_message(std::string_view message) {
+  Diagnostics findings;
+  ParsedCommand command;
+  CommandReader reader(message, "message", TextKind::message);
+  if (reader.next(nullptr, command, findings) != CommandReader::Step::command) return "refused: " + findings.text();
+  EXPECT_EQ(reader.next(nullptr, command, findings), CommandReader::Step::end);
+  return std::string(command.text(0));
+}
+
+// No ';' delimits a message (manual 1.1): those within a text belong to it.
+TEST(Lexer, TextOfAMessageIsAllOfItsRest) {
+  EXPECT_EQ(text_of_message("hot_message Ready; go"), "Ready; go");
+  EXPECT_EQ(text_of_message("hot_message Ready; go;"), "Ready; go") << "one at the end is tolerated";
+  EXPECT_EQ(text_of_message("hot_message Ready ; ; "), "Ready ;");
+  EXPECT_EQ(text_of_message("hot_message ;Ready"), ";Ready");
+  EXPECT_NE(text_of_message("hot_message ;").find("the text is missing"), std::string::npos);
+  EXPECT_NE(text_of_message("WAIT; hot_message Ready").find("more text after the command"), std::string::npos);
+}
+
+TEST(Lexer, InAFileASemicolonEndsTheTextAndWhatFollowsIsToldWhy) {
+  const auto findings = findings_of_file("hot_message Ready; go;\nhot_message on; hot_message off;");
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].message, "there is no command go");
+  EXPECT_EQ(findings[0].remedy, "in a file a ';' ends the text of hot_message: leave it out of the text");
+}
+
 TEST(Lexer, TextTooLargeIsRefusedAsAWhole) {
   const std::string text(kMaxScriptBytes + 1, ' ');
   EXPECT_EQ(findings_of_file(text).size(), 1U);
