@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace cellmirror::app {
 
 std::string implausible_text(const ImplausibleValue& found, const RobotState& robot) {
@@ -26,7 +28,9 @@ std::string implausible_text(const ImplausibleValue& found, const RobotState& ro
 }
 
 std::string condition_text(const engine::RobotTickHead& tick, const RobotState& robot, const std::string& of_stream) {
-  if (tick.state != DataState::implausible) return of_stream;
+  const bool implausible = std::ranges::any_of(
+      robot.joints, [](const RobotJointState& joint) { return joint.state == DataState::implausible; });
+  if (!implausible) return of_stream;
   const std::string text = "implausible: " + implausible_text(tick.newest_implausible, robot);
   return of_stream.empty() || of_stream == "operational" ? text : text + "; " + of_stream;
 }

@@ -12,7 +12,7 @@ namespace cellmirror::app {
 // where there was none since the robot went online.
 [[nodiscard]] std::string implausible_text(const ImplausibleValue& found, const RobotState& robot);
 
-// What is wrong with a stream, for people: the newest implausible value while the robot is implausible, and the
+// What is wrong with a stream, for people: the newest implausible value while a joint is implausible, and the
 // stream's own condition.
 [[nodiscard]] std::string condition_text(const engine::RobotTickHead& tick, const RobotState& robot,
                                          const std::string& of_stream);

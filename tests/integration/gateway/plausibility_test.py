@@ -123,8 +123,10 @@ class Implausible(StreamTest):
         robot = self.scratch.robot(DDS_ROBOT)
         guid = r"([0-9a-f]{2}\.){11}[0-9a-f]{2}\|([0-9a-f]{2}\.){3}[0-9a-f]{2}"
         self.assertRegex(robot["stream"]["condition"], f"two publishers name puma_762_joint_[1-6]: {guid} and {guid}")
-        self.assertTrue(all(abs(joint["position"] - 0.1) < 1e-9 for joint in robot["joints"]), robot["joints"])
-        self.assertGreater(robot["plausibility"]["conflicting_values"], 0)
+        held = [joint["position"] for joint in robot["joints"]]  # the second one's first value, which may be a restart
+        many = robot["plausibility"]["conflicting_values"] + 500
+        self.assertTrue(g.eventually(lambda: self.scratch.robot(DDS_ROBOT)["plausibility"]["conflicting_values"] > many))
+        self.assertEqual([joint["position"] for joint in self.scratch.robot(DDS_ROBOT)["joints"]], held)
         second.kill()
         self.wait_state(DDS_ROBOT, "fresh")
 

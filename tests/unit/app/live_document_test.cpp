@@ -125,7 +125,6 @@ TEST_F(LiveDocument, AnImplausibleRobotTellsWhichJointWhyAndByWhichBound) {
   robots_[0].online = true;
   robots_[0].state = robots_[0].joints[0].state = DataState::implausible;
   engine::RobotTickState& tick = tick_.robots[0];
-  tick.state = DataState::implausible;
   const auto condition = [&](Implausibility why, double value, double bound) {
     tick.newest_implausible = {.why = why, .joint = 0, .value = value, .bound = bound, .receive_time = kNow};
     return document()["robots"][0]["condition"];
@@ -136,7 +135,7 @@ TEST_F(LiveDocument, AnImplausibleRobotTellsWhichJointWhyAndByWhichBound) {
             "implausible: J_1 accelerates by 40 rad/s2, beyond 30 rad/s2");
   EXPECT_EQ(condition(Implausibility::frozen, 2.5, 2.0), "implausible: J_1 is the same to the last bit for 2.5 s");
   EXPECT_EQ(document()["robots"][0]["state"], "implausible");
-  tick.state = DataState::fresh;
+  robots_[0].joints[0].state = DataState::fresh;
   EXPECT_EQ(document()["robots"][0]["condition"], "");
 }
 
