@@ -126,6 +126,7 @@ Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, con
   config.place = reader.place();
   config.channel = read_channel(reader, files);
   config.ages = read_ages(reader);
+  config.plausibility = read_plausibility(reader, config.ages);
   config.start_nodes = reader.boolean("start_nodes").value_or(true);
   constexpr double kLongest = 60.0;
   config.sync_period = read_seconds(reader, "sync_period_s", kLongest, true).value_or(config.sync_period);
@@ -151,6 +152,7 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
   config.place = reader.place();
   config.channel = read_channel(reader, files);
   config.ages = read_ages(reader);
+  config.plausibility = read_plausibility(reader, config.ages);
   reader.require("dbc");
   config.dbc_file = read_file_name(reader, "dbc", files);
   constexpr std::size_t kMostSignals = 256;
@@ -185,12 +187,14 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
     config.signals.push_back(std::move(signal));
   }
   if (config.signals.empty()) reader.error({}, "no signals are given", "add [[stream.signal]]");
+  config.protections = read_protections(reader);
   return config;
 }
 
 DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot) {
   DdsStreamConfig config;
   config.ages = read_ages(reader);
+  config.plausibility = read_plausibility(reader, config.ages);
   constexpr long long kHighestDomain = 232;  // DDSI-RTPS: the ports of higher ones do not exist
   config.domain = static_cast<int>(reader.integer("domain", 0, kHighestDomain).value_or(config.domain));
   config.topic = reader.text("topic").value_or(config.topic);

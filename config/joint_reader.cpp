@@ -103,6 +103,8 @@ JointDefinition read_joint(TableReader& reader) {
     reader.require("velocity" + keys.velocity);
   }
   joint.max_velocity = reader.number("velocity" + keys.velocity, kPositive).value_or(1.0);
+  joint.velocity_given = reader.has("velocity" + keys.velocity);
+  joint.acceleration_given = reader.has("acceleration" + keys.acceleration);
   joint.min_velocity = reader.number("min_velocity" + keys.velocity, kNotNegative).value_or(0.0);
   if (joint.min_velocity > joint.max_velocity)
     reader.error("min_velocity" + keys.velocity, "the minimum velocity is above the maximum");

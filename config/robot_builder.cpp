@@ -41,6 +41,18 @@ void copy_parameters(const JointDefinition& joint, std::size_t i, RobotParameter
   p.active_acceleration[i] = joint.max_acceleration;
 }
 
+// What a mirrored robot's values are checked against. Scripts set parameters for simulated motion; these stay.
+KnownLimits limits_of(const JointDefinition& joint) {
+  KnownLimits limits;
+  if (joint.kind != JointKind::continuous) {
+    limits.lower = joint.min_position;
+    limits.upper = joint.max_position;
+  }
+  if (joint.velocity_given) limits.velocity = joint.max_velocity;
+  if (joint.acceleration_given) limits.acceleration = joint.max_acceleration;
+  return limits;
+}
+
 bool is_above(const Component& component, int above, int node) {
   if (above < 0) return true;
   for (int at = node; at >= 0; at = component.nodes[static_cast<std::size_t>(at)].parent) {
@@ -70,6 +82,7 @@ void complete_robot(Component& component, const Place& place, Diagnostics& diagn
       break;
     }
     copy_parameters(*joint, robot.joints.size(), robot.parameters);
+    robot.limits.push_back(limits_of(*joint));
     robot.joints.push_back(static_cast<int>(i));
   }
   if (robot.joints.empty()) diagnostics.error(place, fmt::format("the robot {} has no joint", robot.id));

@@ -62,6 +62,28 @@ StreamAges read_ages(TableReader& reader) {
   return ages;
 }
 
+PlausibilityConfig read_plausibility(TableReader& reader, const StreamAges& ages) {
+  constexpr double kLargestFactor = 1e6;
+  constexpr double kLongestJitter = 10.0;
+  constexpr double kLongestFrozen = 86400.0;
+  PlausibilityConfig config;
+  config.enabled = reader.boolean("plausibility").value_or(true);
+  config.position_margin = reader.number("position_margin", {0.0, kLargestFactor}).value_or(config.position_margin);
+  config.velocity_factor = reader.number("velocity_factor", {0.0, kLargestFactor}).value_or(config.velocity_factor);
+  config.acceleration_factor =
+      reader.number("acceleration_factor", {0.0, kLargestFactor}).value_or(config.acceleration_factor);
+  config.arrival_jitter = read_seconds(reader, "arrival_jitter_s", kLongestJitter, true).value_or(ages.stale_after / 2);
+  config.frozen_after = read_seconds(reader, "frozen_after_s", kLongestFrozen, true).value_or(config.frozen_after);
+  config.plausible_after =
+      static_cast<std::uint16_t>(reader.integer("plausible_after", 1, 10000).value_or(config.plausible_after));
+  for (const char* key : {"position_margin", "velocity_factor", "acceleration_factor", "arrival_jitter_s",
+                          "frozen_after_s", "plausible_after"}) {
+    if (!config.enabled && reader.has(key))
+      reader.error(key, fmt::format("{} has no effect with plausibility = false", key));
+  }
+  return config;
+}
+
 CanChannelConfig read_channel(TableReader& reader, const FileFinder& files) {
   CanChannelConfig channel;
   reader.require("channel");

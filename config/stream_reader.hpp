@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/cell_file.hpp"
 #include "config/component_files.hpp"
@@ -30,8 +31,11 @@ struct JointReference {
 [[nodiscard]] Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
 [[nodiscard]] DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
 [[nodiscard]] DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot);
+// The [[stream.e2e]] tables.
+[[nodiscard]] std::vector<E2eConfig> read_protections(TableReader& stream);
 [[nodiscard]] CanChannelConfig read_channel(TableReader& reader, const FileFinder& files);
 [[nodiscard]] StreamAges read_ages(TableReader& reader);
+[[nodiscard]] PlausibilityConfig read_plausibility(TableReader& reader, const StreamAges& ages);
 // An IPv4 or IPv6 address as text, numeric.
 [[nodiscard]] bool is_address(std::string_view text);
 // Seconds in the key, within 0 and `max`; the value as nanoseconds.

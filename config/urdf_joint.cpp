@@ -60,6 +60,7 @@ void read_limit(const XMLElement& element, const UrdfXml& xml, JointDefinition& 
       xml.error(*limit, fmt::format("lower {:g} is not below upper {:g}", joint.min_position, joint.max_position));
   }
   joint.max_velocity = xml.number(*limit, "velocity", !joint.mimic.has_value()).value_or(1.0);
+  joint.velocity_given = limit->Attribute("velocity") != nullptr && joint.max_velocity > 0.0;
   if (joint.max_velocity <= 0.0) {
     if (!joint.mimic) xml.warning(*limit, "velocity is not positive", "1 rad/s (m/s) is used");
     joint.max_velocity = 1.0;

@@ -32,6 +32,27 @@ StreamAges ages_of(const StreamConfig& config) {
       config);
 }
 
+PlausibilityConfig plausibility_of(const StreamConfig& config) {
+  return std::visit(
+      [](const auto& stream) -> PlausibilityConfig {
+        if constexpr (requires { stream.plausibility; }) {
+          return stream.plausibility;
+        } else {
+          return {};
+        }
+      },
+      config);
+}
+
+PlausibilityBounds bounds_of_robot(const RobotModel& robot, const PlausibilityConfig& config) {
+  PlausibilityBounds bounds{.arrival_jitter = config.arrival_jitter, .plausible_after = config.plausible_after};
+  if (config.enabled) bounds.frozen_after = config.frozen_after;
+  const std::span<const KnownLimits> known = robot.known_limits();
+  for (std::size_t i = 0; i < known.size() && i < bounds.joints.size(); ++i)
+    bounds.joints[i] = bounds_of(known[i], config);
+  return bounds;
+}
+
 std::uint8_t slot_number(std::size_t slot) { return static_cast<std::uint8_t>(slot); }
 
 engine::JointLimits limits_of(const RobotModel& robot) {
@@ -170,11 +191,13 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
   if (const auto config = streams_.find(robot.id); config != streams_.end()) {
     command.ages = ages_of(config->second);
     command.given = static_cast<std::uint16_t>(joints_given_by(config->second));
+    command.plausibility = lend(std::make_shared<const PlausibilityBounds>(
+        bounds_of_robot(*cell_.robot(robot.id), plausibility_of(config->second))));
   }
   // The stream first: one that cannot be opened leaves the robot to what it does. Samples wait for the mode in the
   // inlet.
   if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) return opened;
-  if (auto sent = send(command); !sent) {
+  if (auto sent = send(std::move(command)); !sent) {
     robot.stream->close();
     return std::unexpected(sent.error());
   }

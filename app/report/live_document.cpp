@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "app/report/implausible_values.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/ports/words.hpp"
 #include "rt_core/scene/panes.hpp"
@@ -54,7 +55,8 @@ void add_robots(JsonWriter& out, const LiveSources& sources) {
         .member("age_s", state.online ? age_s(sources.now, tick.receive_time) : std::nullopt)
         .member("active", robot_snapshot.id == sources.cell_state.active_robot)
         .member("moving", tick.motion.moving)
-        .member("condition", robot_snapshot.stream ? robot_snapshot.stream->status().condition : std::string());
+        .member("condition",
+                condition_text(tick, state, robot_snapshot.stream ? robot_snapshot.stream->status().condition : ""));
     add_joints(out, state, sources.cell_state.cell->robot(robot_snapshot.slot));
     out.end_object();
   }

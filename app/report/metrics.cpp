@@ -73,6 +73,16 @@ void add_robots(MetricsText& out, const LiveSources& sources) {
     if (!state.online || !received.known()) return std::nullopt;
     return seconds(sources.now - received);
   });
+  const auto count = [&](std::uint64_t engine::RobotTickHead::* counter) {
+    for_robots(out, sources, [&](const RobotSnapshot& robot, const RobotState& state) -> std::optional<double> {
+      if (!state.online) return std::nullopt;
+      return static_cast<double>(sources.tick.robots.at(robot.slot).*counter);
+    });
+  };
+  out.family("cellmirror_robot_implausible_total", "counter", "Values of a mirrored robot that cannot be true.");
+  count(&engine::RobotTickHead::implausible_values);
+  out.family("cellmirror_robot_conflicting_total", "counter", "Values of a mirrored robot that two senders give.");
+  count(&engine::RobotTickHead::conflicting_values);
   for_streams(out, sources, "cellmirror_stream_received_total", "Samples received.",
               [](const JointStreamStatus& status) { return status.received; });
   for_streams(out, sources, "cellmirror_stream_lost_total", "Samples known to be missing.",

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "app/report/implausible_values.hpp"
 #include "app/report/status_collisions.hpp"
 #include "app/report/status_couplings.hpp"
 #include "app/report/status_display.hpp"
@@ -53,7 +54,8 @@ json loop_json(const StatusSources& sources) {
           {"last_fault", sources.faults.last}};
 }
 
-json stream_json(const RobotSnapshot& robot, const engine::RobotTickState& tick, Timestamp now) {
+json stream_json(const RobotSnapshot& robot, const engine::RobotTickState& tick, const RobotState& state,
+                 Timestamp now) {
   if (!robot.stream) {
     return {{"kind", "none"},
             {"endpoint", ""},
@@ -78,9 +80,26 @@ json stream_json(const RobotSnapshot& robot, const engine::RobotTickState& tick,
           {"received", status.received},
           {"lost", status.lost},
           {"rejected", status.rejected},
-          {"condition", status.condition},
+          {"condition", condition_text(tick, state, status.condition)},
           {"details", std::move(details)},
           {"last_errors", status.last_errors}};
+}
+
+json why_json(Implausibility why) { return why == Implausibility::none ? json() : json(word(why)); }
+
+json plausibility_json(const engine::RobotTickState& tick, const RobotState& state, Timestamp now) {
+  const ImplausibleValue& newest = tick.newest_implausible;
+  json found = nullptr;
+  if (newest.why != Implausibility::none && newest.joint < state.joints.size()) {
+    found = {{"joint", state.joints[newest.joint].name},
+             {"why", word(newest.why)},
+             {"value", newest.value},
+             {"bound", newest.bound},
+             {"age_s", age_json(now, newest.receive_time)}};
+  }
+  return {{"implausible_values", tick.implausible_values},
+          {"conflicting_values", tick.conflicting_values},
+          {"newest", std::move(found)}};
 }
 
 json joints_json(const RobotState& robot, const RobotParameters& parameters, Timestamp now) {
@@ -97,6 +116,7 @@ json joints_json(const RobotState& robot, const RobotParameters& parameters, Tim
                    {"range", {lower, upper}},
                    {"beyond_range", is_beyond(joint.position, lower, upper)},
                    {"state", word(joint.state)},
+                   {"implausible", why_json(joint.implausible)},
                    {"age_s", age_json(now, joint.receive_time)}});
   }
   return out;
@@ -166,12 +186,13 @@ json robots_json(const StatusSources& sources) {
                    {"mode", robot_mode_word(state.online)},
                    {"active", robot_snapshot.id == sources.cell_state.active_robot},
                    {"sending", robot_snapshot.sending},
-                   {"stream", stream_json(robot_snapshot, tick, sources.now)},
+                   {"stream", stream_json(robot_snapshot, tick, state, sources.now)},
                    {"joints", joints_json(state, robot_snapshot.parameters, sources.now)},
                    {"tcp", pose_json(state.X_WT)},
                    {"motion", motion_json(robot_snapshot, tick.motion, state.joints.size())},
                    {"parameters", parameters_json(robot_snapshot.parameters, state.joints.size())},
-                   {"refused_values", tick.refused_values}});
+                   {"refused_values", tick.refused_values},
+                   {"plausibility", plausibility_json(tick, state, sources.now)}});
   }
   return out;
 }

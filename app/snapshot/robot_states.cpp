@@ -22,6 +22,7 @@ void fill(RobotState& out, const CompiledRobot& robot, const engine::RobotTickSt
     joint.state = from.state;
     joint.source_time = from.source_time;
     joint.receive_time = from.receive_time;
+    joint.implausible = from.state == DataState::implausible ? from.implausible : Implausibility::none;
   }
 }
 

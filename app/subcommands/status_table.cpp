@@ -159,7 +159,8 @@ class TableWriter {
     const std::string value =
         angle ? fmt::format("{:.2f} deg", deg_from_rad(position)) : fmt::format("{:.1f} mm", mm_from_m(position));
     const std::string word = joint.at("state").get<std::string>();
-    const bool remarkable = word == "stale" || word == "lost" || word == "invalid" || (mirrored && word == "none");
+    const bool remarkable = word == "stale" || word == "lost" || word == "invalid" || word == "implausible" ||
+                            word == "conflict" || (mirrored && word == "none");
     return fmt::format("{} {}{}{}   ", joint.at("name").get<std::string>(), value,
                        remarkable ? " (" + state(word) + ")" : "", beyond_text(joint, angle));
   }

@@ -81,6 +81,10 @@ class DdsStream final : public JointStream {
       return publishers + (topic.messages == 0 ? ", nothing received yet" : ", no message names a joint of this robot");
     }
     const Nanoseconds silence = now - last;
+    if (feed.last_conflict.known() && now - feed.last_conflict <= config_.ages.lost_after) {
+      return fmt::format("two publishers name {}: {} and {}", feed_->ros_name(feed.conflict_joint),
+                         text(feed.other_publisher), text(feed.publisher));
+    }
     if (silence > config_.ages.lost_after) return fmt::format("{}, silent for {:.1f} s", publishers, seconds(silence));
     return publishers;
   }
@@ -96,6 +100,7 @@ class DdsStream final : public JointStream {
         {"malformed samples", counters.malformed},
         {"messages with arrays of wrong length", counters.wrong_length},
         {"velocities and efforts not known (NaN)", counters.unknown},
+        {"values of two publishers", counters.conflicts},
         {"bad time stamps", counters.bad_stamps},
         {"samples dropped because the queue was full", counters.sink_full},
     };
@@ -119,7 +124,7 @@ class DdsStream final : public JointStream {
 Result<std::unique_ptr<JointStream>> make_dds_stream(const DdsStreamConfig& config, const Clock& clock) {
   if (auto ok = check_domain(config.domain); !ok) return std::unexpected(ok.error());
   if (auto ok = check_topic(config.topic); !ok) return std::unexpected(ok.error());
-  auto feed = RobotFeed::make(config.joints);
+  auto feed = RobotFeed::make(config.joints, config.ages.lost_after);
   if (!feed) return std::unexpected(feed.error());
   return std::make_unique<DdsStream>(config, std::move(*feed), clock);
 }

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kMaxPublishers = 1024;  // remembered at a time; more can only be hostile
 }
 
-Result<std::unique_ptr<RobotFeed>> RobotFeed::make(const std::vector<DdsJointConfig>& joints) {
+Result<std::unique_ptr<RobotFeed>> RobotFeed::make(const std::vector<DdsJointConfig>& joints,
+                                                   Nanoseconds conflict_window) {
   if (joints.empty()) return fail("a DDS stream has no joints", "map at least one ROS 2 joint name to a joint");
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const DdsJointConfig& joint = joints[i];
@@ -37,7 +38,39 @@ Result<std::unique_ptr<RobotFeed>> RobotFeed::make(const std::vector<DdsJointCon
       }
     }
   }
-  return std::unique_ptr<RobotFeed>(new RobotFeed(joints));
+  return std::unique_ptr<RobotFeed>(new RobotFeed(joints, conflict_window));
+}
+
+std::string_view RobotFeed::ros_name(std::size_t joint) const {
+  const auto found = std::ranges::find(joints_, joint, &DdsJointConfig::joint);
+  return found == joints_.end() ? std::string_view() : std::string_view(found->ros_name);
+}
+
+void RobotFeed::publish() {
+  newest_.counters = counters_;
+  newest_.rate = rate_;
+  newest_.last_receive_time = last_receive_time_;
+  published_.write(newest_);
+}
+
+bool RobotFeed::is_in_conflict(std::size_t index, const MessageOrigin& origin) {
+  SenderConflict& senders = senders_[index];
+  const Timestamp now = sample_.receive_time;
+  const std::size_t joint = joints_[index].joint;
+  if (!senders.take(origin.publisher, origin.guid, now)) {
+    if (newest_.conflict_joint == joint) newest_.last_conflict = {};
+    return false;
+  }
+  if (!newest_.last_conflict.known())
+    note_error(fmt::format("two publishers name joint '{}': {} and {}", joints_[index].ros_name, text(senders.other()),
+                           text(senders.newest())));
+  sample_.conflict |= 1U << joint;
+  ++counters_.conflicts;
+  newest_.last_conflict = now;
+  newest_.conflict_joint = joint;
+  newest_.publisher = senders.newest();
+  newest_.other_publisher = senders.other();
+  return true;
 }
 
 void RobotFeed::begin(Timestamp receive_time, Timestamp source_time) {
@@ -145,7 +178,7 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
   }
   for (RobotFeed* feed : touched_) feed->counters_.lost += missing;
   if (lengths_fit(view_)) {
-    route_values();
+    route_values(origin);
   } else {
     refuse_lengths();
   }
@@ -171,7 +204,7 @@ bool JointStateRouter::lengths_fit(const JointStateView& message) const {
          (message.effort.empty() || message.effort.size() == n);
 }
 
-void JointStateRouter::route_values() {
+void JointStateRouter::route_values(const MessageOrigin& origin) {
   if (touched_.empty()) return;
   for (std::size_t i = 0; i < view_.name.size(); ++i) {
     const auto known = names_.find(view_.name[i]);
@@ -181,7 +214,7 @@ void JointStateRouter::route_values() {
       const DdsJointConfig& joint = target.feed->joints_[target.joint];
       if (again) {
         target.feed->refuse(joint, "it occurs twice in one message");
-      } else {
+      } else if (!target.feed->is_in_conflict(target.joint, origin)) {
         target.feed->take(joint, view_, i);
       }
     }

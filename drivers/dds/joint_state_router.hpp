@@ -9,9 +9,11 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "drivers/dds/ros2_messages.hpp"
+#include "drivers/dds/sender_conflict.hpp"
 #include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -28,7 +30,15 @@ struct FeedCounters {
   std::uint64_t malformed = 0;     // of these: payloads that are no JointState
   std::uint64_t wrong_length = 0;  // of these: arrays that do not fit together
   std::uint64_t unknown = 0;       // velocities and efforts that were NaN: ROS 2's way of saying "not measured"
+  std::uint64_t conflicts = 0;     // values that two publishers give
   std::uint64_t bad_stamps = 0;    // stamps that are no time; the sample is used without one
+};
+
+// Who sent a message and its place in that publisher's sequence; zeros where unknown.
+struct MessageOrigin {
+  std::uint64_t publisher = 0;
+  std::uint64_t sequence = 0;
+  WriterGuid guid = {};
 };
 
 // What RobotFeed::report() returns: a copy as of the newest message.
@@ -36,6 +46,11 @@ struct FeedReport {
   FeedCounters counters;
   RateMeter rate;
   Timestamp last_receive_time;
+  // The newest conflict of two publishers: when, about which joint (its number in the robot), and who.
+  Timestamp last_conflict = {};
+  std::size_t conflict_joint = 0;
+  WriterGuid publisher = {};
+  WriterGuid other_publisher = {};
 };
 
 // One robot's share of a topic. Counters outlive closing and opening again.
@@ -45,7 +60,11 @@ class RobotFeed {
   static constexpr std::size_t kKeptErrors = 8;
 
   // Fails where a joint number is out of range, a number is not finite, or a name or joint occurs twice.
-  [[nodiscard]] static Result<std::unique_ptr<RobotFeed>> make(const std::vector<DdsJointConfig>& joints);
+  // `conflict_window`: a publisher that was silent for longer has ended.
+  [[nodiscard]] static Result<std::unique_ptr<RobotFeed>> make(
+      const std::vector<DdsJointConfig>& joints, Nanoseconds conflict_window = Nanoseconds(1'000'000'000));
+  // As the router names joints: the ROS 2 name of a joint of the robot; empty where there is none.
+  [[nodiscard]] std::string_view ros_name(std::size_t joint) const;
 
   [[nodiscard]] const FeedCounters& counters() const { return counters_; }
   [[nodiscard]] const std::vector<std::string>& last_errors() const { return last_errors_; }
@@ -56,19 +75,24 @@ class RobotFeed {
 
  private:
   friend class JointStateRouter;
-  explicit RobotFeed(std::vector<DdsJointConfig> joints) : joints_(std::move(joints)) {}
+  RobotFeed(std::vector<DdsJointConfig> joints, Nanoseconds conflict_window)
+      : joints_(std::move(joints)), senders_(joints_.size(), SenderConflict(conflict_window)) {}
 
   void begin(Timestamp receive_time, Timestamp source_time);
   void take(const DdsJointConfig& joint, const JointStateView& message, std::size_t i);
+  // Whether the joint (index into joints_) has another publisher beside this one; then its value is not taken.
+  bool is_in_conflict(std::size_t index, const MessageOrigin& origin);
   void refuse(const DdsJointConfig& joint, std::string_view why);
   [[nodiscard]] double derivative(const DdsJointConfig& joint, const DoubleSequenceView& values, std::size_t i,
                                   double factor, std::string_view what);
   void note_error(std::string text);
   void finish();
-  void publish() { published_.write({counters_, rate_, last_receive_time_}); }
+  void publish();
 
   std::vector<DdsJointConfig> joints_;
-  JointSampleSink* sink_ = nullptr;  // set while it is part of a router
+  std::vector<SenderConflict> senders_;  // by joints_
+  FeedReport newest_;                    // its conflict counts; the rest is filled in when it is published
+  JointSampleSink* sink_ = nullptr;      // set while it is part of a router
   FeedCounters counters_;
   RateMeter rate_;
   std::vector<std::string> last_errors_;
@@ -78,12 +102,6 @@ class RobotFeed {
   bool touched_ = false;  // by the message in work
   Latest<FeedReport> published_;
   Latest<std::vector<std::string>> published_errors_;
-};
-
-// Who sent a message and its place in that publisher's sequence; zeros where unknown.
-struct MessageOrigin {
-  std::uint64_t publisher = 0;
-  std::uint64_t sequence = 0;
 };
 
 // All robots of one topic. Not synchronized.
@@ -125,7 +143,7 @@ class JointStateRouter {
   void rebuild();
   [[nodiscard]] bool lengths_fit(const JointStateView& message) const;
   void touch(RobotFeed& feed, Timestamp receive_time);
-  void route_values();
+  void route_values(const MessageOrigin& origin);
   void refuse_lengths();
   [[nodiscard]] std::uint64_t take_missing(MessageOrigin origin);
 

@@ -82,6 +82,10 @@ Result<RobotRecord> get_robot(std::span<const std::byte> bytes, std::size_t& joi
   return record;
 }
 
+// Readers of the record know the states up to `invalid`, which is what the later ones are to them: the newest value was
+// not taken.
+DataState recorded(DataState state) { return std::min(state, DataState::invalid); }
+
 }  // namespace
 
 RobotRecord robot_record_of(const RobotState& robot, Timestamp time) {
@@ -89,14 +93,14 @@ RobotRecord robot_record_of(const RobotState& robot, Timestamp time) {
   record.header.time_ns = time.ns;
   record.id = robot.id;
   record.online = robot.online;
-  record.state = robot.state;
+  record.state = recorded(robot.state);
   record.sample_sequence = robot.sequence;
   record.base_tcp = pose_record_of(robot.X_BT);
   record.world_tcp = pose_record_of(robot.X_WT);
   record.joints.reserve(robot.joints.size());
   for (const RobotJointState& joint : robot.joints) {
-    record.joints.push_back({joint.name, joint.kind, joint.state, joint.position, joint.velocity, joint.effort,
-                             age_at(time, joint.receive_time), age_at(time, joint.source_time)});
+    record.joints.push_back({joint.name, joint.kind, recorded(joint.state), joint.position, joint.velocity,
+                             joint.effort, age_at(time, joint.receive_time), age_at(time, joint.source_time)});
   }
   return record;
 }

@@ -224,6 +224,7 @@ void CellBuilder::add_robot(NodeId at, const PendingComponent& pending, const st
   if (pending.reference != nullptr && !pending.reference->robot_flange.empty())
     robot->flange_ = id_at(node_named(component, pending.reference->robot_flange));
   CELLMIRROR_EXPECTS(definition.joints.size() <= kMaxJointsPerRobot);
+  robot->known_limits_ = definition.limits;
   for (const int index : definition.joints) {
     const ComponentNode& node = component.nodes[static_cast<std::size_t>(index)];
     const auto number = static_cast<std::uint8_t>(robot->joints_.size());

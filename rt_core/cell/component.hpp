@@ -67,6 +67,8 @@ struct JointDefinition {
   double max_velocity = 0;
   double min_velocity = 0;
   double max_acceleration = 0;
+  bool velocity_given = false;  // by the file; else it is a default, and says nothing about a real joint
+  bool acceleration_given = false;
   JointDrive drive;
   std::optional<Mimic> mimic;
 };
@@ -125,8 +127,9 @@ struct RobotDefinition {
   int base = -1;
   int zero_point = -1;
   int flange = -1;
-  std::vector<int> joints;     // nodes of the joints, in the order of the file, without mimics
-  RobotParameters parameters;  // the file's values
+  std::vector<int> joints;               // nodes of the joints, in the order of the file, without mimics
+  RobotParameters parameters;            // the file's values
+  std::vector<KnownLimits> limits = {};  // of each joint, as far as the file gives them
   int line = 0;
   int column = 0;
 };

@@ -47,6 +47,8 @@ class RobotModel {
   [[nodiscard]] std::span<const RobotJoint> joints() const { return joints_; }
   [[nodiscard]] std::span<const JointKind> joint_kinds() const { return joint_kinds_; }
   [[nodiscard]] std::vector<std::string> joint_names() const;
+  // What the robot's file says that its joints can do; empty where it was made without one. SCRIPT does not change it.
+  [[nodiscard]] std::span<const KnownLimits> known_limits() const { return known_limits_; }
   [[nodiscard]] const RobotParameters& parameters() const { return parameters_; }
   [[nodiscard]] Pose X_FT() const;  // TCP in the flange
 
@@ -83,6 +85,7 @@ class RobotModel {
   NodeId flange_ = kNoNode;
   std::vector<RobotJoint> joints_;
   std::vector<JointKind> joint_kinds_;
+  std::vector<KnownLimits> known_limits_;
 };
 
 // "0.5236 rad (30 deg)" or "0.25 m (250 mm)": a joint's position for people.

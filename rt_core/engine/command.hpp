@@ -15,6 +15,7 @@
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/motion/move.hpp"
 #include "rt_core/ports/haptic_device.hpp"
+#include "rt_core/ports/plausibility.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/rt/lease.hpp"
 
@@ -42,6 +43,7 @@ struct SetMode {
   RobotMode mode = RobotMode::simulated;
   std::uint16_t given = 0xFFFF;  // the joints (bits) whose position the stream gives; 0: as if it gave all
   StreamAges ages = {};
+  Lease<const PlausibilityBounds> plausibility = {};  // of a mirrored robot; none: everything is plausible
 };
 
 // Only while the robot is simulated, as what follows up to Couple but for SetLimits. At once; a motion ends.

@@ -12,12 +12,17 @@ constexpr Nanoseconds kFuture{100'000'000};
 
 bool has(JointSet joints, std::size_t joint) CELL_RT { return ((joints >> joint) & 1U) != 0; }
 
+// Values come, and are not believed: the last good one stands.
+bool is_disbelieved(DataState state) CELL_RT { return state == DataState::implausible || state == DataState::conflict; }
+
 // No number where one of them is none: then nothing passes.
 double slower(double a, double b) CELL_RT { return std::isnan(a) || a < b ? a : b; }
 
-// By gravity, not by the order of the enumeration: nothing at all is the worst, then invalid, lost, stale, fresh.
+// By gravity, not by the order of the enumeration: nothing at all is the worst, then values that came and are wrong,
+// then lost, stale, fresh.
 int gravity_of(DataState state) CELL_RT {
-  constexpr std::array<int, 5> kGravity = {4, 0, 1, 2, 3};  // none, fresh, stale, lost, invalid
+  // none, fresh, stale, lost, invalid, implausible, conflict
+  constexpr std::array<int, kDataStates> kGravity = {6, 0, 1, 2, 3, 4, 5};
   return kGravity[static_cast<std::size_t>(state)];
 }
 
@@ -41,7 +46,8 @@ LimiterVerdict JointGate::add(std::uint8_t joint_count, std::span<const double> 
   return verdict;
 }
 
-void JointGate::set_mode(RobotMode mode, const StreamAges& ages, JointSet given) CELL_RT {
+void JointGate::set_mode(RobotMode mode, const StreamAges& ages, JointSet given,
+                         const PlausibilityBounds* bounds) CELL_RT {
   state_.mode = mode;
   ages_ = ages;
   const auto all = static_cast<JointSet>((1U << state_.joint_count) - 1U);
@@ -50,6 +56,10 @@ void JointGate::set_mode(RobotMode mode, const StreamAges& ages, JointSet given)
   state_.receive_time = Timestamp{};
   state_.samples = 0;
   state_.refused_values = 0;
+  state_.implausible_values = 0;
+  state_.conflicting_values = 0;
+  state_.newest_implausible = {};
+  plausibility_.begin(bounds != nullptr ? *bounds : PlausibilityBounds());
   state_.state = DataState::none;
   // Positions stay: a robot that goes offline stays where it was, one that goes online stays until its first sample.
   for (JointTickState& joint : state_.joints) joint = {.position = joint.position};
@@ -126,18 +136,63 @@ void JointGate::take(const JointSample& sample, Timestamp now) CELL_RT {
     const bool present = (sample.present >> i & 1U) != 0;
     const bool finite =
         std::isfinite(sample.position[i]) && std::isfinite(sample.velocity[i]) && std::isfinite(sample.effort[i]);
-    if ((sample.refused >> i & 1U) != 0 || (present && !(finite && timed))) {
+    const bool conflicting = (sample.conflict >> i & 1U) != 0;
+    const bool unusable = (present && !finite) || ((present || conflicting) && !timed);
+    if ((sample.refused >> i & 1U) != 0 || unusable) {
       ++state_.refused_values;
       joint.state = DataState::invalid;
       continue;
     }
-    if (!present) continue;
-    joint = {.position = sample.position[i],
-             .velocity = sample.velocity[i],
-             .effort = sample.effort[i],
-             .receive_time = sample.receive_time,
-             .source_time = sample.source_time,
-             .state = DataState::fresh};
+    if (conflicting) {
+      ++state_.conflicting_values;
+      joint.state = DataState::conflict;
+      plausibility_.note_heard(i, sample.receive_time);
+    } else if (present) {
+      take_joint(sample, i);
+    }
+  }
+}
+
+void JointGate::take_joint(const JointSample& sample, std::size_t i) CELL_RT {
+  const PlausibilityVerdict verdict = plausibility_.check(i, {.position = sample.position[i],
+                                                              .velocity = sample.velocity[i],
+                                                              .effort = sample.effort[i],
+                                                              .receive_time = sample.receive_time});
+  if (!verdict.shown) return note_implausible(i, verdict, sample.receive_time);
+  state_.joints[i] = {.position = sample.position[i],
+                      .velocity = sample.velocity[i],
+                      .effort = sample.effort[i],
+                      .receive_time = sample.receive_time,
+                      .source_time = sample.source_time,
+                      .state = DataState::fresh};
+}
+
+void JointGate::note_implausible(std::size_t i, const PlausibilityVerdict& verdict, Timestamp receive_time) CELL_RT {
+  JointTickState& joint = state_.joints[i];
+  ++state_.implausible_values;
+  joint.state = DataState::implausible;
+  if (verdict.why == Implausibility::none) return;  // it is plausible, but not for long enough
+  joint.implausible = verdict.why;
+  state_.newest_implausible = {.why = verdict.why,
+                               .joint = static_cast<std::uint8_t>(i),
+                               .value = verdict.value,
+                               .bound = verdict.bound,
+                               .receive_time = receive_time};
+}
+
+// A joint whose values are not believed is lost when they end, not when the last good one is old.
+void JointGate::age_joint(std::size_t i, Timestamp now) CELL_RT {
+  JointTickState& joint = state_.joints[i];
+  if (is_disbelieved(joint.state)) {
+    if (now - plausibility_.last_heard(i) > ages_.lost_after) joint.state = DataState::lost;
+    return;
+  }
+  if (!joint.receive_time.known()) return;
+  const Nanoseconds age = now - joint.receive_time;
+  if (age > ages_.lost_after) {
+    joint.state = DataState::lost;
+  } else if (age > ages_.stale_after && joint.state != DataState::invalid) {
+    joint.state = DataState::stale;
   }
 }
 
@@ -145,17 +200,10 @@ void JointGate::age(Timestamp now) CELL_RT {
   if (state_.mode != RobotMode::mirrored) return;
   DataState worst = DataState::fresh;
   for (std::size_t i = 0; i < state_.joint_count; ++i) {
-    JointTickState& joint = state_.joints[i];
-    if (joint.receive_time.known()) {
-      const Nanoseconds age = now - joint.receive_time;
-      if (age > ages_.lost_after) {
-        joint.state = DataState::lost;
-      } else if (age > ages_.stale_after) {
-        joint.state = joint.state == DataState::invalid ? DataState::invalid : DataState::stale;
-      }
-    }
+    age_joint(i, now);
+    const DataState state = state_.joints[i].state;
     // One that the stream does not give stays as it is: it says nothing about the stream.
-    if (has(given_, i) && gravity_of(joint.state) > gravity_of(worst)) worst = joint.state;
+    if (has(given_, i) && gravity_of(state) > gravity_of(worst)) worst = state;
   }
   state_.state = worst;
 }

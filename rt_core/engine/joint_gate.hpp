@@ -7,6 +7,7 @@
 
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/engine/limiter.hpp"
+#include "rt_core/engine/plausibility_check.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/motion/executor.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -40,7 +41,9 @@ class JointGate {
   LimiterVerdict add(std::uint8_t joint_count, std::span<const double> positions, const JointLimits& limits) CELL_RT;
   void remove() CELL_RT { *this = JointGate(); }
   // The robot stays where it is. `given`: the joints whose position the stream gives; none: as if it gave all.
-  void set_mode(RobotMode mode, const StreamAges& ages, JointSet given) CELL_RT;
+  // `bounds`: of what a mirrored robot may send; null: everything is plausible.
+  void set_mode(RobotMode mode, const StreamAges& ages, JointSet given,
+                const PlausibilityBounds* bounds = nullptr) CELL_RT;
   void set_limits(const JointLimits& limits) CELL_RT { limits_ = limits; }
 
   // Of a simulated robot.
@@ -51,9 +54,10 @@ class JointGate {
   // In this tick these joints do not move.
   void stand(JointSet joints) CELL_RT;
 
-  // Of a mirrored robot, which is shown where it says that it is: limits do not count. Values that are not finite are
-  // refused joint by joint; the joint keeps its last good value and becomes invalid. So do all of a sample without a
-  // time of receipt, or with one that has not come yet.
+  // Of a mirrored robot, which is shown where it says that it is, as far as that is plausible. Values that are not
+  // finite are refused joint by joint; the joint keeps its last good value and becomes invalid. So do all of a sample
+  // without a time of receipt, or with one that has not come yet. In the same way values that cannot be true make the
+  // joint implausible, and a second sender makes it conflicting.
   void take(const JointSample& sample, Timestamp now) CELL_RT;
   // Updates the states of the joints by the age of their values at `now`.
   void age(Timestamp now) CELL_RT;
@@ -64,6 +68,9 @@ class JointGate {
 
  private:
   LimiterVerdict refuse(LimiterVerdict verdict) CELL_RT;
+  void take_joint(const JointSample& sample, std::size_t i) CELL_RT;
+  void note_implausible(std::size_t i, const PlausibilityVerdict& verdict, Timestamp receive_time) CELL_RT;
+  void age_joint(std::size_t i, Timestamp now) CELL_RT;
   [[nodiscard]] LimiterVerdict check(const GatedStep& step,
                                      std::array<JointRate, kMaxJointsPerRobot>& rates) const CELL_RT;
 
@@ -72,6 +79,7 @@ class JointGate {
   StreamAges ages_;
   JointSet given_ = 0xFFFF;                            // joints whose position the stream gives; never 0
   std::array<JointRate, kMaxJointsPerRobot> rates_{};  // of the tick before
+  PlausibilityCheck plausibility_;
 };
 
 }  // namespace cellmirror::engine

@@ -25,7 +25,7 @@ void RobotSlot::remove() CELL_RT {
 
 void RobotSlot::set_mode(const SetMode& command) CELL_RT {
   if (!used()) return;
-  gate_.set_mode(command.mode, command.ages, command.given);
+  gate_.set_mode(command.mode, command.ages, command.given, command.plausibility.get());
   executor_.abort(motion::Outcome::stopped);
   if (!simulated()) {
     executor_.set_chain(nullptr);

@@ -10,6 +10,7 @@
 #include "rt_core/motion/executor.hpp"
 #include "rt_core/ports/haptic_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/plausibility.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
 namespace cellmirror::engine {
@@ -27,6 +28,7 @@ struct JointTickState {
   Timestamp receive_time = {};
   Timestamp source_time = {};
   DataState state = DataState::none;
+  Implausibility implausible = Implausibility::none;  // why, where the state is `implausible`
 };
 
 // Of a slave (MASTER_SLAVE). Joints are bits, bit 0 the first.
@@ -43,11 +45,15 @@ struct FollowTickState {
 struct RobotTickHead {
   RobotMode mode = RobotMode::absent;
   std::uint8_t joint_count = 0;
-  DataState state = DataState::none;    // the worst of the joints whose position the stream gives
-  std::uint64_t sequence = 0;           // of the newest sample
-  Timestamp receive_time;               // of the newest sample
-  std::uint64_t samples = 0;            // taken from the stream's queue since the robot went online
-  std::uint64_t refused_values = 0;     // not finite, or named as refused by the driver
+  DataState state = DataState::none;  // the worst of the joints whose position the stream gives
+  std::uint64_t sequence = 0;         // of the newest sample
+  Timestamp receive_time;             // of the newest sample
+  std::uint64_t samples = 0;          // taken from the stream's queue since the robot went online
+  std::uint64_t refused_values = 0;   // not finite, or named as refused by the driver
+  // Counted as refused_values, and none of them: values that cannot be true, and values of two senders.
+  std::uint64_t implausible_values = 0;
+  std::uint64_t conflicting_values = 0;
+  ImplausibleValue newest_implausible;
   std::uint64_t refused_setpoints = 0;  // by the limiter
   motion::MotionState motion;           // of a simulated robot
   FollowTickState follow;               // of a simulated robot

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -17,13 +18,15 @@ namespace cellmirror {
 
 // What is known of the newest value of a source or of one joint.
 enum class DataState : std::uint8_t {
-  none,     // nothing was ever received (or the stream is off)
-  fresh,    // younger than the cell file's stale_after_s; standing still but still sending is fresh
-  stale,    // older than stale_after_s
-  lost,     // older than lost_after_s, or the source itself said that it is gone
-  invalid,  // the newest sample was refused (not finite, wrong length, beyond plausibility); the value is the last good
-            // one
+  none,         // nothing was ever received (or the stream is off)
+  fresh,        // younger than the cell file's stale_after_s; standing still but still sending is fresh
+  stale,        // older than stale_after_s
+  lost,         // older than lost_after_s, or the source itself said that it is gone
+  invalid,      // the newest sample was refused (not finite, wrong length); the value is the last good one
+  implausible,  // the newest sample cannot be true, or follows one that could not; the value is the last good one
+  conflict,     // two senders give the value; it is the last good one
 };
+inline constexpr std::size_t kDataStates = 7;
 
 // Joint values that one source sent for one robot at one instant. SI: rad, rad/s, Nm for revolute joints, m, m/s, N for
 // prismatic ones, after scale, sign and offset of the cell file. Index = the joint's number in the robot.
@@ -32,7 +35,8 @@ struct JointSample {
   Timestamp source_time;       // the source's own stamp, moved to our clock; "never" where the protocol has none
   std::uint64_t sequence = 0;  // counted by the source where it counts, else by the driver, from 1
   std::uint32_t present = 0;   // bit i: joint i has a valid new position
-  std::uint32_t refused = 0;   // bit i: joint i was in the message but refused (NaN, implausible); others stay usable
+  std::uint32_t refused = 0;   // bit i: joint i was in the message but refused (NaN, ...); others stay usable
+  std::uint32_t conflict = 0;  // bit i: two senders give joint i
   std::array<double, kMaxJointsPerRobot> position{};
   std::array<double, kMaxJointsPerRobot> velocity{};  // zero where not sent
   std::array<double, kMaxJointsPerRobot> effort{};    // zero where not sent

@@ -13,6 +13,7 @@
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/plausibility.hpp"
 
 namespace cellmirror {
 
@@ -27,6 +28,7 @@ struct RobotJointState {
   DataState state = DataState::none;  // `none` for a robot that is not mirrored
   Timestamp source_time;
   Timestamp receive_time;
+  Implausibility implausible = Implausibility::none;  // why, where the state is `implausible`
 };
 
 // One robot at one tick.

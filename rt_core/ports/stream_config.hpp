@@ -10,6 +10,8 @@
 
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/ports/e2e_config.hpp"
+#include "rt_core/ports/plausibility.hpp"
 
 namespace cellmirror {
 
@@ -65,6 +67,7 @@ struct Cia402NodeConfig {
 struct Cia402StreamConfig {
   CanChannelConfig channel;
   StreamAges ages;
+  PlausibilityConfig plausibility;
   std::vector<Cia402NodeConfig> nodes;
   bool start_nodes = true;     // send NMT start to the nodes, at open and after each boot-up
   Nanoseconds sync_period{0};  // > 0: this stream produces SYNC
@@ -95,9 +98,11 @@ struct DbcSignalConfig {
 struct DbcStreamConfig {
   CanChannelConfig channel;
   StreamAges ages;
+  PlausibilityConfig plausibility;
   std::string dbc_file;
   std::vector<DbcSignalConfig> signals;
-  Place place = {};  // of the stream's table
+  std::vector<E2eConfig> protections;  // of messages that carry signals, at most one each
+  Place place = {};                    // of the stream's table
 };
 
 // ROS 2's sensor_msgs/msg/JointState.
@@ -113,6 +118,7 @@ struct DdsStreamConfig {
   std::string topic = "rt/joint_states";
   std::string interface_address = "127.0.0.1";  // loopback by default
   StreamAges ages;
+  PlausibilityConfig plausibility;
   std::vector<DdsJointConfig> joints;
   bool reliable = false;  // best effort matches every publisher
 };

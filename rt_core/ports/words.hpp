@@ -10,13 +10,17 @@
 #include "rt_core/ports/display_state.hpp"
 #include "rt_core/ports/haptic_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/plausibility.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
 
 namespace cellmirror {
 
 // Each table is in the order of its enumeration.
-inline constexpr std::array<std::string_view, 5> kDataStateWords = {"none", "fresh", "stale", "lost", "invalid"};
+inline constexpr std::array<std::string_view, kDataStates> kDataStateWords = {
+    "none", "fresh", "stale", "lost", "invalid", "implausible", "conflict"};
+inline constexpr std::array<std::string_view, 5> kImplausibilityWords = {"none", "position", "velocity", "acceleration",
+                                                                         "frozen"};
 inline constexpr std::array<std::string_view, 3> kJointKindWords = {"revolute", "continuous", "prismatic"};
 inline constexpr std::array<std::string_view, 6> kHapticPhaseWords = {"closed",   "waiting", "clutched",
                                                                       "engaging", "active",  "faulted"};
@@ -36,7 +40,8 @@ inline constexpr std::array<std::string_view, 25> kInverseClassWords = {
     "EDITH",           "BOOM_3",          "BOOM_4",          "BOOM_5",          "BOOM_6"};
 
 // An enumerator that is added without its word does not compile.
-static_assert(kDataStateWords.size() == std::size_t{std::to_underlying(DataState::invalid)} + 1);
+static_assert(kDataStateWords.size() == std::size_t{std::to_underlying(DataState::conflict)} + 1);
+static_assert(kImplausibilityWords.size() == std::size_t{std::to_underlying(Implausibility::frozen)} + 1);
 static_assert(kJointKindWords.size() == std::size_t{std::to_underlying(JointKind::prismatic)} + 1);
 static_assert(kHapticPhaseWords.size() == std::size_t{std::to_underlying(HapticPhase::faulted)} + 1);
 static_assert(kHapticFaultWords.size() == std::size_t{std::to_underlying(HapticFault::not_passive)} + 1);
@@ -44,6 +49,9 @@ static_assert(kDisplayModeWords.size() == std::size_t{std::to_underlying(Display
 static_assert(kInverseClassWords.size() == std::size_t{std::to_underlying(InverseClass::boom_6)} + 1);
 
 [[nodiscard]] constexpr std::string_view word(DataState state) { return kDataStateWords.at(std::to_underlying(state)); }
+[[nodiscard]] constexpr std::string_view word(Implausibility why) {
+  return kImplausibilityWords.at(std::to_underlying(why));
+}
 [[nodiscard]] constexpr std::string_view word(JointKind kind) { return kJointKindWords.at(std::to_underlying(kind)); }
 [[nodiscard]] constexpr std::string_view word(HapticPhase phase) {
   return kHapticPhaseWords.at(std::to_underlying(phase));

@@ -33,6 +33,10 @@ std::string_view state_text(DataState state) {
       return "lost";
     case DataState::invalid:
       return "invalid";
+    case DataState::implausible:
+      return "implausible";
+    case DataState::conflict:
+      return "two senders";
   }
   return "";
 }

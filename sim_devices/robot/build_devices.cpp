@@ -11,6 +11,7 @@
 #include "sim_devices/robot/dbc_robot.hpp"
 #include "sim_devices/robot/dds_robots.hpp"
 #include "sim_devices/robot/error_frame_channel.hpp"
+#include "sim_devices/robot/protection.hpp"
 
 namespace cellmirror::sim {
 namespace {
@@ -155,6 +156,11 @@ std::expected<BuiltDevices, Refusal> build_dbc(const CommonOptions& common, cons
     if (auto added = add_signals(*names, quantity, options.units_per_rad, config.signals); !added) {
       return wrong_usage(added.error());
     }
+  }
+  for (const std::string& text : options.protections) {
+    auto protection = parse_protection(text);
+    if (!protection) return wrong_usage(protection.error());
+    config.protections.push_back(std::move(*protection));
   }
   Diagnostics diagnostics;
   const auto dbc = can::read_dbc(options.file, diagnostics);

@@ -71,6 +71,9 @@ void add_dbc(cli::Command app, DbcOptions& options) {
       .required();
   app.option("--velocity", options.velocities, "MESSAGE.SIGNAL of each joint's velocity").list_divided_by(',');
   app.option("--effort", options.efforts, "MESSAGE.SIGNAL of each joint's effort").list_divided_by(',');
+  app.option("--e2e", options.protections,
+             "MESSAGE:key=value,...: counter and CRC of a message, with the keys of [[stream.e2e]]; may be repeated")
+      .one_value_each();
   app.option("--units-per-rad", options.units_per_rad, "the DBC's physical units per rad (or m), e.g. 57.29578 for deg")
       .show_default();
 }

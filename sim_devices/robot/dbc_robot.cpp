@@ -78,6 +78,9 @@ Result<std::unique_ptr<DbcRobot>> DbcRobot::make(const DbcRobotConfig& config, c
                             printable(wanted.message), printable(wanted.signal), guess.empty() ? "" : ", ", guess);
   }
   if (!problems.empty()) return fail(problems);
+  for (const E2eConfig& protection : config.protections) {
+    if (auto made = robot->protect_message(protection, dbc); !made) return std::unexpected(made.error());
+  }
   return robot;
 }
 
@@ -93,11 +96,33 @@ void DbcRobot::take_in(const can::DbcMessage& message, const can::DbcSignal& sig
     return frame.start.id == start.id && frame.start.extended == start.extended && frame.start.data == start.data;
   });
   if (same == frames_.end()) {
-    frames_.push_back({message, start, {{signal, config, false}}, joint});
+    frames_.push_back({message, start, {{signal, config, false}}, joint, {}});
     return;
   }
   same->entries.push_back({signal, config, false});
   if (same->joint != joint) same->joint = 0;
+}
+
+Result<void> DbcRobot::protect_message(const E2eConfig& config, const can::Dbc& dbc) {
+  const can::DbcMessage* message = dbc.find(config.message);
+  if (message == nullptr) return fail(fmt::format("the DBC has no message {}", printable(config.message)));
+  auto format = can::make_e2e_format(config, *message);
+  if (!format) return std::unexpected(format.error());
+  bool used = false;
+  for (Frame& frame : frames_) {
+    if (frame.message.name != config.message) continue;
+    frame.protection = *format;
+    used = true;
+  }
+  if (!used) return fail(fmt::format("--e2e: no signal of {} is sent", printable(config.message)));
+  return {};
+}
+
+void DbcRobot::protect_frame(const Frame& frame, CanFrame& filled) {
+  if (!frame.protection) return;
+  std::uint16_t& counter = next_counter_[frame.message.name];
+  can::protect(*frame.protection, counter, data_of(filled));
+  counter = counter == frame.protection->last_counter ? std::uint16_t{0} : static_cast<std::uint16_t>(counter + 1);
 }
 
 void DbcRobot::start(Timestamp now) {
@@ -129,6 +154,7 @@ void DbcRobot::send_frame(Frame& frame, Timestamp now) {
     can::put_physical_value(entry.signal, physical, data_of(filled));
     note_fit(frame, entry, physical, filled);
   }
+  protect_frame(frame, filled);
   pipeline_.push(now, {now, source, MessageKind::sample, filled});
 }
 

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/can/dbc/dbc.hpp"
+#include "drivers/can/e2e/e2e.hpp"
 #include "rt_core/ports/can_channel.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "sim_devices/base/pacer.hpp"
@@ -19,6 +23,7 @@ namespace cellmirror::sim {
 struct DbcRobotConfig {
   std::string endpoint;
   std::vector<DbcSignalConfig> signals;  // `scale` and `offset` as a cell file has them: SI = physical * scale + offset
+  std::vector<E2eConfig> protections = {};  // of messages with signals
   std::size_t joints = 0;
   int robot = 1;
   double rate_hz = 100;
@@ -50,10 +55,14 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
     CanFrame start;  // identifier, length and the multiplexers
     std::vector<Entry> entries;
     int joint = 0;  // from 1, where all its signals belong to one joint
+    std::optional<can::E2eFormat> protection = {};
   };
 
   DbcRobot(const DbcRobotConfig& config, std::unique_ptr<MotionSource> motion, std::unique_ptr<CanChannel> channel);
   void take_in(const can::DbcMessage& message, const can::DbcSignal& signal, const DbcSignalConfig& config);
+  Result<void> protect_message(const E2eConfig& config, const can::Dbc& dbc);
+  // Counts on by messages, whichever of its frames goes.
+  void protect_frame(const Frame& frame, CanFrame& filled);
   void send_frame(Frame& frame, Timestamp now);
   // A replacement for a value out of range is reported once per signal.
   void note_fit(const Frame& frame, Entry& entry, double wanted, const CanFrame& filled);
@@ -64,6 +73,7 @@ class DbcRobot final : public FaultyDevice<CanFrame> {
   std::unique_ptr<MotionSource> motion_;
   std::unique_ptr<CanChannel> channel_;
   std::vector<Frame> frames_;
+  std::map<std::string, std::uint16_t, std::less<>> next_counter_;  // by message
   std::vector<JointValue> values_;
   Pacer pacer_;
   std::uint64_t did_not_fit_ = 0;

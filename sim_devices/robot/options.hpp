@@ -53,6 +53,7 @@ struct DbcOptions {
   std::vector<std::string> velocities;
   std::vector<std::string> efforts;
   double units_per_rad = 1.0;
+  std::vector<std::string> protections;
 };
 
 struct DdsOptions {

@@ -157,9 +157,27 @@ void Cia402Session::decode(const Tpdo& tpdo, const CanFrame& frame) {
     effort_.set(config.joint, config.sign * raw(tpdo.torque) * config.torque_scale, sample_.receive_time);
   }
   if (tpdo.position.bits != 0) {
-    sample_.position[config.joint] = config.sign * raw(tpdo.position) * config.scale + config.offset;
-    sample_.present |= 1U << config.joint;
+    take_position(tpdo.node, config.sign * raw(tpdo.position) * config.scale + config.offset);
   }
+}
+
+void Cia402Session::take_position(std::size_t index, double position) {
+  Node& node = nodes_[index];
+  const std::size_t joint = node.plan.config.joint;
+  const std::uint32_t bit = 1U << joint;
+  const Timestamp now = sample_.receive_time;
+  const bool before = node.status.in_conflict;
+  node.status.in_conflict = node.senders.take(position, now);
+  if (!node.status.in_conflict) {
+    sample_.present |= bit;
+    sample_.position[joint] = position;
+    return;
+  }
+  sample_.conflict |= bit;
+  ++node.status.conflicts;
+  node.status.last_conflict = now;
+  node.status.places = node.senders.places();
+  if (!before) report(Cia402EventKind::second_drive, index, conflict_text(node.status));
 }
 
 bool Cia402Session::cycle_is_complete() const {
@@ -170,12 +188,13 @@ bool Cia402Session::cycle_is_complete() const {
 }
 
 void Cia402Session::emit() {
-  if (sample_.present == 0) return;
+  if ((sample_.present | sample_.conflict) == 0) return;
   sample_.velocity = velocity_.at(sample_.receive_time, plan_.config.ages.lost_after);
   sample_.effort = effort_.at(sample_.receive_time, plan_.config.ages.lost_after);
   sample_.sequence = ++counters_.samples;
   output_->sample(sample_);
   sample_.present = 0;
+  sample_.conflict = 0;
 }
 
 void Cia402Session::on_sync(Timestamp now) {

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/alternation_watch.hpp"
 #include "drivers/can/canopen/emcy.hpp"
+#include "drivers/can/canopen/heartbeat_cadence.hpp"
 #include "drivers/can/canopen/nmt.hpp"
 #include "drivers/can/canopen/pdo.hpp"
 #include "drivers/can/canopen/sdo_client.hpp"
@@ -32,6 +34,7 @@ enum class Cia402EventKind : std::uint8_t {
   configuration_failed,
   tpdo_missing,  // a node did not answer a SYNC
   rejected,      // a frame of one of our nodes that makes no sense
+  second_drive,  // another drive has the id of a node
 };
 
 struct Cia402Event {
@@ -71,6 +74,11 @@ struct Cia402NodeStatus {
   std::uint16_t statusword = 0;
   std::optional<Emcy> last_emcy;
   std::uint64_t boot_ups = 0;
+  bool doubled_heartbeats = false;  // they come as if two drives sent them
+  std::uint64_t conflicts = 0;      // positions that two drives gave
+  bool in_conflict = false;         // the newest position was one of two drives'
+  Timestamp last_conflict;
+  AlternationWatch::Places places;  // of the two, rad or m
   Timestamp last_tpdo;
 };
 
@@ -121,7 +129,10 @@ class Cia402Session {
   struct Node {
     Cia402NodePlan plan;
     Cia402NodeStatus status;
-    bool answering = false;  // its synchronous TPDOs came since it was started: one that stays out is a loss
+    AlternationWatch senders = {};
+    HeartbeatCadence cadence = {};
+    bool was_operational = false;  // by its newest heartbeat
+    bool answering = false;        // its synchronous TPDOs came since it was started: one that stays out is a loss
     Timestamp heartbeat_deadline;
     Timestamp start_sent;
     std::optional<SdoClient> sdo;
@@ -136,6 +147,7 @@ class Cia402Session {
   // session.cpp
   void on_tpdo(Tpdo& tpdo, const CanFrame& frame, Timestamp now);
   void decode(const Tpdo& tpdo, const CanFrame& frame);
+  void take_position(std::size_t index, double position);
   void on_sync(Timestamp now);
   void count_missing();
   [[nodiscard]] bool cycle_is_complete() const;
@@ -182,6 +194,8 @@ class Cia402Session {
   Cia402Counters counters_;
 };
 
+// "two drives answer: near 0.1 and 0.7 rad or m".
+[[nodiscard]] std::string conflict_text(const Cia402NodeStatus& node);
 // One line: "operational", or what is wrong, at most three nodes of it: "node 3 (J_2): no heartbeat since 1.2 s".
 [[nodiscard]] std::string condition(const std::vector<Cia402NodeStatus>& nodes, Timestamp now);
 // "operational, operation enabled"; for status().

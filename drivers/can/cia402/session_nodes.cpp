@@ -136,9 +136,16 @@ void Cia402Session::on_heartbeat(std::size_t index, NmtState state, Timestamp no
   Node& node = nodes_[index];
   node.status.heard = true;
   node.status.last_heartbeat = now;
+  if (state == NmtState::boot_up) node.cadence.restart();
+  const bool doubled = state != NmtState::boot_up && node.cadence.take(now);
+  if (doubled && !node.status.doubled_heartbeats)
+    report(Cia402EventKind::second_drive, index,
+           "heartbeats come twice as often as before: perhaps a second drive has its id");
+  node.status.doubled_heartbeats = doubled;
   // Its boot-up may have been missed, while the bus was off for instance, and a reset forgets what SDO wrote.
   const bool was_away = node.status.heartbeat_lost || node.status.nmt == NmtState::operational;
   if (state == NmtState::pre_operational && was_away && !node.status.configuring) node.configured = false;
+  if (state != NmtState::boot_up) node.was_operational = state == NmtState::operational;
   node.status.nmt = state;
   if (plan_.config.heartbeat_timeout.count() > 0) node.heartbeat_deadline = now + plan_.config.heartbeat_timeout;
   if (node.status.heartbeat_lost) {
@@ -160,11 +167,13 @@ void Cia402Session::on_heartbeat(std::size_t index, NmtState state, Timestamp no
 void Cia402Session::on_boot_up(std::size_t index, Timestamp now) {
   Node& node = nodes_[index];
   ++node.status.boot_ups;
+  const bool was_operational = std::exchange(node.was_operational, false);
   node.status.state = Cia402State::unknown;
   node.status.statusword = 0;
   node.answering = false;
   node.configured = false;  // a reset forgets what SDO wrote
-  report(Cia402EventKind::boot_up, index, "boot-up");
+  report(Cia402EventKind::boot_up, index,
+         was_operational ? "boot-up while it was operational: it was reset, or a second drive has its id" : "boot-up");
   bring_up(index, now);
 }
 
@@ -180,13 +189,27 @@ void Cia402Session::watch(std::size_t index, Timestamp now) {
   if (!node.heartbeat_deadline.known() || now < node.heartbeat_deadline) return;
   node.heartbeat_deadline = {};
   node.status.heartbeat_lost = true;
+  node.was_operational = false;
   node.status.nmt.reset();
   node.answering = false;
   if (asks_lost_nodes(node)) node.ask = now + kAskLost;
   report(Cia402EventKind::node_lost, index, node.status.last_heartbeat.known() ? "no heartbeat" : "not heard");
 }
 
+std::string conflict_text(const Cia402NodeStatus& node) {
+  return fmt::format("two drives answer: near {:.4g} and {:.4g} rad or m", node.places.a, node.places.b);
+}
+
+namespace {
+
+bool is_in_conflict(const Cia402NodeStatus& node, Timestamp now) {
+  return node.in_conflict && now - node.last_conflict <= AlternationWatch::kWindow;
+}
+
+}  // namespace
+
 std::string words(const Cia402NodeStatus& node, Timestamp now) {
+  if (is_in_conflict(node, now)) return conflict_text(node);
   if (!node.configuration_error.empty()) return "configuration failed: " + node.configuration_error;
   if (node.configuring) return "being configured";
   if (node.heartbeat_lost && node.last_heartbeat.known()) {
@@ -195,7 +218,7 @@ std::string words(const Cia402NodeStatus& node, Timestamp now) {
   if (!node.heard) return "not heard yet";
   if (node.heartbeat_lost) return fmt::format("sends no heartbeat (object 0x1017), {}", words(node.state));
   const std::string nmt = node.nmt ? std::string(words(*node.nmt)) : "NMT state unknown";
-  return fmt::format("{}, {}", nmt, words(node.state));
+  return fmt::format("{}, {}{}", nmt, words(node.state), node.doubled_heartbeats ? ", heartbeats twice as often" : "");
 }
 
 std::string condition(const std::vector<Cia402NodeStatus>& nodes, Timestamp now) {
@@ -203,8 +226,8 @@ std::string condition(const std::vector<Cia402NodeStatus>& nodes, Timestamp now)
   std::string text;
   std::size_t wrong = 0;
   for (const Cia402NodeStatus& node : nodes) {
-    const bool works = node.configuration_error.empty() && !node.configuring && node.heard && !node.heartbeat_lost &&
-                       (!node.nmt || *node.nmt == NmtState::operational);
+    const bool works = !is_in_conflict(node, now) && node.configuration_error.empty() && !node.configuring &&
+                       node.heard && !node.heartbeat_lost && (!node.nmt || *node.nmt == NmtState::operational);
     const bool fault = node.state == Cia402State::fault || node.state == Cia402State::fault_reaction_active;
     if (works && !fault) continue;
     if (++wrong > kShown) continue;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -32,6 +33,7 @@ class Planner {
       has_position |= signal.quantity == JointQuantity::position;
       add(signal);
     }
+    for (const E2eConfig& protection : plan_.config.protections) protect_message(protection);
     if (!has_position) error(stream, "none of the signals is a position: nothing would be mirrored");
     if (diagnostics_->errors() != before) return {};
     return std::move(plan_);
@@ -82,6 +84,24 @@ class Planner {
     plan_.mapped.push_back(std::move(mapped));
   }
 
+  void protect_message(const E2eConfig& config) {
+    const DbcMessage* message = plan_.dbc.find(config.message);
+    if (message == nullptr) {
+      error(config.place, fmt::format("the DBC has no message {}", printable(config.message)),
+            nearest_message(config.message));
+      return;
+    }
+    const auto number = static_cast<std::size_t>(message - plan_.dbc.messages.data());
+    const bool used = std::ranges::any_of(plan_.mapped, [&](const auto& mapped) { return mapped.message == number; });
+    const bool twice =
+        std::ranges::any_of(plan_.protections, [&](const auto& other) { return other.message == number; });
+    if (!used) return error(config.place, fmt::format("no signal of {} is used", printable(config.message)));
+    if (twice) return error(config.place, fmt::format("{} is protected twice", printable(config.message)));
+    auto format = make_e2e_format(config, *message);
+    if (!format) return error(config.place, format.error().what, format.error().remedy);
+    plan_.protections.push_back({number, *format});
+  }
+
   std::string nearest_message(std::string_view wrong) const {
     std::vector<std::string> names;
     for (const DbcMessage& message : plan_.dbc.messages) names.push_back(message.name);
@@ -121,7 +141,11 @@ DbcSession::DbcSession(DbcPlan plan, DbcSessionOutput& output) : plan_(std::move
     source.message = &message;
     const DbcSignalConfig& config = mapped.config;
     source.fields.push_back(
-        {&message.signals[mapped.signal], config.joint, config.quantity, config.scale, config.offset, false, {}});
+        {&message.signals[mapped.signal], config.joint, config.quantity, config.scale, config.offset, false, {}, {}});
+  }
+  for (const DbcPlan::Protection& protection : plan_.protections) {
+    const DbcMessage& message = plan_.dbc.messages.at(protection.message);
+    sources_.at({message.extended, message.id}).checker.emplace(protection.format);
   }
 }
 
@@ -136,8 +160,41 @@ void DbcSession::receive(const CanFrame& frame, Timestamp now) {
   }
   sample_.present = 0;
   sample_.refused = 0;
-  for (Field& field : source.fields) take(source, field, frame, now);
-  if ((sample_.present | sample_.refused) == 0) return;
+  sample_.conflict = 0;
+  if (is_sound(source, frame, now)) {
+    for (Field& field : source.fields) take(source, field, frame, now);
+  }
+  emit(now);
+}
+
+bool DbcSession::is_sound(Source& source, const CanFrame& frame, Timestamp now) {
+  if (!source.checker) return true;
+  const E2eChecker::Verdict verdict = source.checker->check(frame.payload().first(source.message->length));
+  counters_.lost += verdict.missing;
+  if (verdict.good()) return true;
+  trouble_.status = verdict.status;
+  trouble_.message = source.message;
+  trouble_.protection = now;
+  if (verdict.status == E2eStatus::repeated) {
+    ++counters_.repeated;
+    return false;
+  }
+  ++(verdict.status == E2eStatus::wrong_crc ? counters_.wrong_crc : counters_.wrong_sequence);
+  reject(fmt::format("{}: {}", source.message->name, word(verdict.status)));
+  refuse_fields(source);
+  return false;
+}
+
+void DbcSession::refuse_fields(const Source& source) {
+  for (const Field& field : source.fields) {
+    if (field.quantity == JointQuantity::position) sample_.refused |= 1U << field.joint;
+    if (field.quantity == JointQuantity::velocity) velocity_.forget(field.joint);
+    if (field.quantity == JointQuantity::effort) effort_.forget(field.joint);
+  }
+}
+
+void DbcSession::emit(Timestamp now) {
+  if ((sample_.present | sample_.refused | sample_.conflict) == 0) return;
   sample_.velocity = velocity_.at(now, plan_.config.ages.lost_after);
   sample_.effort = effort_.at(now, plan_.config.ages.lost_after);
   sample_.receive_time = now;
@@ -159,14 +216,30 @@ void DbcSession::take(const Source& source, Field& field, const CanFrame& frame,
   };
   switch (field.quantity) {
     case JointQuantity::position:
-      (finite ? sample_.present : sample_.refused) |= bit;
-      if (finite) sample_.position[field.joint] = value;
+      if (finite) return take_position(source, field, value, now);
+      sample_.refused |= bit;
       return;
     case JointQuantity::velocity:
       return keep(velocity_);
     case JointQuantity::effort:
       return keep(effort_);
   }
+}
+
+void DbcSession::take_position(const Source& source, Field& field, double value, Timestamp now) {
+  const std::uint32_t bit = 1U << field.joint;
+  if (!field.senders.take(value, now)) {
+    if (trouble_.conflict_signal == field.signal) trouble_.conflict = {};
+    sample_.present |= bit;
+    sample_.position[field.joint] = value;
+    return;
+  }
+  sample_.conflict |= bit;
+  ++counters_.conflicts;
+  trouble_.conflict_message = source.message;
+  trouble_.conflict_signal = field.signal;
+  trouble_.places = field.senders.places();
+  trouble_.conflict = now;
 }
 
 void DbcSession::watch_limits(const Source& source, Field& field, double physical, Timestamp now) {

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/alternation_watch.hpp"
 #include "drivers/can/dbc/dbc.hpp"
+#include "drivers/can/e2e/e2e.hpp"
 #include "drivers/can/timed_values.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/time.hpp"
@@ -26,7 +28,12 @@ struct DbcPlan {
   };
   DbcStreamConfig config;
   Dbc dbc;
+  struct Protection {
+    std::size_t message = 0;
+    E2eFormat format;
+  };
   std::vector<Mapped> mapped;
+  std::vector<Protection> protections;
 };
 
 // Reads the DBC and finds the configured signals in it; unknown names are answered with the nearest ones. All errors
@@ -51,6 +58,25 @@ struct DbcCounters {
   std::uint64_t samples = 0;
   std::uint64_t rejected = 0;
   std::uint64_t outside = 0;  // values beyond the DBC's limits, which were taken
+  // By the counters and CRCs of protected messages.
+  std::uint64_t lost = 0;
+  std::uint64_t repeated = 0;
+  std::uint64_t wrong_sequence = 0;
+  std::uint64_t wrong_crc = 0;
+  std::uint64_t conflicts = 0;  // values of two senders
+
+  [[nodiscard]] std::uint64_t protection_errors() const { return repeated + wrong_sequence + wrong_crc; }
+};
+
+// The newest of each kind; the session owns what it points to. Times are "never" where there was none.
+struct DbcTrouble {
+  E2eStatus status = E2eStatus::ok;
+  const DbcMessage* message = nullptr;
+  Timestamp protection;
+  const DbcMessage* conflict_message = nullptr;
+  const DbcSignal* conflict_signal = nullptr;
+  AlternationWatch::Places places;
+  Timestamp conflict;
 };
 
 class DbcSession {
@@ -61,11 +87,13 @@ class DbcSession {
   DbcSession& operator=(const DbcSession&) = delete;
 
   // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with it
-  // unless they are lost or were refused. Frames shorter than the DBC says are refused, longer ones (FD padding) are
-  // taken.
+  // unless they are lost or were refused. Of a protected message nothing is taken whose counter or CRC is wrong: its
+  // joints are refused; a repeated one makes no sample. What two senders give is in conflict. Frames shorter than the
+  // DBC says are refused, longer ones (FD padding) are taken.
   void receive(const CanFrame& frame, Timestamp now);
 
   [[nodiscard]] const DbcCounters& counters() const { return counters_; }
+  [[nodiscard]] const DbcTrouble& trouble() const { return trouble_; }
 
  private:
   struct Field {
@@ -76,12 +104,19 @@ class DbcSession {
     double offset = 0.0;
     bool outside = false;  // and that was reported
     Timestamp told;
+    AlternationWatch senders = {};  // of positions
   };
   struct Source {
     const DbcMessage* message = nullptr;
     std::vector<Field> fields;
+    std::optional<E2eChecker> checker;
   };
 
+  // Whether the frame may be used.
+  bool is_sound(Source& source, const CanFrame& frame, Timestamp now);
+  void refuse_fields(const Source& source);
+  void emit(Timestamp now);
+  void take_position(const Source& source, Field& field, double value, Timestamp now);
   void take(const Source& source, Field& field, const CanFrame& frame, Timestamp now);
   void watch_limits(const Source& source, Field& field, double physical, Timestamp now);
   void reject(const std::string& why);
@@ -93,6 +128,7 @@ class DbcSession {
   TimedValues velocity_;
   TimedValues effort_;
   DbcCounters counters_;
+  DbcTrouble trouble_;
 };
 
 }  // namespace cellmirror::can

@@ -27,6 +27,8 @@ std::string_view log_kind(Cia402EventKind kind) {
       return "tpdo";
     case Cia402EventKind::rejected:
       return "rejected";
+    case Cia402EventKind::second_drive:
+      return "second drive";
   }
   return "event";
 }

@@ -10,6 +10,9 @@
 namespace cellmirror::can {
 namespace {
 
+// A wrong CRC, or a second sender, is shown this long.
+constexpr Nanoseconds kTroubleShown{1'000'000'000};
+
 class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
  public:
   DbcProtocol(const DbcPlan& plan, CanProtocolHost& host)
@@ -20,12 +23,14 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
   void advance(Timestamp) override {}
   [[nodiscard]] Timestamp next_due() const override { return {}; }
 
-  void publish() override { published_.write({session_.counters(), started_, last_sample_}); }
+  void publish() override { published_.write({session_.counters(), session_.trouble(), started_, last_sample_}); }
 
   void describe(JointStreamStatus& status, Timestamp now) override {
-    const auto& [counters, started, last_sample] = published_.read().value;
+    const auto& [counters, trouble, started, last_sample] = published_.read().value;
     status.received = counters.samples;
     status.rejected = counters.rejected;
+    status.lost = counters.lost;
+    describe_protection(counters, status);
     if (counters.outside > 0) {
       status.details.emplace_back("beyond the DBC's limits", number_of(counters.outside, "value"));
     }
@@ -34,16 +39,35 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
     } else if (now - last_sample > ages_.stale_after) {
       status.condition = fmt::format("no frame since {:.1f} s", seconds(now - last_sample));
     } else {
-      status.condition = "operational";
+      status.condition = trouble_text(trouble, now);
     }
   }
 
  private:
   struct Report {
     DbcCounters counters;
+    DbcTrouble trouble;
     Timestamp started;
     Timestamp last_sample;
   };
+
+  static void describe_protection(const DbcCounters& counters, JointStreamStatus& status) {
+    if (counters.wrong_crc > 0) status.details.emplace_back("wrong CRC", number_of(counters.wrong_crc, "message"));
+    if (counters.wrong_sequence > 0)
+      status.details.emplace_back("wrong sequence", number_of(counters.wrong_sequence, "message"));
+    if (counters.repeated > 0) status.details.emplace_back("repeated", number_of(counters.repeated, "message"));
+    if (counters.conflicts > 0) status.details.emplace_back("of two senders", number_of(counters.conflicts, "value"));
+  }
+
+  static std::string trouble_text(const DbcTrouble& trouble, Timestamp now) {
+    if (trouble.conflict.known() && now - trouble.conflict <= kTroubleShown) {
+      return fmt::format("two senders of {}.{}: near {:.4g} and {:.4g} rad or m", trouble.conflict_message->name,
+                         trouble.conflict_signal->name, trouble.places.a, trouble.places.b);
+    }
+    if (trouble.protection.known() && now - trouble.protection <= kTroubleShown)
+      return fmt::format("{} in {}", word(trouble.status), trouble.message->name);
+    return "operational";
+  }
 
   void sample(const JointSample& sample) override {
     last_sample_ = sample.receive_time;

@@ -27,6 +27,12 @@ std::uint64_t publisher_id(const fd::InstanceHandle_t& handle) {
   return hash == 0 ? 1 : hash;
 }
 
+WriterGuid guid_of(const fd::InstanceHandle_t& handle) {
+  WriterGuid guid;
+  for (std::size_t i = 0; i < guid.size(); ++i) guid[i] = handle.value[i];
+  return guid;
+}
+
 }  // namespace
 
 JointStateTopic::JointStateTopic(std::shared_ptr<Participant> participant, const Clock& clock)
@@ -74,7 +80,8 @@ void JointStateTopic::on_data_available(fd::DataReader* reader) {
       messages_.fetch_add(1, std::memory_order_relaxed);
       const std::scoped_lock lock(mutex_);
       router_.accept(sample.payload, now,
-                     {publisher_id(info.publication_handle), info.sample_identity.sequence_number().to64long()});
+                     {publisher_id(info.publication_handle), info.sample_identity.sequence_number().to64long(),
+                      guid_of(info.publication_handle)});
     }
   } catch (const std::exception& error) {
     log_warning("dds.reader", "a sample could not be taken: {}", error.what());

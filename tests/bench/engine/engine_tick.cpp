@@ -1,6 +1,6 @@
 // The time of a tick at 1 kHz over the number of mirrored robots of six joints, each with samples at 125 Hz, for one
-// reader of the state and for nine. Processor time of the thread, so that a busy machine changes little. Writes a table
-// (CSV) and a figure (PNG).
+// reader of the state and for nine, all values checked for plausibility. Processor time of the thread, so that a busy
+// machine changes little. Writes a table (CSV) and a figure (PNG).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,11 @@ void add_mirrored_robot(engine::Engine& engine, std::size_t slot) {
   const auto number = static_cast<std::uint8_t>(slot);
   engine.send(
       engine::AddRobot{.slot = number, .robot = engine.lend(std::make_shared<const engine::RobotSetup>(robot))});
-  engine.send(engine::SetMode{.slot = number, .mode = engine::RobotMode::mirrored});
+  PlausibilityBounds bounds;
+  bounds.joints.fill({.lower = -3.0, .upper = 3.0, .velocity = 3.0, .acceleration = 30.0});
+  engine.send(engine::SetMode{.slot = number,
+                              .mode = engine::RobotMode::mirrored,
+                              .plausibility = engine.lend(std::make_shared<const PlausibilityBounds>(bounds))});
 }
 
 TickTimes measure(std::size_t robots, std::size_t reader_count) {

@@ -81,7 +81,7 @@ class DoubtfulStreams(unittest.TestCase):
     def test_status_and_log_show_joints_that_nothing_gives_or_that_are_beyond_their_range(self):
         gateway = self.run_gateway()
         simulator = g.sim_robot("dbc", "--dbc", self.scratch.home / "robots/arm.dbc", "--channel", CHANNEL, "--position",
-                                "First.A1,First.A2,First.A3,First.A4,Second.A5,Second.A6", "--units-per-rad", "57.29578",
+                                "First.A1,First.A2,First.A3,First.A4,Second.A5,Second.A6", "--units-per-rad", "2.2",
                                 "--motion", "hold:position=1", "--rate", "50")
         self.processes.append(simulator)
         self.assertEqual(self.scratch.send("ROBOT ARM online").returncode, 0)
@@ -96,6 +96,17 @@ class DoubtfulStreams(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: "J_1 of ARM is at" in gateway.output()), gateway.output())
         simulator.kill()
         self.assertTrue(g.eventually(lambda: self.scratch.robot("ARM")["stream"]["state"] == "lost"))
+
+    def test_degrees_for_radians_are_implausible(self):
+        self.run_gateway()
+        simulator = g.sim_robot("dbc", "--dbc", self.scratch.home / "robots/arm.dbc", "--channel", CHANNEL, "--position",
+                                "First.A1,First.A2", "--units-per-rad", "57.29578", "--motion", "hold:position=1", "--rate",
+                                "50")
+        self.processes.append(simulator)
+        self.assertEqual(self.scratch.send("ROBOT ARM online").returncode, 0)
+        self.assertTrue(g.eventually(lambda: self.scratch.robot("ARM")["joints"][0]["state"] == "implausible"))
+        self.assertEqual(self.scratch.robot("ARM")["joints"][0]["position"], 0)
+        self.assertIn("beyond 2.4 rad", self.scratch.robot("ARM")["stream"]["condition"])
 
 
 if __name__ == "__main__":

@@ -121,6 +121,24 @@ TEST_F(LiveDocument, AMirroredRobotTellsItsStateAndAge) {
   EXPECT_TRUE(sut["age_s"].is_null());
 }
 
+TEST_F(LiveDocument, AnImplausibleRobotTellsWhichJointWhyAndByWhichBound) {
+  robots_[0].online = true;
+  robots_[0].state = robots_[0].joints[0].state = DataState::implausible;
+  engine::RobotTickState& tick = tick_.robots[0];
+  const auto condition = [&](Implausibility why, double value, double bound) {
+    tick.newest_implausible = {.why = why, .joint = 0, .value = value, .bound = bound, .receive_time = kNow};
+    return document()["robots"][0]["condition"];
+  };
+  EXPECT_EQ(condition(Implausibility::position, 51471.0, 3.3), "implausible: J_1 is at 51471 rad, beyond 3.3 rad");
+  EXPECT_EQ(condition(Implausibility::velocity, -12.0, 3.0), "implausible: J_1 moves at -12 rad/s, beyond 3 rad/s");
+  EXPECT_EQ(condition(Implausibility::acceleration, 40.0, 30.0),
+            "implausible: J_1 accelerates by 40 rad/s2, beyond 30 rad/s2");
+  EXPECT_EQ(condition(Implausibility::frozen, 2.5, 2.0), "implausible: J_1 is the same to the last bit for 2.5 s");
+  EXPECT_EQ(document()["robots"][0]["state"], "implausible");
+  robots_[0].joints[0].state = DataState::fresh;
+  EXPECT_EQ(document()["robots"][0]["condition"], "");
+}
+
 TEST_F(LiveDocument, AJointHasLimitsWhereItsRangeIsOne) {
   CompiledRobot& robot = small_.cell.robots.front();
   json sut = document()["robots"][0]["joints"][0];

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 
 #include "config/cell_file.hpp"
 #include "tests/unit/config/temporary_home.hpp"
@@ -202,6 +203,87 @@ tpdo = [{ number = 1, transmission_type = 1, event_timer_s = 0.01, entries = [{ 
   EXPECT_EQ(stream.nodes.at(1).eds_file, (home.root() / "robots/drive.eds").string());
   EXPECT_EQ(stream.nodes.at(1).tpdos.at(0).entries.at(1).index, 0x6064);
   EXPECT_EQ(stream.nodes.at(1).tpdos.at(0).event_timer_ms, 10);
+}
+
+TEST_F(CellFile, readsWhatIsPlausibleOfAStream) {
+  const std::string head =
+      "[[node]]\nname = \"Arm\"\nabstract = \"arm.mpc\"\n[[stream]]\nrobot = \"ARM\"\nkind = \"dds\"\n";
+  auto sut = load(head + "stale_after_s = 0.2\n");
+  ASSERT_TRUE(sut) << findings();
+  PlausibilityConfig config = std::get<DdsStreamConfig>(sut->streams.at(0).config).plausibility;
+  EXPECT_TRUE(config.enabled);
+  EXPECT_EQ(config.arrival_jitter, std::chrono::milliseconds(100)) << "half of stale_after_s";
+  EXPECT_EQ(config.frozen_after.count(), 0);
+  EXPECT_EQ(config.plausible_after, 10);
+  sut = load(head +
+             "position_margin = 0\nvelocity_factor = 2\nacceleration_factor = 0\narrival_jitter_s = 0.01\n"
+             "frozen_after_s = 3\nplausible_after = 1\n");
+  ASSERT_TRUE(sut) << findings();
+  config = std::get<DdsStreamConfig>(sut->streams.at(0).config).plausibility;
+  EXPECT_EQ(config.position_margin, 0.0);
+  EXPECT_EQ(config.velocity_factor, 2.0);
+  EXPECT_EQ(config.acceleration_factor, 0.0);
+  EXPECT_EQ(config.arrival_jitter, std::chrono::milliseconds(10));
+  EXPECT_EQ(config.frozen_after, std::chrono::seconds(3));
+  EXPECT_EQ(config.plausible_after, 1);
+  EXPECT_FALSE(load(head + "plausibility = false\nvelocity_factor = 2\n"));
+  EXPECT_THAT(findings(), testing::HasSubstr("velocity_factor has no effect with plausibility = false"));
+  EXPECT_FALSE(load(head + "plausible_after = 0\n"));
+}
+
+TEST_F(CellFile, whatTheFilesOfRobotsDoNotSayIsNoBound) {
+  const auto sut = load("[[node]]\nname = \"Arm\"\nabstract = \"arm.mpc\"\n");
+  ASSERT_TRUE(sut) << findings();
+  const RobotModel* robot = sut->cell.robot("ARM");
+  ASSERT_NE(robot, nullptr);
+  ASSERT_EQ(robot->known_limits().size(), robot->joint_count());
+  for (std::size_t i = 0; i < robot->joint_count(); ++i) {
+    EXPECT_EQ(robot->known_limits()[i].lower, robot->parameters().min_range[i]);
+    EXPECT_EQ(robot->known_limits()[i].upper, robot->parameters().max_range[i]);
+    EXPECT_EQ(robot->known_limits()[i].velocity, robot->parameters().max_velocity[i]);
+    EXPECT_EQ(robot->known_limits()[i].acceleration, std::numeric_limits<double>::infinity()) << "it is a default";
+  }
+}
+
+TEST_F(CellFile, readsProtectionsOfMessages) {
+  home.write("robots/arm.dbc", "VERSION \"\"\n");
+  const std::string head =
+      "[[node]]\nname = \"Arm\"\nabstract = \"arm.mpc\"\n[[stream]]\nrobot = \"ARM\"\nkind = \"can-dbc\"\n"
+      "channel = \"socketcan:can0\"\ndbc = \"arm.dbc\"\n"
+      "[[stream.signal]]\nmessage = \"M\"\nsignal = \"A\"\njoint = \"J_1\"\n[[stream.e2e]]\nmessage = \"M\"\n";
+  const auto protection = [&](const std::string& text) {
+    const auto sut = load(head + text);
+    EXPECT_TRUE(sut) << findings();
+    return sut ? std::get<DbcStreamConfig>(sut->streams.at(0).config).protections.at(0) : E2eConfig();
+  };
+  const E2eConfig p01 = protection("profile = \"p01\"\ndata_id = 0x123\ndata_id_mode = \"nibble\"\nmax_delta = 3\n");
+  EXPECT_EQ(p01.message, "M");
+  EXPECT_EQ(p01.profile, E2eProfile::p01);
+  EXPECT_THAT(p01.data_id, testing::ElementsAre(0x123));
+  EXPECT_EQ(p01.data_id_mode, E2eDataIdMode::nibble);
+  EXPECT_EQ(p01.max_delta, 3);
+  EXPECT_EQ(p01.place.line, 15);
+  EXPECT_EQ(protection("profile = \"p02\"\ndata_ids = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]\n")
+                .data_id.size(),
+            16U);
+  const E2eConfig described = protection(
+      "profile = \"described\"\ncounter = \"C\"\ncrc = \"R\"\ncrc_bits = 16\ncrc_polynomial = 0x1021\n"
+      "crc_initial = 0xFFFF\ncrc_xor = 1\ndata_id_bytes = 2\ndata_ids = [7, 8]\ndata_id_first = true\nlast_counter = "
+      "14\n");
+  EXPECT_EQ(described.counter_signal, "C");
+  EXPECT_EQ(described.crc_signal, "R");
+  EXPECT_EQ(described.crc.width, 16);
+  EXPECT_EQ(described.crc.polynomial, 0x1021);
+  EXPECT_EQ(described.crc.initial, 0xFFFF);
+  EXPECT_EQ(described.crc.final_xor, 1);
+  EXPECT_THAT(described.data_id, testing::ElementsAre(7, 8));
+  EXPECT_TRUE(described.data_id_first);
+  EXPECT_EQ(described.last_counter, 14);
+  for (const char* wrong : {"profile = \"p03\"\n", "profile = \"p01\"\n", "profile = \"p05\"\ndata_id = 65536\n",
+                            "profile = \"p02\"\ndata_ids = [1]\n", "profile = \"described\"\n",
+                            "profile = \"p05\"\ndata_id = 1\ncounter = \"C\"\n"}) {
+    EXPECT_FALSE(load(head + wrong)) << wrong;
+  }
 }
 
 TEST_F(CellFile, namesJointsThatAStreamGivesNoPositionOf) {

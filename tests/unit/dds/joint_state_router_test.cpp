@@ -253,5 +253,58 @@ TEST(RobotFeed, RefusesMappingsThatCannotBeMeant) {
   EXPECT_FALSE(RobotFeed::make({{"a", 0, 1.0, 0.0}, {"b", 0, 1.0, 0.0}}).has_value());
 }
 
+MessageOrigin from(std::uint8_t publisher) {
+  MessageOrigin origin{.publisher = publisher, .sequence = 0};
+  origin.guid[15] = publisher;
+  return origin;
+}
+
+TEST_F(JointStateRouterTest, AJointOfTwoPublishersIsInConflictAndBothAreNamed) {
+  sut_.add(*arm_.feed, arm_.sink);
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0, 2.0}}, from(1));
+  accept({.name = {"shoulder", "wrist"}, .position = {1.6, 3.0}}, from(2));
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 0U) << "it may have been started again";
+  accept({.name = {"shoulder", "elbow"}, .position = {1.0, 2.0}}, from(1));
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 0b001U);
+  EXPECT_EQ(arm_.sink.samples.back().present, 0b010U) << "the elbow has one publisher";
+  accept({.name = {"shoulder", "wrist"}, .position = {1.6, 3.0}}, from(2));
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 0b001U);
+  EXPECT_EQ(arm_.sink.samples.back().present, 0b100U);
+  const FeedReport& report = arm_.feed->report();
+  EXPECT_EQ(report.counters.conflicts, 2U);
+  EXPECT_EQ(report.last_conflict, now_);
+  EXPECT_EQ(arm_.feed->ros_name(report.conflict_joint), "shoulder");
+  EXPECT_EQ(report.publisher[15], 2);
+  EXPECT_EQ(report.other_publisher[15], 1);
+  EXPECT_EQ(arm_.feed->last_errors().back(),
+            "two publishers name joint 'shoulder': 00.00.00.00.00.00.00.00.00.00.00.00|00.00.00.02 and "
+            "00.00.00.00.00.00.00.00.00.00.00.00|00.00.00.01");
+}
+
+TEST_F(JointStateRouterTest, AConflictEndsASecondAfterTheOtherPublisherIsSilent) {
+  sut_.add(*arm_.feed, arm_.sink);
+  for (int i = 0; i < 4; ++i) accept({.name = {"shoulder"}, .position = {1.0}}, from(i % 2 == 0 ? 1 : 2));
+  ASSERT_EQ(arm_.sink.samples.back().conflict, 1U);
+  for (int i = 0; i < 1000; ++i) accept({.name = {"shoulder"}, .position = {1.0}}, from(2));
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 1U);
+  accept({.name = {"shoulder"}, .position = {1.0}}, from(2));
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 0U);
+  EXPECT_EQ(arm_.sink.samples.back().present, 1U);
+  EXPECT_FALSE(arm_.feed->report().last_conflict.known());
+}
+
+TEST_F(JointStateRouterTest, PublishersThatFollowEachOtherAreNoConflictAndManyThatGoRoundAre) {
+  sut_.add(*arm_.feed, arm_.sink);
+  for (std::uint8_t publisher = 1; publisher < 100; ++publisher) {
+    accept({.name = {"shoulder"}, .position = {1.0}}, from(publisher));
+    ASSERT_EQ(arm_.sink.samples.back().conflict, 0U);
+  }
+  for (int i = 0; i < 7; ++i)
+    accept({.name = {"shoulder"}, .position = {1.0}}, from(static_cast<std::uint8_t>(101 + i % 5)));
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 1U);
+  for (int i = 0; i < 4; ++i) accept({.name = {"wrist"}, .position = {1.0}}, {});
+  EXPECT_EQ(arm_.sink.samples.back().conflict, 0U) << "of an unknown publisher nothing is said";
+}
+
 }  // namespace
 }  // namespace cellmirror::dds::test

@@ -199,5 +199,16 @@ TEST(RobotRecordOf, TellsAgesAndPoses) {
   EXPECT_NEAR(sut.world_tcp.quaternion[3], std::sqrt(0.5), 1e-12);
 }
 
+TEST(RobotRecordOf, ReadersThatKnowFiveStatesTakeTheLaterOnesForInvalid) {
+  RobotState robot;
+  robot.state = DataState::conflict;
+  robot.joints.push_back({"J1", JointKind::revolute, 0, 0, 0, DataState::implausible, {}, {}});
+  robot.joints.push_back({"J2", JointKind::revolute, 0, 0, 0, DataState::lost, {}, {}});
+  const RobotRecord sut = robot_record_of(robot, Timestamp{1});
+  EXPECT_EQ(sut.state, DataState::invalid);
+  EXPECT_EQ(sut.joints.at(0).state, DataState::invalid);
+  EXPECT_EQ(sut.joints.at(1).state, DataState::lost);
+}
+
 }  // namespace
 }  // namespace cellmirror

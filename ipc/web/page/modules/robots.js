@@ -15,7 +15,8 @@ export function state_of(robot) {
 }
 
 const kStateTexts = {
-  simulated: "simulated", fresh: "fresh", stale: "stale", lost: "lost", invalid: "invalid", none: "no data",
+  simulated: "simulated", fresh: "fresh", stale: "stale", lost: "lost", invalid: "invalid",
+  implausible: "implausible", conflict: "two senders", none: "no data",
 };
 
 export class Robots {
@@ -35,7 +36,7 @@ export class Robots {
     const robots = live.robots ?? [];
     this.cards_.show(robots, (robot) => robot.id);
     byId("no-robots").hidden = robots.length > 0;
-    const doubtful = robots.filter((robot) => ["stale", "lost", "invalid", "none"].includes(state_of(robot))).length;
+    const doubtful = robots.filter((robot) => !["fresh", "simulated"].includes(state_of(robot))).length;
     setText(byId("robot-count"), doubtful ? `${robots.length}, ${doubtful} not fresh` : String(robots.length));
   }
 
