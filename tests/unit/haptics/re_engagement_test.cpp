@@ -116,6 +116,27 @@ TEST(ReEngagement, WaitsForTheHandToLeaveTheBodyThatItIsIn) {
   EXPECT_NEAR(rig.passes_after(), kHalfSecond, 10);
 }
 
+TEST(ReEngagement, WaitsForTheTipToBeOutsideOfABodyThatCameMeanwhile) {
+  AboveAWall rig;
+  rig.fall_silent();
+  rig.model = model_of({plane(Vector3d::UnitZ(), 0.005, Vector3d::Zero())}, Vector3d::Zero());  // the tip is at 2 mm
+  rig.go({0, 0, 0.01});
+  EXPECT_EQ(rig.passes_after({0, 0, 0.01}), -1);
+  EXPECT_EQ(rig.state().awaited, HapticAwaited::outside);
+}
+
+TEST(ReEngagement, OfAProcessThatEndedAfterAFaultOfItsOwnIsNotOffered) {
+  AboveAWall rig;
+  rig.fresh();
+  rig.port.sample.p_DH.x() += 0.1;
+  rig.tick();
+  ASSERT_EQ(rig.state().fault, HapticFault::jump);
+  rig.device_gone = true;
+  rig.tick();
+  EXPECT_EQ(rig.state().fault, HapticFault::jump) << "its end does not explain the jump";
+  EXPECT_EQ(rig.state().awaited, HapticAwaited::reset);
+}
+
 TEST(ReEngagement, WaitsForAHandThatMoves) {
   AboveAWall rig;
   rig.fall_silent();
