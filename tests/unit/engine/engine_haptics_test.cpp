@@ -222,6 +222,21 @@ TEST_F(EngineHapticsTest, DeviceThatIsKnownToHaveEndedIsAFaultThatCannotBeResetB
   EXPECT_EQ(haptic().phase, HapticPhase::active);
 }
 
+TEST_F(EngineHapticsTest, ResetInTheTickInWhichTheDeviceIsKnownToHaveEndedIsRefused) {
+  engage();
+  device_.sample.p_DH.y() = std::numeric_limits<double>::quiet_NaN();
+  run(2);
+  device_.sample.p_DH.y() = 0;
+  run(50);
+  ASSERT_EQ(haptic().fault, HapticFault::not_finite);
+  const std::uint64_t refused = ticks_.newest().commands_refused;
+  sut_->send(SetDeviceGone{.channel = kChannel, .gone = true});
+  sut_->send(ResetHaptic{kChannel});
+  run(1);
+  EXPECT_EQ(ticks_.newest().commands_refused, refused + 1);
+  EXPECT_EQ(haptic().phase, HapticPhase::faulted);
+}
+
 TEST_F(EngineHapticsTest, FaultOutlivesAnotherInstrumentOfTheSameDevice) {
   engage();
   sut_->send(SetDeviceGone{.channel = kChannel, .gone = true});

@@ -411,6 +411,18 @@ TEST(Passivity, WhatFrictionHasTakenIsNoCredit) {
   EXPECT_GT(sut.energy(), 0.0);
 }
 
+TEST(Passivity, ASpringAtTheForceLimitGivesBackNoMoreThanItTook) {
+  HapticSettings settings = plain_settings();
+  settings.max_force = 8;
+  settings.static_friction = settings.dynamic_friction = 0.3;
+  PressedRig rig(settings);
+  rig.go({0, 0, -0.05});
+  // 8 mm of the spring, then 42 mm at 8 N.
+  EXPECT_NEAR(rig.state().energy, 0.5 * 1000 * 0.008 * 0.008 + 8 * 0.042, 0.01);
+  rig.go({0.3, 0, -0.05});  // friction takes 0.7 J
+  EXPECT_LT(rig.state().energy, 0.45);
+}
+
 TEST(Mapping, OfAxesToJointsStopsAtWallsToo) {
   HapticSettings settings = plain_settings();
   settings.drive = Drive::joints;
