@@ -6,6 +6,7 @@
 #include <charconv>
 #include <numbers>
 
+#include "config/dds_security_reader.hpp"
 #include "config/display_reader.hpp"
 #include "config/foot_switch_reader.hpp"
 #include "config/haptic_reader.hpp"
@@ -66,6 +67,7 @@ bool CellReader::read(std::string_view text) {
   }
   if (const auto g = top.numbers("gravity_m_s2", 3, kGravity)) gravity_m_s2 = {(*g)[0], (*g)[1], (*g)[2]};
   read_loop(top);
+  dds.security = read_dds_security(top, files_);
   read_dds_output(top);
   read_queues(top);
   web = read_web(top);
@@ -85,6 +87,7 @@ void CellReader::read_streams(const RobotDirectory& robots, bool complete) {
   for (TableReader& table : stream_tables_) {
     auto stream = read_stream(table, robots, complete, files_);
     if (!stream) continue;
+    if (auto* of_dds = std::get_if<DdsStreamConfig>(&stream->config)) of_dds->security = dds.security;
     const bool twice = std::ranges::any_of(
         streams, [&](const RobotStream& other) { return !other.robot.empty() && other.robot == stream->robot; });
     if (twice) table.error("robot", fmt::format("there is another stream of {}", printable(stream->robot)));

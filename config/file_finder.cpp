@@ -30,6 +30,7 @@ const char* folder_of(FileUse use, std::string_view name) {
       return "scripts";
     case FileUse::log:
     case FileUse::layout:
+    case FileUse::security:
       return "";
   }
   return "";
@@ -75,6 +76,17 @@ Result<fs::path> find_in_package(const KismetHome& root, const fs::path& urdf, s
 
 Result<fs::path> HomeFiles::find(FileUse use, std::string_view name) const {
   return home_.file(folder_of(use, name), name, default_extension(use));
+}
+
+Result<void> FileFinder::check_private(const fs::path& /*file*/) const { return {}; }
+
+Result<void> HomeFiles::check_private(const fs::path& file) const {
+  std::error_code error;
+  const fs::perms mode = fs::status(file, error).permissions();
+  if (error) return fail(fmt::format("{}: {}", file.string(), error.message()));
+  if ((mode & (fs::perms::group_all | fs::perms::others_all)) == fs::perms::none) return {};
+  return fail(fmt::format("{} is accessible to others (mode {:04o})", file.string(), static_cast<unsigned>(mode)),
+              fmt::format("chmod 600 {}", file.string()));
 }
 
 Result<fs::path> HomeFiles::find_mesh_of_urdf(const fs::path& urdf, std::string_view name) const {

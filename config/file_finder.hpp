@@ -21,6 +21,7 @@ enum class FileUse {
   script,       // scripts/
   log,          // candump logs: the cell folder itself
   layout,       // .lay: the cell folder itself
+  security,     // certificates, keys, permissions: the cell folder itself
 };
 
 class FileFinder {
@@ -28,6 +29,8 @@ class FileFinder {
   virtual ~FileFinder() = default;
   // The absolute path of a regular, readable file.
   [[nodiscard]] virtual Result<std::filesystem::path> find(FileUse use, std::string_view name) const = 0;
+  // Refused: a file that others than its owner may read. Nothing is refused here, where no files are read.
+  [[nodiscard]] virtual Result<void> check_private(const std::filesystem::path& file) const;
   // A mesh named by the URDF at `urdf`: "package://NAME/PATH", "file://PATH" or a path relative to the URDF. It must be
   // in the cell folder, or in the URDF's own folder if that is outside.
   [[nodiscard]] virtual Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
@@ -44,6 +47,7 @@ class HomeFiles final : public FileFinder {
   // Copies share their meshes.
   explicit HomeFiles(KismetHome home) : home_(std::move(home)), meshes_(std::make_shared<MeshLibrary>()) {}
   [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override;
+  [[nodiscard]] Result<void> check_private(const std::filesystem::path& file) const override;
   [[nodiscard]] Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
                                                                 std::string_view name) const override;
   [[nodiscard]] Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
@@ -67,6 +71,9 @@ class FilesWithMeshesAs final : public FileFinder {
   FilesWithMeshesAs(const FileFinder& files, CollideAs collide_as) : files_(files), collide_as_(collide_as) {}
   [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override {
     return files_.find(use, name);
+  }
+  [[nodiscard]] Result<void> check_private(const std::filesystem::path& file) const override {
+    return files_.check_private(file);
   }
   [[nodiscard]] Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
                                                                 std::string_view name) const override {

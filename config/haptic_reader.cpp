@@ -12,6 +12,7 @@ namespace cellmirror {
 namespace {
 
 using haptics::Drive;
+using haptics::HapticProfile;
 using haptics::HapticSettings;
 
 // Beyond these no device is built, and no loop of some kHz stays stable.
@@ -64,6 +65,11 @@ void read_rendering(TableReader& reader, HapticSettings& settings) {
 }
 
 void read_guards(TableReader& reader, HapticSettings& settings) {
+  haptics::apply(
+      reader.choice<HapticProfile>("profile", {{"desktop", HapticProfile::desktop}, {"strict", HapticProfile::strict}})
+          .value_or(settings.profile),
+      settings);
+  settings.re_engage = reader.boolean("re_engage").value_or(settings.re_engage);
   settings.max_speed = reader.number("max_speed_m_s", kSpeed).value_or(settings.max_speed);
   settings.stale_after = read_seconds(reader, "stale_after_s", kLongestStale, false).value_or(settings.stale_after);
   settings.model_stale_after =

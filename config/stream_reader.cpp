@@ -36,6 +36,21 @@ bool is_interface_name(std::string_view text) {
          std::ranges::all_of(text, [](char c) { return c > ' ' && c < 0x7F && c != '/' && c != ':'; });
 }
 
+// Numeric addresses. A list that is there and empty would take nothing from anybody: an error.
+std::vector<std::string> read_allow_from(TableReader& reader) {
+  constexpr std::size_t kMostSources = 64;
+  const auto sources = reader.texts("allow_from");
+  if (!sources) return {};
+  if (sources->empty() || sources->size() > kMostSources)
+    reader.error("allow_from", fmt::format("allow_from has {} addresses, not 1 to {}", sources->size(), kMostSources));
+  for (const std::string& source : *sources) {
+    if (!is_address(source))
+      reader.error("allow_from", fmt::format("\"{}\" is not a numeric address", printable(source)),
+                   "e.g. 192.168.1.20");
+  }
+  return *sources;
+}
+
 }  // namespace
 
 bool is_address(std::string_view text) {
@@ -121,6 +136,8 @@ CanChannelConfig read_channel(TableReader& reader, const FileFinder& files) {
     reader.error("channel", fmt::format("\"{}\" is not a channel", printable(*endpoint)),
                  "it is socketcan:INTERFACE, udp:GROUP:PORT or log:FILE");
   }
+  channel.allow_from = read_allow_from(reader);
+  if (reader.has("allow_from") && kind != "udp") reader.error("allow_from", "allow_from belongs to a udp: channel");
   for (const char* key : {"log_as_fast_as_possible", "log_repeat"}) {
     if (reader.has(key) && !is_log) reader.error(key, fmt::format("{} belongs to a log: channel", key));
   }

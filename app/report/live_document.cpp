@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "app/report/implausible_values.hpp"
+#include "app/snapshot/haptic_names.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/ports/words.hpp"
 #include "rt_core/scene/panes.hpp"
@@ -42,6 +43,16 @@ void add_joints(JsonWriter& out, const RobotState& robot, const CompiledRobot* c
   out.end_array();
 }
 
+// What a haptic device that drives the robot has to say before its stream: a fault, and what ends it.
+std::string condition_of(const LiveSources& sources, const RobotSnapshot& robot, const RobotState& state) {
+  for (const HapticSnapshot& haptic : sources.cell_state.haptics) {
+    if (haptic.robot != robot.id || !haptic.online) continue;
+    if (std::string fault = fault_text(sources.tick.haptics.at(haptic.channel), robot.id); !fault.empty()) return fault;
+  }
+  const std::string of_stream = robot.stream ? robot.stream->status().condition : std::string();
+  return condition_text(sources.tick.robots.at(robot.slot), state, of_stream);
+}
+
 void add_robots(JsonWriter& out, const LiveSources& sources) {
   out.key("robots").begin_array();
   for (std::size_t i = 0; i < sources.robots.size() && i < sources.cell_state.robots.size(); ++i) {
@@ -55,8 +66,7 @@ void add_robots(JsonWriter& out, const LiveSources& sources) {
         .member("age_s", state.online ? age_s(sources.now, tick.receive_time) : std::nullopt)
         .member("active", robot_snapshot.id == sources.cell_state.active_robot)
         .member("moving", tick.motion.moving)
-        .member("condition",
-                condition_text(tick, state, robot_snapshot.stream ? robot_snapshot.stream->status().condition : ""));
+        .member("condition", condition_of(sources, robot_snapshot, state));
     add_joints(out, state, sources.cell_state.cell->robot(robot_snapshot.slot));
     out.end_object();
   }

@@ -1,5 +1,9 @@
 #include "app/snapshot/haptic_names.hpp"
 
+#include <fmt/format.h>
+
+#include "rt_core/ports/words.hpp"
+
 namespace cellmirror::app {
 
 const char* explanation(HapticFault fault) {
@@ -56,6 +60,32 @@ const char* remedy(HapticFault fault) {
       return "lower stiffness_n_m, or raise damping_n_s_m or max_passivity_damping_n_s_m";
   }
   return "";
+}
+
+const char* explanation(HapticAwaited awaited) {
+  switch (awaited) {
+    case HapticAwaited::nothing:
+      return "";
+    case HapticAwaited::reset:
+      return "RESET_HAPTIC";
+    case HapticAwaited::device:
+      return "half a second of good samples, models and ticks";
+    case HapticAwaited::surroundings:
+      return "the surroundings of the instrument";
+    case HapticAwaited::outside:
+      return "the hand outside of bodies";
+    case HapticAwaited::rest:
+      return "the hand at rest for half a second";
+  }
+  return "";
+}
+
+std::string fault_text(const HapticState& state, std::string_view robot) {
+  if (state.fault == HapticFault::none) return {};
+  const std::string what = fmt::format("fault {}: {}", word(state.fault), explanation(state.fault));
+  const bool stays = state.awaited == HapticAwaited::reset || state.awaited == HapticAwaited::nothing;
+  if (stays) return fmt::format("{}; {}; then RESET_HAPTIC {}", what, remedy(state.fault), robot);
+  return fmt::format("{}; engages again by itself, waits for {}", what, explanation(state.awaited));
 }
 
 }  // namespace cellmirror::app

@@ -25,6 +25,12 @@ std::string memory_text(const json& memory) {
                      memory.at("bytes").get<std::uint64_t>(), memory.at("attached").get<std::uint64_t>());
 }
 
+std::string way_out(const json& haptic) {
+  if (text(haptic.at("awaits")) == "reset")
+    return fmt::format("{}; then RESET_HAPTIC {}", text(haptic.at("remedy")), text(haptic.at("robot")));
+  return fmt::format("engages again by itself, waits for {}", text(haptic.at("awaits_note")));
+}
+
 std::string device_lines(const json& haptic) {
   const json& device = haptic.at("device");
   const json& force = haptic.at("force");
@@ -33,8 +39,8 @@ std::string device_lines(const json& haptic) {
                                 haptic.at("online").get<bool>() ? text(haptic.at("phase")) : "offline",
                                 memory_text(haptic.at("memory")));
   if (text(haptic.at("fault")) != "none") {
-    out += fmt::format("  FAULT {}: {}; {}; then RESET_HAPTIC {}\n", text(haptic.at("fault")),
-                       text(haptic.at("fault_note")), text(haptic.at("remedy")), text(haptic.at("robot")));
+    out +=
+        fmt::format("  FAULT {}: {}; {}\n", text(haptic.at("fault")), text(haptic.at("fault_note")), way_out(haptic));
   }
   if (!haptic.at("online").get<bool>()) return out;
   if (haptic.at("contact_model").at("awaited").get<bool>()) out += "  waits for the surroundings of its instrument\n";

@@ -5,7 +5,9 @@
  *
  *   cc -o haptic_device haptic_device.c -lm
  *   ./haptic_device --key 1401 --seconds 10
+ *   ./haptic_device --key 1401 --seconds 10 --to 0.0469,0.0294,-0.0605     (there and back, every 4 s)
  *
+ * The hand rests for a second and a half first: a gateway that has lost a device before engages the next one at rest.
  * A driver of real hardware looks the same: replace measure() and render(). SPDX-License-Identifier: Apache-2.0
  */
 #define _XOPEN_SOURCE 700
@@ -24,9 +26,12 @@
 #define PERIOD_NS 1000000L
 /* A force that is older is not rendered: the gateway has ended, or is late. */
 #define OLDEST_NS 5000000L
+#define REST_S 1.5
+#define THERE_AND_BACK_S 4.0
+#define TWO_PI 6.283185307179586
 
 static const char* const kUsage =
-    "usage: haptic_device --key KEY [--seconds SECONDS] [--radius METRES]\n"
+    "usage: haptic_device --key KEY [--seconds SECONDS] [--radius METRES] [--to X,Y,Z]\n"
     "Writes poses into the gateway's shared memory and prints the forces that come back.\n";
 
 static int64_t now_ns(void) {
@@ -61,10 +66,22 @@ static void detach(struct Attached* attached) {
 /* The gateway has removed the memory: nobody who looks for the key finds this one any longer. */
 static int is_removed(const struct Attached* attached, key_t key) { return shmget(key, 0, 0) != attached->id; }
 
-static void measure(struct cellmirror_haptic_sample* sample, double seconds, double radius) {
-  sample->position[0] = radius * cos(seconds);
-  sample->position[1] = radius * sin(seconds);
-  sample->position[2] = 0;
+struct Motion {
+  double radius; /* m, of the circle */
+  int to_is_given;
+  double to[3]; /* m, in the device's axes */
+};
+
+static void measure(struct cellmirror_haptic_sample* sample, double seconds, const struct Motion* motion) {
+  const double moving = seconds > REST_S ? seconds - REST_S : 0;
+  if (motion->to_is_given) {
+    const double share = 0.5 - 0.5 * cos(TWO_PI * moving / THERE_AND_BACK_S);
+    for (int i = 0; i < 3; ++i) sample->position[i] = share * motion->to[i];
+  } else {
+    sample->position[0] = motion->radius * cos(moving);
+    sample->position[1] = motion->radius * sin(moving);
+    sample->position[2] = 0;
+  }
   sample->orientation[3] = 1; /* x y z w */
   sample->flags = CELLMIRROR_HAPTIC_GOOD;
 }
@@ -80,7 +97,7 @@ static int usage(void) {
 int main(int argc, char** argv) {
   key_t key = 0;
   double seconds = 0;
-  double radius = 0.01;
+  struct Motion motion = {0.01, 0, {0, 0, 0}};
   for (int i = 1; i < argc; ++i) {
     if (strcmp(argv[i], "--help") == 0) {
       fputs(kUsage, stdout);
@@ -90,7 +107,10 @@ int main(int argc, char** argv) {
     } else if (strcmp(argv[i], "--seconds") == 0 && i + 1 < argc) {
       seconds = strtod(argv[++i], NULL);
     } else if (strcmp(argv[i], "--radius") == 0 && i + 1 < argc) {
-      radius = strtod(argv[++i], NULL);
+      motion.radius = strtod(argv[++i], NULL);
+    } else if (strcmp(argv[i], "--to") == 0 && i + 1 < argc) {
+      motion.to_is_given = sscanf(argv[++i], "%lf,%lf,%lf", &motion.to[0], &motion.to[1], &motion.to[2]) == 3;
+      if (!motion.to_is_given) return usage();
     } else {
       return usage();
     }
@@ -112,7 +132,7 @@ int main(int argc, char** argv) {
   for (long step = 0; seconds <= 0 || now_ns() - start < (int64_t)(seconds * 1e9); ++step) {
     const double none[3] = {0, 0, 0};
     if (attached.memory != NULL) {
-      measure(&sample, 1e-9 * (double)(now_ns() - start), radius);
+      measure(&sample, 1e-9 * (double)(now_ns() - start), &motion);
       sample.time_ns = now_ns();
       ++sample.sequence;
       if (!cellmirror_write_sample(attached.memory, attached.bytes, &sample)) {

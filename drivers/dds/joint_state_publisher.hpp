@@ -9,6 +9,7 @@
 
 #include "drivers/dds/ros2_messages.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/stream_config.hpp"
 
 namespace cellmirror::dds {
 
@@ -18,6 +19,7 @@ struct JointStatePublisherConfig {
   std::string topic = "rt/joint_states";
   bool reliable = true;  // as ROS 2's default; matches best-effort and reliable readers
   int depth = 64;        // samples kept for repetition to reliable readers
+  DdsSecurityConfig security = {};
 };
 
 // One calling thread. Publishers and streams of one process share a DDS participant for each domain and interface.

@@ -91,11 +91,32 @@ void HapticChannel::exchange(const Instrument& instrument) CELL_RT {
 bool HapticChannel::reset() CELL_RT {
   if (state_.phase != HapticPhase::faulted) return false;
   if (!validator_.seen() || last_tick_ - last_bad_ < kQuietBeforeReset) return false;
-  state_.phase = HapticPhase::waiting;
-  state_.fault = HapticFault::none;
-  was_engaged_ = false;
+  take_back_fault();
   ++state_.resets;
   return true;
+}
+
+void HapticChannel::take_back_fault() CELL_RT {
+  state_.phase = HapticPhase::waiting;
+  state_.fault = HapticFault::none;
+  state_.awaited = HapticAwaited::nothing;
+  was_engaged_ = false;
+}
+
+// As a reset does it: the next good sample engages, and the force fades in from zero.
+void HapticChannel::engage_again_where_safe(Timestamp now) CELL_RT {
+  const HapticSettings& settings = instrument_->settings;
+  state_.awaited =
+      re_engagement_.awaits({.now = now,
+                             .fault = state_.fault,
+                             .by_itself = settings.re_engage && validator_.seen(),
+                             .last_bad = last_bad_,
+                             .model = models_.stale(now, settings.model_stale_after) ? nullptr : models_.model(),
+                             .hand = target_.x_WE,
+                             .tip = posture_.X_WE.translation()});
+  if (state_.awaited != HapticAwaited::nothing) return;
+  take_back_fault();
+  ++state_.re_engagements;
 }
 
 void HapticChannel::restart_force() CELL_RT {
@@ -138,13 +159,16 @@ bool HapticChannel::counts_while_waiting(HapticFault fault) const CELL_RT {
 
 void HapticChannel::latch(HapticFault fault) CELL_RT {
   if (state_.phase == HapticPhase::faulted) {
-    // The same event, known better.
-    if (fault == HapticFault::vanished && state_.fault == HapticFault::stale) state_.fault = fault;
+    // The same event, known better. A process that ends in order says before that its values do not count any more.
+    const bool may_be_an_end =
+        state_.fault == HapticFault::stale || state_.fault == HapticFault::invalid || state_.fault == HapticFault::torn;
+    if (fault == HapticFault::vanished && may_be_an_end) state_.fault = fault;
     return;
   }
   state_.phase = HapticPhase::faulted;
   state_.fault = fault;
   ++state_.faults;
+  re_engagement_.restart();
   restart_force();
 }
 
@@ -220,6 +244,7 @@ bool HapticChannel::step(const TickInput& input, JointSample& sample) CELL_RT {
     last_bad_ = input.now;
     latch(HapticFault::not_finite);
   }
+  if (state_.phase == HapticPhase::faulted) engage_again_where_safe(input.now);
   write_forces();
   write(input.now, input.period);
   if (!driving || state_.phase == HapticPhase::faulted) return false;

@@ -13,6 +13,7 @@
 #include "rt_core/haptics/model_watch.hpp"
 #include "rt_core/haptics/passivity.hpp"
 #include "rt_core/haptics/proxy.hpp"
+#include "rt_core/haptics/re_engagement.hpp"
 #include "rt_core/haptics/sample_validator.hpp"
 #include "rt_core/haptics/tip_solver.hpp"
 #include "rt_core/haptics/virtual_coupling.hpp"
@@ -60,6 +61,8 @@ class HapticChannel {
   HapticFault look(const TickInput& input, bool& fresh) CELL_RT;
   [[nodiscard]] bool counts_while_waiting(HapticFault fault) const CELL_RT;
   void latch(HapticFault fault) CELL_RT;
+  void take_back_fault() CELL_RT;
+  void engage_again_where_safe(Timestamp now) CELL_RT;
   void wait_or_engage(const TickInput& input, bool ready) CELL_RT;
   void engage(const TickInput& input) CELL_RT;
   void yield_to_what_appeared() CELL_RT;
@@ -82,6 +85,7 @@ class HapticChannel {
   Proxy proxy_;
   VirtualCoupling coupling_;
   Passivity passivity_;
+  ReEngagement re_engagement_;
   TipTarget target_;
   Posture posture_;
   TipPosture tip_;                                        // of posture_, in the base

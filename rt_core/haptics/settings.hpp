@@ -13,6 +13,12 @@ enum class Drive : std::uint8_t {
   joints,  // the device's axes are the instrument's joints, in their order
 };
 
+// Guards against late samples, models and ticks, and what follows on such a fault.
+enum class HapticProfile : std::uint8_t {
+  desktop,  // survives a machine that is busy with other things; such a fault passes by itself
+  strict,   // for a device whose force can do harm: milliseconds, and each fault stays until RESET_HAPTIC
+};
+
 struct HapticSettings {
   Drive drive = Drive::pose;
   Pose X_WD = Pose::Identity();  // the device's base in the world: its axes; the origin is the tip position
@@ -32,12 +38,24 @@ struct HapticSettings {
   double max_slew = 4000.0;              // N/s, at the device; a force that goes to zero for a fault is not slowed
   double max_speed = 3.0;                // m/s of the handle (drive joints: of the tip): faster is a jump
   Nanoseconds engage_time{300'000'000};  // in which the force fades in
-  Nanoseconds stale_after{3'000'000};    // of a device's sample
-  Nanoseconds model_stale_after{100'000'000};  // of the contact model
-  std::uint32_t allowed_missed_periods = 2;    // in a row
+  HapticProfile profile = HapticProfile::desktop;  // from which the next four are, where they are not given
+  Nanoseconds stale_after{100'000'000};            // of a device's sample
+  Nanoseconds model_stale_after{500'000'000};      // of the contact model
+  std::uint32_t allowed_missed_periods = 100;      // in a row
+  bool re_engage = true;                           // after a fault of time or transport (re_engagement.hpp)
   bool passivity_control = true;
   double energy_allowance = 1e-3;         // J that may be generated before the controller takes force away
   double max_passivity_damping = 1000.0;  // Ns/m, that taking force away may amount to
 };
+
+inline void apply(HapticProfile profile, HapticSettings& settings) {
+  const HapticSettings desktop;
+  const bool strict = profile == HapticProfile::strict;
+  settings.profile = profile;
+  settings.stale_after = strict ? Nanoseconds{3'000'000} : desktop.stale_after;
+  settings.model_stale_after = strict ? Nanoseconds{100'000'000} : desktop.model_stale_after;
+  settings.allowed_missed_periods = strict ? 2 : desktop.allowed_missed_periods;
+  settings.re_engage = !strict;
+}
 
 }  // namespace cellmirror::haptics

@@ -44,6 +44,7 @@ struct CanChannelStatus {
   std::uint64_t send_refused = 0;     // ENOBUFS and the like: the frame was not sent
   std::uint64_t receive_dropped = 0;  // as reported by the kernel (SO_RXQ_OVFL)
   std::uint64_t malformed = 0;        // datagrams or log lines that are no frames
+  std::uint64_t foreign = 0;          // datagrams of senders that allow_from does not name
   std::uint64_t error_frames = 0;
   std::uint64_t reopened = 0;  // number of recoveries
   std::string last_error;

@@ -15,7 +15,7 @@ enum class HapticPhase : std::uint8_t {
   clutched,  // the hand moves, the instrument does not; force zero
   engaging,  // the force is being faded in
   active,
-  faulted,  // latched: force zero until it is reset (RESET_HAPTIC)
+  faulted,  // latched: force zero until it is reset (RESET_HAPTIC), or passes by itself (HapticAwaited)
 };
 
 // The first that was met counts.
@@ -33,6 +33,16 @@ enum class HapticFault : std::uint8_t {
   not_passive,  // energy was generated faster than damping could take it
 };
 
+// What a latched fault waits for before the device engages again.
+enum class HapticAwaited : std::uint8_t {
+  nothing,       // no fault is latched
+  reset,         // RESET_HAPTIC: it does not pass by itself
+  device,        // samples without a cause of a fault, for a while
+  surroundings,  // a contact model that is not too old
+  outside,       // the hand and the tip outside of bodies
+  rest,          // the hand at rest
+};
+
 struct HapticState {
   HapticPhase phase = HapticPhase::closed;
   HapticFault fault = HapticFault::none;
@@ -47,6 +57,8 @@ struct HapticState {
   std::uint64_t torn = 0;     // reads that found the device writing
   std::uint64_t faults = 0;
   std::uint64_t resets = 0;
+  std::uint64_t re_engagements = 0;  // faults that passed by themselves
+  HapticAwaited awaited = HapticAwaited::nothing;
   std::uint64_t saturated = 0;  // ticks in which the force was cut to its limit or its slew limit
   Eigen::Vector3d x_device = Eigen::Vector3d::Zero();  // where the hand wants the tip, in the world
   Eigen::Vector3d x_proxy = Eigen::Vector3d::Zero();   // where the tip is: never inside of a body

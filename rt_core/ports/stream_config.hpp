@@ -2,6 +2,7 @@
 // Paths are absolute and already checked; numbers are SI. Places are those in the cell file, for what the drivers find.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct CanChannelConfig {
   std::string endpoint;
   bool fd = false;
   std::string interface = "lo";          // udp: the network interface that joins the group; loopback by default
+  std::vector<std::string> allow_from;   // udp: numeric addresses whose datagrams are taken; empty: all
   bool log_as_fast_as_possible = false;  // log: ignore the time stamps
   bool log_repeat = false;
 };
@@ -105,6 +107,20 @@ struct DbcStreamConfig {
   Place place = {};                    // of the stream's table
 };
 
+// DDS Security 1.1 of a participant: all of these files, or none. Certificates and the key are PEM; governance and
+// permissions are signed by the permissions CA (S/MIME).
+struct DdsSecurityConfig {
+  std::string identity_ca;
+  std::string certificate;
+  std::string private_key;
+  std::string permissions_ca;
+  std::string governance;
+  std::string permissions;
+
+  [[nodiscard]] bool enabled() const { return !identity_ca.empty(); }
+  auto operator<=>(const DdsSecurityConfig&) const = default;
+};
+
 // ROS 2's sensor_msgs/msg/JointState.
 struct DdsJointConfig {
   std::string ros_name;  // as in JointState.name
@@ -120,7 +136,8 @@ struct DdsStreamConfig {
   StreamAges ages;
   PlausibilityConfig plausibility;
   std::vector<DdsJointConfig> joints;
-  bool reliable = false;  // best effort matches every publisher
+  bool reliable = false;            // best effort matches every publisher
+  DdsSecurityConfig security = {};  // [dds.security]: the same for all streams and outputs
 };
 
 using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig>;
@@ -167,6 +184,7 @@ struct DdsOutputConfig {
   std::string markers_topic = "rt/cellmirror/markers";
   double rate_hz = 50.0;
   DdsPictureConfig pictures = {};
+  DdsSecurityConfig security = {};
 };
 
 // The System V queues of an instance, and the shared memory that it has beside those of haptic devices.

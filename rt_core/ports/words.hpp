@@ -27,6 +27,8 @@ inline constexpr std::array<std::string_view, 6> kHapticPhaseWords = {"closed", 
 inline constexpr std::array<std::string_view, 11> kHapticFaultWords = {
     "none",        "stale", "vanished",  "not_finite",  "invalid",    "jump",
     "two_writers", "torn",  "late_tick", "stale_model", "not_passive"};
+inline constexpr std::array<std::string_view, 6> kHapticAwaitedWords = {"nothing",      "reset",   "device",
+                                                                        "surroundings", "outside", "rest"};
 // Those of SET_MODE.
 inline constexpr std::array<std::string_view, kDisplayModes> kDisplayModeWords = {
     "WFRM_display", "SMEAR", "BFRM",         "CPU_BFRM", "CAM_MAINVIEW", "LGT_TWOSIDE", "TCP_DRAW",
@@ -45,6 +47,7 @@ static_assert(kImplausibilityWords.size() == std::size_t{std::to_underlying(Impl
 static_assert(kJointKindWords.size() == std::size_t{std::to_underlying(JointKind::prismatic)} + 1);
 static_assert(kHapticPhaseWords.size() == std::size_t{std::to_underlying(HapticPhase::faulted)} + 1);
 static_assert(kHapticFaultWords.size() == std::size_t{std::to_underlying(HapticFault::not_passive)} + 1);
+static_assert(kHapticAwaitedWords.size() == std::size_t{std::to_underlying(HapticAwaited::rest)} + 1);
 static_assert(kDisplayModeWords.size() == std::size_t{std::to_underlying(DisplayMode::antialiasing)} + 1);
 static_assert(kInverseClassWords.size() == std::size_t{std::to_underlying(InverseClass::boom_6)} + 1);
 
@@ -58,6 +61,9 @@ static_assert(kInverseClassWords.size() == std::size_t{std::to_underlying(Invers
 }
 [[nodiscard]] constexpr std::string_view word(HapticFault fault) {
   return kHapticFaultWords.at(std::to_underlying(fault));
+}
+[[nodiscard]] constexpr std::string_view word(HapticAwaited awaited) {
+  return kHapticAwaitedWords.at(std::to_underlying(awaited));
 }
 [[nodiscard]] constexpr std::string_view word(DisplayMode mode) {
   return kDisplayModeWords.at(std::to_underlying(mode));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "drivers/can/channel/open_channel.hpp"
 #include "rt_core/base/text.hpp"
@@ -78,6 +80,24 @@ Result<void> add_signals(const std::vector<std::string>& names, JointQuantity qu
     signal.quantity = quantity;
     signal.scale = quantity == JointQuantity::effort ? 1.0 : 1.0 / units_per_rad;
     signals.push_back(std::move(signal));
+  }
+  return {};
+}
+
+// All files or none; the library knows absolute paths only.
+Result<void> check_security(DdsSecurityConfig& security) {
+  if (security == DdsSecurityConfig{}) return {};
+  if (security.permissions_ca.empty()) security.permissions_ca = security.identity_ca;
+  for (std::string* file : {&security.identity_ca, &security.certificate, &security.private_key,
+                            &security.permissions_ca, &security.governance, &security.permissions}) {
+    if (file->empty()) {
+      return fail("DDS security needs all of its files",
+                  "give --identity-ca, --certificate, --private-key, --governance and --permissions");
+    }
+    std::error_code error;
+    const std::filesystem::path at = std::filesystem::canonical(*file, error);
+    if (error) return fail(fmt::format("{}: {}", printable(*file), error.message()));
+    *file = at.string();
   }
   return {};
 }
@@ -195,6 +215,8 @@ std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, cons
   config.groups = std::min(options.spread, common.robots);
   config.stamped = !options.no_stamp;
   config.seed = common.seed;
+  config.security = options.security;
+  if (auto complete = check_security(config.security); !complete) return wrong_usage(complete.error());
   auto motion = make_motion(common.motion, config.joint_names.size());
   if (!motion) return wrong_usage(motion.error());
   auto robots = DdsRobots::make(config, std::move(*motion));

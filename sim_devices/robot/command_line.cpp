@@ -87,6 +87,12 @@ void add_dds(cli::Command app, DdsOptions& options) {
   app.option("--prefix", options.prefix,
              "before each joint name; {} is the robot's number "
              "(default: none for one robot, robot{}_ for several on one topic)");
+  app.option("--identity-ca", options.security.identity_ca, "DDS security: the CA of all identities (PEM)");
+  app.option("--certificate", options.security.certificate, "DDS security: of this robot (PEM)");
+  app.option("--private-key", options.security.private_key, "DDS security: of the certificate (PEM)");
+  app.option("--permissions-ca", options.security.permissions_ca, "DDS security: default is the identity CA");
+  app.option("--governance", options.security.governance, "DDS security: signed by the permissions CA (S/MIME)");
+  app.option("--permissions", options.security.permissions, "DDS security: likewise");
   app.flag("--best-effort", options.best_effort, "instead of reliable");
   app.flag("--no-stamp", options.no_stamp, "header.stamp stays zero");
   app.option("--spread", options.spread, "send the robots of a period in this many groups, evenly spread")

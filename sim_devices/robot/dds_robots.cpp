@@ -31,8 +31,11 @@ Result<std::unique_ptr<DdsRobots>> DdsRobots::make(const DdsRobotsConfig& config
     Robot robot;
     robot.number = config.first_robot + i;
     if (own_topics || i == 0) {
-      auto writer = dds::JointStatePublisher::make(
-          {config.domain, config.interface_address, numbered(config.topic, robot.number), config.reliable, 64});
+      auto writer = dds::JointStatePublisher::make({.domain = config.domain,
+                                                    .interface_address = config.interface_address,
+                                                    .topic = numbered(config.topic, robot.number),
+                                                    .reliable = config.reliable,
+                                                    .security = config.security});
       if (!writer) return std::unexpected(writer.error());
       device->writers_.push_back(std::move(*writer));
     }

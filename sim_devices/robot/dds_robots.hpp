@@ -28,6 +28,7 @@ struct DdsRobotsConfig {
   int groups = 1;  // the robots of a period are spread over this many instants
   bool stamped = true;
   std::uint64_t seed = 1;
+  DdsSecurityConfig security = {};
 };
 
 class DdsRobots final : public FaultyDevice<JointStateMessage> {

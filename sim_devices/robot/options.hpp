@@ -12,6 +12,7 @@
 
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/can_channel.hpp"
+#include "rt_core/ports/stream_config.hpp"
 #include "sim_devices/robot/device.hpp"
 
 namespace cellmirror::sim {
@@ -67,6 +68,7 @@ struct DdsOptions {
   bool no_stamp = false;
   int spread = 1;
   double wait_for_reader_s = 0;
+  DdsSecurityConfig security = {};
 };
 
 // Why nothing can be built. Exit code 2: the arguments do not fit together; 1: what they name does not work.

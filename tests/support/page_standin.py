@@ -18,6 +18,7 @@ import struct
 import subprocess
 import sys
 import time
+import traceback
 
 import standin_jpeg
 
@@ -212,20 +213,27 @@ class Client:
                    "may_command": self.may_command and not self.options.read_only, "read_only": self.options.read_only})
 
     async def serve(self):
+        """Until the first of its three parts ends. A fault of ours ends the connection and is printed: a part that
+        ended alone would look like a gateway that sends nothing."""
         self.welcome()
-        tasks = [asyncio.create_task(self.send_live()), asyncio.create_task(self.send_pictures())]
-        try:
-            while True:
-                opcode, data = await self.receive()
-                if opcode == 8:
-                    return
-                if opcode == 1:
-                    self.follow(json.loads(data))
-        except (asyncio.IncompleteReadError, ConnectionError):
-            pass
-        finally:
-            for task in tasks:
-                task.cancel()
+        parts = [asyncio.create_task(part()) for part in (self.listen, self.send_live, self.send_pictures)]
+        done, others = await asyncio.wait(parts, return_when=asyncio.FIRST_COMPLETED)
+        for part in others:
+            part.cancel()
+        await asyncio.gather(*others, return_exceptions=True)
+        faults = [part.exception() for part in done if part.exception()]
+        for fault in faults:
+            if not isinstance(fault, (asyncio.IncompleteReadError, ConnectionError)):
+                traceback.print_exception(fault)
+                self.frame(8, struct.pack(">H", 1011) + b"the stand-in failed")
+
+    async def listen(self):
+        while True:
+            opcode, data = await self.receive()
+            if opcode == 8:
+                return
+            if opcode == 1:
+                self.follow(json.loads(data))
 
     async def receive(self):
         first, second = await self.reader.readexactly(2)
@@ -246,16 +254,24 @@ class Client:
             self.may_command = message.get("token") == self.options.token
             self.welcome()
         elif do == "picture":
-            self.wish = message
+            why = standin_jpeg.why_not(message)
+            if why:
+                self.send({"is": "refused", "id": 0, "text": why})
+            else:
+                self.wish = message
         elif do == "no_picture":
             self.wish = None
         elif do == "shown":
-            self.shown = message["sequence"]
+            # Pages decode pictures in no particular order. An acknowledgement that comes late takes nothing back: with
+            # two newer ones before it, no picture would be under way, and none would ever be sent again.
+            if self.shown < message["sequence"] <= self.sequence:
+                self.shown = message["sequence"]
         elif do == "command":
             why = self.cell.execute(message["text"]) if self.may_command else "this client may not command"
             self.send({"is": "reply", "id": message["id"], "done": why is None, "text": why or ""})
         elif do == "pick":
-            robot = self.cell.ids[0] if self.cell.ids and message["x"] > self.wish["width"] / 2 else ""
+            width = self.wish["width"] if self.wish else 0
+            robot = self.cell.ids[0] if self.cell.ids and 0 < width / 2 < message["x"] else ""
             path = f"{robot}.J_1.J_2" if robot else None
             self.send({"is": "picked", "id": message["id"], "path": path, "robot": robot})
 

@@ -87,6 +87,27 @@ def line(blocks, begin, end, colour):
             blocks[y][x] = colour
 
 
+def why_not(wish):
+    """What is wrong with a request, or None: as strict as the gateway (ipc/web/client_message.cpp) where a picture could
+    not be drawn."""
+    sizes = [wish.get("width"), wish.get("height")]
+    if not all(isinstance(size, int) and 16 <= size <= most for size, most in zip(sizes, (1920, 1200))):
+        return f"width and height {sizes} are no size of a picture"
+    if wish.get("view", 0) not in range(7):
+        return "views are 0 to 6"
+    view = wish.get("free")
+    if view is None:
+        return None
+    points = [view.get("viewpoint_m"), view.get("lookpoint_m")]
+    number = lambda value: isinstance(value, (int, float)) and abs(value) <= 1e4
+    if not all(isinstance(point, list) and len(point) == 3 and all(number(value) for value in point) for point in points):
+        return f"the free view {points} is not two points within 10 km"
+    if math.dist(*points) < 1e-6:
+        return "viewpoint and lookpoint of the free view are the same"
+    angle = view.get("opening_angle_rad", 0.7)
+    return None if number(angle) and 1e-3 <= angle <= 3.1 else f"opening_angle_rad {angle} is out of range"
+
+
 def picture(cell, wish):
     width, height = wish["width"], wish["height"]
     columns, rows = (width + 7) // 8, (height + 7) // 8

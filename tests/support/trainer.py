@@ -16,7 +16,9 @@ LEFT = {"tip": (-0.0413, -0.0169, 0.1115), "into": "0.5722,0.3587,-0.7374"}
 RIGHT = {"tip": (0.0413, -0.0169, 0.1115), "into": "-0.5722,0.3587,-0.7374"}
 
 # Ordinary machines are late at times; a test of faults is not to find others than it makes.
+# What is latched is to stay, so that they see it.
 PATIENT = """
+profile = "strict"
 stale_after_s = 0.03
 model_stale_after_s = 10.0
 allowed_missed_periods = 500

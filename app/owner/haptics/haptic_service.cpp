@@ -270,12 +270,14 @@ void HapticService::follow_process(Device& device, const HapticState& state) {
 }
 
 void HapticService::report_faults(Device& device, const HapticState& state) {
+  if (state.re_engagements > device.re_engagements_seen)
+    log_info("haptic.fault robot=" + device.config.robot, "the fault has passed: the device engages again");
+  device.re_engagements_seen = state.re_engagements;
   if (state.faults == device.faults_seen) return;
   const bool news = state.faults > device.faults_seen && state.phase == HapticPhase::faulted;
   device.faults_seen = state.faults;
   if (!news) return;
-  log_warning("haptic.fault robot=" + device.config.robot, "{}: {}; no force until RESET_HAPTIC {}. {}",
-              word(state.fault), explanation(state.fault), device.config.robot, remedy(state.fault));
+  log_warning("haptic.fault robot=" + device.config.robot, "no force: {}", fault_text(state, device.config.robot));
 }
 
 void HapticService::follow_cell(Device& device) {

@@ -81,6 +81,7 @@ class HapticService {
     ProcessWatch process;
     std::uint64_t samples_seen = 0;
     std::uint64_t faults_seen = 0;
+    std::uint64_t re_engagements_seen = 0;
     bool gone = false;
   };
 

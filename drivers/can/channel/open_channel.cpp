@@ -14,7 +14,7 @@ Result<std::unique_ptr<CanChannel>> open_can_channel(const CanChannelConfig& con
     return open_socketcan_channel(socketcan->interface);
   }
   if (const auto* udp = std::get_if<UdpEndpoint>(&*endpoint)) {
-    return open_udp_channel(*udp, config.interface);
+    return open_udp_channel(*udp, config.interface, config.allow_from);
   }
   LogChannelOptions options;
   options.file = std::get<LogEndpoint>(*endpoint).file;

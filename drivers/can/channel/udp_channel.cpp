@@ -3,16 +3,21 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <net/if.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <vector>
 
 #include "drivers/can/channel/error_frame.hpp"
 #include "drivers/can/channel/socket_channel.hpp"
 #include "drivers/can/channel/udp_datagram.hpp"
+#include "rt_core/base/text.hpp"
 
 namespace cellmirror::can {
 namespace {
@@ -65,6 +70,36 @@ bool same_sender(const sockaddr_storage& a, const sockaddr_storage& b) {
   return x.sin6_port == y.sin6_port && std::memcmp(&x.sin6_addr, &y.sin6_addr, sizeof x.sin6_addr) == 0;
 }
 
+// The address alone: 4 bytes, or 16.
+using SourceAddress = std::vector<std::uint8_t>;
+
+std::optional<SourceAddress> parse_source(const std::string& text) {
+  SourceAddress v4(sizeof(in_addr));
+  if (inet_pton(AF_INET, text.c_str(), v4.data()) == 1) return v4;
+  SourceAddress v6(sizeof(in6_addr));
+  if (inet_pton(AF_INET6, text.c_str(), v6.data()) == 1) return v6;
+  return std::nullopt;
+}
+
+bool is_from(const sockaddr_storage& sender, const SourceAddress& source) {
+  if (sender.ss_family == AF_INET && source.size() == sizeof(in_addr)) {
+    sockaddr_in v4{};
+    std::memcpy(&v4, &sender, sizeof v4);
+    return std::memcmp(&v4.sin_addr, source.data(), source.size()) == 0;
+  }
+  if (sender.ss_family != AF_INET6 || source.size() != sizeof(in6_addr)) return false;
+  sockaddr_in6 v6{};
+  std::memcpy(&v6, &sender, sizeof v6);
+  return std::memcmp(&v6.sin6_addr, source.data(), source.size()) == 0;
+}
+
+std::string text_of(const sockaddr_storage& sender) {
+  std::array<char, NI_MAXHOST> text{};
+  const int error = getnameinfo(reinterpret_cast<const sockaddr*>(&sender), sizeof sender, text.data(), text.size(),
+                                nullptr, 0, NI_NUMERICHOST);
+  return error == 0 ? std::string(text.data()) : std::string("an unknown address");
+}
+
 std::unexpected<Error> socket_failure(std::string_view what) {
   if (errno == ENETUNREACH) {
     return fail(
@@ -77,8 +112,8 @@ std::unexpected<Error> socket_failure(std::string_view what) {
 
 class UdpChannel final : public SocketChannel {
  public:
-  UdpChannel(UdpEndpoint endpoint, std::string interface)
-      : endpoint_(std::move(endpoint)), interface_(std::move(interface)) {}
+  UdpChannel(UdpEndpoint endpoint, std::string interface, std::vector<SourceAddress> allowed)
+      : endpoint_(std::move(endpoint)), interface_(std::move(interface)), allowed_(std::move(allowed)) {}
 
   [[nodiscard]] Result<void> open_socket() override;
   bool send(const CanFrame& frame) override;
@@ -90,9 +125,11 @@ class UdpChannel final : public SocketChannel {
   [[nodiscard]] Result<Descriptor> open_sender() const;
   [[nodiscard]] int family() const { return endpoint_.ipv6 ? AF_INET6 : AF_INET; }
   void take(std::span<const std::uint8_t> datagram, bool cut, Timestamp receive_time);
+  [[nodiscard]] bool refuses(const sockaddr_storage& sender);
 
   UdpEndpoint endpoint_;
   std::string interface_;
+  std::vector<SourceAddress> allowed_;  // empty: all
   unsigned index_ = 0;
   Descriptor sender_;
   sockaddr_storage own_address_{};
@@ -194,10 +231,20 @@ bool UdpChannel::fill() {
     const auto k = static_cast<std::size_t>(i);
     const Ancillary ancillary = Ancillary::of(messages[k].msg_hdr);
     note_dropped(ancillary);
-    if (same_sender(senders[k], own_address_)) continue;
+    if (same_sender(senders[k], own_address_) || refuses(senders[k])) continue;
     const bool cut = (messages[k].msg_hdr.msg_flags & MSG_TRUNC) != 0;
     take(std::span(data[k]).first(messages[k].msg_len), cut, clocks.monotonic(ancillary.stamp_real_ns));
   }
+  return true;
+}
+
+bool UdpChannel::refuses(const sockaddr_storage& sender) {
+  const bool allowed =
+      allowed_.empty() || std::ranges::any_of(allowed_, [&](const auto& source) { return is_from(sender, source); });
+  if (allowed) return false;
+  // The text is formatted at the first of a row only: a stranger may send a lot.
+  if (status_.foreign++ % 1000 == 0)
+    status_.last_error = fmt::format("datagram from {} refused: allow_from does not name it", text_of(sender));
   return true;
 }
 
@@ -240,8 +287,15 @@ bool UdpChannel::send(const CanFrame& frame) {
 
 }  // namespace
 
-Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint, const std::string& interface) {
-  auto channel = std::make_unique<UdpChannel>(endpoint, interface);
+Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint, const std::string& interface,
+                                                     const std::vector<std::string>& allow_from) {
+  std::vector<SourceAddress> allowed;
+  for (const std::string& text : allow_from) {
+    auto source = parse_source(text);
+    if (!source) return fail(fmt::format("allow_from: {} is no numeric address", printable(text)));
+    allowed.push_back(std::move(*source));
+  }
+  auto channel = std::make_unique<UdpChannel>(endpoint, interface, std::move(allowed));
   if (const auto opened = channel->open_socket(); !opened) return std::unexpected(opened.error());
   return channel;
 }

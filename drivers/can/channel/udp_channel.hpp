@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "drivers/can/channel/endpoint.hpp"
 #include "rt_core/base/result.hpp"
@@ -12,8 +13,11 @@ namespace cellmirror::can {
 
 // `interface`: the network interface that joins the group and sends; no frame crosses another one. Hop limit 1. What
 // this channel sends does not come back to it, but reaches every other member of the group on this machine. Datagrams
-// that are no frames are counted as malformed. Fails where the interface does not exist or cannot join.
+// that are no frames are counted as malformed. `allow_from`: numeric addresses; datagrams of other senders are refused
+// and counted as foreign; empty: all are taken. Fails where the interface does not exist or cannot join, and for a text
+// that is no address.
 [[nodiscard]] Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint,
-                                                                   const std::string& interface);
+                                                                   const std::string& interface,
+                                                                   const std::vector<std::string>& allow_from = {});
 
 }  // namespace cellmirror::can

@@ -175,13 +175,15 @@ JointStreamStatus CanStream::status() const {
   const auto& [bus, rate, ended] = published_.read().value;
   status.rate_hz = rate.per_second(now);
   status.lost += bus.receive_dropped;
-  status.rejected += bus.malformed;
+  status.rejected += bus.malformed + bus.foreign;
   if (const std::string condition = bus_condition(bus, ended); !condition.empty()) status.condition = condition;
   status.details.emplace_back("bus", words(bus.bus));
   status.details.emplace_back(
       "channel", fmt::format("{} received, {} sent, {} refused, {} dropped, {} malformed, {} error frames, {} reopened",
                              bus.received, bus.sent, bus.send_refused, bus.receive_dropped, bus.malformed,
                              bus.error_frames, bus.reopened));
+  if (bus.foreign > 0)
+    status.details.emplace_back("datagrams of senders beyond allow_from", fmt::format("{}", bus.foreign));
   if (!bus.last_error.empty()) status.details.emplace_back("last channel error", bus.last_error);
   return status;
 }

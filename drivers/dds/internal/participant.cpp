@@ -15,6 +15,7 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -82,7 +83,33 @@ void set_discovery(fd::DomainParticipantQos& qos, const std::string& address) {
 // The library ends the process over a port beyond 65535.
 int peers_per_host(int domain) { return std::min(kPeersPerHost, (65534 - kFirstPort - kPortsPerDomain * domain) / 2); }
 
-fd::DomainParticipantQos participant_qos(int domain, const std::string& address) {
+// DDS Security 1.1, 9.3 to 9.5: the builtin plugins.
+void set_security(fd::DomainParticipantQos& qos, const DdsSecurityConfig& security) {
+  if (!security.enabled()) return;
+  auto& properties = qos.properties().properties();
+  const auto set = [&properties](std::string name, std::string value) {
+    properties.emplace_back("dds.sec." + std::move(name), std::move(value));
+  };
+  const auto file = [](const std::string& path) { return "file://" + path; };
+  set("auth.plugin", "builtin.PKI-DH");
+  set("auth.builtin.PKI-DH.identity_ca", file(security.identity_ca));
+  set("auth.builtin.PKI-DH.identity_certificate", file(security.certificate));
+  set("auth.builtin.PKI-DH.private_key", file(security.private_key));
+  set("access.plugin", "builtin.Access-Permissions");
+  set("access.builtin.Access-Permissions.permissions_ca", file(security.permissions_ca));
+  set("access.builtin.Access-Permissions.governance", file(security.governance));
+  set("access.builtin.Access-Permissions.permissions", file(security.permissions));
+  set("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
+// Why the library, which gives no reason, may have made no participant.
+std::string remedy_for(const DdsSecurityConfig& security) {
+  if (!security.enabled()) return "look whether the UDP ports of the domain are free (7400 + 250 * domain and above)";
+  return "look at the files of [dds.security]: the key belongs to the certificate, the CAs have signed the others, "
+         "the subject in the permissions is that of the certificate, the dates are valid (docs/dds.md)";
+}
+
+fd::DomainParticipantQos participant_qos(int domain, const std::string& address, const DdsSecurityConfig& security) {
   fd::DomainParticipantQos qos;
   qos.name("cellmirror");
   // UDP alone: shared memory is hardly faster at these sizes and leaves its segments behind after kill -9
@@ -96,6 +123,7 @@ fd::DomainParticipantQos participant_qos(int domain, const std::string& address)
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   set_discovery(qos, address);
+  set_security(qos, security);
   return qos;
 }
 
@@ -126,22 +154,24 @@ Result<void> check_topic(std::string_view topic) {
 
 Participant::Participant(std::shared_ptr<fd::DomainParticipantFactory> factory) : factory_(std::move(factory)) {}
 
-Result<std::shared_ptr<Participant>> Participant::shared(int domain, const std::string& interface_address) {
+Result<std::shared_ptr<Participant>> Participant::shared(int domain, const std::string& interface_address,
+                                                         const DdsSecurityConfig& security) {
   static std::mutex mutex;
-  static std::map<std::pair<int, std::string>, std::weak_ptr<Participant>> participants;
+  static std::map<std::tuple<int, std::string, DdsSecurityConfig>, std::weak_ptr<Participant>> participants;
   if (auto ok = check_domain(domain); !ok) return std::unexpected(ok.error());
   if (auto ok = check_address(interface_address); !ok) return std::unexpected(ok.error());
   const std::scoped_lock lock(mutex);
-  auto& entry = participants[{domain, interface_address}];
+  auto& entry = participants[{domain, interface_address, security}];
   if (auto existing = entry.lock()) return existing;
   try {
     redirect_library_log();
     std::shared_ptr<Participant> made(new Participant(fd::DomainParticipantFactory::get_shared_instance()));
     const auto as_domain = static_cast<fd::DomainId_t>(domain);
-    made->participant_ = made->factory_->create_participant(as_domain, participant_qos(domain, interface_address));
+    made->participant_ =
+        made->factory_->create_participant(as_domain, participant_qos(domain, interface_address, security));
     if (made->participant_ == nullptr) {
       return fail(fmt::format("no DDS participant in domain {} on {}", domain, interface_address),
-                  "look whether the UDP ports of the domain are free (7400 + 250 * domain and above)");
+                  remedy_for(security));
     }
     made->publisher_ = made->participant_->create_publisher(fd::PublisherQos{});
     made->subscriber_ = made->participant_->create_subscriber(fd::SubscriberQos{});

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/stream_config.hpp"
 
 // The library's headers take seconds to compile: only sources that call it include them.
 namespace eprosima::fastdds::dds {
@@ -34,11 +35,13 @@ struct EndpointConfig {
 [[nodiscard]] Result<void> check_domain(int domain);
 [[nodiscard]] Result<void> check_topic(std::string_view topic);
 
-// One for each domain and interface in use; lives as long as it is referenced. Any thread.
+// One for each domain, interface and security in use; lives as long as it is referenced. Any thread.
 class Participant {
  public:
-  // `interface_address`: an IPv4 address of this machine; nothing leaves by other interfaces.
-  [[nodiscard]] static Result<std::shared_ptr<Participant>> shared(int domain, const std::string& interface_address);
+  // `interface_address`: an IPv4 address of this machine; nothing leaves by other interfaces. `security`: absolute
+  // paths; where it is enabled, peers that do not prove their identity are not seen.
+  [[nodiscard]] static Result<std::shared_ptr<Participant>> shared(int domain, const std::string& interface_address,
+                                                                   const DdsSecurityConfig& security);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;

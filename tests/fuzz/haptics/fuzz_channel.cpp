@@ -1,5 +1,5 @@
 // Whatever a device and a worker say: the force stays finite and within its limit, the instrument within its joints,
-// and a fault stays until it is taken back.
+// and a fault stays until it is taken back, or passes by itself where it may.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -53,6 +53,8 @@ HapticSettings settings_from(Bytes& bytes) {
   settings.passivity_control = (choices & 8) == 0;
   settings.workspace_scale = (choices & 16) != 0 ? 0.3 : 2.0;
   settings.force_scale = (choices & 32) != 0 ? 0.0 : 1.5;
+  apply((choices & 64) != 0 ? HapticProfile::strict : HapticProfile::desktop, settings);
+  settings.re_engage = (choices & 128) != 0;
   settings.X_WD.translation() = Eigen::Vector3d(0, 0, -0.15);
   return settings;
 }
@@ -94,7 +96,7 @@ void change_sample(Bytes& bytes, test_rig::Rig& rig) {
   }
 }
 
-void check(const test_rig::Rig& rig, bool moved, HapticPhase before) {
+void check(const test_rig::Rig& rig, bool moved, const HapticState& earlier) {
   const HapticState& state = rig.state();
   const HapticOutput& output = rig.port.output;
   CELLMIRROR_EXPECTS(output.force_D.allFinite() && output.force_E.allFinite() && output.torque_D.allFinite());
@@ -103,7 +105,10 @@ void check(const test_rig::Rig& rig, bool moved, HapticPhase before) {
   for (const double torque : output.joint_torques) CELLMIRROR_EXPECTS(std::isfinite(torque));
   CELLMIRROR_EXPECTS(state.x_proxy.allFinite() && state.x_device.allFinite());
   CELLMIRROR_EXPECTS((state.phase == HapticPhase::faulted) == (state.fault != HapticFault::none));
-  CELLMIRROR_EXPECTS(before != HapticPhase::faulted || state.phase == HapticPhase::faulted);
+  CELLMIRROR_EXPECTS((state.phase == HapticPhase::faulted) == (state.awaited != HapticAwaited::nothing));
+  const bool ended = earlier.phase == HapticPhase::faulted && state.phase != HapticPhase::faulted;
+  CELLMIRROR_EXPECTS(!ended || (rig.instrument.settings.re_engage && passes_by_itself(earlier.fault)));
+  CELLMIRROR_EXPECTS(!ended || state.phase == HapticPhase::waiting);
   const bool silent = state.phase == HapticPhase::faulted || state.phase == HapticPhase::waiting;
   CELLMIRROR_EXPECTS(!silent || (output.force_D.isZero(0) && !moved));
   for (std::size_t i = 0; moved && i < rig.instrument.joint_count; ++i) {
@@ -138,7 +143,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
       (void)rig.sut.reset();
     }
-    const HapticPhase before = rig.state().phase;
+    const HapticState before = rig.state();
     const bool moved = rig.tick();
     check(rig, moved, before);
   }

@@ -27,7 +27,7 @@ def trainer(replace=(), guards=True):
     first = 0x43500000 + int(uuid.uuid4().hex[:4], 16) * 4
     scratch.keys = {"LAP_LEFT": first, "LAP_RIGHT": first + 1}
     for robot, key in scratch.keys.items():
-        wide = "\nstale_after_s = 0.5\nmodel_stale_after_s = 5.0\nallowed_missed_periods = 1000" if guards else ""
+        wide = "\nprofile = \"strict\"\nstale_after_s = 0.5\nmodel_stale_after_s = 5.0\nallowed_missed_periods = 1000" if guards else ""
         text, count = re.subn(rf'(robot = "{robot}"\n)shm_key = \w+', rf"\g<1>shm_key = {key}{wide}", text)
         assert count == 1, f"{robot} has no shm_key in the trainer cell"
     text = re.sub(r"(\[foot_switches\]\nkey = )\w+", rf"\g<1>{first + 3}", text)

@@ -1,5 +1,7 @@
 """Robots of the cell follow simulated controllers over real protocols; every fault is seen, counted and recovered from."""
 
+import socket
+import struct
 import time
 import unittest
 
@@ -120,6 +122,45 @@ class Mirroring(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: self.scratch.robot(DDS_ROBOT)["stream"]["rejected"] > 5))
         for joint in self.scratch.robot(DDS_ROBOT)["joints"]:
             self.assertTrue(abs(joint["position"]) < 10)
+
+
+def address_of_simulators():
+    """From which datagrams to the group leave by the loopback interface: not 127.0.0.1 on every machine."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        by = struct.pack("@4s4si", bytes(4), bytes(4), socket.if_nametoindex("lo"))
+        probe.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, by)
+        probe.connect(("239.74.163.2", 43113))
+        return probe.getsockname()[0]
+
+
+class AllowedSources(unittest.TestCase):
+    """allow_from of a udp channel."""
+
+    def stream_with(self, address):
+        scratch = g.Scratch()
+        self.addCleanup(scratch.remove)
+        channel = 'channel = "udp:239.74.163.2:43113"'
+        text = scratch.cell_file.read_text()
+        self.assertIn(channel, text)
+        scratch.cell_file.write_text(text.replace(channel, f'{channel}\nallow_from = ["{address}"]'))
+        gateway = g.Gateway(scratch)
+        self.addCleanup(gateway.close)
+        simulator = g.sim_robot("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100", "--self-starting")
+        self.addCleanup(simulator.close)
+        done = scratch.send(f"ROBOT {CAN_ROBOT} online")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return lambda: scratch.robot(CAN_ROBOT)["stream"]
+
+    def test_senders_that_are_named_are_taken(self):
+        stream = self.stream_with(address_of_simulators())
+        self.assertTrue(g.eventually(lambda: stream()["received"] > 100, 20), stream())
+        self.assertEqual(stream()["rejected"], 0)
+
+    def test_all_others_are_refused_and_counted(self):
+        stream = self.stream_with("127.0.0.9")
+        self.assertTrue(g.eventually(lambda: stream()["rejected"] > 300, 20), stream())
+        self.assertEqual(stream()["received"], 0)
+        self.assertNotEqual(stream()["state"], "fresh")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import browser
@@ -11,18 +12,27 @@ SUPPORT = browser.SOURCE / "tests" / "support"
 
 
 class StandIn:
+    """What it prints on stderr is a fault of its own: the test fails with it, whatever the page made of it."""
+
     def __init__(self, *arguments):
+        self.errors = tempfile.TemporaryFile("w+")
         self.child = subprocess.Popen(["/usr/bin/python3", "-B", SUPPORT / "page_standin.py", *arguments], text=True,
-                                      stdout=subprocess.PIPE, stdin=subprocess.DEVNULL)
+                                      stdout=subprocess.PIPE, stderr=self.errors, stdin=subprocess.DEVNULL)
         self.address = self.child.stdout.readline().strip()
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
+        ended = self.child.poll()
         self.child.kill()
         self.child.wait()
         self.child.stdout.close()
+        with self.errors:
+            self.errors.seek(0)
+            told = self.errors.read()
+        if told or ended is not None:
+            raise AssertionError(f"the stand-in failed (status {ended}):\n{told}")
 
 
 def setUpModule():

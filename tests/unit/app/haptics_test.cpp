@@ -121,10 +121,33 @@ TEST_F(Haptics, StatusTellsPhaseAgeAndForce) {
 TEST_F(Haptics, TableTellsAFaultAndWhatToDo) {
   tick.haptics[kChannel].phase = HapticPhase::faulted;
   tick.haptics[kChannel].fault = HapticFault::two_writers;
+  tick.haptics[kChannel].awaited = HapticAwaited::reset;
   const std::string sut = haptics_table({{"haptics", haptics_json(cell_state, tick, contacts, tick.time)}});
   EXPECT_NE(sut.find("FAULT two_writers"), std::string::npos) << sut;
   EXPECT_NE(sut.find("end one of the two processes; then RESET_HAPTIC LAP"), std::string::npos) << sut;
   EXPECT_EQ(haptics_table(nlohmann::json::object()), "");
+}
+
+TEST_F(Haptics, TableTellsWhatAFaultThatPassesByItselfWaitsFor) {
+  tick.haptics[kChannel].phase = HapticPhase::faulted;
+  tick.haptics[kChannel].fault = HapticFault::stale;
+  tick.haptics[kChannel].awaited = HapticAwaited::rest;
+  const nlohmann::json status = haptics_json(cell_state, tick, contacts, tick.time);
+  EXPECT_EQ(status.at("devices").at(0).at("awaits"), "rest");
+  const std::string sut = haptics_table({{"haptics", status}});
+  EXPECT_NE(sut.find("engages again by itself, waits for the hand at rest"), std::string::npos) << sut;
+  EXPECT_EQ(sut.find("RESET_HAPTIC"), std::string::npos) << sut;
+}
+
+TEST(HapticFaultText, NamesTheRemedyOfWhatStaysAndWhatTheOthersWaitFor) {
+  HapticState state;
+  EXPECT_EQ(fault_text(state, "LAP"), "");
+  state.fault = HapticFault::jump;
+  state.awaited = HapticAwaited::reset;
+  EXPECT_NE(fault_text(state, "LAP").find("; then RESET_HAPTIC LAP"), std::string::npos) << fault_text(state, "LAP");
+  state.fault = HapticFault::vanished;
+  state.awaited = HapticAwaited::outside;
+  EXPECT_NE(fault_text(state, "LAP").find("waits for the hand outside of bodies"), std::string::npos);
 }
 
 TEST_F(Haptics, TableTellsThatTheSurroundingsAreAwaited) {

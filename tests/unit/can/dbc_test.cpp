@@ -115,6 +115,29 @@ TEST(Dbc, PutIsTheInverseOfGet) {
   }
 }
 
+TEST(Dbc, PutClampsToTheFirstValueThatDoesNotFitAndLeavesTheNeighbours) {
+  DbcSignal sut;
+  sut.start = 8;
+  sut.length = 8;
+  const auto put = [&sut](double value) {
+    CanFrame frame;
+    frame.length = 8;
+    frame.data.fill(0x55);
+    put_physical_value(sut, value, std::span(frame.data).first(8));
+    EXPECT_EQ(frame.data[0], 0x55) << value;
+    EXPECT_EQ(frame.data[2], 0x55) << value;
+    return physical_value(sut, frame.payload());
+  };
+  EXPECT_EQ(put(255), 255.0);
+  EXPECT_EQ(put(256), 255.0);
+  EXPECT_EQ(put(-1), 0.0);
+  sut.is_signed = true;
+  EXPECT_EQ(put(127), 127.0);
+  EXPECT_EQ(put(128), 127.0);
+  EXPECT_EQ(put(-128), -128.0);
+  EXPECT_EQ(put(-129), -128.0);
+}
+
 TEST(Dbc, TellsAllMistakesWithTheirPlaces) {
   const std::string text =
       "BO_ 1 A: 8 X\n"
@@ -226,6 +249,17 @@ TEST_F(DbcSessionTest, FdFrameLongerThanTheMessageIsTaken) {
   ASSERT_EQ(recorder.samples.size(), 1U);
   EXPECT_DOUBLE_EQ(recorder.samples[0].position[2], 1.5);
   EXPECT_DOUBLE_EQ(recorder.samples[0].effort[2], -2.5);
+}
+
+TEST_F(DbcSessionTest, TakesNoValueFromRemoteAndErrorFrames) {
+  CanFrame asked = frame(0x100, {0x7C, 0x9E, 0xFE, 0xFF, 0xF4, 0xFF, 0, 0});
+  asked.remote = true;
+  sut->receive(asked, {1});
+  asked.remote = false;
+  asked.error = true;
+  sut->receive(asked, {2});
+  EXPECT_TRUE(recorder.samples.empty());
+  EXPECT_EQ(sut->counters().rejected, 0U);
 }
 
 TEST_F(DbcSessionTest, RefusesShortFramesAndCountsThem) {

@@ -213,6 +213,21 @@ TEST_F(DriveTest, HeartbeatPeriodComesFromItsObject) {
   EXPECT_EQ(sent.take(), (Frames{frame(0x705, {0x7F})}));
 }
 
+TEST_F(DriveTest, HeartbeatsThatWereMissedAreNotMadeUpFor) {
+  Cia402Drive sut = make();
+  sut.power_on(now);
+  sut.receive(frame(0x605, {0x2B, 0x17, 0x10, 0x00, 0x64, 0x00, 0, 0}), now);  // 100 ms
+  sent.take();
+  sut.advance(now + 100ms);
+  EXPECT_EQ(sut.next_due(), now + 200ms) << "in time: the phase is kept";
+  sent.take();
+  sut.advance(now + 750ms);
+  EXPECT_EQ(sent.take().size(), 1U);
+  EXPECT_EQ(sut.next_due(), now + 850ms);
+  sut.advance(now + 751ms);
+  EXPECT_TRUE(sent.take().empty());
+}
+
 TEST_F(DriveTest, ControlwordByRpdoEnablesOperation) {
   config.follows_targets = true;
   Cia402Drive sut = make();
@@ -256,6 +271,36 @@ TEST_F(DriveTest, ProfilePositionMovesAndReachesTheTarget) {
   sut.advance(now + 110ms);
   EXPECT_EQ(sut.position(), 100);
   EXPECT_NE(sut.statusword() & kStatuswordTargetReached, 0);
+}
+
+TEST_F(DriveTest, ATargetIsTakenWithTheRisingEdgeOfNewSetPointAlone) {
+  config.follows_targets = true;
+  Cia402Drive sut = make();
+  to_operational(sut);
+  const auto write = [&](std::initializer_list<int> bytes) { sut.receive(frame(0x605, bytes), now); };
+  write({0x2F, 0x60, 0x60, 0x00, 1, 0, 0, 0});        // profile position
+  write({0x23, 0x81, 0x60, 0x00, 0xE8, 0x03, 0, 0});  // 1000 increments a second
+  write({0x23, 0x7A, 0x60, 0x00, 0x64, 0, 0, 0});     // target 100
+  for (const int word : {0x06, 0x07, 0x0F, 0x1F}) write({0x2B, 0x40, 0x60, 0x00, word, 0, 0, 0});
+  write({0x23, 0x7A, 0x60, 0x00, 0x0A, 0, 0, 0});  // target 10, while bit 4 stays on
+  write({0x2B, 0x40, 0x60, 0x00, 0x1F, 0, 0, 0});
+  for (int i = 1; i <= 200; ++i) sut.advance(now + i * 1ms);
+  EXPECT_EQ(sut.position(), 100) << "bit 4 was on already";
+  write({0x2B, 0x40, 0x60, 0x00, 0x0F, 0, 0, 0});
+  write({0x2B, 0x40, 0x60, 0x00, 0x1F, 0, 0, 0});
+  for (int i = 201; i <= 400; ++i) sut.advance(now + i * 1ms);
+  EXPECT_EQ(sut.position(), 10);
+}
+
+// CiA 301, 7.3.2.1: no EMCY in the state "stopped".
+TEST_F(DriveTest, AStoppedNodeSendsNoEmcy) {
+  Cia402Drive sut = make();
+  to_operational(sut);
+  sut.receive(frame(0x000, {0x02, 0x05}), now);
+  sent.take();
+  sut.raise_fault(0x8611, 0x21, now);
+  EXPECT_TRUE(sent.take().empty());
+  EXPECT_EQ(sut.state(), Cia402State::fault);
 }
 
 TEST_F(DriveTest, FaultIsToldAndReset) {

@@ -121,6 +121,28 @@ TEST_F(SdoServerTest, RefusesASegmentWithTheWrongToggleBitAndForgetsTheTransfer)
   EXPECT_EQ(sut.receive(frame(0x605, {0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}))->data[0], 0x80);
 }
 
+TEST_F(SdoServerTest, KeepsTheObjectWhereALaterSegmentRepeatsTheToggleBit) {
+  (void)sut.receive(frame(0x605, {0x21, 0x08, 0x10, 0x00, 0x08, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'})),
+            frame(0x585, {0x20, 0, 0, 0, 0, 0, 0, 0}));
+  // The last segment, t 0 again: 0x05030000 toggle bit not alternated.
+  EXPECT_EQ(sut.receive(frame(0x605, {0x0D, 'h', 0, 0, 0, 0, 0, 0})),
+            frame(0x585, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05}));
+  const auto& value = device.objects.find({0x1008, 0})->value;
+  EXPECT_EQ(std::string(value.begin(), value.end()), "servo drive");
+}
+
+TEST_F(SdoServerTest, RefusesToGiveASegmentForTheWrongToggleBitAndForgetsTheTransfer) {
+  const CanFrame refused = frame(0x585, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05});
+  (void)sut.receive(frame(0x605, {0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x70, 0, 0, 0, 0, 0, 0, 0})), refused) << "the first has t 0";
+  EXPECT_EQ(sut.receive(frame(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0}))->data[0], 0x80) << "the transfer has ended";
+
+  (void)sut.receive(frame(0x605, {0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0}));
+  EXPECT_EQ(sut.receive(frame(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0}))->data[0], 0x00);
+  EXPECT_EQ(sut.receive(frame(0x605, {0x60, 0, 0, 0, 0, 0, 0, 0})), refused) << "asked twice for the same segment";
+}
+
 TEST_F(SdoServerTest, BoundsWhatAClientAnnouncesAndSends) {
   EXPECT_EQ(sut.receive(frame(0x605, {0x21, 0x08, 0x10, 0x00, 0, 0, 0, 0x7F}))->data[0], 0x80);
   (void)sut.receive(frame(0x605, {0x20, 0x08, 0x10, 0x00, 0, 0, 0, 0}));  // without a size
@@ -174,6 +196,46 @@ TEST(SdoClient, SegmentedUpload) {
   EXPECT_FALSE(sut.receive(frame(0x585, {0x1B, '8', '9', 0, 0, 0, 0, 0}), {4}));
   ASSERT_EQ(sut.state(), SdoClient::State::done);
   EXPECT_EQ(std::string(sut.value().begin(), sut.value().end()), "123456789");
+}
+
+TEST(SdoClient, AbortsADownloadWhoseAnswerHasTheWrongToggleBit) {
+  const std::uint8_t value[] = {'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'};
+  // 0x05030000 toggle bit not alternated.
+  const CanFrame aborted = frame(0x605, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05});
+  for (const bool first : {true, false}) {
+    SdoClient sut(5, 100ms);
+    (void)sut.download({0x1008, 0}, value, {1});
+    (void)sut.receive(frame(0x585, {0x60, 0x08, 0x10, 0x00, 0, 0, 0, 0}), {2});
+    if (first) {
+      EXPECT_EQ(sut.receive(frame(0x585, {0x30, 0, 0, 0, 0, 0, 0, 0}), {3}), aborted);
+    } else {
+      (void)sut.receive(frame(0x585, {0x20, 0, 0, 0, 0, 0, 0, 0}), {3});
+      EXPECT_EQ(sut.receive(frame(0x585, {0x20, 0, 0, 0, 0, 0, 0, 0}), {4}), aborted) << "the answer came twice";
+    }
+    EXPECT_EQ(sut.state(), SdoClient::State::failed);
+    EXPECT_EQ(sut.abort(), SdoAbort::toggle_not_alternated);
+    EXPECT_FALSE(sut.receive(frame(0x585, {0x30, 0, 0, 0, 0, 0, 0, 0}), {5})) << "the transfer has ended";
+  }
+}
+
+TEST(SdoClient, AbortsAnUploadOfWhichASegmentCameTwice) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x1008, 0}, {1});
+  (void)sut.receive(frame(0x585, {0x41, 0x08, 0x10, 0x00, 0x09, 0, 0, 0}), {2});
+  (void)sut.receive(frame(0x585, {0x00, '1', '2', '3', '4', '5', '6', '7'}), {3});
+  EXPECT_EQ(sut.receive(frame(0x585, {0x00, '1', '2', '3', '4', '5', '6', '7'}), {4}),
+            frame(0x605, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05}));
+  EXPECT_EQ(sut.state(), SdoClient::State::failed);
+  EXPECT_EQ(sut.abort(), SdoAbort::toggle_not_alternated);
+}
+
+TEST(SdoClient, AbortsAnUploadThatBeginsWithTheWrongToggleBit) {
+  SdoClient sut(5, 100ms);
+  (void)sut.upload({0x1008, 0}, {1});
+  (void)sut.receive(frame(0x585, {0x41, 0x08, 0x10, 0x00, 0x09, 0, 0, 0}), {2});
+  EXPECT_EQ(sut.receive(frame(0x585, {0x10, '1', '2', '3', '4', '5', '6', '7'}), {3}),
+            frame(0x605, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x03, 0x05}));
+  EXPECT_EQ(sut.state(), SdoClient::State::failed);
 }
 
 TEST(SdoClient, TellsWhyTheServerRefused) {

@@ -240,6 +240,53 @@ TEST_F(SessionTest, ALostNodeIsNotWaitedFor) {
   EXPECT_LE(sut->counters().lost, 5U) << "only until the heartbeat was missed";
 }
 
+TEST_F(SessionTest, ANodeThatSleepsIsNotWaitedFor) {
+  config.sync_period = 10ms;
+  start();
+  for (int i = 0; i < 3; ++i) {
+    at(10ms);
+    tpdo(3, i);
+    tpdo(4, i);
+  }
+  sut->receive(frame(0x704, {0x04}), now);  // stopped on purpose
+  for (int i = 0; i < 5; ++i) {
+    at(10ms);
+    out.samples.clear();
+    tpdo(3, i);
+    EXPECT_EQ(out.samples.size(), 1U) << "complete with node 3 alone";
+  }
+  EXPECT_EQ(sut->counters().lost, 0U);
+}
+
+TEST_F(SessionTest, ALostNodeMissesNothing) {
+  config.sync_period = 10ms;
+  config.heartbeat_timeout = 15ms;
+  start();
+  at(10ms);
+  sut->receive(frame(0x703, {0x05}), now);
+  sut->receive(frame(0x704, {0x05}), now);
+  tpdo(3, 1);
+  tpdo(4, 1);
+  std::uint64_t lost_when_known = 0;
+  for (int i = 0; i < 10; ++i) {
+    at(10ms);
+    sut->receive(frame(0x703, {0x05}), now);
+    tpdo(3, i);
+    if (i == 3) lost_when_known = sut->counters().lost;
+  }
+  EXPECT_EQ(sut->counters().lost, lost_when_known) << "its heartbeat is lost: nothing is expected of it";
+}
+
+TEST_F(SessionTest, ShortAnswersBySdoAreRejected) {
+  config.nodes = {node(3, 0)};
+  config.nodes[0].configure = true;
+  start();
+  out.take();
+  sut->receive(frame(0x583, {0x60, 0x00, 0x18}), now);
+  EXPECT_EQ(sut->counters().rejected, 1U);
+  EXPECT_THAT(out.events.back().text, HasSubstr("SDO answer of 3 bytes instead of 8"));
+}
+
 TEST_F(SessionTest, EmcyIsTold) {
   start();
   sut->receive(frame(0x083, {0x11, 0x86, 0x21, 0, 0, 0, 0, 0}), now);
@@ -462,6 +509,20 @@ TEST(Cia402Plan, TellsAllMistakes) {
         "node 6 (J_7): no TPDO holds the position actual value 0x6064"}) {
     EXPECT_THAT(told, HasSubstr(expected));
   }
+}
+
+TEST(Cia402Plan, TakesTheLastNodeJointAndIdentifierAndNoneBeyond) {
+  const auto told = [](int id, std::size_t joint, std::uint32_t cob_id) {
+    Cia402StreamConfig config;
+    config.nodes = {node(id, joint)};
+    config.nodes[0].tpdos = {{.number = 1, .cob_id = cob_id, .entries = {{0x6064, 0, 32}}}};
+    Diagnostics diagnostics;
+    return plan_cia402(config, diagnostics) ? std::string() : diagnostics.text();
+  };
+  EXPECT_EQ(told(127, kMaxJointsPerRobot - 1, 0x7FF), "");
+  EXPECT_THAT(told(128, 0, 0x7FF), HasSubstr("node numbers go from 1 to 127"));
+  EXPECT_THAT(told(1, kMaxJointsPerRobot, 0x7FF), HasSubstr("is beyond"));
+  EXPECT_THAT(told(1, 0, 0x800), HasSubstr("0x800 is no COB-ID of 11 bits"));
 }
 
 TEST(Cia402Plan, MistakesStandAtTheNodeInTheCellFile) {

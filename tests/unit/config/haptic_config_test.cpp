@@ -45,6 +45,33 @@ TEST_F(HapticConfig, NeedsARobotAndNothingElse) {
   EXPECT_EQ(haptic.settings.gripper_joint, -1);
 }
 
+TEST_F(HapticConfig, DefaultsSurviveABusyMachineAndAProfileIsStrict) {
+  const auto settings_of = [this](const std::string& more) {
+    const auto sut = load("[[haptic]]\nrobot = \"ARM\"\n" + more);
+    EXPECT_TRUE(sut) << diagnostics.text();
+    return sut ? sut->haptics.at(0).settings : haptics::HapticSettings{};
+  };
+  const haptics::HapticSettings desktop = settings_of("");
+  EXPECT_EQ(desktop.profile, haptics::HapticProfile::desktop);
+  EXPECT_GE(desktop.stale_after, Nanoseconds(50'000'000));
+  EXPECT_GE(desktop.model_stale_after, Nanoseconds(200'000'000));
+  EXPECT_GE(desktop.allowed_missed_periods, 50U);
+  EXPECT_TRUE(desktop.re_engage);
+  const haptics::HapticSettings strict = settings_of("profile = \"strict\"\n");
+  EXPECT_EQ(strict.profile, haptics::HapticProfile::strict);
+  EXPECT_EQ(strict.stale_after, Nanoseconds(3'000'000));
+  EXPECT_EQ(strict.model_stale_after, Nanoseconds(100'000'000));
+  EXPECT_EQ(strict.allowed_missed_periods, 2U);
+  EXPECT_FALSE(strict.re_engage);
+  const haptics::HapticSettings mixed = settings_of("stale_after_s = 0.01\nre_engage = true\nprofile = \"strict\"\n");
+  EXPECT_EQ(mixed.stale_after, Nanoseconds(10'000'000)) << "a key counts more than the profile";
+  EXPECT_TRUE(mixed.re_engage);
+  EXPECT_EQ(mixed.allowed_missed_periods, 2U);
+  EXPECT_FALSE(load("[[haptic]]\nrobot = \"ARM\"\nprofile = \"loose\"\n"));
+  EXPECT_NE(diagnostics.text().find("profile cannot be \"loose\"; it is one of desktop, strict"), std::string::npos)
+      << diagnostics.text();
+}
+
 TEST_F(HapticConfig, TakesEveryKey) {
   const auto sut = load(R"(
 [[haptic]]

@@ -233,10 +233,49 @@ TEST_F(CouplingTest, WhatIsNotSoundIsRefused) {
   wrong = coupling(kMaster, kSlave);
   wrong.joints[0] = {3, 0};
   EXPECT_FALSE(accepts(wrong));
+  wrong.joints[0] = {1, 3};  // the slave has joints 0 to 2
+  EXPECT_FALSE(accepts(wrong));
   wrong.joints[0] = {1, 2};  // 2 is driven already
   EXPECT_FALSE(accepts(wrong));
   mirror_master();
   EXPECT_FALSE(accepts(coupling(kSlave, kMaster)));  // a mirrored slave
+}
+
+TEST_F(CouplingTest, AllJointsOfTheLargestRobotsMayBeCoupled) {
+  constexpr std::uint8_t kLarge = 7;
+  constexpr std::uint8_t kLargeSlave = 8;
+  for (const std::uint8_t slot : {kLarge, kLargeSlave})
+    send_robot(*sut_, slot, robot_of(static_cast<std::uint8_t>(kMaxJointsPerRobot), -1.0, 1.0));
+  Coupling all{.master = kLarge, .slave = kLargeSlave, .count = static_cast<std::uint8_t>(kMaxJointsPerRobot)};
+  for (std::uint8_t i = 0; i < kMaxJointsPerRobot; ++i) all.joints[i] = {.master_joint = i, .slave_joint = i};
+  all.max_velocity.fill(kFast);
+  ASSERT_TRUE(accepts(all));
+  JointValues target{};
+  target.fill(0.0005);
+  sut_->send(SetPositions{.slot = kLarge, .positions = target});
+  tick(2);
+  for (std::size_t i = 0; i < kMaxJointsPerRobot; ++i) EXPECT_DOUBLE_EQ(position(kLargeSlave, i), 0.0005) << i;
+}
+
+// Joints that become free are not where the move under way would have them: it must end at once. One that takes joints
+// away is braked.
+TEST_F(CouplingTest, AMoveUnderWayEndsAtOnceWhereJointsBecomeFree) {
+  ASSERT_TRUE(accepts(coupling(kMaster, kSlave)));
+  motion::Move move;
+  move.id = 1;
+  move.target = {0.0, 0.4, 0.0};
+  move.velocity.fill(0.5);
+  move.max_velocity = move.velocity;
+  move.acceleration.fill(2.0);
+  send_move(*sut_, kSlave, move);
+  tick(300);
+  ASSERT_TRUE(robot(kSlave).motion.moving);
+  const double there = position(kSlave, 1);
+  ASSERT_TRUE(accepts(Uncouple{kSlave}));
+  EXPECT_FALSE(robot(kSlave).motion.moving);
+  tick(10);
+  EXPECT_LE(position(kSlave, 1) - there, 0.5e-3 + 1e-9) << "at most one period on";
+  EXPECT_EQ(robot(kSlave).motion.outcome, motion::Outcome::stopped);
 }
 
 TEST_F(CouplingTest, CirclesAndSecondMastersAreRefused) {

@@ -62,6 +62,7 @@ class EngineHapticsTest : public testing::Test {
     device_.now = &now_;
     device_.sample.valid = true;
     device_.sample.writer = 4711;
+    apply(haptics::HapticProfile::strict, instrument_.settings);
     instrument_.settings.engage_time = Nanoseconds(10'000'000);
     instrument_.settings.max_speed = 100;
     instrument_.lower.fill(-1.0);
@@ -221,6 +222,21 @@ TEST_F(EngineHapticsTest, DeviceThatIsKnownToHaveEndedIsAFaultThatCannotBeResetB
   EXPECT_EQ(haptic().phase, HapticPhase::active);
 }
 
+TEST_F(EngineHapticsTest, ResetInTheTickInWhichTheDeviceIsKnownToHaveEndedIsRefused) {
+  engage();
+  device_.sample.p_DH.y() = std::numeric_limits<double>::quiet_NaN();
+  run(2);
+  device_.sample.p_DH.y() = 0;
+  run(50);
+  ASSERT_EQ(haptic().fault, HapticFault::not_finite);
+  const std::uint64_t refused = ticks_.newest().commands_refused;
+  sut_->send(SetDeviceGone{.channel = kChannel, .gone = true});
+  sut_->send(ResetHaptic{kChannel});
+  run(1);
+  EXPECT_EQ(ticks_.newest().commands_refused, refused + 1);
+  EXPECT_EQ(haptic().phase, HapticPhase::faulted);
+}
+
 TEST_F(EngineHapticsTest, FaultOutlivesAnotherInstrumentOfTheSameDevice) {
   engage();
   sut_->send(SetDeviceGone{.channel = kChannel, .gone = true});
@@ -248,6 +264,25 @@ TEST_F(EngineHapticsTest, CommandsThatNameNothingAreRefused) {
   tick();
   EXPECT_EQ(ticks_.newest().commands_refused, before + 7);
   EXPECT_EQ(haptic().phase, HapticPhase::closed);
+}
+
+TEST_F(EngineHapticsTest, InstrumentOfASlotBeyondTheRobotsIsRefused) {
+  sut_ = std::make_unique<Engine>(watchdog_, EngineCapacity{.robots = kSlot, .haptic_devices = kMaxHapticDevices});
+  TickReader& reader = sut_->subscribe("beyond");
+  sut_->send(open(kChannel, shared_device_));  // its slot is the first that is not there
+  tick(3);
+  EXPECT_EQ(reader.newest().commands_refused, 1U);
+  EXPECT_EQ(reader.newest().haptics[kChannel].phase, HapticPhase::closed);
+  EXPECT_EQ(device_.written, 0U);
+}
+
+TEST_F(EngineHapticsTest, ModelOfTheTickInWhichItWasOpenedIsUsed) {
+  sut_->send(open(kChannel, shared_device_));
+  tick();
+  give_model(0.5);  // of that tick
+  const Timestamp opened = now_;
+  tick();
+  EXPECT_EQ(haptic().model_time, opened);
 }
 
 TEST_F(EngineHapticsTest, ModelOfAnInstrumentThatHadTheChannelBeforeIsNotUsed) {

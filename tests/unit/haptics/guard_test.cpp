@@ -1,6 +1,7 @@
 // Each fault: zero force in the same tick, latched, told, and taken back only when its cause is gone.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <limits>
 
@@ -234,6 +235,42 @@ TEST(Guards, LetADeviceBeSlowerThanTheTickAndLoseASample) {
   EXPECT_EQ(rig.state().skipped, 4U * 67U);
 }
 
+TEST(Guards, CountTheAgeOfASampleFromItsMeasurement) {
+  PressedRig rig;
+  rig.fresh();
+  rig.port.sample.time = rig.now - Nanoseconds{1'000'000};  // 2 ms old when it is read
+  rig.tick();
+  ASSERT_EQ(rig.state().fault, HapticFault::none);
+  rig.tick();
+  ASSERT_EQ(rig.state().fault, HapticFault::none) << "3 ms";
+  rig.tick();
+  EXPECT_EQ(rig.state().fault, HapticFault::stale) << "4 ms old, though it was read 2 ms ago";
+}
+
+TEST(Guards, TakeAnotherModelOfTheSamePosture) {
+  PressedRig rig;
+  rig.keep_model_new = false;
+  ++rig.model.sequence;  // the cell was changed in between
+  rig.model.constraints[0] = plane(Vector3d::UnitZ(), -0.002, Vector3d::Zero());
+  rig.tick(kPressed);
+  rig.tick(kPressed);
+  EXPECT_NEAR(rig.port.output.force_D.z(), 2, 1e-6) << "the wall is 2 mm lower";
+}
+
+TEST(Guards, TakeAModelWithAsManyConstraintsAsFitAndNoMore) {
+  PressedRig rig;
+  const ContactConstraint wall = plane(Vector3d::UnitZ(), -0.001, Vector3d::Zero());
+  const auto lower = [&](std::size_t count) {
+    rig.model.count = static_cast<std::uint8_t>(count);
+    for (ContactConstraint& constraint : rig.model.constraints) constraint = wall;
+    rig.tick(kPressed);
+    rig.tick(kPressed);
+    return rig.port.output.force_D.z();
+  };
+  EXPECT_NEAR(lower(kMaxConstraints + 1), 4, 1e-6) << "makes no sense: the last good one counts";
+  EXPECT_NEAR(lower(kMaxConstraints), 3, 1e-6);
+}
+
 TEST(Guards, WaitForADeviceThatIsNotReady) {
   Rig rig(gantry(plain_settings()));
   rig.tick();
@@ -334,6 +371,56 @@ TEST(Mapping, KeepsWithinTheLimitsOfTheJoints) {
   }
   rig.go({0.02, 0, 0}, 20);
   EXPECT_NEAR((rig.state().x_proxy - Vector3d(0.02, 0, -0.15)).norm(), 0, 1e-6) << "and comes back";
+}
+
+TEST(Mapping, OfAxesLeavesOutTheJointOfTheGripper) {
+  HapticSettings settings = plain_settings();
+  settings.drive = Drive::joints;
+  settings.max_speed = 100;
+  settings.gripper_joint = 1;  // in the middle: PITCH
+  Rig rig(trocar(settings));
+  rig.q[2] = 0.15;
+  rig.port.sample.axis_count = 4;
+  rig.port.sample.axes = {0.01, 0.16, 0.02, 0.3};
+  rig.port.sample.gripper = 0.05;
+  for (int i = 0; i < 500; ++i) rig.tick(Vector3d::Zero());
+  const std::array<double, 5> expected = {0.01, 0.05, 0.16, 0.02, 0.3};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(rig.q[i], expected[i], 1e-6) << i;
+}
+
+TEST(Engagement, InFreeAirNeedsNoSecondModel) {
+  Rig rig(gantry(plain_settings()));
+  rig.model = model_of({plane(Vector3d::UnitZ(), -1, Vector3d::Zero())}, Vector3d::Zero());
+  rig.keep_model_new = false;
+  rig.model.posture_time = rig.now;
+  for (int i = 0; i < 50; ++i) rig.tick(Vector3d::Zero());
+  EXPECT_EQ(rig.state().phase, HapticPhase::active) << "two models have to agree on a contact alone";
+}
+
+TEST(Passivity, WhatFrictionHasTakenIsNoCredit) {
+  const PassivitySettings settings{.control = true, .allowance = 1e-3, .max_damping = 1000};
+  Passivity sut;
+  sut.restart(Vector3d::Zero());
+  const Vector3d against(0, 0, 2.0);  // N, while the hand goes down: work goes in
+  double depth = 0;
+  for (int i = 0; i < 100; ++i) {
+    depth -= 1e-4;
+    sut.observe({0, 0, depth}, against, 1e-4, settings, 1e-3);
+  }
+  EXPECT_LE(sut.energy(), 1e-4) << "20 mJ went in, and the spring holds a tenth of one";
+  EXPECT_GT(sut.energy(), 0.0);
+}
+
+TEST(Passivity, ASpringAtTheForceLimitGivesBackNoMoreThanItTook) {
+  HapticSettings settings = plain_settings();
+  settings.max_force = 8;
+  settings.static_friction = settings.dynamic_friction = 0.3;
+  PressedRig rig(settings);
+  rig.go({0, 0, -0.05});
+  // 8 mm of the spring, then 42 mm at 8 N.
+  EXPECT_NEAR(rig.state().energy, 0.5 * 1000 * 0.008 * 0.008 + 8 * 0.042, 0.01);
+  rig.go({0.3, 0, -0.05});  // friction takes 0.7 J
+  EXPECT_LT(rig.state().energy, 0.45);
 }
 
 TEST(Mapping, OfAxesToJointsStopsAtWallsToo) {

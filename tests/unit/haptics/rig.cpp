@@ -84,6 +84,7 @@ Instrument trocar(const HapticSettings& settings) {
 
 HapticSettings plain_settings() {
   HapticSettings settings;
+  apply(HapticProfile::strict, settings);
   settings.stiffness = 1000;
   settings.damping = 0;
   settings.static_friction = 0;

@@ -28,7 +28,7 @@ Instrument gantry(const HapticSettings& settings);
 // 0.3 m, roll about the shaft; and the jaw.
 Instrument trocar(const HapticSettings& settings);
 
-// Settings without what disturbs closed forms: no friction, no damping, no fading in, no slew limit, no controller.
+// The profile `strict`, without what disturbs closed forms: no friction, damping, fading in, slew limit, controller.
 HapticSettings plain_settings();
 
 // Free where n . x >= offset; as the worker would tell it for an instrument at `x_ref`.

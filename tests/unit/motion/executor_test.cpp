@@ -153,6 +153,77 @@ TEST(MoveQueue, RefusesWhatIsTooManyAndTellsItWhenTheRestHasEnded) {
   EXPECT_EQ(ride.state().outcome, Outcome::blocked);
 }
 
+TEST(MoveQueue, ThatIsFullTakesASupersedingMove) {
+  Ride ride(puma(), puma_posture());
+  for (std::size_t i = 0; i < kMoveQueue; ++i) ASSERT_TRUE(ride.sut().add(ride.pause(1)));
+  JointValues target = ride.q();
+  target[0] += 0.1;
+  ASSERT_TRUE(ride.sut().add(ride.joints_to(target)));
+  EXPECT_LT(ride.run(), 1.0);
+  EXPECT_NEAR(ride.q()[0], target[0], 1e-12);
+  EXPECT_EQ(ride.state().outcome, Outcome::arrived);
+}
+
+TEST(JointMove, BeyondARangeThatWasNarrowedMeanwhileIsBlocked) {
+  for (const double side : {1.0, -1.0}) {
+    MoveExecutor sut;
+    sut.reset(2);
+    Move move;
+    move.id = 1;
+    move.target = {0.0, side};
+    move.velocity.fill(1.0);
+    move.max_velocity.fill(2.0);
+    move.acceleration.fill(4.0);
+    ASSERT_TRUE(sut.add(move));
+    JointValues q{};
+    JointValues qd{};
+    const JointValues lower = {-2.0, -0.5};
+    const JointValues upper = {2.0, 0.5};
+    for (int i = 0; i < 5; ++i)
+      sut.step(1e-3, Timestamp{i + 1}, {std::span(lower).first(2), std::span(upper).first(2)}, std::span(q).first(2),
+               std::span(qd).first(2));
+    EXPECT_EQ(q, JointValues{}) << side;
+    EXPECT_EQ(sut.state().outcome, Outcome::blocked) << side;
+    EXPECT_FALSE(sut.state().moving) << side;
+  }
+}
+
+// Otherwise the gate, which checks each step against fastest(), would end the move where it stands.
+TEST(JointMove, SlowerOneInThePlaceOfAFasterOneIsAllowedItsSpeedUntilItHasBraked) {
+  Ride ride(puma(), puma_posture());
+  JointValues target = ride.q();
+  target[0] += 2.0;
+  ASSERT_TRUE(ride.sut().add(ride.joints_to(target)));
+  for (int i = 0; i < 500; ++i) ride.tick();
+  ASSERT_NEAR(ride.qd()[0], 1.0, 1e-9);
+  Move slow = ride.joints_to(target);
+  slow.velocity[0] = slow.max_velocity[0] = 0.25;
+  ASSERT_TRUE(ride.sut().add(slow));
+  ride.tick();
+  EXPECT_GE(ride.sut().fastest()[0], std::abs(ride.qd()[0]));
+  EXPECT_NEAR(ride.qd()[0], 1.0, 0.01);
+  ride.run();
+  EXPECT_NEAR(ride.q()[0], target[0], 1e-12);
+  EXPECT_EQ(ride.state().outcome, Outcome::arrived);
+}
+
+TEST(PtpMotion, BrakingTogetherTakesTheTimeOfTheSlowestAndNoAxisBrakesHarderThanItMay) {
+  const JointValues q{};
+  const JointValues wide_low = {-10, -10, -10};
+  const JointValues wide_high = {10, 10, 10};
+  const JointRange range{std::span(wide_low).first(3), std::span(wide_high).first(3)};
+  for (const JointValues& qd : {JointValues{1.0, 0.1, -0.5}, JointValues{0.1, -1.0, 0.5}}) {
+    const JointValues acceleration = {4.0, 2.0, 1.0};
+    PtpMotion sut;
+    sut.brake_together(acceleration, std::span(q).first(3), std::span(qd).first(3), range);
+    EXPECT_NEAR(sut.duration(), 0.5, 1e-12);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LE(std::abs(sut.axis(i).at(0.0).acceleration), acceleration[i] * (1 + 1e-9)) << i;
+      EXPECT_NEAR(sut.axis(i).duration(), 0.5, 1e-9) << i;
+    }
+  }
+}
+
 TEST(MoveQueue, SupersedingMoveForgetsWhatWaits) {
   Ride ride(puma(), puma_posture());
   JointValues target = ride.q();
@@ -233,6 +304,7 @@ TEST(Move, EverythingThatIsNoNumberOrNotPositiveIsRefused) {
   EXPECT_TRUE(refused(joints, [&](Move& m) { m.target[3] = nan; }));
   EXPECT_TRUE(refused(line, [&](Move& m) { m.X_BG.translation().x() = nan; }));
   EXPECT_TRUE(refused(line, [&](Move& m) { m.X_BG.linear() *= 1.1; }));
+  EXPECT_TRUE(refused(line, [&](Move& m) { m.X_BG.linear().col(0) *= -1.0; })) << "a reflection";
   EXPECT_TRUE(refused(line, [&](Move& m) { m.fly_parameter = nan; }));
   EXPECT_TRUE(refused(line, [&](Move& m) { m.min_velocity[1] = nan; }));
   EXPECT_TRUE(refused(ride.pause(1), [&](Move& m) { m.delay_s = nan; }));

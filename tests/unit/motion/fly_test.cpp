@@ -104,6 +104,28 @@ TEST_F(FlyPoint, TwoMovesTogetherAreNotFasterThanEitherMayBe) {
   EXPECT_LE(corner.fastest, 0.5 * (1 + 1e-5));
 }
 
+TEST_F(FlyPoint, TwoTurnsTogetherAreNotFasterThanEitherMayBe) {
+  ride_.parameters.fly_type = FlyType::angle;
+  ride_.parameters.fly_parameter = 3.0;  // all of the first: both run side by side
+  Pose to = ride_.X_BT();
+  for (int i = 0; i < 2; ++i) {
+    to.linear() = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) * to.linear();
+    const auto move = ride_.line_to(i == 0 ? ride_.q() : ride_.end_of_plan, to, Start::queue);
+    ASSERT_TRUE(move);
+    ASSERT_TRUE(ride_.sut().add(*move));
+  }
+  Pose before = ride_.X_BT();
+  double fastest = 0;
+  ride_.run([&] {
+    const Eigen::AngleAxisd turned(Eigen::Matrix3d(ride_.X_BT().linear() * before.linear().transpose()));
+    fastest = std::max(fastest, turned.angle() / Ride::kTick);
+    before = ride_.X_BT();
+  });
+  EXPECT_LE(fastest, 1.0 * (1 + 1e-4));
+  EXPECT_GT(fastest, 0.9) << "they do run side by side";
+  EXPECT_EQ(ride_.state().outcome, Outcome::arrived);
+}
+
 TEST_F(FlyPoint, RampsThatOverlapExactlyKeepTheSpeedOnAStraightLine) {
   // Begins where the braking begins: the one slows down as the other speeds up.
   ride_.parameters.fly_type = FlyType::speed_fraction;

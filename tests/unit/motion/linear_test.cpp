@@ -219,6 +219,21 @@ TEST(LinearMove, NewMoveForAnotherToolLeavesTheOldChainAtOnce) {
   EXPECT_EQ(ride.state().outcome, Outcome::arrived);
 }
 
+TEST(LinearMove, StopAfterAChangeOfTheToolBrakesOnTheLineAllTheSame) {
+  Ride ride(puma(), puma_posture());
+  const Pose from = ride.X_BT();
+  const Pose to = moved_by(from, {0.0, -0.25, 0.0});
+  ASSERT_TRUE(ride.sut().add(*ride.line_to(ride.q(), to)));
+  while (ride.now() < 0.4) ride.tick();
+  const kinematics::Chain other_tool = puma();
+  ride.sut().set_chain(&other_tool);
+  ride.sut().stop();
+  double off = 0;
+  ride.run([&] { off = std::max(off, distance_from_line(ride.X_BT(), from, to)); });
+  EXPECT_LT(off, 1e-6);
+  EXPECT_EQ(ride.state().outcome, Outcome::stopped);
+}
+
 TEST(LinearMove, MovesThatWaitKeepTheChainForWhichTheyWereAdded) {
   Ride ride(puma(), puma_posture());
   const Pose tool_before = ride.X_BT();

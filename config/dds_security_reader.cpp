@@ -1,0 +1,45 @@
+#include "config/dds_security_reader.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace cellmirror {
+
+namespace {
+
+std::string read_path(TableReader& table, std::string_view key, const FileFinder& files) {
+  const auto name = table.text(key);
+  if (!name) return {};
+  const auto found = files.find(FileUse::security, *name);
+  if (found) return found->string();
+  table.error(key, found.error().what, found.error().remedy);
+  return {};
+}
+
+}  // namespace
+
+DdsSecurityConfig read_dds_security(TableReader& top, const FileFinder& files) {
+  auto dds = top.table("dds");
+  if (!dds) return {};
+  auto table = dds->table("security");
+  dds->finish();
+  if (!table) return {};
+  for (const char* key : {"identity_ca", "certificate", "private_key", "governance", "permissions"})
+    table->require(key);
+  DdsSecurityConfig security;
+  security.identity_ca = read_path(*table, "identity_ca", files);
+  security.certificate = read_path(*table, "certificate", files);
+  security.private_key = read_path(*table, "private_key", files);
+  security.governance = read_path(*table, "governance", files);
+  security.permissions = read_path(*table, "permissions", files);
+  security.permissions_ca =
+      table->has("permissions_ca") ? read_path(*table, "permissions_ca", files) : security.identity_ca;
+  if (!security.private_key.empty()) {
+    if (const auto hidden = files.check_private(security.private_key); !hidden)
+      table->error("private_key", hidden.error().what, hidden.error().remedy);
+  }
+  table->finish();
+  return security;
+}
+
+}  // namespace cellmirror
