@@ -1,7 +1,9 @@
 // cellmirror: the one program. See app/subcommands for what it does.
 #include <exception>
+#include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
@@ -35,6 +37,11 @@ int main(int argc, char** argv) {
     add_simulate(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();
+  } catch (const std::bad_alloc&) {
+    return refuse("out of memory; raise the limits (ulimit -v, ulimit -l), or end other programs");
+  } catch (const std::system_error& error) {
+    return refuse(std::string("the machine refuses what is needed: ") + error.what() +
+                  "; see the limits of processes, files and memory (ulimit -a)");
   } catch (const std::exception& error) {
     return refuse(std::string("unexpected failure: ") + error.what() + "; this is a bug, please report it");
   }

@@ -9,6 +9,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(Boost 1.74 REQUIRED)        # headers only: the yardstick of tests/bench/rt
 find_package(tinyxml2 REQUIRED)
+find_package(ZLIB REQUIRED)       # app/io: compressed records
 find_package(EXPAT REQUIRED)      # scripts/programs/crcl
 find_package(fastcdr REQUIRED)
 find_package(fastrtps REQUIRED)

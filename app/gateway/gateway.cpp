@@ -12,11 +12,14 @@
 
 #include "app/gateway/monitor_page.hpp"
 #include "app/gateway/picture_outputs.hpp"
+#include "app/io/command_log.hpp"
 #include "app/io/flight_file.hpp"
 #include "app/io/outputs.hpp"
 #include "app/io/publisher.hpp"
+#include "app/io/record_file.hpp"
 #include "app/io/robot_streams.hpp"
 #include "app/owner/cell_owner.hpp"
+#include "app/owner/command_records.hpp"
 #include "app/pictures/snapshot_request.hpp"
 #include "app/render/render_service.hpp"
 #include "app/report/live_document.hpp"
@@ -33,6 +36,8 @@
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
 #include "ipc/control/instance.hpp"
+#include "ipc/control/queue_answer.hpp"
+#include "ipc/sysv/force_guard.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
@@ -46,6 +51,8 @@ namespace cellmirror::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLoopStandsStillAfter{100};
+constexpr std::string_view kFaultRecord = "fault-";
+constexpr std::size_t kFaultRecordsKept = 20;  // of all runs
 constexpr std::int32_t kIdleWakeLimitUs = 10;  // keeps idle processors out of states that cost the loop its phase
 
 // Numbered, so that none falls to the log's rate limit by kind.
@@ -110,12 +117,15 @@ struct Gateway::Parts {
   QueueConfig queues;
   MemoryLockOutcome memory;
   std::unique_ptr<CpuLatencyRequest> processors_awake;
+  ForceGuard* guard = nullptr;  // may be null
   std::optional<Instance> instance;
   Watchdog watchdog{kLoopStandsStillAfter, {}};
   std::unique_ptr<engine::Engine> engine;
   std::optional<TickReaders> readers;
   Board<CellState> board;
   PictureCounter picture_counter;
+  std::unique_ptr<CommandLog> commands;  // null: the cell folder has no place for it
+  std::string commands_problem;          // then
   std::unique_ptr<ScriptMessageReceiver> messages;
   std::unique_ptr<CellOwner> owner;
   std::unique_ptr<CyclicThread> loop;
@@ -156,6 +166,8 @@ struct Gateway::Parts {
 
   Result<void> prepare_machine();
   Result<void> take_instance(const GatewayOptions& options);
+  void open_command_log();
+  void note_refused(const script::CommandSource& source, std::string_view command, const std::string& why);
   Result<void> make_owner(LoadedCell loaded, const GatewayOptions& options);
   Result<void> start_loop();
   void start_sensing(const Eigen::Vector3d& gravity_W);
@@ -169,7 +181,10 @@ struct Gateway::Parts {
   Result<std::string> write_flight_record(const std::string& file_name, const std::string& reason);
   void answer(std::string_view request, ControlReply reply);
   void answer_snapshot(const ControlRequest& request, ControlReply reply);
+  void answer_queues(ControlReply reply);
   std::string status();
+  [[nodiscard]] Problems problems() const;
+  [[nodiscard]] CommandLogReport command_log() const { return commands ? commands->report() : CommandLogReport{}; }
   [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;
   void look_at(const std::function<void(const LiveSources&)>& look);
 };
@@ -190,6 +205,22 @@ Result<void> Gateway::Parts::take_instance(const GatewayOptions& options) {
   return {};
 }
 
+// The gateway runs without it too: its folder may be read-only.
+void Gateway::Parts::open_command_log() {
+  auto file = home->file_to_write("records", fmt::format("commands-{}.jsonl", instance->info().name));
+  if (file) {
+    commands = std::make_unique<CommandLog>(CommandLog::Options{.file = std::move(*file)});
+    return;
+  }
+  commands_problem = fmt::format("no log of commands is kept: {}", file.error().text());
+  log_error("command-log", "{}", commands_problem);
+}
+
+void Gateway::Parts::note_refused(const script::CommandSource& source, std::string_view command,
+                                  const std::string& why) {
+  if (commands) commands->add(refused_command(source, std::string(command), why, clock.now()));
+}
+
 Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions& options) {
   std::map<std::string, StreamConfig, std::less<>> streams;
   for (RobotStream& stream : loaded.streams) streams.emplace(stream.robot, std::move(stream.config));
@@ -198,6 +229,10 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     if (!written) return std::unexpected(written.error());
     return {};
   };
+  script::ScriptRunner::TraceFunction traced;
+  if (commands) {
+    traced = [log = commands.get()](script::CommandTrace&& trace) { log->add(command_record_of(std::move(trace))); };
+  }
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
@@ -216,9 +251,11 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                                                        .instance = instance->info().name,
                                                        .tcp_force_key = queues.tcp_force_key,
                                                        .memory_mode = queues.mode,
+                                                       .guard = options.guard,
                                                        .save_flight_record = save,
                                                        .picture_updates = [this] { return picture_counter.count(); },
-                                                       .bell = options.bell});
+                                                       .bell = options.bell,
+                                                       .traced = std::move(traced)});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -253,15 +290,20 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
 
 Result<void> Gateway::Parts::start_messages() {
   messages = std::make_unique<ScriptMessageReceiver>(queues, instance->info().name);
-  return messages->start([this](ScriptMessage message) {
+  const auto take = [this](ScriptMessage message) {
     script::CommandReply reply;
     if (message.tag != 0) {
       reply = [to = messages.get(), tag = message.tag](const Result<std::string>& result) {
         to->reply(tag, result ? ScriptReply{true, *result} : ScriptReply{false, result.error().text()});
       };
     }
-    owner->submit({std::move(message.text), script::CommandSource::message(message.sender_pid), std::move(reply)});
-  });
+    owner->submit({std::move(message.text), script::CommandSource::message(message.sender_pid, message.sender_user),
+                   std::move(reply)});
+  };
+  const auto refused = [this](const ScriptMessage& message, const std::string& why) {
+    note_refused(script::CommandSource::message(message.sender_pid, message.sender_user), "", why);
+  };
+  return messages->start(take, refused);
 }
 
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
@@ -288,7 +330,9 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
 void Gateway::Parts::start_fault_monitor() {
   faults = std::make_unique<FaultMonitor>(*loop, watchdog, clock, [this](const std::string& reason) {
     const auto wall_seconds = to_wall_clock_ns(clock.now()) / 1'000'000'000;
-    return write_flight_record(fmt::format("fault-{}.jsonl", wall_seconds), reason);
+    auto written = write_flight_record(fmt::format("{}{}.jsonl.gz", kFaultRecord, wall_seconds), reason);
+    if (written) remove_old_records(std::filesystem::path(*written).parent_path(), kFaultRecord, kFaultRecordsKept);
+    return written;
   });
 }
 
@@ -319,7 +363,14 @@ void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
   if (!request) return reply(control_error(request.error()));
   if (request->request == "status") return reply(status());
   if (request->request == "snapshot") return answer_snapshot(*request, std::move(reply));
-  reply(control_error({fmt::format("the request {} is not known", request->request), "known: status, snapshot"}));
+  if (request->request == "queues") return answer_queues(std::move(reply));
+  reply(
+      control_error({fmt::format("the request {} is not known", request->request), "known: status, snapshot, queues"}));
+}
+
+void Gateway::Parts::answer_queues(ControlReply reply) {
+  const ScriptMessageStatus status = messages->status();
+  reply(queue_answer_text({status.input_queue, status.reply_queue, status.input_problem, status.reply_problem}));
 }
 
 void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply reply) {
@@ -344,6 +395,10 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.owner = owner.get();
   parts.renderer = renderer.get();
   parts.status = [this] { return status(); };
+  parts.command_log = [this] { return command_log(); };
+  parts.refused = [this](std::string_view command, const script::CommandSource& source, const std::string& why) {
+    note_refused(source, command, why);
+  };
   parts.at = [this](const std::function<void(const LiveSources&)>& look) { look_at(look); };
   page = std::make_unique<MonitorPage>(
       MonitorPage::Options{options.web, settings, options.port, cell_name, options.instance, instance->folder()},
@@ -363,13 +418,33 @@ std::vector<engine::QueueStatus> Gateway::Parts::thread_queues(const CellState& 
 void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look) {
   const std::shared_ptr<const CellState> cell_state = board.latest();
   const std::vector<engine::QueueStatus> queues_now = thread_queues(*cell_state);
+  const Problems problems_now = problems();
+  const std::uint64_t commands_logged = commands ? commands->count() : 0;
   const std::scoped_lock lock(answering);
   const engine::TickState& tick = readers->status.newest();
   const std::span<const RobotState> robots = status_builder.build(*cell_state, tick);
   const Timestamp now = clock.now();
   look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *cell_state, tick,
         robots, status_builder.poses(), picture_counter.count(), collisions->board().latest(),
-        ranging->board().latest(), forces->board().latest(), queues_now});
+        ranging->board().latest(), forces->board().latest(), queues_now, problems_now, commands_logged});
+}
+
+Problems Gateway::Parts::problems() const {
+  Problems out;
+  const auto add = [&](const char* kind, std::string text) {
+    if (!text.empty()) out.push_back({kind, std::move(text)});
+  };
+  const ScriptMessageStatus status = messages->status();
+  add("script_queue", status.input_problem);
+  add("reply_queue", status.reply_problem);
+  add("command_log", commands ? commands->report().problem : commands_problem);
+  for (const PublishedOutput& output : publisher->outputs()) add("sensor_queue", output.output->problem());
+  if (guard == nullptr || !guard->running()) {
+    add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
+                                   "restart the gateway",
+                                   guard == nullptr ? "could not be started (see the log)" : "was ended"));
+  }
+  return out;
 }
 
 std::string Gateway::Parts::status() {
@@ -409,7 +484,10 @@ std::string Gateway::Parts::status() {
                           render_report,
                           page_report,
                           thread_queues(*cell_state),
-                          std::move(outputs)});
+                          std::move(outputs),
+                          problems(),
+                          {guard != nullptr && guard->running(), guard != nullptr ? guard->process() : 0},
+                          command_log()});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -420,6 +498,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   auto loaded = load(options);
   if (!loaded) return std::unexpected(loaded.error());
   auto parts = std::make_unique<Parts>();
+  parts->guard = options.guard;
   parts->cell_name = loaded->name;
   parts->home = loaded->home;
   parts->loop_settings = loaded->loop;
@@ -435,6 +514,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   Result<void> step = check_instance_name(options.instance);
   if (step) step = parts->prepare_machine();
   if (step) step = parts->take_instance(options);
+  if (step) parts->open_command_log();
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
   if (step) step = parts->start_loop();

@@ -11,6 +11,10 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 
+namespace cellmirror {
+class ForceGuard;
+}
+
 namespace cellmirror::app {
 
 struct GatewayOptions {
@@ -18,11 +22,12 @@ struct GatewayOptions {
   std::optional<std::string> startup_script;  // instead of the cell file's own
   std::optional<double> rate_hz;              // instead of the cell file's own
   std::string instance = "default";
-  bool headless = false;       // no pictures
-  bool web = true;             // the monitor page
-  std::optional<int> port;     // of the monitor page, instead of the cell file's; 0: a free one
-  std::function<void()> bell;  // rings with messages while BEEP is on (SET_MODE); may be empty
-  LoadProgress progress;       // told while the cell is loaded; may be empty
+  bool headless = false;        // no pictures
+  bool web = true;              // the monitor page
+  std::optional<int> port;      // of the monitor page, instead of the cell file's; 0: a free one
+  std::function<void()> bell;   // rings with messages while BEEP is on (SET_MODE); may be empty
+  ForceGuard* guard = nullptr;  // of the shared memories; outlives the gateway; null: none
+  LoadProgress progress;        // told while the cell is loaded; may be empty
 };
 
 class Gateway {

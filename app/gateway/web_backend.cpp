@@ -41,22 +41,30 @@ std::string WebBackend::metrics_text() {
   return out;
 }
 
-void WebBackend::execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) {
+void WebBackend::execute(std::string_view command, const web::CommandOrigin& origin,
+                         std::function<void(const web::CommandReply&)> reply) {
+  const script::CommandSource source = script::CommandSource::page(origin.session, origin.peer);
+  const auto refuse = [&](const std::string& why) {
+    if (parts_.refused) parts_.refused(command, source, why);
+    reply({false, why});
+  };
   // The same checks as for messages; a tag is not for people.
   const ScriptEnvelope envelope = parse_script_message(command);
-  if (command.starts_with('@')) return reply({false, "a command does not begin with @"});
-  if (!envelope.text) return reply({false, envelope.text.error().text()});
+  if (command.starts_with('@')) return refuse("a command does not begin with @");
+  if (!envelope.text) return refuse(envelope.text.error().text());
   if (commands_waiting_->fetch_add(1, std::memory_order_relaxed) >= kMostCommandsWaiting) {
     commands_waiting_->fetch_sub(1, std::memory_order_relaxed);
-    return reply({false, "too many commands wait for their acknowledgement; try again"});
+    return refuse("too many commands wait for their acknowledgement; try again");
   }
   script::ScriptCommand queued{
-      *envelope.text, script::CommandSource::page(),
-      [waiting = commands_waiting_, answer = std::move(reply)](const Result<std::string>& result) {
+      *envelope.text, source, [waiting = commands_waiting_, answer = reply](const Result<std::string>& result) {
         waiting->fetch_sub(1, std::memory_order_relaxed);
         answer(result ? web::CommandReply{true, *result} : web::CommandReply{false, result.error().text()});
       }};
-  if (!parts_.owner->offer(queued)) queued.reply(fail("too many commands wait to be executed; try again"));
+  if (parts_.owner->offer(queued)) return;
+  const std::string why = "too many commands wait to be executed; try again";
+  if (parts_.refused) parts_.refused(command, source, why);
+  queued.reply(fail(why));
 }
 
 void WebBackend::expect_pictures() {

@@ -13,6 +13,7 @@
 #include "app/owner/cell_owner.hpp"
 #include "app/render/render_service.hpp"
 #include "app/report/live_document.hpp"
+#include "app/report/status_commands.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "ipc/web/web_backend.hpp"
 #include "ipc/web/web_server.hpp"
@@ -31,6 +32,9 @@ class WebBackend final : public web::Backend {
     std::function<std::string()> status;                                     // as `cellmirror status --json`
     std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
     std::function<web::ServerStatus()> server_status;
+    std::function<CommandLogReport()> command_log;
+    // With each command that is refused before it reaches the owner.
+    std::function<void(std::string_view command, const script::CommandSource& source, const std::string& why)> refused;
   };
 
   explicit WebBackend(Parts parts) : parts_(std::move(parts)) {}
@@ -41,8 +45,10 @@ class WebBackend final : public web::Backend {
   [[nodiscard]] std::string tree_json() override;
   [[nodiscard]] std::string commands_json() override;
   [[nodiscard]] std::string names_json() override;
+  [[nodiscard]] std::string command_log_json() override { return command_log_document(parts_.command_log()); }
   [[nodiscard]] std::string metrics_text() override;
-  void execute(std::string_view command, std::function<void(const web::CommandReply&)> reply) override;
+  void execute(std::string_view command, const web::CommandOrigin& origin,
+               std::function<void(const web::CommandReply&)> reply) override;
   void expect_pictures() override;
   Result<std::unique_ptr<PictureStream>> open_pictures(const PictureRequest& request) override;
   void ask_picture(const PictureRequest& request, ImageFormat format, PictureReply reply) override;

@@ -1,14 +1,9 @@
 #include "app/io/flight_file.hpp"
 
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <system_error>
+#include <utility>
 
+#include "app/io/record_file.hpp"
 #include "rt_core/base/json_writer.hpp"
 
 namespace cellmirror::app {
@@ -71,35 +66,25 @@ void append_robot(std::string& out, const engine::FlightRobot& record, const Fli
 Result<void> write_flight_file(const std::filesystem::path& path, const FlightFileHeader& header,
                                const std::vector<engine::FlightTick>& ticks,
                                const std::vector<engine::FlightRobot>& robots) {
-  std::filesystem::path temporary = path;
-  temporary += ".part";
-  const auto failed = [&] {
-    return fail(fmt::format("{} cannot be written: {}", temporary.string(), std::strerror(errno)));
-  };
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "we"), std::fclose);
-  if (!file) return failed();
+  auto file = RecordFile::create(path);
+  if (!file) return std::unexpected(file.error());
   std::string out;
-  const auto flush = [&](std::size_t at_least) {
-    if (out.size() < at_least) return true;
-    const bool written = std::fwrite(out.data(), 1, out.size(), file.get()) == out.size();
-    out.clear();
-    return written;
+  const auto flush = [&](std::size_t at_least) -> Result<void> {
+    if (out.size() < at_least) return {};
+    return file->write(std::exchange(out, {}));
   };
   constexpr std::size_t kChunk = std::size_t{1} << 16;
   out += header_line(header) + "\n";
   for (const engine::FlightTick& record : ticks) {
     append_tick(out, record);
-    if (!flush(kChunk)) return failed();
+    if (auto written = flush(kChunk); !written) return written;
   }
   for (const engine::FlightRobot& record : robots) {
     append_robot(out, record, header);
-    if (!flush(kChunk)) return failed();
+    if (auto written = flush(kChunk); !written) return written;
   }
-  if (!flush(1) || std::fclose(file.release()) != 0) return failed();
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) return fail(fmt::format("{} cannot be renamed: {}", temporary.string(), error.message()));
-  return {};
+  if (auto written = flush(1); !written) return written;
+  return file->finish();
 }
 
 }  // namespace cellmirror::app

@@ -20,8 +20,8 @@ struct FlightFileHeader {
 };
 
 // JSON Lines: a header, then a line a tick ("kind":"tick"), then a line a sample or set point ("kind":"robot"), each in
-// the order of time; units in the keys (docs/flight-recorder.md). Written to a temporary name and renamed, so that a
-// file that is there is whole. Not for the tick.
+// the order of time; units in the keys (docs/flight-recorder.md). Compressed (gzip) where the path ends in .gz; whole
+// or not there at all (record_file.hpp). Not for the tick.
 Result<void> write_flight_file(const std::filesystem::path& path, const FlightFileHeader& header,
                                const std::vector<engine::FlightTick>& ticks,
                                const std::vector<engine::FlightRobot>& robots);

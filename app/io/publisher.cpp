@@ -114,6 +114,7 @@ Timestamp Publisher::publish_due(Timestamp now) {
     const std::span<const FramePose> frames = builder_.frames(*cell_state, wanted_);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       if (due_[i] > now + tick_period_ / 2) continue;
+      outputs_[i].output->keep(now);
       if (!sending_.empty()) outputs_[i].output->publish(state.time, sending_, frames);
       if (outputs_[i].forces != nullptr && forces) outputs_[i].forces->publish_forces(*forces);
       if (outputs_[i].findings != nullptr)

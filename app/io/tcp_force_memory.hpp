@@ -16,7 +16,7 @@ namespace cellmirror::app {
 class TcpForceMemory final : public TcpForceChannel {
  public:
   explicit TcpForceMemory(std::unique_ptr<SharedSegment> segment) : segment_(std::move(segment)) {}
-  ~TcpForceMemory() override { write_tcp_force(segment_->memory(), TcpForce()); }
+  ~TcpForceMemory() override { end_tcp_force(segment_->memory()); }
   TcpForceMemory(const TcpForceMemory&) = delete;
   TcpForceMemory& operator=(const TcpForceMemory&) = delete;
 

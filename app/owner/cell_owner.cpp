@@ -75,10 +75,10 @@ CellOwner::CellOwner(Parts parts)
       world_(cell_, *fleet_, motion_, programs_, [this] { publish_state(); }),
       robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
       sensing_(cell_, std::move(parts.collision)),
-      haptics_({cell_, *fleet_, clock_, parts.instance, std::move(parts.haptics)}),
+      haptics_({cell_, *fleet_, clock_, parts.instance, std::move(parts.haptics), parts.guard}),
       forces_({parts.tcp_force_key, parts.memory_mode, parts.instance, clock_,
-               [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }}),
-      robot_forces_({cell_, clock_, parts.memory_mode, parts.instance}),
+               [this](std::string_view text) { static_cast<void>(display_.show_message(text)); }, parts.guard}),
+      robot_forces_({cell_, clock_, parts.memory_mode, parts.instance, parts.guard}),
       interaction_(
           cell_, names_,
           {haptics_, forces_, robot_forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
@@ -86,7 +86,8 @@ CellOwner::CellOwner(Parts parts)
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
-      home_, clock_, script::ScriptRunner::Events{.refused = std::move(parts.refused)});
+      home_, clock_,
+      script::ScriptRunner::Events{.refused = std::move(parts.refused), .traced = std::move(parts.traced)});
   switches_ = std::make_unique<FootSwitchService>(
       FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
       *runner_, home_, clock_);

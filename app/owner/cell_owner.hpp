@@ -56,6 +56,7 @@ class CellOwner {
     std::string instance;
     std::int32_t tcp_force_key = kTcpForceKey;
     std::uint32_t memory_mode = 0600;
+    ForceGuard* guard = nullptr;  // of the shared memories; outlives the owner; null: none
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
     std::function<std::uint64_t()> picture_updates = {};  // so far; empty: counted by the clock
     std::function<void()> bell = {};                      // with a message while BEEP is on
@@ -63,6 +64,7 @@ class CellOwner {
     // mirrored then, and shared memories are not made. Empty: the gateway, where the tick has its own thread.
     std::function<void()> let_tick_pass = {};
     std::function<void(const Diagnostics& findings)> refused = {};  // with each command of a file that is refused
+    script::ScriptRunner::TraceFunction traced = {};                // with each command that is done or refused
     std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};  // to the tick
     std::function<void(const program::ProgramEvent&)> program_event = {};
     std::function<void(const ShownText& message)> message_shown = {};

@@ -72,7 +72,13 @@ Result<std::string> RobotForceService::set_memory(const std::string& robot, std:
     release(robot, key);
   }
   auto segment = SharedSegment::make(
-      {.purpose = "forces of " + robot, .key = key, .bytes = bytes, .mode = parts_.mode, .instance = parts_.instance});
+      {.purpose = "forces of " + robot,
+                                      .key = key,
+                                      .bytes = bytes,
+                                      .mode = parts_.mode,
+                                      .instance = parts_.instance,
+                                      .guard = parts_.guard,
+                                      .block = GuardedBlock::haptic});
   if (!segment) return std::unexpected(segment.error());
   Buffer& buffer = buffers_[robot];
   if (buffer.memory) buffer.memory->close();

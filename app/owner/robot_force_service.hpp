@@ -25,6 +25,7 @@ class RobotForceService {
     const Clock& clock;
     std::uint32_t mode = 0600;
     std::string instance;
+    ForceGuard* guard = nullptr;  // of the memories; may be null
   };
   explicit RobotForceService(Parts parts) : parts_(std::move(parts)) {}
   ~RobotForceService();  // closes all

@@ -43,7 +43,9 @@ Result<void> TcpForceService::make_memory() {
                                       .key = parts_.key,
                                       .bytes = tcp_force_block_offset::kSize,
                                       .mode = parts_.mode,
-                                      .instance = parts_.instance});
+                                      .instance = parts_.instance,
+                                      .guard = parts_.guard,
+                                      .block = GuardedBlock::tcp_force});
   if (!segment) return std::unexpected(segment.error());
   memory_ = std::make_shared<TcpForceMemory>(std::move(*segment));
   return {};

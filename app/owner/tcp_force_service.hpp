@@ -29,6 +29,7 @@ class TcpForceService {
     std::string instance;
     const Clock& clock;
     std::function<void(std::string_view text)> show_message;
+    ForceGuard* guard = nullptr;  // of the memory; may be null
   };
 
   explicit TcpForceService(Parts parts) : parts_(std::move(parts)) {}

@@ -186,6 +186,13 @@ void add_forces(JsonWriter& out, const ForceState* state) {
   out.end_array();
 }
 
+void add_problems(JsonWriter& out, std::span<const Problem> problems) {
+  out.key("problems").begin_array();
+  for (const Problem& problem : problems)
+    out.begin_object().member("kind", problem.kind).member("text", problem.text).end_object();
+  out.end_array();
+}
+
 void add_queues(JsonWriter& out, std::span<const engine::QueueStatus> queues) {
   out.key("queues").begin_array();
   for (const engine::QueueStatus& queue : queues) {
@@ -336,6 +343,8 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   add_forces(out, sources.forces.get());
   add_programs(out, sources.cell_state.programs);
   add_queues(out, sources.queues);
+  add_problems(out, sources.problems);
+  out.member("commands_logged", sources.commands_logged);
   add_messages(out, *sources.cell_state.display, sources.now);
   add_display(out, sources);
   return out.end_object().take();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/problem.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/proximity_board.hpp"
 #include "app/snapshot/range_readings.hpp"
@@ -36,6 +37,8 @@ struct LiveSources {
   std::shared_ptr<const RangeReadings> ranges;
   std::shared_ptr<const ForceState> forces;
   std::span<const engine::QueueStatus> queues;
+  std::span<const Problem> problems = {};
+  std::uint64_t commands_logged = 0;  // changes with the log of commands
 };
 
 // Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at

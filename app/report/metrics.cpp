@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
+#include <string>
 
 namespace cellmirror::app {
 
@@ -112,6 +114,15 @@ void add_findings(MetricsText& out, const LiveSources& sources) {
     out.sample(reading.distance_m.value_or(HUGE_VAL), {{"sensor", reading.path}});
 }
 
+void add_problems(MetricsText& out, std::span<const Problem> problems) {
+  out.one("cellmirror_problems", "gauge", "What is wrong around the gateway now: its queues, its guard, its files.",
+          static_cast<double>(problems.size()));
+  out.family("cellmirror_problem", "gauge", "1 for each kind of problem there is now.");
+  std::set<std::string> kinds;
+  for (const Problem& problem : problems) kinds.insert(problem.kind);
+  for (const std::string& kind : kinds) out.sample(1.0, {{"kind", kind}});
+}
+
 void add_traffic(MetricsText& out, const LiveSources& sources, const web::ServerStatus& web) {
   out.family("cellmirror_queue_dropped_total", "counter", "Values that a queue between threads refused.");
   for (const engine::QueueStatus& queue : sources.queues)
@@ -181,6 +192,7 @@ std::string metrics_document(const LiveSources& sources, const web::ServerStatus
   add_loop(out, sources);
   add_robots(out, sources);
   add_findings(out, sources);
+  add_problems(out, sources.problems);
   add_traffic(out, sources, web);
   return out.take();
 }

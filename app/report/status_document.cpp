@@ -11,6 +11,7 @@
 
 #include "app/report/implausible_values.hpp"
 #include "app/report/status_collisions.hpp"
+#include "app/report/status_commands.hpp"
 #include "app/report/status_couplings.hpp"
 #include "app/report/status_display.hpp"
 #include "app/report/status_forces.hpp"
@@ -231,13 +232,25 @@ json queues_json(const StatusSources& sources) {
                  {"dropped", m.malformed + m.wrong_type + m.discarded},
                  {"wrong_type", m.wrong_type},
                  {"discarded", m.discarded},
-                 {"recreated", m.recreated}});
-  out.push_back({{"name", "script replies"}, {"passed", m.replies}, {"dropped", m.replies_dropped}});
+                 {"recreated", m.recreated},
+                 {"queue", m.input_queue},
+                 {"problem", m.input_problem}});
+  out.push_back({{"name", "script replies"},
+                 {"passed", m.replies},
+                 {"dropped", m.replies_dropped},
+                 {"queue", m.reply_queue},
+                 {"problem", m.reply_problem}});
   for (const auto& [name, counters] : sources.outputs) {
     json queue = {{"name", name}, {"dropped", 0}};
     for (const auto& [key, value] : counters) queue[key] = value;
     out.push_back(std::move(queue));
   }
+  return out;
+}
+
+json problems_json(const Problems& problems) {
+  json out = json::array();
+  for (const Problem& problem : problems) out.push_back({{"kind", problem.kind}, {"text", problem.text}});
   return out;
 }
 
@@ -262,29 +275,33 @@ json cameras_json(const CompiledCell& cell) {
 std::string status_document(const StatusSources& sources) {
   const CompiledCell& cell = *sources.cell_state.cell;
   const auto visible = std::count(cell.visible.begin(), cell.visible.end(), std::uint8_t{1});
-  const json document = {{"version", CELLMIRROR_VERSION},
-                         {"instance", sources.instance},
-                         {"pid", getpid()},
-                         {"cell", sources.cell},
-                         {"home", sources.home},
-                         {"uptime_s", sources.uptime_s},
-                         {"loop", loop_json(sources)},
-                         {"robots", robots_json(sources)},
-                         {"script", script_json(sources)},
-                         {"queues", queues_json(sources)},
-                         {"messages", messages_json(sources)},
-                         {"cameras", cameras_json(cell)},
-                         {"display", display_json(*sources.cell_state.display, sources.now)},
-                         {"collisions", collisions_json(sources.collisions, sources.now)},
-                         {"ranges", ranges_json(sources.ranges, sources.cell_state, sources.now)},
-                         {"haptics", haptics_json(sources.cell_state, sources.tick, sources.contacts, sources.now)},
-                         {"forces", forces_json(sources.forces, sources.cell_state.forces, sources.now)},
-                         {"pictures", pictures_json(sources.pictures)},
-                         {"page", page_json(sources.page)},
-                         {"programs", programs_json(sources.cell_state.programs)},
-                         {"foot_switches", switches_json(sources.cell_state.switches, sources.now)},
-                         {"couplings", couplings_json(sources.cell_state.couplings, sources.tick)},
-                         {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
+  const json document = {
+      {"version", CELLMIRROR_VERSION},
+      {"instance", sources.instance},
+      {"pid", getpid()},
+      {"cell", sources.cell},
+      {"home", sources.home},
+      {"uptime_s", sources.uptime_s},
+      {"problems", problems_json(sources.problems)},
+      {"force_guard", {{"running", sources.force_guard.running}, {"process", sources.force_guard.process}}},
+      {"loop", loop_json(sources)},
+      {"robots", robots_json(sources)},
+      {"script", script_json(sources)},
+      {"queues", queues_json(sources)},
+      {"command_log", command_log_json(sources.commands)},
+      {"messages", messages_json(sources)},
+      {"cameras", cameras_json(cell)},
+      {"display", display_json(*sources.cell_state.display, sources.now)},
+      {"collisions", collisions_json(sources.collisions, sources.now)},
+      {"ranges", ranges_json(sources.ranges, sources.cell_state, sources.now)},
+      {"haptics", haptics_json(sources.cell_state, sources.tick, sources.contacts, sources.now)},
+      {"forces", forces_json(sources.forces, sources.cell_state.forces, sources.now)},
+      {"pictures", pictures_json(sources.pictures)},
+      {"page", page_json(sources.page)},
+      {"programs", programs_json(sources.cell_state.programs)},
+      {"foot_switches", switches_json(sources.cell_state.switches, sources.now)},
+      {"couplings", couplings_json(sources.cell_state.couplings, sources.tick)},
+      {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.
   return document.dump(-1, ' ', false, json::error_handler_t::replace);
 }

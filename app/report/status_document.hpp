@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "app/report/page_report.hpp"
+#include "app/report/problem.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/collision_report.hpp"
+#include "app/snapshot/command_record.hpp"
 #include "app/snapshot/contact_report.hpp"
 #include "app/snapshot/fault_status.hpp"
 #include "app/snapshot/force_report.hpp"
@@ -21,6 +23,12 @@
 #include "rt_core/rt/memory_lock.hpp"
 
 namespace cellmirror::app {
+
+// The process that removes the forces of a killed gateway (ipc/sysv/force_guard.hpp).
+struct ForceGuardStatus {
+  bool running = false;
+  std::int32_t process = 0;
+};
 
 // What the document is made of, as of one moment.
 struct StatusSources {
@@ -45,6 +53,9 @@ struct StatusSources {
   const PageReport& page;
   std::vector<engine::QueueStatus> queues;  // of the threads
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
+  Problems problems = {};
+  ForceGuardStatus force_guard = {};
+  CommandLogReport commands = {};
 };
 
 [[nodiscard]] std::string status_document(const StatusSources& sources);

@@ -1,18 +1,19 @@
 // cellmirror run CELL.toml: the gateway until a signal ends it.
+#include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "app/console/load_progress.hpp"
 #include "app/gateway/gateway.hpp"
+#include "app/subcommands/end_signals.hpp"
+#include "app/subcommands/resource_limits.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "ipc/sysv/force_guard.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
@@ -33,33 +34,6 @@ struct RunOptions {
   bool verbose = false;
 };
 
-// SIGINT and SIGTERM are blocked in every thread and taken here, so that ending is ordinary code.
-sigset_t block_end_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  return set;
-}
-
-void wait_for_end(const sigset_t& set, double seconds) {
-  if (seconds <= 0) {
-    int signal = 0;
-    while (sigwait(&set, &signal) == EINTR) {
-    }
-    return;
-  }
-  const SystemClock clock;
-  const Timestamp end = clock.now() + Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
-  for (Timestamp now = clock.now(); now < end; now = clock.now()) {
-    const std::int64_t left = (end - now).count();
-    const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
-    if (sigtimedwait(&set, nullptr, &timeout) > 0) return;
-  }
-}
-
 // Empty where nobody could hear it. One byte by itself, so that it tears no line of the log.
 std::function<void()> terminal_bell() {
   for (const int terminal : {STDERR_FILENO, STDOUT_FILENO}) {
@@ -71,7 +45,12 @@ std::function<void()> terminal_bell() {
 
 int run(const RunOptions& options) {
   set_log_level(options.verbose ? LogLevel::info : LogLevel::warning);
-  const sigset_t signals = block_end_signals();
+  report_exhausted_resources();
+  if (auto enough = check_resource_limits(); !enough) return refuse(enough.error().text());
+  // The first of all: it forks, which only a process of one thread does safely.
+  const auto guard = ForceGuard::start();
+  if (!guard) log_warning("force-guard", "{}", guard.error().text());
+  const EndSignals signals;
   GatewayOptions gateway_options = options.gateway;
   gateway_options.headless = options.headless;
   gateway_options.web = !options.no_web;
@@ -80,6 +59,7 @@ int run(const RunOptions& options) {
   if (!options.script.empty()) gateway_options.startup_script = options.script;
   if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
   gateway_options.bell = terminal_bell();
+  gateway_options.guard = guard ? guard->get() : nullptr;
   std::optional<ProgressLine> line("files loaded");
   gateway_options.progress = load_progress(*line);
   auto gateway = Gateway::start(gateway_options);
@@ -87,8 +67,10 @@ int run(const RunOptions& options) {
   if (!gateway) return refuse(gateway.error().text());
   std::printf("%s\n", (*gateway)->greeting().c_str());
   std::fflush(stdout);
-  wait_for_end(signals, options.seconds);
-  return kExitDone;
+  const int signal = signals.wait(options.seconds);
+  if (signal == 0 || is_ordinary_end(signal)) return kExitDone;
+  gateway->reset();
+  return refuse(fmt::format("the gateway was ended by {}", signal_text(signal)));
 }
 
 }  // namespace

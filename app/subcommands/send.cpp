@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -16,7 +17,9 @@
 #include "app/subcommands/command_texts.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "ipc/control/control_client.hpp"
 #include "ipc/control/instance.hpp"
+#include "ipc/control/queue_answer.hpp"
 #include "ipc/sysv/script_client.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
@@ -35,6 +38,7 @@ struct SendOptions {
 };
 
 constexpr const char* kStandardInput = "-";
+constexpr std::chrono::seconds kQueuesTimeout{5};
 constexpr const char* kStillMoving =
     "; POS_ROB is answered when the robot has arrived, and it may still be on its way: cellmirror status shows it, "
     "--timeout waits longer, STOP_ROB stops it";
@@ -52,9 +56,8 @@ class Sender {
   Sender(const SendOptions& options, const InstanceInfo& instance) : options_(options), instance_(instance) {}
 
   // `place`: in front of what is wrong; empty where there is one command only.
-  Outcome send(const std::string& command, const std::string& place) const {
-    const Nanoseconds timeout(static_cast<std::int64_t>(options_.timeout_s * 1e9));
-    const auto reply = send_command(instance_.queues, command, timeout);
+  Outcome send(const std::string& command, const std::string& place) {
+    const auto reply = exchange(command);
     const bool done = reply && reply->done;
     const std::string text = reply ? reply->text : reply.error().text() + (moves_a_robot(command) ? kStillMoving : "");
     if (options_.json) {
@@ -69,6 +72,29 @@ class Sender {
   }
 
  private:
+  // A queue may be removed and made again by the gateway at any time, or by another program, which must get nothing.
+  Result<void> find_queues() {
+    if (known_.script_queue >= 0 && queue_number(instance_.queues.script_key) == known_.script_queue &&
+        queue_number(instance_.queues.reply_key) == known_.reply_queue) {
+      return {};
+    }
+    const auto text = control_request(instance_.name, R"({"request":"queues"})", kQueuesTimeout);
+    if (!text) return std::unexpected(text.error());
+    const auto answer = parse_queue_answer(*text);
+    if (!answer) return std::unexpected(answer.error());
+    for (const std::string& problem : {answer->script_problem, answer->reply_problem}) {
+      if (!problem.empty()) return fail("the command was not sent: " + problem);
+    }
+    known_ = *answer;
+    return {};
+  }
+
+  Result<ScriptReply> exchange(const std::string& command) {
+    if (const auto found = find_queues(); !found) return std::unexpected(found.error());
+    const Nanoseconds timeout(static_cast<std::int64_t>(options_.timeout_s * 1e9));
+    return send_command(instance_.queues, command, timeout, known_.script_queue);
+  }
+
   static void print_json(const std::string& command, bool done, bool answered, const std::string& text) {
     JsonWriter document;
     document.begin_object().member("command", command).member("done", done).member("answered", answered);
@@ -78,6 +104,7 @@ class Sender {
 
   const SendOptions& options_;
   const InstanceInfo& instance_;
+  QueueAnswer known_;
 };
 
 // What is sent decides: it ends at the first refusal unless it is to keep going, and in any case where nobody answers.
@@ -97,7 +124,7 @@ class Tally {
   int exit_ = kExitDone;
 };
 
-int send_all(const Sender& sender, const SendOptions& options) {
+int send_all(Sender& sender, const SendOptions& options) {
   Tally tally(options.keep_going);
   const bool several = options.commands.size() > 1;
   for (std::size_t i = 0; i < options.commands.size(); ++i) {
@@ -107,7 +134,7 @@ int send_all(const Sender& sender, const SendOptions& options) {
   return tally.exit();
 }
 
-int send_text(const Sender& sender, const SendOptions& options, std::istream& in, const std::string& name) {
+int send_text(Sender& sender, const SendOptions& options, std::istream& in, const std::string& name) {
   Tally tally(options.keep_going);
   for (CommandTexts texts(in);;) {
     const auto command = texts.next();
@@ -120,7 +147,7 @@ int send_text(const Sender& sender, const SendOptions& options, std::istream& in
 int send(const SendOptions& options) {
   const auto instance = find_instance(options.instance);
   if (!instance) return refuse(instance.error().text());
-  const Sender sender(options, *instance);
+  Sender sender(options, *instance);
   if (options.file.empty()) return send_all(sender, options);
   if (options.file == kStandardInput) return send_text(sender, options, std::cin, "standard input");
   std::ifstream in(options.file, std::ios::binary);

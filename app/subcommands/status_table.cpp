@@ -30,6 +30,7 @@ class TableWriter {
 
   std::string write(const json& status) {
     write_head(status);
+    write_problems(status);
     write_loop(status.at("loop"));
     for (const json& robot : status.at("robots")) write_robot(robot);
     out_ += couplings_table(status);
@@ -80,6 +81,14 @@ class TableWriter {
     line("cellmirror {}   cell {}   instance {}   up {:.0f} s", status.at("version").get<std::string>(),
          status.at("cell").get<std::string>(), status.at("instance").get<std::string>(),
          status.at("uptime_s").get<double>());
+  }
+
+  void write_problems(const json& status) {
+    const json problems = status.value("problems", json::array());  // an older gateway has none
+    for (const json& problem : problems) {
+      const std::string text = "PROBLEM  " + problem.at("text").get<std::string>();
+      line("{}", colour_ ? "\x1b[31m" + text + "\x1b[0m" : text);
+    }
   }
 
   void write_loop(const json& loop) {

@@ -194,6 +194,25 @@ static inline int cellmirror_write_sample(void* memory, size_t bytes, const stru
   return 1;
 }
 
+/* Whether a living gateway stands behind what was read: only then render it. A gateway that ends, or whose death its
+ * guard has seen, leaves the process number 0. One that was killed together with its guard leaves its last force and
+ * its number behind, but its time stands still: `now_ns` is CLOCK_MONOTONIC, `most_ns` the greatest age, at least some
+ * periods of the loop (10 ms at 1 kHz). A time in the future is that of another machine, or of before a restart. */
+#define CELLMIRROR_FORCE_MOST_AGE_NS 10000000
+static inline int cellmirror_is_current(uint32_t gateway, int64_t time_ns, int64_t now_ns, int64_t most_ns) {
+  return gateway != 0 && time_ns > 0 && time_ns <= now_ns && now_ns - time_ns <= most_ns;
+}
+static inline int cellmirror_force_is_current(const struct cellmirror_haptic_force* force, int64_t now_ns,
+                                              int64_t most_ns) {
+  return cellmirror_is_current(force->gateway, force->time_ns, now_ns, most_ns);
+}
+/* The TCP force is for monitoring and written by an ordinary thread: allow 100 ms. */
+#define CELLMIRROR_TCP_FORCE_MOST_AGE_NS 100000000
+static inline int cellmirror_tcp_force_is_current(const struct cellmirror_tcp_force* force, int64_t now_ns,
+                                                  int64_t most_ns) {
+  return cellmirror_is_current(force->process, force->time_ns, now_ns, most_ns);
+}
+
 /* "unknown" for a number that this header does not know. */
 static inline const char* cellmirror_phase_name(uint32_t phase) {
   static const char* const kNames[] = {"closed", "waiting", "clutched", "engaging", "active", "faulted"};

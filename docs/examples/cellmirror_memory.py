@@ -7,6 +7,7 @@ processors use cellmirror_haptic.h. SPDX-License-Identifier: Apache-2.0
 import ctypes
 import os
 import struct
+import time
 
 SHM_RDONLY = 0o10000
 TCP_FORCE_KEY = 1313
@@ -106,6 +107,13 @@ def read_force(memory):
         "gripper_torque": values[37],
         "max_force": values[38],
     }
+
+
+def is_current(force, most_s=0.1):
+    """Whether a living gateway stands behind what was read: only then use it. A gateway that was killed together with its
+    guard leaves its last force behind, but its time stands still."""
+    age = time.monotonic_ns() - force["time_ns"]
+    return force.get("gateway", force.get("process")) != 0 and force["time_ns"] > 0 and 0 <= age <= most_s * 1e9
 
 
 def write_sample(memory, sequence, time_ns, position, orientation=(0, 0, 0, 1), buttons=0, gripper=0.0, axes=(), good=True):

@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
       }
       const int got = cellmirror_read_force(attached.memory, attached.bytes, &force);
       const int64_t age = got ? now_ns() - force.time_ns : 0;
-      const int good = got && force.gateway != 0 && age <= OLDEST_NS;
+      const int good = got && cellmirror_force_is_current(&force, now_ns(), OLDEST_NS);
       render(good ? force.force_device : none);
       if (step % 100 == 0 && got) {
         printf("%llu %s %s force %.3f %.3f %.3f N age %lld us%s\n", (unsigned long long)force.sequence,

@@ -24,10 +24,19 @@ static const char* const kUsage =
     "Prints the force at the TCP as it changes: N times (default: without end), waiting at most SECONDS for a "
     "change.\n";
 
+/* The gateway may be held up for a moment by other work of the machine. */
+#define SILENCE_NS 1000000000
+
 /* 1 kHz is enough for monitoring. */
 static void pause_a_little(void) {
   const struct timespec millisecond = {0, 1000000};
   nanosleep(&millisecond, NULL);
+}
+
+static int64_t now_ns(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
 static void print_force(const struct cellmirror_tcp_force* force) {
@@ -81,8 +90,12 @@ int main(int argc, char** argv) {
   struct cellmirror_tcp_force force;
   uint64_t last = 0;
   double waited = 0;
+  int64_t current = now_ns(); /* when a living gateway was last seen behind the force */
   for (long printed = 0; count == 0 || printed < count;) {
-    if (cellmirror_read_tcp_force(memory, found.shm_segsz, &force) && force.sequence != last) {
+    const int got = cellmirror_read_tcp_force(memory, found.shm_segsz, &force);
+    const int good = got && cellmirror_tcp_force_is_current(&force, now_ns(), CELLMIRROR_TCP_FORCE_MOST_AGE_NS);
+    if (good) current = now_ns();
+    if (good && force.sequence != last) {
       last = force.sequence;
       waited = 0;
       print_force(&force);
@@ -91,6 +104,10 @@ int main(int argc, char** argv) {
     }
     if (shmget(key, 0, 0) != id) {
       fprintf(stderr, "tcp_force_reader: the gateway ended\n");
+      return 1;
+    }
+    if (now_ns() - current > SILENCE_NS) {
+      fprintf(stderr, "tcp_force_reader: the gateway no longer writes: it was killed, or hangs\n");
       return 1;
     }
     pause_a_little();

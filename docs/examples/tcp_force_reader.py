@@ -15,6 +15,7 @@ import time
 import cellmirror_memory as cellmirror
 
 VALID, TEST, BEYOND_LIMIT = 1, 2, 4
+SILENCE = 1.0  # s: the gateway may be held up for a moment by other work of the machine
 
 
 def line_of(force):
@@ -39,10 +40,13 @@ def main():
         print(f"tcp_force_reader.py: no gateway is running: {error}", file=sys.stderr)
         return 1
     printed = last = 0
-    changed = time.monotonic()
+    changed = current = time.monotonic()
     while options.count == 0 or printed < options.count:
         force = cellmirror.read_tcp_force(memory)
-        if force is not None and force["sequence"] != last:
+        good = force is not None and cellmirror.is_current(force)
+        if good:
+            current = time.monotonic()
+        if good and force["sequence"] != last:
             last = force["sequence"]
             changed = time.monotonic()
             print(line_of(force), flush=True)
@@ -50,6 +54,9 @@ def main():
             continue
         if memory.removed():
             print("tcp_force_reader.py: the gateway ended", file=sys.stderr)
+            return 1
+        if time.monotonic() - current > SILENCE:
+            print("tcp_force_reader.py: the gateway no longer writes: it was killed, or hangs", file=sys.stderr)
             return 1
         if options.timeout > 0 and time.monotonic() - changed > options.timeout:
             print("tcp_force_reader.py: no change in time", file=sys.stderr)

@@ -162,13 +162,7 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
   ++message_;
   const std::uint64_t missing = take_missing(origin);
   if (const CdrFault fault = decode(payload, view_); fault != CdrFault::none) {
-    for (RobotFeed* feed : feeds_) {
-      ++feed->counters_.rejected;
-      ++feed->counters_.malformed;
-      feed->note_error(fmt::format("a sample of {} bytes is no JointState: {}", payload.size(), words(fault)));
-      feed->publish();
-    }
-    return;
+    return refuse_message(fmt::format("a sample of {} bytes is no JointState: {}", payload.size(), words(fault)));
   }
   touched_.clear();
   for (const std::string_view name : view_.name) {
@@ -186,6 +180,21 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
   if (const auto publisher = publishers_.find(origin.publisher); publisher != publishers_.end()) {
     publisher->second.feeds_us = true;
     publisher->second.missing = 0;
+  }
+}
+
+void JointStateRouter::refuse_too_long(std::size_t bytes, std::size_t most, MessageOrigin origin) {
+  ++message_;
+  static_cast<void>(take_missing(origin));
+  refuse_message(fmt::format("a sample of {} bytes is refused: at most {} are taken", bytes, most));
+}
+
+void JointStateRouter::refuse_message(const std::string& why) {
+  for (RobotFeed* feed : feeds_) {
+    ++feed->counters_.rejected;
+    ++feed->counters_.malformed;
+    feed->note_error(why);
+    feed->publish();
   }
 }
 

@@ -118,6 +118,8 @@ class JointStateRouter {
   // its name occurs twice. Messages that name none of the joints are ignored. Does not allocate for well-formed
   // messages once it has seen one of their size and publisher.
   void accept(std::span<const std::byte> payload, Timestamp receive_time, MessageOrigin origin = {});
+  // The same for a sample of which only the length is known: it has more bytes than are taken.
+  void refuse_too_long(std::size_t bytes, std::size_t most, MessageOrigin origin = {});
   // The publisher is gone; its sequence is forgotten.
   void forget(std::uint64_t publisher);
 
@@ -141,6 +143,7 @@ class JointStateRouter {
   };
 
   void rebuild();
+  void refuse_message(const std::string& why);
   [[nodiscard]] bool lengths_fit(const JointStateView& message) const;
   void touch(RobotFeed& feed, Timestamp receive_time);
   void route_values(const MessageOrigin& origin);

@@ -48,10 +48,7 @@ class RequestExchange {
     switch (reason) {
       case ENOENT:
       case ECONNREFUSED:
-        return fail(fmt::format("no gateway of the instance {} is running", who_),
-                    who_ == kDefaultInstance
-                        ? "start one with cellmirror run CELL.toml"
-                        : fmt::format("start one with cellmirror run CELL.toml --instance {}", who_));
+        return not_running(who_);
       case EACCES:
       case EPERM:
         return fail(fmt::format("the gateway of the instance {} belongs to another user", who_),

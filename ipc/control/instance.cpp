@@ -8,9 +8,11 @@
 #include <cerrno>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "ipc/runtime/ipc_owner.hpp"
 #include "ipc/runtime/runtime_folder.hpp"
 #include "ipc/runtime/system_error.hpp"
 #include "rt_core/base/descriptor.hpp"
@@ -28,10 +30,17 @@ std::filesystem::path lock_path(const std::filesystem::path& runtime, std::strin
   return runtime / ".locks" / fmt::format("instance-{}", name);
 }
 
-std::unexpected<Error> not_running(std::string_view name) {
-  return fail(fmt::format("no gateway of the instance {} is running", name),
-              name == kDefaultInstance ? "start one with cellmirror run CELL.toml"
-                                       : fmt::format("start one with cellmirror run CELL.toml --instance {}", name));
+// Another user's gateway is not found in this user's runtime folder, but its SCRIPT queue is in sight of all. Root's
+// queue may also be meant for others, but not root's control socket.
+std::optional<Error> running_elsewhere(std::string_view name) {
+  const std::int32_t key = default_queues(name).script_key;
+  const auto queue = ipc_owner(IpcKind::queue, key);
+  if (!queue || queue->creator == ::geteuid()) return std::nullopt;
+  const pid_t process = gateway_process_of(queue->creator);
+  if (process == 0) return std::nullopt;  // killed, or another program's queue
+  return Error{fmt::format("a gateway runs as {} (process {}), and only that user and root may ask it",
+                           user_text(queue->creator), process),
+               "run this as that user; as root, set CELLMIRROR_RUNTIME_DIR to that user's runtime folder"};
 }
 
 std::string description(const InstanceInfo& info) {
@@ -107,6 +116,13 @@ void clean_up(const std::filesystem::path& runtime, const std::string& name) {
 }
 
 }  // namespace
+
+std::unexpected<Error> not_running(std::string_view name) {
+  if (auto elsewhere = running_elsewhere(name)) return std::unexpected(*std::move(elsewhere));
+  return fail(fmt::format("no gateway of the instance {} is running", name),
+              name == kDefaultInstance ? "start one with cellmirror run CELL.toml"
+                                       : fmt::format("start one with cellmirror run CELL.toml --instance {}", name));
+}
 
 Result<void> check_instance_name(std::string_view name) {
   const auto allowed = [](char c) {

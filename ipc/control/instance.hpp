@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <expected>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -56,6 +57,8 @@ class Instance {
   std::filesystem::path folder_;
 };
 
+// "no gateway of the instance NAME is running", or who runs it where another user does and it may not be asked.
+[[nodiscard]] std::unexpected<Error> not_running(std::string_view name);
 // Of a running gateway; fails with "no gateway of the instance NAME is running; start one with ..." if there is none.
 [[nodiscard]] Result<InstanceInfo> find_instance(std::string_view name);
 // All that run, by name. What others left behind is taken away.

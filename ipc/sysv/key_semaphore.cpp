@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "ipc/runtime/ipc_owner.hpp"
 #include "ipc/runtime/system_error.hpp"
 
 namespace cellmirror {
@@ -22,10 +23,14 @@ union SemaphoreArgument {
 };
 
 std::unexpected<Error> other_users(std::int32_t key) {
-  return fail(fmt::format("the key {:#x} ({}) is in use by another user", static_cast<std::uint32_t>(key), key),
-              fmt::format("start this gateway with --instance NAME and keys of its own; if that user's gateway was "
-                          "killed, its owner or root must run ipcrm -S {:#x}",
-                          static_cast<std::uint32_t>(key)));
+  const auto found = ipc_owner(IpcKind::semaphore, key);
+  const std::string owner = found ? ": " + user_text(found->creator) : "";
+  const std::string command = found ? remove_command(IpcKind::semaphore, found->id) : fmt::format("ipcrm -S {}", key);
+  return fail(
+      fmt::format("the key {:#x} ({}) is in use by another user{}", static_cast<std::uint32_t>(key), key, owner),
+      fmt::format("start this gateway with --instance NAME and keys of its own; if that user's gateway was "
+                  "killed, that user or root must run {}",
+                  command));
 }
 
 bool is_ours(int id) {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "ipc/runtime/ipc_owner.hpp"
 #include "ipc/runtime/system_error.hpp"
 #include "ipc/wire/record.hpp"
 #include "ipc/wire/script_message.hpp"
@@ -26,10 +27,19 @@ struct MessageBuffer {
   std::array<char, kLongest> text;
 };
 
-std::string remove_command(std::int32_t key) { return fmt::format("ipcrm -Q {:#x}", static_cast<std::uint32_t>(key)); }
-
 std::string queue_text(const OwnedQueue::Options& options) {
   return fmt::format("the {} queue {}", options.purpose, key_text(options.key));
+}
+
+std::unexpected<Error> other_users(const OwnedQueue::Options& options, const std::string& detail) {
+  const auto found = ipc_owner(IpcKind::queue, options.key);
+  const std::string owner = found ? user_text(found->creator) : "another user";
+  const std::string changed =
+      found && found->owner != found->creator ? fmt::format(", and belongs to {} now", user_text(found->owner)) : "";
+  const std::string command =
+      found ? remove_command(IpcKind::queue, found->id) : fmt::format("ipcrm -Q {}", options.key);
+  return fail(fmt::format("{} was created by another user: {}{}{}", queue_text(options), owner, changed, detail),
+              fmt::format("that user or root must run {}, or set other keys under [queues] in the cell file", command));
 }
 
 // Whether the queue that is there may be taken for one that an earlier gateway of this user left behind.
@@ -37,23 +47,17 @@ Result<void> check_left_behind(const OwnedQueue::Options& options, int id, std::
   msqid_ds found{};
   if (::msgctl(id, IPC_STAT, &found) != 0) {
     if (errno == EIDRM || errno == EINVAL) return {};  // gone meanwhile
-    return fail(
-        fmt::format("{} was created by another user: {}", queue_text(options), system_error_text(errno)),
-        fmt::format("its owner or root must run {}, or set other keys in the cell file", remove_command(options.key)));
+    return other_users(options, "");
   }
   messages = found.msg_qnum;
-  if (found.msg_perm.uid != ::geteuid() || found.msg_perm.cuid != ::geteuid()) {
-    return fail(
-        fmt::format("{} was created by another user (owner {}, creator {})", queue_text(options), found.msg_perm.uid,
-                    found.msg_perm.cuid),
-        fmt::format("its owner or root must run {}, or set other keys in the cell file", remove_command(options.key)));
-  }
+  if (found.msg_perm.uid != ::geteuid() || found.msg_perm.cuid != ::geteuid()) return other_users(options, "");
   const unsigned mode = found.msg_perm.mode & 0777u;
   if ((mode & ~options.mode) != 0) {
     return fail(
-        fmt::format("{} has a wider mode ({:o}) than the cell file allows ({:o}), so it was not created by cellmirror",
+        fmt::format("{} has a wider mode ({:o}) than the cell file allows ({:o}), so another program has created it",
                     queue_text(options), mode, options.mode),
-        fmt::format("run {}, or allow that mode in the cell file", remove_command(options.key)));
+        fmt::format("end that program and run {}, or allow that mode in the cell file",
+                    remove_command(IpcKind::queue, id)));
   }
   return {};
 }
@@ -71,8 +75,7 @@ Result<int> make_queue(const OwnedQueue::Options& options, std::uint64_t& discar
     const int found = ::msgget(options.key, 0);
     if (found < 0) {
       if (errno == ENOENT) continue;
-      return fail(fmt::format("cannot open {}: {}", queue_text(options), system_error_text(errno)),
-                  fmt::format("its owner or root must run {}", remove_command(options.key)));
+      return other_users(options, fmt::format(" ({})", system_error_text(errno)));
     }
     std::uint64_t messages = 0;
     if (const auto ours = check_left_behind(options, found, messages); !ours) return std::unexpected(ours.error());
@@ -146,6 +149,18 @@ QueueOutcome OwnedQueue::receive(long& type, std::span<char> text, std::size_t& 
 
 Result<void> OwnedQueue::recreate() {
   const std::lock_guard guard(mutex_);
+  auto done = try_to_recreate();
+  problem_ = done || closed() ? std::string() : done.error().text();
+  return done;
+}
+
+std::string OwnedQueue::problem() const {
+  const std::lock_guard guard(mutex_);
+  return problem_;
+}
+
+// With the lock.
+Result<void> OwnedQueue::try_to_recreate() {
   if (closed()) return fail(fmt::format("{} is closed", queue_text(options_)));
   msqid_ds found{};
   // Another thread may have made it already.

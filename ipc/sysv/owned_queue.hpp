@@ -46,11 +46,14 @@ class OwnedQueue {
   // After `gone`: recreates the queue. Fails if another process has taken the key meanwhile, and after close(). Any
   // thread.
   [[nodiscard]] Result<void> recreate();
+  // Why the key's queue is not ours although it should be, since the last recreate(); empty: it is. Any thread.
+  [[nodiscard]] std::string problem() const;
   // Removes the queue for good and gives the key back: receive() in another thread ends with `gone`. Any thread.
   void close();
   [[nodiscard]] bool closed() const { return closed_.load(std::memory_order_acquire); }
 
   [[nodiscard]] const Options& options() const { return options_; }
+  [[nodiscard]] int id() const { return id_.load(std::memory_order_acquire); }  // the kernel's number
   [[nodiscard]] std::uint64_t discarded() const { return discarded_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t recreated() const { return recreated_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t waiting() const;     // messages in it now
@@ -58,11 +61,12 @@ class OwnedQueue {
 
  private:
   OwnedQueue(Options options, KeyLock lock, int id, std::uint64_t discarded);
-  [[nodiscard]] int id() const { return id_.load(std::memory_order_acquire); }
+  Result<void> try_to_recreate();
 
   Options options_;
   KeyLock lock_;
-  std::mutex mutex_;  // making and removing
+  mutable std::mutex mutex_;  // making and removing, and what follows
+  std::string problem_;
   std::atomic<int> id_;
   std::atomic<bool> closed_{false};
   std::atomic<std::uint64_t> discarded_;

@@ -104,16 +104,26 @@ std::unexpected<Error> queue_failure(std::int32_t key, int error_number) {
   }
 }
 
+std::unexpected<Error> queue_of_another(std::int32_t key) {
+  return fail(fmt::format("the message queue {} is not the gateway's: another program has created it", key_text(key)),
+              "cellmirror status shows more; end that program, or set other keys in the cell file");
+}
+
 class Exchange {
  public:
-  Exchange(const QueueConfig& queues, Nanoseconds timeout)
-      : queues_(queues), timeout_(timeout), deadline_(SteadyClock::now() + timeout), interrupter_(timeout) {}
+  Exchange(const QueueConfig& queues, Nanoseconds timeout, std::int32_t queue)
+      : queues_(queues),
+        queue_(queue),
+        timeout_(timeout),
+        deadline_(SteadyClock::now() + timeout),
+        interrupter_(timeout) {}
 
   Result<ScriptReply> run(std::string_view command) {
     if (!interrupter_.armed())
       return fail("no timer is available for the time-out", "raise the limit of pending signals");
     const int input = ::msgget(queues_.script_key, 0200);
     if (input < 0) return queue_failure(queues_.script_key, errno);
+    if (queue_ >= 0 && input != queue_) return queue_of_another(queues_.script_key);
     const std::int64_t tag = new_tag();
     const std::string text = script_message_text(tag, command);
     if (text.size() > kMaxScriptMessageBytes) {
@@ -177,6 +187,7 @@ class Exchange {
   }
 
   QueueConfig queues_;
+  std::int32_t queue_;
   Nanoseconds timeout_;
   SteadyClock::time_point deadline_;
   Interrupter interrupter_;
@@ -184,8 +195,11 @@ class Exchange {
 
 }  // namespace
 
-Result<ScriptReply> send_command(const QueueConfig& queues, std::string_view command, Nanoseconds timeout) {
-  return Exchange(queues, timeout).run(command);
+std::int32_t queue_number(std::int32_t key) { return ::msgget(key, 0); }
+
+Result<ScriptReply> send_command(const QueueConfig& queues, std::string_view command, Nanoseconds timeout,
+                                 std::int32_t queue) {
+  return Exchange(queues, timeout, queue).run(command);
 }
 
 }  // namespace cellmirror

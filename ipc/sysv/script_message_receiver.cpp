@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <pthread.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <atomic>
@@ -24,6 +25,14 @@ constexpr std::size_t kErrorsKept = 16;
 // How many old replies one reply may push out: the longest has the room of a thousand of the shortest.
 constexpr int kMostPushedOut = 1100;
 constexpr std::chrono::seconds kBetweenRepairs{1};
+constexpr std::chrono::milliseconds kBetweenLooks{200};
+
+// None where it has ended already.
+std::optional<std::uint32_t> user_of_process(std::int32_t process) {
+  struct stat folder{};
+  if (process <= 0 || ::stat(fmt::format("/proc/{}", process).c_str(), &folder) != 0) return std::nullopt;
+  return folder.st_uid;
+}
 
 }  // namespace
 
@@ -31,9 +40,11 @@ struct ScriptMessageReceiver::Impl {
   QueueConfig config;
   std::string instance;
   Handler handler;
+  RefusedHandler refused;
   std::unique_ptr<OwnedQueue> input;
   std::unique_ptr<OwnedQueue> replies_queue;
   std::thread thread;
+  std::thread watch;
 
   std::atomic<std::uint64_t> received{0};
   std::atomic<std::uint64_t> malformed{0};
@@ -55,8 +66,9 @@ struct ScriptMessageReceiver::Impl {
 
   void receive_until_closed();
   void take(long type, std::span<const char> text);
-  void repair(OwnedQueue& queue);
-  void pause();  // before the next try; ends early at stop()
+  bool repair(OwnedQueue& queue);
+  void pause(std::chrono::milliseconds time);  // ends early at stop()
+  void watch_queues();
   void send_reply(std::int64_t tag, const ScriptReply& reply);
 };
 
@@ -70,9 +82,9 @@ void ScriptMessageReceiver::Impl::receive_until_closed() {
     if (outcome == QueueOutcome::done) {
       take(type, std::span<const char>(buffer).first(length));
     } else if (!input->closed()) {
-      repair(*input);
+      const bool repaired = repair(*input);
       repair(*replies_queue);  // log-out removes both
-      if (outcome == QueueOutcome::failed) pause();
+      if (!repaired || outcome == QueueOutcome::failed) pause(kBetweenRepairs);
     }
   }
 }
@@ -85,6 +97,7 @@ void ScriptMessageReceiver::Impl::take(long type, std::span<const char> text) {
     return;
   }
   const std::int32_t sender = input->last_sender();
+  const auto user = user_of_process(sender);
   ScriptEnvelope envelope = parse_script_message(text);
   // A reply queue that is missing must be back before the sender may count on the reply.
   if (envelope.tag != 0) repair(*replies_queue);
@@ -93,32 +106,44 @@ void ScriptMessageReceiver::Impl::take(long type, std::span<const char> text) {
     const std::string why = envelope.text.error().text();
     note_error(fmt::format("message from process {}: {}", sender, why));
     log_warning("ipc.malformed-message", "from process {}: {}", sender, why);
+    if (refused) refused({{}, envelope.tag, sender, user}, why);
     send_reply(envelope.tag, {false, why});
     return;
   }
   received.fetch_add(1, std::memory_order_relaxed);
-  handler({std::move(*envelope.text), envelope.tag, sender});
+  handler({std::move(*envelope.text), envelope.tag, sender, user});
 }
 
-void ScriptMessageReceiver::Impl::repair(OwnedQueue& queue) {
+// Reports each state once, however often it is called. Any thread.
+bool ScriptMessageReceiver::Impl::repair(OwnedQueue& queue) {
   const std::uint64_t before = queue.recreated();
+  const std::string problem_before = queue.problem();
   const auto made = queue.recreate();
   if (made) {
     if (queue.recreated() != before) {
       log_warning("ipc.queue-removed", "the {} queue {} was removed by another program and is recreated",
                   queue.options().purpose, key_text(queue.options().key));
     }
-    return;
+    return true;
   }
-  if (queue.closed()) return;
+  if (queue.closed() || made.error().text() == problem_before) return false;
   note_error(made.error().text());
-  log_error("ipc.queue-lost", "{}", made.error().text());
-  pause();
+  log_error("ipc.queue-lost", "{}; it is tried again until it succeeds", made.error().text());
+  return false;
 }
 
-void ScriptMessageReceiver::Impl::pause() {
+void ScriptMessageReceiver::Impl::pause(std::chrono::milliseconds time) {
   std::unique_lock lock(mutex);
-  stopping.wait_for(lock, kBetweenRepairs, [this] { return !running; });
+  stopping.wait_for(lock, time, [this] { return !running; });
+}
+
+// A client opens the reply queue before it sends: without it, no message comes that would bring it back.
+void ScriptMessageReceiver::Impl::watch_queues() {
+  while (!replies_queue->closed() && !input->closed()) {
+    pause(kBetweenLooks);
+    repair(*replies_queue);
+    repair(*input);
+  }
 }
 
 void ScriptMessageReceiver::Impl::send_reply(std::int64_t tag, const ScriptReply& reply) {
@@ -156,7 +181,7 @@ ScriptMessageReceiver::ScriptMessageReceiver(QueueConfig config, std::string ins
 
 ScriptMessageReceiver::~ScriptMessageReceiver() { stop(); }
 
-Result<void> ScriptMessageReceiver::start(Handler handler) {
+Result<void> ScriptMessageReceiver::start(Handler handler, RefusedHandler refused) {
   CELLMIRROR_EXPECTS(!impl_->thread.joinable() && handler);
   // The reply queue first: a sender that sees the input queue finds the reply queue too.
   auto replies = OwnedQueue::make({"SCRIPT reply", impl_->config.reply_key, impl_->config.mode, impl_->instance});
@@ -172,6 +197,7 @@ Result<void> ScriptMessageReceiver::start(Handler handler) {
     impl_->input = std::move(*input);
     impl_->replies_queue = std::move(*replies);
     impl_->handler = std::move(handler);
+    impl_->refused = std::move(refused);
     impl_->running = true;
   }
   try {
@@ -179,9 +205,14 @@ Result<void> ScriptMessageReceiver::start(Handler handler) {
       ::pthread_setname_np(::pthread_self(), "script-queue");
       impl_->receive_until_closed();
     });
+    impl_->watch = std::thread([this] {
+      ::pthread_setname_np(::pthread_self(), "queue-watch");
+      impl_->watch_queues();
+    });
   } catch (const std::system_error& error) {
     impl_->input->close();
     impl_->replies_queue->close();
+    if (impl_->thread.joinable()) impl_->thread.join();
     return fail(fmt::format("cannot start the thread of the SCRIPT queue: {}", error.what()),
                 "raise the limit of processes");
   }
@@ -197,6 +228,7 @@ void ScriptMessageReceiver::stop() {
   impl_->input->close();  // ends the wait in the kernel
   impl_->stopping.notify_all();
   impl_->thread.join();
+  impl_->watch.join();
   const std::lock_guard guard(impl_->reply_mutex);
   impl_->replies_queue->close();
 }
@@ -222,6 +254,10 @@ ScriptMessageStatus ScriptMessageReceiver::status() const {
     status.recreated = impl_->input->recreated() + impl_->replies_queue->recreated();
     status.discarded = impl_->input->discarded();
     status.waiting = impl_->input->waiting();
+    status.input_problem = impl_->input->problem();
+    status.reply_problem = impl_->replies_queue->problem();
+    status.input_queue = impl_->input->id();
+    status.reply_queue = impl_->replies_queue->id();
   }
   return status;
 }

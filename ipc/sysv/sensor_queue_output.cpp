@@ -53,6 +53,7 @@ struct SensorQueueOutput::Impl {
   std::array<std::byte, kMaxRecordBytes> bytes;  // of the record in work
   std::uint64_t sequence = 0;
   Timestamp repair_again;
+  Timestamp look_again;
   Timestamp instant;  // of the record before, and what the wall clock showed then
   std::int64_t instant_wall_ns = 0;
   ProximityPacing pacing;
@@ -92,10 +93,12 @@ bool SensorQueueOutput::Impl::make_room() {
 bool SensorQueueOutput::Impl::repair(Timestamp time) {
   if (time < repair_again) return false;
   const std::uint64_t before = queue->recreated();
+  const std::string problem_before = queue->problem();
   const auto made = queue->recreate();
   if (!made) {
     repair_again = time + kBetweenRepairs;
-    log_error("ipc.queue-lost", "{}", made.error().text());
+    if (made.error().text() != problem_before)
+      log_error("ipc.queue-lost", "{}; it is tried again until it succeeds", made.error().text());
     return false;
   }
   if (queue->recreated() != before) {
@@ -223,6 +226,14 @@ std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters()
           {"recreated", impl_->queue->recreated()},
           {"discarded", impl_->queue->discarded()},
           {"waiting", impl_->queue->waiting()}};
+}
+
+std::string SensorQueueOutput::problem() const { return impl_->queue->problem(); }
+
+void SensorQueueOutput::keep(Timestamp now) {
+  if (now < impl_->look_again) return;
+  impl_->look_again = now + kBetweenRepairs;
+  impl_->repair(now);
 }
 
 std::string SensorQueueOutput::name() const { return "sensor queue " + key_text(impl_->queue->options().key); }

@@ -35,6 +35,9 @@ class SensorQueueOutput final : public RobotStateOutput, public FindingsOutput, 
   void publish_cameras(Timestamp time, std::span<const CameraState> cameras) override;
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override;
   [[nodiscard]] std::string name() const override;  // "sensor queue 0x7c6 (1990)"
+  [[nodiscard]] std::string problem() const override;
+  // Looks once a second whether the queue is still there and ours, also while there is nothing to send.
+  void keep(Timestamp now) override;
 
  private:
   struct Impl;

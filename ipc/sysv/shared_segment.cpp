@@ -9,13 +9,13 @@
 #include <cerrno>
 #include <utility>
 
+#include "ipc/runtime/ipc_owner.hpp"
 #include "ipc/runtime/system_error.hpp"
 #include "ipc/wire/shared_words.hpp"
+#include "rt_core/base/log.hpp"
 
 namespace cellmirror {
 namespace {
-
-std::string remove_command(std::int32_t key) { return fmt::format("ipcrm -M {:#x}", static_cast<std::uint32_t>(key)); }
 
 std::string segment_text(const std::string& purpose, std::int32_t key) {
   return fmt::format("the shared memory {}{}{}", purpose, purpose.empty() ? "" : " ", key_text(key));
@@ -36,30 +36,35 @@ struct Found {
   bool new_one = false;
 };
 
-std::unexpected<Error> other_users(const SharedSegment::Options& options, const std::string& detail) {
-  return fail(
-      fmt::format("{} was created by another user ({})", segment_text(options), detail),
-      fmt::format("its owner or root must run {}, or set another key in the cell file", remove_command(options.key)));
+std::unexpected<Error> segment_of_other(const SharedSegment::Options& options) {
+  const auto found = ipc_owner(IpcKind::memory, options.key);
+  const std::string owner = found ? user_text(found->creator) : "another user";
+  const std::string changed =
+      found && found->owner != found->creator ? fmt::format(", and belongs to {} now", user_text(found->owner)) : "";
+  const std::string command =
+      found ? remove_command(IpcKind::memory, found->id) : fmt::format("ipcrm -M {}", options.key);
+  return fail(fmt::format("{} was created by another user: {}{}", segment_text(options), owner, changed),
+              fmt::format("that user or root must run {}, or set another key in the cell file", command));
 }
 
 std::unexpected<Error> in_use(const SharedSegment::Options& options, const shmid_ds& found, const std::string& why) {
   return fail(fmt::format("{} exists already and {}", segment_text(options), why),
               fmt::format("end the programs that use it (the last one was process {}, it was created by process {}) "
-                          "and run {}, or set another key in the cell file",
-                          found.shm_lpid, found.shm_cpid, remove_command(options.key)));
+                          "and run ipcrm -M {:#x}, or set another key in the cell file",
+                          found.shm_lpid, found.shm_cpid, static_cast<std::uint32_t>(options.key)));
 }
 
 // Whether the existing segment belongs to this user and has no wider mode.
 Result<void> check_owner(const SharedSegment::Options& options, const shmid_ds& found) {
   if (found.shm_perm.uid != ::geteuid() || found.shm_perm.cuid != ::geteuid()) {
-    return other_users(options, fmt::format("owner {}, creator {}", found.shm_perm.uid, found.shm_perm.cuid));
+    return segment_of_other(options);
   }
   const unsigned mode = found.shm_perm.mode & 0777u;
   if ((mode & ~options.mode) != 0) {
     return fail(fmt::format("{} has a wider mode ({:o}) than the cell file allows ({:o})", segment_text(options), mode,
                             options.mode),
-                fmt::format("run {}, create it with the mode {:o}, or allow that mode in the cell file",
-                            remove_command(options.key), options.mode));
+                fmt::format("run ipcrm -M {:#x}, create it with the mode {:o}, or allow that mode in the cell file",
+                            static_cast<std::uint32_t>(options.key), options.mode));
   }
   return {};
 }
@@ -102,12 +107,12 @@ Result<Found> find_or_make(const SharedSegment::Options& options, std::size_t ma
     const int id = ::shmget(options.key, 0, 0);
     if (id < 0) {
       if (errno == ENOENT) continue;
-      return other_users(options, system_error_text(errno));
+      return segment_of_other(options);
     }
     shmid_ds found{};
     if (::shmctl(id, IPC_STAT, &found) != 0) {
       if (tells_removed(errno)) continue;
-      return other_users(options, system_error_text(errno));
+      return segment_of_other(options);
     }
     if (const auto ours = check_owner(options, found); !ours) return std::unexpected(ours.error());
     const auto fit = check_size(options, found, mapped);
@@ -132,6 +137,16 @@ void touch_pages_read_only(const std::byte* memory, std::size_t bytes) {
 }
 
 bool attach_failed(const void* address) { return address == reinterpret_cast<void*>(-1); }
+
+void watch(const SharedSegment::Options& options, int id) {
+  if (options.guard == nullptr || options.block == GuardedBlock::none) return;
+  if (!options.guard->watch(id, options.block))
+    log_warning("shared-memory", "{} is not guarded: too many are", segment_text(options));
+}
+
+void forget(const SharedSegment::Options& options, int id) {
+  if (options.guard != nullptr) options.guard->forget(id);
+}
 
 bool is_removed(int id, shmid_ds& found) {
   if (::shmctl(id, IPC_STAT, &found) != 0) return true;
@@ -202,6 +217,7 @@ Result<std::unique_ptr<SharedSegment>> SharedSegment::make(Options options) {
   if (!lock) return std::unexpected(lock.error());
   const auto mapping = map_segment(options, nullptr, 0);
   if (!mapping) return std::unexpected(mapping.error());
+  watch(options, mapping->id);
   auto state = std::make_unique<State>(State{.options = std::move(options),
                                              .lock = std::move(*lock),
                                              .id = mapping->id,
@@ -214,6 +230,7 @@ Result<std::unique_ptr<SharedSegment>> SharedSegment::make(Options options) {
 SharedSegment::SharedSegment(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 SharedSegment::~SharedSegment() {
+  forget(state_->options, state_->id);
   // By number, not by key: one created by another process meanwhile is not touched.
   ::shmctl(state_->id, IPC_RMID, nullptr);
   ::shmdt(state_->address);
@@ -238,6 +255,8 @@ Result<void> SharedSegment::renew() {
   if (const auto confirmed = state_->lock.confirm(); !confirmed) return confirmed;
   const auto mapping = map_segment(state_->options, state_->address, state_->mapped);
   if (!mapping) return std::unexpected(mapping.error());
+  forget(state_->options, state_->id);
+  watch(state_->options, mapping->id);
   state_->id = mapping->id;
   state_->taken_over = mapping->taken_over;
   ++state_->renewed;

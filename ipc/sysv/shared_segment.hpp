@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "ipc/sysv/force_guard.hpp"
 #include "ipc/sysv/key_lock.hpp"
 #include "rt_core/base/result.hpp"
 
@@ -30,6 +31,8 @@ class SharedSegment {
     std::size_t bytes = 0;      // 1 to kMaxSegmentBytes
     std::uint32_t mode = 0600;  // shmget(2): read and write for owner, group, others
     std::string instance = "default";
+    ForceGuard* guard = nullptr;  // outlives the segment; null: nobody clears what a killed gateway leaves
+    GuardedBlock block = GuardedBlock::none;
   };
 
   // Takes the key's lock and creates the segment, zeroed. An existing one (left by a killed gateway, or created earlier

@@ -224,7 +224,8 @@ void Connection::do_route(ExecuteBody& /*execute*/, Timestamp now) {
 }
 
 void Connection::do_route(OpenWebSocket& open, Timestamp now) {
-  place_ = context_.places.take(peer_of(fd()), open.has_token);
+  const std::string peer = peer_of(fd());
+  place_ = context_.places.take(peer, open.has_token);
   if (place_ == nullptr) {
     count(context_.counters.refused);
     return answer(text_answer(503,
@@ -236,7 +237,7 @@ void Connection::do_route(OpenWebSocket& open, Timestamp now) {
   const int bytes = 128 * 1024;
   ::setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
   stage_ = Stage::live;
-  session_.emplace(context_, number_);
+  session_.emplace(context_, number_, peer);
   out_.push(
       fmt::format("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
                   "Upgrade\r\nSec-WebSocket-Accept: {}\r\n{}\r\n",
@@ -260,9 +261,10 @@ void Connection::execute_body(Timestamp now) {
   stage_ = Stage::waiting;
   since_ = now;
   count(context_.counters.commands);
-  context_.backend.execute(text, [inbox = context_.inbox, number = number_](const CommandReply& reply) {
-    inbox->post(number, [reply](Connection* client) { client->answer(json_answer(command_answer(reply))); });
-  });
+  context_.backend.execute(
+      text, {number_, peer_of(fd())}, [inbox = context_.inbox, number = number_](const CommandReply& reply) {
+        inbox->post(number, [reply](Connection* client) { client->answer(json_answer(command_answer(reply))); });
+      });
 }
 
 void Connection::take_frames(Timestamp now) {

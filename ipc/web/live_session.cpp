@@ -99,7 +99,8 @@ void LiveSession::handle(const CommandMessage& message, Outgoing& out) {
   ++commands_waiting_;
   count(context_.counters.commands);
   context_.backend.execute(
-      message.text, [inbox = context_.inbox, connection = connection_, id = message.id](const CommandReply& reply) {
+      message.text, {connection_, peer_},
+      [inbox = context_.inbox, connection = connection_, id = message.id](const CommandReply& reply) {
         inbox->post(connection, [id, reply](Connection* client) { client->command_answered(id, reply); });
       });
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "ipc/web/client_message.hpp"
 #include "ipc/web/flow.hpp"
@@ -18,8 +19,9 @@ namespace cellmirror::web {
 
 class LiveSession {
  public:
-  // `connection`: its number, for replies from other threads.
-  LiveSession(ServerContext& context, std::uint64_t connection) : context_(context), connection_(connection) {}
+  // `connection`: its number, for replies from other threads. `peer`: as of peer_of().
+  LiveSession(ServerContext& context, std::uint64_t connection, std::string peer)
+      : context_(context), connection_(connection), peer_(std::move(peer)) {}
 
   void welcome(Outgoing& out) const;
   // Counts frames: messages, their parts, pings and pongs. False: too many; the connection is to be closed.
@@ -47,6 +49,7 @@ class LiveSession {
 
   ServerContext& context_;
   std::uint64_t connection_;
+  std::string peer_;
   Timestamp now_;  // of the message that is handled
   bool may_command_ = false;
   int wrong_tokens_ = 0;

@@ -2,6 +2,7 @@
 // several at once.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -19,6 +20,12 @@ struct CommandReply {
   std::string text;  // empty, or why it was refused, with the remedy
 };
 
+// Who sent a command, for the log of commands.
+struct CommandOrigin {
+  std::uint64_t session = 0;  // number of the connection since the start of the server
+  std::string peer;           // as of peer_of()
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -28,12 +35,14 @@ class Backend {
   // of `status --json` for the same things (docs/monitor-page.md).
   [[nodiscard]] virtual std::string live_json() = 0;
   [[nodiscard]] virtual std::string status_json() = 0;
-  [[nodiscard]] virtual std::string tree_json() = 0;      // the tree of the cell with the level shown
-  [[nodiscard]] virtual std::string commands_json() = 0;  // as `cellmirror commands --json`; never changes
-  [[nodiscard]] virtual std::string names_json() = 0;     // for completion: robots, frames, cameras, sensors, files
-  [[nodiscard]] virtual std::string metrics_text() = 0;   // Prometheus text format
-  // Executes a SCRIPT command; `reply` is called once, from another thread, or at once if it is refused.
-  virtual void execute(std::string_view command, std::function<void(const CommandReply&)> reply) = 0;
+  [[nodiscard]] virtual std::string tree_json() = 0;         // the tree of the cell with the level shown
+  [[nodiscard]] virtual std::string commands_json() = 0;     // as `cellmirror commands --json`; never changes
+  [[nodiscard]] virtual std::string names_json() = 0;        // for completion: robots, frames, cameras, sensors, files
+  [[nodiscard]] virtual std::string command_log_json() = 0;  // the newest entries of the log of commands
+  [[nodiscard]] virtual std::string metrics_text() = 0;      // Prometheus text format
+  // Executes a SCRIPT command of `origin`; `reply` is called once, from another thread, or at once if it is refused.
+  virtual void execute(std::string_view command, const CommandOrigin& origin,
+                       std::function<void(const CommandReply&)> reply) = 0;
   // A page is being opened and will request pictures soon. Does not wait.
   virtual void expect_pictures() = 0;
   // Starts a stream. Refused, with the reason, if there are too many or pictures are switched off. Errors of rendering

@@ -63,6 +63,20 @@ void write_tcp_force(std::span<std::byte> memory, const TcpForce& force) {
   for (std::size_t i = 0; i < robot.size(); ++i) shared_words::store(memory, at::kRobot + 8 * i, robot[i]);
 }
 
+void end_tcp_force(std::span<std::byte> memory) {
+  TcpForce last;
+  if (holds_all(memory)) {
+    last.sequence = shared_words::load<std::uint64_t>(memory, at::kSequence) + 1;
+    last.time.ns = std::bit_cast<std::int64_t>(shared_words::load<std::uint64_t>(memory, at::kTime));
+  }
+  write_tcp_force(memory, last);
+}
+
+std::uint32_t tcp_force_process(std::span<const std::byte> memory) {
+  if (!holds_all(memory) || shared_words::load<std::uint64_t>(memory, at::kMagic) != kNameWord) return 0;
+  return second_of(shared_words::load<std::uint64_t>(memory, at::kFlags));
+}
+
 bool read_tcp_force(std::span<const std::byte> memory, TcpForce& force) {
   if (!holds_all(memory)) return false;
   std::array<std::uint32_t, 4> values{};

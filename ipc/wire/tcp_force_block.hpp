@@ -45,13 +45,17 @@ struct TcpForce {
   FixedText<64> robot;
 };
 
-// `memory` is shared with other processes and aligned to 8 bytes (one that is not holds nothing). Both functions: N and
+// `memory` is shared with other processes and aligned to 8 bytes (one that is not holds nothing). All functions: N and
 // Nm, bounded time, no system call, no heap.
 
 // One writer at a time. Memories below kSize hold as many of the four values as fit and nothing else. Values of which
 // any is not finite are all written as zero, without kTcpForceValid. The robot's id is cut at 63 bytes. A gateway that
 // ends writes a last time with flags and process 0.
 void write_tcp_force(std::span<std::byte> memory, const TcpForce& force);
+// Values, flags and process zero; the numbers continue, so that a reader that waits for another one sees the end.
+void end_tcp_force(std::span<std::byte> memory);
+// The process number of the gateway that writes; 0 where none does or the memory holds no block of this version.
+[[nodiscard]] std::uint32_t tcp_force_process(std::span<const std::byte> memory);
 // False where it was torn in every try, or is no block of this version; leaves `force` alone then.
 [[nodiscard]] bool read_tcp_force(std::span<const std::byte> memory, TcpForce& force);
 

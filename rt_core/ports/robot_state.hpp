@@ -59,6 +59,10 @@ class RobotStateOutput {
   // {"sent", n}, {"dropped", n}, ...; any thread.
   [[nodiscard]] virtual std::vector<std::pair<std::string, std::uint64_t>> counters() const = 0;
   [[nodiscard]] virtual std::string name() const = 0;
+  // Why it reaches nobody, with the remedy; empty: nothing is known against it. Any thread.
+  [[nodiscard]] virtual std::string problem() const { return {}; }
+  // Called regularly by the thread that publishes, also while there is nothing to publish.
+  virtual void keep(Timestamp /*now*/) {}
 };
 
 }  // namespace cellmirror

@@ -4,13 +4,16 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <ctime>
-
-#include "rt_core/base/contract.hpp"
+#include <system_error>
 
 namespace cellmirror {
 
-WakeSignal::WakeSignal() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) { CELLMIRROR_EXPECTS(event_.valid()); }
+WakeSignal::WakeSignal() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  // No bug of ours: the process, or the machine, has no more descriptors.
+  if (!event_.valid()) throw std::system_error(errno, std::generic_category(), "eventfd");
+}
 
 void WakeSignal::wake() noexcept {
   const std::uint64_t one = 1;

@@ -68,14 +68,22 @@ void ScriptRunner::execute_message(std::string_view text, std::string_view sourc
 void ScriptRunner::execute(ScriptCommand command) {
   const std::string source = command.source.text();
   const CommandSource::Kind from = command.source.kind;
-  if (command.reply.wanted()) return execute_message(command.text, source, std::move(command.reply), from);
+  const bool answered = command.reply.wanted();
+  if (traced_) command.reply = traced(command, std::move(command.reply));
+  if (answered) return execute_message(command.text, source, std::move(command.reply), from);
   // Without a reply nothing waits for a robot to arrive. Refusals are listed in status.
-  [[maybe_unused]] const auto unanswered = execute_message(command.text, source, from);
+  command.reply(execute_message(command.text, source, from));
 }
 
 Result<ActivityHandle> ScriptRunner::execute_program_command(std::string_view text, std::string_view source) {
   ActivityHandle activity;
-  if (auto result = begin_message(program_command_, CommandSource::Kind::program, text, source, activity)) {
+  const Timestamp began = clock_.now();
+  auto result = begin_message(program_command_, CommandSource::Kind::program, text, source, activity);
+  if (traced_) {
+    const CommandSource program{.kind = CommandSource::Kind::program, .place = std::string(source)};
+    (*traced_)(trace_of(program, std::string(text), began, result.value_or(std::string())));
+  }
+  if (result) {
     if (!*result) return std::unexpected(std::move(result->error()));
     return ActivityHandle();
   }

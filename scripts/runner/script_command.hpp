@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -19,10 +20,18 @@ struct CommandSource {
 
   Kind kind = Kind::message;
   std::int32_t process = 0;  // of a message; 0: unknown
-  std::string place;         // of a file or a program: "scripts/a.spt", "K1/BOX.src:12"
+  std::string place = {};    // of a file or a program: "scripts/a.spt", "K1/BOX.src:12"
+  // For the log of commands.
+  std::optional<std::uint32_t> user = {};  // of the process of a message
+  std::uint64_t session = 0;               // of the page
+  std::string peer = {};                   // of the page: who is at the other end of the connection
 
-  [[nodiscard]] static CommandSource message(std::int32_t process) { return {Kind::message, process, {}}; }
-  [[nodiscard]] static CommandSource page() { return {Kind::page, 0, {}}; }
+  [[nodiscard]] static CommandSource message(std::int32_t process, std::optional<std::uint32_t> user = {}) {
+    return {.kind = Kind::message, .process = process, .place = {}, .user = user};
+  }
+  [[nodiscard]] static CommandSource page(std::uint64_t session = 0, std::string peer = {}) {
+    return {.kind = Kind::page, .process = 0, .place = {}, .user = {}, .session = session, .peer = std::move(peer)};
+  }
 
   // "message from process 12", "monitor page", the place
   [[nodiscard]] std::string text() const;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,7 @@ class ScriptRun {
   bool tells_later = false;  // the activity may fail later, which is reported without the run too
   Timestamp first_command;
   CommandSource::Kind from = CommandSource::Kind::file;  // who started it; file: the start, or a foot switch
+  std::optional<CommandTrace> trace;                     // of the command that is under way
   RunReport report;
 };
 

@@ -43,7 +43,9 @@ std::string shown_name(const fs::path& path, const fs::path& home) {
 }  // namespace
 
 ScriptRunner::ScriptRunner(CommandHost host, const KismetHome& home, const Clock& clock, Events events)
-    : host_(host), home_(home), clock_(clock), events_(std::move(events)) {}
+    : host_(host), home_(home), clock_(clock), events_(std::move(events)) {
+  if (events_.traced) traced_ = std::make_shared<const TraceFunction>(std::move(events_.traced));
+}
 
 ScriptRunner::~ScriptRunner() = default;
 
@@ -153,6 +155,7 @@ bool ScriptRunner::end_wait(ScriptRun& run) {
   if (verdict) {
     ++run.report.counters.done;
     ++counters_.file.done;
+    trace_end(run, std::string());
     return true;
   }
   Diagnostics findings;
@@ -176,6 +179,7 @@ bool ScriptRunner::may_go_on(ScriptRun& run) {
   }
   ++run.report.counters.done;
   ++counters_.file.done;
+  trace_end(run, std::string());
   return true;
 }
 
@@ -183,6 +187,7 @@ void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
   if (!may_go_on(run)) return;
   Diagnostics findings;
   while (work_ < until && !run.stack.empty() && !run.waiting && !run.activity && stopped_runs_.empty()) {
+    const Position from = run.stack.back()->reader().position();
     const CommandReader::Step step = run.stack.back()->reader().next(&host_.names, command_, findings);
     if (step == CommandReader::Step::end) {
       run.stack.pop_back();
@@ -191,6 +196,8 @@ void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
     ++work_;
     ++run.report.counters.received;
     ++counters_.file.received;
+    const Position& begin = step == CommandReader::Step::command ? command_.begin() : from;
+    trace_begin(run, begin.offset, findings.ok() ? begin.line : findings.all().front().place.line);
     if (step == CommandReader::Step::command) {
       execute_command(run);
       note_first_command(run);
@@ -238,6 +245,7 @@ void ScriptRunner::execute_command(ScriptRun& run) {
   }
   ++run.report.counters.done;
   ++counters_.file.done;
+  trace_end(run, std::string());
 }
 
 Result<void> ScriptRunner::call(ScriptRun& run, std::string_view name, Diagnostics& findings) {
@@ -271,6 +279,7 @@ void ScriptRunner::refuse(ScriptRun& run, const Diagnostics& findings) {
   ++counters_.file.refused;
   run.report.diagnostics.take(findings);
   for (const Diagnostic& diagnostic : findings.all()) remember(diagnostic);
+  trace_refused(run, findings);
   if (events_.refused) events_.refused(findings);
 }
 
@@ -285,6 +294,7 @@ void ScriptRunner::end_run(std::size_t index, bool stopped) {
   ended_.emplace_back(run->report.id, RunProgress{true, run->report.counters, run->first_command});
   if (ended_.size() > kMaxRuns) ended_.pop_front();
   run->report.stopped = stopped;
+  trace_end(*run, std::string("its script was stopped meanwhile"));
   leave_activity(*run);
   if (events_.run_ended) events_.run_ended(run->report);
 }

@@ -21,6 +21,7 @@
 #include "scripts/commands/execute.hpp"
 #include "scripts/commands/host.hpp"
 #include "scripts/lang/parsed_command.hpp"
+#include "scripts/runner/command_trace.hpp"
 #include "scripts/runner/script_command.hpp"
 
 namespace cellmirror::script {
@@ -81,11 +82,14 @@ class ScriptRunner {
   static constexpr std::size_t kKeptErrors = 20;                     // last_errors
   static constexpr std::size_t kSlice = 64;                          // commands of one run before the next has its turn
 
+  using TraceFunction = std::function<void(CommandTrace&&)>;
   // Empty: not wanted.
   struct Events {
     std::function<void(const RunReport&)> run_ended = {};
     // A command of a file was refused.
     std::function<void(const Diagnostics&)> refused = {};
+    // A command is done or refused, whatever its source; also called by replies that outlive the runner.
+    TraceFunction traced = {};
   };
 
   // The host, the cell folder and the clock must outlive the runner. The clock dates errors and first commands.
@@ -183,6 +187,14 @@ class ScriptRunner {
   void leave_activity(const ScriptRun& run);
   void note_first_command(ScriptRun& run);
   void remember(const Diagnostic& diagnostic);
+  // The command of a file from `from` to the reader's place is under way; trace_end() says what became of it.
+  void trace_begin(ScriptRun& run, std::size_t from, int line);
+  void trace_end(ScriptRun& run, const Result<std::string>& result);
+  void trace_refused(ScriptRun& run, const Diagnostics& findings);
+  [[nodiscard]] CommandTrace trace_of(const CommandSource& source, std::string text, Timestamp began,
+                                      const Result<std::string>& result) const;
+  // Reports what became of the command, then answers it.
+  [[nodiscard]] CommandReply traced(const ScriptCommand& command, CommandReply reply) const;
 
   CommandHost host_;
   const KismetHome& home_;
@@ -200,7 +212,8 @@ class ScriptRunner {
   ScriptCounters counters_;
   std::deque<std::string> last_errors_;
   Events events_;
-  ParsedCommand command_;          // reused
+  std::shared_ptr<const TraceFunction> traced_;  // Events::traced; null: not wanted; replies share it
+  ParsedCommand command_;                        // reused
   ParsedCommand program_command_;  // likewise: a command of a file may resume a program, which executes its own
 };
 

@@ -56,6 +56,17 @@ class Cell:
                        "opening_angle_rad": 0.7, "camera": "", "moving": False} for i in range(7)]
         self.displays = [{"id": i, "name": f"layout {i}", "views": [i] if i > 1 else [0, 1]} for i in range(1, 7)]
         self.hidden, self.revision = set(), 1
+        self.problems = []
+
+    def command_log(self):
+        """Made up, one of each source; the last one is the newest."""
+        return {"file": "records/commands-default.jsonl", "written": 3, "dropped": 0, "last": [
+            {"time": "2026-11-23T08:00:00.123Z", "took_s": 0.001, "source": "file", "place": "scripts/a.spt:12", "run": 1,
+             "command": "ROBACT ROBOT_1", "outcome": "done"},
+            {"time": "2026-11-23T08:00:01.123Z", "took_s": 0.001, "source": "message", "process": 12, "user": 1000,
+             "command": "ROBACT nobody", "outcome": "refused", "answer": "there is no robot nobody"},
+            {"time": "2026-11-23T08:00:02.123Z", "took_s": 0.001, "source": "page", "session": 3, "peer": "uid 1000",
+             "command": "hot_message <b>x</b>", "outcome": "done"}]}
 
     def now(self):
         return time.monotonic() - self.start
@@ -107,6 +118,7 @@ class Cell:
             "ranges": [{"id": f"USS_{i}", "distance_m": 0.4 + 0.3 * math.sin(now + i) if i < 2 else None, "range_m": 2.0,
                         "object": "Cell.Table_1.top", "object_short": "Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
             "forces": forces,
+            "problems": [{"kind": "script_queue", "text": text} for text in self.problems], "commands_logged": 3,
             "queues": [{"name": name, "dropped": dropped, "high_water": 12, "capacity": 1024} for name, dropped in
                        (("messages (2351)", 0), ("sensor queue (1990)", int(3 * now)), ("ticks to the studio", 0))],
             "messages": [{"number": number, "text": text, "age_s": now - at} for number, at, text in self.messages[-20:]],
@@ -296,6 +308,7 @@ class Server:
     def __init__(self, options):
         self.options = options
         self.cell = Cell(options.robots, options.joints)
+        self.cell.problems = options.problem
         self.commands = commands()
 
     async def answer(self, reader, writer):
@@ -324,7 +337,7 @@ class Server:
 
     def file(self, path, writer):
         documents = {"/api/tree": self.cell.tree, "/api/names": self.cell.names, "/api/commands": lambda: self.commands,
-                     "/api/status": self.cell.live}
+                     "/api/status": self.cell.live, "/api/command-log": self.cell.command_log}
         if path in documents:
             kind, body = "application/json", json.dumps(documents[path]()).encode()
         else:
@@ -354,6 +367,7 @@ async def main():
     parser.add_argument("--joints", type=int, default=6)
     parser.add_argument("--token", default="standin")
     parser.add_argument("--read-only", action="store_true")
+    parser.add_argument("--problem", action="append", default=[], help="text of a problem to report; repeatable")
     server = Server(parser.parse_args())
     listener = await asyncio.start_server(server.answer, "127.0.0.1", server.options.port)
     port = listener.sockets[0].getsockname()[1]

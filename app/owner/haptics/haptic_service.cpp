@@ -24,7 +24,11 @@ constexpr std::chrono::milliseconds kResetPatience{30};
 }  // namespace
 
 HapticService::HapticService(Parts parts)
-    : cell_(parts.cell), fleet_(parts.fleet), clock_(parts.clock), instance_(std::move(parts.instance)) {
+    : cell_(parts.cell),
+      fleet_(parts.fleet),
+      clock_(parts.clock),
+      instance_(std::move(parts.instance)),
+      guard_(parts.guard) {
   for (RobotHaptic& device : parts.devices) add(std::move(device));
 }
 
@@ -128,7 +132,9 @@ Result<void> HapticService::make_memory(Device& device, std::int32_t key, std::s
                                       .key = key,
                                       .bytes = bytes,
                                       .mode = device.config.mode,
-                                      .instance = instance_});
+                                      .instance = instance_,
+                                      .guard = guard_,
+                                      .block = GuardedBlock::haptic});
   if (!segment) return std::unexpected(segment.error());
   device.segment = std::move(*segment);
   // The memory outlives the device, which the tick may keep longer than we do.

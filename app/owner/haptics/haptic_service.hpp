@@ -33,6 +33,7 @@ class HapticService {
     const Clock& clock;
     std::string instance;
     std::vector<RobotHaptic> devices;  // of the cell file
+    ForceGuard* guard = nullptr;       // of the memories; may be null
   };
 
   explicit HapticService(Parts parts);
@@ -106,6 +107,7 @@ class HapticService {
   Fleet& fleet_;
   const Clock& clock_;
   std::string instance_;
+  ForceGuard* guard_;
   std::map<std::string, Device, std::less<>> devices_;
   Timestamp last_check_;
 };

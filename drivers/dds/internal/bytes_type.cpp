@@ -22,7 +22,9 @@ bool BytesType::serialize(void* data, eprosima::fastrtps::rtps::SerializedPayloa
 }
 
 bool BytesType::deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) {
-  auto& bytes = static_cast<BytesSample*>(data)->payload;
+  auto& sample = *static_cast<BytesSample*>(data);
+  auto& bytes = sample.payload;
+  sample.received = payload->length;
   const auto* first = reinterpret_cast<const std::byte*>(payload->data);
   const bool usable = first != nullptr && payload->length <= kMaxPayloadBytes;
   bytes.assign(first, usable ? first + payload->length : first);

@@ -82,9 +82,13 @@ void JointStateTopic::on_data_available(fd::DataReader* reader) {
       const Timestamp now = clock_.now();
       messages_.fetch_add(1, std::memory_order_relaxed);
       const std::scoped_lock lock(mutex_);
-      router_.accept(sample.payload, now,
-                     {publisher_id(info.publication_handle), info.sample_identity.sequence_number().to64long(),
-                      guid_of(info.publication_handle)});
+      const MessageOrigin origin{publisher_id(info.publication_handle),
+                                 info.sample_identity.sequence_number().to64long(), guid_of(info.publication_handle)};
+      if (sample.received > sample.payload.size()) {
+        router_.refuse_too_long(sample.received, kMaxPayloadBytes, origin);
+      } else {
+        router_.accept(sample.payload, now, origin);
+      }
     }
   } catch (const std::exception& error) {
     log_warning("dds.reader", "a sample could not be taken: {}", error.what());

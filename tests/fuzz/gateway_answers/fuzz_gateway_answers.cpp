@@ -1,5 +1,5 @@
 // Any bytes as the answer of a gateway on its control socket, through a socket as a client reads them, and then as a
-// picture and as an error. A document or a reason, never an end of the program.
+// picture, as an error and as what it says about its queues. A document or a reason, never an end of the program.
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -16,6 +16,7 @@
 #include "app/pictures/snapshot_request.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/control_request.hpp"
+#include "ipc/control/queue_answer.hpp"
 #include "ipc/control/unix_address.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/base/descriptor.hpp"
@@ -89,5 +90,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     CELLMIRROR_EXPECTS(!bytes.ends_with('\n') || control_error_in(document));
   }
   if (const auto picture = app::snapshot_answer(bytes); !picture) CELLMIRROR_EXPECTS(!picture.error().what.empty());
+  if (const auto queues = parse_queue_answer(bytes)) {
+    CELLMIRROR_EXPECTS(queues->script_queue >= 0 && queues->reply_queue >= 0);
+  } else {
+    CELLMIRROR_EXPECTS(!queues.error().what.empty());
+  }
   return 0;
 }

@@ -79,6 +79,44 @@ TEST(DdsRecovery, WhatWasSentWhileAStreamWasClosedIsNotLost) {
   EXPECT_EQ(sut->status().received, sink.size());
 }
 
+TEST(DdsRecovery, ASampleThatIsTooLongIsRefusedWithItsLength) {
+  const int domain = test_domain(4);
+  SystemClock clock;
+  CollectingSink sink;
+  const auto sut = make_dds_stream(one_joint(domain, "rt/long"), clock).value();
+  ASSERT_TRUE(sut->open(sink).has_value());
+  auto publisher = JointStatePublisher::make({.domain = domain, .topic = "rt/long"}).value();
+  const JointState message{.name = {std::string(std::size_t{2} << 20, 'x')}, .position = {1.0}};
+  ASSERT_TRUE(eventually([&] {
+    publisher->publish(message);
+    return sut->status().rejected > 0;
+  }));
+  ASSERT_FALSE(sut->status().last_errors.empty());
+  const std::string error = sut->status().last_errors.back();
+  EXPECT_EQ(error.find("a sample of 2097"), 0U) << error;
+  EXPECT_NE(error.find("at most 1048576"), std::string::npos) << error;
+  EXPECT_EQ(sink.size(), 0U);
+}
+
+TEST(DdsRecovery, APublisherThatEndsInOrderIsNoPublisherAtOnce) {
+  const int domain = test_domain(5);
+  SystemClock clock;
+  CollectingSink sink;
+  const auto sut = make_dds_stream(one_joint(domain, "rt/ends"), clock).value();
+  ASSERT_TRUE(sut->open(sink).has_value());
+  auto publisher = JointStatePublisher::make({.domain = domain, .topic = "rt/ends"}).value();
+  ASSERT_TRUE(eventually([&] {
+    publisher->publish({.name = {"a"}, .position = {1.0}});
+    return sink.size() > 10;
+  }));
+  const Timestamp end = clock.now();
+  publisher.reset();
+  EXPECT_TRUE(eventually([&] { return sut->status().condition.starts_with("no publisher"); }))
+      << sut->status().condition;
+  EXPECT_LT(seconds(clock.now() - end), 8.0) << "before the lease of a killed one ends, which takes 10 s";
+  EXPECT_EQ(sut->status().lost, 0U);
+}
+
 TEST(DdsRecovery, FindsMoreParticipantsThanDdsLooksForByDefault) {
   constexpr int kPublishers = 14;  // without multicast: the library's default is 4, Cyclone's limit 10
   const int domain = test_domain(7);

@@ -1,5 +1,6 @@
 """What leaves the gateway: SENSOR records, the flight record, status."""
 
+import gzip
 import json
 import signal
 import subprocess
@@ -133,9 +134,10 @@ class LoopFaults(unittest.TestCase):
         self.assertEqual(loop["faults"], 1)
         self.assertTrue(loop["fault_latched"])
         self.assertGreater(loop["missed"], 200)
-        records = list((scratch.home / "records").glob("fault-*.jsonl"))
+        records = list((scratch.home / "records").glob("fault-*.jsonl.gz"))
         self.assertEqual(len(records), 1, loop["last_fault"])
-        header = json.loads(records[0].read_text().splitlines()[0])
+        with gzip.open(records[0], "rt") as file:
+            header = json.loads(file.readline())
         self.assertEqual(header["kind"], "header")
         self.assertRegex(header["reason"], "the loop stood still|periods missed within a second")
 

@@ -82,8 +82,7 @@ TEST(OwnedQueue, WiderModeIsRefusedWithTheCommandThatMendsIt) {
   ASSERT_GE(make_queue(key, 0666), 0);
   const auto sut = OwnedQueue::make(options_of(key));
   ASSERT_FALSE(sut);
-  char command[32];
-  std::snprintf(command, sizeof command, "ipcrm -Q %#x", static_cast<unsigned>(key));
+  const std::string command = "ipcrm -q " + std::to_string(::msgget(key, 0));
   EXPECT_NE(sut.error().remedy.find(command), std::string::npos) << sut.error().text();
   EXPECT_NE(sut.error().what.find("666"), std::string::npos);
   EXPECT_TRUE(queue_exists(key)) << "what is refused is not touched";
@@ -104,7 +103,8 @@ TEST(OwnedQueue, QueueOfAnotherUserIsRefused) {
   const auto sut = OwnedQueue::make(options_of(key));
   ASSERT_FALSE(sut);
   EXPECT_NE(sut.error().what.find("another user"), std::string::npos) << sut.error().text();
-  EXPECT_NE(sut.error().remedy.find("ipcrm -Q"), std::string::npos);
+  EXPECT_NE(sut.error().what.find("uid 65534"), std::string::npos) << sut.error().text();
+  EXPECT_NE(sut.error().remedy.find("ipcrm -q " + std::to_string(::msgget(key, 0))), std::string::npos);
   EXPECT_TRUE(queue_exists(key));
   remove_queue(key);
 }
@@ -119,7 +119,7 @@ TEST(OwnedQueue, QueueOfRootIsRefusedToAnOrdinaryUser) {
     if (::setresuid(65534, 65534, 65534) != 0) _exit(2);
     ::setenv("CELLMIRROR_RUNTIME_DIR", ("/tmp/cellmirror-test-nobody-" + std::to_string(::getpid())).c_str(), 1);
     const auto sut = OwnedQueue::make(options_of(key));
-    const bool refused = !sut && sut.error().what.find("another user") != std::string::npos;
+    const bool refused = !sut && sut.error().what.find("another user: user root (uid 0)") != std::string::npos;
     std::error_code ignored;
     std::filesystem::remove_all(std::getenv("CELLMIRROR_RUNTIME_DIR"), ignored);
     _exit(refused ? 0 : 1);
@@ -156,7 +156,8 @@ TEST(OwnedQueue, KeyOfAnotherUsersGatewayIsRefused) {
     const std::string folder = "/tmp/cellmirror-test-nobody-" + std::to_string(::getpid());
     ::setenv("CELLMIRROR_RUNTIME_DIR", folder.c_str(), 1);
     const auto sut = OwnedQueue::make(options_of(key));
-    const bool refused = !sut && sut.error().what.find("in use by another user") != std::string::npos;
+    const bool refused =
+        !sut && sut.error().what.find("in use by another user: user root (uid 0)") != std::string::npos;
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
     _exit(refused ? 0 : 1);

@@ -114,6 +114,10 @@ const scenarios = {
     const why = await run(page, refused);
     assert.match(why, /^refused: .{10,}/);
     console.log(`refusal: ${why}`);
+    await page.click("#tab-messages");
+    await page.locator("#command-list li", {hasText: "hot_message The page is here"}).waitFor();
+    await page.locator("#command-list li.warning", {hasText: refused}).waitFor();
+    assert.ok(await page.locator("#problems").isHidden());
     await pick_something(page);
     await page.click("#tab-tree");
     await page.locator("#tree-list li").first().waitFor();
@@ -319,6 +323,22 @@ const scenarios = {
   },
 
   // Somebody without a token, and a wrong one.
+  // What is wrong around the gateway, and who commanded what; the stand-in makes both up.
+  async surroundings() {
+    const page = await opened();
+    await live(page);
+    await page.locator("#problems li", {hasText: "the SCRIPT input queue"}).waitFor();
+    await page.click("#tab-messages");
+    await page.locator("#command-list li").first().waitFor();
+    const rows = await page.locator("#command-list li").allInnerTexts();
+    assert.equal(rows.length, 3);
+    assert.match(rows[0], /hot_message <b>x<\/b>[^]*page session 3, uid 1000: done/);
+    assert.match(rows[1], /ROBACT nobody[^]*process 12 of uid 1000: refused, there is no robot nobody/);
+    assert.match(rows[2], /ROBACT ROBOT_1[^]*scripts\/a\.spt:12: done/);
+    assert.equal(await page.locator("#command-list li.warning").count(), 1);
+    await shot(page, "surroundings");
+  },
+
   async looking() {
     for (const [token, name] of [["", "none"], ["#token=wrong", "wrong"]]) {
       const page = await opened({}, address.replace(/#.*/, token));

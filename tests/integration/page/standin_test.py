@@ -62,6 +62,9 @@ class Page(unittest.TestCase):
     def test_it_can_be_used_by_touch(self):
         self.run_scenario("touch")
 
+    def test_problems_and_commands_are_shown(self):
+        self.run_scenario("surroundings", standin=("--problem", "the SCRIPT input queue 0x92f (2351) was taken"))
+
     def test_who_has_no_token_may_look(self):
         self.run_scenario("looking")
 

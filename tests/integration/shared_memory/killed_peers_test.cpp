@@ -9,10 +9,13 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "drivers/haptic/shared_memory_device.hpp"
+#include "ipc/sysv/force_guard.hpp"
 #include "ipc/sysv/process_watch.hpp"
 #include "ipc/sysv/shared_segment.hpp"
 #include "ipc/wire/haptic_block.hpp"
@@ -38,10 +41,20 @@ std::int32_t own_key() { return test::own_queues().script_key; }
 }
 
 // A gateway that writes at full speed and answers the sample that it has read. Ends in good order at SIGTERM.
-[[noreturn]] void be_a_gateway(std::int32_t key) {
+// With a guard whose number goes to `report`, where there is one.
+[[noreturn]] void be_a_gateway(std::int32_t key, std::optional<int> report = {}) {
   ::signal(SIGTERM, [](int) { asked_to_end = 1; });
   {
-    auto segment = SharedSegment::make(options_of(key));
+    std::unique_ptr<ForceGuard> guard;
+    SharedSegment::Options options = options_of(key);
+    if (report) {
+      guard = std::move(*ForceGuard::start());
+      options.guard = guard.get();
+      options.block = GuardedBlock::haptic;
+      const pid_t number = guard->process();
+      if (::write(*report, &number, sizeof number) != sizeof number) _exit(1);
+    }
+    auto segment = SharedSegment::make(options);
     if (!segment) {
       std::fprintf(stderr, "%s\n", segment.error().text().c_str());
       _exit(1);
@@ -86,6 +99,14 @@ bool soon(Condition condition) {
     ::usleep(50);
   }
   return true;
+}
+
+// Also where nobody has collected it: its parent is dead.
+bool has_ended(pid_t process) {
+  std::ifstream in("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(in, text);
+  return text.empty() || text.find(") Z ") != std::string::npos;
 }
 
 bool segment_exists(std::int32_t key) { return ::shmget(key, 0, 0) >= 0; }
@@ -184,6 +205,115 @@ TEST(KilledPeers, WhatBothLeftBehindIsTakenAndRemoved) {
     EXPECT_EQ(read_haptic_sample((*sut)->memory(), last, sample), HapticRead::none) << "no sample of the dead";
   }
   EXPECT_FALSE(segment_exists(key));
+}
+
+// A device that is attached, and a gateway with a guard that has answered it.
+class Guarded : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_EQ(::pipe(pipe_), 0); }
+  void TearDown() override {
+    ::close(pipe_[0]);
+    ::close(pipe_[1]);
+  }
+  pid_t start_gateway() {
+    const pid_t gateway = start([&] { be_a_gateway(key_, pipe_[1]); });
+    EXPECT_EQ(::read(pipe_[0], &guard_, sizeof guard_), static_cast<ssize_t>(sizeof guard_));
+    const auto number = static_cast<std::uint32_t>(gateway);
+    EXPECT_TRUE(soon([&] {
+      if (!attached_) {
+        if (auto found = AttachedSegment::attach(key_, haptic_block_offset::kSize, false))
+          attached_.emplace(std::move(*found));
+        return false;
+      }
+      write_haptic_sample(attached_->memory(), test::derived_sample(++sequence_));
+      return is_felt(number);
+    }));
+    return gateway;
+  }
+  bool is_felt(std::uint32_t gateway) {
+    return haptic_block_gateway(attached_->memory()) == gateway && read_haptic_output(attached_->memory(), felt_) &&
+           felt_.answers > 0 && felt_.force_D == Eigen::Vector3d(1, 2, 3);
+  }
+  bool nothing_is_felt() {
+    return haptic_block_gateway(attached_->memory()) == 0 && read_haptic_output(attached_->memory(), felt_) &&
+           felt_.force_D == Eigen::Vector3d::Zero() && felt_.phase == 0;
+  }
+
+  std::int32_t key_ = own_key();
+  int pipe_[2] = {-1, -1};
+  pid_t guard_ = 0;
+  std::optional<AttachedSegment> attached_;
+  std::uint64_t sequence_ = 0;
+  HapticOutput felt_;
+};
+
+TEST_F(Guarded, KilledGatewayLeavesNoForce) {
+  for (int death = 0; death < kDeaths; ++death) {
+    const pid_t gateway = start_gateway();
+    ::usleep(static_cast<useconds_t>(37 * death));
+    end(gateway, SIGKILL);
+    ASSERT_TRUE(soon([&] { return nothing_is_felt(); })) << "death " << death;
+    EXPECT_TRUE(soon([&] { return has_ended(guard_); }));
+    EXPECT_FALSE(attached_->removed()) << "it stays for the next gateway";
+  }
+  EXPECT_EQ(end(start_gateway(), SIGTERM), 0);
+  EXPECT_TRUE(nothing_is_felt());
+  EXPECT_TRUE(attached_->removed());
+}
+
+TEST_F(Guarded, LateGuardLeavesTheNextGatewayAlone) {
+  const pid_t first = start_gateway();
+  const pid_t late = guard_;
+  ::kill(late, SIGSTOP);
+  end(first, SIGKILL);
+  const pid_t second = start_gateway();
+  ::kill(late, SIGCONT);
+  EXPECT_TRUE(soon([&] { return has_ended(late); }));
+  const std::uint64_t before = felt_.sequence;
+  EXPECT_TRUE(soon([&] { return is_felt(static_cast<std::uint32_t>(second)) && felt_.sequence > before; }));
+  EXPECT_EQ(end(second, SIGTERM), 0);
+}
+
+TEST_F(Guarded, RenewedMemoryIsGuardedToo) {
+  const pid_t child = start([&] {
+    auto guard = std::move(*ForceGuard::start());
+    SharedSegment::Options options = options_of(key_);
+    options.guard = guard.get();
+    options.block = GuardedBlock::haptic;
+    auto segment = SharedSegment::make(options);
+    haptic::SharedMemoryDevice device((*segment)->memory(), 4, static_cast<std::uint32_t>(::getpid()));
+    ::shmctl(::shmget(key_, 0, 0), IPC_RMID, nullptr);
+    if (!segment || !(*segment)->renew()) _exit(1);
+    HapticOutput output;
+    output.force_D = {1, 2, 3};
+    output.answers = 1;
+    for (;;) device.write(output);
+  });
+  ASSERT_TRUE(soon([&] {
+    if (!attached_ || attached_->removed()) {
+      attached_.reset();
+      if (auto found = AttachedSegment::attach(key_, haptic_block_offset::kSize, false))
+        attached_.emplace(std::move(*found));
+      return false;
+    }
+    return is_felt(static_cast<std::uint32_t>(child));
+  }));
+  end(child, SIGKILL);
+  EXPECT_TRUE(soon([&] { return nothing_is_felt(); }));
+  ::shmctl(::shmget(key_, 0, 0), IPC_RMID, nullptr);
+  test::remove_semaphore(key_);
+}
+
+TEST(ForceGuard, ForgetsWhatIsGone) {
+  auto sut = std::move(*ForceGuard::start());
+  for (int i = 0; i < static_cast<int>(ForceGuard::kMostBlocks); ++i) EXPECT_TRUE(sut->watch(i, GuardedBlock::haptic));
+  EXPECT_FALSE(sut->watch(99, GuardedBlock::haptic)) << "the list is full";
+  sut->forget(0);
+  EXPECT_TRUE(sut->watch(99, GuardedBlock::tcp_force));
+  for (int i = 0; i < 100; ++i) sut->forget(i);
+  EXPECT_TRUE(sut->running());
+  ::kill(sut->process(), SIGKILL);
+  EXPECT_TRUE(soon([&] { return !sut->running(); }));
 }
 
 }  // namespace

@@ -240,8 +240,16 @@ TEST_F(SharedMemoryPeers, ExampleReadersPrintTheForceAtTheTcp) {
   force.values = {1, -2, 0.5f, 0.25f};
   force.sequence = 7;
   force.flags = kTcpForceValid | kTcpForceTest;
+  force.process = static_cast<std::uint32_t>(::getpid());
   force.robot = std::string_view("PUMA_762");
-  write_tcp_force((*made)->memory(), force);
+  // Readers show only what is current.
+  const std::jthread writer([&, force](const std::stop_token& stop) mutable {
+    while (!stop.stop_requested()) {
+      force.time = SystemClock().now();
+      write_tcp_force((*made)->memory(), force);
+      ::usleep(1000);
+    }
+  });
   const std::string number = std::to_string(key);
   for (const std::string& name :
        {program("shared_memory_example_tcp_force_reader"), examples() + "/tcp_force_reader.py"}) {

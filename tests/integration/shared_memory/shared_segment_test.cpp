@@ -188,7 +188,8 @@ TEST(SharedSegment, OfAnotherUserIsRefused) {
   const auto sut = SharedSegment::make(options_of(key));
   ASSERT_FALSE(sut);
   EXPECT_NE(sut.error().what.find("another user"), std::string::npos) << sut.error().text();
-  EXPECT_NE(sut.error().remedy.find("ipcrm -M"), std::string::npos);
+  EXPECT_NE(sut.error().what.find("uid 65534"), std::string::npos) << sut.error().text();
+  EXPECT_NE(sut.error().remedy.find("ipcrm -m " + std::to_string(::shmget(key, 0, 0))), std::string::npos);
   const auto attached = AttachedSegment::attach(key, 512, true);
   ASSERT_FALSE(attached);
   EXPECT_NE(attached.error().what.find("another user"), std::string::npos) << attached.error().text();

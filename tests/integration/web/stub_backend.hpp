@@ -55,8 +55,10 @@ class StubBackend final : public Backend {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // a slow one
     return "{}";
   }
+  [[nodiscard]] std::string command_log_json() override { return "{}"; }
   [[nodiscard]] std::string metrics_text() override { return "up 1\n"; }
-  void execute(std::string_view command, std::function<void(const CommandReply&)> reply) override {
+  void execute(std::string_view command, const CommandOrigin& /*origin*/,
+               std::function<void(const CommandReply&)> reply) override {
     const std::scoped_lock lock(mutex);
     commands.emplace_back(command);
     if (command == "LATER") {

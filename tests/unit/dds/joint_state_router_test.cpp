@@ -155,6 +155,14 @@ TEST_F(JointStateRouterTest, CountsPayloadsThatAreNoJointState) {
   EXPECT_EQ(arm_.feed->counters().rejected, 2U);
 }
 
+TEST_F(JointStateRouterTest, SaysHowLongASampleWasThatIsTooLong) {
+  sut_.add(*arm_.feed, arm_.sink);
+  sut_.refuse_too_long(2'000'000, 1'048'576);
+  EXPECT_EQ(arm_.feed->counters().malformed, 1U);
+  EXPECT_EQ(arm_.feed->counters().rejected, 1U);
+  EXPECT_EQ(arm_.feed->last_errors().back(), "a sample of 2000000 bytes is refused: at most 1048576 are taken");
+}
+
 TEST_F(JointStateRouterTest, MovesStampsToOurClock) {
   SystemClock clock;
   sut_.add(*arm_.feed, arm_.sink);

@@ -1,6 +1,7 @@
 // Puts the page together: what comes from the gateway goes to the panels, what people do goes to the gateway.
 import {allow_bell} from "./bell.js";
 import {Charts} from "./charts.js";
+import {CommandLog} from "./command_log.js";
 import {Connection} from "./connection.js";
 import {Console} from "./console.js";
 import {byId, setText} from "./dom.js";
@@ -10,6 +11,7 @@ import {watch_menus} from "./menus.js";
 import {Messages} from "./messages.js";
 import {PickedLabel} from "./picked_label.js";
 import {Presence} from "./presence.js";
+import {Problems} from "./problems.js";
 import {Programs} from "./programs.js";
 import {Robots} from "./robots.js";
 import {ShortNames} from "./short_names.js";
@@ -47,6 +49,8 @@ const robots = new Robots({select: (id) => charts.select(id), command});
 const proximity = new Proximity({show_node, names});
 const programs = new Programs({command});
 const system = new System();
+const problems = new Problems();
+const command_log = new CommandLog({fetched});
 const messages = new Messages({
   unread: (n) => {
     if (n > 0 && tabs.current === "tab-messages") messages.read();
@@ -86,6 +90,8 @@ function draw() {
   proximity.update(live, tabs.current === "tab-near");
   programs.update(live, tabs.current === "tab-programs");
   system.update(live, tabs.current === "tab-system");
+  problems.update(live);
+  command_log.update(live, tabs.current === "tab-messages");
   view.update(live);
   choices.update(live);
   charts.update();
@@ -128,6 +134,7 @@ async function learn_commands() {
 
 connection.on("opened", () => {
   known_revision = null;
+  command_log.forget();
   learn_commands();
 });
 
