@@ -71,8 +71,7 @@ Result<std::string> RobotForceService::set_memory(const std::string& robot, std:
     if (found->second.bytes == bytes) return remark;
     release(robot, key);
   }
-  auto segment = SharedSegment::make(
-      {.purpose = "forces of " + robot,
+  auto segment = SharedSegment::make({.purpose = "forces of " + robot,
                                       .key = key,
                                       .bytes = bytes,
                                       .mode = parts_.mode,
