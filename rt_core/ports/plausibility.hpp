@@ -31,9 +31,9 @@ struct KnownLimits {
 // What a cell file says about the check of a stream's values; the defaults are those of docs/plausibility.md.
 struct PlausibilityConfig {
   bool enabled = true;
-  double position_margin = 0.1;      // share of the joint's range that it may leave it by, on each side
-  double velocity_factor = 1.5;      // times the joint's velocity; 0: velocities are not checked
-  double acceleration_factor = 3.0;  // the same
+  double position_margin = 0.1;       // share of the joint's range that it may leave it by, on each side
+  double velocity_factor = 1.5;       // times the joint's velocity; 0: velocities are not checked
+  double acceleration_factor = 10.0;  // the same; brakes and collisions stop a joint faster than its drive
   // A value may have been this much longer under way than the one before: receipt is not the instant of measurement.
   Nanoseconds arrival_jitter{50'000'000};
   Nanoseconds frozen_after{0};  // 0: standing still to the last bit is plausible

@@ -203,7 +203,7 @@ TEST(BoundsOfAJoint, AreTheRangeAndItsMarginAndTheLimitsTimesTheirFactors) {
   EXPECT_DOUBLE_EQ(bounds.lower, -1.4);
   EXPECT_DOUBLE_EQ(bounds.upper, 3.4);
   EXPECT_DOUBLE_EQ(bounds.velocity, 3.0);
-  EXPECT_DOUBLE_EQ(bounds.acceleration, 30.0);
+  EXPECT_DOUBLE_EQ(bounds.acceleration, 100.0);
   config.velocity_factor = config.acceleration_factor = 0.0;
   EXPECT_EQ(bounds_of(known, config).velocity, kUnbounded);
   EXPECT_EQ(bounds_of(known, config).acceleration, kUnbounded);
