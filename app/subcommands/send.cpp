@@ -1,6 +1,7 @@
 // cellmirror send 'COMMAND'...: SCRIPT commands by message, one after the other, each with its acknowledgement.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <chrono>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "app/subcommands/command_texts.hpp"
@@ -23,6 +25,7 @@
 #include "ipc/sysv/script_client.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
+#include "rt_core/base/time.hpp"
 
 namespace cellmirror::app {
 
@@ -38,7 +41,8 @@ struct SendOptions {
 };
 
 constexpr const char* kStandardInput = "-";
-constexpr std::chrono::seconds kQueuesTimeout{5};
+constexpr Nanoseconds kQueuesTimeout{5'000'000'000};
+constexpr std::chrono::milliseconds kBetweenAttempts{20};
 constexpr const char* kStillMoving =
     "; POS_ROB is answered when the robot has arrived, and it may still be on its way: cellmirror status shows it, "
     "--timeout waits longer, STOP_ROB stops it";
@@ -72,13 +76,15 @@ class Sender {
   }
 
  private:
+  [[nodiscard]] Nanoseconds timeout() const { return Nanoseconds(static_cast<std::int64_t>(options_.timeout_s * 1e9)); }
+
   // A queue may be removed and made again by the gateway at any time, or by another program, which must get nothing.
   Result<void> find_queues() {
     if (known_.script_queue >= 0 && queue_number(instance_.queues.script_key) == known_.script_queue &&
         queue_number(instance_.queues.reply_key) == known_.reply_queue) {
       return {};
     }
-    const auto text = control_request(instance_.name, R"({"request":"queues"})", kQueuesTimeout);
+    const auto text = ask_for_queues();
     if (!text) return std::unexpected(text.error());
     const auto answer = parse_queue_answer(*text);
     if (!answer) return std::unexpected(answer.error());
@@ -89,10 +95,21 @@ class Sender {
     return {};
   }
 
+  // A gateway that has just been started opens its socket after its queues.
+  [[nodiscard]] Result<std::string> ask_for_queues() const {
+    const SystemClock clock;
+    const Timestamp end = clock.now() + std::min(timeout(), kQueuesTimeout);
+    for (;;) {
+      const Nanoseconds left = std::max(end - clock.now(), Nanoseconds(kBetweenAttempts));
+      auto text = control_request(instance_.name, R"({"request":"queues"})", left);
+      if (text || clock.now() > end || !find_instance(instance_.name)) return text;
+      std::this_thread::sleep_for(kBetweenAttempts);
+    }
+  }
+
   Result<ScriptReply> exchange(const std::string& command) {
     if (const auto found = find_queues(); !found) return std::unexpected(found.error());
-    const Nanoseconds timeout(static_cast<std::int64_t>(options_.timeout_s * 1e9));
-    return send_command(instance_.queues, command, timeout, known_.script_queue);
+    return send_command(instance_.queues, command, timeout(), known_.script_queue);
   }
 
   static void print_json(const std::string& command, bool done, bool answered, const std::string& text) {

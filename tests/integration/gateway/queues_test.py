@@ -181,6 +181,7 @@ class Blocked(Queues):
         for key in (self.script, self.reply, self.sensor):
             with self.subTest(key=key):
                 self.assertGreaterEqual(make(key, 0o600, NOBODY), 0)
+                self.addCleanup(remove, key)
                 self.refused(f"user nobody (uid {NOBODY})", f"ipcrm -q {number_of(key)}", "cell file")
                 remove(key)
 
@@ -189,8 +190,8 @@ class Blocked(Queues):
                 "sys.exit(ctypes.CDLL(None).semget(int(sys.argv[1]), 1, 0o3600) < 0)")
         subprocess.run(["/usr/bin/python3", "-c", code, str(self.script)], check=True)
         semaphore = _libc.semget(ctypes.c_int(self.script), 0, 0)
+        self.addCleanup(_libc.semctl, semaphore, 0, IPC_RMID)
         self.refused(f"user nobody (uid {NOBODY})", f"ipcrm -s {semaphore}", "--instance")
-        _libc.semctl(semaphore, 0, IPC_RMID)
 
     def test_memory_of_a_haptic_device(self):
         import haptic_device as h
@@ -202,8 +203,8 @@ class Blocked(Queues):
                 "sys.exit(ctypes.CDLL(None).shmget(int(sys.argv[1]), 512, 0o3600) < 0)")
         subprocess.run(["/usr/bin/python3", "-c", code, str(key)], check=True)
         memory = _libc.shmget(ctypes.c_int(key), 0, 0)
+        self.addCleanup(_libc.shmctl, memory, IPC_RMID, None)
         self.refused(f"user nobody (uid {NOBODY})", f"ipcrm -m {memory}", "cell file")
-        _libc.shmctl(memory, IPC_RMID, None)
 
 
 if __name__ == "__main__":
