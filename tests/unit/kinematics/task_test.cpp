@@ -65,9 +65,9 @@ TEST(TaskOfClass, BoomsDifferInTheNumberOfJointsThatBend) {
   const Chain chain = planar_boom(7);
   const auto bent = [&](InverseClass inverse_class) {
     const Task task = task_of(inverse_class, chain);
-    std::string bent;
-    for (std::size_t i = 0; i < chain.variable_count(); ++i) bent += bends(chain, task, i) ? '1' : '0';
-    return bent;
+    std::string digits;
+    for (std::size_t i = 0; i < chain.variable_count(); ++i) digits += bends(chain, task, i) ? '1' : '0';
+    return digits;
   };
   EXPECT_EQ(bent(InverseClass::boom_3), "0000111");
   EXPECT_EQ(bent(InverseClass::boom_4), "0001111");
