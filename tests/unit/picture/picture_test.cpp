@@ -1,8 +1,11 @@
 // What SCRIPT sets of the picture changes it where it should (manual 1.2.1, 1.2.3): pixels in regions and under the
 // masks of objects, of the transfer cell.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "rt_core/ports/tcp_trace.hpp"
 #include "tests/unit/picture/picture_fixture.hpp"
 
 namespace cellmirror::scene {
@@ -277,11 +280,14 @@ TEST_F(Modes, SmearDrawsWhereTheTcpWas) {
   const CompiledRobot& robot = *std::ranges::find(cell_->robots, "MANTEC_R3", &CompiledRobot::id);
   q_[robot.slot][1] = -0.5;
   const Image before = picture();
+  TcpTrace trace{.robot = "MANTEC_R3", .points = {}, .frames = {}};
   for (int i = 0; i < 20; ++i) {
     q_[robot.slot][0] += 0.05;
     scene();
+    trace.points.push_back(tcp_poses(robot, poses_).X_WT.translation().cast<float>());
   }
-  const Eigen::Vector2i halfway = pixel_of(scene_.traces.at(0).points.at(10).cast<double>());
+  input_.traces = std::span(&trace, 1);
+  const Eigen::Vector2i halfway = pixel_of(trace.points.at(10).cast<double>());
   q_[robot.slot][0] -= 1.0;
   const Image after = picture();
   EXPECT_GT(count_different(before, after, {halfway.x() - 3, halfway.y() - 3, 7, 7}), 5);
