@@ -180,9 +180,9 @@ std::uint16_t crc_of(const CrcParameters& parameters, std::span<const std::uint8
 }
 
 std::string_view word(E2eStatus status) {
-  constexpr std::array<std::string_view, 6> kWords = {"ok",       "initial",        "ok, some lost",
-                                                      "repeated", "wrong sequence", "wrong CRC"};
-  return kWords.at(static_cast<std::size_t>(status));
+  constexpr std::array<std::string_view, 6> kStatusWords = {"ok",       "initial",        "ok, some lost",
+                                                            "repeated", "wrong sequence", "wrong CRC"};
+  return kStatusWords.at(static_cast<std::size_t>(status));
 }
 
 Result<E2eFormat> make_e2e_format(const E2eConfig& config, const DbcMessage& message) {
