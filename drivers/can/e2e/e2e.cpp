@@ -167,7 +167,9 @@ Result<void> set_described(const E2eConfig& config, const DbcMessage& message, E
 // Whether the counter lies in bytes of the CRC.
 bool overlap(const E2eFormat& format) {
   std::array<std::uint8_t, 64> data{};
-  put_physical_value(format.counter_field, format.last_counter, data);
+  // All of its bits, also those above its last value.
+  const std::uint64_t all_bits = (std::uint64_t{1} << format.counter_field.length) - 1;
+  put_physical_value(format.counter_field, static_cast<double>(all_bits), data);
   const auto of_crc = std::span(data).subspan(first_byte(format.crc_field), byte_count(format.crc_field));
   return std::ranges::any_of(of_crc, [](std::uint8_t byte) { return byte != 0; });
 }

