@@ -46,7 +46,7 @@ bool is_origin(std::string_view text) {
   });
 }
 
-AccessRules::AccessRules(std::string address, int port, std::vector<std::string> origins)
+AccessRules::AccessRules(std::string_view address, int port, std::vector<std::string> origins)
     : loopback_(is_loopback(address)), port_(":" + std::to_string(port)), origins_(std::move(origins)) {}
 
 bool AccessRules::host_allowed(std::string_view host) const {

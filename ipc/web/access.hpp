@@ -14,7 +14,7 @@ class AccessRules {
  public:
   // `address`: the numeric address on which the server listens; `origins`: further allowed origins, such as
   // "https://monitor.example.org" of a proxy.
-  AccessRules(std::string address, int port, std::vector<std::string> origins);
+  AccessRules(std::string_view address, int port, std::vector<std::string> origins);
 
   // Whether the header Host names this server. On loopback: 127.0.0.1, localhost, [::1]; elsewhere any numeric address;
   // in both cases the hosts of `origins`. A host name that an attacker resolves to this machine is not allowed.

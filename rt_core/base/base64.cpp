@@ -40,9 +40,9 @@ std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
   out.reserve(text.size() / 4 * 3);
   std::uint32_t word = 0;
   for (std::size_t i = 0; i < letters; ++i) {
-    const int value = kValues[static_cast<unsigned char>(text[i])];
+    const std::int8_t value = kValues[static_cast<unsigned char>(text[i])];
     if (value < 0) return std::nullopt;
-    word = word << 6U | static_cast<std::uint32_t>(value);
+    word = word << 6U | static_cast<std::uint8_t>(value);
     if (i % 4 == 1) out.push_back(static_cast<std::uint8_t>(word >> 4U));
     if (i % 4 == 2) out.push_back(static_cast<std::uint8_t>(word >> 2U));
     if (i % 4 == 3) out.push_back(static_cast<std::uint8_t>(word));

@@ -37,9 +37,9 @@ class SmoothingGroups {
 
   // The number of the surface's vertex that this corner gets.
   Corner add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal, double angle) {
-    static const double kCosine = std::cos(kCreaseAngle);
+    static const double crease_cosine = std::cos(kCreaseAngle);
     std::size_t best = sums_.size();
-    double best_cosine = kCosine;
+    double best_cosine = crease_cosine;
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const double cosine = sums_[i].normalized().dot(normal);
       if (cosine < best_cosine && !(sums_.size() == kMostGroups && best == sums_.size())) continue;

@@ -62,11 +62,11 @@ std::optional<ViewTransform> ViewTransform::of(const Pane& pane, int width, int 
                                      : std::tan(within(pane.eye.opening_angle, kNarrowest, kWidest, 0.7) / 2);
   const double aspect = static_cast<double>(pixels->width) / pixels->height;
   view.clip_from_world_ = projection(pane.eye, view.half_height_, aspect) * pane.eye.X_WE.inverse().matrix();
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     const Eigen::Vector4d w = view.clip_from_world_.row(3);
-    const Eigen::Vector4d along = view.clip_from_world_.row(axis);
-    view.planes_[static_cast<std::size_t>(2 * axis)] = w + along;
-    view.planes_[static_cast<std::size_t>(2 * axis + 1)] = w - along;
+    const Eigen::Vector4d along = view.clip_from_world_.row(static_cast<Eigen::Index>(axis));
+    view.planes_[2 * axis] = w + along;
+    view.planes_[2 * axis + 1] = w - along;
   }
   for (Eigen::Vector4d& plane : view.planes_) plane /= std::max(plane.head<3>().norm(), 1e-12);
   return view;
