@@ -38,6 +38,8 @@ def gateway_without_fault(test, before=None):
         gateway = g.Gateway(scratch)
         test.addCleanup(gateway.close)
         if before:
+            # Faults are watched for once the loop runs.
+            test.assertTrue(g.eventually(lambda: scratch.status()["loop"]["ticks"] > 300), "the loop does not run")
             before(gateway)
             test.assertTrue(g.eventually(lambda: scratch.status()["loop"]["faults"]), "the loop has no fault to be left alone")
             before = None
