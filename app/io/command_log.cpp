@@ -1,7 +1,6 @@
 #include "app/io/command_log.hpp"
 
 #include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,6 +16,8 @@
 
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/utc_text.hpp"
+#include "rt_core/base/utf8.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
 namespace cellmirror::app {
@@ -28,14 +29,13 @@ constexpr mode_t kMode = 0600;
 constexpr std::chrono::milliseconds kGather{20};
 constexpr std::size_t kTailBytes = std::size_t{256} << 10;  // of the file, for the entries from before a restart
 
-// "2026-11-21T10:00:00.123Z"
-std::string utc_of(std::int64_t wall_ns) {
-  const std::int64_t ms = wall_ns / 1'000'000;
-  const auto second = static_cast<std::time_t>(ms / 1000);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(second), ms % 1000);
-}
+std::string_view shortened(std::string_view text) { return cut_utf8(text, CommandLog::kMostTextBytes); }
 
-std::string_view shortened(std::string_view text) { return text.substr(0, CommandLog::kMostTextBytes); }
+// A script sends more commands than can be written; those of people and other programs keep their places.
+std::size_t most_waiting(const CommandRecord& record) {
+  const bool of_script = record.source == "file" || record.source == "program";
+  return of_script ? CommandLog::kMostWaitingOfScripts : CommandLog::kMostWaiting;
+}
 
 std::string dropped_line(std::uint64_t count) {
   JsonWriter out;
@@ -76,7 +76,7 @@ std::string tail_of(const std::filesystem::path& file) {
 
 std::string command_line_of(const CommandRecord& record) {
   JsonWriter out;
-  out.begin_object().member("time", utc_of(record.wall_ns)).fixed_member("took_s", record.took_s, 6);
+  out.begin_object().member("time", utc_text_ms(record.wall_ns)).fixed_member("took_s", record.took_s, 6);
   out.member("source", record.source);
   if (record.process != 0) out.member("process", record.process);
   if (record.user) out.member("user", *record.user);
@@ -107,7 +107,7 @@ CommandLog::~CommandLog() {
 void CommandLog::add(CommandRecord record) {
   {
     const std::scoped_lock lock(mutex_);
-    if (waiting_.size() >= kMostWaiting) {
+    if (waiting_.size() >= most_waiting(record)) {
       ++dropped_;
       return;
     }

@@ -26,6 +26,8 @@ class CommandLog {
  public:
   static constexpr std::size_t kKept = 100;          // in the report; after a start those of the file
   static constexpr std::size_t kMostWaiting = 4096;  // to be written; more are dropped and counted
+  static constexpr std::size_t kMostWaitingOfScripts =
+      kMostWaiting / 2;  // of these, by SCRIPT files and robot programs
   static constexpr std::size_t kMostTextBytes = 8192;
 
   struct Options {

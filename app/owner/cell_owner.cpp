@@ -87,7 +87,9 @@ CellOwner::CellOwner(Parts parts)
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
       home_, clock_,
-      script::ScriptRunner::Events{.refused = std::move(parts.refused), .traced = std::move(parts.traced)});
+      script::ScriptRunner::Events{.refused = std::move(parts.refused),
+                                   .all_stopped = [this] { switches_->forget_waiting(); },
+                                   .traced = std::move(parts.traced)});
   switches_ = std::make_unique<FootSwitchService>(
       FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
       *runner_, home_, clock_);

@@ -59,6 +59,11 @@ Result<void> FootSwitchService::set_memory(std::int32_t key, std::size_t bytes) 
   return {};
 }
 
+void FootSwitchService::forget_waiting() {
+  take_edges();
+  scripts_.forget();
+}
+
 Result<void> FootSwitchService::set_online(bool online) {
   if (!online) {
     stop_watching();

@@ -39,6 +39,9 @@ class FootSwitchService {
   // BIN_ELA. Refused: online without a memory. What waits is forgotten with offline.
   Result<void> set_online(bool online);
 
+  // STOP_ALL: scripts of changes that were found already are not started. Those of later changes are.
+  void forget_waiting();
+
   // Takes what the thread has found and starts the next script. True where one was started, which then has the next
   // turn. Before and after each step of the runner.
   bool follow();

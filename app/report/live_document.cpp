@@ -43,7 +43,7 @@ void add_joints(JsonWriter& out, const RobotState& robot, const CompiledRobot* c
   out.end_array();
 }
 
-// What a haptic device that drives the robot has to say before its stream: a fault, and what ends it.
+// The fault of the haptic device that drives the robot, with its remedy; without one the condition of its stream.
 std::string condition_of(const LiveSources& sources, const RobotSnapshot& robot, const RobotState& state) {
   for (const HapticSnapshot& haptic : sources.cell_state.haptics) {
     if (haptic.robot != robot.id || !haptic.online) continue;

@@ -327,8 +327,10 @@ constexpr Form kForms[] = {
      .parameters = {},
      .help = "ends all SCRIPT files and robot programs, and brakes all moves",
      .example = "STOP_ALL",
-     .definition = "effective at once, also in endless loops; a SCRIPT file that contains it ends, too; moves of "
-                   "mirrored robots are their controllers', and continue; not a safety function",
+     .definition =
+         "effective at once, also in endless loops; a SCRIPT file that contains it ends, too, and files of foot "
+         "switches that wait are not started; moves of "
+         "mirrored robots are their controllers', and continue; not a safety function",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::stop_script,

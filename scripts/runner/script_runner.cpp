@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <system_error>
 #include <utility>
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/utc_text.hpp"
 #include "scripts/lang/reader.hpp"
 #include "scripts/runner/script_run.hpp"
 
@@ -25,14 +25,6 @@ constexpr std::size_t kBytesOfWork = 256;
 
 constexpr std::string_view kFolder = "scripts";
 constexpr std::string_view kExtension = ".spt";
-
-std::string utc_text(Timestamp now) {
-  const auto whole_seconds = static_cast<std::time_t>(to_wall_clock_ns(now) / 1'000'000'000);
-  std::tm utc{};
-  gmtime_r(&whole_seconds, &utc);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
-                     utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
 
 // Relative to the cell folder if the file is in it.
 std::string shown_name(const fs::path& path, const fs::path& home) {
@@ -329,6 +321,7 @@ Result<std::size_t> ScriptRunner::stop_runs(std::uint64_t id) {
     return fail(fmt::format("STOP_SCRIPT: there is no run {}", id), "`cellmirror status` lists the runs");
   }
   stopped_runs_.insert(stopped_runs_.end(), ids.begin(), ids.end());
+  if (id == Outcome::kAllRuns && events_.all_stopped) events_.all_stopped();
   if (!stepping_) end_stopped_runs();
   return ids.size();
 }
@@ -374,7 +367,7 @@ std::vector<RunStatus> ScriptRunner::runs() const {
 void ScriptRunner::remember(const Diagnostic& diagnostic) {
   const std::string text = diagnostic.text();
   log_text(LogLevel::warning, "script", text);
-  last_errors_.push_back(utc_text(clock_.now()) + " " + text);
+  last_errors_.push_back(utc_text(to_wall_clock_ns(clock_.now())) + " " + text);
   if (last_errors_.size() > kKeptErrors) last_errors_.pop_front();
 }
 

@@ -88,6 +88,8 @@ class ScriptRunner {
     std::function<void(const RunReport&)> run_ended = {};
     // A command of a file was refused.
     std::function<void(const Diagnostics&)> refused = {};
+    // STOP_ALL: what still waits to be started by others is to be discarded.
+    std::function<void()> all_stopped = {};
     // A command is done or refused, whatever its source; also called by replies that outlive the runner.
     TraceFunction traced = {};
   };

@@ -185,6 +185,28 @@ TEST_F(CommandLogTest, AddingNeverWaitsAndWhatIsTooMuchIsCounted) {
   EXPECT_GE(report.written, CommandLog::kMostWaiting);
 }
 
+TEST_F(CommandLogTest, AScriptThatFloodsTheLogTakesNoPlaceOfAPersonsCommand) {
+  options_.most_bytes = std::uint64_t{1} << 24;
+  restart();
+  CommandRecord of_file = record("DRAW_SCENE");
+  of_file.source = "file";
+  std::size_t sent = 0;
+  for (; sent < 100 * CommandLog::kMostWaiting && sut_->report().dropped < 10; ++sent) sut_->add(of_file);
+  ASSERT_GE(sut_->report().dropped, 10U) << "the script was not faster than the log";
+  const std::uint64_t dropped = sut_->report().dropped;
+  sut_->add(record("STOP_ALL"));
+  EXPECT_EQ(sut_->report().dropped, dropped);
+  sut_.reset();
+  const auto read = lines();
+  EXPECT_TRUE(std::ranges::any_of(read, [](const auto& line) { return line.value("command", "") == "STOP_ALL"; }));
+}
+
+TEST_F(CommandLogTest, ACutTextStaysText) {
+  sut_->add(record(std::string(CommandLog::kMostTextBytes - 1, 'a') + "\xc3\xa4"));
+  sut_.reset();
+  EXPECT_EQ(lines()[0]["command"], std::string(CommandLog::kMostTextBytes - 1, 'a'));
+}
+
 TEST_F(CommandLogTest, NoiseInTheFileIsNotShown) {
   sut_.reset();
   std::ofstream(options_.file, std::ios::binary) << "\xff\xfe{\n[1]\n{\"command\":\"A\"}\n{\"half";

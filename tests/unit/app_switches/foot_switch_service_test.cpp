@@ -41,5 +41,17 @@ TEST_F(SwitchDeskTest, RunsWhatChangedJustBeforeAnotherMemoryCame) {
   }
 }
 
+TEST_F(SwitchDeskTest, ForgetsScriptsThatWaitWhereEverythingIsStopped) {
+  ASSERT_TRUE(sut->prepare());
+  auto attached = AttachedSegment::attach(*settings.key, 1, false);
+  ASSERT_TRUE(attached) << attached.error().text();
+  __atomic_store_n(reinterpret_cast<std::uint8_t*>(attached->memory().data()), 1, __ATOMIC_RELAXED);
+  ASSERT_TRUE(sut->set_memory(*settings.key, 2));
+  ASSERT_EQ(sut->snapshot().waiting, 1U);
+  sut->forget_waiting();
+  EXPECT_EQ(sut->snapshot().waiting, 0U);
+  EXPECT_FALSE(sut->busy());
+}
+
 }  // namespace
 }  // namespace cellmirror::app

@@ -82,6 +82,7 @@ TEST_F(ScriptRunnerTest, StopAllEndsEveryRunAndStopsEveryRobot) {
   const auto answer = sut_->execute_message("STOP_ALL");
   ASSERT_TRUE(answer) << answer.error().text();
   EXPECT_EQ(*answer, "2 SCRIPT files stopped");
+  EXPECT_EQ(times_all_stopped_, 1);
   EXPECT_TRUE(sut_->idle());
   ASSERT_EQ(reports_.size(), 2U);
   EXPECT_TRUE(reports_[0].stopped && reports_[1].stopped);

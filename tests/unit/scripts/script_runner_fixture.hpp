@@ -30,7 +30,8 @@ class ScriptRunnerTest : public ::testing::Test {
     home_.emplace(KismetHome::open(folder_).value());
     sut_.emplace(gateway_.host(), *home_, clock_,
                  ScriptRunner::Events{.run_ended = [this](const RunReport& report) { run_ended(report); },
-                                      .refused = [this](const Diagnostics& findings) { refused_.take(findings); }});
+                                      .refused = [this](const Diagnostics& findings) { refused_.take(findings); },
+                                      .all_stopped = [this] { ++times_all_stopped_; }});
   }
   ~ScriptRunnerTest() override { fs::remove_all(folder_); }
 
@@ -55,6 +56,7 @@ class ScriptRunnerTest : public ::testing::Test {
   std::optional<ScriptRunner> sut_;
   std::vector<RunReport> reports_;
   Diagnostics refused_;
+  int times_all_stopped_ = 0;
   std::pair<std::string, std::string> start_when_ended_;  // a file, and the one that is started when it has ended
 };
 
