@@ -16,6 +16,7 @@ find_package(fastrtps REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo-png)  # plots: app/plot
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)  # rt_core/inverse_kinematics, as is LAPACK
 find_package(LAPACK REQUIRED)
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)      # rt_core/tissue
 find_package(fcl REQUIRED)     # rt_core/collision
 find_package(assimp REQUIRED)  # config/mesh_reader
 find_package(Qhull REQUIRED)   # rt_core/geometry: convex hulls

@@ -71,6 +71,13 @@ struct HapticState {
   double energy = 0;                                   // J, by the passivity observer (negative: generated)
   double passivity_damping = 0;                        // Ns/m, that the passivity controller added in this tick
   Timestamp model_time;                                // posture time of the contact model in use
+  // Of soft tissue, by the newest response of its worker that could be used.
+  Eigen::Vector3d tissue_force_W = Eigen::Vector3d::Zero();  // N, its share of force_W
+  Timestamp tissue_time;                                     // posture time of that response
+  std::uint32_t tissue_contacts = 0;
+  std::uint32_t tissue_held = 0;     // places that the instrument's jaws hold
+  std::uint64_t tissue_late = 0;     // responses that became older than haptics::kTissueLate before another one came
+  std::uint64_t tissue_refused = 0;  // responses with values that cannot be true
 };
 
 }  // namespace cellmirror

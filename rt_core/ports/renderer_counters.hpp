@@ -10,6 +10,7 @@ struct RendererCounters {
   std::uint64_t frames = 0;
   std::uint64_t meshes = 0;           // uploaded now
   std::uint64_t uploads = 0;          // since the start: a mesh is uploaded once as long as it is in use
+  std::uint64_t tissue_uploads = 0;   // since the start: triangles of deforming surfaces, again when they were cut
   std::uint64_t textures = 0;         // pictures of meshes, uploaded now
   std::uint64_t texture_uploads = 0;  // since the start: a picture is uploaded once as long as a mesh that uses it is
   std::uint64_t texture_bytes = 0;    // of those that are uploaded, with their smaller copies

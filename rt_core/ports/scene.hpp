@@ -21,6 +21,7 @@ struct TriangleMesh;
 }
 enum class Shape : std::uint8_t;
 struct MeshAppearance;
+struct TissueView;
 
 using Colour = std::array<float, 4>;
 
@@ -130,6 +131,11 @@ struct Scene {
   Eigen::Vector2d floor_low = Eigen::Vector2d(-1, -1);  // that the floor has to reach at least
   Eigen::Vector2d floor_high = Eigen::Vector2d(1, 1);
   std::vector<ShadowCatcher> shadow_catchers;
+  // Deforming objects, fluids and particles; null: none. Of its network the nodes and links are drawn from here, its
+  // forces and central nodes from `arrows` and `axes`. What disagrees in size or is not finite is left out. The same
+  // pointer: the same upload.
+  std::shared_ptr<const TissueView> tissue;
+  std::vector<DrawMode> tissue_modes;  // by surface; beyond its end: gouraud
 };
 
 // A part of the picture with an eye of its own. 0 to 1 of the picture, origin at its upper left corner.

@@ -182,6 +182,10 @@ struct DdsOutputConfig {
       "rt/cellmirror/tcp_wrench";  // a robot's topic is <prefix>/<id>; empty: not published
   std::string diagnostics_topic = "rt/diagnostics";
   std::string markers_topic = "rt/cellmirror/markers";
+  // Deformable objects and the forces on instruments; empty: not published. There in cells that have such objects.
+  std::string tissue_topic = "rt/cellmirror/tissue";
+  double tissue_rate_hz = 2.0;
+  std::size_t tissue_triangles = 10'000;  // of all objects; larger surfaces are sent with fewer
   double rate_hz = 50.0;
   DdsPictureConfig pictures = {};
   DdsSecurityConfig security = {};
