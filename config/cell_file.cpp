@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <utility>
 
 #include "config/cell_reader.hpp"
 #include "config/component_files.hpp"
+#include "config/hyper_file.hpp"
 #include "config/layout_file.hpp"
+#include "config/msh/msh_file.hpp"
 #include "config/parse.hpp"
+#include "config/tissue_object.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -82,12 +86,14 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
   Diagnostics of_components;
   Diagnostics of_streams;
   Diagnostics of_bus_files;
+  Diagnostics of_tissue;
   std::optional<Cell> cell;
   if (readable) {
     source->load(reader.root, of_components);
     reader.read_streams(source->robots(), true);
     reader.read_haptics(source->robots(), true);
     check_streams(reader, path.string(), check_stream, of_streams, of_bus_files);
+    reader.tissue.read_files(files, of_tissue);
     // With earlier errors Cell::build() returns no cell, but continues to check.
     Diagnostics building = of_components;
     building.take(reader.findings);
@@ -103,12 +109,15 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
   }
   collision::Settings collision;
   if (cell) collision = reader.collision.settings(*cell, reader.findings);
+  TissueSetup tissue;
+  if (cell) tissue = reader.tissue.setup(*cell, reader.findings);
   reader.findings.take(of_streams);
-  if (!reader.findings.ok() || !of_layout.ok() || !of_bus_files.ok()) cell.reset();
+  if (!reader.findings.ok() || !of_layout.ok() || !of_bus_files.ok() || !of_tissue.ok()) cell.reset();
   take_sorted(diagnostics, reader.findings);
   diagnostics.take(of_components);
   diagnostics.take(of_bus_files);
   diagnostics.take(of_layout);
+  diagnostics.take(of_tissue);
   source->release();
   if (!cell) return std::nullopt;
   return LoadedCell{std::move(reader.name),
@@ -125,6 +134,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     reader.web,
                     reader.pictures,
                     std::move(collision),
+                    std::move(tissue),
                     std::move(reader.views),
                     std::move(layout),
                     std::move(reader.startup_script),
@@ -154,19 +164,20 @@ Result<KismetHome> home_of_component(const fs::path& path) {
 
 bool is_checkable(const fs::path& path) {
   const std::string extension = lower_case(path.extension().string());
-  return extension == ".toml" || extension == ".mpc" || extension == ".urdf";
+  static constexpr std::array<std::string_view, 6> kKinds{".toml", ".mpc", ".urdf", ".mpo", ".hyper", ".msh"};
+  return std::ranges::find(kKinds, extension) != kKinds.end();
 }
 
 void check_file(const fs::path& path, Diagnostics& diagnostics, const LoadProgress& progress) {
   if (!is_checkable(path)) {
     diagnostics.error({path.string(), 0, 0}, "this kind of file cannot be checked here",
-                      "cells are .toml, components .mpc or .urdf");
+                      "cells are .toml, components .mpc or .urdf, deformable objects .mpo, .hyper and .msh");
     return;
   }
-  if (lower_case(path.extension().string()) == ".toml") {
-    static_cast<void>(load_cell(path, diagnostics, progress));
-    return;
-  }
+  const std::string extension = lower_case(path.extension().string());
+  if (extension == ".toml") return static_cast<void>(load_cell(path, diagnostics, progress));
+  if (extension == kHyperExtension) return static_cast<void>(read_hyper(path, nullptr, diagnostics));
+  if (extension == ".msh") return static_cast<void>(msh::read_msh(path, 1.0, diagnostics));
   const auto home = home_of_component(path);
   if (!home) {
     diagnostics.error({path.string(), 0, 0}, home.error().what, home.error().remedy);
@@ -179,6 +190,7 @@ void check_file(const fs::path& path, Diagnostics& diagnostics, const LoadProgre
       ++done;
     });
   }
+  if (extension == kObjectExtension) return static_cast<void>(read_object(path, files, diagnostics));
   const auto component = read_component_file(path, files, diagnostics);
   if (!component) return;
   ComponentFiles others(files);

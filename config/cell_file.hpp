@@ -14,6 +14,7 @@
 
 #include "config/foot_switches.hpp"
 #include "config/picture_settings.hpp"
+#include "config/tissue_setup.hpp"
 #include "config/web_settings.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
@@ -84,6 +85,7 @@ struct LoadedCell {
   WebSettings web;
   PictureSettings pictures;
   collision::Settings collision;  // paths in rules are full paths
+  TissueSetup tissue;
   std::vector<ViewSetting> views;
   DisplayLayout layout;                      // of the layout file, else the standard setting
   std::string startup_script;                // name of an existing file in the cell folder's scripts/; empty: none
@@ -103,8 +105,9 @@ using StreamCheck = std::function<void(const RobotStream& stream, Diagnostics& d
                                                   const LoadProgress& progress = {},
                                                   const StreamCheck& check_stream = {});
 
-// `cellmirror check` of a .toml (with all referenced files), .mpc or .urdf file. The cell folder of a component is
-// $kis_home, else the nearest folder above it with a cell.toml, else its own folder. Other extensions are an error.
+// `cellmirror check` of a .toml (with all referenced files), .mpc, .urdf, .mpo, .hyper or .msh file. The cell folder of
+// any but .toml is $kis_home, else the nearest folder above it with a cell.toml, else its own folder. Other extensions
+// are an error.
 void check_file(const std::filesystem::path& path, Diagnostics& diagnostics, const LoadProgress& progress = {});
 // Whether check_file() supports the extension.
 [[nodiscard]] bool is_checkable(const std::filesystem::path& path);

@@ -22,6 +22,7 @@ namespace cellmirror {
 namespace {
 
 constexpr Range kOutputRate{0.0, 1000.0, true};
+constexpr Range kTissueRate{0.0, 30.0, true};
 constexpr Range kGravity{-1000.0, 1000.0};
 
 }  // namespace
@@ -73,6 +74,7 @@ bool CellReader::read(std::string_view text) {
   web = read_web(top);
   pictures = read_display(top, files_, layout_file);
   collision.read(top);
+  tissue.read(top, files_);
   read_startup(top);
   read_views(top);
   foot_switches = read_foot_switches(top);
@@ -145,6 +147,11 @@ void CellReader::read_dds_output(TableReader& top) {
   dds.wrench_topic_prefix = table->text("wrench_topic_prefix").value_or(dds.wrench_topic_prefix);
   dds.diagnostics_topic = table->text("diagnostics_topic").value_or(dds.diagnostics_topic);
   dds.markers_topic = table->text("markers_topic").value_or(dds.markers_topic);
+  dds.tissue_topic = table->text("tissue_topic").value_or(dds.tissue_topic);
+  dds.tissue_rate_hz = table->number("tissue_rate_hz", kTissueRate).value_or(dds.tissue_rate_hz);
+  constexpr long long kMostTriangles = 100'000;  // 7.2 MB a message
+  if (const auto triangles = table->integer("tissue_triangles", 1, kMostTriangles))
+    dds.tissue_triangles = static_cast<std::size_t>(*triangles);
   dds.rate_hz = table->number("rate_hz", kOutputRate).value_or(dds.rate_hz);
   read_dds_pictures(*table, dds.pictures);
   table->finish();

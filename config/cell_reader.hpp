@@ -11,6 +11,7 @@
 #include "config/collision_reader.hpp"
 #include "config/component_files.hpp"
 #include "config/table_reader.hpp"
+#include "config/tissue_reader.hpp"
 
 namespace cellmirror {
 
@@ -40,6 +41,7 @@ class CellReader {
   WebSettings web;
   PictureSettings pictures;
   CollisionReader collision;
+  TissueReader tissue;
   std::string startup_script;
   std::vector<ViewSetting> views;
   std::optional<std::filesystem::path> layout_file;  // which exists; not read yet

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "config/first_error.hpp"
 #include "config/parse.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/text.hpp"
@@ -61,11 +62,7 @@ Result<std::shared_ptr<const Component>> ComponentFiles::component_for(const Abs
   Diagnostics diagnostics;
   auto component = read(*path, reference.collide_as, diagnostics);
   if (!diagnostics.ok() || !component) {
-    const auto& all = diagnostics.all();
-    const auto first = std::ranges::find(all, Severity::error, &Diagnostic::severity);
-    const std::string what = first == all.end() ? fmt::format("{} is not a component", file) : first->text();
-    return fail(diagnostics.errors() > 1 ? fmt::format("{} (and {} more)", what, diagnostics.errors() - 1) : what,
-                fmt::format("cellmirror check {} shows all", path->string()));
+    return std::unexpected(first_error(diagnostics, *path));
   }
   entry.used = component;
   return component;

@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "config/msh/msh_file.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -23,6 +24,8 @@ const char* folder_of(FileUse use, std::string_view name) {
     case FileUse::component:
       return equal_ignoring_case(fs::path(name).extension().string(), ".urdf") ? "robots" : "envlib";
     case FileUse::mesh:
+    case FileUse::object:
+    case FileUse::hyper:
       return "envlib";
     case FileUse::description:
       return "robots";
@@ -37,8 +40,18 @@ const char* folder_of(FileUse use, std::string_view name) {
 }
 
 const char* default_extension(FileUse use) {
-  if (use == FileUse::script) return ".spt";
-  return use == FileUse::layout ? ".lay" : "";
+  switch (use) {
+    case FileUse::script:
+      return ".spt";
+    case FileUse::layout:
+      return ".lay";
+    case FileUse::object:
+      return ".mpo";
+    case FileUse::hyper:
+      return ".hyper";
+    default:
+      return "";
+  }
 }
 
 // `path` relative to `root`, if it is within it.
@@ -126,6 +139,16 @@ Result<CollisionMesh> HomeFiles::mesh(const fs::path& file, const Eigen::Vector3
                                       Diagnostics& diagnostics) const {
   const auto beside = [&](const std::string& name) { return find_named_in(file, "mesh", name, "picture"); };
   return meshes_->mesh(file, scale, collide_as.value_or(CollideAs::exact), beside, place, diagnostics);
+}
+
+std::optional<tissue::TetraMesh> FileFinder::tetrahedra(const fs::path&, double, Diagnostics&) const {
+  return tissue::TetraMesh();
+}
+
+std::optional<tissue::TetraMesh> HomeFiles::tetrahedra(const fs::path& file, double scale,
+                                                       Diagnostics& diagnostics) const {
+  meshes_->about_to_read(file);
+  return msh::read_msh(file, scale, diagnostics);
 }
 
 Result<fs::path> AnyFile::find(FileUse, std::string_view name) const { return fs::path("/") / fs::path(name); }

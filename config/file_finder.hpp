@@ -10,13 +10,16 @@
 #include "config/mesh_library.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/tissue/description.hpp"
 
 namespace cellmirror {
 
 // The kind of a file name; it determines the folders of the cell folder that are searched.
 enum class FileUse {
   component,    // .mpc in envlib/, .urdf in robots/
-  mesh,         // of a component: envlib/
+  mesh,         // of a component or a deformable object: envlib/
+  object,       // .mpo: envlib/
+  hyper,        // .hyper, connections of deformable objects: envlib/
   description,  // EDS, DCF, DBC: robots/
   script,       // scripts/
   log,          // candump logs: the cell folder itself
@@ -40,6 +43,10 @@ class FileFinder {
   [[nodiscard]] virtual Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
                                                    std::optional<CollideAs> collide_as, const Place& place,
                                                    Diagnostics& diagnostics) const;
+  // The tetrahedra in a .msh file that was found: none here. Nothing, and errors with places in that file, where it is
+  // refused.
+  [[nodiscard]] virtual std::optional<tissue::TetraMesh> tetrahedra(const std::filesystem::path& file, double scale,
+                                                                    Diagnostics& diagnostics) const;
 };
 
 class HomeFiles final : public FileFinder {
@@ -53,6 +60,8 @@ class HomeFiles final : public FileFinder {
   [[nodiscard]] Result<CollisionMesh> mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale,
                                            std::optional<CollideAs> collide_as, const Place& place,
                                            Diagnostics& diagnostics) const override;
+  [[nodiscard]] std::optional<tissue::TetraMesh> tetrahedra(const std::filesystem::path& file, double scale,
+                                                            Diagnostics& diagnostics) const override;
   [[nodiscard]] const KismetHome& home() const { return home_; }
   [[nodiscard]] MeshLibrary& meshes() const { return *meshes_; }
 

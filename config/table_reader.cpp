@@ -48,14 +48,16 @@ struct Unit {
   std::string_view ours;
   double factor;
 };
-constexpr std::array<Unit, 8> kUnits{{{"_deg_s2", "_rad_s2", kRadPerDeg},
-                                      {"_deg_s", "_rad_s", kRadPerDeg},
-                                      {"_deg", "_rad", kRadPerDeg},
-                                      {"_mm_s2", "_m_s2", kMPerMm},
-                                      {"_mm_s", "_m_s", kMPerMm},
-                                      {"_mm", "_m", kMPerMm},
-                                      {"_ms", "_s", 1e-3},
-                                      {"_khz", "_hz", 1e3}}};
+constexpr std::array<Unit, 10> kUnits{{{"_deg_s2", "_rad_s2", kRadPerDeg},
+                                       {"_deg_s", "_rad_s", kRadPerDeg},
+                                       {"_deg", "_rad", kRadPerDeg},
+                                       {"_mm_s2", "_m_s2", kMPerMm},
+                                       {"_mm_s", "_m_s", kMPerMm},
+                                       {"_mm", "_m", kMPerMm},
+                                       {"_ms", "_s", 1e-3},
+                                       {"_khz", "_hz", 1e3},
+                                       {"_kpa", "_pa", 1e3},
+                                       {"_g_cm3", "_kg_m3", 1e3}}};
 
 }  // namespace
 
@@ -195,6 +197,35 @@ std::optional<Eigen::Vector3d> TableReader::vector3(std::string_view key, Range 
   const auto values = numbers(key, 3, each);
   if (!values) return std::nullopt;
   return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
+}
+
+std::optional<std::vector<Eigen::Vector3d>> TableReader::points(std::string_view key, std::size_t least,
+                                                                std::size_t most, Range each) {
+  const toml::node* node = get(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() < least || array->size() > most) {
+    const std::string is = array == nullptr ? word(node->type()) : fmt::format("an array of {}", array->size());
+    error(key, fmt::format("{} must be an array of {} to {} points, but is {}", key, least, most, is),
+          "write [[x, y, z], [x, y, z]]");
+    return std::nullopt;
+  }
+  std::vector<Eigen::Vector3d> points;
+  for (const toml::node& item : *array) {
+    const toml::array* row = item.as_array();
+    if (row == nullptr || row->size() != 3) {
+      error(key, fmt::format("point {} of {} is not [x, y, z]", points.size() + 1, key));
+      return std::nullopt;
+    }
+    Eigen::Vector3d p;
+    for (int k = 0; k < 3; ++k) {
+      const auto value = element(key, *row->get(static_cast<std::size_t>(k)), each);
+      if (!value) return std::nullopt;
+      p[k] = *value;
+    }
+    points.push_back(p);
+  }
+  return points;
 }
 
 std::optional<std::vector<std::string>> TableReader::texts(std::string_view key) {

@@ -48,6 +48,9 @@ class TableReader {
   std::optional<std::string> name(std::string_view key);
   std::optional<Eigen::Vector3d> vector3(std::string_view key, Range each = kAnyNumber);
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, Range each = kAnyNumber);
+  // [[x, y, z], ...]
+  std::optional<std::vector<Eigen::Vector3d>> points(std::string_view key, std::size_t least, std::size_t most,
+                                                     Range each = kAnyNumber);
   std::optional<std::vector<std::string>> texts(std::string_view key);
   // One of the words.
   template <class Value>

@@ -32,6 +32,11 @@ class Home {
     write("robots/arm.urdf",
           "<robot name=\"u\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent "
           "link=\"a\"/><child link=\"b\"/><limit velocity=\"1\"/></joint></robot>");
+    write("envlib/o.mpo", "format = 1\n[volume]\nmsh = \"o.msh\"\nscale = 0.1\n");
+    write("envlib/o.msh",
+          "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n1\n1 4 1 1 4 1 2 3 4\n$ENDELM\n");
+    write("envlib/o.hyper",
+          "format = 1\n[[connection]]\nobject_a = \"o.mpo\"\npoint_a_m = [0, 0, 0]\npoint_b_m = [0, 0, 0]\n");
     write("robots/a.eds", "[x]\n");
     write("robots/a.dbc", "VERSION \"\"\n");
     write("scripts/s.spt", "#\n");

@@ -1,4 +1,4 @@
-// Whatever a device and a worker say: the force stays finite and within its limit, the instrument within its joints,
+// Whatever a device and the workers say: the force stays finite and within its limit, the instrument within its joints,
 // and a fault stays until it is taken back, or passes by itself where it may.
 #include <algorithm>
 #include <cmath>
@@ -74,6 +74,26 @@ void change_model(Bytes& bytes, ContactModel& model) {
   }
 }
 
+void change_tissue(Bytes& bytes, test_rig::Rig& rig) {
+  TissueForce& tissue = rig.tissue;
+  rig.show_tissue = true;
+  const auto what = bytes.take<std::uint8_t>();
+  tissue.slot = (what & 0xC0) == 0xC0 ? 0 : rig.instrument.slot;
+  ++tissue.sequence;
+  tissue.posture_time = rig.now;
+  if ((what & 1) != 0) tissue.x_ref = rig.state().x_proxy + bytes.vector(0.01);
+  if ((what & 2) != 0) tissue.force_W = bytes.vector(4);
+  if ((what & 4) != 0) tissue.torque_W = bytes.vector(0.1);
+  if ((what & 8) != 0) {
+    const Eigen::Vector3d along = bytes.vector(30);
+    tissue.stiffness = along * along.transpose();
+  }
+  if ((what & 16) != 0) tissue.stiffness((what >> 6U) % 3U, 1) = bytes.number(500);
+  if ((what & 32) != 0) tissue.posture_time.ns += bytes.take<std::int64_t>() >> (bytes.take<std::uint8_t>() % 64);
+  tissue.contacts = bytes.take<std::uint8_t>() % 3;
+  tissue.held = bytes.take<std::uint8_t>() % 2;
+}
+
 void change_sample(Bytes& bytes, test_rig::Rig& rig) {
   HapticSample& sample = rig.port.sample;
   const auto what = bytes.take<std::uint8_t>();
@@ -103,6 +123,7 @@ void check(const test_rig::Rig& rig, bool moved, const HapticState& earlier) {
   CELLMIRROR_EXPECTS(output.force_D.norm() <= rig.instrument.settings.max_force * (1 + 1e-9));
   CELLMIRROR_EXPECTS(std::isfinite(output.gripper_torque) && std::isfinite(state.energy));
   for (const double torque : output.joint_torques) CELLMIRROR_EXPECTS(std::isfinite(torque));
+  CELLMIRROR_EXPECTS(state.tissue_force_W.allFinite() && std::isfinite(state.axis_torque));
   CELLMIRROR_EXPECTS(state.x_proxy.allFinite() && state.x_device.allFinite());
   CELLMIRROR_EXPECTS((state.phase == HapticPhase::faulted) == (state.fault != HapticFault::none));
   CELLMIRROR_EXPECTS((state.phase == HapticPhase::faulted) == (state.awaited != HapticAwaited::nothing));
@@ -133,6 +154,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if ((what & 4) != 0) change_model(bytes, rig.model);
     rig.missed = (what & 0x38) == 0x38 ? 3 : 0;
     rig.device_gone = (what & 0xF8) == 0xF0;
+    if ((what & 0xF8) == 0xC8) change_tissue(bytes, rig);
     if ((what & 0xF8) == 0xE8) rig.q[0] = bytes.number(2);
     // A fault is taken back only in between, so that the check sees what a tick alone does.
     if ((what & 0xF8) == 0xD8) {

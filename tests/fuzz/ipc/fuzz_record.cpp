@@ -9,6 +9,7 @@
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
+#include "ipc/wire/tissue_record.hpp"
 #include "rt_core/base/contract.hpp"
 
 namespace {
@@ -38,5 +39,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   round_trip(bytes, decode_camera_record, encode_camera_record);
   round_trip(bytes, decode_proximity_record, encode_proximity_record);
   round_trip(bytes, decode_event_record, encode_event_record);
+  round_trip(bytes, decode_tissue_record, encode_tissue_record);
   return 0;
 }
