@@ -83,9 +83,11 @@ CellOwner::CellOwner(Parts parts)
           cell_, names_,
           {haptics_, forces_, robot_forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
           static_cast<bool>(parts.let_tick_pass)),
+      tissue_(cell_, names_, std::move(parts.tissue)),
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
-      CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, diagnosis_},
+      CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, tissue_,
+                  diagnosis_},
       home_, clock_,
       script::ScriptRunner::Events{.refused = std::move(parts.refused),
                                    .all_stopped = [this] { switches_->forget_waiting(); },
@@ -228,6 +230,7 @@ void CellOwner::publish_state() {
   cell_state->programs = programs_.snapshot();
   cell_state->switches = switches_->snapshot();
   cell_state->couplings = couplings_.snapshots();
+  cell_state->tissue = tissue_.settings();
   display_.follow();
   cell_state->display = display_.state();
   board_.publish(std::move(cell_state));

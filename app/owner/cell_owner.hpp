@@ -28,6 +28,7 @@
 #include "app/owner/robot_force_service.hpp"
 #include "app/owner/sensing.hpp"
 #include "app/owner/tcp_force_service.hpp"
+#include "app/owner/tissue/tissue_service.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/home.hpp"
@@ -48,6 +49,7 @@ class CellOwner {
     std::vector<ViewSetting> views;
     DisplayLayout layout = {};
     collision::Settings collision;
+    TissueParts tissue = {};
     FootSwitchSettings foot_switches;
     engine::Engine& engine;
     Board<CellState>& board;
@@ -130,6 +132,7 @@ class CellOwner {
   TcpForceService forces_;
   RobotForceService robot_forces_;
   CellInteraction interaction_;
+  TissueService tissue_;
   CellDiagnosis diagnosis_;
   std::unique_ptr<script::ScriptRunner> runner_;
   CommandQueue queue_{kCommandQueue};

@@ -17,6 +17,7 @@
 #include "app/snapshot/program_snapshot.hpp"
 #include "app/snapshot/robot_force_channel.hpp"
 #include "app/snapshot/tcp_force_channel.hpp"
+#include "app/snapshot/tissue_snapshot.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/ports/display_state.hpp"
@@ -57,6 +58,7 @@ struct CellState {
   ProgramsSnapshot programs;
   FootSwitchSnapshot switches;
   std::vector<CouplingSnapshot> couplings;
+  std::shared_ptr<const TissueSettings> tissue;  // the same object as long as nothing changes
 };
 
 }  // namespace cellmirror::app

@@ -1,4 +1,4 @@
-// Manual 1.2.6.
+// Manual 1.2.6, the I/O channels.
 #include <cstddef>
 #include <cstdint>
 
@@ -39,10 +39,10 @@ Outcome set_switches_online(const ParsedCommand& command, CommandHost& host) {
 }
 
 constexpr Registration kHandlers[] = {
-    {FormId::eladyn_calc, not_available},    {FormId::rob_ela_interact, not_available},
-    {FormId::ela_clip_def, not_available},   {FormId::eladyn_geo_def_cylinders, not_available},
-    {FormId::rob_ela_shm, set_force_memory}, {FormId::bin_ela_shm, set_switch_memory},
-    {FormId::bin_ela, set_switches_online},  {FormId::hot_message, show_message},
+    {FormId::rob_ela_shm, set_force_memory},
+    {FormId::bin_ela_shm, set_switch_memory},
+    {FormId::bin_ela, set_switches_online},
+    {FormId::hot_message, show_message},
 };
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "scripts/commands/interaction_host.hpp"
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/commands/program_host.hpp"
+#include "scripts/commands/tissue_host.hpp"
 #include "scripts/lang/names.hpp"
 
 namespace cellmirror {
@@ -92,6 +93,7 @@ struct CommandHost {
   DisplayHost& display;
   SensingHost& sensing;
   InteractionHost& interaction;
+  TissueHost& tissue;
   DiagnosisHost& diagnosis;
 };
 

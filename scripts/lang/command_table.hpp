@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "rt_core/ports/tissue_settings.hpp"
 #include "scripts/lang/form.hpp"
 
 namespace cellmirror::script {
@@ -32,10 +33,13 @@ struct PlausibilityToken {
   std::string_view token;
   Unit unit;
   std::string_view meaning;
+  TissueLimitSetting start;  // SI
 };
 [[nodiscard]] std::span<const Attribute> object_attributes();            // A.1
 [[nodiscard]] std::span<const Attribute> plausibility_flags();           // A.4
 [[nodiscard]] std::span<const PlausibilityToken> plausibility_tokens();  // A.5
+// "2000 mm/s, COUNT DISCARD", or "off".
+[[nodiscard]] std::string start_text(const PlausibilityToken& token);
 
 // "mm/s", "mm or degrees" and so on; empty for Unit::none.
 [[nodiscard]] std::string_view unit_text(Unit unit);

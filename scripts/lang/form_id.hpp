@@ -140,9 +140,11 @@ enum class FormId : std::uint8_t {
   set_analog_input,
   stop_all,
   stop_script,
+  effects_suction,
+  effects_irrigation,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::stop_script) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::effects_irrigation) + 1;
 
 }  // namespace cellmirror::script

@@ -225,8 +225,8 @@ std::string commands_as_text() {
   out += attributes_as_text(kA1, object_attributes()) + attributes_as_text(kA4, plausibility_flags());
   out += fmt::format("\n{}\n", kA5);
   for (const PlausibilityToken& row : plausibility_tokens())
-    out += fmt::format("  {:<18} {:<7} {}\n", row.token, row.unit == Unit::none ? "ratio" : unit_text(row.unit),
-                       row.meaning);
+    out += fmt::format("  {:<18} {:<7} {}; at the start {}\n", row.token,
+                       row.unit == Unit::none ? "ratio" : unit_text(row.unit), row.meaning, start_text(row));
   return out;
 }
 
@@ -254,7 +254,8 @@ std::string commands_as_json() {
   }
   nlohmann::ordered_json tokens = nlohmann::ordered_json::array();
   for (const PlausibilityToken& row : plausibility_tokens())
-    tokens.push_back({{"token", row.token}, {"unit", unit_text(row.unit)}, {"meaning", row.meaning}});
+    tokens.push_back(
+        {{"token", row.token}, {"unit", unit_text(row.unit)}, {"meaning", row.meaning}, {"at_start", start_text(row)}});
   const nlohmann::ordered_json document = {{"commands", std::move(commands)},
                                            {"our_tables",
                                             {{"A.1", attributes_as_json(object_attributes())},

@@ -60,6 +60,7 @@ class Matcher {
 
   void check_commas();
   void check_active_robot();
+  void require_active_robot();
   void check_dependencies();
   void check_name(const Parameter& parameter, const Token& word);
   bool check_text(const Token& word, std::string_view meaning, std::size_t longest);

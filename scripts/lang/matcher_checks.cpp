@@ -20,8 +20,8 @@ constexpr Range kFlyAngle{0, 180};
 
 // Slots of the commands whose values depend on each other.
 constexpr std::size_t kFlyTypeSlot = slots::fly::kType;
-constexpr std::size_t kPlausibilityTokenSlot = 0;
-constexpr std::size_t kEffectorJointSlot = 0;
+constexpr std::size_t kPlausibilityTokenSlot = slots::tissue_limit::kToken;
+constexpr std::size_t kEffectorJointSlot = slots::instrument::kJoint;
 constexpr std::size_t kTrackingSwitchSlot = slots::camera_switch::kOn;
 constexpr std::size_t kTrackingFrameParameter = 2;
 constexpr std::size_t kTestSwitchSlot = slots::tcp_test::kOn;
@@ -67,7 +67,11 @@ void Matcher::check_commas() {
 }
 
 void Matcher::check_active_robot() {
-  if (!form_.needs_active_robot || names_ == nullptr || !names_->active_robot().empty()) return;
+  if (form_.needs_active_robot) require_active_robot();
+}
+
+void Matcher::require_active_robot() {
+  if (names_ == nullptr || !names_->active_robot().empty()) return;
   if (check_ != NameCheck::for_execution) {
     findings_.warning(out_.begin(), "no robot is active unless a caller activates one",
                       "activate one first with ROBACT <Robot_id>");
@@ -181,6 +185,8 @@ void Matcher::check_dependencies() {
     while (value <= kLastTestValue && out_.given(value)) ++value;
     if (value <= kLastTestValue && !off_alone) missing(form_.parameters[value]);
   }
+  const bool tool = form_.id == FormId::effects_suction || form_.id == FormId::effects_irrigation;
+  if (tool && out_.choice(kOnlySlot) == 0) require_active_robot();
   if (form_.id == FormId::rob_ela_interact && names_ != nullptr) {
     const std::size_t joints = joint_kinds().size();
     if (joints != 0 && out_.integer(kEffectorJointSlot) > static_cast<std::int64_t>(joints)) {

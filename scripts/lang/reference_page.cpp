@@ -104,10 +104,10 @@ std::string own_tables() {
       "\n## Tables A.1, A.4 and A.5\n\nThe manual refers to these tables and does not contain them. They are ours.\n";
   out += attribute_table("A.1 Attributes of deformable objects", object_attributes());
   out += attribute_table("A.4 Flags of the plausibility test", plausibility_flags());
-  out += "\n### A.5 Tokens of the plausibility test\n\n| token | unit | meaning |\n|---|---|---|\n";
+  out += "\n### A.5 Tokens of the plausibility test\n\n| token | unit | meaning | at the start |\n|---|---|---|---|\n";
   for (const PlausibilityToken& row : plausibility_tokens())
-    out += fmt::format("| `{}` | {} | {} |\n", row.token, row.unit == Unit::none ? "ratio" : unit_text(row.unit),
-                       row.meaning);
+    out += fmt::format("| `{}` | {} | {} | {} |\n", row.token, row.unit == Unit::none ? "ratio" : unit_text(row.unit),
+                       row.meaning, start_text(row));
   return out;
 }
 

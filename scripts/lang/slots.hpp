@@ -88,6 +88,47 @@ inline constexpr Slot kSlaves{2, 2, "n_slaves"};
 inline constexpr Slot kFirstSlave{3, 3, "slave_robot n_dof master_joint slave_joint ..."};
 }  // namespace master_slave
 
+// eladyn_geo_def with flags.
+namespace tissue_attributes {
+inline constexpr Slot kObject{0, 0, "geo_name | ALL"};
+inline constexpr Slot kFlags{1, 1, "flags"};
+}  // namespace tissue_attributes
+// eladyn_geo_def with a token.
+namespace tissue_attribute {
+inline constexpr Slot kObject{0, 0, "geo_name | ALL"};
+inline constexpr Slot kToken{1, 1, "token"};
+inline constexpr Slot kOn{2, 2, "on | off"};
+}  // namespace tissue_attribute
+// eladyn_geo_def with cylinders.
+namespace effector_cylinders {
+inline constexpr Slot kGeometry{0, 0, "geo_name"};
+inline constexpr Slot kFlags{1, 1, "flags"};
+inline constexpr Slot kShaftDiameter{2, 2, "geom1"};
+inline constexpr Slot kEffectorRadius{3, 3, "geom2"};
+inline constexpr Slot kEffectorLength{4, 4, "geom3"};
+inline constexpr Slot kFourth{5, 5, "geom4"};
+}  // namespace effector_cylinders
+// eladyn_plaus_param.
+namespace tissue_limit {
+inline constexpr Slot kToken{0, 0, "token"};
+inline constexpr Slot kFlags{1, 1, "flags"};
+inline constexpr Slot kValue{2, 2, "val"};
+}  // namespace tissue_limit
+// rob_ela_interact.
+namespace instrument {
+inline constexpr Slot kJoint{0, 0, "int_jnt"};
+inline constexpr Slot kTest{1, 1, "test_function"};
+inline constexpr Slot kFirstValue{2, 2, "testval1"};
+inline constexpr Slot kSecondValue{3, 3, "testval2"};
+inline constexpr Slot kKind{4, 4, "inst_type"};
+}  // namespace instrument
+// ela_clip_def.
+namespace clip {
+inline constexpr Slot kFile{0, 0, "clip_file"};
+inline constexpr Slot kRotation{1, 1, "rx"};     // and ry, rz
+inline constexpr Slot kTranslation{4, 4, "tx"};  // and ty, tz
+}  // namespace clip
+
 // CONNECT, and with the third value FRAME_TO_WFRM.
 namespace connect {
 inline constexpr Slot kAttached{0, 0, "frame_2"};

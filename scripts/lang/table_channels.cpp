@@ -10,7 +10,6 @@ namespace {
 using namespace parts;
 
 constexpr std::string_view kSection = "1.2.6";
-constexpr std::string_view kTissue = "deformable objects";
 
 constexpr Choice kTests[] = {{"0", "no test, interaction off"},
                              {"1", "value >= testval1"},
@@ -24,6 +23,9 @@ constexpr Choice kInstruments[] = {{"0", "gripper"},
                                    {"4", "coagulation forceps"}};
 
 constexpr Range kEffectorJoint{1, static_cast<double>(kMaxJointsPerRobot)};
+// Bounds keep the search for contacts within reach of the instrument.
+constexpr Range kCylinderRadius{0.0, 200.0, true, false};
+constexpr Range kCylinderLength{-kInfinity, 1000.0};
 constexpr Range kForceBytes{12, 1048576};  // at least force x, y, z as float32; at most 1 MiB
 constexpr Range kSwitchBytes{1, 1048576};
 
@@ -39,9 +41,9 @@ constexpr Parameter kClip[] = {
     number("tz", "translation along z", Unit::mm)};
 constexpr Parameter kCylinders[] = {identifier("geo_name", "geometry of the effector"),
                                     integer("flags", "flags", kUnsigned),
-                                    number("geom1", "shaft diameter", Unit::mm, kNotNegative),
-                                    number("geom2", "mean distance of the surface", Unit::mm, kNotNegative),
-                                    number("geom3", "third value", Unit::none),
+                                    number("geom1", "shaft diameter", Unit::mm, kCylinderRadius),
+                                    number("geom2", "mean distance of the surface", Unit::mm, kCylinderRadius),
+                                    number("geom3", "length of the effector", Unit::mm, kCylinderLength),
                                     number("geom4", "fourth value", Unit::none)};
 constexpr Parameter kForceMemory[] = {integer("send_type", "protocol", kUnsigned),
                                       integer("re_shmkey", "shared memory key", kSharedMemoryKey),
@@ -53,6 +55,13 @@ constexpr Parameter kBinary[] = {choice("online | offline", "processing", kOnlin
 constexpr Parameter kMessage[] = {{.name = "text", .meaning = "message", .kind = ParameterKind::text}};
 
 // The slots by which scripts/commands reads the values.
+static_assert(has_slots(kInteract, {slots::instrument::kJoint, slots::instrument::kTest, slots::instrument::kFirstValue,
+                                    slots::instrument::kSecondValue, slots::instrument::kKind}));
+static_assert(has_slots(kClip, {slots::clip::kFile, slots::clip::kRotation, slots::clip::kTranslation}));
+static_assert(has_slots(kCylinders,
+                        {slots::effector_cylinders::kGeometry, slots::effector_cylinders::kFlags,
+                         slots::effector_cylinders::kShaftDiameter, slots::effector_cylinders::kEffectorRadius,
+                         slots::effector_cylinders::kEffectorLength, slots::effector_cylinders::kFourth}));
 static_assert(has_slots(kForceMemory,
                         {slots::force_memory::kSendType, slots::force_memory::kKey, slots::force_memory::kBytes}));
 static_assert(has_slots(kSwitchMemory,
@@ -65,17 +74,16 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kCalc,
      .help = "starts or stops the elastodynamic calculation",
-     .missing = kTissue,
-     .effect = LoopEffect::queued},
+     .definition = "off freezes all objects where they are and what instruments do to them; on at the start"},
     {.id = FormId::rob_ela_interact,
      .name = "rob_ela_interact",
      .syntax = "rob_ela_interact <int_jnt> <test_function> <testval1> <testval2> <inst_type>",
      .section = kSection,
      .parameters = kInteract,
      .help = "sets which joint of the active robot triggers its instrument's action, and when",
-     .missing = kTissue,
-     .definition = "joints count from 1 in the order of the component file; test values in mm or degrees by its kind",
-     .effect = LoopEffect::queued,
+     .definition =
+         "joints count from 1 in the order of the component file; test values in mm or degrees by the kind of "
+         "that joint; test 0 takes the instrument's action away",
      .needs_active_robot = true},
     {.id = FormId::ela_clip_def,
      .name = "ela_clip_def",
@@ -83,16 +91,20 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kClip,
      .help = "sets geometry and pose of a clip at the effector",
-     .missing = kTissue,
-     .definition = "rotations first, about fixed axes: x, then y, then z"},
+     .definition = "of the active robot; the file is one of envlib; the pose is relative to the robot's TCP, rotations "
+                   "about fixed axes: x, then y, then z",
+     .needs_active_robot = true},
     {.id = FormId::eladyn_geo_def_cylinders,
      .name = "eladyn_geo_def",
      .syntax = "eladyn_geo_def <geo_name> <flags> <geom1> <geom2> <geom3> <geom4>",
      .section = kSection,
      .parameters = kCylinders,
      .help = "sets the virtual cylinders of the active robot's effector for the contact test",
-     .missing = kTissue,
-     .definition = "geom3 and geom4 are not defined: kept as numbers",
+     .definition =
+         "geo_name is a frame or joint with geometry that moves with the robot, or the name of that geometry; "
+         "the cylinders lie about the z axis of the TCP and end there: the effector with geom2 as its radius and "
+         "geom3 as its length (18 mm unless more than 0), and the shaft behind it; flags and geom4 are kept and "
+         "reported only",
      .selector = Selector::by_shape,
      .needs_active_robot = true},
     {.id = FormId::rob_ela_shm,

@@ -57,6 +57,9 @@ constexpr Parameter kCollisionPair[] = {word("pair"), named(NameKind::branch, "n
                                         named(NameKind::branch, "node_b", "second frame or joint"),
                                         choice("ignore | test | derive", "treatment", kPairTreatments)};
 
+constexpr Parameter kSuction[] = {word("SUCTION"), choice("ON | OFF", "switch", kOnOff)};
+constexpr Parameter kIrrigation[] = {word("IRRIGATION"), choice("ON | OFF", "switch", kOnOff)};
+
 constexpr Range kPortNumber{1.0, 1024.0, false, false};
 constexpr Choice kStepDirections[] = {{"FORWARD", "in program order"},
                                       {"BACKWARD", "back to the previous check point"}};
@@ -341,6 +344,28 @@ constexpr Form kForms[] = {
      .help = "ends a SCRIPT file that is being executed, with the files that it has called",
      .example = "STOP_SCRIPT 3",
      .definition = "`cellmirror status` lists the runs and their numbers; what the last command began continues",
+     .origin = Origin::ours},
+    {.id = FormId::effects_suction,
+     .name = "EFFECTS",
+     .syntax = "EFFECTS SUCTION [ON | OFF]",
+     .section = kSection,
+     .parameters = kSuction,
+     .help = "switches suction at the TCP of the active robot",
+     .example = "EFFECTS SUCTION ON",
+     .definition =
+         "lowers the pool while the TCP is in it and clears smoke; the robot that is active when it is switched "
+         "on stays its tool, whichever robot is active later; off needs no active robot",
+     .selector = Selector::by_first_word,
+     .origin = Origin::ours},
+    {.id = FormId::effects_irrigation,
+     .name = "EFFECTS",
+     .syntax = "EFFECTS IRRIGATION [ON | OFF]",
+     .section = kSection,
+     .parameters = kIrrigation,
+     .help = "switches a jet of water at the TCP of the active robot",
+     .example = "EFFECTS IRRIGATION ON",
+     .definition = "raises and clears the pool, with ripples (POOL_RIPPLES); the tool as with SUCTION",
+     .selector = Selector::by_first_word,
      .origin = Origin::ours},
 };
 

@@ -18,12 +18,13 @@ class QuietHost final : public WorldHost,
                         public DisplayHost,
                         public SensingHost,
                         public InteractionHost,
+                        public TissueHost,
                         public DiagnosisHost {
  public:
   FakeNames names;
   std::size_t calls = 0;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this, *this}; }
 
   Result<void> activate(std::string_view /*node*/) override { return called(); }
   Result<void> deactivate(std::string_view /*node*/) override { return called(); }
@@ -158,12 +159,35 @@ class QuietHost final : public WorldHost,
   Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override {
     return couple(master, slaves);
   }
+  Result<std::string> set_attributes(std::string_view /*object*/, std::uint16_t /*mask*/,
+                                     std::uint16_t /*values*/) override {
+    return remarked();
+  }
+  Result<std::string> set_cylinders(std::string_view /*geometry*/, const EffectorCylinders& /*cylinders*/) override {
+    return remarked();
+  }
+  Result<std::string> set_connections(std::string_view /*hyper_file*/) override { return remarked(); }
+  Result<std::string> set_network_shown(bool /*on*/) override { return remarked(); }
+  Result<std::string> reset_model() override { return remarked(); }
+  Result<std::string> set_limit(TissueLimit /*limit*/, std::uint8_t /*actions*/, double /*value*/) override {
+    return remarked();
+  }
+  Result<std::string> set_effect(TissueEffect /*effect*/, bool /*on*/) override { return remarked(); }
+  Result<std::string> reset_pool() override { return remarked(); }
+  Result<std::string> clean_lens() override { return remarked(); }
+  Result<std::string> set_calculating(bool /*on*/) override { return remarked(); }
+  Result<std::string> set_trigger(const InstrumentTrigger& /*trigger*/) override { return remarked(); }
+  Result<std::string> set_clip(std::string_view /*file*/, const Pose& /*X_TC*/) override { return remarked(); }
   Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
 
  private:
   Result<void> called() {
     ++calls;
     return {};
+  }
+  Result<std::string> remarked() {
+    ++calls;
+    return std::string();
   }
 };
 

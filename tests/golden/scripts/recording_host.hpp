@@ -26,6 +26,7 @@ class RecordingHost final : public WorldHost,
                             public DisplayHost,
                             public SensingHost,
                             public InteractionHost,
+                            public TissueHost,
                             public DiagnosisHost {
  public:
   std::vector<std::string> calls;
@@ -36,7 +37,7 @@ class RecordingHost final : public WorldHost,
   // What POS_ROB begins; null: the robot stands there at once.
   std::shared_ptr<Activity> activity;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this, *this}; }
   [[nodiscard]] std::string trace() const {
     std::string text;
     for (const std::string& call : calls) text += call + "\n";
@@ -273,11 +274,46 @@ class RecordingHost final : public WorldHost,
   Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves) override {
     return record("uncouple {}{}", master, slaves_text(slaves));
   }
+  Result<std::string> set_attributes(std::string_view object, std::uint16_t mask, std::uint16_t values) override {
+    return remarked(record("set_attributes {} mask {:#05x} values {:#05x}", object, mask, values));
+  }
+  Result<std::string> set_cylinders(std::string_view geometry, const EffectorCylinders& cylinders) override {
+    return remarked(record("set_cylinders {} flags {} shaft {:.9g} effector {:.9g} {:.9g} fourth {:.9g}", geometry,
+                           cylinders.flags, cylinders.shaft_diameter_m, cylinders.effector_radius_m,
+                           cylinders.effector_length_m, cylinders.fourth));
+  }
+  Result<std::string> set_connections(std::string_view hyper_file) override {
+    return remarked(record("set_connections {}", hyper_file));
+  }
+  Result<std::string> set_network_shown(bool on) override { return remarked(record("set_network_shown {}", on)); }
+  Result<std::string> reset_model() override { return remarked(record("reset_model")); }
+  Result<std::string> set_limit(TissueLimit limit, std::uint8_t actions, double value) override {
+    return remarked(record("set_limit {} actions {:#04x} value {:.9g}", word(limit), actions, value));
+  }
+  Result<std::string> set_effect(TissueEffect effect, bool on) override {
+    return remarked(record("set_effect {} {}", word(effect), on));
+  }
+  Result<std::string> reset_pool() override { return remarked(record("reset_pool")); }
+  Result<std::string> clean_lens() override { return remarked(record("clean_lens")); }
+  Result<std::string> set_calculating(bool on) override { return remarked(record("set_calculating {}", on)); }
+  Result<std::string> set_trigger(const InstrumentTrigger& trigger) override {
+    constexpr std::array<std::string_view, 5> kTests = {"off", "at_least", "below", "within", "outside"};
+    return remarked(record("set_trigger joint {} {} {:.9g} {:.9g} {}", trigger.joint,
+                           kTests.at(std::to_underlying(trigger.test)), trigger.value_1, trigger.value_2,
+                           word(trigger.kind)));
+  }
+  Result<std::string> set_clip(std::string_view file, const Pose& X_TC) override {
+    return remarked(record("set_clip {} {}", file, pose_text(X_TC)));
+  }
   Result<void> save_flight_record(std::string_view file_name) override {
     return record("save_flight_record {}", file_name);
   }
 
  private:
+  // The answer of a call that may have a remark.
+  static Result<std::string> remarked(Result<void> done) {
+    return done ? Result<std::string>(std::string()) : std::unexpected(std::move(done.error()));
+  }
   template <class... Args>
   Result<void> record(fmt::format_string<Args...> format, Args&&... args) {
     const std::string line = fmt::format(format, std::forward<Args>(args)...);

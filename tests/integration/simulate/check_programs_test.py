@@ -139,6 +139,13 @@ class Scripts(SmallCell):
         self.assert_found(found, [("warning", 1, 9, "no irdata program gone"), ("warning", 2, 13, "scripts/gone"),
                                   ("warning", 3, 12, "scripts/gone")])
 
+    def test_deformable_objects_and_their_files(self):
+        text = ("eladyn_geo_def ALL CUT on;\neladyn_geo_def liver.mpo 3;\neladyn_hyper_name gone;\nROBACT S1;\n"
+                "ela_clip_def gone.mpo 0 0 0 0 0 0;\nEFFECTS SUCTION ON")
+        self.assert_found(self.findings("scripts/test.spt", text), [
+            ("warning", 1, 16, "the cell has no deformable object"), ("warning", 2, 16, "the cell has no deformable object"),
+            ("warning", 3, 19, "envlib/gone"), ("warning", 5, 14, "envlib/gone.mpo")])
+
     def test_files_that_an_earlier_command_makes(self):
         (self.home.root / "programs/there.src").write_text("")
         text = ("TF_RECORD taught S1 START;\nTF_RECORD taught S1 STOP;\nTF_LOAD taught S1;\nSAVE_VIEWS made;\n"

@@ -82,6 +82,16 @@ const Mistake kMistakes[] = {
      }(),
      1, 1, "longer than", "missing"},
     {"EffectorJoint", "rob_ela_interact 7 1 0 0 0", 1, 18, "MANTEC_RM3 has 6 joints", ""},
+    {"AttributeFlags", "eladyn_geo_def ALL 0x1000", 1, 20, "0x1000 is not in 0..4095", "eladyn_geo_def"},
+    {"Attribute", "eladyn_geo_def ALL CUTS on", 1, 20, "attribute (table A.1) CUTS is none of", "did you mean CUT"},
+    {"LimitFlags", "eladyn_plaus_param STRAIN 64 1", 1, 27, "64 is not in 0..63", ""},
+    {"LimitToken", "eladyn_plaus_param STRAINS 1 1", 1, 20, "STRAINS is none of", "did you mean STRAIN"},
+    {"LimitBelowZero", "eladyn_plaus_param STRAIN 1 -1", 1, 29, "is not at least 0", ""},
+    {"ShaftDiameter", "eladyn_geo_def jaw 0 0 4 18 0", 1, 22, "more than 0 and at most 200 mm", ""},
+    {"EffectorRadius", "eladyn_geo_def jaw 0 5 1e9 18 0", 1, 24, "more than 0 and at most 200 mm", ""},
+    {"EffectorLength", "eladyn_geo_def jaw 0 5 4 1e9 0", 1, 26, "at most 1000 mm", ""},
+    {"EffectWithoutSwitch", "EFFECTS SUCTION", 1, 16, "ON | OFF", "EFFECTS SUCTION"},
+    {"EffectThatHasNoSwitch", "EFFECTS RESET_POOL ON", 1, 20, "ON is a surplus word", ""},
     {"SlaveJoint", "MASTER_SLAVE on PUMA_762 1 MANTEC_RM3 1 J_1 J_9", 1, 45, "MANTEC_RM3 has no joint J_9", "J_1"},
     {"KeyZero", "rob_ela_shm 0 0x0 64", 1, 15, "shared memory key 0x0 is not in 1..4294967295", ""},
 };
@@ -128,6 +138,16 @@ TEST(ScriptMistakes, ActiveRobotIsAskedForByName) {
   ASSERT_EQ(sut.size(), 1U);
   EXPECT_EQ(sut[0].message, "rob_cart_lin_vel: no robot is active");
   EXPECT_NE(sut[0].remedy.find("ROBACT"), std::string::npos);
+}
+
+TEST(ScriptMistakes, ToolNeedsAnActiveRobotOnlyToBeSwitchedOn) {
+  const cellmirror::testing::FakeNames names;
+  for (const std::string effect : {"SUCTION", "IRRIGATION"}) {
+    const auto sut = findings_of("EFFECTS " + effect + " ON", &names);
+    ASSERT_EQ(sut.size(), 1U);
+    EXPECT_EQ(sut[0].message, "EFFECTS: no robot is active");
+    EXPECT_TRUE(findings_of("EFFECTS " + effect + " OFF", &names).empty());
+  }
 }
 
 TEST(CheckAhead, FollowsRobact) {

@@ -110,6 +110,11 @@ TEST(CommandTable, AvailableNowIsWhatTheIssuesSoFarAskFor) {
                                             "SET_EXT_TCP_TEST",
                                             "SET_FRC_ARR_SPECIAL",
                                             "MASTER_SLAVE",
+                                            "EFFECTS",
+                                            "eladyn_geo_def",
+                                            "eladyn_calc",
+                                            "rob_ela_interact",
+                                            "ela_clip_def",
                                             "rob_ela_shm",
                                             "bin_ela_shm",
                                             "BIN_ELA",
@@ -143,7 +148,7 @@ TEST(CommandTable, AvailableNowIsWhatTheIssuesSoFarAskFor) {
                                             "FLDR",
                                             "SHAD"};
   for (const Form* form : forms()) {
-    const bool expected = names.contains(form->name) || form->section == "1.2.2";
+    const bool expected = names.contains(form->name) || form->section == "1.2.2" || form->section == "1.2.5";
     EXPECT_EQ(form->available(), expected) << form->syntax;
   }
 }
@@ -168,21 +173,6 @@ TEST(CommandTable, FindsCommandsWithoutRegardToCaseAndNothingElse) {
 // A row of the manual without an example gets one here, so that each row is parsed and executed once.
 TEST(CommandTable, UnavailableCommandsAreRefusedBySubsystemAndChangeNothing) {
   const std::pair<FormId, const char*> samples[] = {
-      {FormId::eladyn_geo_def_flags, "eladyn_geo_def ALL 1"},
-      {FormId::eladyn_geo_def_token, "eladyn_geo_def ALL VISIBLE on"},
-      {FormId::eladyn_hyper_name, "eladyn_hyper_name a"},
-      {FormId::eladyn_show_def, "eladyn_show_def 1"},
-      {FormId::eladyn_model_reset, "eladyn_model_reset"},
-      {FormId::eladyn_plaus_param, "eladyn_plaus_param NODE_FORCE 1 2"},
-      {FormId::effects_pulse, "EFFECTS PULSE ON"},
-      {FormId::effects_bleeding, "EFFECTS BLEEDING ON"},
-      {FormId::effects_pool_ripples, "EFFECTS POOL_RIPPLES ON"},
-      {FormId::effects_reset_pool, "EFFECTS RESET_POOL"},
-      {FormId::effects_clean_endoscopic_lense, "EFFECTS CLEAN_ENDOSCOPIC_LENSE"},
-      {FormId::eladyn_calc, "eladyn_calc on"},
-      {FormId::rob_ela_interact, "rob_ela_interact 1 1 2 3 4"},
-      {FormId::ela_clip_def, "ela_clip_def a.mpo 1 2 3 4 5 6"},
-      {FormId::eladyn_geo_def_cylinders, "eladyn_geo_def jaw 1 2 3 4 5"},
       {FormId::vv_clip, "VV_CLIP CLP1 off"},
       {FormId::vv_clip_pos, "VV_CLIP_POS CLP1 ELE 1 AZI 2 DIST 3"},
       {FormId::vv_set_lut, "VV_SET_LUT LIN_LUT"},
@@ -233,6 +223,50 @@ TEST(CommandsAsJson, HasTheBindingKeysForEachForm) {
     EXPECT_EQ(row["implemented"], forms()[i]->available());
   }
   EXPECT_EQ(document["our_tables"]["A.1"].size(), object_attributes().size());
+}
+
+// The simulation knows bits and indices, SCRIPT their words: one table for both.
+TEST(OurTables, AreThoseOfTheSimulation) {
+  ASSERT_EQ(object_attributes().size(), kTissueAttributeWords.size());
+  for (std::size_t i = 0; i < kTissueAttributeWords.size(); ++i) {
+    EXPECT_EQ(object_attributes()[i].token, kTissueAttributeWords.at(i));
+    EXPECT_EQ(object_attributes()[i].bit, 1U << i);
+  }
+  EXPECT_EQ(object_attributes()[4].token, "CUT");
+  EXPECT_TRUE(has(static_cast<std::uint16_t>(object_attributes()[4].bit), TissueAttribute::cut));
+  EXPECT_EQ(object_attributes()[11].bit, static_cast<std::uint32_t>(TissueAttribute::wet));
+
+  ASSERT_EQ(plausibility_flags().size(), kTissueLimitActionWords.size());
+  EXPECT_EQ(plausibility_flags()[0].bit, static_cast<std::uint32_t>(TissueLimitAction::count));
+  EXPECT_EQ(plausibility_flags()[3].token, "RELEASE");
+  EXPECT_EQ(plausibility_flags()[3].bit, static_cast<std::uint32_t>(TissueLimitAction::release));
+  EXPECT_EQ(plausibility_flags()[5].bit, static_cast<std::uint32_t>(TissueLimitAction::report));
+
+  ASSERT_EQ(plausibility_tokens().size(), kTissueLimits);
+  for (std::size_t i = 0; i < kTissueLimits; ++i)
+    EXPECT_EQ(plausibility_tokens()[i].token, word(static_cast<TissueLimit>(i)));
+  EXPECT_EQ(plausibility_tokens()[std::to_underlying(TissueLimit::grip_force)].unit, Unit::newton);
+  EXPECT_EQ(plausibility_tokens()[std::to_underlying(TissueLimit::node_speed)].unit, Unit::mm_per_s);
+  EXPECT_EQ(plausibility_tokens()[std::to_underlying(TissueLimit::strain)].unit, Unit::none);
+}
+
+TEST(OurTables, AreMarkedAsOursWhereverTheyArePrinted) {
+  const nlohmann::json tables = nlohmann::json::parse(commands_as_json())["our_tables"];
+  EXPECT_EQ(tables["A.4"].size(), kTissueLimitActionWords.size());
+  EXPECT_EQ(tables["A.5"].size(), kTissueLimits);
+  EXPECT_EQ(tables["A.1"][2]["token"], "GRASP");
+  EXPECT_EQ(tables["A.1"][2]["bit"], 4);
+  EXPECT_EQ(tables["A.5"][0]["unit"], "mm/s");
+  EXPECT_EQ(tables["A.5"][0]["at_start"], "2000 mm/s, COUNT DISCARD");
+  EXPECT_EQ(tables["A.5"][1]["at_start"], "off");
+  EXPECT_EQ(tables["A.5"][3]["at_start"], "1 N, COUNT CLAMP");
+  for (const std::string_view table : {"A.1", "A.4", "A.5"}) {
+    const std::string text = commands_as_text();
+    const std::size_t at = text.find(fmt::format("Table {}", table));
+    ASSERT_NE(at, std::string::npos) << table;
+    EXPECT_NE(text.substr(at, text.find('\n', at) - at).find("(ours)"), std::string::npos) << table;
+  }
+  EXPECT_NE(reference_page().find("does not contain them. They are ours."), std::string::npos);
 }
 
 TEST(CommandsAsText, ShowsEachFormAndOurTables) {
