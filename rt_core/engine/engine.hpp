@@ -55,8 +55,8 @@ struct QueueStatus {
 
 // Holds all the memory that it will ever use once its readers have subscribed. Threads: run() belongs to the tick;
 // send() to the owner of the cell; subscribe() to the thread that sets up; each reader to a thread of its own;
-// contact_inlet() to the worker that finds contacts; each inlet() to the one driver thread of its stream; the rest to
-// any thread.
+// contact_inlet() to the worker that finds contacts; tissue_inlet() to the one that computes tissue; each inlet() to
+// the one driver thread of its stream; the rest to any thread.
 class Engine final : public Cycle {
  public:
   // `watchdog` (not owned, outlives the engine) gets a beat a tick. A robot takes about 90 kB: its queue of samples and
@@ -86,6 +86,10 @@ class Engine final : public Cycle {
   [[nodiscard]] JointSampleSink& inlet(std::size_t slot);
   // Where the surroundings of the instrument of a haptic channel are put.
   [[nodiscard]] Latest<haptics::ContactModel>& contact_inlet(std::size_t channel) { return haptics_.inlet(channel); }
+  // Where the force of soft tissue on that instrument is put; none: the cell has no tissue.
+  [[nodiscard]] Latest<haptics::TissueForce>& tissue_inlet(std::size_t channel) {
+    return haptics_.tissue_inlet(channel);
+  }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;

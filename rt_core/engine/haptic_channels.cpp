@@ -56,6 +56,8 @@ bool HapticChannels::step(std::size_t channel, const CycleContext& context, cons
   const bool fits =
       newest.sequence != 0 && newest.slot == entry.instrument->slot && newest.posture_time >= entry.opened;
   input.model = fits ? &newest : nullptr;
+  const haptics::TissueForce& tissue = entry.tissue_inlet.read().value;
+  input.tissue = tissue.sequence != 0 && tissue.posture_time >= entry.opened ? &tissue : nullptr;
   input.q = std::span<const double>(q).first(robot.joint_count);
   input.device_gone = entry.device_gone;
   return entry.channel.step(input, sample);

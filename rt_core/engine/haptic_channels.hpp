@@ -1,4 +1,5 @@
-// The haptic devices inside the tick: a channel each, with the newest surroundings of its instrument.
+// The haptic devices inside the tick: a channel each, with the newest surroundings of its instrument and the newest
+// force of soft tissue on it.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +13,13 @@
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/haptics/contact_model.hpp"
 #include "rt_core/haptics/haptic_channel.hpp"
+#include "rt_core/haptics/tissue_force.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
 #include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::engine {
 
-// Tick thread only, but for inlet().
+// Tick thread only, but for the inlets.
 class HapticChannels {
  public:
   // As many channels as the engine was made for; at most kMaxHapticDevices.
@@ -44,6 +46,11 @@ class HapticChannels {
     CELLMIRROR_EXPECTS(channel < channels_.size());
     return channels_[channel].inlet;
   }
+  // For one worker thread, perhaps another one.
+  [[nodiscard]] Latest<haptics::TissueForce>& tissue_inlet(std::size_t channel) {
+    CELLMIRROR_EXPECTS(channel < channels_.size());
+    return channels_[channel].tissue_inlet;
+  }
 
  private:
   struct Entry {
@@ -53,6 +60,7 @@ class HapticChannels {
     Timestamp opened;
     bool device_gone = false;
     Latest<haptics::ContactModel> inlet;
+    Latest<haptics::TissueForce> tissue_inlet;
   };
 
   std::vector<Entry> channels_;

@@ -10,6 +10,8 @@ namespace cellmirror::haptics {
 namespace {
 
 constexpr double kTipPlayed = 1e-6;  // m, between the proxy and the tip: as good as equal
+// m: at which tissue applies the largest force when it turns the tool, about the size of an effector.
+constexpr double kTissueLever = 0.02;
 
 // s
 double period_of(Nanoseconds period) CELL_RT { return std::clamp(seconds(period), 1e-5, 0.1); }
@@ -41,6 +43,12 @@ double recoverable(double elongation, const HapticSettings& settings) CELL_RT {
   return (0.5 * stiffness * full * full + settings.max_force * (elongation - full)) / scale_of(settings);
 }
 
+// J, of what a spring has stored that now gives the force `size` (N) and is cut at `largest`.
+double recoverable(double stored, double size, double largest) CELL_RT {
+  const double full = size > largest ? largest / size : 1.0;
+  return stored * full * (2 - full);
+}
+
 // Whether what the clutch has added to a device's place means the same for the other instrument.
 bool lies_as_before(const Instrument& a, const Instrument& b) CELL_RT {
   return a.settings.drive == b.settings.drive && a.settings.X_WD.matrix() == b.settings.X_WD.matrix() &&
@@ -60,6 +68,7 @@ void HapticChannel::open(const Instrument& instrument, HapticDevicePort& port) C
   state_.slot = instrument.slot;
   validator_.restart(Timestamp{});
   models_.restart();
+  tissue_ = TissueCoupling{};
   map_.restart();
   target_ = TipTarget{};
   posture_ = Posture{};
@@ -83,6 +92,7 @@ void HapticChannel::exchange(const Instrument& instrument) CELL_RT {
   instrument_ = &instrument;
   state_.slot = instrument.slot;
   models_.restart();
+  tissue_.restart();
   validator_.forget_place();
   if (state_.phase != HapticPhase::faulted) state_.phase = HapticPhase::waiting;
   restart_force();
@@ -122,6 +132,8 @@ void HapticChannel::engage_again_where_safe(Timestamp now) CELL_RT {
 void HapticChannel::restart_force() CELL_RT {
   coupling_.restart();
   gate_.restart();
+  tissue_.release();
+  reaction_ = TissueReaction{};
   held_force_.setZero();
   stored_energy_ = 0;
   passivity_.restart(target_.p_handle);
@@ -142,6 +154,7 @@ HapticFault HapticChannel::look(const TickInput& input, bool& fresh) CELL_RT {
     if (moved == HapticFault::none) target_ = target;
   }
   models_.update(input.model, *instrument_, proxy_.x());
+  tissue_.take(input.tissue, instrument_->slot, input.now, period_of(input.period));
   fresh = verdict.fresh && moved == HapticFault::none;
   if (input.missed > settings.allowed_missed_periods) return HapticFault::late_tick;
   if (input.device_gone) return HapticFault::vanished;
@@ -327,18 +340,46 @@ Eigen::Vector3d HapticChannel::answer(const ProxyContact& contact, double period
         .stiffness = settings.stiffness, .damping = settings.damping, .engage_time = seconds(settings.engage_time)};
     force = coupling_.force(contact.elongation, contact.normal, spring, period) * settings.force_scale;
     stored_energy_ = recoverable(contact.elongation.norm(), settings);
+    if (tissue_.known()) {
+      coupling_force_ = settings.force_scale > 0 ? force.norm() / settings.force_scale : 0.0;
+      force += feel_tissue(contact, period);
+    }
+  } else {
+    reaction_ = TissueReaction{};
+    tissue_.release();
   }
+  const Eigen::Vector3d wanted = force;
   force = passivity_.control(force, passivity_settings(settings), period);
   force = gate_.limit(force, force_limits(settings), period);
   if (gate_.cut()) ++state_.saturated;
+  const double square = wanted.squaredNorm();
+  passed_ = square > 0 ? std::clamp(wanted.dot(force) / square, 0.0, 1.0) : 1.0;
   return force;
+}
+
+// The tissue's force at the device, in the world's axes. It acts on the tip, which rests while the hand presses on into
+// a wall: then that part of the way stores energy too.
+Eigen::Vector3d HapticChannel::feel_tissue(const ProxyContact& contact, double period) CELL_RT {
+  const HapticSettings& settings = instrument_->settings;
+  const double scale = settings.force_scale;
+  const double largest = scale > 0 ? settings.max_force / scale : 0.0;  // N of the cell
+  const TissueLimits limits{.stiffness = settings.stiffness,
+                            .torque = largest * kTissueLever,
+                            .torque_rate = scale > 0 ? settings.max_slew / scale * kTissueLever : 0.0};
+  reaction_ = tissue_.react(tissue_tip(tip_, instrument_->X_WB), limits, coupling_.faded_in(), period);
+  const double size = reaction_.force_W.norm();
+  const double stored = recoverable(reaction_.stored, size, largest) + size * contact.elongation.norm();
+  stored_energy_ += stored * scale / scale_of(settings);
+  return reaction_.force_W * scale;
 }
 
 // The force in all output forms.
 void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& force_device) CELL_RT {
   state_.contacts = contact.contacts;
   state_.passivity_damping = passivity_.damping();
-  if (instrument_ == nullptr || force_device.isZero(0) || instrument_->settings.force_scale <= 0) {
+  state_.tissue_force_W.setZero();
+  const bool nothing = force_device.isZero(0) && reaction_.axis_torque == 0;
+  if (instrument_ == nullptr || nothing || instrument_->settings.force_scale <= 0) {
     state_.force_W.setZero();
     state_.force_E.setZero();
     state_.axis_torque = 0;
@@ -366,7 +407,12 @@ void HapticChannel::spread(const ProxyContact& contact, const Eigen::Vector3d& f
   }
   // Cut and faded as the force is.
   const double elongation = contact.elongation.norm();
-  state_.axis_torque *= pressed > 0 && elongation > 0 ? state_.force_W.norm() / elongation : 0.0;
+  const double spring = tissue_.known() ? coupling_force_ * passed_ : state_.force_W.norm();
+  state_.axis_torque *= pressed > 0 && elongation > 0 ? spring / elongation : 0.0;
+  if (tissue_.known()) {
+    state_.tissue_force_W = reaction_.force_W * passed_;
+    state_.axis_torque += reaction_.axis_torque * passed_;
+  }
   const Eigen::Matrix3d R_BW = instrument_->X_WB.linear().transpose();
   Eigen::Matrix<double, 6, 1> wrench_B;
   wrench_B << R_BW * state_.force_W, R_BW * (state_.axis_torque * axis_W);
@@ -414,6 +460,11 @@ void HapticChannel::write_forces() CELL_RT {
   state_.x_proxy = proxy_.x();
   state_.energy = passivity_.energy();
   state_.model_time = models_.model() != nullptr ? models_.model()->posture_time : Timestamp{};
+  state_.tissue_time = tissue_.newest().posture_time;
+  state_.tissue_contacts = tissue_.newest().contacts;
+  state_.tissue_held = tissue_.newest().held;
+  state_.tissue_late = tissue_.late();
+  state_.tissue_refused = tissue_.refused();
 }
 
 void HapticChannel::fill(JointSample& sample) const CELL_RT {

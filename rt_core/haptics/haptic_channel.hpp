@@ -16,6 +16,8 @@
 #include "rt_core/haptics/re_engagement.hpp"
 #include "rt_core/haptics/sample_validator.hpp"
 #include "rt_core/haptics/tip_solver.hpp"
+#include "rt_core/haptics/tissue_coupling.hpp"
+#include "rt_core/haptics/tissue_force.hpp"
 #include "rt_core/haptics/virtual_coupling.hpp"
 #include "rt_core/ports/haptic_device.hpp"
 #include "rt_core/ports/haptic_state.hpp"
@@ -30,6 +32,7 @@ struct TickInput {
   const ContactModel* model = nullptr;  // newest; null: none yet, and until one is there the device does not engage
   std::span<const double> q;            // rad or m, positions of all joints
   bool device_gone = false;             // the device's process is known to have ended
+  const TissueForce* tissue = nullptr;  // newest; null: none yet, or the cell has no tissue
 };
 
 // How long a device has to behave before a fault may be taken back.
@@ -71,6 +74,7 @@ class HapticChannel {
   void move_and_answer(const TickInput& input) CELL_RT;
   void stand_at(const Eigen::Vector3d& x_before) CELL_RT;
   Eigen::Vector3d answer(const ProxyContact& contact, double period) CELL_RT;
+  Eigen::Vector3d feel_tissue(const ProxyContact& contact, double period) CELL_RT;
   void spread(const ProxyContact& contact, const Eigen::Vector3d& force_device) CELL_RT;
   void write(Timestamp now, Nanoseconds period) CELL_RT;
   void write_forces() CELL_RT;
@@ -84,13 +88,17 @@ class HapticChannel {
   InstrumentMap map_;
   Proxy proxy_;
   VirtualCoupling coupling_;
+  TissueCoupling tissue_;
   Passivity passivity_;
   ReEngagement re_engagement_;
   TipTarget target_;
   Posture posture_;
   TipPosture tip_;                                        // of posture_, in the base
   Eigen::Vector3d held_force_ = Eigen::Vector3d::Zero();  // N, at the device, world axes: what it has now
-  double stored_energy_ = 0;                              // J, in the spring, as the device feels it
+  double stored_energy_ = 0;                              // J, in spring and tissue, as the device feels it
+  TissueReaction reaction_;                               // of the tissue in this tick, before the limits
+  double coupling_force_ = 0;                             // N, of the cell, of the spring in this tick, likewise
+  double passed_ = 1;                                     // share of the force that controller and limits let through
   bool was_engaged_ = false;                              // since it was opened, or the last reset
   HapticOutput output_;
   Timestamp last_tick_;

@@ -101,6 +101,18 @@ class EngineHapticsTest : public testing::Test {
     sut_->contact_inlet(kChannel).publish();
   }
 
+  // The newest force of soft tissue on an instrument that touches it.
+  void give_tissue(const Eigen::Vector3d& force, std::uint8_t slot = kSlot) {
+    haptics::TissueForce& tissue = sut_->tissue_inlet(kChannel).writable();
+    tissue = haptics::TissueForce();
+    tissue.sequence = ++tissue_sequence_;
+    tissue.posture_time = now_;
+    tissue.slot = slot;
+    tissue.force_W = force;
+    tissue.contacts = 3;
+    sut_->tissue_inlet(kChannel).publish();
+  }
+
   // Ticks with a fresh model each, until the channel is active.
   void run(int ticks, double wall = 0.5) {
     for (int i = 0; i < ticks; ++i) {
@@ -131,6 +143,7 @@ class EngineHapticsTest : public testing::Test {
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
   std::uint64_t model_sequence_ = 0;
+  std::uint64_t tissue_sequence_ = 0;
   haptics::Instrument instrument_{kSlot, 3, slides(), {}, Pose::Identity(), {}, {}, {}};
   std::shared_ptr<TestDevice> shared_device_ = std::make_shared<TestDevice>();
   TestDevice& device_ = *shared_device_;
@@ -295,6 +308,37 @@ TEST_F(EngineHapticsTest, ModelOfAnInstrumentThatHadTheChannelBeforeIsNotUsed) {
   EXPECT_TRUE(haptic().model_time.known());
 }
 
+TEST_F(EngineHapticsTest, ForceOfTissueReachesTheDeviceAndTheState) {
+  engage();
+  for (int i = 0; i < 150; ++i) {
+    give_tissue({0, 0.25, 0.5});
+    run(1);
+  }
+  EXPECT_NEAR((device_.last.force_D - Eigen::Vector3d(0, 0.25, 0.5)).norm(), 0, 1e-9);
+  EXPECT_NEAR((haptic().force_E - haptic().tissue_force_W).norm(), 0, 1e-9) << "the tool's axes are the world's";
+  EXPECT_EQ(haptic().tissue_contacts, 3U);
+  EXPECT_EQ(haptic().tissue_time, now_ - kPeriod);
+  EXPECT_EQ(haptic().tissue_late, 0U);
+  give_tissue({0, 0, std::numeric_limits<double>::infinity()});
+  run(1);
+  EXPECT_EQ(haptic().tissue_refused, 1U);
+  EXPECT_NEAR(device_.last.force_D.z(), 0.5, 1e-9);
+}
+
+TEST_F(EngineHapticsTest, ForceOfTissueOnWhatHadTheChannelBeforeIsNotUsed) {
+  give_tissue({0, 0, 1});
+  tick();
+  sut_->send(open(kChannel, shared_device_));
+  run(200);
+  EXPECT_FALSE(haptic().tissue_time.known());
+  for (int i = 0; i < 150; ++i) {
+    give_tissue({0, 0, 1}, kSlot + 1);
+    run(1);
+  }
+  EXPECT_FALSE(haptic().tissue_time.known());
+  EXPECT_EQ(device_.last.force_D, Eigen::Vector3d::Zero());
+}
+
 TEST_F(EngineHapticsTest, InstrumentAndDeviceAreGivenBackWhenTheChannelHasNoUseForThem) {
   engage();
   ASSERT_EQ(sut_->lent(), 2U);
@@ -334,6 +378,10 @@ TEST_F(EngineHapticsTest, FourOpenChannelsTakeNoHeapMemory) {
   run(300, 0.0);
   for (const auto& device : devices) device->sample.p_DH.x() = 0.002;
   run(300, 0.0);
+  for (int i = 0; i < 50; ++i) {
+    give_tissue({-0.1, 0, 0.1});
+    run(1, 0.0);
+  }
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_EQ(guard.frees(), 0U);
   EXPECT_LT(devices[kChannel]->last.force_D.x(), -1.0);

@@ -428,6 +428,27 @@ class HostileCell {
     model.constraints[0].normal = -Eigen::Vector3d::UnitX();
     model.constraints[0].gap = models_ > 1 && *rc::gen::inRange(0, 60) == 0 ? hostile(0.01) : 0.0;
     engine_.contact_inlet(0).publish();
+    if (*rc::gen::inRange(0, 3) == 0) give_tissue();
+  }
+
+  void give_tissue() {
+    haptics::TissueForce& tissue = engine_.tissue_inlet(0).writable();
+    tissue = haptics::TissueForce();
+    tissue.sequence = models_;
+    tissue.posture_time = now_;
+    tissue.slot = kInstrument;
+    tissue.contacts = 1;
+    tissue.held = static_cast<std::uint32_t>(*rc::gen::inRange(0, 2));
+    const bool bad = *rc::gen::inRange(0, 4) == 0;
+    for (int i = 0; i < 3; ++i) {
+      tissue.force_W[i] = *rc::gen::inRange(-1000, 1001) * 5e-3;
+      tissue.stiffness(i, i) = *rc::gen::inRange(0, 1001);
+      if (bad && *rc::gen::inRange(0, 2) == 0) tissue.force_W[i] = hostile(5);
+      if (bad && *rc::gen::inRange(0, 2) == 0) tissue.torque_W[i] = hostile(0.1);
+      if (bad && *rc::gen::inRange(0, 2) == 0) tissue.stiffness(i, (i + 1) % 3) = hostile(500);
+      if (bad && *rc::gen::inRange(0, 4) == 0) tissue.x_ref[i] = hostile(0.02);
+    }
+    engine_.tissue_inlet(0).publish();
   }
 
   // Limits and jumps of one tick come in any order: each of the limits may have been the one that counted.

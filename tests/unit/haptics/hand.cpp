@@ -38,6 +38,7 @@ HandRun run_hand(Rig& rig, const HandParameters& hand, int ticks, const std::fun
     }
     energy -= force.dot(p - before);
     run.least_energy = std::min(run.least_energy, energy);
+    run.largest_step = std::max(run.largest_step, (next_force - force).norm());
     force = next_force;
     run.largest_force = std::max(run.largest_force, force.norm());
     if (k >= ticks - ticks / 10) {

@@ -22,6 +22,7 @@ struct HandParameters {
 struct HandRun {
   double least_energy = 0;   // J: the smallest sum of what went into the renderer; negative: generated
   double largest_force = 0;  // N
+  double largest_step = 0;   // N: change of the force from one tick to the next
   double peak_to_peak = 0;   // m, in the last tenth: a hand at rest is at rest
   double depth_at_end = 0;   // m, from the hand to the proxy
   double force_at_end = 0;   // N

@@ -137,13 +137,15 @@ bool Rig::tick(const Vector3d& p_DH) {
 }
 
 bool Rig::tick() {
+  if (tissue_worker) tissue_worker(*this);
   now = now + period;
   if (keep_model_new) {
     ++model.sequence;
     model.posture_time = now;
   }
-  const bool moved = sut.step(
-      {now, period, missed, show_model ? &model : nullptr, std::span<const double>(q.data(), 5), device_gone}, posture);
+  const bool moved = sut.step({now, period, missed, show_model ? &model : nullptr, std::span<const double>(q.data(), 5),
+                               device_gone, show_tissue ? &tissue : nullptr},
+                              posture);
   if (moved) q = posture.position;
   return moved;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <numbers>
 #include <vector>
 
@@ -60,6 +61,9 @@ class Rig {
   Nanoseconds period{1'000'000};
   std::uint64_t missed = 0;
   bool device_gone = false;
+  TissueForce tissue;
+  bool show_tissue = false;
+  std::function<void(Rig&)> tissue_worker;  // called at the beginning of each tick, with the state of the one before
   JointSample posture;
   JointValues q{};
 };
