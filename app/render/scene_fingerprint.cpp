@@ -4,6 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include "rt_core/ports/tissue_state.hpp"
+
 namespace cellmirror::app {
 
 namespace {
@@ -114,6 +116,30 @@ void add_texts(Hash& hash, const Scene& scene) {
   for (const std::string& message : hash.sized(scene.messages)) hash.add(message);
 }
 
+// The shapes go with the step; the rest may change while the simulation stands still.
+void add_tissue(Hash& hash, const Scene& scene) {
+  hash.add(scene.tissue != nullptr);
+  if (scene.tissue == nullptr) return;
+  const TissueView& view = *scene.tissue;
+  hash.add(view.step);
+  for (const TissueSurface& surface : hash.sized(view.surfaces)) {
+    hash.add(surface.name);
+    hash.add(std::bit_cast<std::uint64_t>(surface.topology.get()));
+    hash.add(std::bit_cast<std::uint64_t>(surface.look.get()));
+    hash.add(surface.visible);
+    hash.add(surface.wet);
+  }
+  for (const DrawMode mode : hash.sized(scene.tissue_modes)) hash.add(static_cast<std::uint64_t>(mode));
+  for (const std::size_t count : {view.network.nodes.size(), view.particles.size(), view.clips.size()})
+    hash.add(static_cast<std::uint64_t>(count));
+  hash.add(view.pool.present);
+  hash.add(view.pool.level_m);
+  hash.add(view.pool.blood);
+  hash.add(view.pool.rgba);
+  hash.add(view.smoke);
+  hash.add(view.lens_fog);
+}
+
 void add_panes(Hash& hash, std::span<const Pane> panes) {
   for (const Pane& pane : hash.sized(panes)) {
     for (const double value : {pane.left, pane.top, pane.width, pane.height, pane.eye.opening_angle, pane.eye.height_m,
@@ -135,6 +161,7 @@ std::uint64_t fingerprint(const Scene& scene, std::span<const Pane> panes) {
   add_lines(hash, scene);
   add_signs(hash, scene);
   add_texts(hash, scene);
+  add_tissue(hash, scene);
   hash.add(static_cast<std::uint64_t>(scene.modes.to_ullong()));
   hash.add(scene.floor_z_m);
   hash.add(scene.floor_low);

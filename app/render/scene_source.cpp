@@ -54,6 +54,7 @@ bool SceneSource::refresh() {
   input.forces = forces.get();
   input.arrows = arrows;
   if (traces && traces->smear_ends == picture_->display->smear_ends) input.traces = traces->traces;
+  if (boards_.tissue) input.tissue = boards_.tissue();
   input.posture_time = tick.time;
   input.now = now_;
   builder_.build(input, scene_);

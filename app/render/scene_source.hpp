@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/ports/picture_request.hpp"
+#include "rt_core/ports/tissue_state.hpp"
 #include "rt_core/scene/panes.hpp"
 #include "rt_core/scene/scene_builder.hpp"
 
@@ -35,6 +37,7 @@ class SceneSource {
     const Board<ForceState>& forces;
     const Board<TraceState>& traces;
     const Clock& clock;
+    std::function<std::shared_ptr<const TissueView>()> tissue = {};  // empty: the cell has none
   };
 
   explicit SceneSource(const Boards& boards) : boards_(boards) {}

@@ -10,6 +10,7 @@
 #include "drivers/display/internal/reach.hpp"
 #include "drivers/display/internal/render_target.hpp"
 #include "drivers/display/internal/ribbon_pass.hpp"
+#include "drivers/display/internal/tissue_layer.hpp"
 #include "drivers/display/internal/words.hpp"
 
 namespace cellmirror::display {
@@ -54,7 +55,8 @@ struct Renderer::Impl {
         bodies(gl, meshes.textures()),
         background(gl),
         floor(gl),
-        ribbons(gl) {}
+        ribbons(gl),
+        tissue(gl, meshes.textures()) {}
   ~Impl() { static_cast<void>(context->make_current()); }  // what is destroyed next frees its things in it
 
   Result<void> prepare();
@@ -77,6 +79,7 @@ struct Renderer::Impl {
   Background background;
   FloorPass floor;
   RibbonPass ribbons;
+  TissueLayer tissue;
   Marks marks;
   Words words;
   RendererCounters counters;
@@ -88,6 +91,7 @@ Result<void> Renderer::Impl::prepare() {
   if (built) built = background.build();
   if (built) built = floor.build();
   if (built) built = ribbons.build();
+  if (built) built = tissue.build();
   return built;
 }
 
@@ -115,6 +119,7 @@ Result<void> Renderer::Impl::end(int width, int height) {
   meshes.end_frame();
   counters.meshes = meshes.size();
   counters.uploads = meshes.uploads();
+  counters.tissue_uploads = tissue.topology_uploads();
   counters.textures = meshes.textures().size();
   counters.texture_uploads = meshes.textures().uploads();
   counters.texture_bytes = meshes.textures().bytes();
@@ -132,14 +137,17 @@ void Renderer::Impl::draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn
   marks.gather(frame, meshes);
   bodies.draw_opaque(frame, drawn);
   bodies.draw_extra(frame, marks.solids);
+  tissue.draw_opaque(frame);
   background.draw();
   if (is_on(frame.scene, DisplayMode::floor)) floor.draw(frame, ribbons);
   bodies.draw_see_through(frame, drawn);
+  tissue.draw_see_through(frame);
   gl.Enable(GL_BLEND);
   gl.DepthMask(GL_FALSE);
   bodies.draw_extra(frame, marks.see_through);
   gl.DepthMask(GL_TRUE);
   gl.Disable(GL_BLEND);
+  tissue.draw_veil(frame);
   ribbons.draw(marks.hidden_by_bodies, false);
   ribbons.draw(marks.on_top, true);
 }
@@ -176,9 +184,11 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
   Impl& impl = *impl_;
   if (Result<void> begun = impl.begin(width, height); !begun) return begun;
   std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
+  impl.tissue.prepare(scene, impl.meshes, drawn);
   Box reach = reach_of(scene, drawn);
+  reach.extend(impl.tissue.bounds());
   if (is_on(scene, DisplayMode::floor)) {
-    if (Result<void> prepared = impl.floor.prepare(scene, drawn); !prepared) return prepared;
+    if (Result<void> prepared = impl.floor.prepare(scene, drawn, impl.tissue.casting()); !prepared) return prepared;
     reach.extend(impl.floor.reach(scene));
   }
   const std::vector<Pane> drawn_panes = bounded_panes(panes, reach);

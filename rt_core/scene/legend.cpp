@@ -24,7 +24,7 @@ std::string warning_text(const SceneInput& input) {
 
 }  // namespace
 
-void write_legend(const SceneInput& input, const ForceArrows& arrows, Scene& scene) {
+void write_legend(const SceneInput& input, const ForceArrows& arrows, const TissueMarks& tissue, Scene& scene) {
   if (!input.display->legend || input.display->full_screen) return;
   const auto add = [&](bool there, const Colour& colour, std::string text) {
     if (there) scene.legend.push_back({palette::opaque(colour), std::move(text)});
@@ -39,6 +39,7 @@ void write_legend(const SceneInput& input, const ForceArrows& arrows, Scene& sce
   // For 100 mm of arrow.
   add(force > 0.0, palette::kForce, fmt::format("force, 100 mm = {}", quantity_text(0.1 * force, "N")));
   add(torque > 0.0, palette::kTorque, fmt::format("torque, 100 mm = {}", quantity_text(0.1 * torque, "Nm")));
+  if (input.tissue != nullptr) write_network_legend(*input.tissue, tissue, scene);
 }
 
 }  // namespace cellmirror::scene

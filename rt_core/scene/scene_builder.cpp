@@ -16,6 +16,7 @@
 #include "rt_core/scene/pair_marks.hpp"
 #include "rt_core/scene/pyramids.hpp"
 #include "rt_core/scene/robot_parts.hpp"
+#include "rt_core/scene/tissue.hpp"
 #include "rt_core/scene/traces.hpp"
 
 namespace cellmirror::scene {
@@ -82,6 +83,7 @@ struct SceneBuilder::Parts {
   RobotParts robots;
   PairMarks pairs;
   ForceArrows arrows;
+  TissueMarks tissue;
 };
 
 SceneBuilder::SceneBuilder() : parts_(std::make_unique<Parts>()) {}
@@ -105,12 +107,13 @@ void SceneBuilder::build(const SceneInput& input, Scene& scene) {
   draw_traces(input, scene);
   draw_cones(input, scene);
   parts.arrows.draw(input.arrows, longest_arrow(parts.bodies), scene);
+  parts.tissue.draw(input.tissue, input.display->draw_rules, scene);
   if (input.forces != nullptr) label_overloads(*input.forces, scene);
   draw_pyramids(input, scene);
   draw_sparks(input, scene);
   write_messages(input, scene);
   lay_floor(parts.bodies, scene);
-  write_legend(input, parts.arrows, scene);
+  write_legend(input, parts.arrows, parts.tissue, scene);
 }
 
 }  // namespace cellmirror::scene

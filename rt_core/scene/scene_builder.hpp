@@ -36,8 +36,9 @@ struct SceneInput {
   const ProximityState* proximity = nullptr;
   std::span<const RangeReading> ranges;
   const ForceState* forces = nullptr;
-  std::span<const ForceArrow> arrows;  // rt_core/dynamics/arrows.hpp
-  std::span<const TcpTrace> traces;    // of SMEAR; drawn while the mode is on
+  std::span<const ForceArrow> arrows;        // rt_core/dynamics/arrows.hpp
+  std::span<const TcpTrace> traces;          // of SMEAR; drawn while the mode is on
+  std::shared_ptr<const TissueView> tissue;  // shared with the scene
   Timestamp posture_time;
   Timestamp now;
 };

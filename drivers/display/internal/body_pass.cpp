@@ -68,8 +68,12 @@ bool backfaces_removed(const Scene& scene, const DrawnBody& body) {
 std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes) {
   std::vector<DrawnBody> bodies;
   bodies.reserve(scene.bodies.size());
-  const bool pictures = scene.modes.test(static_cast<std::size_t>(DisplayMode::textures));
-  for (const SceneBody& body : scene.bodies) {
+  add_drawn(scene.bodies, scene.modes.test(static_cast<std::size_t>(DisplayMode::textures)), meshes, bodies);
+  return bodies;
+}
+
+void add_drawn(std::span<const SceneBody> bodies, bool pictures, MeshStore& meshes, std::vector<DrawnBody>& all) {
+  for (const SceneBody& body : bodies) {
     const Eigen::Matrix4d& X_WG = body.X_WG.matrix();
     if (!X_WG.allFinite() || X_WG.cwiseAbs().maxCoeff() > kFarthest) continue;
     const ShapeUse use = meshes.shape_of(body);
@@ -89,9 +93,8 @@ std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes) {
     const BoundingSphere& bounds = use.mesh->bounds();
     drawn.bounds_W.centre = (drawn.X_WM * bounds.centre.homogeneous()).head<3>();
     drawn.bounds_W.radius = bounds.radius * use.scale.maxCoeff();
-    bodies.push_back(drawn);
+    all.push_back(drawn);
   }
-  return bodies;
 }
 
 BodyPass::BodyPass(const GlApi& gl, TextureStore& textures)

@@ -36,6 +36,8 @@ struct DrawnBody {
 
 // What can be drawn of the scene's bodies: finite, of sensible size, with triangles.
 [[nodiscard]] std::vector<DrawnBody> drawn_bodies(const Scene& scene, MeshStore& meshes);
+// The same of others; `pictures`: with their textures.
+void add_drawn(std::span<const SceneBody> bodies, bool pictures, MeshStore& meshes, std::vector<DrawnBody>& all);
 
 struct BodyCounts {
   std::uint64_t drawn = 0;

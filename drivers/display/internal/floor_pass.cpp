@@ -76,7 +76,8 @@ Result<void> FloorPass::build() {
   return {};
 }
 
-Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> bodies) {
+Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> bodies,
+                                std::span<const CastingSurface> surfaces) {
   static constexpr double kFarthest = 1e4;  // m
   const auto bounded = [](const Eigen::Vector2d& p, double otherwise) {
     return p.allFinite() ? Eigen::Vector2d(p.cwiseMax(-kFarthest).cwiseMin(kFarthest))
@@ -89,7 +90,8 @@ Result<void> FloorPass::prepare(const Scene& scene, std::span<const DrawnBody> b
   outer_ = 1.9 * inner_ + std::min(inner_, 1.0);
   if (is_on(scene, DisplayMode::textures) && tiles_texture_ == 0) make_tiles();
   shadow_level_ = level_of_shadows(scene);
-  return is_on(scene, DisplayMode::shadows) ? shadow_map_.update(shadow_level_, 2 * inner_, bodies) : Result<void>{};
+  if (!is_on(scene, DisplayMode::shadows)) return {};
+  return shadow_map_.update(shadow_level_, 2 * inner_, bodies, surfaces);
 }
 
 Eigen::AlignedBox3d FloorPass::reach(const Scene& scene) const {

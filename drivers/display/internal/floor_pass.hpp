@@ -20,7 +20,8 @@ class FloorPass {
 
   Result<void> build();
   // Once a picture, before its target is bound: shadows are the same from everywhere.
-  Result<void> prepare(const Scene& scene, std::span<const DrawnBody> bodies);
+  Result<void> prepare(const Scene& scene, std::span<const DrawnBody> bodies,
+                       std::span<const CastingSurface> surfaces = {});
   // As prepared, at the height of the floor.
   [[nodiscard]] Eigen::AlignedBox3d reach(const Scene& scene) const;
   // After what is opaque. From below, the floor is not drawn, so that the cell is visible.

@@ -38,13 +38,13 @@ struct Square {
   double edge = 1;
 };
 
-Square region_of(const Eigen::Matrix4d& projection, double margin, std::span<const DrawnBody* const> casting) {
+Square region_of(const Eigen::Matrix4d& projection, double margin, std::span<const BoundingSphere> casting) {
   constexpr double kLargest = 60;  // m: beyond, shadows get too coarse to be of use
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d high = -low;
-  for (const DrawnBody* body : casting) {
-    const Eigen::Vector2d at = (projection * body->bounds_W.centre.homogeneous()).head<2>();
-    const double reach = 1.25 * body->bounds_W.radius + margin;
+  for (const BoundingSphere& bounds_W : casting) {
+    const Eigen::Vector2d at = (projection * bounds_W.centre.homogeneous()).head<2>();
+    const double reach = 1.25 * bounds_W.radius + margin;
     low = low.cwiseMin(at - Eigen::Vector2d::Constant(reach));
     high = high.cwiseMax(at + Eigen::Vector2d::Constant(reach));
   }
@@ -85,7 +85,8 @@ void blur(std::vector<std::uint8_t>& plane, int edge, int radius) {
 
 Result<void> ShadowMap::build() { return program_.build(shaders::kShadowVertex, shaders::kShadowFragment); }
 
-Result<void> ShadowMap::update(double z_m, double extent_m, std::span<const DrawnBody> bodies) {
+Result<void> ShadowMap::update(double z_m, double extent_m, std::span<const DrawnBody> bodies,
+                               std::span<const CastingSurface> surfaces) {
   std::vector<const DrawnBody*> casting;
   std::vector<double> wanted = {z_m, extent_m};
   for (const DrawnBody& body : bodies) {
@@ -94,11 +95,13 @@ Result<void> ShadowMap::update(double z_m, double extent_m, std::span<const Draw
     wanted.push_back(static_cast<double>(reinterpret_cast<std::uintptr_t>(body.mesh) % 1000003));
     wanted.insert(wanted.end(), body.X_WM.data(), body.X_WM.data() + 16);
   }
+  for (const CastingSurface& surface : surfaces)
+    wanted.insert(wanted.end(), {static_cast<double>(surface.array), static_cast<double>(surface.version)});
   if (wanted == shown_ && texture_ != 0) return {};
   if (Result<void> begun = target_.begin(Pixels::coverage, kEdge, kEdge); !begun) return begun;
   level_ = z_m;
   extent_ = std::clamp(extent_m, 0.1, 1000.0);
-  draw(casting);
+  draw(casting, surfaces);
   soften_and_upload();
   shown_ = std::move(wanted);
   return {};
@@ -110,11 +113,14 @@ Eigen::Vector4f ShadowMap::part_at(double z_m) const {
   return part_ + Eigen::Vector4f(static_cast<float>(along.x()), static_cast<float>(along.y()), 0, 0);
 }
 
-void ShadowMap::draw(std::span<const DrawnBody* const> casting) {
+void ShadowMap::draw(std::span<const DrawnBody* const> casting, std::span<const CastingSurface> surfaces) {
   gl_.ClearColor(0, 0, 0, 0);
   gl_.Clear(GL_COLOR_BUFFER_BIT);
   const Eigen::Matrix4d projection = shadow_projection(level_);
-  const Square region = casting.empty() ? Square{} : region_of(projection, 3 * soft_edge(extent_), casting);
+  std::vector<BoundingSphere> bounds;
+  for (const DrawnBody* body : casting) bounds.push_back(body->bounds_W);
+  for (const CastingSurface& surface : surfaces) bounds.push_back(surface.bounds_W);
+  const Square region = bounds.empty() ? Square{} : region_of(projection, 3 * soft_edge(extent_), bounds);
   edge_m_ = region.edge;
   const auto scale = static_cast<float>(1 / region.edge);
   part_ = {static_cast<float>(region.low.x()), static_cast<float>(region.low.y()), scale, scale};
@@ -123,26 +129,34 @@ void ShadowMap::draw(std::span<const DrawnBody* const> casting) {
   clip_from_shadow(0, 3) = -1 - 2 * region.low.x() / region.edge;
   clip_from_shadow(1, 3) = -1 - 2 * region.low.y() / region.edge;
   clip_from_shadow.row(2).setZero();  // nothing is clipped by its height
-  program_.use();
   gl_.Disable(GL_DEPTH_TEST);
   gl_.Enable(GL_BLEND);
   gl_.BlendEquation(GL_MAX);
+  draw_casting(casting, surfaces, projection, clip_from_shadow);
+  gl_.BlendEquation(GL_FUNC_ADD);
+  gl_.Disable(GL_BLEND);
+  gl_.Enable(GL_DEPTH_TEST);
+}
+
+void ShadowMap::draw_casting(std::span<const DrawnBody* const> casting, std::span<const CastingSurface> surfaces,
+                             const Eigen::Matrix4d& projection, const Eigen::Matrix4d& clip_from_shadow) {
+  program_.use();
   gl_.Uniform1f(program_.uniform("low"), static_cast<float>(low_height(extent_)));
   const GLint matrix_at = program_.uniform("shadow_from_mesh");
   const GLint height_at = program_.uniform("height_of_mesh");
-  for (const DrawnBody* body : casting) {
-    const Eigen::Matrix4d on_floor = projection * body->X_WM;
+  const auto draw_one = [&](const Eigen::Matrix4d& on_floor, GLuint array, GLsizei corners) {
     const Eigen::Matrix4f matrix = (clip_from_shadow * on_floor).cast<float>();
     const Eigen::Vector4f height = on_floor.row(2).cast<float>();
     gl_.UniformMatrix4fv(matrix_at, 1, GL_FALSE, matrix.data());
     gl_.Uniform4fv(height_at, 1, height.data());
+    gl_.BindVertexArray(array);
+    gl_.DrawElements(GL_TRIANGLES, corners, GL_UNSIGNED_INT, nullptr);
+  };
+  for (const DrawnBody* body : casting) {
     const Buffers& buffers = body->mesh->smooth();
-    gl_.BindVertexArray(buffers.array);
-    gl_.DrawElements(GL_TRIANGLES, buffers.count, GL_UNSIGNED_INT, nullptr);
+    draw_one(projection * body->X_WM, buffers.array, buffers.count);
   }
-  gl_.BlendEquation(GL_FUNC_ADD);
-  gl_.Disable(GL_BLEND);
-  gl_.Enable(GL_DEPTH_TEST);
+  for (const CastingSurface& surface : surfaces) draw_one(projection, surface.array, surface.corners);
 }
 
 void ShadowMap::soften_and_upload() {

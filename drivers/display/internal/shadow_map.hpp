@@ -19,6 +19,14 @@ struct ShadowPicture {
 // Blurs `plane` (edge * edge) by a box of 2 * radius + 1, twice in each direction, which is nearly a Gaussian curve.
 void blur(std::vector<std::uint8_t>& plane, int edge, int radius);
 
+// A surface that is not of a stored mesh: attribute 0 of its vertex array is the position, W.
+struct CastingSurface {
+  GLuint array = 0;
+  GLsizei corners = 0;
+  BoundingSphere bounds_W;
+  std::uint64_t version = 0;  // another one: it may have moved
+};
+
 class ShadowMap {
  public:
   explicit ShadowMap(const GlApi& gl) : gl_(gl), program_(gl), target_(gl) {}
@@ -31,13 +39,16 @@ class ShadowMap {
   Result<void> build();
   // Of what is above the level `z_m` (W); `extent_m`, the size of the cell, says how soft. Binds its own target.
   // Nothing is drawn where nothing has moved since the last call.
-  Result<void> update(double z_m, double extent_m, std::span<const DrawnBody> bodies);
+  Result<void> update(double z_m, double extent_m, std::span<const DrawnBody> bodies,
+                      std::span<const CastingSurface> surfaces = {});
   [[nodiscard]] GLuint texture() const { return texture_; }
   // x, y of the lower corner, W, m; and 1 / its edges: as the shadow falls on a level at `z_m`.
   [[nodiscard]] Eigen::Vector4f part_at(double z_m) const;
 
  private:
-  void draw(std::span<const DrawnBody* const> casting);
+  void draw(std::span<const DrawnBody* const> casting, std::span<const CastingSurface> surfaces);
+  void draw_casting(std::span<const DrawnBody* const> casting, std::span<const CastingSurface> surfaces,
+                    const Eigen::Matrix4d& projection, const Eigen::Matrix4d& clip_from_shadow);
   void soften_and_upload();
 
   const GlApi& gl_;

@@ -95,4 +95,9 @@ bool ViewTransform::sees(const Eigen::Vector3d& centre_W, double radius) const {
                      [&](const Eigen::Vector4d& plane) { return plane.dot(centre_W.homogeneous()) > -radius; });
 }
 
+bool ViewTransform::before_eye(const Eigen::Vector3d& centre_W, double radius) const {
+  constexpr std::size_t kNearPlane = 4;
+  return planes_[kNearPlane].dot(centre_W.homogeneous()) > radius;
+}
+
 }  // namespace cellmirror::display

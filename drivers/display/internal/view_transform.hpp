@@ -34,6 +34,8 @@ class ViewTransform {
   // How much of the world a pixel covers at such a distance, m.
   [[nodiscard]] double metres_per_pixel(double distance) const;
   [[nodiscard]] bool sees(const Eigen::Vector3d& centre_W, double radius) const;
+  // All of it is beyond the near plane.
+  [[nodiscard]] bool before_eye(const Eigen::Vector3d& centre_W, double radius) const;
   [[nodiscard]] const PixelRect& pixels() const { return pixels_; }
 
  private:

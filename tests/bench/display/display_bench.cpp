@@ -15,6 +15,7 @@
 #include "rt_core/ports/mesh_appearance.hpp"
 #include "tests/bench/display/bare_program.hpp"
 #include "tests/unit/display/test_scenes.hpp"
+#include "tests/unit/display/tissue_scenes.hpp"
 
 namespace cellmirror::display {
 namespace {
@@ -132,6 +133,54 @@ void time_textured(Renderer& renderer, int rounds) {
               median(times[0]));
 }
 
+// What a deforming surface of 10,000 triangles costs beside the gallery's cell, each picture another shape of it; and
+// with all that may belong to it: a pool, particles, a clip.
+void time_tissue(Renderer& renderer, int rounds, int width, int height) {
+  constexpr unsigned kAround = 100;
+  constexpr unsigned kAcross = 50;
+  constexpr int kShapes = 20;
+  Scene scene = gallery_scene();
+  const auto topology = organ_topology(kAround, kAcross);
+  const std::shared_ptr<const TissueView> parts = tissue_gallery_scene().tissue;
+  std::array<std::vector<std::shared_ptr<const TissueView>>, 3> views;
+  for (int i = 0; i < kShapes; ++i) {
+    TissueView view;
+    view.step = static_cast<std::uint64_t>(i);
+    view.surfaces.push_back(organ(topology, kAround, kAcross, 0.3, 0.3 * i));
+    for (Eigen::Vector3f& p : view.surfaces[0].vertices) p += Eigen::Vector3f(0.5F, -0.2F, 0.9F);
+    views[0].push_back(nullptr);
+    views[1].push_back(std::make_shared<const TissueView>(view));
+    view.pool = parts->pool;
+    view.pool.size_m = {0.8F, 0.5F};
+    view.pool.X_WP.translation() << 0.55, -0.1, 0.68;
+    view.particles = parts->particles;
+    for (TissueParticle& particle : view.particles) {
+      particle.at = 6 * particle.at + Eigen::Vector3f(0.5F, -0.2F, 0.9F);
+      particle.radius_m *= 6;
+    }
+    view.clips = parts->clips;
+    views[2].push_back(std::make_shared<const TissueView>(view));
+  }
+  const std::vector<Pane> panes = {gallery_pane()};
+  Image picture;
+  std::array<std::vector<double>, 3> wall;
+  std::array<std::vector<double>, 3> cpu;
+  for (int i = 0; i < 3 * (rounds + 3); ++i) {
+    const auto which = static_cast<std::size_t>(i % 3);
+    scene.tissue = views[which][static_cast<std::size_t>(i / 3 % kShapes)];
+    double spent = 0;
+    const double taken = milliseconds([&] {
+      spent = cpu_milliseconds([&] { static_cast<void>(renderer.draw(scene, panes, width, height, picture)); });
+    });
+    if (i < 9) continue;
+    wall[which].push_back(taken);
+    cpu[which].push_back(spent);
+  }
+  std::printf(
+      "tissue %4dx%-4d        %8.2f ms (%.2f of processor), with all its parts %.2f (%.2f), without %.2f (%.2f)\n",
+      width, height, median(wall[1]), median(cpu[1]), median(wall[2]), median(cpu[2]), median(wall[0]), median(cpu[0]));
+}
+
 int run(int rounds) {
   const auto renderer = Renderer::create({.backend = Backend::osmesa});
   if (!renderer) {
@@ -143,6 +192,8 @@ int run(int rounds) {
   time_textured(**renderer, rounds);
   time_gallery(**renderer, rounds, 640, 480);
   time_gallery(**renderer, rounds, kWidth, kHeight);
+  time_tissue(**renderer, rounds, 640, 480);
+  time_tissue(**renderer, rounds, kWidth, kHeight);
   return done ? 0 : 1;
 }
 

@@ -5,6 +5,7 @@
 #include "drivers/display/image_codec.hpp"
 #include "drivers/display/renderer.hpp"
 #include "tests/unit/display/test_scenes.hpp"
+#include "tests/unit/display/tissue_scenes.hpp"
 
 namespace cellmirror::display {
 namespace {
@@ -58,6 +59,24 @@ int gallery(const std::string& folder) {
   ok = draw(one, "wireframe") && ok;
   for (SceneBody& body : scene.bodies) body.mode = DrawMode::flat;
   ok = draw(one, "flat") && ok;
+  scene = tissue_gallery_scene();
+  std::vector<Pane> tissue(2, tissue_gallery_pane());
+  tissue[0].width = tissue[1].width = tissue[1].left = 0.5;
+  tissue[1].camera = 1;
+  tissue[1].title = "Camera";
+  ok = draw(std::vector<Pane>{tissue_gallery_pane()}, "tissue") && ok;
+  ok = draw(tissue, "tissue_camera") && ok;
+  scene.tissue_modes = {DrawMode::flat};
+  ok = draw(std::vector<Pane>{tissue_gallery_pane()}, "tissue_flat") && ok;
+  scene.tissue_modes = {DrawMode::wireframe};
+  ok = draw(std::vector<Pane>{tissue_gallery_pane()}, "tissue_wireframe") && ok;
+  scene.tissue_modes = {DrawMode::transparent};
+  ok = draw(std::vector<Pane>{tissue_gallery_pane()}, "tissue_transparent") && ok;
+  scene.tissue_modes.clear();
+  TissueView view = *scene.tissue;
+  view.network = organ_network(0.05, 0.01);
+  scene.tissue = std::make_shared<const TissueView>(std::move(view));
+  ok = draw(std::vector<Pane>{tissue_gallery_pane()}, "tissue_network") && ok;
   return ok ? 0 : 1;
 }
 
