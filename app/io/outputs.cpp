@@ -15,7 +15,9 @@ void add(std::vector<PublishedOutput>& outputs, std::unique_ptr<RobotStateOutput
   auto* findings = dynamic_cast<FindingsOutput*>(output.get());
   auto* forces = dynamic_cast<ForceOutput*>(output.get());
   auto* cameras = dynamic_cast<CameraOutput*>(output.get());
-  outputs.push_back({std::move(output), period_of(rate_hz), findings, forces, cameras});
+  auto* tissue_events = dynamic_cast<TissueEventOutput*>(output.get());
+  auto* tissue_shapes = dynamic_cast<TissueShapeOutput*>(output.get());
+  outputs.push_back({std::move(output), period_of(rate_hz), findings, forces, cameras, tissue_events, tissue_shapes});
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ void take_efforts(const ForceState& forces, std::span<RobotState> robots) {
 
 Publisher::Publisher(engine::TickReader& ticks, const Board<CellState>& board, const ProximityBoard& proximity,
                      const Board<RangeReadings>& ranges, const Board<ForceState>& forces, const Clock& clock,
-                     Nanoseconds tick_period, std::vector<PublishedOutput> outputs)
+                     Nanoseconds tick_period, std::vector<PublishedOutput> outputs, TissueSources tissue)
     : ticks_(ticks),
       board_(board),
       forces_(forces),
@@ -65,6 +65,7 @@ Publisher::Publisher(engine::TickReader& ticks, const Board<CellState>& board, c
       tick_period_(tick_period),
       outputs_(std::move(outputs)),
       findings_(outputs_.size(), FindingsPublisher(proximity, ranges)),
+      tissue_(std::move(tissue), outputs_.size()),
       due_(outputs_.size(), clock.now()),
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
 
@@ -112,6 +113,7 @@ Timestamp Publisher::publish_due(Timestamp now) {
     const std::shared_ptr<const ForceState> forces = forces_.latest();
     if (forces) take_efforts(*forces, sending_);
     const std::span<const FramePose> frames = builder_.frames(*cell_state, wanted_);
+    tissue_.look(*cell_state, robots);
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       if (due_[i] > now + tick_period_ / 2) continue;
       outputs_[i].output->keep(now);
@@ -119,6 +121,8 @@ Timestamp Publisher::publish_due(Timestamp now) {
       if (outputs_[i].forces != nullptr && forces) outputs_[i].forces->publish_forces(*forces);
       if (outputs_[i].findings != nullptr)
         findings_[i].publish_news(*outputs_[i].findings, cell_state->range_send_mode);
+      if (outputs_[i].tissue_events != nullptr) tissue_.publish_events(i, *outputs_[i].tissue_events);
+      if (outputs_[i].tissue_shapes != nullptr) tissue_.publish_shapes(i, now, *outputs_[i].tissue_shapes);
       if (outputs_[i].cameras != nullptr && cell_state->display) {
         const std::vector<CameraState> cameras =
             scene::online_cameras(*cell_state->cell, builder_.poses(), *cell_state->display);

@@ -1,5 +1,5 @@
-// The thread that gives robot states, collisions, ranges and cameras to the outputs, each at its rate, in step with the
-// tick.
+// The thread that gives robot states, collisions, ranges, cameras and events of tissue to the outputs, each at its
+// rate, in step with the tick.
 #pragma once
 
 #include <memory>
@@ -8,25 +8,30 @@
 #include <vector>
 
 #include "app/io/range_watch.hpp"
+#include "app/io/tissue_publisher.hpp"
 #include "app/snapshot/board.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/proximity_board.hpp"
 #include "app/snapshot/range_readings.hpp"
 #include "app/snapshot/robot_states.hpp"
+#include "app/snapshot/tissue_sources.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/ports/camera_state.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
+#include "rt_core/ports/tissue_output.hpp"
 
 namespace cellmirror::app {
 
 struct PublishedOutput {
   std::unique_ptr<RobotStateOutput> output;
   Nanoseconds period{0};
-  FindingsOutput* findings = nullptr;  // the same object; null: it has no use for collisions and ranges
-  ForceOutput* forces = nullptr;       // likewise
-  CameraOutput* cameras = nullptr;     // likewise
+  FindingsOutput* findings = nullptr;          // the same object; null: it has no use for collisions and ranges
+  ForceOutput* forces = nullptr;               // likewise
+  CameraOutput* cameras = nullptr;             // likewise
+  TissueEventOutput* tissue_events = nullptr;  // likewise
+  TissueShapeOutput* tissue_shapes = nullptr;  // likewise
 };
 
 // Gives what is on the boards to one output. Results that were replaced in the meantime are left out, but none of their
@@ -53,10 +58,10 @@ void take_efforts(const ForceState& forces, std::span<RobotState> robots);
 
 class Publisher {
  public:
-  // All but the outputs are not owned and outlive the publisher.
+  // All but the outputs are not owned and outlive the publisher, the boards of `tissue` too.
   Publisher(engine::TickReader& ticks, const Board<CellState>& board, const ProximityBoard& proximity,
             const Board<RangeReadings>& ranges, const Board<ForceState>& forces, const Clock& clock,
-            Nanoseconds tick_period, std::vector<PublishedOutput> outputs);
+            Nanoseconds tick_period, std::vector<PublishedOutput> outputs, TissueSources tissue = {});
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
@@ -76,6 +81,7 @@ class Publisher {
   Nanoseconds tick_period_;
   std::vector<PublishedOutput> outputs_;
   std::vector<FindingsPublisher> findings_;  // one an output
+  TissuePublisher tissue_;
   std::vector<Timestamp> due_;
   RobotStateBuilder builder_;
   RangeWatch range_watch_;

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "app/report/implausible_values.hpp"
+#include "app/report/live_tissue.hpp"
 #include "app/snapshot/haptic_names.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/ports/words.hpp"
@@ -341,6 +342,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   add_proximity(out, sources);
   add_ranges(out, sources.ranges.get());
   add_forces(out, sources.forces.get());
+  add_tissue(out, sources.tissue.get(), sources.cell_state, sources.now);
   add_programs(out, sources.cell_state.programs);
   add_queues(out, sources.queues);
   add_problems(out, sources.problems);

@@ -12,6 +12,7 @@
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/proximity_board.hpp"
 #include "app/snapshot/range_readings.hpp"
+#include "app/snapshot/tissue_report.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/force_state.hpp"
@@ -38,7 +39,8 @@ struct LiveSources {
   std::shared_ptr<const ForceState> forces;
   std::span<const engine::QueueStatus> queues;
   std::span<const Problem> problems = {};
-  std::uint64_t commands_logged = 0;  // changes with the log of commands
+  std::uint64_t commands_logged = 0;                     // changes with the log of commands
+  std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
 };
 
 // Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at

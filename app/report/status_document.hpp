@@ -15,6 +15,7 @@
 #include "app/snapshot/force_report.hpp"
 #include "app/snapshot/range_report.hpp"
 #include "app/snapshot/render_report.hpp"
+#include "app/snapshot/tissue_report.hpp"
 #include "ipc/control/control_server.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/engine/engine.hpp"
@@ -56,6 +57,7 @@ struct StatusSources {
   Problems problems = {};
   ForceGuardStatus force_guard = {};
   CommandLogReport commands = {};
+  std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
 };
 
 [[nodiscard]] std::string status_document(const StatusSources& sources);

@@ -32,6 +32,7 @@ nlohmann::json pictures_json(const RenderReport& report) {
           {"meshes", report.counters.meshes},
           {"mesh_uploads", report.counters.uploads},
           {"textures", report.counters.textures},
+          {"tissue_uploads", report.counters.tissue_uploads},
           {"texture_uploads", report.counters.texture_uploads},
           {"texture_bytes", report.counters.texture_bytes},
           {"traces", std::move(traces)},

@@ -72,7 +72,7 @@ void check_one(const std::filesystem::path& path, const Checked& against, Diagno
   if (is_bus_file(path)) return check_bus_file(path, diagnostics);
   if (is_checkable(path)) return check_file(path, diagnostics, load_progress(line));
   diagnostics.error({path.string()}, "files of this kind cannot be checked",
-                    "known: .spt .toml .mpc .urdf .vws .lay .dbc .eds .dcf " + program_extensions() +
+                    "known: .spt .toml .mpc .urdf .mpo .hyper .msh .vws .lay .dbc .eds .dcf " + program_extensions() +
                         "; --language names that of a robot program");
 }
 
@@ -134,7 +134,8 @@ int check(const CheckOptions& options) {
 void add_check(cli::Command program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
   cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
-  sub.option("files", options->files, ".spt .toml .mpc .urdf .vws .lay .dbc .eds .dcf " + program_extensions())
+  sub.option("files", options->files,
+             ".spt .toml .mpc .urdf .mpo .hyper .msh .vws .lay .dbc .eds .dcf " + program_extensions())
       .required();
   auto cell = sub.option("--cell", options->cell,
                          "check names, files and ranges in SCRIPT, view files and programs against this cell");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/owner/programs/program_files.hpp"
+#include "app/owner/tissue/tissue_parts.hpp"
 #include "config/view_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/programs/languages/languages.hpp"
@@ -21,6 +22,7 @@ using script::ParsedCommand;
 namespace {
 
 constexpr std::string_view kScriptFolder = "scripts";
+constexpr std::string_view kTissueFolder = "envlib";
 // A text beyond this is no SCRIPT file; the reader has its own, smaller limit and says so.
 constexpr std::size_t kLargestText = std::size_t{256} << 20;
 constexpr std::size_t kMostFilesFollowed = 256;  // of all calls within a text
@@ -63,7 +65,11 @@ void check_joint_values(const RobotModel& robot, std::span<const double> values,
 }
 
 CommandChecks::CommandChecks(const LoadedCell& cell, const NameDirectory& names, Diagnostics& diagnostics)
-    : cell_(cell), names_(names), diagnostics_(&diagnostics), language_(&program::languages().front()) {}
+    : cell_(cell),
+      names_(names),
+      diagnostics_(&diagnostics),
+      language_(&program::languages().front()),
+      tissue_objects_(tissue_parts(cell.tissue, cell.home, nullptr).objects) {}
 
 RobotModel* CommandChecks::robot(std::string_view id) {
   if (const auto known = robots_.find(id); known != robots_.end()) return &known->second;
@@ -94,6 +100,13 @@ void CommandChecks::follow(const ParsedCommand& command, const PlaceOf& place_of
       return;
     case FormId::load_views:
       return check_views(command, place_of);
+    case FormId::eladyn_geo_def_flags:
+    case FormId::eladyn_geo_def_token:
+      return check_tissue_object(command, place_of);
+    case FormId::eladyn_hyper_name:
+      return check_tissue_file(command, kHyperExtension, place_of);
+    case FormId::ela_clip_def:
+      return check_tissue_file(command, kObjectExtension, place_of);
     case FormId::exec_script:
       return call(command, place_of);
     case FormId::pos_rob_joint_abs:
@@ -116,6 +129,20 @@ void CommandChecks::check_views(const ParsedCommand& command, const PlaceOf& pla
   const std::string_view name = command.text(0);
   if (saved_views_.contains(views_name(name))) return;
   const auto found = cell_.home.file(kScriptFolder, name, kViewExtension);
+  if (!found) warn(place_of(name), command, found.error());
+}
+
+void CommandChecks::check_tissue_object(const ParsedCommand& command, const PlaceOf& place_of) {
+  const std::string_view name = command.text(0);
+  if (tissue_objects_.means_all(name)) return;
+  const auto found = tissue_objects_.find(name);
+  if (!found) warn(place_of(name), command, found.error());
+}
+
+void CommandChecks::check_tissue_file(const ParsedCommand& command, std::string_view extension,
+                                      const PlaceOf& place_of) {
+  const std::string_view name = command.text(0);
+  const auto found = cell_.home.file(kTissueFolder, name, extension);
   if (!found) warn(place_of(name), command, found.error());
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/owner/tissue/tissue_objects.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/cell/robot_model.hpp"
@@ -33,6 +34,8 @@ class CommandChecks {
 
  private:
   void check_program(const script::ParsedCommand& command, const PlaceOf& place_of);
+  void check_tissue_object(const script::ParsedCommand& command, const PlaceOf& place_of);
+  void check_tissue_file(const script::ParsedCommand& command, std::string_view extension, const PlaceOf& place_of);
   void check_views(const script::ParsedCommand& command, const PlaceOf& place_of);
   void call(const script::ParsedCommand& command, const PlaceOf& place_of);
   void follow_file(const std::filesystem::path& path);
@@ -46,6 +49,7 @@ class CommandChecks {
   const NameDirectory& names_;
   Diagnostics* diagnostics_;  // null while a file that was called is followed: it is checked by itself
   const program::Language* language_;
+  TissueObjects tissue_objects_;
   std::string active_robot_;
   std::map<std::string, RobotModel, std::less<>> robots_;
   std::set<std::string, std::less<>> recorded_programs_;

@@ -20,6 +20,7 @@
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
+#include "rt_core/tissue/element_kernel.hpp"
 
 namespace cellmirror::app {
 
@@ -30,6 +31,7 @@ struct SimulateOptions {
   SimulationOptions simulation;
   bool no_collisions = false;
   std::string plot;
+  std::string simd;
   bool json = false;
 };
 
@@ -87,6 +89,9 @@ int print(const SimulateOptions& options, const SimulationResult& result) {
 }
 
 int run(const SimulateOptions& options) {
+  if (!options.simd.empty() && !tissue::force_simd_target(options.simd))
+    return refuse(fmt::format("this processor has no instruction set {}; its best one is {}",
+                              printable(options.simd, kLongestNote), tissue::simd_target()));
   auto cell = load(options.cell);
   if (!cell) return kExitRefused;
   SimulationOptions simulation = options.simulation;
@@ -126,6 +131,9 @@ void add_simulate(cli::Command program, Action& action) {
       .between(1e-3, kLongest)
       .show_default();
   sub.option("--plot", options->plot, "draw programs, joints and distances over time: a PNG file");
+  sub.option("--simd", options->simd,
+             "compute tissue with this instruction set (AVX2, SSE4, ...), so that results are the same on another "
+             "machine to the bit");
   sub.flag("--json", options->json, "one JSON document (docs/simulate.md)");
   sub.footer(
       "Collisions and limits are results, not failures. The exit status is 1 where a command was refused, a program "

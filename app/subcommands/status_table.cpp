@@ -13,6 +13,7 @@
 #include "app/subcommands/status_table_programs.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 #include "app/subcommands/status_table_switches.hpp"
+#include "app/subcommands/status_table_tissue.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/units.hpp"
 
@@ -38,6 +39,7 @@ class TableWriter {
     out_ += sensing_table(status);
     out_ += forces_table(status);
     out_ += haptics_table(status);
+    out_ += tissue_table(status);
     out_ += switches_table(status);
     out_ += display_table(status);
     out_ += pictures_table(status);

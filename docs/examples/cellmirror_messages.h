@@ -31,6 +31,7 @@
 #define CELLMIRROR_KIND_CAMERA 4u
 #define CELLMIRROR_KIND_PROXIMITY 5u
 #define CELLMIRROR_KIND_EVENT 6u
+#define CELLMIRROR_KIND_TISSUE_EVENT 7u
 
 #define CELLMIRROR_NAME_BYTES 64 /* with at least one NUL */
 #define CELLMIRROR_PATH_BYTES 128
@@ -136,6 +137,16 @@
 #define CELLMIRROR_EVENT_OFFSET_B 192
 #define CELLMIRROR_EVENT_BYTES 320
 
+#define CELLMIRROR_TISSUE_OFFSET_EVENT 40
+#define CELLMIRROR_TISSUE_OFFSET_KIND 48
+#define CELLMIRROR_TISSUE_OFFSET_LIMIT 49
+#define CELLMIRROR_TISSUE_OFFSET_VALUE 56
+#define CELLMIRROR_TISSUE_OFFSET_PLACE 64
+#define CELLMIRROR_TISSUE_OFFSET_ROBOT 88
+#define CELLMIRROR_TISSUE_OFFSET_OBJECT 152
+#define CELLMIRROR_TISSUE_OFFSET_PART 216
+#define CELLMIRROR_TISSUE_BYTES 280
+
 /* Flags of a range. */
 #define CELLMIRROR_RANGE_SEEN 1u          /* something is in the cone */
 #define CELLMIRROR_RANGE_IN_BLIND_ZONE 2u /* nearer than a real sensor can measure */
@@ -156,6 +167,20 @@ enum cellmirror_change {
   CELLMIRROR_CHANGE_TOUCHED = 1,
   CELLMIRROR_CHANGE_PARTED = 2,
   CELLMIRROR_CHANGE_LEFT_WARNING = 3
+};
+
+/* Kind of a tissue event. */
+enum cellmirror_tissue_kind {
+  CELLMIRROR_TISSUE_GRIP = 0,
+  CELLMIRROR_TISSUE_RELEASE = 1,
+  CELLMIRROR_TISSUE_SLIP = 2,
+  CELLMIRROR_TISSUE_CLIP = 3,
+  CELLMIRROR_TISSUE_CUT = 4,
+  CELLMIRROR_TISSUE_COAGULATE = 5,
+  CELLMIRROR_TISSUE_TEAR = 6,
+  CELLMIRROR_TISSUE_BLEED = 7,
+  CELLMIRROR_TISSUE_BLEED_END = 8,
+  CELLMIRROR_TISSUE_LIMIT = 9
 };
 
 /* State of a robot's or joint's data. */
@@ -299,6 +324,19 @@ struct cellmirror_event {
   char b[CELLMIRROR_PATH_BYTES];
 };
 
+struct cellmirror_tissue_event {
+  struct cellmirror_header header;
+  uint64_t event; /* from 1; a gap: events were lost */
+  uint8_t kind;   /* enum cellmirror_tissue_kind */
+  uint8_t limit;  /* of kind CELLMIRROR_TISSUE_LIMIT */
+  uint8_t reserved[6];
+  double value;    /* docs/messages.md */
+  double place[3]; /* m, in the world */
+  char robot[CELLMIRROR_NAME_BYTES];
+  char object[CELLMIRROR_NAME_BYTES];
+  char part[CELLMIRROR_NAME_BYTES];
+};
+
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 #define CELLMIRROR_CHECK(condition) _Static_assert(condition, #condition)
 #elif defined(__cplusplus) && __cplusplus >= 201103L
@@ -317,6 +355,7 @@ CELLMIRROR_CHECK(sizeof(struct cellmirror_camera) == CELLMIRROR_CAMERA_BYTES);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_pair) == CELLMIRROR_PAIR_BYTES);
 CELLMIRROR_CHECK(offsetof(struct cellmirror_proximity, pairs) == CELLMIRROR_PROXIMITY_OFFSET_PAIRS);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_event) == CELLMIRROR_EVENT_BYTES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_tissue_event) == CELLMIRROR_TISSUE_BYTES);
 
 /* Whether a received message is a record of this version and kind with at least `least` bytes. */
 static inline int cellmirror_is_record(const void* message, size_t bytes, unsigned kind, size_t least) {
@@ -390,6 +429,23 @@ static inline int cellmirror_read_event(const void* message, size_t bytes, struc
   event->a[CELLMIRROR_PATH_BYTES - 1] = '\0';
   event->b[CELLMIRROR_PATH_BYTES - 1] = '\0';
   return 1;
+}
+
+static inline int cellmirror_read_tissue_event(const void* message, size_t bytes,
+                                               struct cellmirror_tissue_event* event) {
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_TISSUE_EVENT, CELLMIRROR_TISSUE_BYTES)) return 0;
+  if (bytes != sizeof *event) return 0;
+  memcpy(event, message, bytes);
+  event->robot[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  event->object[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  event->part[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  return 1;
+}
+
+static inline const char* cellmirror_tissue_name(unsigned kind) {
+  static const char* const names[] = {"grip",      "release", "slip",  "clip",      "cut",
+                                      "coagulate", "tear",    "bleed", "bleed_end", "limit"};
+  return kind < 10 ? names[kind] : "unknown";
 }
 
 static inline const char* cellmirror_change_name(unsigned change) {

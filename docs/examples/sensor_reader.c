@@ -6,6 +6,7 @@
  *   sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
  *   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
  *   sequence event NUMBER CHANGE a b DISTANCE
+ *   sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
  *
  *   cc -o sensor_reader sensor_reader.c
  *   ./sensor_reader --count 10
@@ -106,6 +107,15 @@ static void print_event(const struct cellmirror_event* event) {
          (unsigned long long)event->event, cellmirror_change_name(event->change), event->a, event->b, event->distance);
 }
 
+static const char* text_or_dash(const char* text) { return text[0] == '\0' ? "-" : text; }
+
+static void print_tissue_event(const struct cellmirror_tissue_event* event) {
+  printf("%llu tissue %llu %s %s %s %s %.6f at %.6f %.6f %.6f\n", (unsigned long long)event->header.sequence,
+         (unsigned long long)event->event, cellmirror_tissue_name(event->kind), text_or_dash(event->robot),
+         text_or_dash(event->object), text_or_dash(event->part), event->value, event->place[0], event->place[1],
+         event->place[2]);
+}
+
 /* 1: it was a record of a kind that this program knows. */
 static int print_record(const void* message, size_t bytes) {
   static union {
@@ -115,6 +125,7 @@ static int print_record(const void* message, size_t bytes) {
     struct cellmirror_camera camera;
     struct cellmirror_proximity proximity;
     struct cellmirror_event event;
+    struct cellmirror_tissue_event tissue_event;
   } record;
   if (cellmirror_read_robot(message, bytes, &record.robot)) {
     print_robot(&record.robot);
@@ -128,6 +139,8 @@ static int print_record(const void* message, size_t bytes) {
     print_proximity(&record.proximity);
   } else if (cellmirror_read_event(message, bytes, &record.event)) {
     print_event(&record.event);
+  } else if (cellmirror_read_tissue_event(message, bytes, &record.tissue_event)) {
+    print_tissue_event(&record.tissue_event);
   } else {
     return 0;
   }

@@ -6,6 +6,7 @@
 #   sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
 #   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
 #   sequence event NUMBER CHANGE a b DISTANCE
+#   sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
 #
 #   perl sensor_reader.pl --count 10
 #
@@ -18,7 +19,7 @@ use constant { MESSAGE_TYPE => 5, MAX_MESSAGE => 8192, MSG_NOERROR => 010000 };
 # Places in a record: docs/messages.md
 use constant { PAYLOAD => 40, WORLD_TCP => 176, JOINTS => 232, JOINT_BYTES => 112, JOINT_POSITION => 72 };
 use constant { RANGE_BYTES => 296, RANGES => 48, RANGE_ENTRY_BYTES => 112 };
-use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320, CAMERA_BYTES => 384 };
+use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320, CAMERA_BYTES => 384, TISSUE_BYTES => 280 };
 
 my $usage = <<'END';
 usage: sensor_reader.pl [--count N] [--timeout SECONDS] [--key KEY]
@@ -39,6 +40,7 @@ $| = 1;
 
 my @states = qw(none fresh stale lost invalid);
 my @changes = qw(entered_warning touched parted left_warning);
+my @deeds = qw(grip release slip clip cut coagulate tear bleed bleed_end limit);
 
 # The words of one kind of record behind its sequence; nothing for a record of another length.
 sub robot {
@@ -119,7 +121,17 @@ sub event {
     return ('event', $event, $changes[$change] // 'unknown', $body_a, $body_b, sprintf('%.6f', $distance));
 }
 
-my %kinds = (1 => \&robot, 2 => \&range, 3 => \&ranges, 4 => \&camera, 5 => \&proximity, 6 => \&event);
+sub tissue {
+    my ($record) = @_;
+    return if length($record) != TISSUE_BYTES;
+    # event, kind, limit, value, place, texts
+    my ($event, $kind, undef, $value, @more) = unpack('Q< C C x6 d< d<3 Z64 Z64 Z64', substr($record, PAYLOAD));
+    my @texts = map { $_ eq '' ? '-' : $_ } @more[3 .. 5];
+    return ('tissue', $event, $deeds[$kind] // 'unknown', @texts, sprintf('%.6f', $value), 'at',
+        map { sprintf '%.6f', $_ } @more[0 .. 2]);
+}
+
+my %kinds = (1 => \&robot, 2 => \&range, 3 => \&ranges, 4 => \&camera, 5 => \&proximity, 6 => \&event, 7 => \&tissue);
 for (my $printed = 0; $count == 0 || $printed < $count;) {
     my $message;
     alarm($timeout);

@@ -9,6 +9,7 @@
     sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
     sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
     sequence event NUMBER CHANGE a b DISTANCE
+     sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
 
 A record that was read is gone from the queue: there is one reader. SPDX-License-Identifier: Apache-2.0
 """
@@ -33,8 +34,10 @@ CAMERA = struct.Struct("<64s128s18dI4x")  # pose, mount, pan, tilt, focal distan
 PROXIMITY = struct.Struct("<Q2d5IH2x")  # tested, touching, within warning, doubts, found; pairs
 PAIR = struct.Struct("<128s128s13d2Id")  # distance, depth, points, normal, closing speed, time to contact; flags; contact age
 EVENT = struct.Struct("<QB7xd128s128s")
+TISSUE_EVENT = struct.Struct("<QBB6x4d64s64s64s")  # event, kind, limit; value, place; robot, object, part
 STATES = ("none", "fresh", "stale", "lost", "invalid")
 CHANGES = ("entered_warning", "touched", "parted", "left_warning")
+DEEDS = ("grip", "release", "slip", "clip", "cut", "coagulate", "tear", "bleed", "bleed_end", "limit")
 CAMERA_TRACKING, CAMERA_MIRRORED = 1, 2
 RANGE_SEEN, RANGE_IN_BLIND_ZONE, RANGE_DOUBTFUL, PAIR_TOUCHING = 1, 2, 4, 1
 
@@ -96,7 +99,13 @@ def event(payload):
     return ["event", str(number), word(CHANGES, change), name(a), name(b), f"{distance:.6f}"]
 
 
-KINDS = {1: robot, 2: single_range, 3: ranges, 4: camera, 5: proximity, 6: event}
+def tissue(payload):
+    number, kind, _, value, x, y, z, *texts = TISSUE_EVENT.unpack(payload)
+    words = ["tissue", str(number), word(DEEDS, kind)] + [name(text) or "-" for text in texts]
+    return words + [f"{value:.6f}", "at"] + [f"{place:.6f}" for place in (x, y, z)]
+
+
+KINDS = {1: robot, 2: single_range, 3: ranges, 4: camera, 5: proximity, 6: event, 7: tissue}
 
 
 def record_line(record):

@@ -8,6 +8,7 @@
 
 #include "drivers/dds/internal/counting_writer.hpp"
 #include "drivers/dds/internal/findings_writer.hpp"
+#include "drivers/dds/internal/tissue_writer.hpp"
 #include "drivers/dds/internal/wrench_writer.hpp"
 #include "drivers/dds/robot_state_messages.hpp"
 #include "rt_core/base/time.hpp"
@@ -28,12 +29,13 @@ class Output final : public DdsOutput {
  public:
   Output(const DdsOutputConfig& config, std::unique_ptr<CountingWriter> joint_states,
          std::unique_ptr<CountingWriter> transforms, std::unique_ptr<FindingsWriter> findings,
-         std::unique_ptr<WrenchWriter> wrenches)
+         std::unique_ptr<WrenchWriter> wrenches, std::unique_ptr<TissueWriter> tissue)
       : name_(fmt::format("dds domain {} on {}", config.domain, config.interface_address)),
         joint_states_(std::move(joint_states)),
         transforms_(std::move(transforms)),
         findings_(std::move(findings)),
-        wrenches_(std::move(wrenches)) {}
+        wrenches_(std::move(wrenches)),
+        tissue_(std::move(tissue)) {}
 
   void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) override {
     const RosTime stamp = ros_time(to_wall_clock_ns(time));
@@ -58,6 +60,12 @@ class Output final : public DdsOutput {
 
   void publish_forces(const ForceState& state) override { wrenches_->publish(state); }
 
+  [[nodiscard]] Nanoseconds tissue_period() const override { return tissue_->period(); }
+  void publish_tissue_shapes(Timestamp time, const TissueView& view,
+                             std::span<const TissueForceArrow> forces) override {
+    tissue_->publish(time, view, forces);
+  }
+
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override {
     std::uint64_t sent = joint_states_->sent() + transforms_->sent();
     std::uint64_t dropped = joint_states_->dropped() + transforms_->dropped();
@@ -70,6 +78,7 @@ class Output final : public DdsOutput {
                                                                    {"not_finite", left_out_.get()}};
     findings_->add_counters(counters, sent, dropped);
     wrenches_->add_counters(counters, sent, dropped);
+    tissue_->add_counters(counters, sent, dropped);
     counters.insert(counters.begin(), {{"sent", sent}, {"dropped", dropped}});
     return counters;
   }
@@ -89,6 +98,7 @@ class Output final : public DdsOutput {
   std::unique_ptr<CountingWriter> transforms_;
   std::unique_ptr<FindingsWriter> findings_;
   std::unique_ptr<WrenchWriter> wrenches_;
+  std::unique_ptr<TissueWriter> tissue_;
   JointNames names_;
   JointState joint_state_;        // reused
   TfMessage tf_;                  // reused
@@ -117,7 +127,7 @@ Result<std::unique_ptr<DdsOutput>> make_dds_output(const DdsOutputConfig& config
   auto wrenches = std::make_unique<WrenchWriter>(*participant, config.wrench_topic_prefix,
                                                  CountingWriter::Options{kLeastDepth, counts});
   return std::make_unique<Output>(config, std::move(*joint_states), std::move(*transforms), std::move(*findings),
-                                  std::move(wrenches));
+                                  std::move(wrenches), std::make_unique<TissueWriter>(*participant, config));
 }
 
 }  // namespace cellmirror::dds

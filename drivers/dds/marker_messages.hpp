@@ -14,7 +14,7 @@ namespace cellmirror::dds {
 
 inline constexpr std::string_view kMarkerArrayType = "visualization_msgs::msg::dds_::MarkerArray_";
 
-enum class MarkerType : std::int32_t { line_list = 5, sphere_list = 7, triangle_list = 11 };
+enum class MarkerType : std::int32_t { arrow = 0, line_list = 5, sphere_list = 7, triangle_list = 11 };
 enum class MarkerAction : std::int32_t { add = 0, remove = 2 };  // `add` replaces one of the same name and number, too
 
 using MarkerPoint = std::array<double, 3>;  // m
@@ -29,7 +29,8 @@ struct Marker {
   MarkerAction action = MarkerAction::add;
   MarkerPoint position = {};
   std::array<double, 4> orientation = {0, 0, 0, 1};  // quaternion x, y, z, w
-  MarkerPoint scale = {1, 1, 1};  // line_list: x is the width; sphere_list: the diameters; triangle_list: 1, 1, 1
+  MarkerPoint scale = {1, 1, 1};  // line_list: x is the width; sphere_list: the diameters; triangle_list: 1, 1, 1;
+  // arrow from the first point to the second: diameters of shaft and head
   MarkerColour colour = {1, 1, 1, 1};
   std::int64_t lifetime_ns = 0;  // after which a viewer removes it; 0: never
   std::vector<MarkerPoint> points = {};

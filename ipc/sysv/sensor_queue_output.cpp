@@ -13,6 +13,7 @@
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
+#include "ipc/wire/tissue_record.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/time.hpp"
 
@@ -62,11 +63,14 @@ struct SensorQueueOutput::Impl {
   std::vector<RangeReading> finite;  // reused
   Count dropped;
   Count events_missing;
+  std::uint64_t last_tissue_event = 0;
+  Count tissue_events_missing;
   SentAndRefused robots;
   SentAndRefused ranges;
   SentAndRefused proximity;
   SentAndRefused events;
   SentAndRefused cameras;
+  SentAndRefused tissue_events;
 
   template <class Record, class Encode>
   void send(Record record, Timestamp time, Encode encode, SentAndRefused& counters);
@@ -74,8 +78,8 @@ struct SensorQueueOutput::Impl {
   bool deliver(std::span<const std::byte> record, Timestamp time);
   bool make_room();
   bool repair(Timestamp time);
-  [[nodiscard]] std::array<const SentAndRefused*, 5> kinds() const {
-    return {&robots, &ranges, &proximity, &events, &cameras};
+  [[nodiscard]] std::array<const SentAndRefused*, 6> kinds() const {
+    return {&robots, &ranges, &proximity, &events, &cameras, &tissue_events};
   }
 };
 
@@ -204,6 +208,20 @@ void SensorQueueOutput::publish_cameras(Timestamp time, std::span<const CameraSt
   }
 }
 
+// Restarted numbers are those of a new simulation; nothing is missing then.
+void SensorQueueOutput::publish_tissue_events(std::span<const NamedTissueEvent> events) {
+  for (const NamedTissueEvent& event : events) {
+    const std::uint64_t number = event.event.number;
+    if (number > impl_->last_tissue_event) impl_->tissue_events_missing.add(number - impl_->last_tissue_event - 1);
+    impl_->last_tissue_event = number;
+    if (event.event.at.allFinite() && std::isfinite(event.event.value)) {
+      impl_->send(tissue_record_of(event), event.event.time, encode_tissue_record, impl_->tissue_events);
+    } else {
+      impl_->tissue_events.refused.add();
+    }
+  }
+}
+
 std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters() const {
   std::uint64_t sent = 0;
   std::uint64_t refused = 0;
@@ -223,6 +241,9 @@ std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters()
           {"events_missing", impl_->events_missing.get()},
           {"cameras_sent", impl_->cameras.sent.get()},
           {"cameras_refused", impl_->cameras.refused.get()},
+          {"tissue_events_sent", impl_->tissue_events.sent.get()},
+          {"tissue_events_refused", impl_->tissue_events.refused.get()},
+          {"tissue_events_missing", impl_->tissue_events_missing.get()},
           {"recreated", impl_->queue->recreated()},
           {"discarded", impl_->queue->discarded()},
           {"waiting", impl_->queue->waiting()}};

@@ -25,6 +25,7 @@ enum class RecordKind : std::uint16_t {
   camera_parameters = 4,
   proximity = 5,
   proximity_event = 6,
+  tissue_event = 7,
 };
 
 // Byte offsets of the header's fields.

@@ -208,17 +208,56 @@ TEST_F(DdsFindingsTest, ManySensorsAndPairsArePublishedWithoutWaiting) {
   EXPECT_EQ(counter("ranges_sent"), 51U * 64U);
 }
 
+// The topic is made with the first shapes; the next ones are wanted while it has readers.
+TEST_F(DdsFindingsTest, DeformableObjectsAreTrianglesAndForcesOnThemArrows) {
+  TissueView view;
+  view.surfaces.resize(1);
+  auto topology = std::make_shared<TissueTopology>();
+  for (std::uint32_t i = 0; i < 9'000; ++i) {
+    topology->triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    const auto at = static_cast<float>(i);
+    view.surfaces[0].vertices.insert(view.surfaces[0].vertices.end(), {{at, 0, 0}, {at, 1, 0}, {at, 0, 0.5F}});
+  }
+  view.surfaces[0].topology = topology;
+  const std::vector<TissueForceArrow> forces = {{"GRASPER", {1, 2, 3}, {0, 0, 5}}};
+  EXPECT_EQ(sut_->tissue_period(), Nanoseconds(500'000'000)) << "wanted before anybody can read it";
+  sut_->publish_tissue_shapes(clock_.now(), view, forces);
+  EXPECT_EQ(sut_->tissue_period(), Nanoseconds(0)) << "nobody reads it";
+  const dds_entity_t tissue = peer_.marker_reader(config_.tissue_topic);
+  ASSERT_TRUE(eventually([&] { return sut_->tissue_period() == Nanoseconds(500'000'000); }));
+  std::map<std::string, PlainMarker> shown;
+  ASSERT_TRUE(eventually([&] {
+    sut_->publish_tissue_shapes(clock_.now(), view, forces);
+    for (auto& marker : CyclonePeer::take_markers(tissue)) shown[marker.ns] = marker;
+    return shown.size() == 2;
+  }));
+  EXPECT_EQ(shown["tissue"].type, 11);
+  ASSERT_EQ(shown["tissue"].points.size(), 27'000U);
+  EXPECT_EQ(shown["tissue"].points.back(), (std::array<double, 3>{8999, 0, 0.5}));
+  EXPECT_EQ(shown["tissue_forces"].type, 0);
+  EXPECT_EQ(shown["tissue_forces"].points, (std::vector<std::array<double, 3>>{{1, 2, 3}, {1, 2, 3.1}}));
+  for (const auto& [ns, marker] : shown) {
+    EXPECT_EQ(marker.frame_id, "world") << ns;
+    EXPECT_GT(marker.lifetime_sec, 0) << ns;
+    EXPECT_TRUE(marker.rest_is_empty) << ns;
+  }
+  EXPECT_GE(counter("tissue_sent"), 2U);
+  EXPECT_EQ(counter("tissue_readers"), 1U);
+}
+
 TEST_F(DdsFindingsTest, TopicsMayBeSwitchedOff) {
-  config_.range_topic_prefix = config_.diagnostics_topic = config_.markers_topic = "";
+  config_.range_topic_prefix = config_.diagnostics_topic = config_.markers_topic = config_.tissue_topic = "";
   const auto quiet = make_dds_output(config_);
   ASSERT_TRUE(quiet) << quiet.error().text();
   (*quiet)->publish_ranges(std::vector{reading("USS_1", 1.0, clock_.now())}, RangeSendMode::one_message_a_sensor);
   (*quiet)->publish_proximity(touching_state(clock_.now()));
+  EXPECT_EQ((*quiet)->tissue_period(), Nanoseconds(0));
+  (*quiet)->publish_tissue_shapes(clock_.now(), TissueView{}, {});
   for (const auto& [name, value] : (*quiet)->counters()) {
     if (name == "ranges_sent" || name == "ranges_refused") {
       EXPECT_EQ(value, 0U) << name;
     }
-    EXPECT_FALSE(name.starts_with("markers") || name.starts_with("diagnostics")) << name;
+    EXPECT_FALSE(name.starts_with("markers") || name.starts_with("diagnostics") || name.starts_with("tissue")) << name;
   }
 }
 

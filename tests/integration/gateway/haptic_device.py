@@ -20,16 +20,16 @@ NAN = float("nan")
 
 
 def trainer(replace=(), guards=True):
-    """A scratch copy of the trainer cell with memories of its own, and with guards so wide that a machine that is busy
+    """A scratch copy of the phantom trainer cell with memories of its own, and with guards so wide that a machine that is busy
     with other things does not trip them. Keys by robot in `keys`."""
-    scratch = g.Scratch("trainer")
+    scratch = g.Scratch("phantom_trainer")
     text = scratch.cell_file.read_text()
     first = 0x43500000 + int(uuid.uuid4().hex[:4], 16) * 4
     scratch.keys = {"LAP_LEFT": first, "LAP_RIGHT": first + 1}
     for robot, key in scratch.keys.items():
         wide = "\nprofile = \"strict\"\nstale_after_s = 0.5\nmodel_stale_after_s = 5.0\nallowed_missed_periods = 1000" if guards else ""
         text, count = re.subn(rf'(robot = "{robot}"\n)shm_key = \w+', rf"\g<1>shm_key = {key}{wide}", text)
-        assert count == 1, f"{robot} has no shm_key in the trainer cell"
+        assert count == 1, f"{robot} has no shm_key in the phantom trainer cell"
     text = re.sub(r"(\[foot_switches\]\nkey = )\w+", rf"\g<1>{first + 3}", text)
     for old, new in replace:
         assert old in text, old

@@ -47,7 +47,7 @@ def detectable_ns(how, seen, summary):
 class Haptic(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = g.Scratch("trainer")
+        cls.scratch = g.Scratch("phantom_trainer")
         cls.keys = t.with_own_memories(cls.scratch, drives=("pose", "joints"))
         cls.gateway = g.Gateway(cls.scratch)
 

@@ -18,7 +18,7 @@ INTO = t.LEFT["into"]
 
 class Recovery(unittest.TestCase):
     def setUp(self):
-        self.scratch = g.Scratch("trainer")
+        self.scratch = g.Scratch("phantom_trainer")
         self.addCleanup(self.scratch.remove)
         # The defaults: nothing but memories of its own.
         self.key = t.with_own_memories(self.scratch, more="")[ROBOT]

@@ -311,7 +311,7 @@ class Processes(unittest.TestCase):
         self.assertIn("LAP_RIGHT", other.stderr)
 
     def test_a_key_that_another_gateway_has(self):
-        other = g.Scratch("trainer")
+        other = g.Scratch("phantom_trainer")
         try:
             other.cell_file.write_text(self.scratch.cell_file.read_text())
             other.environment = self.scratch.environment

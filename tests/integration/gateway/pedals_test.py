@@ -10,7 +10,7 @@ import trainer as t
 class FootSwitches(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = g.Scratch("trainer")
+        cls.scratch = g.Scratch("phantom_trainer")
         cls.keys = t.with_own_memories(cls.scratch)
         scripts = cls.scratch.home / "scripts"
         for number in range(1, 8):

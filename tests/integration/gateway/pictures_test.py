@@ -305,7 +305,7 @@ class WithoutPictures(unittest.TestCase):
 
 class OfCellFiles(unittest.TestCase):
     def test_every_demo_cell_has_a_picture(self):
-        for cell in ("transfer_cell", "trainer", "can_cell", "ros2_cell"):
+        for cell in ("transfer_cell", "trainer", "phantom_trainer", "can_cell", "ros2_cell"):
             scratch = g.Scratch(cell, startup=True)
             self.addCleanup(scratch.remove)
             require_renderer(scratch)

@@ -104,10 +104,27 @@ class Examples(unittest.TestCase):
         gateway = g.Gateway(scratch)
         try:
             self.assertEqual(scratch.send("ROBACT PUMA_762").returncode, 0)
-            for command in ("EFFECTS PULSE ON", "VV_RELOAD_LUTS", "eladyn_calc on"):
+            for command in ("VV_RELOAD_LUTS", "VV_CLIP CLP1 off"):
                 done = scratch.send(command)
                 self.assertEqual(done.returncode, 1, command)
                 self.assertIn("not available yet", done.stderr)
+        finally:
+            gateway.close()
+            scratch.remove()
+
+    def test_a_cell_without_deformable_objects_takes_settings_and_refuses_names(self):
+        scratch = g.Scratch()
+        gateway = g.Gateway(scratch)
+        try:
+            self.assertEqual(scratch.send("ROBACT PUMA_762").returncode, 0)
+            for command in ("EFFECTS PULSE ON", "eladyn_calc off", "eladyn_show_def 1", "rob_ela_interact 6 1 0 0 0"):
+                done = scratch.send(command)
+                self.assertEqual(done.returncode, 0, command)
+                self.assertIn("no deformable object", done.stdout, command)
+            for command in ("eladyn_geo_def ALL CUT on", "eladyn_geo_def liver.mpo 3", "eladyn_hyper_name links.hyp"):
+                done = scratch.send(command)
+                self.assertEqual(done.returncode, 1, command)
+                self.assertIn("no deformable object", done.stderr, command)
         finally:
             gateway.close()
             scratch.remove()

@@ -120,10 +120,10 @@ TEST_P(ExampleClients, ReadsRecords) {
   EXPECT_EQ(lines, 5);
 }
 
-TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsAndCamerasTell) {
+TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsCamerasAndTissueTell) {
   ChildProcess gateway(gateway_command("findings"));
   ASSERT_EQ(gateway.line(), "ready");
-  ChildProcess sut(read("9", "10"));
+  ChildProcess sut(read("11", "10"));
   EXPECT_EQ(sut.wait(), 0) << sut.errors();
   EXPECT_EQ(sut.output(),
             "1 range USS_1 0.250000 cell.box\n"
@@ -135,7 +135,9 @@ TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsAndCamerasTell) {
             "7 proximity touching 1 warning 2 of 45 pairs: cell.A|cell.B=touching cell.B|cell.C=0.012500\n"
             "8 camera UMG_Kamera_1 tracks Gantry.J_2.Hand mirrored pan 0.250000 tilt -0.500000 distance 4.000000 "
             "fovy 0.750000\n"
-            "9 camera CAMERA_5 free simulated pan 0.250000 tilt -0.500000 distance 4.000000 fovy 0.750000\n");
+            "9 camera CAMERA_5 free simulated pan 0.250000 tilt -0.500000 distance 4.000000 fovy 0.750000\n"
+            "10 tissue 1 clip APPLIER liver cystic_artery 0.062500 at 0.125000 -0.500000 1.000000\n"
+            "11 tissue 2 bleed - liver - 12.500000 at 0.000000 0.000000 0.000000\n");
 }
 
 TEST_P(ExampleClients, ReaderEndsInTimeWithoutRecords) {

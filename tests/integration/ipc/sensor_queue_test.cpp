@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/msg.h>
 
+#include <array>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
+#include "ipc/wire/tissue_record.hpp"
 #include "tests/integration/ipc/own_ipc.hpp"
 
 namespace cellmirror {
@@ -229,6 +231,34 @@ TEST_F(SensorQueue, EventsThatFindNoRoomLeaveAGapInTheirNumbers) {
   EXPECT_GT(first->event, 1U);
   EXPECT_EQ(first->header.sequence, first->event);
   EXPECT_EQ(counters_of(*sut_)["dropped"], first->event - 1);
+}
+
+NamedTissueEvent tissue_event(std::uint64_t number) {
+  TissueEvent event;
+  event.number = number;
+  event.time = SystemClock().now();
+  event.kind = TissueEventKind::grip;
+  return {event, "GRASPER", "liver"};
+}
+
+TEST_F(SensorQueue, TissueEventsGoAtOnceAndThoseMissingAreCounted) {
+  sut_->publish_tissue_events(std::array{tissue_event(1), tissue_event(2)});
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_tissue_record)->event, 1U);
+  const auto second = next_of(queues_.sensor_key, decode_tissue_record);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->event, 2U);
+  EXPECT_EQ(second->robot, "GRASPER");
+  EXPECT_EQ(second->object, "liver");
+  sut_->publish_tissue_events(std::array{tissue_event(6)});
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_tissue_record)->event, 6U);
+  EXPECT_EQ(counters_of(*sut_)["tissue_events_missing"], 3U) << "3, 4 and 5 were never given to this output";
+  auto wild = tissue_event(7);
+  wild.event.at.y() = std::numeric_limits<double>::quiet_NaN();
+  sut_->publish_tissue_events(std::array{wild, tissue_event(1)});
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_tissue_record)->event, 1U) << "a new simulation counts anew";
+  EXPECT_EQ(counters_of(*sut_)["tissue_events_refused"], 1U);
+  EXPECT_EQ(counters_of(*sut_)["tissue_events_sent"], 4U);
+  EXPECT_EQ(counters_of(*sut_)["tissue_events_missing"], 3U);
 }
 
 TEST_F(SensorQueue, IsRemovedAtTheEnd) {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -80,6 +81,20 @@ void send_findings(SensorQueueOutput& output) {
   output.publish_proximity(state);
   const CameraState cameras[] = {camera("UMG_Kamera_1", true, "Gantry.J_2.Hand"), camera("CAMERA_5", false, "")};
   output.publish_cameras(now, cameras);
+  TissueEvent clip;
+  clip.number = 1;
+  clip.time = now;
+  clip.kind = TissueEventKind::clip;
+  clip.at = {0.125, -0.5, 1};
+  clip.value = 0.0625;
+  std::string_view("cystic_artery").copy(clip.part.data(), clip.part.size() - 1);
+  TissueEvent bleeds;
+  bleeds.number = 2;
+  bleeds.time = now;
+  bleeds.kind = TissueEventKind::bleed;
+  bleeds.value = 12.5;
+  const NamedTissueEvent events[] = {{clip, "APPLIER", "liver"}, {bleeds, "", "liver"}};
+  output.publish_tissue_events(events);
 }
 
 int refuse(const Error& error) {

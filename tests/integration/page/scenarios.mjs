@@ -290,6 +290,46 @@ const scenarios = {
     assert.ok(times.includes(told), `${told} is none of ${times}`);
   },
 
+  // The panel of deformable objects: there with the first, gone with the last, and its buttons send commands.
+  async tissue() {
+    const tissue = {calculating: true, network_shown: false, rate_hz: 1000, step_p50_us: 210, step_p99_us: 290, late_steps: 0,
+      objects: [{name: "liver<b>", nodes: 2200, elements: 10000, contacts: 3, parts: 2, coagulated_share: 0, frozen: false}],
+      instruments: [{robot: "GRASPER", kind: "gripper", acting: true, contacts: 3, held: 4, force_n: 1.25}],
+      vessels: [{object: "liver<b>", name: "cystic_artery", kind: "artery", clips: 2, severed: true, bleeding_ml_min: 12.5}],
+      events: [1, 2].map((number) => ({number, kind: number === 1 ? "grip" : "clip", robot: "GRASPER", object: "liver<b>",
+        part: "", limit: "", at_m: [0.1, 0.2, 0.3], value: 1, age_s: 3 - number})),
+      effects: {PULSE: true, BLEEDING: false, POOL_RIPPLES: false, SUCTION: false, IRRIGATION: false},
+      bleeding_ml_min: 12.5, blood_loss_ml: 3, excesses: 0, connections: 0, connections_torn: 0, pool_level_m: 0, smoke: 0, lens_fog: 0};
+    const wire = {live: (message) => ({...message, tissue: null})};
+    const page = await opened({}, address, wire);
+    await live(page);
+    assert.ok(await page.locator("#tab-tissue").isHidden(), "a tab without tissue");
+    wire.live = (message) => ({...message, tissue});
+    await page.click("#tab-tissue");
+    await page.locator("#tissue-events li").first().waitFor();
+    assert.match(await text_of(page, "#tissue-step"), /1000 Hz, a step 210 µs, p99 290 µs/);
+    assert.match(await text_of(page, "#tissue-objects"), /liver<b>[^]*2\u202f200 nodes, 3 contacts, cut into 2 parts/);
+    assert.match(await text_of(page, "#tissue-instruments"), /GRASPER[^]*1\.25 N[^]*gripper, acting, holds 4 points/);
+    assert.match(await text_of(page, "#tissue-vessels"), /cystic_artery[^]*2 clips, cut, bleeds 12\.5 ml\/min/);
+    assert.match((await page.locator("#tissue-events li").allInnerTexts()).join("|"), /^1\.0 s ago\s*clip by GRASPER[^|]*\|2\.0 s ago\s*grip/);
+    await shot(page, "tissue");
+    const sends = async (selector, command) => {
+      await page.click(selector);
+      await page.locator("#console-log li", {hasText: command}).locator(".answer:not(.waiting)").waitFor();
+    };
+    await sends("#tissue-calc", "eladyn_calc off");
+    await sends("#tissue-reset", "eladyn_model_reset");
+    await sends("#tissue-network", "eladyn_show_def 1");
+    await sends('[data-effect="PULSE"]', "EFFECTS PULSE OFF");
+    await sends('[data-effect="BLEEDING"]', "EFFECTS BLEEDING ON");
+    await sends("#tissue-reset-pool", "EFFECTS RESET_POOL");
+    await sends("#tissue-clean-lens", "EFFECTS CLEAN_ENDOSCOPIC_LENSE");
+    wire.live = (message) => ({...message, tissue: {...tissue, calculating: false}});
+    await page.waitForFunction(() => document.getElementById("tissue-calc").textContent === "Calculate");
+    wire.live = (message) => ({...message, tissue: null});
+    await page.waitForFunction(() => document.getElementById("tab-tissue").hidden && !document.getElementById("near-panel").hidden);
+  },
+
   // Fingers on a phone.
   async touch() {
     const page = await opened(kScreens.find(([name]) => name === "phone-light")[1]);

@@ -56,6 +56,9 @@ class Page(unittest.TestCase):
     def test_views_have_the_names_of_the_layout_and_what_is_old_does_not_look_new(self):
         self.run_scenario("layout,old")
 
+    def test_deformable_objects_have_a_panel_where_there_are_some(self):
+        self.run_scenario("tissue")
+
     def test_it_can_be_used_by_keyboard(self):
         self.run_scenario("keyboard")
 

@@ -260,7 +260,7 @@ class Trainer(Sanitized):
                     f"hold:300ms;touch:{into}:0.12:speed=0.2:at=0.3;press:0.004:500ms;drag:x:0.01;back:speed=0.2")
 
     def test_it_ends_in_order_with_forces_on(self):
-        self.cell("trainer", startup=True)
+        self.cell("phantom_trainer", startup=True)
         self.keys = t.with_own_memories(self.scratch)
         self.run_gateway(rate=500)
         page = self.page()

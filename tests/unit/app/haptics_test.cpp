@@ -86,6 +86,20 @@ TEST_F(Haptics, TestValuesTakeThePlaceOfTheTruth) {
   EXPECT_EQ(sut.flags, kTcpForceValid | kTcpForceTest | kTcpForceBeyondLimit);
 }
 
+TEST_F(Haptics, StatusReportsTheForceOfTissueAndItsAge) {
+  HapticState& state = tick.haptics[kChannel];
+  state.tissue_force_W = {0, 1.5, 0};
+  state.tissue_time = Timestamp{1'998'000'000};
+  state.tissue_contacts = 7;
+  state.tissue_held = 2;
+  state.tissue_late = 3;
+  state.tissue_refused = 1;
+  const nlohmann::json device = haptics_json(cell_state, tick, contacts, tick.time).at("devices").at(0);
+  EXPECT_EQ(device.at("tissue_force_n"), nlohmann::json({0.0, 1.5, 0.0}));
+  EXPECT_NEAR(device.at("tissue_age_s").get<double>(), 0.002, 1e-12);
+  EXPECT_EQ(device.at("tissue"), nlohmann::json({{"contacts", 7}, {"held", 2}, {"late", 3}, {"refused", 1}}));
+}
+
 TEST(TorqueLimit, MessageTellsTheForceThatWasBeyondItAndNotALaterOne) {
   ManualClock clock;
   std::string told;
@@ -115,6 +129,7 @@ TEST_F(Haptics, StatusTellsPhaseAgeAndForce) {
   EXPECT_NEAR(device.at("device").at("age_s").get<double>(), 0.001, 1e-12);
   EXPECT_EQ(device.at("force").at("world_n").at(1), 3.0);
   EXPECT_EQ(device.at("memory").at("key"), 4711);
+  EXPECT_TRUE(device.at("tissue_age_s").is_null()) << "there is no tissue";
   EXPECT_TRUE(sut.at("tcp_force").is_null());
 }
 

@@ -82,7 +82,7 @@ TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
        {"time_s",  "uptime_s", "cell",           "instance", "revision",   "tree_revision",      "loop",
         "robots",  "touching", "touching_count", "near",     "near_count", "warning_distance_m", "collision_age_s",
         "ranges",  "forces",   "programs",       "deadlock", "queues",     "messages",           "bell",
-        "display", "cameras"})
+        "display", "cameras",  "tissue"})
     EXPECT_TRUE(sut.contains(key)) << key;
   EXPECT_EQ(sut["cell"], "small");
   EXPECT_EQ(sut["uptime_s"], 12.5);
@@ -90,7 +90,7 @@ TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
   EXPECT_THAT(sut["cameras"], ElementsAre("CAM"));
   for (const char* key : {"near", "ranges", "forces", "programs", "queues", "messages"})
     EXPECT_EQ(sut[key], json::array()) << key;
-  for (const char* key : {"touching", "collision_age_s"}) EXPECT_TRUE(sut[key].is_null()) << key;
+  for (const char* key : {"touching", "collision_age_s", "tissue"}) EXPECT_TRUE(sut[key].is_null()) << key;
   EXPECT_EQ(sut["deadlock"], "");
 }
 

@@ -16,6 +16,7 @@
 #include "app/render/picture_streams.hpp"
 #include "app/render/render_cache.hpp"
 #include "app/render/scene_fingerprint.hpp"
+#include "rt_core/ports/tissue_state.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -288,6 +289,35 @@ TEST(SceneFingerprint, ChangesWithEverythingThatIsSeen) {
   EXPECT_TRUE(differs([](Scene& s, auto&) { s.modes.set(0); }));
   EXPECT_TRUE(differs([](Scene&, auto& p) { p[0].eye.opening_angle = 1; }));
   EXPECT_TRUE(differs([](Scene&, auto& p) { p.resize(2); }));
+}
+
+TEST(SceneFingerprint, ChangesWithTheStepOfTissueAndWithWhatChangesBetweenSteps) {
+  TissueView view;
+  view.step = 7;
+  view.surfaces.resize(1);
+  const auto print_of = [](const TissueView& shown) {
+    Scene scene;
+    scene.tissue = std::make_shared<const TissueView>(shown);
+    return fingerprint(scene, {});
+  };
+  const std::uint64_t before = print_of(view);
+  EXPECT_EQ(print_of(view), before) << "another copy of the same";
+  EXPECT_NE(fingerprint(Scene{}, {}), before);
+  const auto differs = [&](auto change) {
+    TissueView changed = view;
+    change(changed);
+    return print_of(changed) != before;
+  };
+  EXPECT_TRUE(differs([](TissueView& v) { v.step = 8; }));
+  EXPECT_TRUE(differs([](TissueView& v) { v.lens_fog = 0.1; }));
+  EXPECT_TRUE(differs([](TissueView& v) { v.surfaces[0].visible = false; }));
+  EXPECT_TRUE(differs([](TissueView& v) { v.network.nodes.resize(1); }));
+  EXPECT_TRUE(differs([](TissueView& v) { v.clips.resize(1); }));
+  EXPECT_TRUE(differs([](TissueView& v) { v.pool.blood = 0.5; }));
+  Scene scene;
+  scene.tissue = std::make_shared<const TissueView>(view);
+  scene.tissue_modes = {DrawMode::flat};
+  EXPECT_NE(fingerprint(scene, {}), before);
 }
 
 TEST(PictureFile, FormatIsTheExtensions) {

@@ -10,6 +10,7 @@
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
 #include "ipc/wire/script_message.hpp"
+#include "ipc/wire/tissue_record.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "tests/unit/ipc/documented_table.hpp"
 
@@ -23,6 +24,7 @@ namespace ranges = range_array_offset;
 namespace camera = camera_record_offset;
 namespace proximity = proximity_record_offset;
 namespace event = event_record_offset;
+namespace tissue = tissue_record_offset;
 
 using test::DocumentedField;
 
@@ -202,6 +204,28 @@ TEST(DocumentedLayout, OfAnEvent) {
   EXPECT_EQ(sizeof(Struct), event::kBytes);
 }
 
+TEST(DocumentedLayout, OfATissueEvent) {
+  using Struct = cellmirror_tissue_event;
+  expect_agreement("Tissue event (kind 7)",
+                   {{"event", "u64", tissue::kEvent, offsetof(Struct, event), CELLMIRROR_TISSUE_OFFSET_EVENT},
+                    {"kind", "u8", tissue::kKind, offsetof(Struct, kind), CELLMIRROR_TISSUE_OFFSET_KIND},
+                    {"limit", "u8", tissue::kLimit, offsetof(Struct, limit), CELLMIRROR_TISSUE_OFFSET_LIMIT},
+                    {"reserved", "u8[6]", tissue::kReserved, offsetof(Struct, reserved), tissue::kReserved},
+                    {"value", "f64", tissue::kValue, offsetof(Struct, value), CELLMIRROR_TISSUE_OFFSET_VALUE},
+                    {"place", "f64[3]", tissue::kPlace, offsetof(Struct, place), CELLMIRROR_TISSUE_OFFSET_PLACE},
+                    {"robot", "char[64]", tissue::kRobot, offsetof(Struct, robot), CELLMIRROR_TISSUE_OFFSET_ROBOT},
+                    {"object", "char[64]", tissue::kObject, offsetof(Struct, object), CELLMIRROR_TISSUE_OFFSET_OBJECT},
+                    {"part", "char[64]", tissue::kPart, offsetof(Struct, part), CELLMIRROR_TISSUE_OFFSET_PART}});
+  EXPECT_EQ(sizeof(Struct), tissue::kBytes);
+}
+
+TEST(DocumentedLayout, NamesOfTissueEvents) {
+  for (std::size_t kind = 0; kind < kTissueEventWords.size(); ++kind)
+    EXPECT_EQ(cellmirror_tissue_name(static_cast<unsigned>(kind)), kTissueEventWords.at(kind));
+  EXPECT_STREQ(cellmirror_tissue_name(kTissueEventWords.size()), "unknown");
+  EXPECT_EQ(CELLMIRROR_TISSUE_LIMIT, static_cast<int>(TissueEventKind::limit));
+}
+
 TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   const QueueConfig queues;
   EXPECT_EQ(CELLMIRROR_SCRIPT_KEY, queues.script_key);
@@ -221,6 +245,7 @@ TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   EXPECT_EQ(CELLMIRROR_KIND_CAMERA, static_cast<unsigned>(RecordKind::camera_parameters));
   EXPECT_EQ(CELLMIRROR_KIND_PROXIMITY, static_cast<unsigned>(RecordKind::proximity));
   EXPECT_EQ(CELLMIRROR_KIND_EVENT, static_cast<unsigned>(RecordKind::proximity_event));
+  EXPECT_EQ(CELLMIRROR_KIND_TISSUE_EVENT, static_cast<unsigned>(RecordKind::tissue_event));
   EXPECT_EQ(CELLMIRROR_RANGE_SEEN, kRangeSeen);
   EXPECT_EQ(CELLMIRROR_RANGE_IN_BLIND_ZONE, kRangeInBlindZone);
   EXPECT_EQ(CELLMIRROR_RANGE_DOUBTFUL, kRangeDoubtful);

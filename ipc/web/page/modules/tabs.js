@@ -6,11 +6,12 @@ export class Tabs {
     this.opened_ = opened;
     for (const tab of this.tabs_) tab.addEventListener("click", () => this.open(tab.id));
     list.addEventListener("keydown", (event) => {
-      const at = this.tabs_.indexOf(document.activeElement);
-      const to = {ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: this.tabs_.length - 1}[event.key];
+      const there = this.tabs_.filter((tab) => !tab.hidden);
+      const at = there.indexOf(document.activeElement);
+      const to = {ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: there.length - 1}[event.key];
       if (at < 0 || to === undefined) return;
       event.preventDefault();
-      const tab = this.tabs_[(to + this.tabs_.length) % this.tabs_.length];
+      const tab = there[(to + there.length) % there.length];
       this.open(tab.id);
       tab.focus();
     });
