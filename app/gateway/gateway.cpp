@@ -20,17 +20,20 @@
 #include "app/io/robot_streams.hpp"
 #include "app/owner/cell_owner.hpp"
 #include "app/owner/command_records.hpp"
+#include "app/owner/tissue/tissue_parts.hpp"
 #include "app/pictures/snapshot_request.hpp"
 #include "app/render/render_service.hpp"
 #include "app/report/live_document.hpp"
 #include "app/report/status_document.hpp"
 #include "app/snapshot/cell_state.hpp"
+#include "app/snapshot/tissue_sources.hpp"
 #include "app/workers/collision_worker.hpp"
 #include "app/workers/contact_worker.hpp"
 #include "app/workers/fault_monitor.hpp"
 #include "app/workers/force_worker.hpp"
 #include "app/workers/ranging_worker.hpp"
 #include "app/workers/tcp_force_worker.hpp"
+#include "app/workers/tissue_worker.hpp"
 #include "app/workers/trace_worker.hpp"
 #include "config/cell_file.hpp"
 #include "ipc/control/control_request.hpp"
@@ -91,6 +94,7 @@ struct TickReaders {
         forces(engine.subscribe("forces")),
         tcp_force(engine.subscribe("tcp-force")),
         traces(engine.subscribe("traces")),
+        tissue(engine.subscribe("tissue")),
         publisher(engine.subscribe("publisher")),
         pictures(engine.subscribe("pictures")) {}
 
@@ -101,6 +105,7 @@ struct TickReaders {
   engine::TickReader& forces;
   engine::TickReader& tcp_force;
   engine::TickReader& traces;
+  engine::TickReader& tissue;
   engine::TickReader& publisher;
   engine::TickReader& pictures;
 };
@@ -120,6 +125,7 @@ struct Gateway::Parts {
   ForceGuard* guard = nullptr;  // may be null
   std::optional<Instance> instance;
   Watchdog watchdog{kLoopStandsStillAfter, {}};
+  std::shared_ptr<geometry::SolidLibrary> solids = std::make_shared<geometry::SolidLibrary>();  // of all workers
   std::unique_ptr<engine::Engine> engine;
   std::optional<TickReaders> readers;
   Board<CellState> board;
@@ -127,6 +133,7 @@ struct Gateway::Parts {
   std::unique_ptr<CommandLog> commands;  // null: the cell folder has no place for it
   std::string commands_problem;          // then
   std::unique_ptr<ScriptMessageReceiver> messages;
+  std::unique_ptr<TissueWorker> tissue;  // null: the cell has no deformable object
   std::unique_ptr<CellOwner> owner;
   std::unique_ptr<CyclicThread> loop;
   std::unique_ptr<CollisionWorker> collisions;
@@ -153,6 +160,7 @@ struct Gateway::Parts {
     forces.reset();
     tcp_force.reset();
     contacts.reset();
+    if (tissue) tissue->stop();
     ranging.reset();
     collisions.reset();
     // The receiver's handler may wait for the owner to take a command, so it has to end first; an owner that never
@@ -168,6 +176,12 @@ struct Gateway::Parts {
   Result<void> take_instance(const GatewayOptions& options);
   void open_command_log();
   void note_refused(const script::CommandSource& source, std::string_view command, const std::string& why);
+  Result<void> make_tissue(const TissueSetup& setup);
+  // Empty in a cell without deformable objects.
+  [[nodiscard]] TissueSources tissue_sources() const {
+    if (!tissue) return {};
+    return {&tissue->reports(), [worker = tissue.get()] { return worker->view(); }};
+  }
   Result<void> make_owner(LoadedCell loaded, const GatewayOptions& options);
   Result<void> start_loop();
   void start_sensing(const Eigen::Vector3d& gravity_W);
@@ -221,9 +235,17 @@ void Gateway::Parts::note_refused(const script::CommandSource& source, std::stri
   if (commands) commands->add(refused_command(source, std::string(command), why, clock.now()));
 }
 
+Result<void> Gateway::Parts::make_tissue(const TissueSetup& setup) {
+  auto made = TissueWorker::make(setup.objects, setup.connections, solids, *engine, readers->tissue, board, clock);
+  if (!made) return std::unexpected(made.error());
+  tissue = *std::move(made);
+  return {};
+}
+
 Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions& options) {
   std::map<std::string, StreamConfig, std::less<>> streams;
   for (RobotStream& stream : loaded.streams) streams.emplace(stream.robot, std::move(stream.config));
+  TissueParts of_tissue = tissue_parts(loaded.tissue, loaded.home, tissue.get());
   const auto save = [this](std::string_view name) -> Result<void> {
     auto written = write_flight_record(std::string(name), "request");
     if (!written) return std::unexpected(written.error());
@@ -243,6 +265,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                                                        .views = std::move(loaded.views),
                                                        .layout = std::move(loaded.layout),
                                                        .collision = std::move(loaded.collision),
+                                                       .tissue = std::move(of_tissue),
                                                        .foot_switches = loaded.foot_switches,
                                                        .engine = *engine,
                                                        .board = board,
@@ -277,8 +300,6 @@ Result<void> Gateway::Parts::start_loop() {
 }
 
 void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
-  // Both look at the same shapes.
-  const auto solids = std::make_shared<geometry::SolidLibrary>();
   const Nanoseconds period = loop->options().period;
   collisions = std::make_unique<CollisionWorker>(readers->collisions, board, clock, period, solids);
   ranging = std::make_unique<RangingWorker>(readers->ranging, board, clock, period, solids);
@@ -286,6 +307,7 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W);
   tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period);
   traces = std::make_unique<TraceWorker>(readers->traces, board, clock, period);
+  if (tissue) tissue->start();
 }
 
 Result<void> Gateway::Parts::start_messages() {
@@ -309,8 +331,9 @@ Result<void> Gateway::Parts::start_messages() {
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds) {
   auto outputs = make_outputs(queues, dds, instance->info().name);
   if (!outputs) return std::unexpected(outputs.error());
-  publisher = std::make_unique<Publisher>(readers->publisher, board, collisions->board(), ranging->board(),
-                                          forces->board(), clock, loop->options().period, std::move(*outputs));
+  publisher =
+      std::make_unique<Publisher>(readers->publisher, board, collisions->board(), ranging->board(), forces->board(),
+                                  clock, loop->options().period, std::move(*outputs), tissue_sources());
   return {};
 }
 
@@ -319,11 +342,11 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
                                             const DdsOutputConfig& dds) {
   auto outputs = make_picture_outputs(dds);
   if (!outputs) return std::unexpected(outputs.error());
-  renderer =
-      std::make_unique<RenderService>(RenderService::Options{settings, headless, std::move(*outputs), {}},
-                                      SceneSource::Boards{readers->pictures, board, collisions->board(),
-                                                          ranging->board(), forces->board(), traces->board(), clock},
-                                      picture_counter);
+  renderer = std::make_unique<RenderService>(
+      RenderService::Options{settings, headless, std::move(*outputs), {}},
+      SceneSource::Boards{readers->pictures, board, collisions->board(), ranging->board(), forces->board(),
+                          traces->board(), clock, tissue_sources().view},
+      picture_counter);
   return {};
 }
 
@@ -426,7 +449,8 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
   const Timestamp now = clock.now();
   look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *cell_state, tick,
         robots, status_builder.poses(), picture_counter.count(), collisions->board().latest(),
-        ranging->board().latest(), forces->board().latest(), queues_now, problems_now, commands_logged});
+        ranging->board().latest(), forces->board().latest(), queues_now, problems_now, commands_logged,
+        tissue_sources().newest_report()});
 }
 
 Problems Gateway::Parts::problems() const {
@@ -487,7 +511,8 @@ std::string Gateway::Parts::status() {
                           std::move(outputs),
                           problems(),
                           {guard != nullptr && guard->running(), guard != nullptr ? guard->process() : 0},
-                          command_log()});
+                          command_log(),
+                          tissue_sources().newest_report()});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -515,6 +540,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->prepare_machine();
   if (step) step = parts->take_instance(options);
   if (step) parts->open_command_log();
+  if (step) step = parts->make_tissue(loaded->tissue);
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
   if (step) step = parts->start_loop();

@@ -8,8 +8,23 @@
 #include "drivers/display/renderer.hpp"
 #include "rt_core/cell/view.hpp"
 #include "rt_core/scene/scene_builder.hpp"
+#include "rt_core/tissue/world.hpp"
 
 namespace cellmirror::app {
+
+namespace {
+
+// The deformable objects as their files have them; null: the cell has none.
+Result<std::shared_ptr<const TissueView>> tissue_at_rest(const TissueSetup& setup) {
+  if (setup.objects.empty()) return nullptr;
+  const Result<tissue::World> world = tissue::World::make(setup.objects, setup.connections);
+  if (!world) return std::unexpected(world.error());
+  auto view = std::make_shared<TissueView>();
+  world->view(*view, false);
+  return view;
+}
+
+}  // namespace
 
 Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotRequest& wanted) {
   const PictureRequest request = picture_request_of(wanted, loaded.pictures.width, loaded.pictures.height);
@@ -28,6 +43,9 @@ Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotReques
   input.poses = &poses;
   input.display = &display;
   input.posture_time = input.now = now;
+  const auto tissue = tissue_at_rest(loaded.tissue);
+  if (!tissue) return std::unexpected(tissue.error());
+  input.tissue = *tissue;
   builder.build(input, scene);
   const auto panes = panes_of({*cell, poses, display, now, 0}, request);
   if (!panes) return std::unexpected(panes.error());

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/owner/tissue/tissue_parts.hpp"
+
 namespace cellmirror::app {
 
 namespace {
@@ -20,7 +22,7 @@ bool any_moves(const engine::TickState& tick, const CellState& cell_state) {
 
 }  // namespace
 
-OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
+OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer, TissuePort* tissue)
     : observer_(std::move(observer)),
       watchdog_(kNeverWatched, {}),
       engine_(watchdog_, engine::capacity_for(cell.cell.robot_ids().size())),
@@ -36,6 +38,7 @@ OffLineGateway::OffLineGateway(LoadedCell cell, OffLineObserver observer)
       .views = std::move(cell.views),
       .layout = std::move(cell.layout),
       .collision = std::move(cell.collision),
+      .tissue = tissue_parts(cell.tissue, cell.home, tissue),
       .foot_switches = {},
       .engine = engine_,
       .board = board_,

@@ -8,6 +8,7 @@
 
 #include "app/owner/cell_owner.hpp"
 #include "app/snapshot/cell_state.hpp"
+#include "app/snapshot/tissue_port.hpp"
 #include "config/cell_file.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -31,7 +32,8 @@ class OffLineGateway {
   // Instants begin here, so that none of them is "never".
   static constexpr Timestamp kBegin{1'000'000'000};
 
-  OffLineGateway(LoadedCell cell, OffLineObserver observer);
+  // `tissue` may be null; else it outlives this.
+  OffLineGateway(LoadedCell cell, OffLineObserver observer, TissuePort* tissue = nullptr);
 
   // Begins the script (CellOwner::prepare()).
   Result<void> begin(const std::string& script, bool is_path);

@@ -12,6 +12,7 @@
 #include "app/simulation/collision_watch.hpp"
 #include "app/simulation/motion_recorder.hpp"
 #include "app/simulation/off_line_gateway.hpp"
+#include "app/simulation/off_line_tissue.hpp"
 #include "app/simulation/program_recorder.hpp"
 
 namespace cellmirror::app {
@@ -31,13 +32,15 @@ double processor_time_s() {
 
 class Simulation {
  public:
-  Simulation(LoadedCell cell, const SimulationOptions& options)
+  // `tissue` may be null.
+  Simulation(LoadedCell cell, const SimulationOptions& options, std::unique_ptr<OffLineTissue> tissue)
       : options_(options),
         period_(nanoseconds(1.0 / cell.loop.rate_hz)),
         motion_(OffLineGateway::kBegin, period_),
         programs_(OffLineGateway::kBegin, motion_),
         collisions_(OffLineGateway::kBegin, std::max(nanoseconds(options.collision_period_s), period_)),
-        gateway_(std::move(cell), observer()) {}
+        tissue_(std::move(tissue)),
+        gateway_(std::move(cell), observer(), tissue_.get()) {}
 
   Result<SimulationResult> run(const SimulationProgress& progress) {
     const auto begin = std::chrono::steady_clock::now();
@@ -58,6 +61,7 @@ class Simulation {
     observer.tick = [this](const std::shared_ptr<const CellState>& cell_state, const engine::TickState& tick) {
       motion_.observe(cell_state, tick);
       if (options_.collisions) collisions_.observe(cell_state, tick);
+      if (tissue_) tissue_->observe(*cell_state, tick);
     };
     observer.move = [this](std::string_view robot, const motion::Move& move) { motion_.given(robot, move); };
     observer.message = [this](const ShownText& message) { keep(message); };
@@ -136,6 +140,7 @@ class Simulation {
     programs_.finish(status, now, result_);
     motion_.finish(result_);
     collisions_.finish(result_.collision);
+    if (tissue_) tissue_->finish(result_.tissue);
     if (!options_.collisions) result_.collision.why_not = "--no-collisions";
     if (result_.end != SimulationEnd::finished) result_.end_note = end_note(status);
   }
@@ -177,6 +182,7 @@ class Simulation {
   MotionRecorder motion_;
   ProgramRecorder programs_;
   CollisionWatch collisions_;
+  std::unique_ptr<OffLineTissue> tissue_;
   OffLineGateway gateway_;
 };
 
@@ -193,7 +199,9 @@ bool SimulationResult::failed() const {
 Result<SimulationResult> simulate(LoadedCell cell, const SimulationOptions& options,
                                   const SimulationProgress& progress) {
   std::string name = cell.name;
-  const auto simulation = std::make_unique<Simulation>(std::move(cell), options);
+  auto tissue = OffLineTissue::make(cell.tissue, OffLineGateway::kBegin);
+  if (!tissue) return std::unexpected(tissue.error());
+  const auto simulation = std::make_unique<Simulation>(std::move(cell), options, *std::move(tissue));
   auto result = simulation->run(progress);
   if (result) result->cell = std::move(name);
   return result;

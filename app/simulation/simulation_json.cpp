@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/simulation/simulation_report.hpp"
+#include "app/simulation/tissue_summary.hpp"
 
 namespace cellmirror::app {
 
@@ -165,7 +166,8 @@ std::string simulation_json(const SimulationResult& result) {
                          {"messages_not_listed", result.more_messages},
                          {"refused", refusals_json(result)},
                          {"refused_not_listed", result.more_refusals},
-                         {"collision", collisions_json(result.collision)}};
+                         {"collision", collisions_json(result.collision)},
+                         {"tissue", tissue_json(result)}};
   return document.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -10,6 +10,7 @@
 
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/ports/robot_state.hpp"
+#include "rt_core/ports/tissue_state.hpp"
 
 namespace cellmirror::app {
 
@@ -20,6 +21,7 @@ inline constexpr std::size_t kMostKeptRefusals = 1'000;
 inline constexpr std::size_t kMostKeptRuns = 10'000;
 inline constexpr std::size_t kMostKeptMessages = 1'000;
 inline constexpr std::size_t kMostKeptEvents = 200'000;
+inline constexpr std::size_t kMostKeptTissueEvents = 10'000;
 
 // From here on a value counts as having approached its limit.
 inline constexpr double kNearRange = 0.02;     // of the joint's range, from its end
@@ -133,6 +135,21 @@ struct CollisionSummary {
   std::vector<double> distances_m;
 };
 
+struct SimulatedTissueEvent {
+  double time_s = 0;
+  TissueEvent event;
+};
+
+// Deformable objects; no step: the cell has none.
+struct TissueSummary {
+  std::string simd;  // instruction set of the element kernel: the same one gives the same bits
+  std::uint64_t steps = 0;
+  TissueState state;         // at the end
+  std::uint64_t digest = 0;  // of all positions and burns at the end
+  std::vector<SimulatedTissueEvent> events;
+  std::uint64_t more_events = 0;
+};
+
 enum class SimulationEnd : std::uint8_t {
   finished,      // the script and everything that it began has ended
   time_limit,    // --for
@@ -165,6 +182,7 @@ struct SimulationResult {
   std::vector<SimulatedMessage> messages;
   std::uint64_t more_messages = 0;
   CollisionSummary collision;
+  TissueSummary tissue;
 
   [[nodiscard]] double times_real_time() const { return wall_s > 0.0 ? simulated_s / wall_s : 0.0; }
   // A command was refused, a program failed, programs waited for each other until one was stopped, or it did not come

@@ -8,6 +8,7 @@
 
 #include "app/console/display_names.hpp"
 #include "app/simulation/simulation_report.hpp"
+#include "app/simulation/tissue_summary.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -190,7 +191,7 @@ const char* end_word(SimulationEnd end) {
 
 std::string simulation_text(const SimulationResult& result) {
   return heading(result) + programs(result) + messages(result) + robots(result) + moves(result) + limits(result) +
-         collisions(result) + refusals(result);
+         collisions(result) + tissue_text(result) + refusals(result);
 }
 
 }  // namespace cellmirror::app
