@@ -43,9 +43,12 @@ std::vector<SwitchChange> parse_switch_sequence(std::string_view text, std::stri
     diagnostics.error({std::string(file)}, fmt::format("longer than {} bytes", kMaxSequenceText), "split it");
     return plan;
   }
+  // Semicolons stand for blanks: a line of ./run's list of simulators has no quotes.
+  std::string spaced(text);
+  std::ranges::replace(spaced, ';', ' ');
   double now = 0;
   bool after_change = false;
-  for (const std::string_view word : words(text, kMaxWords)) {
+  for (const std::string_view word : words(spaced, kMaxWords)) {
     if (const auto wait = parse_duration(word)) {
       now += *wait;
       after_change = false;
@@ -56,7 +59,7 @@ std::vector<SwitchChange> parse_switch_sequence(std::string_view text, std::stri
       SwitchChange change;
       if (!parse_change(part, now, change)) {
         diagnostics.error(
-            place_of(text, word, file), fmt::format("'{}' is not a change of a switch", printable(word, 40)),
+            place_of(spaced, word, file), fmt::format("'{}' is not a change of a switch", printable(word, 40)),
             fmt::format("write 1+ (closes), 1- (opens), 1+,2+ (at once) or a time, e.g. 500ms; switches 1 to {}",
                         kMaxSwitches));
         break;

@@ -49,8 +49,8 @@ class EarlyBuild:
 class LaterPackages:
     """Installs packages that only the tests need, while the release is built."""
 
-    def __init__(self):
-        self.process = subprocess.Popen(["bash", "-uc", ". cmake/setup.sh; ensure_packages cmake/packages-later.txt"], cwd=ROOT,
+    def __init__(self, lists: str):
+        self.process = subprocess.Popen(["bash", "-uc", f". cmake/setup.sh; ensure_packages {lists}"], cwd=ROOT,
                                         stdin=subprocess.DEVNULL)
 
     def wait(self) -> Report:
@@ -67,7 +67,7 @@ class Check:
         self.options = options
         self.total = Report()
         self.rows: list[tuple[str, float, str]] = []
-        self.packages = LaterPackages()
+        self.packages = LaterPackages("cmake/packages-later.txt" + (" cmake/packages-peers.txt" if options.peers else ""))
 
     def stage(self, name: str, action) -> bool:
         """Runs `action`, which returns a Report; False if anything in it failed."""
@@ -96,6 +96,20 @@ class Check:
     def tests(self, name: str, folder: str, *selection: str, **environment: str) -> bool:
         return self.stage(name, lambda: run_tests(ROOT / folder, name, list(selection), environment))
 
+    def peers(self) -> bool:
+        """The comparisons with programs of others, all of which are there now: what skips has not been compared."""
+
+        def action() -> Report:
+            report = run_tests(ROOT / "build", "peers", ["-L", "^peers$"], {})
+            for case in report.skipped:
+                report.fail(case.name, f"it was skipped, and nothing compared: {case.detail}")
+            report.skipped.clear()
+            if "no such tests" in report.notes:
+                report.fail("no test is labelled peers", "see cmake/Testing.cmake")
+            return report
+
+        return self.stage("peers", action)
+
     def release(self) -> None:
         cache = ROOT / "build/CMakeCache.txt"
         without_tests = cache.exists() and "CELLMIRROR_TESTS:BOOL=OFF" in cache.read_text()
@@ -108,7 +122,9 @@ class Check:
             self.packages.wait()
             return
         self.stage("packages", self.packages.wait)
-        if self.options.label:
+        if self.options.peers:
+            self.peers()
+        elif self.options.label:
             self.tests("tests", "build", "-L", f"^({self.options.label})$")
         elif self.options.quick:
             self.tests("tests", "build", "-LE", "^(integration|stress|bench)$")
@@ -153,9 +169,11 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="release build only: lint and tests without timing")
     parser.add_argument("--full", action="store_true", help="clang-tidy over every source, without a time limit")
     parser.add_argument("--label", help="only the release tests with this label: unit, integration, golden, fuzz, stress, lint, docs, bench")
+    parser.add_argument("--peers", action="store_true",
+                        help="installs the programs in cmake/packages-peers.txt, and runs only the comparisons with them; a skip fails")
     check = Check(parser.parse_args())
     check.release()
-    if not check.options.quick and not check.options.label:
+    if not check.options.quick and not check.options.label and not check.options.peers:
         check.sanitizers()
         check.tidy()
     return check.finish()

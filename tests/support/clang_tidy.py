@@ -3,7 +3,8 @@
 What was clean is remembered by the content of the source and of all headers of ours that it includes, so that a second run
 checks only what changed. The sources that the change touches (since CHECK_BASE, by default the newest commit that is twelve hours
 older than HEAD) come first and have TIDY_CHANGE_SECONDS; the others, what was committed last first, have TIDY_SECONDS together.
-`./check --full` has no bound. Sources that were not reached count as skipped."""
+Within ./check both end when CHECK_SECONDS have passed since it began. `./check --full` has no bound. Sources that were not
+reached count as skipped."""
 
 import hashlib
 import json
@@ -21,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TIDY = "clang-tidy-19"
 SECONDS = float(os.environ.get("TIDY_SECONDS", "40"))
 CHANGE_SECONDS = float(os.environ.get("TIDY_CHANGE_SECONDS", "420"))
+CHECK_SECONDS = 1740.0  # a whole ./check takes at most half an hour
 CHANGE_AGE = 12 * 3600  # s
 CLEAN = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cellmirror/clang-tidy"
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.MULTILINE)
@@ -108,6 +110,12 @@ def check(build: Path, unit: Path, command: str, end: float) -> str | None:
     return result.stdout.strip() or result.stderr.strip()
 
 
+def within_check(seconds: float) -> float:
+    """Not beyond the time of a ./check that runs this, but enough for a few sources in any case."""
+    started = os.environ.get("CHECK_STARTED")
+    return seconds if not started else max(min(seconds, CHECK_SECONDS - (time.time() - float(started))), 20.0)
+
+
 def run(build: Path, full: bool = False) -> Report:
     report = Report()
     for entry in empty_entries():
@@ -119,8 +127,8 @@ def run(build: Path, full: bool = False) -> Report:
     units = sources(build)
     changed = touched()
     first = [unit for unit in units if str(unit.relative_to(ROOT)) in changed]
-    check_all(report, build, {unit: units[unit] for unit in first}, None if full else CHANGE_SECONDS)
-    check_all(report, build, {unit: command for unit, command in units.items() if unit not in set(first)}, None if full else SECONDS)
+    check_all(report, build, {unit: units[unit] for unit in first}, None if full else within_check(CHANGE_SECONDS))
+    check_all(report, build, {unit: command for unit, command in units.items() if unit not in set(first)}, None if full else within_check(SECONDS))
     return report
 
 

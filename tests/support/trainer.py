@@ -1,4 +1,4 @@
-"""The trainer cell for tests: shared memories of this run's own, and simulated hands and feet."""
+"""The phantom trainer cell for tests: shared memories of this run's own, and simulated hands and feet."""
 
 import csv
 import json
@@ -47,7 +47,7 @@ def with_own_memories(scratch, drives=("pose", "pose"), more=PATIENT):
     text, devices = re.subn(r"(?ms)^\[\[haptic\]\]$.*?(?=^\[|\Z)", own, text)
     text = re.sub(r"(?ms)^\[foot_switches\]$.*?(?=^\[|\Z)", "", text)
     if devices != 2:
-        raise AssertionError(f"the trainer cell has {devices} haptic devices")
+        raise AssertionError(f"the phantom trainer cell has {devices} haptic devices")
     text += f"\n[foot_switches]\nkey = {keys['switches']}\nbytes = 1\ndebounce_s = 0.01\nonline = true\n"
     scratch.cell_file.write_text(text)
     return keys

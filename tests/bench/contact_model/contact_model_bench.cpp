@@ -1,4 +1,4 @@
-// How long a contact model takes on the trainer cell, for instruments that touch: the times of single models.
+// How long a contact model takes on the phantom trainer cell, for instruments that touch: the times of single models.
 #include <benchmark/benchmark.h>
 
 #include <ctime>

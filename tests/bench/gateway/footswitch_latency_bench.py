@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""From the bit of a foot switch to the first command of its script, in the running gateway with the trainer cell.
+"""From the bit of a foot switch to the first command of its script, in the running gateway with the phantom trainer cell.
 
   footswitch_latency_bench.py [CHANGES=500]
 
@@ -37,7 +37,7 @@ def wait_for(force, wanted, begin):
 
 def main():
     changes = int(sys.argv[1]) if len(sys.argv) > 1 else 500
-    scratch = g.Scratch("trainer")
+    scratch = g.Scratch("phantom_trainer")
     keys = t.with_own_memories(scratch)
     force_key = unused_key()
     text = scratch.cell_file.read_text()

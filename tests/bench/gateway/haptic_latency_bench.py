@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""From a haptic device's pose to the force that answers it, in the running gateway with the trainer cell.
+"""From a haptic device's pose to the force that answers it, in the running gateway with the phantom trainer cell.
 
   haptic_latency_bench.py [SECONDS=60] [--alone]
 
@@ -140,7 +140,7 @@ def main():
     alone = "--alone" in sys.argv
     numbers = [word for word in sys.argv[1:] if not word.startswith("-")]
     seconds = float(numbers[0]) if numbers else 60
-    scratch = g.Scratch("trainer")
+    scratch = g.Scratch("phantom_trainer")
     # Guards that outlast such pauses: a device that is faulted would be measured without its wall.
     keys = t.with_own_memories(scratch, more=t.PATIENT.replace("stale_after_s = 0.03", "stale_after_s = 0.25", 1)
                                .replace("periods = 500", "periods = 1000"))

@@ -86,8 +86,9 @@ class Stage {
       end = fmt::format("done {}, refused {}\n{}", report.counters.done, report.counters.refused,
                         report.diagnostics.text());
     };
-    script::ScriptRunner runner({names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, diagnosis_},
-                                home_, clock_, {.run_ended = run_ended});
+    script::ScriptRunner runner(
+        {names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, quiet_, diagnosis_}, home_, clock_,
+        {.run_ended = run_ended});
     Diagnostics findings;
     if (!runner.start_file(name, &findings)) return "nothing of it ran\n" + findings.text();
     do {

@@ -1,4 +1,4 @@
-// The trainer cell with one instrument that is placed by its tip, and how deep it really is in anything.
+// The phantom trainer cell with one instrument that is placed by its tip, and how deep it really is in anything.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Trainer {
     const auto folder = source != nullptr
                             ? std::filesystem::path(source)
                             : std::filesystem::path(__FILE__).parent_path().parent_path().parent_path().parent_path();
-    loaded_ = load_cell(folder / "config/cells/trainer/cell.toml", diagnostics);
+    loaded_ = load_cell(folder / "config/cells/phantom_trainer/cell.toml", diagnostics);
     if (!loaded_) std::abort();
     q = cell().start_positions();
     left = cell().robot("LAP_LEFT")->slot();

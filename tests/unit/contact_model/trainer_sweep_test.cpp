@@ -1,5 +1,5 @@
-// The trainer cell: a proxy that obeys old contact models does not enter the phantom, shafts have levers, and what the
-// other hand or a foot switch changes is followed.
+// The phantom trainer cell: a proxy that obeys old contact models does not enter the phantom, shafts have levers, and
+// what the other hand or a foot switch changes is followed.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -99,9 +99,9 @@ TEST_F(GoldenPictures, TheTransferCellFromAbove) {
 }
 
 TEST_F(GoldenPictures, TheTrainer) {
-  show("trainer");
+  show("phantom_trainer");
   all_modes();
-  expect_as_golden("trainer");
+  expect_as_golden("phantom_trainer");
 }
 
 TEST_F(GoldenPictures, TheRos2CellWithAGhost) {
