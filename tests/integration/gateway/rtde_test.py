@@ -1,0 +1,155 @@
+"""A robot mirrored over RTDE: from the simulated controller, and from a server written here from the protocol's guide."""
+
+import socket
+import struct
+import threading
+import time
+import unittest
+
+import gateway as g
+
+JOINTS = 6
+VARIABLES = b"timestamp,actual_q,actual_qd,robot_mode,safety_mode"
+TYPES = b"DOUBLE,VECTOR6D,VECTOR6D,INT32,INT32"
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+def package(kind, payload=b""):
+    return struct.pack(">HB", len(payload) + 3, kind) + payload
+
+
+class Controller(threading.Thread):
+    """Answers one client after another. `types` is what it answers for the variables."""
+
+    def __init__(self, port, types=TYPES, rate=125.0):
+        super().__init__(daemon=True)
+        self.types, self.rate, self.q0 = types, rate, 0.0
+        self.requests, self.stop = [], threading.Event()
+        self.listener = socket.create_server(("127.0.0.1", port))
+        self.listener.settimeout(0.2)
+
+    def run(self):
+        while not self.stop.is_set():
+            try:
+                client, _ = self.listener.accept()
+            except TimeoutError:
+                continue
+            with client:
+                client.settimeout(2)
+                try:
+                    self.serve(client)
+                except OSError:
+                    pass
+        self.listener.close()
+
+    def request(self, client):
+        def exactly(count):
+            data = b""
+            while len(data) < count:
+                more = client.recv(count - len(data))
+                if not more:
+                    raise ConnectionError
+                data += more
+            return data
+
+        length, kind = struct.unpack(">HB", exactly(3))
+        payload = exactly(length - 3)
+        self.requests.append((kind, payload))
+        return payload
+
+    def serve(self, client):
+        self.request(client)
+        client.sendall(package(86, b"\x01"))
+        self.request(client)
+        client.sendall(package(79, b"\x07" + self.types))
+        self.request(client)
+        client.sendall(package(83, b"\x01"))
+        start = time.monotonic()
+        while not self.stop.wait(1 / self.rate):
+            q = [self.q0, 0.2, 0.3, 0.4, 0.5, 0.6]
+            client.sendall(package(85, b"\x07" + struct.pack(">d6d6dii", 100 + time.monotonic() - start, *q, *[0.0] * 6, 7, 1)))
+
+    def close(self):
+        self.stop.set()
+        self.join()
+
+
+class Rtde(unittest.TestCase):
+    def setUp(self):
+        self.port = free_port()
+        self.scratch = g.Scratch("ros2_cell")
+        text = self.scratch.cell_file.read_text()
+        begin = text.index("[[stream]]")
+        end = text.index("[dds_output]")
+        self.scratch.cell_file.write_text(
+            text[:begin] + f'[[stream]]\nrobot = "demo_arm"\nkind = "rtde"\naddress = "127.0.0.1"\nport = {self.port}\n'
+            'stale_after_s = 0.3\nlost_after_s = 1.0\nplausibility = false\n' + text[text.index("\n[startup]", end):])
+        checked = self.scratch.cellmirror("check", str(self.scratch.cell_file))
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+        self.gateway = g.Gateway(self.scratch)
+        done = self.scratch.send("ROBOT demo_arm online")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def tearDown(self):
+        self.gateway.close()
+        self.scratch.remove()
+
+    def stream(self):
+        return self.scratch.robot("demo_arm")["stream"]
+
+    def fresh(self):
+        self.assertTrue(g.eventually(lambda: self.stream()["state"] == "fresh", 10), self.stream())
+
+    def position(self):
+        return self.scratch.robot("demo_arm")["joints"][0]["position"]
+
+    def test_the_simulated_controller_is_mirrored_and_comes_back(self):
+        self.assertEqual(self.stream()["state"], "none")
+        sim = g.sim_robot("rtde", "--port", str(self.port), "--rate", "125", "--motion", "sine:amplitude=0.3,period=2",
+                          "--for", "6")
+        self.fresh()
+        self.assertIn("running", self.stream()["condition"])
+        first = self.position()
+        self.assertTrue(g.eventually(lambda: abs(self.position() - first) > 0.02, 5))
+        self.assertTrue(g.eventually(lambda: self.stream()["state"] == "lost", 15), self.stream())
+        sim.close()
+        again = g.sim_robot("rtde", "--port", str(self.port), "--rate", "125")
+        self.fresh()
+        again.close()
+
+    def test_faults_of_the_controller_are_counted(self):
+        sim = g.sim_robot("rtde", "--port", str(self.port), "--rate", "125", "--fault", "nan:p=0.1,joint=2", "--fault", "loss:p=0.2")
+        self.fresh()
+        self.assertTrue(g.eventually(lambda: self.stream()["rejected"] > 3 and self.stream()["lost"] > 3, 10), self.stream())
+        sim.close()
+
+    def test_a_controller_of_others(self):
+        controller = Controller(self.port)
+        controller.start()
+        try:
+            self.fresh()
+            controller.q0 = 0.4
+            self.assertTrue(g.eventually(lambda: abs(self.position() - 0.4) < 1e-9, 5), self.position())
+            self.assertEqual([kind for kind, _ in controller.requests[:3]], [86, 79, 83])
+            self.assertEqual(controller.requests[0][1], b"\x00\x02")
+            self.assertEqual(controller.requests[1][1], struct.pack(">d", 125.0) + VARIABLES)
+        finally:
+            controller.close()
+
+    def test_a_controller_without_the_variables_is_refused_with_the_reason(self):
+        controller = Controller(self.port, types=b"DOUBLE,VECTOR6D,NOT_FOUND,INT32,INT32")
+        controller.start()
+        try:
+            self.assertTrue(g.eventually(lambda: "NOT_FOUND" in self.stream()["condition"], 10), self.stream())
+            self.assertEqual(self.stream()["state"], "none")
+        finally:
+            controller.close()
+
+
+if __name__ == "__main__":
+    g.main()

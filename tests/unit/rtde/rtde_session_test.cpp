@@ -1,0 +1,155 @@
+// The gateway's side of a connection: the order of requests, samples, and every fault of a controller.
+#include "drivers/rtde/rtde_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace cellmirror::rtde {
+namespace {
+
+constexpr std::uint8_t kRecipe = 4;
+
+struct Recorder final : SessionOutput {
+  void send(std::span<const std::uint8_t> bytes) override { sent.emplace_back(bytes.begin(), bytes.end()); }
+  void sample(const JointSample& one) override { samples.push_back(one); }
+  void rejected(const std::string& why) override { reasons.push_back(why); }
+  void message(const std::string& text) override { messages.push_back(text); }
+
+  std::vector<Bytes> sent;
+  std::vector<JointSample> samples;
+  std::vector<std::string> reasons;
+  std::vector<std::string> messages;
+};
+
+RtdeStreamConfig six_joints() {
+  RtdeStreamConfig config;
+  for (std::size_t i = 0; i < kJoints; ++i) config.joints.push_back({.joint = i, .number = i});
+  return config;
+}
+
+struct Link {
+  explicit Link(const RtdeStreamConfig& config = six_joints()) : session(config, out) { session.begin(at(0)); }
+
+  static Timestamp at(double s) { return Timestamp{std::isfinite(s) ? static_cast<std::int64_t>(s * 1e9) + 1 : 1}; }
+  void receive(const Bytes& bytes, double s = 0) { session.receive(bytes, at(s)); }
+  void run() {
+    receive(accepted(PackageType::version, true));
+    receive(outputs_answer({.recipe = kRecipe, .types = std::string(kVariableTypes)}));
+    receive(accepted(PackageType::start, true));
+  }
+  void data(double timestamp_s, double q0 = 0) {
+    RobotData robot{.timestamp_s = timestamp_s};
+    robot.q[0] = q0;
+    robot.q[5] = 0.6;
+    robot.qd[5] = -0.1;
+    receive(data_package(robot, kRecipe), timestamp_s);
+  }
+
+  Recorder out;
+  RtdeSession session;
+};
+
+TEST(RtdeSession, AsksForVersionOutputsAndStartInTurn) {
+  Link link;
+  ASSERT_EQ(link.out.sent.size(), 1U);
+  EXPECT_EQ(link.out.sent[0], version_request(2));
+  link.receive(accepted(PackageType::version, true));
+  ASSERT_EQ(link.out.sent.size(), 2U);
+  EXPECT_EQ(link.out.sent[1], outputs_request(125, kVariables));
+  link.receive(outputs_answer({.recipe = kRecipe, .types = std::string(kVariableTypes)}));
+  ASSERT_EQ(link.out.sent.size(), 3U);
+  EXPECT_EQ(link.out.sent[2], start_request());
+  EXPECT_EQ(link.session.phase(), RtdeSession::Phase::starting);
+  link.receive(accepted(PackageType::start, true));
+  EXPECT_EQ(link.session.phase(), RtdeSession::Phase::running);
+}
+
+TEST(RtdeSession, SamplesHaveScaleAndOffsetAndTheJointsThatAreNamed) {
+  RtdeStreamConfig config;
+  config.joints.push_back({.joint = 2, .number = 5, .scale = -2, .offset = 0.5});
+  Link link(config);
+  link.run();
+  link.data(1.0);
+  ASSERT_EQ(link.out.samples.size(), 1U);
+  const JointSample& sample = link.out.samples[0];
+  EXPECT_EQ(sample.present, 0b100U);
+  EXPECT_DOUBLE_EQ(sample.position[2], 0.5 - 1.2);
+  EXPECT_DOUBLE_EQ(sample.velocity[2], 0.2);
+  EXPECT_EQ(sample.receive_time, Link::at(1.0));
+}
+
+TEST(RtdeSession, GapsInTheControllersTimeAreLostSamples) {
+  Link link;
+  link.run();
+  link.data(1.000);
+  link.data(1.008);
+  link.data(1.032);
+  EXPECT_EQ(link.session.counters().samples, 3U);
+  EXPECT_EQ(link.session.counters().lost, 2U);
+}
+
+TEST(RtdeSession, ValuesThatAreNotFiniteAreRefusedAndOthersStay) {
+  Link link;
+  link.run();
+  link.data(1.0, std::numeric_limits<double>::quiet_NaN());
+  ASSERT_EQ(link.out.samples.size(), 1U);
+  EXPECT_EQ(link.out.samples[0].refused, 1U);
+  EXPECT_EQ(link.out.samples[0].present, 0b111110U);
+  EXPECT_EQ(link.session.counters().rejected, 1U);
+  link.data(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(link.out.samples.size(), 1U);
+}
+
+TEST(RtdeSession, PackagesThatAreNotNewerAreRefused) {
+  Link link;
+  link.run();
+  link.data(1.0);
+  link.data(1.0);
+  link.data(0.5);
+  EXPECT_EQ(link.session.counters().samples, 1U);
+  EXPECT_EQ(link.session.counters().rejected, 2U);
+  link.session.begin(Link::at(2));  // the controller was started again: its time begins anew
+  link.run();
+  link.data(0.1);
+  EXPECT_EQ(link.session.counters().samples, 2U);
+}
+
+TEST(RtdeSession, WhatAControllerRefusesEndsTheConnectionWithTheReason) {
+  Link version;
+  version.receive(accepted(PackageType::version, false));
+  EXPECT_TRUE(version.session.failed());
+  EXPECT_NE(version.out.reasons.back().find("version"), std::string::npos);
+  Link variables;
+  variables.receive(accepted(PackageType::version, true));
+  variables.receive(outputs_answer({.recipe = 0, .types = "DOUBLE,NOT_FOUND"}));
+  EXPECT_TRUE(variables.session.failed());
+  EXPECT_NE(variables.out.reasons.back().find("NOT_FOUND"), std::string::npos);
+}
+
+TEST(RtdeSession, AnswersOutOfTurnAndForeignPackagesAreCountedOnly) {
+  Link link;
+  link.receive(accepted(PackageType::start, true));
+  link.data(1.0);
+  link.receive({0, 5, 73, 1, 2});
+  EXPECT_EQ(link.session.counters().rejected, 3U);
+  EXPECT_FALSE(link.session.failed());
+  link.run();
+  link.data(1.0);
+  EXPECT_EQ(link.out.samples.size(), 1U);
+  link.receive({0, 8, 77, 2, 'h', 'i', 0, 0});
+  ASSERT_EQ(link.out.messages.size(), 1U);
+  EXPECT_EQ(link.out.messages[0], "hi");
+}
+
+TEST(RtdeSession, BytesOfAnotherProtocolEndTheConnection) {
+  Link link;
+  link.receive({0, 0, 0, 0});
+  EXPECT_TRUE(link.session.failed());
+}
+
+}  // namespace
+}  // namespace cellmirror::rtde
