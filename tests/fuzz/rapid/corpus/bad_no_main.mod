@@ -1,0 +1,4 @@
+MODULE M
+  PROC start()
+  ENDPROC
+ENDMODULE

@@ -1,0 +1,3 @@
+MODULE M
+  PROC main()
+    Set do1;

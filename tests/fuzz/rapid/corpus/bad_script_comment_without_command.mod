@@ -1,0 +1,7 @@
+MODULE M
+  ! %DRAW_SCENE
+  PROC main()
+    !%
+    ! %  ;
+  ENDPROC
+ENDMODULE

@@ -1,0 +1,6 @@
+%%%
+  VERSION:1
+MODULE M
+  PROC main()
+  ENDPROC
+ENDMODULE

@@ -1,0 +1,6 @@
+MODULE M
+  LOCAL Set do1;
+  LOCAL VAR num n:=1;
+  LOCAL PROC main()
+  ENDPROC
+ENDMODULE

@@ -1,0 +1,9 @@
+MODULE M
+  PROC main()
+    take;
+    tke;
+    Take;
+  ENDPROC
+  PROC takes()
+  ENDPROC
+ENDMODULE

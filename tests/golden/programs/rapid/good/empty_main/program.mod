@@ -1,0 +1,5 @@
+MODULE M
+  PROC main()
+    ! nothing
+  ENDPROC
+ENDMODULE

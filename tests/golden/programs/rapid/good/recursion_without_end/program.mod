@@ -1,0 +1,5 @@
+MODULE M
+  PROC main()
+    main;
+  ENDPROC
+ENDMODULE
