@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "rt_core/geometry/convex_hull.hpp"
-#include "rt_core/geometry/convex_parts.hpp"
+#include "rt_core/geometry/convex/convex_hull.hpp"
+#include "rt_core/geometry/convex/convex_parts.hpp"
 #include "tests/unit/geometry_mesh/shapes.hpp"
 
 namespace cellmirror::geometry {

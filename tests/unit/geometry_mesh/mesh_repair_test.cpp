@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 #include "tests/unit/geometry_mesh/shapes.hpp"
 
 namespace cellmirror::geometry {

@@ -1,9 +1,9 @@
-#include "rt_core/geometry/convex_simplex.hpp"
+#include "rt_core/geometry/convex/convex_simplex.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "rt_core/geometry/convex_support.hpp"
+#include "rt_core/geometry/convex/convex_support.hpp"
 
 namespace cellmirror::geometry {
 

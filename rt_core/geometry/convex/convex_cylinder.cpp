@@ -1,4 +1,4 @@
-#include "rt_core/geometry/convex_cylinder.hpp"
+#include "rt_core/geometry/convex/convex_cylinder.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "rt_core/geometry/mesh_repair_steps.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair_steps.hpp"
 
 namespace cellmirror::geometry {
 

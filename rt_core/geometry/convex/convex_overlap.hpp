@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "rt_core/geometry/convex_pairs.hpp"
+#include "rt_core/geometry/convex/convex_pairs.hpp"
 
 namespace cellmirror::geometry {
 

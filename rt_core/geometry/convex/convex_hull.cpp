@@ -1,4 +1,4 @@
-#include "rt_core/geometry/convex_hull.hpp"
+#include "rt_core/geometry/convex/convex_hull.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "rt_core/geometry/mesh_repair_steps.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair_steps.hpp"
 
 extern "C" {
 #include <libqhull_r/qhull_ra.h>

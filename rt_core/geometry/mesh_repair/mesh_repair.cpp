@@ -1,4 +1,4 @@
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "rt_core/geometry/mesh_repair_steps.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair_steps.hpp"
 
 namespace cellmirror::geometry {
 

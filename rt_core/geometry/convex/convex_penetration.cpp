@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "rt_core/geometry/convex.hpp"
-#include "rt_core/geometry/convex_overlap.hpp"
-#include "rt_core/geometry/convex_pairs.hpp"
+#include "rt_core/geometry/convex/convex_overlap.hpp"
+#include "rt_core/geometry/convex/convex_pairs.hpp"
 
 namespace cellmirror::geometry {
 

@@ -6,7 +6,7 @@
 
 #include "rt_core/base/pose.hpp"
 #include "rt_core/geometry/convex.hpp"
-#include "rt_core/geometry/convex_support.hpp"
+#include "rt_core/geometry/convex/convex_support.hpp"
 
 namespace cellmirror::geometry {
 

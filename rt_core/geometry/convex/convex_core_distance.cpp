@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "rt_core/geometry/convex_cylinder.hpp"
-#include "rt_core/geometry/convex_gjk.hpp"
-#include "rt_core/geometry/convex_pairs.hpp"
+#include "rt_core/geometry/convex/convex_cylinder.hpp"
+#include "rt_core/geometry/convex/convex_gjk.hpp"
+#include "rt_core/geometry/convex/convex_pairs.hpp"
 #include "rt_core/geometry/triangle.hpp"
 
 namespace cellmirror::geometry {

@@ -1,4 +1,4 @@
-#include "rt_core/geometry/convex_parts.hpp"
+#include "rt_core/geometry/convex/convex_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "rt_core/geometry/convex_hull.hpp"
-#include "rt_core/geometry/mesh_repair_steps.hpp"
+#include "rt_core/geometry/convex/convex_hull.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair_steps.hpp"
 #include "rt_core/geometry/triangle.hpp"
 
 namespace cellmirror::geometry {

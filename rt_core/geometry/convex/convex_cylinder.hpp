@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "rt_core/geometry/convex_pairs.hpp"
-#include "rt_core/geometry/convex_support.hpp"
+#include "rt_core/geometry/convex/convex_pairs.hpp"
+#include "rt_core/geometry/convex/convex_support.hpp"
 #include "rt_core/geometry/triangle.hpp"
 
 namespace cellmirror::geometry {

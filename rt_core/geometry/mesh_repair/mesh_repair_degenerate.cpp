@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "rt_core/geometry/mesh_repair_steps.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair_steps.hpp"
 
 namespace cellmirror::geometry {
 

@@ -1,4 +1,4 @@
-#include "rt_core/geometry/convex_overlap.hpp"
+#include "rt_core/geometry/convex/convex_overlap.hpp"
 
 #include <algorithm>
 #include <array>
