@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "rt_core/tissue/grip.hpp"
+#include "rt_core/tissue/instruments/grip.hpp"
 #include "rt_core/tissue/world_parts.hpp"
 
 namespace cellmirror::tissue {

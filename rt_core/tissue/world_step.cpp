@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "rt_core/tissue/grip.hpp"
+#include "rt_core/tissue/instruments/grip.hpp"
 #include "rt_core/tissue/world_parts.hpp"
 
 namespace cellmirror::tissue {
@@ -122,13 +122,13 @@ void WorldParts::solve_step() {
     }
     system.clear();
     add_contacts(kStep_s * substep / substeps);
-    for (Instrument& one : instruments) add_grip(system, one, objects, limits, dt);
+    for (Instrument& one : instruments) add_grip(system, one, objects, limits);
     connections.add(system, objects, dt);
     clips.add(system, objects, dt);
     if (!system.empty()) {
       system.solve(kSweeps);
       take_contacts();
-      for (Instrument& one : instruments) take_grip(system, one, dt);
+      for (Instrument& one : instruments) take_grip(system, one, objects);
       connections.take(system, objects, dt, log);
       clips.take(system);
       apply_velocities();

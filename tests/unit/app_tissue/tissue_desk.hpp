@@ -120,7 +120,7 @@ geometry = [{ name = "plate", box_m = [0.3, 0.2, 0.01] }]
 
   // One command of SCRIPT, as a message.
   Answer send(const std::string& text) {
-    CommandHost host{*names_, quiet_, quiet_, quiet_, quiet_, quiet_, quiet_, quiet_, *sut_, quiet_};
+    CommandHost host{*names_, quiet_, quiet_, quiet_, quiet_, quiet_, quiet_, quiet_, *sut_, quiet_, quiet_};
     Diagnostics findings;
     script::ParsedCommand command;
     script::CommandReader reader(text, "message", script::TextKind::message);

@@ -1,7 +1,7 @@
 // Heat, tears and lasting stretches.
 #include <gtest/gtest.h>
 
-#include "rt_core/tissue/elements.hpp"
+#include "rt_core/tissue/body/elements.hpp"
 #include "tests/support/tissue/bodies.hpp"
 
 namespace cellmirror::tissue {

@@ -1,5 +1,5 @@
 // The solver of constraints against closed forms of impulses.
-#include "rt_core/tissue/constraint_system.hpp"
+#include "rt_core/tissue/contact/constraint_system.hpp"
 
 #include <gtest/gtest.h>
 

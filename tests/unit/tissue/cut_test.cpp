@@ -3,9 +3,9 @@
 
 #include <random>
 
-#include "rt_core/tissue/dissection.hpp"
-#include "rt_core/tissue/elements.hpp"
-#include "rt_core/tissue/topology.hpp"
+#include "rt_core/tissue/body/dissection.hpp"
+#include "rt_core/tissue/body/elements.hpp"
+#include "rt_core/tissue/body/topology.hpp"
 #include "tests/support/tissue/bodies.hpp"
 
 namespace cellmirror::tissue {

@@ -1,12 +1,12 @@
 // Events and limits of plausibility.
-#include "rt_core/tissue/event_log.hpp"
+#include "rt_core/tissue/description/event_log.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "rt_core/tissue/limits.hpp"
+#include "rt_core/tissue/description/limits.hpp"
 
 namespace cellmirror::tissue {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "rt_core/tissue/element_kernel.hpp"
+#include "rt_core/tissue/body/element_kernel.hpp"
 
 namespace cellmirror::tissue {
 namespace {

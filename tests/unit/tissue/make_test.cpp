@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rt_core/tissue/lattice.hpp"
+#include "rt_core/tissue/body/lattice.hpp"
 #include "tests/support/tissue/bodies.hpp"
 
 namespace cellmirror::tissue {

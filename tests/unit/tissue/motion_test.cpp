@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "rt_core/tissue/element_kernel.hpp"
+#include "rt_core/tissue/body/element_kernel.hpp"
 #include "tests/support/tissue/bodies.hpp"
 
 namespace cellmirror::tissue {

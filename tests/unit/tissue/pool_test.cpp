@@ -1,12 +1,12 @@
 // Fluids: what goes in stays in, waves travel and calm down, drops fall.
-#include "rt_core/tissue/pool.hpp"
+#include "rt_core/tissue/effects/pool.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "rt_core/tissue/particles.hpp"
+#include "rt_core/tissue/effects/particles.hpp"
 
 namespace cellmirror::tissue {
 namespace {

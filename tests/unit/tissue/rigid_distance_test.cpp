@@ -1,12 +1,12 @@
 // Signed distances of points from rigid bodies: closed forms, and meshes of the same shape.
-#include "rt_core/tissue/rigid_distance.hpp"
+#include "rt_core/tissue/contact/rigid_distance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror::tissue {
 namespace {

@@ -217,18 +217,19 @@ TEST(WorldContact, a_rigid_body_that_moves_pushes) {
 TEST(WorldContact, tissue_rests_on_tissue) {
   ObjectDescription lower = block("liver", {0.05, 0.05, 0.02});
   ObjectDescription upper = block("lump", {0.024, 0.024, 0.024}, false);
-  upper.X_WO.translation() = Vector3d(0.003, 0.002, 0.026);
+  upper.X_WO.translation() = Vector3d(0.003, 0.002, 0.0245);
   upper.attributes |= static_cast<std::uint16_t>(TissueAttribute::gravity);
   upper.material.damping_s = 1e-3;
   Scene scene({lower, upper});
   const double weight = 9.81 * mass_of(scene.state(), 1);
   scene.steps(1500);
   double force = 0;
-  for (int i = 0; i < 200; ++i) {
+  constexpr int kSteps = 600;  // it wobbles
+  for (int i = 0; i < kSteps; ++i) {
     scene.step();
     TissueView view;
     scene.world().view(view, true);
-    for (const auto& one : view.network.forces) force += std::abs(static_cast<double>(one[1].z())) / 200;
+    for (const auto& one : view.network.forces) force += std::abs(static_cast<double>(one[1].z())) / kSteps;
   }
   EXPECT_NEAR(force, weight, 0.1 * weight);
   const TissueView view = scene.view();

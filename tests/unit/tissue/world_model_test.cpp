@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "rt_core/tissue/vessels.hpp"
+#include "rt_core/tissue/effects/vessels.hpp"
 #include "tests/unit/tissue/world_scene.hpp"
 
 namespace cellmirror::tissue {

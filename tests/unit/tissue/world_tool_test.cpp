@@ -221,6 +221,26 @@ TEST(WorldTool, a_hot_hook_burns_smokes_and_cuts_where_it_moves_long_enough) {
   EXPECT_EQ(scene.state().lens_fog, 0);
 }
 
+TEST(WorldTool, a_stroke_that_another_tool_interrupts_is_reported_as_ended) {
+  Scene scene({block("liver", {0.04, 0.04, 0.016})});
+  scene.world().apply(acts_below(0, InstrumentKind::forceps));
+  scene.instrument(0, along_x({0.004, 0, 0.001}), 0.0);
+  scene.steps(500);
+  EXPECT_EQ(scene.count(TissueEventKind::coagulate), 1);
+  InstrumentAction off = {.kind = InstrumentKind::forceps, .test = InstrumentTest::off};
+  scene.world().apply(SetInstrumentAction{0, off});
+  scene.steps(2);
+  EXPECT_EQ(scene.count(TissueEventKind::coagulate), 2);
+  EXPECT_GT(scene.events().back().value, 0);
+  const double burnt = scene.state().objects[0].coagulated_share;
+  scene.steps(200);
+  EXPECT_EQ(scene.state().objects[0].coagulated_share, burnt);
+  EXPECT_EQ(scene.count(TissueEventKind::coagulate), 2);
+  scene.world().apply(acts_below(0, InstrumentKind::gripper));
+  scene.steps(2);
+  EXPECT_EQ(scene.count(TissueEventKind::grip), 1);
+}
+
 TEST(WorldTool, forceps_coagulate_without_cutting) {
   Scene scene({block("liver", {0.04, 0.04, 0.016})});
   scene.world().apply(acts_below(0, InstrumentKind::forceps));

@@ -1,0 +1,400 @@
+#include "rt_core/tissue/body/elements.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rt_core/tissue/body/dissection.hpp"
+
+namespace cellmirror::tissue {
+namespace {
+
+constexpr double kLeastFill = 0.02;  // of an element, for stiffness and mass
+constexpr int kMostMassTrials = 6;
+// What neighbours of the same kind take off the fastest mode. Soft neighbours of a stiff element take off more, but
+// only until a cut parts them from it.
+constexpr double kMostShare = 1.5;
+constexpr double kMostLoad = 0.9;      // (omega step / 2)^2 of a deformed element
+constexpr double kMostYieldMass = 16;  // an element yields no further once it needs so much of its mass
+
+struct Moduli {
+  double shear = 0;  // Pa
+  double bulk = 0;
+};
+
+Moduli moduli(const Material& material, double burn) {
+  const double e = material.youngs_modulus_pa * (1.0 + kBurntStiffening * std::min(burn, 1.0));
+  return {.shear = e / (2.0 * (1.0 + material.poissons_ratio)),
+          .bulk = e / (3.0 * (1.0 - 2.0 * material.poissons_ratio))};
+}
+
+Eigen::Matrix3d edges_of(const RestMesh& mesh, const RestTetrahedron& t) {
+  Eigen::Matrix3d edges;
+  for (int k = 0; k < 3; ++k)
+    edges.col(k) = mesh.nodes[t.nodes[static_cast<std::size_t>(k) + 1]] - mesh.nodes[t.nodes[0]];
+  return edges;
+}
+
+Eigen::Matrix3d edges_of(const Element& e, std::span<const Eigen::Vector3d> x) {
+  Eigen::Matrix3d edges;
+  for (int k = 0; k < 3; ++k) edges.col(k) = x[e.nodes[static_cast<std::size_t>(k) + 1]] - x[e.nodes[0]];
+  return edges;
+}
+
+// Stiffness and viscosity of a deformed element over those at rest, from above.
+struct Stiffening {
+  double elastic = 1;
+  double viscous = 1;
+};
+
+// Elastic: the largest eigenvalue of the second derivative of the energy for waves (acoustic tensor), term by term; 1.2
+// at rest. Viscous: F takes part on both sides of the moduli.
+Stiffening stiffening_of(const Moduli& m, const Eigen::Matrix3d& f) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal;
+  principal.computeDirect(f.transpose() * f, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d stretch = principal.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // rising
+  const double j = f.determinant();
+  const double kept = std::max(j, 0.1);
+  const double i1 = f.squaredNorm();
+  const double area = stretch[1] * stretch[2];
+  const double across = m.bulk + (j > 0.1 ? 5.0 / 9.0 * m.shear * std::pow(kept, -8.0 / 3.0) * i1 : 0.0);
+  const double pressure = m.bulk * (j - 1.0) - (j > 0.1 ? m.shear / 3.0 * i1 * std::pow(kept, -5.0 / 3.0) : 0.0);
+  const double sum = across * area * area + m.shear * std::pow(kept, -2.0 / 3.0) + std::abs(pressure) * stretch[2];
+  return {.elastic = sum / (m.bulk + 4.0 / 3.0 * m.shear), .viscous = stretch[2] * stretch[2]};
+}
+
+double shrunk(double burn) { return 1.0 - kBurntShrinking * std::min(burn, 1.0); }
+
+// Longest stable step of a mode with viscous stress of the rate in the step before (Belytschko, Liu, Moran 2000, 6.2).
+double damped_step(double omega, double damping_s) {
+  const double xi = 0.5 * damping_s * omega;
+  return 2.0 / omega * (std::sqrt(1.0 + xi * xi) - xi);
+}
+
+// omega^2 of the fastest mode of one element by itself, free and with its mass at its corners: about u = gradient of
+// the shape function at each corner.
+double fastest_squared(const ElementState& s) {
+  const Moduli m = moduli(s.material, s.burn);
+  const Eigen::Matrix3d b = s.inverse_shape / shrunk(s.burn);
+  const Eigen::Vector3d first = -(b.row(0) + b.row(1) + b.row(2)).transpose();
+  Eigen::Matrix3d g = first * first.transpose();
+  for (int n = 0; n < 3; ++n) g += b.row(n).transpose() * b.row(n);
+  const double lambda = m.bulk - 2.0 / 3.0 * m.shear;
+  const double trace = g.trace();
+  return 4.0 / s.material.density_kg_m3 * (lambda * trace * trace + 2.0 * m.shear * (g * g).trace()) / trace;
+}
+
+double stable_step_of(const ElementState& s) {
+  return damped_step(std::sqrt(fastest_squared(s)), s.material.damping_s);
+}
+
+}  // namespace
+
+double wave_speed(const Material& material) {
+  const Moduli m = moduli(material, 0);
+  return std::sqrt((m.bulk + 4.0 / 3.0 * m.shear) / material.density_kg_m3);
+}
+
+Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step) {
+  const std::span<const Element> elements = topology.elements();
+  states_.resize(elements.size());
+  double slowest_alone = std::numeric_limits<double>::infinity();
+  double largest_damping = 0;
+  for (std::uint32_t e = 0; e < states_.size(); ++e) {
+    ElementState& s = states_[e];
+    const RestTetrahedron& t = mesh.tetrahedra[elements[e].tetrahedron];
+    s.material = materials[e];
+    s.inverse_shape = edges_of(mesh, t).inverse();
+    s.volume = material_volume(mesh, topology, e);
+    s.carried = std::max(s.volume, kLeastFill * t.volume);
+    size_ += std::cbrt(6.0 * t.volume) / static_cast<double>(states_.size());
+    slowest_alone = std::min(slowest_alone, stable_step_of(s));
+    largest_yield_ = std::max(largest_yield_, s.material.yield_strain);
+    largest_damping = std::max(largest_damping, s.material.damping_s);
+  }
+  stored_step_ = step_ = step;
+  blocks_.resize(states_.size());
+  for (std::uint32_t e = 0; e < states_.size(); ++e) store(e);
+  stable_step_ = std::max(slowest_alone, damped_step(fastest_mode(mesh, topology), largest_damping));
+  element_share_ = std::min(kMostShare, stable_step_ / slowest_alone);
+  substeps_ = std::clamp(static_cast<int>(std::ceil(step / (kStepSafety * stable_step_))), 1, kMostSubsteps);
+  step_ = step / substeps_;
+  add_mass(mesh, topology);
+  stored_step_ = step_;
+  for (std::uint32_t e = 0; e < states_.size(); ++e) store(e);
+  find_usual_areas();
+}
+
+// Square of the step over the stable one, of an element at rest.
+double Elements::load_of(const ElementState& state) const {
+  const double ratio = stored_step_ / (stable_step_of(state) * (state.loose ? 1.0 : element_share_));
+  return ratio * ratio / state.mass_factor;
+}
+
+// The more room there is at rest, the fewer elements have to be looked at. Burnt and loose elements have kStepSafety at
+// the worst, but are few; they get mass a little later.
+void Elements::find_usual_areas() {
+  double load = 0;
+  for (const ElementState& s : states_) load = std::max(load, load_of(s));
+  const double stretch = 0.75 * kMostLoad / load;  // of an area, squared; the rest of the stiffening is shear
+  usual_areas_ = static_cast<float>(std::clamp(stretch * stretch + 1.0, 4.0, 20.0));
+}
+
+void Elements::extra_masses(const KernelSums& sums, const Topology& topology, std::span<const Eigen::Vector3d> x,
+                            std::vector<Extra>& extras) const {
+  extras.clear();
+  if (sums.largest_areas <= usual_areas_) return;
+  for (std::uint32_t e = 0; e < states_.size(); ++e) {
+    if (blocks_.areas[e / kLanes].lane[e % kLanes] <= usual_areas_) continue;
+    const ElementState& s = states_[e];
+    const Eigen::Matrix3d f = edges_of(topology.elements()[e], x) * s.inverse_shape / shrunk(s.burn);
+    const Stiffening stiffening = stiffening_of(moduli(s.material, s.burn), f);
+    const double share = s.loose ? 1.0 : element_share_;
+    // An explicit step is stable while (omega step / 2)^2 + omega^2 damping step / 2 is less than 1.
+    const double elastic = stiffening.elastic * 0.25 * stored_step_ * stored_step_;
+    const double viscous = stiffening.viscous * 0.5 * s.material.damping_s * stored_step_;
+    const double load = fastest_squared(s) * (elastic + viscous) / (share * share * s.mass_factor);
+    if (load <= kMostLoad) continue;
+    // What neighbours take off at rest does not count for one element that is deformed more than they are.
+    extras.push_back({.element = e, .corner_mass = share * share * (load / kMostLoad - 1.0) * corner_mass(e)});
+  }
+}
+
+// What neighbours take off an element differs between the parts of a body, so the result is verified; with a share of 1
+// it is stable for certain.
+void Elements::add_mass(const RestMesh& mesh, const Topology& topology) {
+  double largest_damping = 0;
+  for (const ElementState& s : states_) largest_damping = std::max(largest_damping, s.material.damping_s);
+  for (int i = 0; i < kMostMassTrials; ++i) {
+    if (i + 1 == kMostMassTrials) element_share_ = 1;
+    for (ElementState& s : states_) set_mass_factor(s);
+    if (element_share_ == 1 || added_mass() == 0) return;
+    const double ratio = step_ / (kStepSafety * damped_step(fastest_mode(mesh, topology), largest_damping));
+    if (ratio <= 1.0) return;
+    element_share_ = std::max(1.0, 0.99 * element_share_ / ratio);
+  }
+}
+
+// rad/s, by power iteration over small displacements (Rayleigh's quotient, from below; 3 % are added).
+double Elements::fastest_mode(const RestMesh& mesh, const Topology& topology) {
+  constexpr int kIterations = 60;
+  const std::size_t nodes = topology.rest_node().size();
+  std::vector<double> mass(nodes, 0.0);
+  double size = 0;
+  for (std::uint32_t e = 0; e < states_.size(); ++e) {
+    for (const std::uint32_t node : topology.elements()[e].nodes) mass[node] += corner_mass(e);
+    size = std::max(size, std::cbrt(mesh.tetrahedra[topology.elements()[e].tetrahedron].volume));
+  }
+  std::vector<Eigen::Vector3d> u(nodes);
+  std::vector<Eigen::Vector3d> x(nodes);
+  std::vector<Eigen::Vector3d> f(nodes);
+  // Any start that is no rigid motion; neighbours move against each other, as in the fastest mode.
+  for (std::size_t n = 0; n < nodes; ++n) {
+    u[n] = Eigen::Vector3d(std::sin(12.9898 * static_cast<double>(n)), std::sin(78.233 * static_cast<double>(n)),
+                           std::sin(37.719 * static_cast<double>(n)));
+  }
+  double squared = 0;
+  for (int i = 0; i < kIterations; ++i) {
+    double largest = 0;
+    for (const Eigen::Vector3d& p : u) largest = std::max(largest, p.norm());
+    const double scale = 1e-3 * size / largest;
+    double kinetic = 0;
+    for (std::size_t n = 0; n < nodes; ++n) {
+      u[n] *= scale;
+      x[n] = mesh.nodes[topology.rest_node()[n]] + u[n];
+      f[n].setZero();
+      kinetic += mass[n] * u[n].squaredNorm();
+    }
+    std::ranges::fill(blocks_.last_strain, LaneRow{});
+    add_forces(topology, x, 1e6 * step_, f);  // so slowly that damping does not count
+    double work = 0;
+    for (std::size_t n = 0; n < nodes; ++n) {
+      work -= u[n].dot(f[n]);
+      u[n] = -f[n] / mass[n];
+    }
+    squared = std::max(squared, work / kinetic);
+  }
+  std::ranges::fill(blocks_.last_strain, LaneRow{});
+  return 1.03 * std::sqrt(squared);
+}
+
+void Elements::set_mass_factor(ElementState& state) const {
+  const double alone = stable_step_of(state) * (state.loose ? 1.0 : element_share_);
+  const double ratio = step_ / (kStepSafety * alone);
+  state.mass_factor = std::max(1.0, ratio * ratio);
+}
+
+void Elements::set_loose(std::uint32_t element, bool loose) {
+  ElementState& s = states_[element];
+  if (s.loose == loose) return;
+  s.loose = loose;
+  set_mass_factor(s);
+}
+
+void Elements::store(std::uint32_t element) {
+  const ElementState& s = states_[element];
+  const Moduli m = moduli(s.material, s.burn);
+  const Eigen::Matrix3d b = s.inverse_shape / shrunk(s.burn);
+  const auto put = [&](std::size_t v, double value) {
+    lane_value(blocks_.material, ElementBlocks::kMaterialValues, element, v) = static_cast<float>(value);
+  };
+  for (std::size_t k = 0; k < 9; ++k) put(k, b(static_cast<int>(k) / 3, static_cast<int>(k) % 3));
+  put(9, m.shear * s.carried);
+  put(10, m.bulk * s.carried);
+  const double viscosity = s.material.damping_s / stored_step_ * s.carried;
+  put(11, 2.0 * m.shear * viscosity);
+  put(12, (m.bulk - 2.0 / 3.0 * m.shear) * viscosity);
+}
+
+double Elements::volume() const {
+  double sum = 0;
+  for (const ElementState& s : states_) sum += s.volume;
+  return sum;
+}
+
+double Elements::mass() const {
+  double sum = 0;
+  for (const ElementState& s : states_) sum += s.carried * s.material.density_kg_m3;
+  return sum;
+}
+
+double Elements::added_mass() const {
+  double sum = 0;
+  for (const ElementState& s : states_) sum += s.carried * s.material.density_kg_m3 * (s.mass_factor - 1.0);
+  return sum;
+}
+
+double Elements::corner_mass(std::uint32_t element) const {
+  const ElementState& s = states_[element];
+  return 0.25 * s.carried * s.material.density_kg_m3 * s.mass_factor;
+}
+
+void Elements::follow(const RestMesh& mesh, const Topology& topology, std::span<const std::uint32_t> elements,
+                      std::span<const std::uint32_t> origins) {
+  const std::size_t before = states_.size();
+  states_.resize(topology.elements().size());
+  blocks_.resize(states_.size());
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    states_[before + i] = states_[origins[i]];
+    for (std::size_t v = 0; v < 6; ++v) {
+      lane_value(blocks_.last_strain, 6, before + i, v) = lane_value(blocks_.last_strain, 6, origins[i], v);
+    }
+  }
+  for (const std::uint32_t e : elements) {
+    states_[e].volume = material_volume(mesh, topology, e);
+    states_[e].carried =
+        std::max(states_[e].volume, kLeastFill * mesh.tetrahedra[topology.elements()[e].tetrahedron].volume);
+    store(e);
+  }
+}
+
+void Elements::rebase_strain(std::uint32_t element, const Eigen::Matrix3d& change) {
+  constexpr std::array<std::array<int, 2>, 6> kAt{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  Eigen::Matrix3d c;
+  for (std::size_t v = 0; v < 6; ++v) {
+    const auto [row, column] = kAt[v];
+    c(row, column) = c(column, row) = 2.0 * static_cast<double>(lane_value(blocks_.last_strain, 6, element, v));
+  }
+  c = change.transpose() * (c + Eigen::Matrix3d::Identity()) * change - Eigen::Matrix3d::Identity();
+  for (std::size_t v = 0; v < 6; ++v) {
+    lane_value(blocks_.last_strain, 6, element, v) = static_cast<float>(0.5 * c(kAt[v][0], kAt[v][1]));
+  }
+}
+
+void Elements::set_burn(std::uint32_t element, double burn) {
+  rebase_strain(element, Eigen::Matrix3d::Identity() * (shrunk(states_[element].burn) / shrunk(burn)));
+  states_[element].burn = burn;
+  set_mass_factor(states_[element]);
+  store(element);
+}
+
+void Elements::gather(const Topology& topology, std::span<const Eigen::Vector3d> x) {
+  const std::span<const Element> elements = topology.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    LaneRow* const rows = &blocks_.edges[e / kLanes * 9];
+    const std::size_t lane = e % kLanes;
+    const std::array<std::uint32_t, 4>& nodes = elements[e].nodes;
+    const double* const origin = x[nodes[0]].data();
+    for (std::size_t n = 0; n < 3; ++n) {
+      const double* const p = x[nodes[n + 1]].data();
+      rows[n].lane[lane] = static_cast<float>(p[0] - origin[0]);
+      rows[3 + n].lane[lane] = static_cast<float>(p[1] - origin[1]);
+      rows[6 + n].lane[lane] = static_cast<float>(p[2] - origin[2]);
+    }
+  }
+}
+
+void Elements::scatter(const Topology& topology, std::span<Eigen::Vector3d> f) const {
+  const std::span<const Element> elements = topology.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const LaneRow* const rows = &blocks_.forces[e / kLanes * 9];
+    const std::size_t lane = e % kLanes;
+    const std::array<std::uint32_t, 4>& nodes = elements[e].nodes;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Eigen::Vector3d force(static_cast<double>(rows[n].lane[lane]), static_cast<double>(rows[3 + n].lane[lane]),
+                                  static_cast<double>(rows[6 + n].lane[lane]));
+      f[nodes[n + 1]] += force;
+      sum += force;
+    }
+    f[nodes[0]] -= sum;  // in doubles, so that forces within a body add up to zero
+  }
+}
+
+KernelSums Elements::add_forces(const Topology& topology, std::span<const Eigen::Vector3d> x, double step,
+                                std::span<Eigen::Vector3d> f) {
+  if (step != stored_step_) {
+    stored_step_ = step;
+    for (std::uint32_t e = 0; e < states_.size(); ++e) store(e);
+  }
+  gather(topology, x);
+  const KernelSums sums = compute_element_forces(blocks_);
+  scatter(topology, f);
+  return sums;
+}
+
+std::uint32_t Elements::yield(const Topology& topology, std::span<const Eigen::Vector3d> x) {
+  if (largest_yield_ <= 0) return 0;
+  std::uint32_t yielded = 0;
+  for (std::uint32_t e = 0; e < states_.size(); ++e) {
+    ElementState& s = states_[e];
+    const double limit = s.material.yield_strain;
+    // sqrt(strain / 3) is the equivalent strain of a small stretch; the exact test follows.
+    if (limit <= 0 || static_cast<double>(blocks_.strain[e / kLanes].lane[e % kLanes]) < 1.5 * limit * limit) continue;
+    const Eigen::Matrix3d f = edges_of(topology.elements()[e], x) * s.inverse_shape / shrunk(s.burn);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(f.transpose() * f);
+    const Eigen::Vector3d stretch = principal.eigenvalues().cwiseMax(1e-4).cwiseSqrt();
+    Eigen::Vector3d excess = stretch;
+    for (int k = 0; k < 3; ++k) excess[k] = stretch[k] / std::clamp(stretch[k], 1.0 / (1.0 + limit), 1.0 + limit);
+    if (excess.isOnes(1e-12)) continue;
+    excess /= std::cbrt(excess.prod());  // plastic strain keeps the volume
+    const Eigen::Matrix3d& v = principal.eigenvectors();
+    const Eigen::Matrix3d change = v * excess.cwiseInverse().asDiagonal() * v.transpose();
+    ElementState changed = s;
+    changed.inverse_shape = s.inverse_shape * change;
+    set_mass_factor(changed);
+    if (changed.mass_factor > std::max(kMostYieldMass, s.mass_factor)) continue;
+    s = changed;
+    rebase_strain(e, change);
+    store(e);
+    ++yielded;
+  }
+  return yielded;
+}
+
+double Elements::elastic_energy(const Topology& topology, std::span<const Eigen::Vector3d> x) const {
+  double sum = 0;
+  for (std::uint32_t e = 0; e < states_.size(); ++e) {
+    const ElementState& s = states_[e];
+    const Eigen::Matrix3d f = edges_of(topology.elements()[e], x) * s.inverse_shape / shrunk(s.burn);
+    const Moduli m = moduli(s.material, s.burn);
+    const double j = f.determinant();
+    const double root = std::cbrt(std::max(j, 0.1));
+    sum += s.carried * (0.5 * m.shear * (f.squaredNorm() / (root * root) - 3.0) + 0.5 * m.bulk * (j - 1.0) * (j - 1.0));
+  }
+  return sum;
+}
+
+}  // namespace cellmirror::tissue

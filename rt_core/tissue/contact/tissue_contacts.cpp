@@ -1,0 +1,166 @@
+#include "rt_core/tissue/contact/tissue_contacts.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rt_core/geometry/triangle.hpp"
+#include "rt_core/tissue/description/step.hpp"
+
+namespace cellmirror::tissue {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNearReach = 0.004;        // m: nearest triangles are kept within
+constexpr double kTouchReach = 0.0005;      // m
+constexpr double kDeepestInTissue = 0.003;  // m; deeper is left as it is
+constexpr double kOutside = -0.0002;        // m: what is less deep counts as outside
+constexpr double kTissueFriction = 0.05;    // wet on wet
+constexpr double kNoSide = 1e-10;           // m2, twice the area
+
+// Above the triangle's plane where the nearest point is within it; else by the distance.
+double signed_gap(const Vector3d& p, const Vector3d& nearest, const geometry::Triangle& corners, Vector3d& normal) {
+  normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double size = normal.norm();
+  if (size < kNoSide) return std::numeric_limits<double>::infinity();
+  normal /= size;
+  const Vector3d away = p - nearest;
+  const double height = normal.dot(away);
+  const double distance = away.norm();
+  if (height > 0 && distance > 1e-6) normal = away / distance;
+  return height > 0 ? distance : -distance;
+}
+
+}  // namespace
+
+void TissueContacts::reset() { pairs_.clear(); }
+
+void TissueContacts::search(std::span<DeformableObject> objects, const ContactMemory& memory,
+                            std::vector<Contact>& contacts) {
+  appended_ = 0;
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    for (std::uint32_t j = i + 1; j < objects.size(); ++j) {
+      if (!objects[i].has(TissueAttribute::bodies) || !objects[j].has(TissueAttribute::bodies)) continue;
+      const SurfaceIndex& a = objects[i].surface;
+      const SurfaceIndex& b = objects[j].surface;
+      const Vector3d reach = Vector3d::Constant(kNearReach);
+      if (((a.low() - reach).array() > b.high().array()).any() ||
+          ((a.high() + reach).array() < b.low().array()).any()) {
+        pairs_.erase({i, j});
+        pairs_.erase({j, i});
+        continue;
+      }
+      // Points of both: a corner of one could lie between the points of the other.
+      for (const auto& [p, t] : {std::pair{i, j}, std::pair{j, i}}) {
+        Pair& pair = pairs_[{p, t}];
+        renew(pair, objects[p], objects[t]);
+        use(pair, objects[p], p, objects[t], t, memory, contacts);
+      }
+    }
+  }
+}
+
+void TissueContacts::renew(Pair& pair, DeformableObject& with_points, DeformableObject& with_triangles) {
+  SurfaceIndex& points = with_points.surface;
+  SurfaceIndex& triangles = with_triangles.surface;
+  if (pair.revision_of_points != points.revision() || pair.revision_of_triangles != triangles.revision()) {
+    pair = Pair();
+    pair.revision_of_points = points.revision();
+    pair.revision_of_triangles = triangles.revision();
+    pair.near.resize(points.clusters().size());
+  }
+  of_points_.clear();
+  points.near_box(triangles.low(), triangles.high(), kNearReach, of_points_);
+  if (of_points_.empty()) return;
+  const auto next = std::ranges::lower_bound(of_points_, pair.next_cluster);
+  const std::uint32_t cluster = next != of_points_.end() ? *next : of_points_.front();
+  pair.next_cluster = cluster + 1;
+
+  const SurfaceIndex::Cluster& box = points.clusters()[cluster];
+  const double margin = points.margin(box) + kNearReach;
+  clusters_.clear();
+  triangles.near_box(box.low, box.high, margin, clusters_);
+  std::vector<Near>& old = pair.near[cluster];
+  fresh_.clear();
+  for (const std::uint32_t point : points.points(box)) {
+    const Vector3d p = points.position(*with_points.body, point);
+    double best = kNearReach * kNearReach;
+    Near found{.point = point};
+    bool any = false;
+    double gap = 0;
+    for (const std::uint32_t candidate : clusters_) {
+      const SurfaceIndex::Cluster& other = triangles.clusters()[candidate];
+      const double grown = triangles.margin(other) + kNearReach;
+      if (((other.low.array() - grown) > p.array()).any() || ((other.high.array() + grown) < p.array()).any()) continue;
+      for (const std::uint32_t triangle : triangles.triangles(other)) {
+        const geometry::Triangle corners = triangles.corners(*with_triangles.body, triangle);
+        const double edge = std::max((corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[0]).squaredNorm());
+        const double within = std::sqrt(edge) + std::sqrt(best);
+        if ((p - corners[0]).squaredNorm() > within * within) continue;
+        const Vector3d nearest = geometry::closest_on_triangle(p, corners);
+        const double squared = (p - nearest).squaredNorm();
+        if (squared >= best) continue;
+        Vector3d normal;
+        const double signed_distance = signed_gap(p, nearest, corners, normal);
+        if (!std::isfinite(signed_distance)) continue;
+        best = squared;
+        gap = signed_distance;
+        found.triangle = triangle;
+        any = true;
+      }
+    }
+    if (!any) continue;
+    const auto same = std::ranges::lower_bound(old, point, {}, &Near::point);
+    found.seen_outside = gap > kOutside || (same != old.end() && same->point == point && same->seen_outside);
+    fresh_.push_back(found);
+  }
+  old.swap(fresh_);
+}
+
+void TissueContacts::use(Pair& pair, DeformableObject& with_points, std::uint32_t number,
+                         DeformableObject& with_triangles, std::uint32_t other, const ContactMemory& memory,
+                         std::vector<Contact>& contacts) {
+  used_.resize(std::max(used_.size(), with_points.body->surface_points().size()), 0);
+  if (++round_ == 0) {
+    std::ranges::fill(used_, 0U);
+    round_ = 1;
+  }
+  for (const std::vector<Near>& cluster : pair.near) {
+    for (const Near& near : cluster) {
+      if (!near.seen_outside || used_[near.point] == round_ || appended_ >= kMostContacts) continue;
+      used_[near.point] = round_;
+      const Vector3d p = with_points.surface.position(*with_points.body, near.point);
+      const geometry::Triangle corners = with_triangles.surface.corners(*with_triangles.body, near.triangle);
+      const Vector3d facing = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      const double height = (p - corners[0]).dot(facing);
+      // Farther from the plane than any contact: most points end here.
+      if (height * height > kNearReach * kNearReach * facing.squaredNorm()) continue;
+      const Vector3d nearest = geometry::closest_on_triangle(p, corners);
+      Vector3d normal;
+      const double gap = signed_gap(p, nearest, corners, normal);
+      if (!(gap < kTouchReach) || gap < -kDeepestInTissue) continue;
+      Contact contact;
+      contact.key = {ContactKey::Other::tissue, other, number, near.point};
+      contact.point.object = number;
+      contact.point.corner.fill(near.point);
+      contact.point.embedded.fill(with_points.body->surface_points()[near.point]);
+      contact.point.share = Vector3d::UnitX();
+      contact.other = surface_point(with_triangles, other, near.triangle, barycentric(nearest, corners));
+      contact.normal = normal;
+      contact.gap = gap;
+      contact.friction = kTissueFriction;
+      if (const Contact* before = memory.find(contact.key)) {
+        contact.impulse = before->impulse;
+        contact.tangential = before->tangential;
+      }
+      contacts.push_back(contact);
+      ++appended_;
+    }
+  }
+}
+
+}  // namespace cellmirror::tissue
