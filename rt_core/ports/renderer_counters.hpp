@@ -16,6 +16,13 @@ struct RendererCounters {
   std::uint64_t texture_bytes = 0;    // of those that are uploaded, with their smaller copies
   std::uint64_t bodies_drawn = 0;     // in the newest frame
   std::uint64_t bodies_left_out = 0;  // in the newest frame, by the visibility test
+  // Voxel volumes of the newest frame; each counts once a pane.
+  std::uint64_t volumes = 0;
+  std::uint64_t volume_bricks = 0;
+  std::uint64_t volume_bricks_drawn = 0;  // in which something is to be seen with the current table
+  std::uint64_t volume_reduction = 0;     // edge of the square of pixels for which one ray stands; 0: none was cast
+  bool volume_in_haste = false;           // drawn with less than full quality: another picture will be better
+  std::uint64_t volume_ns = 0;            // time for casting
 };
 
 }  // namespace cellmirror

@@ -13,6 +13,8 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/display_state.hpp"
 #include "rt_core/ports/view.hpp"
+#include "rt_core/ports/volume_settings.hpp"
+#include "rt_core/ports/volume_user_table.hpp"
 
 namespace cellmirror {
 
@@ -22,6 +24,7 @@ struct TriangleMesh;
 enum class Shape : std::uint8_t;
 struct MeshAppearance;
 struct TissueView;
+struct VoxelGrid;
 
 using Colour = std::array<float, 4>;
 
@@ -107,6 +110,17 @@ struct ShadowCatcher {
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
 };
 
+// A voxel volume: cast by rays into the picture, hidden by what is before it.
+struct SceneVolume {
+  std::uint32_t object = 0;  // as SceneBody::object
+  std::shared_ptr<const VoxelGrid> grid;
+  Pose X_WV = Pose::Identity();
+  VolumeSettings settings;
+  std::uint64_t tables_revision = 0;  // another one after VV_RELOAD_LUTS
+  // USER1_LUT, USER2_LUT as last read; null: the built-in one.
+  VolumeUserTables user_tables;
+};
+
 struct LegendEntry {
   Colour rgba{0, 0, 0, 1};
   std::string text;
@@ -115,6 +129,7 @@ struct LegendEntry {
 struct Scene {
   Timestamp posture_time;
   std::vector<SceneBody> bodies;
+  std::vector<SceneVolume> volumes;
   std::vector<SceneAxes> axes;
   std::vector<SceneLine> lines;
   std::vector<SceneTrace> traces;

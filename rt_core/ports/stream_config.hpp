@@ -140,7 +140,25 @@ struct DdsStreamConfig {
   DdsSecurityConfig security = {};  // [dds.security]: the same for all streams and outputs
 };
 
-using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig>;
+// One of the six joints of a controller of Universal Robots.
+struct RtdeJointConfig {
+  std::size_t joint = 0;
+  std::size_t number = 0;  // of the controller's joints, from 0: the base
+  double scale = 1.0;      // value = controller's * scale + offset
+  double offset = 0.0;
+};
+
+struct RtdeStreamConfig {
+  std::string address = "127.0.0.1";  // numeric, of the controller
+  std::uint16_t port = 30004;
+  double rate_hz = 125;  // that the controller sends with
+  StreamAges ages;
+  PlausibilityConfig plausibility;
+  std::vector<RtdeJointConfig> joints;
+};
+
+using StreamConfig =
+    std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig, RtdeStreamConfig>;
 
 // The robot's joints (bits) whose position comes with the stream; 0 without a stream.
 [[nodiscard]] inline std::uint32_t joints_given_by(const StreamConfig& config) {
@@ -150,6 +168,7 @@ using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamC
   };
   if (const auto* drives = std::get_if<Cia402StreamConfig>(&config)) add(drives->nodes);
   if (const auto* messages = std::get_if<DdsStreamConfig>(&config)) add(messages->joints);
+  if (const auto* robot = std::get_if<RtdeStreamConfig>(&config)) add(robot->joints);
   if (const auto* dbc = std::get_if<DbcStreamConfig>(&config)) {
     for (const DbcSignalConfig& signal : dbc->signals) {
       if (signal.quantity == JointQuantity::position) joints |= 1U << signal.joint;

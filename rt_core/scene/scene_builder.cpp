@@ -18,6 +18,7 @@
 #include "rt_core/scene/robot_parts.hpp"
 #include "rt_core/scene/tissue.hpp"
 #include "rt_core/scene/traces.hpp"
+#include "rt_core/scene/volumes.hpp"
 
 namespace cellmirror::scene {
 
@@ -107,6 +108,7 @@ void SceneBuilder::build(const SceneInput& input, Scene& scene) {
   draw_traces(input, scene);
   draw_cones(input, scene);
   parts.arrows.draw(input.arrows, longest_arrow(parts.bodies), scene);
+  place_volumes(input, scene);
   parts.tissue.draw(input.tissue, input.display->draw_rules, scene);
   if (input.forces != nullptr) label_overloads(*input.forces, scene);
   draw_pyramids(input, scene);

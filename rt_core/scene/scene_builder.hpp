@@ -15,6 +15,7 @@
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/scene.hpp"
 #include "rt_core/ports/tcp_trace.hpp"
+#include "rt_core/ports/volume_state.hpp"
 
 namespace cellmirror::scene {
 
@@ -39,6 +40,7 @@ struct SceneInput {
   std::span<const ForceArrow> arrows;        // rt_core/dynamics/arrows.hpp
   std::span<const TcpTrace> traces;          // of SMEAR; drawn while the mode is on
   std::shared_ptr<const TissueView> tissue;  // shared with the scene
+  const VolumeStates* volumes = nullptr;     // null: as their files have them
   Timestamp posture_time;
   Timestamp now;
 };
