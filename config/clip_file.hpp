@@ -5,7 +5,7 @@
 
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/command.hpp"
+#include "rt_core/tissue/description/command.hpp"
 
 namespace cellmirror {
 

@@ -5,6 +5,7 @@
 #include "config/node_reader.hpp"
 #include "config/parse.hpp"
 #include "config/robot_builder.hpp"
+#include "config/volume_table.hpp"
 #include "rt_core/base/capacity.hpp"
 
 namespace cellmirror {
@@ -62,6 +63,8 @@ std::optional<Component> parse_component(std::string_view text, const std::strin
   component.description = reader.text("description").value_or("");
   component.geometry = read_geometry(reader, files);
   component.inertia = read_body(reader);
+  Diagnostics of_volume;
+  component.volume = read_volume_table(reader, files, of_volume);
   NodeReader nodes(component, files, false);
   for (TableReader& node : reader.tables("node", kMaxNodes)) nodes.read(node);
   nodes.finish(findings);
@@ -77,6 +80,7 @@ std::optional<Component> parse_component(std::string_view text, const std::strin
   }
   reader.finish();
   take_sorted(diagnostics, findings);
+  diagnostics.take(of_volume);
   return component;
 }
 

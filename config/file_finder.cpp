@@ -151,6 +151,20 @@ std::optional<tissue::TetraMesh> HomeFiles::tetrahedra(const fs::path& file, dou
   return msh::read_msh(file, scale, diagnostics);
 }
 
+std::shared_ptr<const VolumeData> FileFinder::volume(const VolumeRequest&, const Place&, Diagnostics&) const {
+  return std::make_shared<const VolumeData>();
+}
+
+std::shared_ptr<const VolumeData> HomeFiles::volume(const VolumeRequest& request, const Place& place,
+                                                    Diagnostics& diagnostics) const {
+  const auto found = home_.file_or_folder("envlib", request.source);
+  if (!found) {
+    diagnostics.error(place, found.error().what, found.error().remedy);
+    return nullptr;
+  }
+  return volumes_->volume(*found, request, place, diagnostics);
+}
+
 Result<fs::path> AnyFile::find(FileUse, std::string_view name) const { return fs::path("/") / fs::path(name); }
 
 Result<fs::path> AnyFile::find_mesh_of_urdf(const fs::path&, std::string_view name) const {

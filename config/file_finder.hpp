@@ -8,9 +8,10 @@
 #include <string_view>
 
 #include "config/mesh_library.hpp"
+#include "config/volume_library.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror {
 
@@ -47,12 +48,19 @@ class FileFinder {
   // refused.
   [[nodiscard]] virtual std::optional<tissue::TetraMesh> tetrahedra(const std::filesystem::path& file, double scale,
                                                                     Diagnostics& diagnostics) const;
+  // A voxel volume in envlib/: a file or a folder of files. `place`: where it is named, for what is wrong with it as a
+  // whole. Null: refused, with errors. Nothing is read here: an empty volume.
+  [[nodiscard]] virtual std::shared_ptr<const VolumeData> volume(const VolumeRequest& request, const Place& place,
+                                                                 Diagnostics& diagnostics) const;
 };
 
 class HomeFiles final : public FileFinder {
  public:
   // Copies share their meshes.
-  explicit HomeFiles(KismetHome home) : home_(std::move(home)), meshes_(std::make_shared<MeshLibrary>()) {}
+  explicit HomeFiles(KismetHome home)
+      : home_(std::move(home)),
+        meshes_(std::make_shared<MeshLibrary>()),
+        volumes_(std::make_shared<VolumeLibrary>(*meshes_)) {}
   [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override;
   [[nodiscard]] Result<void> check_private(const std::filesystem::path& file) const override;
   [[nodiscard]] Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
@@ -62,6 +70,8 @@ class HomeFiles final : public FileFinder {
                                            Diagnostics& diagnostics) const override;
   [[nodiscard]] std::optional<tissue::TetraMesh> tetrahedra(const std::filesystem::path& file, double scale,
                                                             Diagnostics& diagnostics) const override;
+  [[nodiscard]] std::shared_ptr<const VolumeData> volume(const VolumeRequest& request, const Place& place,
+                                                         Diagnostics& diagnostics) const override;
   [[nodiscard]] const KismetHome& home() const { return home_; }
   [[nodiscard]] MeshLibrary& meshes() const { return *meshes_; }
 
@@ -72,6 +82,7 @@ class HomeFiles final : public FileFinder {
 
   KismetHome home_;
   std::shared_ptr<MeshLibrary> meshes_;
+  std::shared_ptr<VolumeLibrary> volumes_;
 };
 
 // The same files; meshes without their own collide_as use this one.
@@ -92,6 +103,10 @@ class FilesWithMeshesAs final : public FileFinder {
                                            std::optional<CollideAs> collide_as, const Place& place,
                                            Diagnostics& diagnostics) const override {
     return files_.mesh(file, scale, collide_as.value_or(collide_as_), place, diagnostics);
+  }
+  [[nodiscard]] std::shared_ptr<const VolumeData> volume(const VolumeRequest& request, const Place& place,
+                                                         Diagnostics& diagnostics) const override {
+    return files_.volume(request, place, diagnostics);
   }
 
  private:

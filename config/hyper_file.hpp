@@ -12,7 +12,7 @@
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "rt_core/base/text.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

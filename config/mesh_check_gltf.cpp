@@ -8,7 +8,7 @@
 
 #include "config/file_finder.hpp"
 #include "config/mesh_check.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "rt_core/base/result.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

@@ -7,7 +7,7 @@
 #include "config/mesh_appearance.hpp"
 #include "config/mesh_message/scene_polygons.hpp"
 #include "rt_core/base/result.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

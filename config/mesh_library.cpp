@@ -9,8 +9,8 @@
 #include "config/mesh_file.hpp"
 #include "config/picture_library.hpp"
 #include "rt_core/base/home.hpp"
-#include "rt_core/geometry/convex_hull.hpp"
-#include "rt_core/geometry/convex_parts.hpp"
+#include "rt_core/geometry/convex/convex_hull.hpp"
+#include "rt_core/geometry/convex/convex_parts.hpp"
 
 namespace cellmirror {
 

@@ -44,6 +44,7 @@ class MeshLibrary {
 
   // For progress. While counting, mesh() reads nothing and gives nothing, but counts the files that it would read.
   void count_only(bool counting) { counting_ = counting; }
+  [[nodiscard]] bool is_counting() const { return counting_; }
   [[nodiscard]] std::size_t counted() const { return counted_; }
   // `reading` is called before each file that is read. May be empty.
   using Reading = std::function<void(const std::filesystem::path& file)>;

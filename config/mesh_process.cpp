@@ -1,14 +1,10 @@
 #include "config/mesh_process.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sched.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +15,7 @@
 #include <optional>
 #include <utility>
 
-#include "rt_core/base/descriptor.hpp"
+#include "config/reader_process/reader_child.hpp"
 
 namespace cellmirror {
 
@@ -28,74 +24,6 @@ namespace {
 using Steady = std::chrono::steady_clock;
 
 constexpr const char* kExportAnew = "export it again";
-
-// A process that was started here; ended and collected at the latest when this goes.
-class Child {
- public:
-  explicit Child(pid_t id) : id_(id) {}
-  ~Child() { end(); }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  // Its status as waitpid() gives it; none if another call has collected it. A process that is already ending keeps its
-  // status: the kernel ignores signals to it.
-  std::optional<int> end() {
-    if (id_ <= 0) return std::nullopt;
-    kill(id_, SIGKILL);
-    int status = 0;
-    pid_t collected = -1;
-    do {
-      collected = waitpid(id_, &status, 0);
-    } while (collected < 0 && errno == EINTR);
-    const bool own = collected == id_;
-    id_ = -1;
-    return own ? std::optional(status) : std::nullopt;
-  }
-
- private:
-  pid_t id_;
-};
-
-// What the child does between its start and the program: the arguments of posix_spawn().
-class Beginning {
- public:
-  explicit Beginning(int socket) {
-    posix_spawn_file_actions_init(&files_);
-    posix_spawn_file_actions_adddup2(&files_, socket, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&files_, socket, STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&files_, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&files_, STDERR_FILENO + 1);
-    posix_spawnattr_init(&attributes_);
-    // Neither the gateway's signals nor its priority, and no Ctrl-C that is meant for the gateway.
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSCHEDULER |
-                                               POSIX_SPAWN_SETPGROUP);
-    sigset_t signals;
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&attributes_, &signals);
-    sigfillset(&signals);
-    posix_spawnattr_setsigdefault(&attributes_, &signals);
-    const sched_param no_priority{};
-    posix_spawnattr_setschedpolicy(&attributes_, SCHED_OTHER);
-    posix_spawnattr_setschedparam(&attributes_, &no_priority);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-  }
-  ~Beginning() {
-    posix_spawn_file_actions_destroy(&files_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  Beginning(const Beginning&) = delete;
-  Beginning& operator=(const Beginning&) = delete;
-
-  int spawn(const std::filesystem::path& program, pid_t& id) const {
-    std::string name = program.filename().string();
-    std::array<char*, 2> arguments{name.data(), nullptr};
-    return posix_spawn(&id, program.c_str(), &files_, &attributes_, arguments.data(), environ);
-  }
-
- private:
-  posix_spawn_file_actions_t files_{};
-  posix_spawnattr_t attributes_{};
-};
 
 // What is left to send, from the front.
 class Outgoing {
@@ -184,46 +112,22 @@ std::unexpected<Error> why_ended(std::optional<int> status) {
   return fail("it cannot be read: its reader's answer is damaged", kExportAnew);
 }
 
-Error not_started(const MeshReader& reader, int error) {
-  return {fmt::format("{} cannot be started: {}", reader.program.string(), std::strerror(error)),
-          "install it beside cellmirror; both are built together"};
-}
-
 }  // namespace
 
-MeshReader installed_mesh_reader() {
-  // Once: where the program is replaced while it runs, its place stays.
-  static const std::filesystem::path folder = [] {
-    std::error_code error;
-    return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  }();
-  return {folder / "cellmirror-mesh-reader"};
-}
+MeshReader installed_mesh_reader() { return {program_beside_this("cellmirror-mesh-reader")}; }
 
-Result<void> check_mesh_reader(const MeshReader& reader) {
-  if (access(reader.program.c_str(), X_OK) != 0) return std::unexpected(not_started(reader, errno));
-  return {};
-}
+Result<void> check_mesh_reader(const MeshReader& reader) { return check_reader_program(reader.program); }
 
 Result<ScenePolygons> read_mesh_apart(const MeshRequest& request, const MeshReader& reader) {
   const Steady::time_point until = Steady::now() + reader.longest;
-  std::array<int, 2> ends{};
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    return fail(fmt::format("it cannot be read: no connection to its reader: {}", std::strerror(errno)));
-  Descriptor own(ends[0]);
-  Descriptor theirs(ends[1]);
-  pid_t id = -1;
-  if (const int error = Beginning(theirs.get()).spawn(reader.program, id); error != 0) {
-    const Error why = not_started(reader, error);
-    return fail("it cannot be read: " + why.what, why.remedy);
-  }
-  Child child(id);
-  theirs.reset();
+  auto started = start_reader(reader.program);
+  if (!started) return fail("it cannot be read: " + started.error().what, started.error().remedy);
   const MeshMessage message = encode_mesh_request(request);
   std::string answer;
-  const ExchangeResult result = exchange(own.get(), Outgoing(message.parts()), until, reader.most_bytes, answer);
-  own.reset();
-  const std::optional<int> status = child.end();
+  const ExchangeResult result =
+      exchange(started->socket.get(), Outgoing(message.parts()), until, reader.most_bytes, answer);
+  started->socket.reset();
+  const std::optional<int> status = started->child.end();
   if (result == ExchangeResult::too_late) return took_too_long(seconds(reader.longest));
   if (result == ExchangeResult::too_long)
     return fail(fmt::format("it cannot be read: it contains more than {} MiB", reader.most_bytes >> 20U),

@@ -12,7 +12,7 @@ namespace cellmirror {
 
 namespace {
 
-enum class StreamKind { cia402, dbc, dds };
+enum class StreamKind { cia402, dbc, dds, rtde };
 
 // "GROUP:PORT" of a udp channel, with an IPv6 group in brackets.
 bool is_group_and_port(std::string_view text) {
@@ -187,8 +187,10 @@ std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory
     reader.set_where("stream of " + printable(*robot));
     facts = find_robot(reader, *robot, robots, complete);
   }
-  const auto kind = reader.choice<StreamKind>(
-      "kind", {{"can-cia402", StreamKind::cia402}, {"can-dbc", StreamKind::dbc}, {"dds", StreamKind::dds}});
+  const auto kind = reader.choice<StreamKind>("kind", {{"can-cia402", StreamKind::cia402},
+                                                       {"can-dbc", StreamKind::dbc},
+                                                       {"dds", StreamKind::dds},
+                                                       {"rtde", StreamKind::rtde}});
   if (!kind) return std::nullopt;  // which keys belong here depends on it
   switch (*kind) {
     case StreamKind::cia402:
@@ -199,6 +201,9 @@ std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory
       break;
     case StreamKind::dds:
       stream.config = read_dds(reader, facts);
+      break;
+    case StreamKind::rtde:
+      stream.config = read_rtde(reader, facts);
       break;
   }
   reader.finish();

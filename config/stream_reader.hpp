@@ -31,6 +31,7 @@ struct JointReference {
 [[nodiscard]] Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
 [[nodiscard]] DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
 [[nodiscard]] DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot);
+[[nodiscard]] RtdeStreamConfig read_rtde(TableReader& reader, const RobotFacts* robot);
 // The [[stream.e2e]] tables.
 [[nodiscard]] std::vector<E2eConfig> read_protections(TableReader& stream);
 [[nodiscard]] CanChannelConfig read_channel(TableReader& reader, const FileFinder& files);

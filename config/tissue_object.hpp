@@ -10,7 +10,7 @@
 #include "config/file_finder.hpp"
 #include "config/tissue_setup.hpp"
 #include "rt_core/base/diagnostics.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror {
 

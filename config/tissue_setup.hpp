@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror {
 

@@ -10,7 +10,7 @@
 #include "config/tissue_crossings.hpp"
 #include "config/tissue_setup.hpp"
 #include "rt_core/base/counted.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

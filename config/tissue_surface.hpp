@@ -9,7 +9,7 @@
 #include "config/mesh_library.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/geometry/triangle_mesh.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror {
 

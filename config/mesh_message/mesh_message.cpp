@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "rt_core/base/text.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "config/mesh_reader/polygon.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
 namespace cellmirror {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "rt_core/base/diagnostics.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror::msh {
 

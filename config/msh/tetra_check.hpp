@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "config/msh/msh_sections.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror::msh {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror::msh {
 

@@ -7,7 +7,7 @@
 
 #include "config/cell_file.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 

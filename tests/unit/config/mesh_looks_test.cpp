@@ -11,7 +11,7 @@
 #include "config/mesh_appearance.hpp"
 #include "config/mesh_file.hpp"
 #include "config/mesh_library.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 #include "tests/unit/config/mesh_appearance.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/picture_bytes.hpp"

@@ -14,7 +14,7 @@
 #include "config/clip_file.hpp"
 #include "config/tissue_crossings.hpp"
 #include "config/tissue_surface.hpp"
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 #include "tests/unit/config/picture_bytes.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 

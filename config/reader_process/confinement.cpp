@@ -1,4 +1,4 @@
-#include "config/mesh_reader/confinement.hpp"
+#include "config/reader_process/confinement.hpp"
 
 #include <fcntl.h>
 #include <linux/audit.h>
@@ -81,10 +81,7 @@ void allow_few_system_calls() {
 
 }  // namespace
 
-void confine_this_process() {
-  // The largest files that are allowed take up to 0.8 GB (docs/decisions/0017).
-  constexpr rlim_t kAddressSpace = rlim_t{3} << 30U;
-  constexpr rlim_t kProcessorSeconds = 60;
+void confine_this_process(const Confinement& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   be_ended_first();
@@ -92,10 +89,10 @@ void confine_this_process() {
   prctl(PR_SET_DUMPABLE, 0);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
-  limit(RLIMIT_CPU, kProcessorSeconds, 1);  // SIGXCPU at the first, SIGKILL at the second
+  limit(RLIMIT_CPU, limits.processor_seconds, 1);  // SIGXCPU at the first, SIGKILL at the second
   if (kSanitized) return;
   limit(RLIMIT_NOFILE, 3);
-  limit(RLIMIT_AS, kAddressSpace);
+  limit(RLIMIT_AS, limits.address_space_bytes);
   if (kMachine != 0) allow_few_system_calls();
 }
 
