@@ -10,7 +10,8 @@
 #include "drivers/display/internal/reach.hpp"
 #include "drivers/display/internal/render_target.hpp"
 #include "drivers/display/internal/ribbon_pass.hpp"
-#include "drivers/display/internal/tissue_layer.hpp"
+#include "drivers/display/internal/tissue/tissue_layer.hpp"
+#include "drivers/display/internal/volume/volume_layer.hpp"
 #include "drivers/display/internal/words.hpp"
 
 namespace cellmirror::display {
@@ -46,7 +47,7 @@ std::string text_of(const GlApi& gl, GLenum what) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(std::unique_ptr<GlContext> made, const GlApi& loaded)
+  Impl(std::unique_ptr<GlContext> made, const GlApi& loaded, int threads)
       : context(std::move(made)),
         gl(loaded),
         meshes(gl),
@@ -56,14 +57,17 @@ struct Renderer::Impl {
         background(gl),
         floor(gl),
         ribbons(gl),
-        tissue(gl, meshes.textures()) {}
+        tissue(gl, meshes.textures()),
+        volumes(gl, threads) {}
   ~Impl() { static_cast<void>(context->make_current()); }  // what is destroyed next frees its things in it
 
   Result<void> prepare();
   Result<void> begin(int width, int height);
   Result<void> end(int width, int height);
-  void draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn);
+  Result<void> draw_pane(const Frame& frame, std::size_t pane, std::vector<DrawnBody>& drawn);
   void draw_words(const Scene& scene, std::span<const Pane> panes, Image& picture);
+  Result<void> pick_volumes(const Scene& scene, std::span<const Pane> panes, const Box& reach, int width, int height,
+                            std::vector<std::uint32_t>& objects);
   void clip_to(const PixelRect& pixels) const {
     gl.Viewport(pixels.x, pixels.y, pixels.width, pixels.height);
     gl.Scissor(pixels.x, pixels.y, pixels.width, pixels.height);
@@ -80,6 +84,7 @@ struct Renderer::Impl {
   FloorPass floor;
   RibbonPass ribbons;
   TissueLayer tissue;
+  VolumeLayer volumes;
   Marks marks;
   Words words;
   RendererCounters counters;
@@ -123,6 +128,13 @@ Result<void> Renderer::Impl::end(int width, int height) {
   counters.textures = meshes.textures().size();
   counters.texture_uploads = meshes.textures().uploads();
   counters.texture_bytes = meshes.textures().bytes();
+  const VolumeCounts& cast = volumes.counts();
+  counters.volumes = cast.volumes;
+  counters.volume_bricks = cast.bricks;
+  counters.volume_bricks_drawn = cast.bricks_drawn;
+  counters.volume_reduction = cast.reduction;
+  counters.volume_in_haste = cast.hasty;
+  counters.volume_ns = static_cast<std::uint64_t>(cast.took.count());
   ++counters.frames;
   if (gl.GetError() == GL_NO_ERROR) return {};
   return fail("the graphics system ran out of memory with a picture of " + std::to_string(width) + "x" +
@@ -130,7 +142,7 @@ Result<void> Renderer::Impl::end(int width, int height) {
               "request a smaller one");
 }
 
-void Renderer::Impl::draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn) {
+Result<void> Renderer::Impl::draw_pane(const Frame& frame, std::size_t pane, std::vector<DrawnBody>& drawn) {
   const BodyCounts counts = BodyPass::examine(frame, drawn);
   counters.bodies_drawn += counts.drawn;
   counters.bodies_left_out += counts.left_out;
@@ -140,6 +152,7 @@ void Renderer::Impl::draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn
   tissue.draw_opaque(frame);
   background.draw();
   if (is_on(frame.scene, DisplayMode::floor)) floor.draw(frame, ribbons);
+  if (Result<void> done = volumes.draw(frame, pane, target); !done) return done;
   bodies.draw_see_through(frame, drawn);
   tissue.draw_see_through(frame);
   gl.Enable(GL_BLEND);
@@ -150,6 +163,7 @@ void Renderer::Impl::draw_pane(const Frame& frame, std::vector<DrawnBody>& drawn
   tissue.draw_veil(frame);
   ribbons.draw(marks.hidden_by_bodies, false);
   ribbons.draw(marks.on_top, true);
+  return {};
 }
 
 void Renderer::Impl::draw_words(const Scene& scene, std::span<const Pane> panes, Image& picture) {
@@ -163,6 +177,19 @@ void Renderer::Impl::draw_words(const Scene& scene, std::span<const Pane> panes,
   words.draw_messages(scene, picture);
 }
 
+Result<void> Renderer::Impl::pick_volumes(const Scene& scene, std::span<const Pane> panes, const Box& reach, int width,
+                                          int height, std::vector<std::uint32_t>& objects) {
+  if (scene.volumes.empty()) return {};
+  std::vector<float> depth(objects.size());
+  if (Result<void> read = object_target.read_depth(0, 0, width, height, depth.data()); !read) return read;
+  volumes.begin(scene, Nanoseconds{0});
+  for (const Pane& pane : bounded_panes(panes, reach)) {
+    if (const auto view = ViewTransform::of(pane, width, height))
+      volumes.pick({scene, *view, pane.camera}, depth, width, objects);
+  }
+  return {};
+}
+
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;
 
@@ -171,7 +198,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
   if (!context) return std::unexpected(context.error());
   const auto gl = load_gl(**context);
   if (!gl) return std::unexpected(gl.error());
-  auto impl = std::make_unique<Impl>(std::move(*context), *gl);
+  auto impl = std::make_unique<Impl>(std::move(*context), *gl, options.threads);
   if (const Result<void> prepared = impl->prepare(); !prepared) return std::unexpected(prepared.error());
   return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
 }
@@ -180,7 +207,7 @@ std::string_view Renderer::name() const { return impl_->name; }
 RendererCounters Renderer::counters() const { return impl_->counters; }
 
 Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture,
-                            bool smooth) {
+                            bool smooth, Nanoseconds volume_time) {
   Impl& impl = *impl_;
   if (Result<void> begun = impl.begin(width, height); !begun) return begun;
   std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
@@ -196,14 +223,18 @@ Result<void> Renderer::draw(const Scene& scene, std::span<const Pane> panes, int
   if (Result<void> begun = impl.target.begin(pixels, width, height); !begun) return begun;
   impl.gl.ClearColor(0.80F, 0.82F, 0.85F, 1);
   impl.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  for (const Pane& pane : drawn_panes) {
+  impl.volumes.begin(scene, volume_time);
+  for (std::size_t i = 0; i < drawn_panes.size(); ++i) {
+    const Pane& pane = drawn_panes[i];
     const std::optional<PixelRect> rect = pixels_of(pane, width, height);
     if (!rect) continue;
     impl.clip_to(*rect);
-    if (const auto view = ViewTransform::of(pane, width, height))
-      impl.draw_pane({scene, *view, pane.camera}, drawn);
-    else
+    const auto view = ViewTransform::of(pane, width, height);
+    if (!view) {
       impl.background.draw();
+    } else if (Result<void> done = impl.draw_pane({scene, *view, pane.camera}, i, drawn); !done) {
+      return done;
+    }
   }
   picture.width = width;
   picture.height = height;
@@ -222,7 +253,8 @@ Result<void> Renderer::objects(const Scene& scene, std::span<const Pane> panes, 
   impl.gl.ClearBufferuiv(GL_COLOR, 0, kNone.data());
   impl.gl.Clear(GL_DEPTH_BUFFER_BIT);
   std::vector<DrawnBody> drawn = drawn_bodies(scene, impl.meshes);
-  for (const Pane& pane : bounded_panes(panes, reach_of(scene, drawn))) {
+  const Box reach = reach_of(scene, drawn);
+  for (const Pane& pane : bounded_panes(panes, reach)) {
     const auto view = ViewTransform::of(pane, width, height);
     if (!view) continue;
     impl.clip_to(view->pixels());
@@ -232,6 +264,7 @@ Result<void> Renderer::objects(const Scene& scene, std::span<const Pane> panes, 
   }
   objects.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   impl.object_target.read_objects(objects.data());
+  if (Result<void> picked = impl.pick_volumes(scene, panes, reach, width, height, objects); !picked) return picked;
   return impl.end(width, height);
 }
 

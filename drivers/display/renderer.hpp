@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
 #include "rt_core/ports/renderer_counters.hpp"
 #include "rt_core/ports/scene.hpp"
@@ -19,7 +20,8 @@ enum class Backend : std::uint8_t { automatic, osmesa, egl };  // automatic: OSM
 
 struct RendererOptions {
   Backend backend = Backend::automatic;
-  int threads = 1;  // of a software renderer beside the calling one; 0: it draws in the calling thread alone
+  int threads = 1;  // of a software renderer beside the calling one; 0: it draws in the calling thread alone. As many
+                    // cast voxel volumes, in the idle class
 };
 
 // Belongs to the thread that made it. Not real time.
@@ -36,9 +38,13 @@ class Renderer {
 
   // Fails for sizes outside of 16..kLargestImageEdge and where memory does not suffice. What is not finite is left out.
   // `smooth`: with anti-aliasing where the scene's modes have it; false: without, where there is no time for it.
+  // `volume_time`: how long casting voxel volumes may take while they look different in each picture of a pane (moved,
+  // turned, clipped, hidden): their resolution follows. What has not changed since the last picture is cast at full
+  // quality. 0: always at full quality.
   Result<void> draw(const Scene& scene, std::span<const Pane> panes, int width, int height, Image& picture,
-                    bool smooth = true);
-  // The object under each pixel, rows from the top; 0: none. Without anti-aliasing, overlays, floor.
+                    bool smooth = true, Nanoseconds volume_time = Nanoseconds{0});
+  // The object under each pixel, rows from the top; 0: none. Without anti-aliasing, overlays, floor. A voxel volume
+  // where it is at least half opaque.
   Result<void> objects(const Scene& scene, std::span<const Pane> panes, int width, int height,
                        std::vector<std::uint32_t>& objects);
   [[nodiscard]] RendererCounters counters() const;

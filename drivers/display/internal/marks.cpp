@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "rt_core/ports/palette.hpp"
+#include "rt_core/ports/voxel_grid.hpp"
+#include "rt_core/volume/planes.hpp"
 
 namespace cellmirror::display {
 
@@ -69,8 +71,23 @@ void Marks::gather(const Frame& frame, MeshStore& meshes) {
   for (const SceneCone& cone : some(scene.cones)) add_cone(frame, meshes, cone);
   for (const SceneArrow& arrow : some(scene.arrows)) add_arrow(frame, meshes, arrow);
   for (const SceneSpark& spark : some(scene.sparks)) add_spark(frame, spark);
+  for (const SceneVolume& shown : some(scene.volumes)) add_plane_frames(frame, shown);
   std::stable_sort(see_through.begin(), see_through.end(),
                    [](const DrawnBody& a, const DrawnBody& b) { return a.distance > b.distance; });
+}
+
+// The outlines of clipping planes within a volume.
+void Marks::add_plane_frames(const Frame& frame, const SceneVolume& shown) {
+  static constexpr Colour kPlane{0.95F, 0.55F, 0.10F, 1};
+  if (shown.grid == nullptr || !sensible(shown.X_WV)) return;
+  for (const VolumePlane& plane : shown.settings.planes) {
+    if (!plane.framed) continue;
+    const std::vector<Eigen::Vector3d> corners = volume::outline(plane, shown.grid->half_extent_m());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      hidden_by_bodies.line(frame.view, shown.X_WV * corners[i], shown.X_WV * corners[(i + 1) % corners.size()],
+                            {kPlane, kPlane, 2.0F, false});
+    }
+  }
 }
 
 void Marks::add_axes(const Frame& frame, MeshStore& meshes, const SceneAxes& axes) {

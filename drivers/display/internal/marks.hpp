@@ -24,6 +24,7 @@ struct Marks {
   void add_trace(const Frame& frame, const SceneTrace& trace);
   void add_cone(const Frame& frame, MeshStore& meshes, const SceneCone& cone);
   void add_arrow(const Frame& frame, MeshStore& meshes, const SceneArrow& arrow);
+  void add_plane_frames(const Frame& frame, const SceneVolume& shown);
   void add_spark(const Frame& frame, const SceneSpark& spark);
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/display/internal/volume/volume_casting.hpp"
+
 namespace cellmirror::display {
 
 namespace {
@@ -24,6 +26,10 @@ void include(Box& reach, const Eigen::Vector3d& centre, double radius = 0) {
 Box reach_of(const Scene& scene, std::span<const DrawnBody> bodies) {
   Box reach;
   for (const DrawnBody& body : bodies) include(reach, body.bounds_W.centre, body.bounds_W.radius);
+  for (const SceneVolume& shown : scene.volumes) {
+    if (shown.grid == nullptr) continue;
+    for (const Eigen::Vector3d& corner : corners_of(shown)) include(reach, corner);
+  }
   for (const SceneAxes& axes : scene.axes) include(reach, axes.X_WF.translation(), axes.length_m);
   for (const SceneLine& line : scene.lines) {
     include(reach, line.from);

@@ -83,13 +83,39 @@ void RenderTarget::read_coverage(std::uint8_t* two_a_pixel) {
   gl_.ReadPixels(0, 0, width_, height_, GL_RG, GL_UNSIGNED_BYTE, two_a_pixel);
 }
 
+Result<void> RenderTarget::read_depth(int x, int y, int width, int height, float* depth) {
+  gl_.Disable(GL_SCISSOR_TEST);
+  if (pixels_ == Pixels::smooth_colours) {
+    if (resolved_depth_ == 0) {
+      gl_.GenFramebuffers(1, &resolved_depth_);
+      gl_.BindFramebuffer(GL_FRAMEBUFFER, resolved_depth_);
+      gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                  renderbuffer(GL_DEPTH_COMPONENT24, 0));
+      const GLenum none = GL_NONE;
+      gl_.DrawBuffers(1, &none);
+      gl_.ReadBuffer(GL_NONE);
+    }
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, frame_);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_depth_);
+    gl_.BlitFramebuffer(x, y, x + width, y + height, x, y, x + width, y + height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_depth_);
+  }
+  gl_.ReadPixels(x, y, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, frame_);
+  gl_.Enable(GL_SCISSOR_TEST);
+  if (gl_.GetError() == GL_NO_ERROR) return {};
+  return fail("the graphics system has no depth of a picture", "request a smaller one");
+}
+
 void RenderTarget::free() {
   if (frame_ != 0) gl_.DeleteFramebuffers(1, &frame_);
   if (resolved_ != 0) gl_.DeleteFramebuffers(1, &resolved_);
+  if (resolved_depth_ != 0) gl_.DeleteFramebuffers(1, &resolved_depth_);
   for (const GLuint buffer : renderbuffers_) gl_.DeleteRenderbuffers(1, &buffer);
   renderbuffers_.clear();
   frame_ = 0;
   resolved_ = 0;
+  resolved_depth_ = 0;
 }
 
 }  // namespace cellmirror::display

@@ -31,6 +31,9 @@ class RenderTarget {
   void read_colours(std::uint8_t* rgba);
   void read_objects(std::uint32_t* objects);
   void read_coverage(std::uint8_t* two_a_pixel);
+  // Window depth (0 to 1) of a rectangle from the upper left corner, rows from the top; of several samples a pixel,
+  // one. Drawing goes on afterwards.
+  Result<void> read_depth(int x, int y, int width, int height, float* depth);
   [[nodiscard]] bool fits(Pixels pixels, int width, int height) const {
     return frame_ != 0 && pixels == pixels_ && width == width_ && height == height_;
   }
@@ -46,6 +49,7 @@ class RenderTarget {
   int height_ = 0;
   GLuint frame_ = 0;
   GLuint resolved_ = 0;
+  GLuint resolved_depth_ = 0;  // a framebuffer with depth alone, made when it is read first
   std::vector<GLuint> renderbuffers_;
 };
 

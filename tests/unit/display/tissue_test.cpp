@@ -2,7 +2,7 @@
 #include <functional>
 
 #include "drivers/display/internal/frame.hpp"
-#include "drivers/display/internal/tissue_vertices.hpp"
+#include "drivers/display/internal/tissue/tissue_vertices.hpp"
 #include "rt_core/ports/mesh_appearance.hpp"
 #include "tests/unit/display/renderer_fixture.hpp"
 #include "tests/unit/display/tissue_scenes.hpp"

@@ -1,4 +1,4 @@
-#include "drivers/display/internal/tissue_mesh.hpp"
+#include "drivers/display/internal/tissue/tissue_mesh.hpp"
 
 #include <algorithm>
 #include <cstddef>

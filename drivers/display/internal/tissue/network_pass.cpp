@@ -1,4 +1,4 @@
-#include "drivers/display/internal/network_pass.hpp"
+#include "drivers/display/internal/tissue/network_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "drivers/display/internal/tissue_shaders.hpp"
+#include "drivers/display/internal/tissue/tissue_shaders.hpp"
 #include "rt_core/ports/palette.hpp"
 
 namespace cellmirror::display {

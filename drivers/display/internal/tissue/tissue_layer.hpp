@@ -5,11 +5,11 @@
 
 #include "drivers/display/internal/body_pass.hpp"
 #include "drivers/display/internal/clips.hpp"
-#include "drivers/display/internal/network_pass.hpp"
-#include "drivers/display/internal/particle_pass.hpp"
-#include "drivers/display/internal/pool_pass.hpp"
-#include "drivers/display/internal/tissue_pass.hpp"
-#include "drivers/display/internal/veil_pass.hpp"
+#include "drivers/display/internal/tissue/network_pass.hpp"
+#include "drivers/display/internal/tissue/particle_pass.hpp"
+#include "drivers/display/internal/tissue/pool_pass.hpp"
+#include "drivers/display/internal/tissue/tissue_pass.hpp"
+#include "drivers/display/internal/tissue/veil_pass.hpp"
 
 namespace cellmirror::display {
 

@@ -1,11 +1,11 @@
-#include "drivers/display/internal/pool_pass.hpp"
+#include "drivers/display/internal/tissue/pool_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
 
-#include "drivers/display/internal/tissue_shaders.hpp"
+#include "drivers/display/internal/tissue/tissue_shaders.hpp"
 
 namespace cellmirror::display {
 

@@ -8,7 +8,7 @@
 
 #include "drivers/display/internal/gl_api.hpp"
 #include "drivers/display/internal/texture_store.hpp"
-#include "drivers/display/internal/tissue_vertices.hpp"
+#include "drivers/display/internal/tissue/tissue_vertices.hpp"
 
 namespace cellmirror::display {
 

@@ -10,7 +10,7 @@
 #include "drivers/display/internal/frame.hpp"
 #include "drivers/display/internal/shader_program.hpp"
 #include "drivers/display/internal/shadow_map.hpp"
-#include "drivers/display/internal/tissue_mesh.hpp"
+#include "drivers/display/internal/tissue/tissue_mesh.hpp"
 
 namespace cellmirror::display {
 

@@ -1,9 +1,9 @@
-#include "drivers/display/internal/tissue_pass.hpp"
+#include "drivers/display/internal/tissue/tissue_pass.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "drivers/display/internal/tissue_shaders.hpp"
+#include "drivers/display/internal/tissue/tissue_shaders.hpp"
 
 namespace cellmirror::display {
 

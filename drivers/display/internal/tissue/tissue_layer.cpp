@@ -1,4 +1,4 @@
-#include "drivers/display/internal/tissue_layer.hpp"
+#include "drivers/display/internal/tissue/tissue_layer.hpp"
 
 namespace cellmirror::display {
 

@@ -1,4 +1,4 @@
-#include "drivers/display/internal/particle_pass.hpp"
+#include "drivers/display/internal/tissue/particle_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "drivers/display/internal/tissue_shaders.hpp"
+#include "drivers/display/internal/tissue/tissue_shaders.hpp"
 
 namespace cellmirror::display {
 

@@ -1,4 +1,4 @@
-#include "drivers/display/internal/tissue_vertices.hpp"
+#include "drivers/display/internal/tissue/tissue_vertices.hpp"
 
 #include <algorithm>
 #include <cmath>
