@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     add_snapshot(program, action);
     add_page(program, action);
     add_simulate(program, action);
+    add_volume(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();
   } catch (const std::bad_alloc&) {

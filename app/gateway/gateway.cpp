@@ -36,6 +36,7 @@
 #include "app/workers/tissue_worker.hpp"
 #include "app/workers/trace_worker.hpp"
 #include "config/cell_file.hpp"
+#include "config/volume/voxel_memory.hpp"
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
 #include "ipc/control/instance.hpp"
@@ -206,6 +207,7 @@ struct Gateway::Parts {
 Result<void> Gateway::Parts::prepare_machine() {
   memory = lock_memory(loop_settings.real_time);
   if (auto enforced = enforce(loop_settings.real_time, memory); !enforced) return enforced;
+  if (memory.level != MemoryLockLevel::none) exempt_voxels_from_locking();
   if (!memory.ok) log_warning("memory", "memory is not locked: {}; {}", memory.why_not, memory.remedy);
   if (loop_settings.real_time != RealTimePolicy::off)
     processors_awake = std::make_unique<CpuLatencyRequest>(kIdleWakeLimitUs);
@@ -450,7 +452,7 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
   look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *cell_state, tick,
         robots, status_builder.poses(), picture_counter.count(), collisions->board().latest(),
         ranging->board().latest(), forces->board().latest(), queues_now, problems_now, commands_logged,
-        tissue_sources().newest_report()});
+        tissue_sources().newest_report(), renderer->counters()});
 }
 
 Problems Gateway::Parts::problems() const {

@@ -7,6 +7,7 @@
 
 #include "drivers/can/stream/streams.hpp"
 #include "drivers/dds/dds_stream.hpp"
+#include "drivers/rtde/rtde_stream.hpp"
 
 namespace cellmirror::app {
 
@@ -30,11 +31,15 @@ struct StreamMaker {
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
     return dds::make_dds_stream(config, clock);
   }
+  Result<std::unique_ptr<JointStream>> operator()(const RtdeStreamConfig& config) const {
+    return rtde::make_rtde_stream(config, clock, fifo_priority);
+  }
 };
 
 struct TableOfAJoint {
   const char* operator()(const std::monostate&) const { return ""; }
   const char* operator()(const DdsStreamConfig&) const { return "joint"; }
+  const char* operator()(const RtdeStreamConfig&) const { return "joint"; }
   const char* operator()(const Cia402StreamConfig&) const { return "node"; }
   const char* operator()(const DbcStreamConfig&) const { return "signal"; }
 };
@@ -44,6 +49,7 @@ struct StreamChecker {
 
   void operator()(const std::monostate&) const {}
   void operator()(const DdsStreamConfig&) const {}
+  void operator()(const RtdeStreamConfig&) const {}
   void operator()(const Cia402StreamConfig& config) const { can::check_stream(config, found); }
   void operator()(const DbcStreamConfig& config) const { can::check_stream(config, found); }
 };

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "config/volume_user_tables.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/rt/scheduling.hpp"
@@ -54,6 +55,7 @@ CellOwner::CellOwner(Parts parts)
       board_(parts.board),
       clock_(parts.clock),
       names_(cell_),
+      volumes_(cell_, [this] { return load_volume_tables(home_); }),
       fleet_(std::make_unique<Fleet>(
           cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority,
           Fleet::Events{.let_tick_pass = parts.let_tick_pass,
@@ -72,7 +74,7 @@ CellOwner::CellOwner(Parts parts)
                  [this]() -> script::ScriptRunner& { return *runner_; }, std::move(parts.program_event),
                  !parts.let_tick_pass}),
       guarded_motion_(motion_, programs_),
-      world_(cell_, *fleet_, motion_, programs_, [this] { publish_state(); }),
+      world_({cell_, *fleet_, motion_, programs_, volumes_, [this] { publish_state(); }}),
       robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
       sensing_(cell_, std::move(parts.collision)),
       haptics_({cell_, *fleet_, clock_, parts.instance, std::move(parts.haptics), parts.guard}),
@@ -87,7 +89,7 @@ CellOwner::CellOwner(Parts parts)
       diagnosis_(std::move(parts.save_flight_record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, tissue_,
-                  diagnosis_},
+                  volumes_, diagnosis_},
       home_, clock_,
       script::ScriptRunner::Events{.refused = std::move(parts.refused),
                                    .all_stopped = [this] { switches_->forget_waiting(); },
@@ -231,6 +233,7 @@ void CellOwner::publish_state() {
   cell_state->switches = switches_->snapshot();
   cell_state->couplings = couplings_.snapshots();
   cell_state->tissue = tissue_.settings();
+  cell_state->volumes = volumes_.states();
   display_.follow();
   cell_state->display = display_.state();
   board_.publish(std::move(cell_state));

@@ -29,6 +29,7 @@
 #include "app/owner/sensing.hpp"
 #include "app/owner/tcp_force_service.hpp"
 #include "app/owner/tissue/tissue_service.hpp"
+#include "app/owner/volume/volume_service.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/home.hpp"
@@ -118,6 +119,7 @@ class CellOwner {
   Board<CellState>& board_;
   const Clock& clock_;
   CellNames names_;
+  VolumeService volumes_;
   std::unique_ptr<Fleet> fleet_;
   DisplayService display_;
   MotionService motion_;

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "app/owner/volume/volume_names.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
@@ -20,6 +21,7 @@ PathKind path_kind(NameKind kind) {
       return PathKind::sensor;
     case NameKind::frame_node:
     case NameKind::branch:
+    case NameKind::volume:
     case NameKind::robot:
       return PathKind::any;
   }
@@ -30,11 +32,17 @@ PathKind path_kind(NameKind kind) {
 
 bool CellNames::knows(NameKind kind, std::string_view name) const {
   if (kind == NameKind::robot) return cell_.robot(name) != nullptr;
+  if (kind == NameKind::volume) return find_volume(cell_, name).has_value();
   return kind == NameKind::branch ? cell_.find_branch(name).has_value() : cell_.knows(name, path_kind(kind));
 }
 
 Error CellNames::explain(NameKind kind, std::string_view name) const {
-  return kind == NameKind::robot ? cell_.explain_robot(name) : cell_.explain(name, path_kind(kind));
+  if (kind == NameKind::robot) return cell_.explain_robot(name);
+  if (kind == NameKind::volume) {
+    auto found = find_volume(cell_, name);
+    return found ? Error() : std::move(found.error());
+  }
+  return cell_.explain(name, path_kind(kind));
 }
 
 std::span<const JointKind> CellNames::joints(std::string_view robot) const {
@@ -53,39 +61,41 @@ std::string_view CellNames::active_robot() const {
 }
 
 std::vector<std::string> CellNames::all(NameKind kind) const {
-  return kind == NameKind::robot ? cell_.robot_ids() : cell_.paths(path_kind(kind));
+  if (kind == NameKind::robot) return cell_.robot_ids();
+  return kind == NameKind::volume ? volume_names(cell_) : cell_.paths(path_kind(kind));
 }
 
 Result<void> CellWorld::followed(Result<void> changed) {
   if (!changed) return changed;
-  programs_.follow_cell();
-  motion_.follow_cell();
-  return fleet_.follow_cell();
+  parts_.volumes.follow_cell();
+  parts_.programs.follow_cell();
+  parts_.motion.follow_cell();
+  return parts_.fleet.follow_cell();
 }
 
-Result<void> CellWorld::activate(std::string_view node) { return followed(cell_.activate(node)); }
-Result<void> CellWorld::deactivate(std::string_view node) { return cell_.deactivate(node); }
-Result<void> CellWorld::delete_node(std::string_view node) { return followed(cell_.delete_node(node)); }
-Result<void> CellWorld::swap_node(std::string_view node) { return followed(cell_.swap_node(node)); }
-Result<void> CellWorld::level_down(std::string_view node) { return followed(cell_.level_down(node)); }
-Result<void> CellWorld::level_up(std::string_view node) { return cell_.level_up(node); }
+Result<void> CellWorld::activate(std::string_view node) { return followed(parts_.cell.activate(node)); }
+Result<void> CellWorld::deactivate(std::string_view node) { return parts_.cell.deactivate(node); }
+Result<void> CellWorld::delete_node(std::string_view node) { return followed(parts_.cell.delete_node(node)); }
+Result<void> CellWorld::swap_node(std::string_view node) { return followed(parts_.cell.swap_node(node)); }
+Result<void> CellWorld::level_down(std::string_view node) { return followed(parts_.cell.level_down(node)); }
+Result<void> CellWorld::level_up(std::string_view node) { return parts_.cell.level_up(node); }
 
 Result<void> CellWorld::set_placement(std::string_view node, const Pose& X_PF) {
-  return cell_.set_placement(node, X_PF);
+  return parts_.cell.set_placement(node, X_PF);
 }
 
 Result<void> CellWorld::connect(std::string_view part, std::string_view predecessor) {
-  return cell_.connect(part, predecessor, fleet_.positions());
+  return parts_.cell.connect(part, predecessor, parts_.fleet.positions());
 }
 
 Result<void> CellWorld::attach_at_workframe(std::string_view part, std::string_view predecessor,
                                             std::string_view workframe) {
-  return cell_.attach_at_workframe(part, predecessor, workframe);
+  return parts_.cell.attach_at_workframe(part, predecessor, workframe);
 }
 
 Result<void> CellWorld::draw_scene() {
-  auto settled = fleet_.settle();
-  if (settled) draw_();
+  auto settled = parts_.fleet.settle();
+  if (settled) parts_.draw();
   return settled;
 }
 

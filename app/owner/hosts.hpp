@@ -11,6 +11,7 @@
 #include "app/owner/motion/coupling_service.hpp"
 #include "app/owner/motion/motion_service.hpp"
 #include "app/owner/programs/program_service.hpp"
+#include "app/owner/volume/volume_service.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "scripts/commands/host.hpp"
 
@@ -35,9 +36,16 @@ class CellNames final : public NameDirectory {
 
 class CellWorld final : public WorldHost {
  public:
-  // `draw` publishes the picture of the cell.
-  CellWorld(Cell& cell, Fleet& fleet, MotionService& motion, ProgramService& programs, std::function<void()> draw)
-      : cell_(cell), fleet_(fleet), motion_(motion), programs_(programs), draw_(std::move(draw)) {}
+  // They outlive this.
+  struct Parts {
+    Cell& cell;
+    Fleet& fleet;
+    MotionService& motion;
+    ProgramService& programs;
+    VolumeService& volumes;
+    std::function<void()> draw;  // publishes the picture of the cell
+  };
+  explicit CellWorld(Parts parts) : parts_(std::move(parts)) {}
   Result<void> activate(std::string_view node) override;
   Result<void> deactivate(std::string_view node) override;
   Result<void> delete_node(std::string_view node) override;
@@ -54,11 +62,7 @@ class CellWorld final : public WorldHost {
   // After a change that may have brought or taken robots.
   Result<void> followed(Result<void> changed);
 
-  Cell& cell_;
-  Fleet& fleet_;
-  MotionService& motion_;
-  ProgramService& programs_;
-  std::function<void()> draw_;
+  Parts parts_;
 };
 
 class CellRobots final : public RobotHost {

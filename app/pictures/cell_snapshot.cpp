@@ -1,9 +1,11 @@
 #include "app/pictures/cell_snapshot.hpp"
 
 #include "app/owner/display/display_service.hpp"
+#include "app/owner/volume/volume_service.hpp"
 #include "app/render/picture_request.hpp"
 #include "app/render/renderer_options.hpp"
 #include "app/render/scene_source.hpp"
+#include "config/volume_user_tables.hpp"
 #include "drivers/display/image_codec.hpp"
 #include "drivers/display/renderer.hpp"
 #include "rt_core/cell/view.hpp"
@@ -46,6 +48,8 @@ Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotReques
   const auto tissue = tissue_at_rest(loaded.tissue);
   if (!tissue) return std::unexpected(tissue.error());
   input.tissue = *tissue;
+  VolumeService volumes(loaded.cell, [&] { return load_volume_tables(loaded.home); });
+  input.volumes = volumes.states().get();
   builder.build(input, scene);
   const auto panes = panes_of({*cell, poses, display, now, 0}, request);
   if (!panes) return std::unexpected(panes.error());

@@ -1,6 +1,7 @@
 #include "app/plot/canvas.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "rt_core/base/utf8.hpp"
@@ -48,6 +49,30 @@ void Canvas::begin_path(Colour colour_of_line, double width, double dash) {
   cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
   cairo_set_dash(context_.get(), &dash, dash > 0.0 ? 1 : 0, 0.0);
   cairo_new_path(context_.get());
+}
+
+void Canvas::image(const Rectangle& area, int width, int height, std::span<const std::uint8_t> grey) {
+  const std::unique_ptr<cairo_surface_t, Release> picture(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+  if (cairo_surface_status(picture.get()) != CAIRO_STATUS_SUCCESS) return;
+  cairo_surface_flush(picture.get());
+  unsigned char* rows = cairo_image_surface_get_data(picture.get());
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(picture.get()));
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+      const std::uint32_t pixel = 0x010101U * grey[y * static_cast<std::size_t>(width) + x];
+      std::memcpy(rows + y * stride + x * sizeof(pixel), &pixel, sizeof(pixel));
+    }
+  }
+  cairo_surface_mark_dirty(picture.get());
+  cairo_save(context_.get());
+  cairo_translate(context_.get(), area.x, area.y);
+  cairo_scale(context_.get(), area.width / width, area.height / height);
+  cairo_set_source_surface(context_.get(), picture.get(), 0, 0);
+  cairo_pattern_set_extend(cairo_get_source(context_.get()), CAIRO_EXTEND_PAD);
+  cairo_rectangle(context_.get(), 0, 0, width, height);
+  cairo_fill(context_.get());
+  cairo_restore(context_.get());
 }
 
 void Canvas::clip(const Rectangle& area) {

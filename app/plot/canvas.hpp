@@ -3,7 +3,9 @@
 
 #include <cairo.h>
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "rt_core/base/result.hpp"
@@ -35,6 +37,8 @@ class Canvas {
   void move_to(double x, double y) { cairo_move_to(context_.get(), x, y); }
   void line_to(double x, double y) { cairo_line_to(context_.get(), x, y); }
   void end_path() { cairo_stroke(context_.get()); }
+  // `grey`: width x height values, row by row from above.
+  void image(const Rectangle& area, int width, int height, std::span<const std::uint8_t> grey);
   void clip(const Rectangle& area);
   void unclip() { cairo_reset_clip(context_.get()); }
 

@@ -2,6 +2,8 @@
 // data; the drawing library stays inside this folder.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,13 @@ struct Bar {
   double bottom = 0.9;
 };
 
+// Shades of grey over the whole of a panel, whose axes say their ranges; as wide as high in the units of the axes.
+struct Image {
+  int width = 0;  // pixels
+  int height = 0;
+  std::vector<std::uint8_t> grey;  // row by row from below: x + width * y
+};
+
 struct Panel {
   std::string title;
   Axis x;
@@ -59,6 +68,7 @@ struct Panel {
   // bars.
   std::vector<std::string> rows = {};
   std::vector<Bar> bars = {};
+  Image image = {};  // without pixels: none
 };
 
 struct Figure {

@@ -36,7 +36,7 @@ class PanelDrawing {
   PanelDrawing(Canvas& canvas, const Rectangle& area, const Sides& sides, const Panel& panel)
       : canvas_(canvas),
         panel_(panel),
-        plot_(inner(area, sides)),
+        plot_(fitted(inner(area, sides), panel)),
         x_(panel.x, values_of_x(), ticks_in(plot_.width, 90)),
         bars_(bars()),
         y_(y_axis(), values_of_y(), ticks_in(plot_.height, 45)) {}
@@ -44,6 +44,7 @@ class PanelDrawing {
   void draw(const Rectangle& area) {
     draw_grid();
     canvas_.clip(plot_);
+    draw_image();
     for (const auto& bars : bars_) draw_bars(bars);
     for (const Bar& bar : panel_.bars) draw_bar(bar);
     for (std::size_t i = 0; i < panel_.lines.size(); ++i) draw_line(panel_.lines[i], i);
@@ -62,6 +63,31 @@ class PanelDrawing {
     constexpr double kTop = 44, kBottom = 68;
     return {area.x + sides.left, area.y + kTop, std::max(area.width - sides.left - sides.right, 10.0),
             std::max(area.height - kTop - kBottom, 10.0)};
+  }
+
+  // With an image, x and y have the same scale.
+  [[nodiscard]] static Rectangle fitted(Rectangle plot, const Panel& panel) {
+    const double width = panel.x.high - panel.x.low;
+    const double height = panel.y.high - panel.y.low;
+    if (panel.image.grey.empty() || !(width > 0) || !(height > 0)) return plot;
+    const double scale = std::min(plot.width / width, plot.height / height);
+    plot.y += plot.height - scale * height;
+    plot.width = std::max(scale * width, 10.0);
+    plot.height = std::max(scale * height, 10.0);
+    return plot;
+  }
+
+  void draw_image() {
+    const Image& image = panel_.image;
+    if (image.grey.empty()) return;
+    const auto width = static_cast<std::size_t>(image.width);
+    std::vector<std::uint8_t> from_above;
+    from_above.reserve(image.grey.size());
+    for (std::size_t row = static_cast<std::size_t>(image.height); row-- > 0;) {
+      const auto begin = image.grey.begin() + static_cast<std::ptrdiff_t>(row * width);
+      from_above.insert(from_above.end(), begin, begin + image.width);
+    }
+    canvas_.image(plot_, image.width, image.height, from_above);
   }
 
   [[nodiscard]] std::vector<double> values_of_x() const {
@@ -219,7 +245,7 @@ class PanelDrawing {
     canvas_.text(plot_.x, area.y + 28, panel_.title, kTitleSize, kInk, Anchor::left, true);
     canvas_.text(plot_.x + 0.5 * plot_.width, plot_.bottom() + 47, panel_.x.label, kLabelSize, kInk, Anchor::middle);
     canvas_.upright_text(area.x + 24, plot_.y + 0.5 * plot_.height, panel_.y.label, kLabelSize, kInk);
-    if (values_of_x().empty())
+    if (values_of_x().empty() && panel_.image.grey.empty())
       canvas_.text(plot_.x + 0.5 * plot_.width, plot_.y + 0.5 * plot_.height, "no data", kLabelSize, kFaintInk,
                    Anchor::middle);
   }

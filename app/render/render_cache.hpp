@@ -20,6 +20,8 @@ namespace cellmirror::app {
 struct RenderedPicture {
   PictureRequest request;
   std::uint64_t fingerprint = 0;
+  std::uint64_t volume_fingerprint = 0;
+  bool hasty = false;  // drawn with less than there is time for when voxel volumes rest: the next one may be better
   Timestamp drawn;
   Image image;
   Timestamp posture_time;

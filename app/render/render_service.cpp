@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "app/render/picked_object.hpp"
@@ -20,6 +21,7 @@ namespace {
 constexpr Nanoseconds kRedrawAfter{950'000'000};       // an unchanged picture is drawn again after this time
 constexpr Nanoseconds kRendererAgain{10'000'000'000};  // a renderer that could not be had is tried again after so long
 constexpr Nanoseconds kFreshEnough{5'000'000};         // a scene serves several drawings of one round for so long
+constexpr Nanoseconds kVolumesLook{5'000'000};         // how soon a change of volumes by SCRIPT is noticed
 
 constexpr const char* kEnding = "the gateway is ending";
 
@@ -129,17 +131,29 @@ void RenderService::loop(const std::stop_token& stop) {
     // One at a time: those who look continuously have their turn between.
     const bool more = run_job();
     const Timestamp now = boards_.clock.now();
-    if (now < next) {
-      if (!more) wake_.wait(next - now);
+    const bool early = now < next && volumes_wait(now);
+    if (now < next && !early) {
+      if (!more) wake_.wait(looks_for_volumes() ? std::min(next - now, kVolumesLook) : next - now);
       continue;
     }
-    round(now);
+    round(now, early);
+    if (early) continue;
     updates_.add();
     next = next + period;
     // Drawing took longer than a period: the phase is given up, so that jobs and stopping have their turn.
     if (const Timestamp after = boards_.clock.now(); next < after) next = after;
   }
   cancel_jobs();
+}
+
+bool RenderService::looks_for_volumes() const {
+  return streams_.size() > 0 && source_.volumes() != nullptr && !source_.volumes()->empty();
+}
+
+bool RenderService::volumes_wait(Timestamp now) const {
+  if (!looks_for_volumes() || now - source_.refreshed() < kFreshEnough) return false;
+  if (now - last_early_ < picture_period(options_.settings.rate_hz)) return false;
+  return boards_.pictures.latest()->volumes.get() != source_.volumes();
 }
 
 bool RenderService::run_job() {
@@ -164,8 +178,22 @@ void RenderService::cancel_jobs() {
   for (const Job& job : left) job(true);
 }
 
-std::vector<RenderService::Recipient> RenderService::recipients(Timestamp now) {
-  const Nanoseconds half = picture_period(options_.settings.rate_hz) / 2;
+namespace {
+
+// How long casting voxel volumes may take in a picture while they move, where so many are requested a second: half of
+// the time, within what is still fluent and what is still to be recognized.
+Nanoseconds volume_time_for(double requested_hz) {
+  constexpr Nanoseconds kLeast{8'000'000};
+  constexpr Nanoseconds kMost{30'000'000};
+  const Nanoseconds half{std::llround(0.5e9 / std::max(requested_hz, 1.0))};
+  return std::clamp(half, kLeast, kMost);
+}
+
+}  // namespace
+
+std::vector<RenderService::Recipient> RenderService::recipients(Timestamp now, bool early) {
+  const Nanoseconds round = picture_period(options_.settings.rate_hz);
+  const Nanoseconds half = early ? round : round / 2;
   std::vector<Recipient> out;
   for (auto& observer : streams_.all()) {
     if (!observer->looks(now)) continue;
@@ -203,14 +231,17 @@ double RenderService::requested_hz(std::span<const PictureRequest> requests) con
   return sum;
 }
 
-void RenderService::round(Timestamp now) {
+void RenderService::round(Timestamp now, bool early) {
   if (!report_.on) return;
+  if (early) last_early_ = now;
   const std::vector<PictureRequest> all = requests(now);
   cache_.keep(all);
-  const std::vector<Recipient> wanted = recipients(now);
+  const std::vector<Recipient> wanted = recipients(now, early);
   if (wanted.empty()) return;
   if (const auto renderer = need_renderer(); !renderer) return report_problem(wanted, renderer.error());
-  effort_.begin_cycle(requested_hz(all));
+  const double requested = requested_hz(all);
+  effort_.begin_cycle(requested);
+  volume_time_ = volume_time_for(requested);
   serve(wanted);
 }
 
@@ -244,17 +275,24 @@ Result<void> RenderService::bring_up_to_date(RenderedPicture& rendered) {
   }
   const std::uint64_t print = fingerprint(source_.scene(), *panes);
   const Timestamp now = boards_.clock.now();
-  if (rendered.drawn.known() && rendered.fingerprint == print && now - rendered.drawn < kRedrawAfter) {
+  const bool same = rendered.drawn.known() && rendered.fingerprint == print && !rendered.hasty;
+  if (same && now - rendered.drawn < kRedrawAfter) {
     count(&RenderReport::unchanged);
     effort_.unchanged();
     return {};
   }
-  const bool smooth = effort_.antialiasing();
-  if (const auto drawn = draw(*panes, rendered.request.width, rendered.request.height, rendered.image, smooth); !drawn)
+  // Volumes that change are shown at once, and as well as can be when they rest.
+  const std::uint64_t volumes = volume_fingerprint(source_.scene());
+  const bool volumes_changed = rendered.drawn.known() && volumes != rendered.volume_fingerprint;
+  const bool smooth = effort_.antialiasing() && !volumes_changed;
+  const PictureEffort effort{.smooth = smooth, .volume_time = volume_time_};
+  if (const auto drawn = draw(*panes, rendered.request.width, rendered.request.height, rendered.image, effort); !drawn)
     return drawn;
-  effort_.drew(boards_.clock.now() - now);
+  if (smooth == effort_.antialiasing()) effort_.drew(boards_.clock.now() - now);
   if (!smooth) count(&RenderReport::in_haste);
   rendered.fingerprint = print;
+  rendered.volume_fingerprint = volumes;
+  rendered.hasty = smooth != effort_.antialiasing() || renderer_->counters().volume_in_haste;
   rendered.drawn = now;
   rendered.posture_time = source_.scene().posture_time;
   rendered.encoded.clear();
@@ -297,7 +335,7 @@ Result<EncodedImage> RenderService::take(const PictureRequest& request, ImageFor
   const auto panes = prepare(request);
   if (!panes) return std::unexpected(panes.error());
   Image image;
-  if (const auto drawn = draw(*panes, request.width, request.height, image, true); !drawn)
+  if (const auto drawn = draw(*panes, request.width, request.height, image, PictureEffort()); !drawn)
     return std::unexpected(drawn.error());
   EncodedImage picture;
   const Timestamp start = boards_.clock.now();
@@ -357,9 +395,10 @@ Result<void> RenderService::need_renderer() {
   return {};
 }
 
-Result<void> RenderService::draw(std::span<const Pane> panes, int width, int height, Image& image, bool smooth) {
+Result<void> RenderService::draw(std::span<const Pane> panes, int width, int height, Image& image,
+                                 PictureEffort effort) {
   const Timestamp start = boards_.clock.now();
-  auto drawn = renderer_->draw(source_.scene(), panes, width, height, image, smooth);
+  auto drawn = renderer_->draw(source_.scene(), panes, width, height, image, effort.smooth, effort.volume_time);
   if (!drawn) {
     note_problem(drawn.error());
     log_error("pictures.draw", "{}", drawn.error().text());
@@ -369,7 +408,10 @@ Result<void> RenderService::draw(std::span<const Pane> panes, int width, int hei
   clear_problem();
   const std::scoped_lock lock(mutex_);
   ++report_.drawn;
+  const std::uint64_t cast_before = report_.counters.volume_ns;
   report_.counters = renderer_->counters();
+  // A picture that shows volumes as the one before takes what was cast then.
+  if (report_.counters.volumes > 0 && report_.counters.volume_ns == 0) report_.counters.volume_ns = cast_before;
   return {};
 }
 
@@ -399,6 +441,11 @@ TraceSummary summary_of(const TcpTrace& trace) {
 }
 
 }  // namespace
+
+RendererCounters RenderService::counters() const {
+  const std::scoped_lock lock(mutex_);
+  return report_.counters;
+}
 
 RenderReport RenderService::report() const {
   RenderReport out;

@@ -65,6 +65,7 @@ class RenderService {
   void ask_pick(const PictureRequest& request, int x, int y, PickReply reply);
 
   [[nodiscard]] RenderReport report() const;
+  [[nodiscard]] RendererCounters counters() const;  // of the newest picture
   // The names and counters of the outputs; they are there as long as the renderer.
   [[nodiscard]] std::vector<const ImageOutput*> outputs() const;
   [[nodiscard]] const PictureSettings& settings() const { return options_.settings; }
@@ -85,9 +86,14 @@ class RenderService {
   // One of them. False: there is none.
   bool run_job();
   void cancel_jobs();
-  void round(Timestamp now);
+  // `early`: between two rounds, since SCRIPT has changed how volumes are drawn; no update of the display.
+  void round(Timestamp now, bool early);
+  // A client looks at a cell with voxel volumes.
+  [[nodiscard]] bool looks_for_volumes() const;
+  // A change of volumes by SCRIPT is to be drawn before the next round; at most once in its time.
+  [[nodiscard]] bool volumes_wait(Timestamp now) const;
   // A trace has a point for each scene that was joined, so one is, also where nobody looks.
-  [[nodiscard]] std::vector<Recipient> recipients(Timestamp now);
+  [[nodiscard]] std::vector<Recipient> recipients(Timestamp now, bool early);
   // Of all who look, also of those who get no picture in this round.
   [[nodiscard]] std::vector<PictureRequest> requests(Timestamp now) const;
   // Different pictures a second that are requested.
@@ -103,7 +109,12 @@ class RenderService {
   // The newest scene, and the renderer; fails where there is none.
   Result<std::vector<Pane>> prepare(const PictureRequest& request);
   Result<void> need_renderer();
-  Result<void> draw(std::span<const Pane> panes, int width, int height, Image& image, bool smooth);
+  // What a picture may take beside what it has to; as Renderer::draw().
+  struct PictureEffort {
+    bool smooth = true;
+    Nanoseconds volume_time{0};
+  };
+  Result<void> draw(std::span<const Pane> panes, int width, int height, Image& image, PictureEffort effort);
   void note_problem(const Error& error);
   void clear_problem();
   void count(std::uint64_t RenderReport::* counter);
@@ -119,6 +130,8 @@ class RenderService {
   Timestamp renderer_tried_;
   display::ImageEncoder encoder_;
   RenderQuality effort_;
+  Timestamp last_early_;
+  Nanoseconds volume_time_{0};  // for casting volumes in a picture of this round
   RenderCache cache_;
   std::vector<Timestamp> output_due_;
   std::uint64_t sequence_ = 0;

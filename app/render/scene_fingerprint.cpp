@@ -140,6 +140,28 @@ void add_tissue(Hash& hash, const Scene& scene) {
   hash.add(view.lens_fog);
 }
 
+void add_volumes(Hash& hash, const Scene& scene) {
+  for (const SceneVolume& volume : hash.sized(scene.volumes)) {
+    hash.add(std::bit_cast<std::uint64_t>(volume.grid.get()));
+    hash.add(volume.X_WV);
+    const VolumeSettings& settings = volume.settings;
+    for (const VolumePlane& plane : settings.planes) {
+      hash.add(static_cast<std::uint64_t>(plane.side) << 1U | (plane.framed ? 1U : 0U));
+      for (const double value : {plane.elevation_rad, plane.azimuth_rad, plane.distance_m}) hash.add(value);
+    }
+    hash.add(static_cast<std::uint64_t>(settings.table) << 1U | (settings.isosurface ? 1U : 0U));
+    for (const double value : {settings.medical.air, settings.medical.fat, settings.medical.tissue,
+                               settings.medical.bone, settings.iso_value}) {
+      hash.add(value);
+    }
+    for (const VolumeTableParameters& table : settings.parameters) {
+      for (const double value : {table.opacity, table.gain, table.level, table.window}) hash.add(value);
+    }
+    for (const auto& table : volume.user_tables) hash.add(std::bit_cast<std::uint64_t>(table.get()));
+    hash.add(volume.tables_revision);
+  }
+}
+
 void add_panes(Hash& hash, std::span<const Pane> panes) {
   for (const Pane& pane : hash.sized(panes)) {
     for (const double value : {pane.left, pane.top, pane.width, pane.height, pane.eye.opening_angle, pane.eye.height_m,
@@ -155,6 +177,12 @@ void add_panes(Hash& hash, std::span<const Pane> panes) {
 
 }  // namespace
 
+std::uint64_t volume_fingerprint(const Scene& scene) {
+  Hash hash;
+  add_volumes(hash, scene);
+  return hash.state();
+}
+
 std::uint64_t fingerprint(const Scene& scene, std::span<const Pane> panes) {
   Hash hash;
   add_bodies(hash, scene);
@@ -162,6 +190,7 @@ std::uint64_t fingerprint(const Scene& scene, std::span<const Pane> panes) {
   add_signs(hash, scene);
   add_texts(hash, scene);
   add_tissue(hash, scene);
+  add_volumes(hash, scene);
   hash.add(static_cast<std::uint64_t>(scene.modes.to_ullong()));
   hash.add(scene.floor_z_m);
   hash.add(scene.floor_low);

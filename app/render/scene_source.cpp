@@ -55,6 +55,7 @@ bool SceneSource::refresh() {
   input.arrows = arrows;
   if (traces && traces->smear_ends == picture_->display->smear_ends) input.traces = traces->traces;
   if (boards_.tissue) input.tissue = boards_.tissue();
+  input.volumes = picture_->volumes.get();
   input.posture_time = tick.time;
   input.now = now_;
   builder_.build(input, scene_);

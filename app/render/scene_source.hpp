@@ -49,6 +49,8 @@ class SceneSource {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const CompiledCell& cell() const { return *cell_; }
   [[nodiscard]] bool has_scene() const { return cell_ != nullptr; }
+  // What is in force for them there; null: not known.
+  [[nodiscard]] const VolumeStates* volumes() const { return picture_ ? picture_->volumes.get() : nullptr; }
   [[nodiscard]] Timestamp refreshed() const { return now_; }
   [[nodiscard]] Result<std::vector<Pane>> panes(const PictureRequest& request, std::uint64_t updates) const;
 

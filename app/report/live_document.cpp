@@ -6,6 +6,7 @@
 
 #include "app/report/implausible_values.hpp"
 #include "app/report/live_tissue.hpp"
+#include "app/report/live_volumes.hpp"
 #include "app/snapshot/haptic_names.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/ports/words.hpp"
@@ -343,6 +344,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   add_ranges(out, sources.ranges.get());
   add_forces(out, sources.forces.get());
   add_tissue(out, sources.tissue.get(), sources.cell_state, sources.now);
+  add_volumes(out, sources.cell_state);
   add_programs(out, sources.cell_state.programs);
   add_queues(out, sources.queues);
   add_problems(out, sources.problems);

@@ -16,6 +16,7 @@
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/force_state.hpp"
+#include "rt_core/ports/renderer_counters.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
 
@@ -41,6 +42,7 @@ struct LiveSources {
   std::span<const Problem> problems = {};
   std::uint64_t commands_logged = 0;                     // changes with the log of commands
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
+  RendererCounters renderer = {};                        // of the newest picture
 };
 
 // Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at

@@ -1,6 +1,7 @@
 #include "app/report/metrics.hpp"
 
 #include "app/report/metrics_tissue.hpp"
+#include "app/report/metrics_volumes.hpp"
 
 #include <fmt/format.h>
 
@@ -195,6 +196,7 @@ std::string metrics_document(const LiveSources& sources, const web::ServerStatus
   add_robots(out, sources);
   add_findings(out, sources);
   add_tissue_metrics(out, sources);
+  add_volume_metrics(out, sources);
   add_problems(out, sources.problems);
   add_traffic(out, sources, web);
   return out.take();

@@ -23,6 +23,7 @@
 #include "app/report/status_switches.hpp"
 #include "app/report/status_tissue.hpp"
 #include "app/report/status_values.hpp"
+#include "app/report/status_volumes.hpp"
 #include "app/snapshot/joint_range.hpp"
 #include "rt_core/motion/move_words.hpp"
 #include "rt_core/ports/words.hpp"
@@ -303,6 +304,7 @@ std::string status_document(const StatusSources& sources) {
       {"foot_switches", switches_json(sources.cell_state.switches, sources.now)},
       {"couplings", couplings_json(sources.cell_state.couplings, sources.tick)},
       {"tissue", tissue_json(sources.tissue, sources.cell_state, sources.now)},
+      {"volumes", volumes_json(sources.cell_state)},
       {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.
   return document.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/report/live_volumes.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 
@@ -73,7 +74,9 @@ std::string tree_document(const CellState& cell_state, std::uint64_t tree_revisi
     if (!robots[i].empty()) out.member("robot", robots[i]);
     out.end_object();
   }
-  return out.end_array().end_object().take();
+  out.end_array();
+  add_volume_contents(out, cell_state);
+  return out.end_object().take();
 }
 
 std::vector<std::string> files_with(const std::filesystem::path& folder, std::string_view extension, bool bare) {

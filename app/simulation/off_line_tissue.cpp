@@ -3,7 +3,7 @@
 #include <bit>
 #include <utility>
 
-#include "rt_core/tissue/element_kernel.hpp"
+#include "rt_core/tissue/body/element_kernel.hpp"
 
 namespace cellmirror::app {
 

@@ -73,8 +73,9 @@ std::string tissue_text(const SimulationResult& result) {
   const std::size_t shown = std::min(tissue.events.size(), kListedEvents);
   for (std::size_t i = 0; i < shown; ++i) {
     const auto& [time_s, event] = tissue.events[i];
-    text += fmt::format("  {:9.3f} s  {:<10} {} {}\n", time_s, word(event.kind), object_name(tissue, event.object),
-                        event.part.data());
+    const bool named = event.part[0] != 0;
+    text += fmt::format("  {:9.3f} s  {:<10} {}{}{}\n", time_s, word(event.kind), object_name(tissue, event.object),
+                        named ? " " : "", event.part.data());
   }
   if (tissue.events.size() > shown || tissue.more_events > 0)
     text += fmt::format("  ... and {} more\n", tissue.events.size() - shown + tissue.more_events);

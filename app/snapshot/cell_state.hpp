@@ -24,6 +24,7 @@
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
+#include "rt_core/ports/volume_state.hpp"
 #include "scripts/runner/script_runner.hpp"
 
 namespace cellmirror::app {
@@ -59,6 +60,7 @@ struct CellState {
   FootSwitchSnapshot switches;
   std::vector<CouplingSnapshot> couplings;
   std::shared_ptr<const TissueSettings> tissue;  // the same object as long as nothing changes
+  std::shared_ptr<const VolumeStates> volumes;   // the same object as long as nothing changes
 };
 
 }  // namespace cellmirror::app

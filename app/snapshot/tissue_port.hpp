@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/command.hpp"
+#include "rt_core/tissue/description/command.hpp"
 
 namespace cellmirror::app {
 

@@ -11,7 +11,7 @@
 
 #include "rt_core/base/pose.hpp"
 #include "rt_core/ports/tissue_settings.hpp"
-#include "rt_core/tissue/command.hpp"
+#include "rt_core/tissue/description/command.hpp"
 
 namespace cellmirror::app {
 

@@ -10,6 +10,7 @@
 
 #include "app/owner/programs/program_files.hpp"
 #include "app/owner/tissue/tissue_parts.hpp"
+#include "app/owner/volume/volume_names.hpp"
 #include "config/view_file.hpp"
 #include "rt_core/base/home.hpp"
 #include "scripts/programs/languages/languages.hpp"
@@ -107,6 +108,12 @@ void CommandChecks::follow(const ParsedCommand& command, const PlaceOf& place_of
       return check_tissue_file(command, kHyperExtension, place_of);
     case FormId::ela_clip_def:
       return check_tissue_file(command, kObjectExtension, place_of);
+    case FormId::vv_clip:
+    case FormId::vv_clip_pos:
+    case FormId::vv_set_lut:
+    case FormId::vv_set_lut_par_medical:
+    case FormId::vv_set_lut_par:
+      return check_volumes(command, place_of);
     case FormId::exec_script:
       return call(command, place_of);
     case FormId::pos_rob_joint_abs:
@@ -144,6 +151,11 @@ void CommandChecks::check_tissue_file(const ParsedCommand& command, std::string_
   const std::string_view name = command.text(0);
   const auto found = cell_.home.file(kTissueFolder, name, extension);
   if (!found) warn(place_of(name), command, found.error());
+}
+
+// A volume that is named is looked up as every name is.
+void CommandChecks::check_volumes(const ParsedCommand& command, const PlaceOf& place_of) {
+  if (names_.all(NameKind::volume).empty()) warn(place_of(command.text(0)), command, no_volumes());
 }
 
 void CommandChecks::call(const ParsedCommand& command, const PlaceOf& place_of) {

@@ -36,6 +36,7 @@ class CommandChecks {
   void check_program(const script::ParsedCommand& command, const PlaceOf& place_of);
   void check_tissue_object(const script::ParsedCommand& command, const PlaceOf& place_of);
   void check_tissue_file(const script::ParsedCommand& command, std::string_view extension, const PlaceOf& place_of);
+  void check_volumes(const script::ParsedCommand& command, const PlaceOf& place_of);
   void check_views(const script::ParsedCommand& command, const PlaceOf& place_of);
   void call(const script::ParsedCommand& command, const PlaceOf& place_of);
   void follow_file(const std::filesystem::path& path);

@@ -16,6 +16,7 @@
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "config/mesh_process.hpp"
+#include "config/volume/volume_process.hpp"
 #include "drivers/display/renderer.hpp"
 #include "ipc/control/instance.hpp"
 #include "ipc/sysv/limits.hpp"
@@ -108,6 +109,12 @@ Finding mesh_reader_finding() {
   return {"reader of meshes", found.error().what, false, found.error().remedy};
 }
 
+Finding volume_reader_finding() {
+  const auto found = check_volume_reader();
+  if (found) return {"reader of DICOM slices", installed_volume_reader().program.string(), true, {}};
+  return {"reader of DICOM slices", found.error().what, false, found.error().remedy};
+}
+
 std::vector<Finding> examine() {
   std::vector<Finding> findings = {scheduling_finding(), memory_finding(),    idle_finding(),
                                    can_finding(),        interface_finding(), receive_buffer_finding()};
@@ -120,6 +127,7 @@ std::vector<Finding> examine() {
   add(ipc_findings(read_sysv_limits(), read_remove_ipc()));
   add(shared_memory_findings(read_shared_memory_limits(), read_left_segments(::geteuid())));
   findings.push_back(mesh_reader_finding());
+  findings.push_back(volume_reader_finding());
   findings.push_back(renderer_finding("GL renderer", display::Backend::osmesa));
   findings.push_back(renderer_finding("GL renderer, instead", display::Backend::egl));
   return findings;

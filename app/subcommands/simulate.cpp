@@ -20,7 +20,7 @@
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
-#include "rt_core/tissue/element_kernel.hpp"
+#include "rt_core/tissue/body/element_kernel.hpp"
 
 namespace cellmirror::app {
 

@@ -14,6 +14,7 @@
 #include "app/subcommands/status_table_sensing.hpp"
 #include "app/subcommands/status_table_switches.hpp"
 #include "app/subcommands/status_table_tissue.hpp"
+#include "app/subcommands/status_table_volumes.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/units.hpp"
 
@@ -40,6 +41,7 @@ class TableWriter {
     out_ += forces_table(status);
     out_ += haptics_table(status);
     out_ += tissue_table(status);
+    out_ += volumes_table(status);
     out_ += switches_table(status);
     out_ += display_table(status);
     out_ += pictures_table(status);

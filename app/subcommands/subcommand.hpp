@@ -30,6 +30,7 @@ void add_range(cli::Command program, Action& action);
 void add_snapshot(cli::Command program, Action& action);
 void add_page(cli::Command program, Action& action);
 void add_simulate(cli::Command program, Action& action);
+void add_volume(cli::Command program, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.
 int refuse(const std::string& what);

@@ -56,6 +56,7 @@ void TissueStepper::follow(const CellState& cell_state) {
   const std::vector<std::uint8_t> before = slots_;
   settings_ = cell_state.tissue;
   collect_instruments(cell_state);
+  if (slots_ != before) ramps_.assign(slots_.size(), PoseRamp());
   if (other_cell || slots_ != before) collect_obstacles();
 }
 
@@ -67,7 +68,7 @@ void TissueStepper::pose_instruments(const engine::TickState& tick) {
     const engine::RobotTickState& state = tick.robots[slots_[i]];
     for (std::size_t j = 0; j < state.joint_count; ++j) joints_[i][j] = state.joints[j].position;
     instruments_.push_back({.slot = slots_[i],
-                            .X_WT = tcp_poses(*robot, poser_.poses()).X_WT,
+                            .X_WT = ramps_[i].step(tcp_poses(*robot, poser_.poses()).X_WT),
                             .q = std::span(joints_[i]).first(state.joint_count)});
   }
 }

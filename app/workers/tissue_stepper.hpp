@@ -9,6 +9,7 @@
 
 #include "app/snapshot/cell_poser.hpp"
 #include "app/snapshot/cell_state.hpp"
+#include "app/workers/pose_ramp.hpp"
 #include "rt_core/collision/pairs.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/geometry/solid.hpp"
@@ -48,6 +49,7 @@ class TissueStepper {
   std::shared_ptr<const TissueSettings> settings_;
   std::vector<std::uint8_t> slots_;  // of the instruments' robots
   std::vector<JointValues> joints_;  // by instrument
+  std::vector<PoseRamp> ramps_;      // by instrument
   std::vector<Obstacle> obstacles_;
   std::vector<tissue::InstrumentPose> instruments_;
   std::vector<tissue::RigidBodyPose> bodies_;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "rt_core/rt/scheduling.hpp"
-#include "rt_core/tissue/element_kernel.hpp"
+#include "rt_core/tissue/body/element_kernel.hpp"
 
 namespace cellmirror::app {
 

@@ -34,12 +34,6 @@ Handler handler_of(FormId id) {
 
 }  // namespace
 
-Outcome not_available(const ParsedCommand& command, CommandHost& /*host*/) {
-  const Form& form = command.form();
-  return Outcome::refused({fmt::format("{} is not available yet: {}", form.name, form.missing),
-                           "`cellmirror commands` lists available ones"});
-}
-
 Outcome execute(const ParsedCommand& command, CommandHost& host) {
   const Handler handler = handler_of(command.id());
   CELLMIRROR_EXPECTS(handler != nullptr);

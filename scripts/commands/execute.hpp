@@ -45,8 +45,7 @@ struct Outcome {
   }
 };
 
-// The command must have been parsed with host.names. Commands whose subsystem is not there yet are refused with
-// "<name> is not available yet: <subsystem>".
+// The command must have been parsed with host.names.
 [[nodiscard]] Outcome execute(const ParsedCommand& command, CommandHost& host);
 
 // Whether a handler is registered for the form; all commands of the table have one, conventions have none.

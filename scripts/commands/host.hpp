@@ -17,6 +17,7 @@
 #include "scripts/commands/motion_host.hpp"
 #include "scripts/commands/program_host.hpp"
 #include "scripts/commands/tissue_host.hpp"
+#include "scripts/commands/volume_host.hpp"
 #include "scripts/lang/names.hpp"
 
 namespace cellmirror {
@@ -94,6 +95,7 @@ struct CommandHost {
   SensingHost& sensing;
   InteractionHost& interaction;
   TissueHost& tissue;
+  VolumeHost& volumes;
   DiagnosisHost& diagnosis;
 };
 

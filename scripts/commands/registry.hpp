@@ -22,9 +22,6 @@ struct Registration {
   Handler handler;
 };
 
-// Refuses with "<name> is not available yet: <subsystem>".
-Outcome not_available(const ParsedCommand& command, CommandHost& host);
-
 std::span<const Registration> general_handlers();
 std::span<const Registration> robot_parameter_handlers();
 std::span<const Registration> animation_handlers();

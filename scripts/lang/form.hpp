@@ -118,7 +118,6 @@ struct Form {
   std::string_view example{};  // the manual's own where it has one
   // The manual's example does not go with those before it in the manual: why. Empty: it is done after them.
   std::string_view conflict{};
-  std::string_view missing{};     // the subsystem without which it is refused; empty: available now
   std::string_view definition{};  // what the manual leaves open and we define
   LoopEffect effect = LoopEffect::none;
   Selector selector = Selector::only_form;
@@ -127,8 +126,6 @@ struct Form {
   bool needs_active_robot = false;
   bool commas = false;        // the synopsis has commas between the values: accepted, not demanded
   bool at_least_one = false;  // of the labelled groups
-
-  [[nodiscard]] constexpr bool available() const { return missing.empty(); }
 };
 
 }  // namespace cellmirror::script

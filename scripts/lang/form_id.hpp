@@ -142,9 +142,10 @@ enum class FormId : std::uint8_t {
   stop_script,
   effects_suction,
   effects_irrigation,
+  vv_iso,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::effects_irrigation) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::vv_iso) + 1;
 
 }  // namespace cellmirror::script

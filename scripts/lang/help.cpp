@@ -17,9 +17,9 @@ namespace {
 std::string kind_text(const Parameter& parameter) {
   switch (parameter.kind) {
     case ParameterKind::name: {
-      constexpr std::array<std::string_view, 6> kKinds = {"frame or joint", "robot",     "camera",
-                                                          "sensor",         "workframe", "frame, a joint or the cell"};
-      return fmt::format("name of a {}", kKinds[static_cast<std::size_t>(parameter.name_kind)]);
+      constexpr std::array<std::string_view, 7> kKinds = {
+          "frame or joint", "robot", "camera", "sensor", "workframe", "frame, a joint or the cell", "voxel volume"};
+      return fmt::format("name of a {}", kKinds.at(static_cast<std::size_t>(parameter.name_kind)));
     }
     case ParameterKind::choice: {
       std::string list;
@@ -45,10 +45,6 @@ std::string kind_text(const Parameter& parameter) {
       return {};
   }
   return {};
-}
-
-std::string availability_text(const Form& form) {
-  return form.available() ? "available" : fmt::format("not available yet: {}", form.missing);
 }
 
 // Candidates for a command's next word.
@@ -106,7 +102,9 @@ void Completion::of(const Form& form, std::span<const std::string_view> words) {
 }
 
 void Completion::labels(const Form& form, std::size_t first, std::span<const std::string_view> words) {
-  const std::span<const Parameter> groups = form.parameters.subspan(first);
+  std::size_t behind = first;
+  while (behind < form.parameters.size() && !form.parameters[behind].label.empty()) ++behind;
+  const std::span<const Parameter> groups = form.parameters.subspan(first, behind - first);
   std::vector<bool> given(groups.size(), false);
   std::vector<bool> excluded(256, false);
   std::size_t next = 0;
@@ -122,6 +120,8 @@ void Completion::labels(const Form& form, std::size_t first, std::span<const std
   for (std::size_t group = 0; group < groups.size(); ++group) {
     if (!given[group] && !excluded[groups[group].alternatives]) keyword(groups[group].label);
   }
+  const bool complete = std::ranges::all_of(given, [](bool each) { return each; });
+  if (complete && behind < form.parameters.size()) of(form.parameters[behind]);
 }
 
 nlohmann::ordered_json parameter_as_json(const Parameter& parameter) {
@@ -162,7 +162,7 @@ constexpr std::string_view kA5 = "Table A.5, tokens of the plausibility test (ou
 }  // namespace
 
 std::string help_text(const Form& form) {
-  std::string out = fmt::format("{}\n  {} ({})\n", form.syntax, form.help, availability_text(form));
+  std::string out = fmt::format("{}\n  {}\n", form.syntax, form.help);
   for (const Parameter& parameter : form.parameters) {
     if (parameter.kind == ParameterKind::word) continue;
     std::string name = parameter.label.empty() ? "" : std::string(parameter.label) + " ";
@@ -213,15 +213,12 @@ std::vector<std::string> complete(std::string_view line, const NameDirectory* na
 std::string commands_as_text() {
   std::string out;
   std::string_view section;
-  std::size_t available = 0;
   for (const Form* form : forms()) {
-    if (form->available()) ++available;
     if (form->section != section) out += fmt::format("{}{}\n", section.empty() ? "" : "\n", form->section);
     section = form->section;
-    out += fmt::format("  {} {}\n      {}{}\n", form->available() ? '+' : '-', form->syntax, form->help,
-                       form->available() ? "" : fmt::format(" (not available yet: {})", form->missing));
+    out += fmt::format("  {}\n      {}\n", form->syntax, form->help);
   }
-  out += fmt::format("\n+ available ({}), - not available yet ({})\n", available, forms().size() - available);
+  out += fmt::format("\n{} forms, all implemented; those of the sections 1.2.* are the manual's\n", forms().size());
   out += attributes_as_text(kA1, object_attributes()) + attributes_as_text(kA4, plausibility_flags());
   out += fmt::format("\n{}\n", kA5);
   for (const PlausibilityToken& row : plausibility_tokens())
@@ -237,8 +234,7 @@ std::string commands_as_json() {
                                   {"syntax", form->syntax},
                                   {"section", form->section},
                                   {"help", form->help},
-                                  {"implemented", form->available()}};
-    if (!form->available()) row["missing"] = form->missing;
+                                  {"implemented", true}};
     row["ours"] = form->origin == Origin::ours;
     row["kind"] = form->kind == FormKind::command ? "command" : "convention";
     if (!form->definition.empty()) row["our_definition"] = form->definition;

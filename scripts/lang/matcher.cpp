@@ -41,11 +41,11 @@ bool Matcher::match() {
   check_commas();
   check_active_robot();
   for (std::size_t i = 0; i < form_.parameters.size(); ++i) {
-    if (!form_.parameters[i].label.empty()) {
-      match_labelled(i);
-      break;
+    if (form_.parameters[i].label.empty()) {
+      if (!match_parameter(i)) return false;
+    } else {
+      i = match_labelled(i) - 1;
     }
-    if (!match_parameter(i)) return false;
   }
   if (next_ < words_.size()) surplus(words_[next_]);
   if (findings_.ok()) check_dependencies();
@@ -121,10 +121,12 @@ void Matcher::match_single(const Parameter& parameter, const Token& word) {
   out_.push(word.text, number);
 }
 
-void Matcher::match_labelled(std::size_t first) {
+std::size_t Matcher::match_labelled(std::size_t first) {
   std::array<std::size_t, kMaxParameters> slots{};
-  const std::span<const Parameter> parameters = form_.parameters;
-  CELLMIRROR_EXPECTS(parameters.size() <= kMaxParameters);
+  CELLMIRROR_EXPECTS(form_.parameters.size() <= kMaxParameters);
+  std::size_t behind = first;
+  while (behind < form_.parameters.size() && !form_.parameters[behind].label.empty()) ++behind;
+  const std::span<const Parameter> parameters = form_.parameters.first(behind);
   for (std::size_t i = first; i < parameters.size(); ++i) {
     slots[i] = out_.size();
     for (std::size_t k = 0; k < parameters[i].width; ++k) out_.push({}, 0.0);
@@ -135,9 +137,11 @@ void Matcher::match_labelled(std::size_t first) {
     std::size_t index = first;
     while (index < parameters.size() && !equal_ignoring_case(label.text, parameters[index].label)) ++index;
     if (index == parameters.size()) {
+      // As many words as may stand behind the groups; with more of them it is a wrong label.
+      if (words_.size() - next_ <= form_.parameters.size() - behind) break;
       surplus(label);
       next_ = words_.size();
-      return;
+      return behind;
     }
     ++next_;
     any = true;
@@ -148,6 +152,7 @@ void Matcher::match_labelled(std::size_t first) {
       findings_.error(end_, fmt::format("{} <{}> is missing", parameters[i].label, parameters[i].name), expected());
   }
   if (form_.at_least_one && !any) findings_.error(end_, "at least one group must be given", expected());
+  return behind;
 }
 
 void Matcher::match_group(std::size_t index, const Token& label, std::size_t slot) {

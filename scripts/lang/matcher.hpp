@@ -50,7 +50,8 @@ class Matcher {
   bool match_parameter(std::size_t index);
   bool match_word(const Parameter& parameter);
   void match_single(const Parameter& parameter, const Token& word);
-  void match_labelled(std::size_t first);
+  // The groups from this parameter on; returns the parameter behind them.
+  std::size_t match_labelled(std::size_t first);
   void match_group(std::size_t index, const Token& label, std::size_t slot);
   void match_joint_list(const Parameter& parameter);
   void match_number_list(const Parameter& parameter);

@@ -99,7 +99,8 @@ void Matcher::check_name(const Parameter& parameter, const Token& word) {
     why = {fmt::format("{} is in brackets, which are only notation of the synopsis", printable(word.text)),
            fmt::format("write {}", printable(bare))};
   }
-  if (check_ == NameCheck::ahead_after_loading && path) {
+  const bool may_be_loaded = path || parameter.name_kind == NameKind::volume;
+  if (check_ == NameCheck::ahead_after_loading && may_be_loaded) {
     findings_.warning(word.begin, why.what, why.remedy);
   } else {
     findings_.error(word.begin, why.what, why.remedy);

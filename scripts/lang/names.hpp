@@ -13,8 +13,9 @@
 namespace cellmirror {
 
 // What a name in a command must be the name of.
-// `branch`: a frame_node, or the cell's name for its own geometry.
-enum class NameKind : std::uint8_t { frame_node, robot, camera, sensor, workframe, branch };
+// `branch`: a frame_node, or the cell's name for its own geometry. `volume`: the path of a node whose component has a
+// voxel volume.
+enum class NameKind : std::uint8_t { frame_node, robot, camera, sensor, workframe, branch, volume };
 
 // Names and facts that checking a command needs; also offline, for `cellmirror check --cell`.
 class NameDirectory {

@@ -83,7 +83,6 @@ std::string form_entry(const Form& form) {
       "\n```\n{}\n```\n\n{}{}.\n", form.syntax,
       static_cast<char>(form.help[0] >= 'a' && form.help[0] <= 'z' ? form.help[0] - 'a' + 'A' : form.help[0]),
       form.help.substr(1));
-  if (!form.available()) out += fmt::format("Not available yet: {}.\n", form.missing);
   if (form.needs_active_robot) out += "Needs an active robot (`ROBACT`).\n";
   if (!form.definition.empty()) out += fmt::format("Our definition: {}.\n", form.definition);
   out += parameters_table(form);

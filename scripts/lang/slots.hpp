@@ -129,6 +129,48 @@ inline constexpr Slot kRotation{1, 1, "rx"};     // and ry, rz
 inline constexpr Slot kTranslation{4, 4, "tx"};  // and ty, tz
 }  // namespace clip
 
+// VV_CLIP, VV_CLIP_POS, VV_SET_LUT, both forms of VV_SET_LUT_PAR, VV_RELOAD_LUTS.
+namespace volume_plane {
+inline constexpr Slot kPlane{0, 0, "plane"};
+inline constexpr Slot kMode{1, 1, "active | reverse | visible | off"};
+inline constexpr Slot kVolume{2, 2, "volume"};
+}  // namespace volume_plane
+namespace volume_plane_position {
+inline constexpr Slot kPlane{0, 0, "plane"};
+inline constexpr Slot kElevation{1, 1, "ELE"};
+inline constexpr Slot kAzimuth{2, 2, "AZI"};
+inline constexpr Slot kDistance{3, 3, "DIST"};
+inline constexpr Slot kVolume{4, 4, "volume"};
+}  // namespace volume_plane_position
+namespace volume_table {
+inline constexpr Slot kTable{0, 0, "LUT_name"};
+inline constexpr Slot kVolume{1, 1, "volume"};
+}  // namespace volume_table
+namespace medical_table {
+inline constexpr Slot kAir{0, 1, "air"};
+inline constexpr Slot kFat{1, 2, "fat"};
+inline constexpr Slot kTissue{2, 3, "tissue"};
+inline constexpr Slot kBone{3, 4, "bone"};
+inline constexpr Slot kVolume{4, 5, "volume"};
+}  // namespace medical_table
+namespace volume_table_parameters {
+inline constexpr Slot kTable{0, 0, "LUT_name"};
+inline constexpr Slot kOpacity{1, 1, "opacity"};
+inline constexpr Slot kGain{2, 2, "gain"};
+inline constexpr Slot kLevel{3, 3, "level"};
+inline constexpr Slot kWindow{4, 4, "window"};
+inline constexpr Slot kVolume{5, 5, "volume"};
+}  // namespace volume_table_parameters
+// VV_ISO.
+namespace volume_surface {
+inline constexpr Slot kOn{0, 0, "on | off"};
+inline constexpr Slot kValue{1, 1, "VALUE"};
+inline constexpr Slot kVolume{2, 2, "volume"};
+}  // namespace volume_surface
+namespace volume_reload {
+inline constexpr Slot kVolume{0, 0, "volume"};
+}  // namespace volume_reload
+
 // CONNECT, and with the third value FRAME_TO_WFRM.
 namespace connect {
 inline constexpr Slot kAttached{0, 0, "frame_2"};

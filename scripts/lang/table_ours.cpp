@@ -60,6 +60,11 @@ constexpr Parameter kCollisionPair[] = {word("pair"), named(NameKind::branch, "n
 constexpr Parameter kSuction[] = {word("SUCTION"), choice("ON | OFF", "switch", kOnOff)};
 constexpr Parameter kIrrigation[] = {word("IRRIGATION"), choice("ON | OFF", "switch", kOnOff)};
 
+constexpr Parameter kSurface[] = {
+    on_off(), optional_labelled("VALUE", number("value", "value of the surface", Unit::none)), one_volume()};
+static_assert(has_slots(kSurface,
+                        {slots::volume_surface::kOn, slots::volume_surface::kValue, slots::volume_surface::kVolume}));
+
 constexpr Range kPortNumber{1.0, 1024.0, false, false};
 constexpr Choice kStepDirections[] = {{"FORWARD", "in program order"},
                                       {"BACKWARD", "back to the previous check point"}};
@@ -366,6 +371,17 @@ constexpr Form kForms[] = {
      .example = "EFFECTS IRRIGATION ON",
      .definition = "raises and clears the pool, with ripples (POOL_RIPPLES); the tool as with SUCTION",
      .selector = Selector::by_first_word,
+     .origin = Origin::ours},
+    {.id = FormId::vv_iso,
+     .name = "VV_ISO",
+     .syntax = "VV_ISO [on | off] [VALUE <value>]",
+     .section = kSection,
+     .parameters = kSurface,
+     .help = "draws the surface of one value of a volume in place of its look-up table",
+     .example = "VV_ISO on VALUE 300",
+     .definition =
+         "lit and opaque, at the value in the volume's unit (Hounsfield units of computed tomography), without "
+         "VALUE at the one before; off draws with the table again; planes and volumes as with VV_CLIP",
      .origin = Origin::ours},
 };
 

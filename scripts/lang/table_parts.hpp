@@ -60,6 +60,14 @@ constexpr Parameter robot(std::string_view name = "Robot_id", std::string_view m
 
 constexpr Parameter camera(std::string_view name = "cam_id") { return named(NameKind::camera, name, "camera"); }
 
+// Last argument of the commands for voxel volumes, ours.
+constexpr Parameter one_volume() {
+  Parameter parameter = named(NameKind::volume, "volume", "voxel volume");
+  parameter.optional = true;
+  parameter.default_text = "all volumes";
+  return parameter;
+}
+
 constexpr Parameter file(std::string_view name, std::string_view meaning) {
   return {.name = name, .meaning = meaning, .kind = ParameterKind::file};
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror::app {
 

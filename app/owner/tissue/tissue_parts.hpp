@@ -12,7 +12,7 @@
 #include "config/tissue_setup.hpp"
 #include "rt_core/base/home.hpp"
 #include "rt_core/base/result.hpp"
-#include "rt_core/tissue/command.hpp"
+#include "rt_core/tissue/description/command.hpp"
 
 namespace cellmirror::app {
 

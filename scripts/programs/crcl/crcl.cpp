@@ -12,12 +12,6 @@
 namespace cellmirror::program {
 namespace {
 
-std::string name_of_file(const std::string& file) {
-  const std::size_t slash = file.rfind('/');
-  const std::string name = slash == std::string::npos ? file : file.substr(slash + 1);
-  return name.substr(0, name.rfind('.'));
-}
-
 std::shared_ptr<const Program> parse(std::string_view text, const ParseContext& context, Diagnostics& diagnostics) {
   if (text.size() > kLargestProgramText) {
     diagnostics.error({.file = context.file}, fmt::format("the program has {} bytes", text.size()),

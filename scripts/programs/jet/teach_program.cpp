@@ -18,16 +18,10 @@ Setting setting_of(FlyType type) {
   return Setting::fly_angle;
 }
 
-// "r3demo" of "programs/r3demo.boom".
-std::string_view stem_of(std::string_view file) {
-  file.remove_prefix(file.find_last_of('/') + 1);  // npos + 1: nothing
-  return file.substr(0, file.find_last_of('.'));
-}
-
 }  // namespace
 
 TeachProgram::TeachProgram(TeachDialect dialect, std::string_view file)
-    : builder_(std::string(stem_of(file)), language_of(dialect), std::string(file)) {
+    : builder_(name_of_file(file), language_of(dialect), std::string(file)) {
   builder_.set_reversible();
 }
 

@@ -9,13 +9,14 @@
 #include "scripts/programs/crcl/crcl.hpp"
 #include "scripts/programs/irdata/irdata.hpp"
 #include "scripts/programs/jet/jet.hpp"
+#include "scripts/programs/rapid/rapid.hpp"
 #include "scripts/programs/srcl/srcl.hpp"
 
 namespace cellmirror::program {
 
 std::span<const Language> languages() {
   static const std::vector<Language> all = {
-      irdata_language(), srcl_language(), jet_boom_language(), jet_tarm_language(), crcl_language(),
+      irdata_language(), srcl_language(), jet_boom_language(), jet_tarm_language(), crcl_language(), rapid_language(),
   };
   return all;
 }

@@ -53,4 +53,9 @@ bool Program::releases(std::string_view semaphore) const {
   });
 }
 
+std::string name_of_file(std::string_view file) {
+  file.remove_prefix(file.find_last_of('/') + 1);  // npos + 1: nothing
+  return std::string(file.substr(0, file.find_last_of('.')));
+}
+
 }  // namespace cellmirror::program

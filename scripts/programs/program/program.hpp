@@ -156,4 +156,7 @@ class Program {
   [[nodiscard]] bool releases(std::string_view semaphore) const;  // whether any statement does
 };
 
+// "fetch" of "programs/fetch.src": the name of a program whose text has none.
+[[nodiscard]] std::string name_of_file(std::string_view file);
+
 }  // namespace cellmirror::program

@@ -11,17 +11,6 @@
 
 namespace cellmirror::program::srcl {
 
-namespace {
-
-// "shelf/fetch.src": "fetch".
-std::string stem(std::string_view file) {
-  const std::size_t folder = file.find_last_of('/');
-  if (folder != std::string_view::npos) file.remove_prefix(folder + 1);
-  return std::string(file.substr(0, file.find_last_of('.')));
-}
-
-}  // namespace
-
 Parser::Parser(std::string_view text, const ParseContext& context)
     : lexer_(text),
       faults_(context.file),
@@ -29,7 +18,7 @@ Parser::Parser(std::string_view text, const ParseContext& context)
       expressions_(lexer_, emitter_, names_, faults_),
       blocks_(emitter_, faults_),
       read_part_(context.read_part) {
-  program_.name = stem(context.file);
+  program_.name = name_of_file(context.file);
   program_.language = "srcl";
   program_.file = context.file;
 }
