@@ -51,7 +51,7 @@ def check_files() -> list[str]:
             lines = text.count("\n")
             if lines > MAX_LINES:
                 errors.append(f"{path}: {lines} lines; split it by subject ({MAX_LINES} at most)")
-            if path.suffix in (".hpp", ".h") and not re.search(r"^#pragma once|^#ifndef", text, re.MULTILINE):
+            if path.suffix in (".hpp", ".h") and not re.search(r"^#pragma once|^#ifndef|HWY_TARGET_TOGGLE", text, re.MULTILINE):
                 errors.append(f"{path}: no #pragma once")
             home_of_lock_free = any(path.is_relative_to(home) for home in HOMES_OF_LOCK_FREE)
             if not home_of_lock_free and (match := LOCK_FREE.search(text)):

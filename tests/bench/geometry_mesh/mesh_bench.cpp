@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 #include "rt_core/geometry/proximity.hpp"
 #include "tests/unit/geometry_tree/shapes.hpp"
 

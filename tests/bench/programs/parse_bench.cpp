@@ -65,16 +65,33 @@ std::string crcl_program() {
   return text + "<EndCanon><CommandID>999999</CommandID></EndCanon>\n</CRCLProgram>\n";
 }
 
+std::string rapid_program() {
+  std::string text = "MODULE long\nVAR num i;\nPROC main()\n";
+  for (std::int64_t n = 0; n < kRecords; n += 5) {
+    text += fmt::format("MoveAbsJ [[{},-30.5,12,100,0,-45.25],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,z10,tool0;\n", n % 90);
+    text +=
+        fmt::format("MoveL [[{}.5,{},312.25],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v{},fine,tool0; ! down\n",
+                    n % 700, n % 300, n % 2 == 0 ? 100 : 200);
+    text += fmt::format("SetDO do4,{};\n", n % 2);
+    text += "i:=i+1;\n";
+    text += "WaitTime 0.5;\n";
+  }
+  return text + "ENDPROC\nENDMODULE\n";
+}
+
 std::string program_in(std::string_view language) {
   if (language == "irdata") return irdata_program();
   if (language == "srcl") return srcl_program();
   if (language == "jet_boom") return jet_program("JET_BOOM");
   if (language == "jet_tarm") return jet_program("JET_TARM");
-  return crcl_program();
+  if (language == "crcl") return crcl_program();
+  if (language == "rapid") return rapid_program();
+  return {};
 }
 
 void BM_Parse(benchmark::State& state, const Language* language) {
   const std::string text = program_in(language->name);
+  if (text.empty()) return state.SkipWithError("program_in() has no program in this language");
   for (auto _ : state) {
     Diagnostics diagnostics;
     const auto program = language->parse(text, {.file = "long", .codes = {}}, diagnostics);

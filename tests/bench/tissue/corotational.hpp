@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/description/description.hpp"
 
 namespace cellmirror::tissue_bench {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rt_core/tissue/rest_mesh.hpp"
+#include "rt_core/tissue/body/rest_mesh.hpp"
 #include "tests/bench/tissue/corotational.hpp"
 #include "tests/support/tissue/bodies.hpp"
 

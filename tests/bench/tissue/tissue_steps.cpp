@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "app/plot/figure.hpp"
-#include "rt_core/tissue/element_kernel.hpp"
-#include "rt_core/tissue/lattice.hpp"
+#include "rt_core/tissue/body/element_kernel.hpp"
+#include "rt_core/tissue/body/lattice.hpp"
 #include "tests/bench/tissue/scenes.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "rt_core/geometry/mesh_repair.hpp"
+#include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 #include "rt_core/geometry/proximity.hpp"
 
 namespace {

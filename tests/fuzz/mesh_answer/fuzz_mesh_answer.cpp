@@ -12,8 +12,8 @@
 #include "config/mesh_finish.hpp"
 #include "config/mesh_message/mesh_message.hpp"
 #include "rt_core/base/contract.hpp"
-#include "rt_core/geometry/convex_hull.hpp"
-#include "rt_core/geometry/convex_parts.hpp"
+#include "rt_core/geometry/convex/convex_hull.hpp"
+#include "rt_core/geometry/convex/convex_parts.hpp"
 
 namespace {
 

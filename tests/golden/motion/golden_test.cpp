@@ -73,7 +73,8 @@ class Stage {
         couplings_(cell_, fleet_, motion_),
         program_motion_(cell_, motion_, port, clock_),
         programs_({cell_, home_, fleet_, motion_, display_, program_motion_, clock_}),
-        world_(cell_, fleet_, motion_, programs_, [] {}),
+        volumes_(cell_, {}),
+        world_({cell_, fleet_, motion_, programs_, volumes_, [] {}}),
         robots_(cell_, fleet_, motion_, couplings_, programs_, names_),
         sensing_(cell_, {}),
         diagnosis_([](std::string_view) { return Result<void>(); }) {
@@ -87,8 +88,8 @@ class Stage {
                         report.diagnostics.text());
     };
     script::ScriptRunner runner(
-        {names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, quiet_, diagnosis_}, home_, clock_,
-        {.run_ended = run_ended});
+        {names_, world_, robots_, motion_, programs_, display_, sensing_, quiet_, quiet_, volumes_, diagnosis_}, home_,
+        clock_, {.run_ended = run_ended});
     Diagnostics findings;
     if (!runner.start_file(name, &findings)) return "nothing of it ran\n" + findings.text();
     do {
@@ -118,6 +119,7 @@ class Stage {
   app::CouplingService couplings_;
   app::CellProgramMotion program_motion_;
   app::ProgramService programs_;
+  app::VolumeService volumes_;
   app::CellWorld world_;
   app::CellRobots robots_;
   app::CellSensing sensing_;

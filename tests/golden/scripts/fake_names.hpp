@@ -41,6 +41,7 @@ class FakeNames final : public NameDirectory {
     names_[2] = {"UMG_Kamera_1", "CAMERA_5"};
     names_[3] = {"USS_1B", "USS_5"};
     names_[4] = {"Tool1_WFRM"};
+    names_[5] = {"Table.Head_CT", "Part_CT"};
   }
 
   [[nodiscard]] bool knows(NameKind kind, std::string_view name) const override {
@@ -48,7 +49,8 @@ class FakeNames final : public NameDirectory {
     return names_[place(kind)].contains(name);
   }
   [[nodiscard]] Error explain(NameKind kind, std::string_view name) const override {
-    constexpr std::array<std::string_view, 5> kKinds = {"frame", "robot", "camera", "sensor", "workframe"};
+    constexpr std::array<std::string_view, 6> kKinds = {"frame",  "robot",     "camera",
+                                                        "sensor", "workframe", "voxel volume"};
     return {"there is no " + std::string(kKinds[place(kind)]) + " " + printable(name), did_you_mean(name, all(kind))};
   }
   [[nodiscard]] std::span<const JointKind> joints(std::string_view robot) const override {
@@ -81,10 +83,11 @@ class FakeNames final : public NameDirectory {
  private:
   // Of the cell itself nothing is known here: a branch is that of a frame.
   static std::size_t place(NameKind kind) {
+    if (kind == NameKind::volume) return 5;
     return static_cast<std::size_t>(kind == NameKind::branch ? NameKind::frame_node : kind);
   }
 
-  std::array<std::unordered_set<std::string, TextHash, std::equal_to<>>, 5> names_;
+  std::array<std::unordered_set<std::string, TextHash, std::equal_to<>>, 6> names_;
 };
 
 }  // namespace cellmirror::testing

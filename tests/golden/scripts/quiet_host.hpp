@@ -19,12 +19,15 @@ class QuietHost final : public WorldHost,
                         public SensingHost,
                         public InteractionHost,
                         public TissueHost,
+                        public VolumeHost,
                         public DiagnosisHost {
  public:
   FakeNames names;
   std::size_t calls = 0;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() {
+    return {names, *this, *this, *this, *this, *this, *this, *this, *this, *this, *this};
+  }
 
   Result<void> activate(std::string_view /*node*/) override { return called(); }
   Result<void> deactivate(std::string_view /*node*/) override { return called(); }
@@ -178,6 +181,27 @@ class QuietHost final : public WorldHost,
   Result<std::string> set_calculating(bool /*on*/) override { return remarked(); }
   Result<std::string> set_trigger(const InstrumentTrigger& /*trigger*/) override { return remarked(); }
   Result<std::string> set_clip(std::string_view /*file*/, const Pose& /*X_TC*/) override { return remarked(); }
+  Result<std::string> set_plane_mode(std::size_t /*plane*/, VolumePlaneMode /*mode*/,
+                                     std::string_view /*volume*/) override {
+    return remarked();
+  }
+  Result<std::string> set_plane_position(std::size_t /*plane*/, const VolumePlanePosition& /*position*/,
+                                         std::string_view /*volume*/) override {
+    return remarked();
+  }
+  Result<std::string> set_table(VolumeTable /*table*/, std::string_view /*volume*/) override { return remarked(); }
+  Result<std::string> set_medical_table(const MedicalTableParameters& /*parameters*/,
+                                        std::string_view /*volume*/) override {
+    return remarked();
+  }
+  Result<std::string> set_table_parameters(VolumeTable /*table*/, const VolumeTableParameters& /*parameters*/,
+                                           std::string_view /*volume*/) override {
+    return remarked();
+  }
+  Result<std::string> set_surface(bool /*on*/, std::optional<double> /*value*/, std::string_view /*volume*/) override {
+    return remarked();
+  }
+  Result<std::string> reload_tables(std::string_view /*volume*/) override { return remarked(); }
   Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
 
  private:

@@ -27,6 +27,7 @@ class RecordingHost final : public WorldHost,
                             public SensingHost,
                             public InteractionHost,
                             public TissueHost,
+                            public VolumeHost,
                             public DiagnosisHost {
  public:
   std::vector<std::string> calls;
@@ -37,7 +38,9 @@ class RecordingHost final : public WorldHost,
   // What POS_ROB begins; null: the robot stands there at once.
   std::shared_ptr<Activity> activity;
 
-  [[nodiscard]] CommandHost host() { return {names, *this, *this, *this, *this, *this, *this, *this, *this, *this}; }
+  [[nodiscard]] CommandHost host() {
+    return {names, *this, *this, *this, *this, *this, *this, *this, *this, *this, *this};
+  }
   [[nodiscard]] std::string trace() const {
     std::string text;
     for (const std::string& call : calls) text += call + "\n";
@@ -304,6 +307,34 @@ class RecordingHost final : public WorldHost,
   }
   Result<std::string> set_clip(std::string_view file, const Pose& X_TC) override {
     return remarked(record("set_clip {} {}", file, pose_text(X_TC)));
+  }
+  Result<std::string> set_plane_mode(std::size_t plane, VolumePlaneMode mode, std::string_view volume) override {
+    constexpr std::array<std::string_view, 4> kModes = {"active", "reverse", "visible", "off"};
+    return remarked(record("set_plane_mode {} {} of [{}]", plane, kModes.at(static_cast<std::size_t>(mode)), volume));
+  }
+  Result<std::string> set_plane_position(std::size_t plane, const VolumePlanePosition& position,
+                                         std::string_view volume) override {
+    return remarked(record("set_plane_position {} {:.9g} {:.9g} {:.9g} of [{}]", plane, position.elevation_rad,
+                           position.azimuth_rad, position.distance_m, volume));
+  }
+  Result<std::string> set_table(VolumeTable table, std::string_view volume) override {
+    return remarked(record("set_table {} of [{}]", kVolumeTableWords.at(static_cast<std::size_t>(table)), volume));
+  }
+  Result<std::string> set_medical_table(const MedicalTableParameters& parameters, std::string_view volume) override {
+    return remarked(record("set_medical_table air {:.9g} fat {:.9g} tissue {:.9g} bone {:.9g} of [{}]", parameters.air,
+                           parameters.fat, parameters.tissue, parameters.bone, volume));
+  }
+  Result<std::string> set_table_parameters(VolumeTable table, const VolumeTableParameters& parameters,
+                                           std::string_view volume) override {
+    return remarked(record("set_table_parameters {} opacity {:.9g} gain {:.9g} level {:.9g} window {:.9g} of [{}]",
+                           kVolumeTableWords.at(static_cast<std::size_t>(table)), parameters.opacity, parameters.gain,
+                           parameters.level, parameters.window, volume));
+  }
+  Result<std::string> set_surface(bool on, std::optional<double> value, std::string_view volume) override {
+    return remarked(record("set_surface {}{} of [{}]", on, value ? fmt::format(" {:.9g}", *value) : "", volume));
+  }
+  Result<std::string> reload_tables(std::string_view volume) override {
+    return remarked(record("reload_tables of [{}]", volume));
   }
   Result<void> save_flight_record(std::string_view file_name) override {
     return record("save_flight_record {}", file_name);

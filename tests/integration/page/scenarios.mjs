@@ -330,6 +330,65 @@ const scenarios = {
     await page.waitForFunction(() => document.getElementById("tab-tissue").hidden && !document.getElementById("near-panel").hidden);
   },
 
+  // The panel of voxel volumes: there with the first, gone with the last, and its controls send commands.
+  async volume() {
+    const plane = (i) => ({plane: `CLP${i + 1}`, side: "off", framed: false, elevation_rad: 0, azimuth_rad: 0, distance_m: 0});
+    const other = [1, 1, 2, 0.785];
+    const volume = {name: "table.head<b>", shown: true, table: "MEDICAL_LUT", isosurface: false, iso_value: 300,
+      parameters: {MEDICAL_LUT: [0, 0.1, 0.3, 1], LIN_LUT: other, EXP_LUT: other, RAINBOW_LUT: other, USER1_LUT: other, USER2_LUT: other},
+      planes: Array.from({length: 6}, (_, i) => plane(i))};
+    const content = {name: volume.name, voxels: [256, 256, 180], half_extent_m: [0.1, 0.1, 0.09], unit: "HU",
+      histogram: {low: -1024, high: 3071, counts: Array.from({length: 128}, (_, i) => (i < 4 ? 1e6 : 1000 * (i % 7)))}};
+    const wire = {live: (message) => ({...message, volumes: null})};
+    const page = await opened({}, address, wire);
+    await page.route("**/api/tree", async (route) => {
+      const tree = await (await route.fetch()).json();
+      await route.fulfill({json: {...tree, volumes: [content]}});
+    });
+    await live(page);
+    assert.ok(await page.locator("#tab-volume").isHidden(), "a tab without a volume");
+    wire.live = (message) => ({...message, tree_revision: 1000, volumes: [volume]});
+    await page.click("#tab-volume");
+    await page.locator("#volume-planes li").nth(5).waitFor();
+    await page.waitForFunction(() => document.getElementById("volume-facts").textContent.includes("256 × 256 × 180 voxels"));
+    assert.match(await text_of(page, "#volume-histogram-part"), /1024 HU\s+3071 HU/);
+    assert.ok((await page.locator("#volume-histogram").boundingBox()).height > 30, "no histogram");
+    assert.ok(await page.locator("#volume-choice-part").isHidden(), "a choice of one volume");
+    await shot(page, "volume");
+    const sent = (command) => page.locator("#console-log li", {has: page.locator("code", {hasText: new RegExp(`^${command}$`)})})
+      .last().locator(".answer:not(.waiting)").waitFor();
+    const slid = (label, value) => page.getByLabel(label, {exact: true}).fill(value);
+    await page.selectOption("#volume-table", "RAINBOW_LUT");
+    await sent("VV_SET_LUT RAINBOW_LUT");
+    await page.click("#volume-reload");
+    await sent("VV_RELOAD_LUTS");
+    await slid("bone of MEDICAL_LUT", "0.5");
+    await sent("VV_SET_LUT_PAR MEDICAL_LUT 0 0.1 0.3 0.5");
+    await page.selectOption('[data-plane="CLP2"] select', "reverse");
+    await sent("VV_CLIP CLP2 reverse");
+    await page.check('[data-plane="CLP3"] input[type=checkbox]');
+    await sent("VV_CLIP CLP3 visible");
+    await slid("elevation of CLP1", "-30");
+    await sent("VV_CLIP_POS CLP1 ELE -30 AZI 0 DIST 0");
+    await page.check("#volume-surface");
+    await sent("VV_ISO on VALUE 300");
+    assert.equal(await page.getByLabel("distance of CLP1").getAttribute("max"), "168");
+    // What another client sets is seen here.
+    const set = {...plane(0), side: "active", azimuth_rad: Math.PI / 4, distance_m: -0.0125};
+    wire.live = (message) => ({...message, volumes: [{...volume, table: "EXP_LUT", planes: [set, ...volume.planes.slice(1)]}]});
+    await page.waitForFunction(() => document.querySelector('[data-plane="CLP1"] select').value === "active");
+    assert.equal(await page.getByLabel("azimuth of CLP1").inputValue(), "45");
+    await page.getByLabel("window of EXP_LUT").waitFor();
+    // Two volumes: commands are for all, or for the one that is chosen.
+    wire.live = (message) => ({...message, volumes: [volume, {...volume, name: "part"}]});
+    await page.locator("#volume-choice-part").waitFor();
+    await page.selectOption("#volume-choice", "part");
+    await page.selectOption("#volume-table", "LIN_LUT");
+    await sent("VV_SET_LUT LIN_LUT part");
+    wire.live = (message) => ({...message, volumes: null});
+    await page.waitForFunction(() => document.getElementById("tab-volume").hidden && !document.getElementById("near-panel").hidden);
+  },
+
   // Fingers on a phone.
   async touch() {
     const page = await opened(kScreens.find(([name]) => name === "phone-light")[1]);

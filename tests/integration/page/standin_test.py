@@ -59,6 +59,9 @@ class Page(unittest.TestCase):
     def test_deformable_objects_have_a_panel_where_there_are_some(self):
         self.run_scenario("tissue")
 
+    def test_voxel_volumes_have_a_panel_where_there_are_some(self):
+        self.run_scenario("volume")
+
     def test_it_can_be_used_by_keyboard(self):
         self.run_scenario("keyboard")
 

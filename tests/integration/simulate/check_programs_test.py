@@ -116,7 +116,10 @@ class Programs(SmallCell):
         # NONSENSE before the move that does not fit.
         crcl = (GOLDEN / "crcl/bad/more_joints_than_the_robot/program.crcl").read_text().replace(
             "<MiddleCommand", '<MiddleCommand xsi:type="NONSENSE"/>\n<MiddleCommand', 1)
-        for name, text in (("test.ird", irdata), ("test.src", srcl), ("test.boom", boom), ("test.crcl", crcl)):
+        rapid = ("MODULE M\nPROC main()\nMoveAbsJ [[1,2,3,9E9,9E9,9E9],[9E9,9E9,9E9,9E9,9E9,9E9]],vmax,fine,tool0;\n"
+                 "NONSENSE 1;\nENDPROC\nENDMODULE\n")
+        for name, text in (("test.ird", irdata), ("test.src", srcl), ("test.boom", boom), ("test.crcl", crcl),
+                           ("test.mod", rapid)):
             with self.subTest(name=name):
                 said = [d for _, _, _, d in self.findings("programs/" + name, text, "--robot", "S1")]
                 self.assertTrue(any("NONSENSE" in d for d in said), said)

@@ -66,8 +66,8 @@ void expect_sound(Subject& s) {
   // Of an element's surface: at most 4 faces of 4 triangles and 6 edges of 4, each with 3 points.
   ASSERT_LE(s.body.surface_points().size(), 120 * state.elements_at_start);
   for (const Eigen::Vector3d& p : s.body.positions()) ASSERT_TRUE(p.allFinite());
-  // Half of an element in a step, and pushes.
-  for (const Eigen::Vector3d& v : s.body.velocities()) ASSERT_LT(v.norm(), 20.0);
+  // Faster than the waves of this tissue by far: nothing flies apart.
+  for (const Eigen::Vector3d& v : s.body.velocities()) ASSERT_LT(v.norm(), 5.0);
   const SurfaceSums sums = surface_sums(s.body);
   ASSERT_LT(sums.area.norm(), 1e-6 * sums.size);
   s.most_nodes = std::max(s.most_nodes, s.body.positions().size());
@@ -114,7 +114,7 @@ TEST(TissueStress, RandomStrokesKeepVolumeSurfaceAndSense) {
     s.strokes = 0;
     ++rounds;
   }
-  EXPECT_GT(links, wanted / 4);  // many of them divide
+  EXPECT_GT(links, wanted / 2);  // many of them divide
   for (const Subject& s : all) EXPECT_GT(s.most_nodes, 0U);
   fmt::print("{} strokes divided {} links; bodies were made whole again {} times\n", wanted, links, rounds);
 }

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "rt_core/tissue/body.hpp"
-#include "rt_core/tissue/description.hpp"
+#include "rt_core/tissue/body/body.hpp"
+#include "rt_core/tissue/description/description.hpp"
 #include "rt_core/tissue/world.hpp"
 
 namespace cellmirror::tissue_bodies {

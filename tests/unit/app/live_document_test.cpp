@@ -82,7 +82,7 @@ TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
        {"time_s",  "uptime_s", "cell",           "instance", "revision",   "tree_revision",      "loop",
         "robots",  "touching", "touching_count", "near",     "near_count", "warning_distance_m", "collision_age_s",
         "ranges",  "forces",   "programs",       "deadlock", "queues",     "messages",           "bell",
-        "display", "cameras",  "tissue"})
+        "display", "cameras",  "tissue",         "volumes"})
     EXPECT_TRUE(sut.contains(key)) << key;
   EXPECT_EQ(sut["cell"], "small");
   EXPECT_EQ(sut["uptime_s"], 12.5);

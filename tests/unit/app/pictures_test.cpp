@@ -17,6 +17,7 @@
 #include "app/render/render_cache.hpp"
 #include "app/render/scene_fingerprint.hpp"
 #include "rt_core/ports/tissue_state.hpp"
+#include "rt_core/ports/voxel_grid.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -318,6 +319,33 @@ TEST(SceneFingerprint, ChangesWithTheStepOfTissueAndWithWhatChangesBetweenSteps)
   scene.tissue = std::make_shared<const TissueView>(view);
   scene.tissue_modes = {DrawMode::flat};
   EXPECT_NE(fingerprint(scene, {}), before);
+}
+
+TEST(SceneFingerprint, ChangesWithAllThatIsSeenOfAVolume) {
+  Scene scene;
+  scene.volumes.resize(1);
+  const std::uint64_t before = fingerprint(scene, {});
+  EXPECT_NE(fingerprint(Scene{}, {}), before);
+  const auto differs = [&](auto change) {
+    Scene changed = scene;
+    change(changed.volumes[0]);
+    return fingerprint(changed, {}) != before && volume_fingerprint(changed) != volume_fingerprint(scene);
+  };
+  Scene moved = scene;
+  moved.bodies.resize(1);
+  EXPECT_NE(fingerprint(moved, {}), before);
+  EXPECT_EQ(volume_fingerprint(moved), volume_fingerprint(scene)) << "what else is seen does not matter";
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.grid = std::make_shared<const VoxelGrid>(); }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.X_WV.translation().z() = 1e-9; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.table = VolumeTable::linear; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.medical.fat = 0.2; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.parameters[3].gain = 2; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.planes[5].side = VolumePlaneSide::before; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.planes[5].framed = true; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.planes[0].distance_m = 0.001; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.settings.isosurface = true; }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.user_tables[1] = std::make_shared<const VolumeUserTable>(); }));
+  EXPECT_TRUE(differs([](SceneVolume& v) { v.tables_revision = 2; }));
 }
 
 TEST(PictureFile, FormatIsTheExtensions) {

@@ -16,7 +16,7 @@ namespace {
 TEST(Languages, AreThoseOfTheManualAndOurs) {
   std::vector<std::string_view> names;
   for (const Language& language : languages()) names.push_back(language.name);
-  EXPECT_EQ(names, (std::vector<std::string_view>{"irdata", "srcl", "jet_boom", "jet_tarm", "crcl"}));
+  EXPECT_EQ(names, (std::vector<std::string_view>{"irdata", "srcl", "jet_boom", "jet_tarm", "crcl", "rapid"}));
 }
 
 TEST(Languages, AreFoundByNameInAnyCase) {
@@ -26,7 +26,7 @@ TEST(Languages, AreFoundByNameInAnyCase) {
   const auto unknown = find_language("basic\n");
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().text(),
-            "there is no robot language 'basic\\x0a'; one of: irdata, srcl, jet_boom, jet_tarm, crcl");
+            "there is no robot language 'basic\\x0a'; one of: irdata, srcl, jet_boom, jet_tarm, crcl, rapid");
 }
 
 TEST(Languages, AreFoundByTheExtensionsOfTheirFiles) {
@@ -127,6 +127,13 @@ TEST(Languages, SayTheSameInTheirOwnWords) {
                               command("Message", "<Message>%DRAW_SCENE</Message>") +
                               command("ActuateJoints", joint(1, 0) + joint(2, 0) + joint(3, 0) + joint(4, 100)) +
                               "<EndCanon><CommandID>9</CommandID></EndCanon></CRCLProgram>"),
+      expected);
+  EXPECT_EQ(
+      commands_of("rapid",
+                  "MODULE task\nPROC main()\n"
+                  "MoveAbsJ [[10,-20,30,250,9E9,9E9],[9E9,9E9,9E9,9E9,9E9,9E9]],vmax,fine,tool0;\nWaitTime 0.5;\n"
+                  "!%DRAW_SCENE\n"
+                  "MoveAbsJ [[0,0,0,100,9E9,9E9],[9E9,9E9,9E9,9E9,9E9,9E9]],vmax,fine,tool0;\nENDPROC\nENDMODULE\n"),
       expected);
 }
 

@@ -94,7 +94,7 @@ TEST_F(ScriptRunnerTest, CalledScriptRunsBeforeItsCallerGoesOn) {
 }
 
 TEST_F(ScriptRunnerTest, RefusedCommandDoesNotStopTheScript) {
-  write("a.spt", "DRAW_SCENE;\nROBACT nobody;\nVV_RELOAD_LUTS;\nDRAW_SCENE;");
+  write("a.spt", "DRAW_SCENE;\nROBACT nobody;\nVV_RELOAD_LUTS nothing;\nDRAW_SCENE;");
   ASSERT_TRUE(sut_->start_file("a"));
   run_all();
   EXPECT_EQ(gateway_.calls, (Calls{"draw_scene", "draw_scene"}));
@@ -431,7 +431,7 @@ TEST_F(ScriptRunnerTest, CountersBalance) {
   write("b.spt", "EXEC_SCRIPT a; hot_message b;");
   ASSERT_TRUE(sut_->start_file("a"));
   run_all();
-  EXPECT_FALSE(sut_->execute_message("VV_RELOAD_LUTS"));
+  EXPECT_FALSE(sut_->execute_message("VV_RELOAD_LUTS nothing"));
   const ScriptCounters& counters = sut_->counters();
   EXPECT_EQ(counters.file.received, 7U);
   EXPECT_EQ(counters.file.done + counters.file.refused, counters.file.received);

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -62,6 +61,13 @@ TEST(CommandTable, HasARowForEachRowOfTheIndexInItsOrder) {
   }
 }
 
+// The last group of the manual to be implemented was 1.2.7.
+TEST(CommandsAsText, SaysThatAllAreImplemented) {
+  const std::string text = commands_as_text();
+  EXPECT_NE(text.find(fmt::format("{} forms, all implemented", kFormCount)), std::string::npos);
+  EXPECT_EQ(text.find("not available"), std::string::npos);
+}
+
 TEST(CommandTable, MarksWhatStandsBehindTheIndexAsOurs) {
   ASSERT_EQ(forms().size(), kFormCount);
   for (std::size_t i = kIndexRows; i < forms().size(); ++i) EXPECT_EQ(forms()[i]->origin, Origin::ours);
@@ -75,81 +81,6 @@ TEST(CommandTable, EveryRowHasOneLineOfHelp) {
   for (const Form* form : forms()) {
     EXPECT_FALSE(form->help.empty()) << form->syntax;
     EXPECT_EQ(form->help.find('\n'), std::string_view::npos) << form->syntax;
-  }
-}
-
-TEST(CommandTable, AvailableNowIsWhatTheIssuesSoFarAskFor) {
-  const std::set<std::string_view> names = {"#",
-                                            "ACTIVATE",
-                                            "DEACTIVATE",
-                                            "DELETE_NODE",
-                                            "SWAP_NODE",
-                                            "LEVEL_DOWN",
-                                            "LEVEL_UP",
-                                            "ROBACT",
-                                            "ROBOT_LANGUAGE",
-                                            "DRAW_SCENE",
-                                            "EXEC_SCRIPT",
-                                            "CONNECT",
-                                            "FRAME_TO_WFRM",
-                                            "ROBOT",
-                                            "SET_CAMPAR",
-                                            "WAIT",
-                                            "hot_message",
-                                            "SAVE_FLIGHT",
-                                            "POS_ROB",
-                                            "MOVE_ROB",
-                                            "STOP_ROB",
-                                            "STVW",
-                                            "STDP",
-                                            "rob_positioning",
-                                            "SET_USSPAR",
-                                            "SET_COLLPAR",
-                                            "SET_FORCE_ARROW",
-                                            "SET_TORQUE_LIMIT",
-                                            "SET_EXT_TCP_TEST",
-                                            "SET_FRC_ARR_SPECIAL",
-                                            "MASTER_SLAVE",
-                                            "EFFECTS",
-                                            "eladyn_geo_def",
-                                            "eladyn_calc",
-                                            "rob_ela_interact",
-                                            "ela_clip_def",
-                                            "rob_ela_shm",
-                                            "bin_ela_shm",
-                                            "BIN_ELA",
-                                            "BININPn_ON.spt, BININPn_OFF.spt",
-                                            "RESET_HAPTIC",
-                                            "LOAD_VIEWS",
-                                            "SAVE_VIEWS",
-                                            "STOP_ALL",
-                                            "STOP_SCRIPT",
-                                            "TF_LOAD",
-                                            "TF_RUN",
-                                            "TF_DELETE",
-                                            "TF_BACK",
-                                            "TF_HOLD",
-                                            "TF_RESUME",
-                                            "TF_STEP",
-                                            "TF_STOP",
-                                            "TF_WAIT",
-                                            "TF_RECORD",
-                                            "SET_INPUT",
-                                            "SET_ANALOG_INPUT",
-                                            "SET_FRAME",
-                                            "SET_ABSTRACT",
-                                            "TAG_DRAWLEN",
-                                            "CAM_TRACKING",
-                                            "CAM_VIEW_PYRAMID",
-                                            "CAM_ONLINE",
-                                            "COVW",
-                                            "SET_MODE",
-                                            "BFRM",
-                                            "FLDR",
-                                            "SHAD"};
-  for (const Form* form : forms()) {
-    const bool expected = names.contains(form->name) || form->section == "1.2.2" || form->section == "1.2.5";
-    EXPECT_EQ(form->available(), expected) << form->syntax;
   }
 }
 
@@ -168,34 +99,6 @@ TEST(CommandTable, FindsCommandsWithoutRegardToCaseAndNothingElse) {
   EXPECT_EQ(forms_of("eladyn_geo_def").size(), 3U);
   EXPECT_TRUE(forms_of("#").empty());
   EXPECT_TRUE(forms_of("").empty());
-}
-
-// A row of the manual without an example gets one here, so that each row is parsed and executed once.
-TEST(CommandTable, UnavailableCommandsAreRefusedBySubsystemAndChangeNothing) {
-  const std::pair<FormId, const char*> samples[] = {
-      {FormId::vv_clip, "VV_CLIP CLP1 off"},
-      {FormId::vv_clip_pos, "VV_CLIP_POS CLP1 ELE 1 AZI 2 DIST 3"},
-      {FormId::vv_set_lut, "VV_SET_LUT LIN_LUT"},
-      {FormId::vv_set_lut_par_medical, "VV_SET_LUT_PAR MEDICAL_LUT 0 0 0 0"},
-      {FormId::vv_set_lut_par, "VV_SET_LUT_PAR LIN_LUT 1 1 1 1"},
-      {FormId::vv_reload_luts, "VV_RELOAD_LUTS"},
-  };
-  for (const Form* form : forms()) {
-    if (form->kind != FormKind::command || form->available()) continue;
-    const auto* sample = std::find_if(std::begin(samples), std::end(samples),
-                                      [form](const auto& candidate) { return candidate.first == form->id; });
-    const std::string_view text = sample == std::end(samples) ? form->example : sample->second;
-    cellmirror::testing::RecordingHost gateway;
-    gateway.names.active = "MANTEC_RM3";
-    const Read read(text, &gateway.names);
-    ASSERT_TRUE(read.fine);
-    ASSERT_EQ(read.command.id(), form->id) << text;
-    CommandHost host = gateway.host();
-    const Outcome sut = execute(read.command, host);
-    EXPECT_EQ(sut.kind, Outcome::Kind::refused) << text;
-    EXPECT_EQ(sut.error.what, fmt::format("{} is not available yet: {}", form->name, form->missing));
-    EXPECT_TRUE(gateway.calls.empty()) << text;
-  }
 }
 
 TEST(ReferencePage, IsTheCommittedOne) {
@@ -220,7 +123,7 @@ TEST(CommandsAsJson, HasTheBindingKeysForEachForm) {
     EXPECT_EQ(row["syntax"], forms()[i]->syntax);
     EXPECT_EQ(row["section"], forms()[i]->section);
     EXPECT_EQ(row["help"], forms()[i]->help);
-    EXPECT_EQ(row["implemented"], forms()[i]->available());
+    EXPECT_EQ(row["implemented"], true);
   }
   EXPECT_EQ(document["our_tables"]["A.1"].size(), object_attributes().size());
 }
@@ -284,6 +187,19 @@ TEST(Help, ShowsSynopsisUnitsAndOurDefinition) {
   EXPECT_EQ(help_text("ROBAKT"), "there is no command ROBAKT; did you mean ROBACT or ROBOT?\n");
 }
 
+TEST(Help, NamesEveryParameterOfEveryForm) {
+  for (const Form* form : forms()) {
+    const std::string sut = help_text(*form);
+    EXPECT_NE(sut.find(form->help), std::string::npos) << form->syntax;
+    for (const Parameter& parameter : form->parameters) {
+      if (parameter.kind == ParameterKind::word) continue;
+      EXPECT_NE(sut.find(fmt::format("<{}>", parameter.name)), std::string::npos) << form->syntax;
+    }
+  }
+  EXPECT_NE(help_text("VV_SET_LUT").find("<volume>               voxel volume: name of a voxel volume; optional"),
+            std::string::npos);
+}
+
 TEST(Completion, OffersWhatMayStandNext) {
   const cellmirror::testing::FakeNames names;
   using Words = std::vector<std::string>;
@@ -302,6 +218,9 @@ TEST(Completion, OffersWhatMayStandNext) {
   EXPECT_EQ(complete("CONNECT Toolbox.Tool1 ", &names), Words{"TO"});
   EXPECT_EQ(complete("FRAME_TO_WFRM Toolbox.Tool1 TO Mantec_1.HAND ", &names), Words{"Tool1_WFRM"});
   EXPECT_EQ(complete("EFFECTS P", nullptr), (Words{"PULSE", "POOL_RIPPLES"}));
+  EXPECT_EQ(complete("VV_SET_LUT LIN_LUT ", &names), (Words{"Part_CT", "Table.Head_CT"}));
+  EXPECT_EQ(complete("VV_CLIP_POS CLP1 ELE 1 ", &names), (Words{"AZI", "DIST"}));
+  EXPECT_EQ(complete("VV_CLIP_POS CLP1 ELE 1 DIST 3 AZI 2 P", &names), Words{"Part_CT"});
   EXPECT_EQ(complete("NO_SUCH ", &names), Words{});
   EXPECT_EQ(complete("", nullptr).size(), command_names().size());
 }

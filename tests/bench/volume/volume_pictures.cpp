@@ -1,0 +1,243 @@
+// Pictures a second of a volume of 512^3 at 1280 x 720 with each table, at full quality and while it moves; beside
+// VTK's vtkFixedPointVolumeRayCastMapper at the same step and its mean error against a picture of fine steps; the time
+// over the size of the volume. Writes a table (CSV) and a figure (PNG).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/plot/figure.hpp"
+#include "rt_core/volume/caster.hpp"
+#include "tests/support/volume/phantoms.hpp"
+#include "tests/support/volume/vtk_peer.hpp"
+
+namespace {
+
+using namespace cellmirror;
+
+constexpr int kWidth = 1280;
+constexpr int kHeight = 720;
+constexpr int kPictures = 15;
+constexpr int kMovingReduction = 2;  // pixels
+constexpr std::array<std::uint32_t, 7> kSizes = {128, 192, 256, 384, 512, 768, 1024};
+constexpr int kThreads = 1;  // beside the calling one
+
+double now_s(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Times {
+  double wall_ms = 0;  // medians
+  double cpu_ms = 0;
+};
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+// The eye goes around the volume by some degrees.
+phantoms::Camera camera_at(int i) {
+  const double turn = 0.6 + 0.02 * i;
+  return {.from = Eigen::Vector3d(0.95 * std::sin(turn), -0.95 * std::cos(turn), 0.25), .near_m = 0.05, .far_m = 5};
+}
+
+volume::CastRequest request_of(const std::shared_ptr<const VoxelGrid>& grid, const VolumeSettings& settings,
+                               bool moving, int i) {
+  volume::CastRequest request;
+  request.grid = grid;
+  request.settings = settings;
+  request.width = moving ? kWidth / kMovingReduction : kWidth;
+  request.height = moving ? kHeight / kMovingReduction : kHeight;
+  request.clip_from_V = phantoms::clip_from_world(camera_at(i), request.width, request.height);
+  if (moving) {
+    request.quality = volume::kHastyQuality;  // as the renderer takes it where pixels are larger than voxels
+    request.quality.coarse = volume::CoarseVoxels::always;
+    request.quality.step_voxels = 2;
+  }
+  return request;
+}
+
+Times measure(volume::Caster& caster, const std::shared_ptr<const VoxelGrid>& grid, const VolumeSettings& settings,
+              bool moving) {
+  std::vector<double> wall;
+  std::vector<double> cpu;
+  volume::VolumePicture picture;
+  for (int i = 0; i < kPictures; ++i) {
+    const volume::CastRequest request = request_of(grid, settings, moving, i);
+    const double wall_begun = now_s(CLOCK_MONOTONIC);
+    const double cpu_begun = now_s(CLOCK_PROCESS_CPUTIME_ID);
+    if (const auto done = caster.cast(request, picture); !done) {
+      fmt::print(stderr, "{}\n", done.error().text());
+      return {};
+    }
+    if (i < 2) continue;
+    wall.push_back(1e3 * (now_s(CLOCK_MONOTONIC) - wall_begun));
+    cpu.push_back(1e3 * (now_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_begun));
+  }
+  return {median(wall), median(cpu)};
+}
+
+struct Shown {
+  std::string name;
+  VolumeSettings settings;
+};
+
+std::vector<Shown> all_shown() {
+  std::vector<Shown> shown;
+  for (std::size_t t = 0; t < kVolumeTables; ++t) {
+    VolumeSettings settings;
+    settings.table = static_cast<VolumeTable>(t);
+    shown.push_back({std::string(kVolumeTableWords[t]), settings});
+  }
+  VolumeSettings surface;
+  surface.isosurface = true;
+  shown.push_back({"isosurface", surface});
+  return shown;
+}
+
+void measure_change_of_table(volume::Caster& caster, const std::shared_ptr<const VoxelGrid>& grid) {
+  volume::VolumePicture picture;
+  std::vector<double> ms;
+  for (int i = 0; i < 10; ++i) {
+    volume::CastRequest request = request_of(grid, {}, true, 0);
+    request.settings.medical.tissue = 0.2 + 0.02 * i;
+    request.width = request.height = 1;
+    const double begun = now_s(CLOCK_MONOTONIC);
+    static_cast<void>(caster.cast(request, picture));
+    ms.push_back(1e3 * (now_s(CLOCK_MONOTONIC) - begun));
+  }
+  fmt::print("a change of table before the rays: {:.1f} ms\n", median(ms));
+}
+
+// Mean difference of two pictures on black where either shows something.
+double mean_error(const volume::VolumePicture& reference, const std::vector<std::uint8_t>& other, std::size_t stride) {
+  double sum = 0;
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < reference.depth.size(); ++i) {
+    int difference = 0;
+    for (std::size_t c = 0; c < 3; ++c) difference += std::abs(reference.rgba[4 * i + c] - other[stride * i + c]);
+    covered += reference.rgba[4 * i + 3] > 0 ? 1U : 0U;
+    sum += difference / 3.0;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(covered, 1));
+}
+
+// Without light: VTK's goes by other gradients.
+void compare_with_vtk(volume::Caster& caster, const std::shared_ptr<const VoxelGrid>& grid, const char* source) {
+  volume::CastRequest request = request_of(grid, {}, false, 0);
+  request.quality.light = false;
+  volume::VolumePicture picture;
+  volume::VolumePicture fine;
+  Times own;
+  std::vector<double> wall;
+  std::vector<double> cpu;
+  for (int i = 0; i < 7; ++i) {
+    const double wall_begun = now_s(CLOCK_MONOTONIC);
+    const double cpu_begun = now_s(CLOCK_PROCESS_CPUTIME_ID);
+    static_cast<void>(caster.cast(request, picture));
+    wall.push_back(now_s(CLOCK_MONOTONIC) - wall_begun);
+    cpu.push_back(now_s(CLOCK_PROCESS_CPUTIME_ID) - cpu_begun);
+  }
+  own = {1e3 * median(wall), 1e3 * median(cpu)};
+  request.quality = volume::kEvenQuality;
+  request.quality.light = false;
+  request.quality.step_voxels = 0.25;
+  static_cast<void>(caster.cast(request, fine));
+  const auto range = caster.range_of(grid);
+  if (!range) return;
+  const volume::TransferFunction transfer =
+      volume::make_transfer({.settings = {}, .range = *range, .hounsfield = true, .longest_edge_m = 0.4, .user = {}});
+  const phantoms::VtkPicture vtk = phantoms::draw_with_vtk({.grid = grid.get(),
+                                                            .transfer = &transfer,
+                                                            .camera = camera_at(0),
+                                                            .width = kWidth,
+                                                            .height = kHeight,
+                                                            .step_m = grid->spacing_m.minCoeff(),
+                                                            .shade = false,
+                                                            .threads = 1 + kThreads,
+                                                            .repeats = 5},
+                                                           source);
+  if (vtk.rgb.empty()) {
+    fmt::print("VTK has failed: {}\n", vtk.times);
+    return;
+  }
+  fmt::print(
+      "MEDICAL_LUT without light, step of a voxel: {:.0f} ms ({:.0f} ms processor), mean error {:.2f} of 255; VTK "
+      "mean error {:.2f}, times in s {}\n",
+      own.wall_ms, own.cpu_ms, mean_error(fine, picture.rgba, 4), mean_error(fine, vtk.rgb, 3), vtk.times);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const bool vtk = count == 4 && std::string(arguments[1]) == "--vtk";
+  if (count != 3 && !vtk) {
+    std::fputs("usage: volume_pictures [--vtk] CSV PNG\n", stderr);
+    return 2;
+  }
+  fmt::print("instruction set {}, {} threads\n", volume::caster_simd_target(), 1 + kThreads);
+  volume::Caster caster(kThreads);
+  std::string table = "size,table,full_ms,full_cpu_ms,moving_ms,moving_cpu_ms,prepare_ms\n";
+  plot::Line full_line{.label = "full quality", .x = {}, .y = {}};
+  plot::Line moving_line{.label = "moving", .x = {}, .y = {}};
+  for (const std::uint32_t size : kSizes) {
+    const std::shared_ptr<const VoxelGrid> grid = phantoms::trunk_grid(size, 0.40, 1 + kThreads);
+    caster.keep_only({});
+    const double begun = now_s(CLOCK_MONOTONIC);
+    if (const auto range = caster.range_of(grid); !range) {
+      fmt::print(stderr, "{}\n", range.error().text());
+      return 1;
+    }
+    const double prepare_ms = 1e3 * (now_s(CLOCK_MONOTONIC) - begun);
+    for (const Shown& shown : all_shown()) {
+      if (size != 512 && shown.settings.isosurface) continue;
+      if (size != 512 && shown.settings.table != VolumeTable::medical) continue;
+      const Times full = measure(caster, grid, shown.settings, false);
+      const Times moving = measure(caster, grid, shown.settings, true);
+      fmt::print(
+          "{:4}^3 {:11}: full {:6.1f} ms ({:.1f} a second; {:.1f} ms processor), moving {:5.1f} ms ({:.1f} a second; "
+          "{:.1f} ms processor), prepared in {:.0f} ms\n",
+          size, shown.name, full.wall_ms, 1e3 / full.wall_ms, full.cpu_ms, moving.wall_ms, 1e3 / moving.wall_ms,
+          moving.cpu_ms, prepare_ms);
+      table += fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f}\n", size, shown.name, full.wall_ms, full.cpu_ms,
+                           moving.wall_ms, moving.cpu_ms, prepare_ms);
+      if (shown.settings.table != VolumeTable::medical || shown.settings.isosurface) continue;
+      full_line.x.push_back(size);
+      full_line.y.push_back(full.cpu_ms);
+      moving_line.x.push_back(size);
+      moving_line.y.push_back(moving.cpu_ms);
+    }
+    if (size == 512) measure_change_of_table(caster, grid);
+    const char* const source = std::getenv("CELLMIRROR_SOURCE_DIR");
+    if (size == 512 && vtk) compare_with_vtk(caster, grid, source != nullptr ? source : ".");
+  }
+  plot::Panel panel;
+  panel.x = {.label = "voxels along an edge", .logarithmic = true};
+  panel.y = {.label = "processor time of a picture [ms]", .logarithmic = true};
+  panel.lines = {full_line, moving_line};
+  plot::Figure figure;
+  figure.title = "Processor time of a picture of a volume over its size";
+  figure.subtitle = fmt::format("{} x {} pixels, MEDICAL_LUT, {}, {} threads", kWidth, kHeight,
+                                volume::caster_simd_target(), 1 + kThreads);
+  figure.panels.push_back(panel);
+  figure.columns = 1;
+  const char* const csv = arguments[count - 2];
+  std::FILE* file = std::fopen(csv, "w");
+  if (file == nullptr || std::fputs(table.c_str(), file) < 0 || std::fclose(file) != 0) {
+    fmt::print(stderr, "{} cannot be written\n", csv);
+    return 1;
+  }
+  if (auto written = plot::write_png(figure, arguments[count - 1]); !written) {
+    fmt::print(stderr, "{}\n", written.error().text());
+    return 1;
+  }
+  return 0;
+}
