@@ -19,6 +19,11 @@ find_package(LAPACK REQUIRED)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)      # rt_core/tissue
 find_package(fcl REQUIRED)     # rt_core/collision
 find_package(assimp REQUIRED)  # config/mesh_reader
+# config/volume_reader. GDCM's own CMake files want its programs and Java wrappers too.
+find_path(GDCM_INCLUDE_DIRS gdcmReader.h PATH_SUFFIXES gdcm-3.0 REQUIRED)
+foreach(library gdcmCommon gdcmDICT gdcmDSED gdcmMSFF)
+  find_library(${library}_LIBRARY ${library} REQUIRED)
+endforeach()
 find_package(Qhull REQUIRED)   # rt_core/geometry: convex hulls
 # drivers/display. Of OSMesa and EGL only the headers: the libraries are opened when a picture is wanted.
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)

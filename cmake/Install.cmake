@@ -1,6 +1,6 @@
 # cmake --install build --prefix /usr: programs, the cells that come along, the systemd unit and its system user.
 include(GNUInstallDirs)
-foreach(program cellmirror cellmirror-mesh-reader sim_robot sim_haptic sim_footswitch sim_camera_head)
+foreach(program cellmirror cellmirror-mesh-reader cellmirror-volume-reader sim_robot sim_haptic sim_footswitch sim_camera_head)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()

@@ -17,19 +17,30 @@ set(CELLMIRROR_LAYERS
   "rt_core/haptics: rt_core/base rt_core/ports rt_core/kinematics"
   "rt_core/dynamics: rt_core/base rt_core/ports rt_core/kinematics rt_core/cell"
   "rt_core/contact_model: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics"
-  "rt_core/tissue: rt_core/base rt_core/ports rt_core/geometry"
+  "rt_core/tissue/description: rt_core/base rt_core/ports rt_core/geometry"
+  "rt_core/tissue/body: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue/description"
+  "rt_core/tissue/contact: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue/description rt_core/tissue/body"
+  "rt_core/tissue/effects: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact"
+  "rt_core/tissue/instruments: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects"
+  "rt_core/tissue: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments"
+  "rt_core/volume: rt_core/base rt_core/ports"
   "rt_core/engine: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion rt_core/haptics"
+  "config/reader_process: rt_core/base"
   "config/mesh_message: rt_core/base rt_core/ports rt_core/geometry"
-  "config/mesh_reader: config/mesh_message rt_core/base rt_core/ports rt_core/geometry"
-  "config/msh: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue"
-  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics rt_core/tissue config/mesh_message config/msh"
+  "config/mesh_reader: config/mesh_message config/reader_process rt_core/base rt_core/ports rt_core/geometry"
+  "config/volume_message: rt_core/base"
+  "config/volume_reader: config/volume_message config/reader_process rt_core/base"
+  "config/volume: rt_core/base rt_core/ports config/reader_process config/volume_message"
+  "config/msh: rt_core/base rt_core/ports rt_core/geometry rt_core/tissue/description"
+  "config: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics rt_core/tissue/description rt_core/volume config/reader_process config/mesh_message config/msh config/volume_message config/volume"
   "config/command_line: rt_core/base"
   "drivers/can: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire"
+  "drivers/rtde: rt_core/base rt_core/rt rt_core/ports"
   "drivers/haptic: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/footswitch: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "rt_core/scene: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell"
-  "drivers/display: rt_core/base rt_core/rt rt_core/ports rt_core/geometry"
+  "drivers/display: rt_core/base rt_core/rt rt_core/ports rt_core/geometry rt_core/volume"
   "ipc/runtime: rt_core/base"
   "ipc/sysv: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
   "ipc/control: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime"
@@ -42,37 +53,39 @@ set(CELLMIRROR_LAYERS
   "scripts/programs/srcl: rt_core/base rt_core/ports scripts/programs/program"
   "scripts/programs/jet: rt_core/base rt_core/ports scripts/programs/program"
   "scripts/programs/crcl: rt_core/base rt_core/ports scripts/programs/program"
-  "scripts/programs/languages: rt_core/base rt_core/ports scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl"
+  "scripts/programs/rapid: rt_core/base rt_core/ports scripts/programs/program"
+  "scripts/programs/languages: rt_core/base rt_core/ports scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/rapid"
   "scripts/programs/controller: rt_core/base rt_core/ports scripts/lang scripts/commands scripts/programs/program"
   "sim_devices/base: rt_core/base ipc/sysv"
   "sim_devices/haptic: sim_devices/haptic sim_devices/base rt_core/base rt_core/ports ipc/wire ipc/sysv config/command_line"
   "sim_devices/footswitch: sim_devices/footswitch sim_devices/base rt_core/base ipc/wire ipc/sysv config/command_line"
-  "sim_devices/camera: sim_devices/camera sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
-  "sim_devices: sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds config/command_line"
+  "sim_devices/camera: sim_devices/camera sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds drivers/rtde config/command_line"
+  "sim_devices: sim_devices sim_devices/base rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/runtime ipc/sysv drivers/can drivers/dds drivers/rtde config/command_line"
   "app/plot: rt_core/base"
   "app/console: rt_core/base rt_core/cell config"
-  "app/snapshot: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/collision rt_core/haptics rt_core/dynamics rt_core/tissue rt_core/engine scripts/runner scripts/programs/controller"
-  "app/io: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/scene rt_core/engine config drivers/can drivers/dds drivers/haptic ipc/sysv app/snapshot"
-  "app/owner: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/motion rt_core/cell rt_core/planning rt_core/collision rt_core/haptics rt_core/scene rt_core/tissue rt_core/engine config drivers/footswitch ipc/sysv scripts/programs/program scripts/programs/jet scripts/programs/languages scripts/lang scripts/commands scripts/runner scripts/programs/controller app/snapshot app/io"
-  "app/workers: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/tissue rt_core/engine app/snapshot"
+  "app/snapshot: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/cell rt_core/collision rt_core/haptics rt_core/dynamics rt_core/tissue/description rt_core/engine scripts/runner scripts/programs/controller"
+  "app/io: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/scene rt_core/engine config drivers/can drivers/dds drivers/rtde drivers/haptic ipc/sysv app/snapshot"
+  "app/owner: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/motion rt_core/cell rt_core/planning rt_core/collision rt_core/haptics rt_core/scene rt_core/tissue/description rt_core/engine config drivers/footswitch ipc/sysv scripts/programs/program scripts/programs/jet scripts/programs/languages scripts/lang scripts/commands scripts/runner scripts/programs/controller app/snapshot app/io"
+  "app/workers: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine app/snapshot"
   "app/render: rt_core/base rt_core/rt rt_core/ports rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine config drivers/display app/snapshot"
   "app/report: rt_core/base rt_core/rt rt_core/ports rt_core/motion ipc/wire rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine ipc/sysv ipc/control ipc/web app/snapshot"
   "app/kinematics: rt_core/base rt_core/ports rt_core/kinematics rt_core/inverse_kinematics rt_core/cell config config/command_line app/plot"
   "app/proximity: rt_core/base rt_core/rt rt_core/ports rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging config app/plot app/console"
-  "app/pictures: rt_core/base rt_core/ports rt_core/cell rt_core/tissue rt_core/scene config drivers/display ipc/runtime ipc/control app/owner app/render"
-  "app/simulation: rt_core/base rt_core/rt rt_core/ports rt_core/motion rt_core/geometry rt_core/collision rt_core/tissue rt_core/engine config scripts/programs/controller app/plot app/console app/snapshot app/owner app/workers"
-  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue ipc/wire rt_core/engine config drivers/dds ipc/sysv ipc/control ipc/web scripts/lang app/snapshot app/io app/owner app/workers app/render app/report app/pictures"
+  "app/pictures: rt_core/base rt_core/ports rt_core/cell rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/scene config drivers/display ipc/runtime ipc/control app/owner app/render"
+  "app/volume_info: rt_core/base rt_core/ports config config/volume app/plot"
+  "app/simulation: rt_core/base rt_core/rt rt_core/ports rt_core/motion rt_core/geometry rt_core/collision rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine config scripts/programs/controller app/plot app/console app/snapshot app/owner app/workers"
+  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde ipc/sysv ipc/control ipc/web scripts/lang app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume"
   "app: *"
   "tests: *")
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/inverse_kinematics
-  rt_core/motion rt_core/geometry rt_core/cell rt_core/planning rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/tissue rt_core/scene
-  rt_core/engine config/mesh_message config/mesh_reader config/msh config config/command_line drivers/can drivers/dds drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web
-  scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/languages
+  rt_core/motion rt_core/geometry rt_core/cell rt_core/planning rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/volume rt_core/scene
+  rt_core/engine config/mesh_message config/reader_process config/mesh_reader config/msh config/volume_message config/volume_reader config/volume config config/command_line drivers/can drivers/dds drivers/rtde drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/web
+  scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/rapid scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot
-  app/console app/snapshot app/io app/owner app/workers app/render app/report app/kinematics app/proximity app/pictures app/simulation app/gateway app tests)
+  app/console app/snapshot app/io app/owner app/workers app/render app/report app/kinematics app/proximity app/pictures app/simulation app/volume_info app/gateway app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

@@ -83,6 +83,15 @@ Result<KismetHome> KismetHome::of_cell(const fs::path& cell_file) {
 }
 
 Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name, std::string_view extension) const {
+  return find(folder, name, extension, false);
+}
+
+Result<fs::path> KismetHome::file_or_folder(std::string_view folder, std::string_view name) const {
+  return find(folder, name, {}, true);
+}
+
+Result<fs::path> KismetHome::find(std::string_view folder, std::string_view name, std::string_view extension,
+                                  bool folders) const {
   if (auto named = check_name(name); !named) return std::unexpected(named.error());
   std::error_code error;
   fs::path wanted = root_ / folder / name;
@@ -100,7 +109,10 @@ Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name
     return fail(fmt::format("the path {} leaves the cell folder {}", shown, root_.string()),
                 "put the file into the cell folder");
   }
-  if (fs::is_directory(found, error)) return fail(fmt::format("{} is a folder, not a file", shown));
+  if (fs::is_directory(found, error)) {
+    if (folders) return found;
+    return fail(fmt::format("{} is a folder, not a file", shown));
+  }
   if (!fs::is_regular_file(found, error)) return fail(fmt::format("{} is not a regular file", shown));
   if (access(found.c_str(), R_OK) != 0)
     return fail(fmt::format("the file {} is not readable: {}", shown, std::strerror(errno)));

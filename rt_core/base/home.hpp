@@ -24,6 +24,8 @@ class KismetHome {
   // and the nearest names for missing files.
   [[nodiscard]] Result<std::filesystem::path> file(std::string_view folder, std::string_view name,
                                                    std::string_view extension = {}) const;
+  // The same, but folders are found too: for what may be a folder of files.
+  [[nodiscard]] Result<std::filesystem::path> file_or_folder(std::string_view folder, std::string_view name) const;
   // "did you mean a or b?" of the files in `folder` with one of `extensions` (none given: with any), or empty if none
   // is near. Examines at most 512 entries.
   [[nodiscard]] std::string nearest_files(std::string_view folder, std::string_view name,
@@ -34,6 +36,8 @@ class KismetHome {
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
 
  private:
+  [[nodiscard]] Result<std::filesystem::path> find(std::string_view folder, std::string_view name,
+                                                   std::string_view extension, bool folders) const;
   explicit KismetHome(std::filesystem::path root) : root_(std::move(root)) {}
   std::filesystem::path root_;  // canonical
 };

@@ -107,6 +107,8 @@ class Picture {
       add_inertia(here, node.definition->inertia);
       if (node.content) add_inertia(here, node.content->inertia);
     }
+    if (node.content && node.content->volume && node.content->volume->grid)
+      cell_->volumes.push_back({here, std::shared_ptr<const ComponentVolume>(node.content, &*node.content->volume)});
     if (cell_->visible.back() == 0) return;
     add_geometry(node, here, node.declared_in, node.definition->geometry);
     if (node.content) add_geometry(node, here, node.content, node.content->geometry);

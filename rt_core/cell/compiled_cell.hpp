@@ -65,6 +65,11 @@ struct CompiledGeometry {
   std::shared_ptr<const Geometry> geometry;
 };
 
+struct CompiledVolume {
+  std::int32_t node = 0;
+  std::shared_ptr<const ComponentVolume> volume;
+};
+
 struct CompiledInertia {
   std::int32_t node = 0;
   BodyInertia inertia;
@@ -88,6 +93,7 @@ struct CompiledCell {
   std::vector<CompiledSensor> sensors;
   std::vector<std::int32_t> workframes;    // nodes; those of cameras and sensors are not among them
   std::vector<CompiledGeometry> geometry;  // what is visible, coarse geometry included
+  std::vector<CompiledVolume> volumes;     // of all components in memory; drawn where `visible`
   // Of what is there: not hidden (DEACTIVATE), by itself or with what it is named within. A part that is shown coarsely
   // weighs what it weighs in detail. A node may have two: its own and that of its component's root.
   std::vector<CompiledInertia> inertia;

@@ -18,6 +18,8 @@
 #include "rt_core/cell/geometry.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 #include "rt_core/ports/robot_state.hpp"
+#include "rt_core/ports/volume_settings.hpp"
+#include "rt_core/ports/voxel_grid.hpp"
 
 namespace cellmirror {
 
@@ -134,6 +136,13 @@ struct RobotDefinition {
   int column = 0;
 };
 
+// The voxel volume of a component.
+struct ComponentVolume {
+  std::shared_ptr<const VoxelGrid> grid;  // null: refused, or not read
+  Pose X_CV = Pose::Identity();           // in the component's root
+  VolumeSettings settings;                // at the start
+};
+
 struct Component {
   std::string file;  // for messages, and to notice that a component would contain itself
   std::string description;
@@ -142,6 +151,7 @@ struct Component {
   BodyInertia inertia;             // of the component's root
   std::vector<ComponentNode> nodes;
   std::optional<RobotDefinition> robot;
+  std::optional<ComponentVolume> volume;
 
   [[nodiscard]] Place place(const ComponentNode& node) const { return {file, node.line, node.column}; }
 };

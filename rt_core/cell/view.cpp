@@ -92,7 +92,7 @@ Eigen::Matrix3d screen_axes(const View& view) {
 }
 
 Extent extent_of(const CompiledCell& cell, std::span<const JointValues> q) {
-  if (cell.geometry.empty()) return {};
+  if (cell.geometry.empty() && cell.volumes.empty()) return {};
   CellPoses poses;
   compute_poses(cell, q, poses);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -106,6 +106,13 @@ Extent extent_of(const CompiledCell& cell, std::span<const JointValues> q) {
     include(X_WG.translation() + reach, extent);
     if (geometry.shape != Shape::mesh || geometry.mesh == nullptr) continue;
     for (const Eigen::Vector3d& vertex : geometry.mesh->vertices) include(X_WG * vertex, extent);
+  }
+  for (const CompiledVolume& part : cell.volumes) {
+    if (cell.visible[static_cast<std::size_t>(part.node)] == 0) continue;
+    const Pose X_WV = poses.X_WN[static_cast<std::size_t>(part.node)] * part.volume->X_CV;
+    const Eigen::Vector3d reach = X_WV.linear().cwiseAbs() * part.volume->grid->half_extent_m();
+    include(X_WV.translation() - reach, extent);
+    include(X_WV.translation() + reach, extent);
   }
   return extent.low.allFinite() ? extent : Extent{};
 }

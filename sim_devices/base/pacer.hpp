@@ -2,12 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "rt_core/base/contract.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror::sim {
+
+// Of a rate above 0; at least a nanosecond.
+[[nodiscard]] inline Nanoseconds period_of(double rate_hz) {
+  return Nanoseconds(std::max<std::int64_t>(std::llround(1e9 / rate_hz), 1));
+}
 
 class Pacer {
  public:

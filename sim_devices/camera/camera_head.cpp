@@ -6,12 +6,6 @@
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::sim {
-namespace {
-
-Nanoseconds period_of(double hz) { return Nanoseconds(static_cast<std::int64_t>(1e9 / hz)); }
-
-}  // namespace
-
 // The drives call it within work(), for the instant to which the head was just moved.
 class CameraHead::Angles final : public MotionSource {
  public:

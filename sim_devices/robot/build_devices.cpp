@@ -14,6 +14,7 @@
 #include "sim_devices/robot/dds_robots.hpp"
 #include "sim_devices/robot/error_frame_channel.hpp"
 #include "sim_devices/robot/protection.hpp"
+#include "sim_devices/robot/rtde_robot.hpp"
 
 namespace cellmirror::sim {
 namespace {
@@ -224,6 +225,21 @@ std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, cons
   BuiltDevices built;
   built.readers = [device = robots->get()] { return device->matched_readers(); };
   built.devices.push_back(std::move(*robots));
+  return built;
+}
+
+std::expected<BuiltDevices, Refusal> build_rtde(const CommonOptions& common, const RtdeOptions& options) {
+  if (common.robots != 1) return wrong_usage("one controller moves one robot", "start sim_robot rtde once for each");
+  auto motion = make_motion(common.motion, rtde::kJoints);
+  if (!motion) return wrong_usage(motion.error());
+  auto robot = RtdeRobot::make({.address = options.address,
+                                .port = static_cast<std::uint16_t>(options.port),
+                                .rate_hz = common.rate_hz,
+                                .seed = common.seed},
+                               std::move(*motion));
+  if (!robot) return not_working(robot.error());
+  BuiltDevices built;
+  built.devices.push_back(std::move(*robot));
   return built;
 }
 

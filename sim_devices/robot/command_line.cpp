@@ -14,7 +14,8 @@ constexpr const char* kFooter =
     "sine:amplitude=0.5,period=4\n  sim_robot cia402 --channel socketcan:vcan0 --nodes 1-7 --sync --fault loss:p=0.01 "
     "--fault bus-off@5..6\n  sim_robot dbc --dbc axes.dbc --position Axis1.Angle,Axis2.Angle --units-per-rad 57.29578 "
     "--channel udp:239.74.163.2:43113\n  sim_robot dds --topic rt/joint_states --joint-names a,b,c --rate 125 --for 10 "
-    "--json\n  sim_robot dds --robots 32 --joints 7 --rate 500 --control /tmp/robots.sock\n  echo 'fault "
+    "--json\n  sim_robot rtde --port 30004 --rate 500\n  sim_robot dds --robots 32 --joints 7 --rate 500 --control "
+    "/tmp/robots.sock\n  echo 'fault "
     "delay:s=0.05@0..3' | sim_robot dds --for 5\n  sim_robot faults           all faults and their keys\n  sim_robot "
     "motions          all motions\n  sim_robot commands         commands of a running sim_robot\n";
 
@@ -102,6 +103,11 @@ void add_dds(cli::Command app, DdsOptions& options) {
       .between(0.0, 3600.0);
 }
 
+void add_rtde(cli::Command app, RtdeOptions& options) {
+  app.option("--address", options.address, "IPv4 address to listen on").show_default();
+  app.option("--port", options.port, "TCP port").between(1, 65535).show_default();
+}
+
 ParsedCommandLine refused(int exit_code, const std::string& message) {
   fmt::print(stderr, "sim_robot: {}\n", message);
   return {exit_code, {}};
@@ -129,12 +135,14 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   Cia402Options cia402_options;
   DbcOptions dbc_options;
   DdsOptions dds_options;
+  RtdeOptions rtde_options;
   cli::CommandLine program("sim_robot simulates a robot controller, with faults on demand.");
   program.require_subcommand();
   program.footer(kFooter);
   cli::Command cia402 = program.subcommand("cia402", "CiA 402 drives on CAN, one per joint");
   cli::Command dbc = program.subcommand("dbc", "signals of a DBC file on CAN");
   cli::Command dds = program.subcommand("dds", "ROS 2 JointState on DDS");
+  cli::Command rtde = program.subcommand("rtde", "a controller of Universal Robots (RTDE over TCP)");
   cli::Command faults = program.subcommand("faults", "print all faults and their keys");
   cli::Command motions = program.subcommand("motions", "print all motions");
   cli::Command commands = program.subcommand("commands", "print commands of a running sim_robot");
@@ -144,7 +152,9 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   add_dbc(dbc, dbc_options);
   add_common(dds, common);
   add_dds(dds, dds_options);
-  for (cli::Command sub : {cia402, dbc, dds}) sub.footer(kFooter);
+  add_common(rtde, common);
+  add_rtde(rtde, rtde_options);
+  for (cli::Command sub : {cia402, dbc, dds, rtde}) sub.footer(kFooter);
   if (const std::optional<int> status = program.parse(argc, argv)) return {status, {}};
   if (faults.named() || motions.named() || commands.named()) {
     fmt::print("{}", faults.named() ? fault_help() : motions.named() ? motion_help() : control_help());
@@ -154,13 +164,14 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   if (!fault_specs) return refused(2, fault_specs.error().text());
   auto built = cia402.named() ? build_cia402(common, cia402_options)
                : dbc.named()  ? build_dbc(common, dbc_options)
+               : rtde.named() ? build_rtde(common, rtde_options)
                               : build_dds(common, dds_options);
   if (!built) return refused(built.error().exit_code, built.error().error.text());
   Job job;
   job.devices = std::move(built->devices);
   job.readers = std::move(built->readers);
   job.wait_for_reader_s = dds_options.wait_for_reader_s;
-  job.runner.kind = cia402.named() ? "cia402" : dbc.named() ? "dbc" : "dds";
+  job.runner.kind = cia402.named() ? "cia402" : dbc.named() ? "dbc" : rtde.named() ? "rtde" : "dds";
   job.runner.faults = std::move(*fault_specs);
   if (common.for_s > 0) job.runner.seconds = common.for_s;
   job.runner.control_path = common.control;

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kMostNestedMultiplexers = 8;
 
-Nanoseconds period_of(double rate_hz) { return Nanoseconds(std::max<std::int64_t>(std::llround(1e9 / rate_hz), 1)); }
-
 std::span<std::uint8_t> data_of(CanFrame& frame) { return {frame.data.data(), frame.length}; }
 
 // Sets the multiplexers so that `signal` is in the frame, from the inmost outwards.

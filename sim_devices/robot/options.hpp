@@ -71,6 +71,11 @@ struct DdsOptions {
   DdsSecurityConfig security = {};
 };
 
+struct RtdeOptions {
+  std::string address = "127.0.0.1";
+  int port = 30004;
+};
+
 // Why nothing can be built. Exit code 2: the arguments do not fit together; 1: what they name does not work.
 struct Refusal {
   int exit_code = 1;
@@ -86,6 +91,7 @@ struct BuiltDevices {
                                                                 const Cia402Options& options);
 [[nodiscard]] std::expected<BuiltDevices, Refusal> build_dbc(const CommonOptions& common, const DbcOptions& options);
 [[nodiscard]] std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, const DdsOptions& options);
+[[nodiscard]] std::expected<BuiltDevices, Refusal> build_rtde(const CommonOptions& common, const RtdeOptions& options);
 
 // A bus to send on, error frames included; a log is refused. `interface` is for udp.
 [[nodiscard]] Result<std::unique_ptr<CanChannel>> open_bus(const std::string& endpoint, const std::string& interface);

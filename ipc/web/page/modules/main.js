@@ -22,6 +22,7 @@ import {Tissue} from "./tissue.js";
 import {kept_token, take_token} from "./token.js";
 import {Tree} from "./tree.js";
 import {ViewChoice} from "./view_choice.js";
+import {Volume} from "./volume.js";
 
 take_token();
 window.addEventListener("hashchange", () => {
@@ -50,6 +51,7 @@ const robots = new Robots({select: (id) => charts.select(id), command});
 const proximity = new Proximity({show_node, names});
 const programs = new Programs({command});
 const tissue = new Tissue({command, left: () => tabs.current === "tab-tissue" && tabs.open("tab-near")});
+const volume = new Volume({command, left: () => tabs.current === "tab-volume" && tabs.open("tab-near")});
 const system = new System();
 const problems = new Problems();
 const command_log = new CommandLog({fetched});
@@ -91,6 +93,7 @@ function draw() {
   robots.update(live);
   proximity.update(live, tabs.current === "tab-near");
   tissue.update(live, tabs.current === "tab-tissue");
+  volume.update(live, tabs.current === "tab-volume");
   programs.update(live, tabs.current === "tab-programs");
   system.update(live, tabs.current === "tab-system");
   problems.update(live);
@@ -120,7 +123,9 @@ async function fetched(path) {
 async function learn_tree(revision) {
   known_revision = revision;
   try {
-    tree.set(await fetched("api/tree"));
+    const document_of_tree = await fetched("api/tree");
+    tree.set(document_of_tree);
+    volume.know(document_of_tree.volumes);
     script.know_names(await fetched("api/names"));
   } catch {
     setTimeout(() => known_revision === revision && (known_revision = null), 2000);
