@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "rt_core/base/text.hpp"
+#include "scripts/programs/program/script_comment.hpp"
 
 namespace cellmirror::crcl {
 
@@ -120,8 +121,8 @@ void CommandReader::message(const Fields& fields, const XmlNode& node) {
   text.erase(std::unique(text.begin(), text.end(), both_blank), text.end());
   const bool script = text.starts_with('%');
   if (!script) std::replace(text.begin(), text.end(), ';', ',');  // would end the command
-  std::string_view command = trimmed(script ? std::string_view(text).substr(1) : std::string_view(text));
-  if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
+  const std::string_view command =
+      program::script_command(trimmed(script ? std::string_view(text).substr(1) : std::string_view(text)));
   if (command.empty()) return fields.error(*text_node, "the message is empty");
   const std::string line = script ? std::string(command) : "hot_message " + std::string(command);
   add(fields, node, program::ScriptStatement{builder_.text(line)});

@@ -15,6 +15,7 @@
 #include "scripts/programs/jet/teach_names.hpp"
 #include "scripts/programs/jet/teach_program.hpp"
 #include "scripts/programs/jet/teach_words.hpp"
+#include "scripts/programs/program/script_comment.hpp"
 
 namespace cellmirror::program {
 
@@ -202,8 +203,7 @@ void TeachParser::script() {
     error(lines_.column(), "the program does not begin with its header",
           fmt::format("the first line is: {} {}", header_of(dialect_), kTeachVersion));
   }
-  std::string_view command = lines_.script().text;
-  if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
+  const std::string_view command = script_command(lines_.script().text);
   if (command.empty()) return error(lines_.column(), "there is no SCRIPT command after %");
   const std::size_t semicolon = command.find(';');
   if (semicolon != std::string_view::npos)

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scripts/programs/program/script_comment.hpp"
+
 namespace cellmirror::program::rapid {
 
 enum class TokenKind : std::uint8_t {
@@ -59,13 +61,6 @@ struct Token {
 
   // A word, without regard to case. `upper`: in upper case.
   [[nodiscard]] bool is(std::string_view upper) const;
-};
-
-// A comment that begins with %.
-struct ScriptComment {
-  std::string_view text;  // without the % and the blanks around it
-  std::uint32_t line = 1;
-  std::uint32_t column = 1;
 };
 
 class Lexer {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "rt_core/base/text.hpp"
-
 namespace cellmirror::program::rapid {
 
 Parser::Parser(std::string_view text, const ParseContext& context)
@@ -197,10 +195,9 @@ void Parser::flush_scripts() {
     at.column = comment.column;
     at.text = comment.text;
     at.kind = TokenKind::word;
-    std::string_view command = comment.text;
-    if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
+    const std::string_view command = script_command(comment.text);
     if (command.empty()) {
-      values_.error(at, "the comment begins with % but has no SCRIPT command", "write the command, or delete the %");
+      values_.error(at, kScriptCommentWithoutCommand, kScriptCommentRemedy);
     } else if (belongs_to_procedure(at)) {
       add(at, ScriptStatement{builder_.text(command)});
     }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scripts/programs/program/script_comment.hpp"
 #include "scripts/programs/srcl/keywords.hpp"
 
 namespace cellmirror::program::srcl {
@@ -52,13 +53,6 @@ struct Token {
   Sign sign = Sign::none;
   std::int64_t integer = 0;
   double real = 0;
-};
-
-// A comment that begins with %.
-struct ScriptComment {
-  std::string_view text;  // without the % and the blanks around it
-  std::uint32_t line = 1;
-  std::uint32_t column = 1;
 };
 
 class Lexer {

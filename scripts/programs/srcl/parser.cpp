@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "rt_core/base/text.hpp"
 #include "scripts/programs/program/program_check.hpp"
 #include "scripts/programs/srcl/keywords.hpp"
 
@@ -253,10 +252,9 @@ void Parser::flush_scripts() {
     Token at;
     at.line = comment.line;
     at.column = comment.column;
-    std::string_view command = comment.text;
-    if (command.ends_with(';')) command = trimmed(command.substr(0, command.size() - 1));
+    const std::string_view command = script_command(comment.text);
     if (command.empty()) {
-      faults_.add(at, "the comment begins with % but has no SCRIPT command", "write the command, or delete the %");
+      faults_.add(at, kScriptCommentWithoutCommand, kScriptCommentRemedy);
     } else if (belongs_to_routine(at)) {
       emitter_.add(ScriptStatement{emitter_.text(command)}, at);
     }
