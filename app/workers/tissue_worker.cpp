@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/workers/tick_phase.hpp"
 #include "rt_core/rt/scheduling.hpp"
 #include "rt_core/tissue/body/element_kernel.hpp"
 
@@ -119,7 +120,8 @@ void TissueWorker::publish_view(Timestamp now) {
   views_.publish(std::move(view));
 }
 
-void TissueWorker::step() {
+// How old the posture of the step was when it began.
+Nanoseconds TissueWorker::step() {
   const engine::TickState& tick = ticks_.newest();
   const Timestamp begin = clock_.now();
   take_requests();
@@ -128,6 +130,7 @@ void TissueWorker::step() {
     ++steps_;
   }
   compute_.record(clock_.now() - begin);
+  return begin - tick.time;
 }
 
 void TissueWorker::loop(const std::stop_token& stop) {
@@ -137,7 +140,7 @@ void TissueWorker::loop(const std::stop_token& stop) {
     cell_state_ = cell_states_.latest();
     const Timestamp begin = clock_.now();
     if (cell_state_) {
-      step();
+      next = next + phase_change(step(), kPeriod);
       publish_report(clock_.now());
       publish_view(clock_.now());
     }

@@ -1,5 +1,5 @@
-// Simulates the tissue of the cell in a thread of its own, a step each millisecond of real time with a phase of its
-// own, and hands the forces on instruments to the tick, which never waits for it.
+// Simulates the tissue of the cell in a thread of its own, a step each millisecond of real time shortly behind a tick
+// (tick_phase.hpp), and hands the forces on instruments to the tick, which never waits for it.
 #pragma once
 
 #include <array>
@@ -56,7 +56,7 @@ class TissueWorker final : public TissuePort {
  private:
   void loop(const std::stop_token& stop);
   void take_requests();
-  void step();
+  Nanoseconds step();
   void publish_forces(const engine::TickState& tick);
   void publish_report(Timestamp now);
   void publish_view(Timestamp now);
