@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <semaphore>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -53,6 +55,12 @@ bool becomes_true(const std::function<bool()>& condition) {
     std::this_thread::sleep_for(1ms);
   }
   return false;
+}
+
+// On a busy machine a drive's silence is told beside what was rejected.
+bool all_differ(std::vector<std::string> texts) {
+  std::ranges::sort(texts);
+  return std::ranges::adjacent_find(texts) == texts.end();
 }
 
 struct Kind {
@@ -131,7 +139,7 @@ TEST_P(StatusThreads, EveryStatusIsOfOneInstant) {
       ASSERT_LE(status.received, status.rejected + 1);
       ASSERT_GE(status.received, before.received);
       ASSERT_GE(status.rejected, before.rejected);
-      ASSERT_LE(status.last_errors.size(), 1U) << "the same text is kept once";
+      ASSERT_TRUE(all_differ(status.last_errors)) << "the same text is kept once";
       before = status;
     }
   };
@@ -148,7 +156,9 @@ TEST_P(StatusThreads, EveryStatusIsOfOneInstant) {
   stop = true;
   for (std::thread& caller : callers) caller.join();
   EXPECT_EQ(sut_->status().received, kPairs);
-  EXPECT_EQ(sut_->status().last_errors.size(), 1U);
+  const std::vector<std::string> told = sut_->status().last_errors;
+  EXPECT_FALSE(told.empty());
+  EXPECT_TRUE(all_differ(told));
 }
 
 TEST_P(StatusThreads, AStreamOpensAndClosesWhileItsStatusIsAskedFor) {
