@@ -167,10 +167,9 @@ LeapMap leaps_by_table(const Bricks& bricks, StoredRange range, std::span<const 
   std::vector<std::uint8_t> strides(bricks.ranges.size());
   for (const double limit : stride_limits) {
     if (!(limit > 0)) continue;
-    const std::vector<std::uint8_t> here = denser(limit);
-    const std::vector<std::uint8_t> near = spread_all(here, bricks.count);
+    const std::vector<std::uint8_t> near = spread_all(denser(limit), bricks.count);
     for (std::size_t i = 0; i < strides.size(); ++i)
-      strides[i] = static_cast<std::uint8_t>(strides[i] + (near[i] == 0 ? 1U << 4U : 0U) + (here[i] == 0 ? 1U << 6U : 0U));
+      strides[i] = static_cast<std::uint8_t>(strides[i] + (near[i] == 0 ? 16 : 0));
   }
   for (std::size_t i = 0; i < strides.size(); ++i) map.leap[i] = map.leap[i] == 0 ? strides[i] : map.leap[i];
   return map;

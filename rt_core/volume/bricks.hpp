@@ -37,9 +37,8 @@ void finish(Bricks& bricks);  // `all`, after the layers
 [[nodiscard]] ValueRange value_range(const VoxelGrid& grid, const Bricks& bricks);
 
 // What rays do in each brick. Low 4 bits, n: 0 where something in the brick may be seen; else neither it nor any brick
-// at most n - 1 bricks away (along each axis) shows anything. Where n = 0, the binary logarithms of how many steps may
-// be taken at once: bits 4 and 5, from anywhere in the brick, since little is seen in it and its neighbours; bits 6 and
-// 7, as long as they end in the brick, since little is seen in it.
+// at most n - 1 bricks away (along each axis) shows anything. High 4 bits, where n = 0: the binary logarithm of how
+// many steps may be taken at once there, from anywhere in the brick, since little is seen in it and its neighbours.
 struct LeapMap {
   std::array<std::uint32_t, 3> count{};
   std::vector<std::uint8_t> leap;  // with 3 bytes behind: it is read 4 bytes at a time

@@ -122,8 +122,7 @@ HWY_INLINE V exit_along(V direction, V origin, V inverse, VI brick, VI reach) {
 struct BrickPlace {
   VI x, y, z;
   VI leap;    // bricks; 0: something may be seen
-  VI stride;  // binary logarithm of the steps at once, from anywhere in the brick
-  VI within;  // the same, of steps that end in the brick
+  VI stride;  // binary logarithm of the steps at once
 };
 
 CELLMIRROR_LARGE_INLINE BrickPlace brick_at(const KernelJob& job, const Point& p) {
@@ -136,17 +135,14 @@ CELLMIRROR_LARGE_INLINE BrickPlace brick_at(const KernelJob& job, const Point& p
       hn::Add(b.x, hn::Add(hn::Mul(b.y, hn::Set(di, job.leap_row)), hn::Mul(b.z, hn::Set(di, job.leap_layer))));
   const VI code = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(job.leap), offset);
   b.leap = hn::And(code, hn::Set(di, 0xF));
-  b.stride = hn::And(hn::ShiftRight<4>(code), hn::Set(di, 0x3));
-  b.within = hn::And(hn::ShiftRight<6>(code), hn::Set(di, 0x3));
+  b.stride = hn::And(hn::ShiftRight<4>(code), hn::Set(di, 0xF));
   return b;
 }
 
-// The end of a leap; where something may be seen, the end of the brick.
 CELLMIRROR_LARGE_INLINE V leap_end(const Rays& rays, const BrickPlace& b) {
-  const VI reach = hn::Max(b.leap, hn::Set(DI(), 1));
-  const V x = exit_along(rays.direction.x, rays.origin.x, rays.inverse.x, b.x, reach);
-  const V y = exit_along(rays.direction.y, rays.origin.y, rays.inverse.y, b.y, reach);
-  const V z = exit_along(rays.direction.z, rays.origin.z, rays.inverse.z, b.z, reach);
+  const V x = exit_along(rays.direction.x, rays.origin.x, rays.inverse.x, b.x, b.leap);
+  const V y = exit_along(rays.direction.y, rays.origin.y, rays.inverse.y, b.y, b.leap);
+  const V z = exit_along(rays.direction.z, rays.origin.z, rays.inverse.z, b.z, b.leap);
   return hn::Min(x, hn::Min(y, z));
 }
 
@@ -183,13 +179,6 @@ HWY_INLINE V power_of_two(VI exponent) {
   return hn::BitCast(D(), hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
 }
 
-// The binary logarithm, rounded down; 0 below 2.
-HWY_INLINE VI whole_log2(V value) {
-  const DI di;
-  const VI bits = hn::BitCast(di, hn::Max(value, set(1.0F)));
-  return hn::Sub(hn::ShiftRight<23>(bits), hn::Set(di, 127));
-}
-
 template <Stored kStored>
 CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& sum, TileCounts& counts) {
   const D d;
@@ -203,30 +192,30 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
   while (!hn::AllFalse(d, active)) {
     const BrickPlace brick = brick_at(job, at(rays, middle_of_steps(job, rays, step, one)));
     const M empty = hn::RebindMask(d, hn::Gt(brick.leap, hn::Zero(di)));
-    const V beyond = step_at(job, rays, leap_end(rays, brick));
     ++counts.leaps;
     // Lanes in empty bricks leap; if others are not, they sample meanwhile.
-    const M sampling = hn::AndNot(empty, active);
-    const V room = hn::Sub(hn::Min(beyond, whole), step);
-    const V left = hn::Sub(whole, step);
-    step = hn::IfThenElse(empty, hn::Max(hn::Add(step, one), beyond), step);
-    if (hn::AllFalse(d, sampling)) {
-      active = hn::And(active, hn::Lt(step, whole));
-      continue;
+    if (!hn::AllFalse(d, hn::And(empty, active))) {
+      const V leapt = hn::Max(hn::Add(step, one), step_at(job, rays, leap_end(rays, brick)));
+      step = hn::IfThenElse(empty, leapt, step);
+      if (hn::AllTrue(d, hn::Or(empty, hn::Not(active)))) {
+        active = hn::And(active, hn::Lt(step, whole));
+        continue;
+      }
     }
+    const M sampling = hn::AndNot(empty, active);
     // Before the end only as many steps at once as are left there.
-    const VI anywhere = hn::IfThenElseZero(hn::RebindMask(di, hn::Le(power_of_two(brick.stride), left)), brick.stride);
-    const VI within = hn::Min(brick.within, whole_log2(room));
-    const VI stride_log = hn::Max(anywhere, within);
+    const V left = hn::Sub(whole, step);
+    const V wanted = power_of_two(brick.stride);
+    const VI stride_log = hn::IfThenElseZero(hn::RebindMask(di, hn::Le(wanted, left)), brick.stride);
     const V stride = power_of_two(stride_log);
-    // From anywhere in a brick, 8 steps lead at most into the next one; strides of the brick alone end with it.
-    const M own = hn::RebindMask(d, hn::Gt(within, anywhere));
-    const V last = hn::Min(whole, hn::Add(step, hn::IfThenElse(own, room, set(kStepsAhead))));
+    // From anywhere in a brick, 8 steps lead at most into the next one.
+    const bool longest = !hn::AllFalse(d, hn::Gt(stride, set(4.0F)));
+    const bool some_long = !hn::AllFalse(d, hn::Gt(stride, set(2.0F)));
+    const int samples = longest ? 1 : some_long ? 2 : kChecked;
     const bool coarse =
         job.has_coarse && (job.all_coarse || hn::AllTrue(d, hn::Or(hn::Not(sampling), hn::Gt(stride, set(2.0F)))));
-    for (int i = 0; i < kChecked; ++i) {
-      const M counted = hn::And(sampling, hn::Le(hn::Add(step, stride), last));
-      if (hn::AllFalse(d, counted)) break;
+    for (int i = 0; i < samples; ++i) {
+      const M counted = hn::And(sampling, hn::Le(hn::Add(step, stride), whole));
       const V t = middle_of_steps(job, rays, step, stride);
       const Point p = at(rays, t);
       const VI place = table_place(job, coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p));

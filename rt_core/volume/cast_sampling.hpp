@@ -29,8 +29,7 @@ constexpr float kWorthLight = 0.01F;  // opacity that a sample adds from which i
 constexpr float kAmbient = 0.30F;
 constexpr float kDiffuse = 0.70F;
 constexpr float kSpecular = 0.18F;
-constexpr int kChecked = 4;           // samples between looks at the bricks, at most
-constexpr float kStepsAhead = 8.0F;   // steps between them, at most
+constexpr int kChecked = 4;  // samples between looks at the bricks
 
 HWY_INLINE V set(float value) { return hn::Set(D(), value); }
 

@@ -22,14 +22,16 @@ std::int64_t age_after(std::int64_t first, std::int64_t tick_period, int count) 
 
 TEST(TickPhase, StepsComeToBeginShortlyBehindTicksFromAnyPhase) {
   for (std::int64_t first = 0; first < kPeriod.count(); first += 50'000) {
-    EXPECT_NEAR(static_cast<double>(age_after(first, kPeriod.count(), 100)), static_cast<double>(kBehindTick.count()), 1.0) << first;
+    EXPECT_NEAR(static_cast<double>(age_after(first, kPeriod.count(), 100)), static_cast<double>(kTickToStep.count()),
+                1.0)
+        << first;
   }
 }
 
 TEST(TickPhase, TicksMayBeFasterOrSlowerByAWholeFactor) {
-  EXPECT_EQ(age_after(300'000, 500'000, 100), kBehindTick.count());
+  EXPECT_EQ(age_after(300'000, 500'000, 100), kTickToStep.count());
   const std::int64_t slow = age_after(1'700'000, 2'000'000, 101);
-  EXPECT_EQ(slow % kPeriod.count(), kBehindTick.count());
+  EXPECT_EQ(slow % kPeriod.count(), kTickToStep.count());
 }
 
 TEST(TickPhase, TheRateChangesByOnePercentAtMost) {
@@ -41,7 +43,7 @@ TEST(TickPhase, TheRateChangesByOnePercentAtMost) {
 
 // A posture that is older than a tick, since the tick is late, does not turn the phase around.
 TEST(TickPhase, ALateTickIsTakenForWhatItIs) {
-  EXPECT_LT(phase_change(Nanoseconds(kPeriod.count() + kBehindTick.count() + 5'000), kPeriod).count(), 0);
+  EXPECT_LT(phase_change(Nanoseconds(kPeriod.count() + kTickToStep.count() + 5'000), kPeriod).count(), 0);
   EXPECT_GT(phase_change(Nanoseconds(kPeriod.count() + 20'000), kPeriod).count(), 0);
 }
 
