@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "drivers/can/channel/open_channel.hpp"
+#include "rt_core/base/dds_topic.hpp"
 #include "rt_core/base/text.hpp"
 #include "sim_devices/robot/cia402_robots.hpp"
 #include "sim_devices/robot/dbc_robot.hpp"
@@ -202,7 +203,7 @@ std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, cons
   DdsRobotsConfig config;
   config.domain = options.domain;
   config.interface_address = options.interface_address;
-  config.topic = options.topic;
+  config.topic = dds_topic(options.topic);
   config.reliable = !options.best_effort;
   config.joint_names = options.joint_names;
   for (int i = 1; options.joint_names.empty() && i <= options.joints; ++i) {

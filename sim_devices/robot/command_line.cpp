@@ -82,7 +82,8 @@ void add_dbc(cli::Command app, DbcOptions& options) {
 void add_dds(cli::Command app, DdsOptions& options) {
   app.option("--domain", options.domain, "DDS domain").between(0, 232).show_default();
   app.option("--interface-address", options.interface_address, "IPv4 address of the network interface").show_default();
-  app.option("--topic", options.topic, "DDS topic; with {}: one topic per robot, {} is its number").show_default();
+  app.option("--topic", options.topic, "topic, /NAME or rt/NAME; with {}: one topic per robot, {} is its number")
+      .show_default();
   app.option("--joint-names", options.joint_names, "a,b,c").list_divided_by(',');
   app.option("--joints", options.joints, "without --joint-names: joint_1, joint_2, ...").between(1, 128).show_default();
   app.option("--prefix", options.prefix,
