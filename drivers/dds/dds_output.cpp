@@ -24,18 +24,24 @@ constexpr std::size_t kTransformsInMessage = 256;
 constexpr double kMostCountedRateHz = 100;
 constexpr int kLeastDepth = 32;
 constexpr int kMostDepth = 400;
+// As ROS 2's robot_state_publisher offers it: readers that come later get the newest one. A URDF is larger than a
+// datagram.
+constexpr CountingWriter::Options kDescriptionOptions{
+    .depth = 1, .counts_overwritten = true, .large = true, .transient_local = true};
 
 class Output final : public DdsOutput {
  public:
   Output(const DdsOutputConfig& config, std::unique_ptr<CountingWriter> joint_states,
          std::unique_ptr<CountingWriter> transforms, std::unique_ptr<FindingsWriter> findings,
-         std::unique_ptr<WrenchWriter> wrenches, std::unique_ptr<TissueWriter> tissue)
+         std::unique_ptr<WrenchWriter> wrenches, std::unique_ptr<TissueWriter> tissue,
+         std::unique_ptr<CountingWriter> description)
       : name_(fmt::format("dds domain {} on {}", config.domain, config.interface_address)),
         joint_states_(std::move(joint_states)),
         transforms_(std::move(transforms)),
         findings_(std::move(findings)),
         wrenches_(std::move(wrenches)),
-        tissue_(std::move(tissue)) {}
+        tissue_(std::move(tissue)),
+        description_(std::move(description)) {}
 
   void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) override {
     const RosTime stamp = ros_time(to_wall_clock_ns(time));
@@ -66,6 +72,12 @@ class Output final : public DdsOutput {
     tissue_->publish(time, view, forces);
   }
 
+  void publish_description(const std::string& urdf) override {
+    if (!description_) return;
+    encode(urdf, description_->payload());
+    description_->write();
+  }
+
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override {
     std::uint64_t sent = joint_states_->sent() + transforms_->sent();
     std::uint64_t dropped = joint_states_->dropped() + transforms_->dropped();
@@ -79,6 +91,12 @@ class Output final : public DdsOutput {
     findings_->add_counters(counters, sent, dropped);
     wrenches_->add_counters(counters, sent, dropped);
     tissue_->add_counters(counters, sent, dropped);
+    if (description_) {
+      counters.insert(counters.end(),
+                      {{"description_sent", description_->sent()}, {"description_readers", description_->readers()}});
+      sent += description_->sent();
+      dropped += description_->dropped();
+    }
     counters.insert(counters.begin(), {{"sent", sent}, {"dropped", dropped}});
     return counters;
   }
@@ -99,6 +117,7 @@ class Output final : public DdsOutput {
   std::unique_ptr<FindingsWriter> findings_;
   std::unique_ptr<WrenchWriter> wrenches_;
   std::unique_ptr<TissueWriter> tissue_;
+  std::unique_ptr<CountingWriter> description_;  // null: not published
   JointNames names_;
   JointState joint_state_;        // reused
   TfMessage tf_;                  // reused
@@ -126,8 +145,15 @@ Result<std::unique_ptr<DdsOutput>> make_dds_output(const DdsOutputConfig& config
   if (!findings) return std::unexpected(findings.error());
   auto wrenches = std::make_unique<WrenchWriter>(*participant, config.wrench_topic_prefix,
                                                  CountingWriter::Options{kLeastDepth, counts});
+  std::unique_ptr<CountingWriter> description;
+  if (!config.robot_description_topic.empty()) {
+    auto made = CountingWriter::make(*participant, config.robot_description_topic, kStringType, kDescriptionOptions);
+    if (!made) return std::unexpected(made.error());
+    description = std::move(*made);
+  }
   return std::make_unique<Output>(config, std::move(*joint_states), std::move(*transforms), std::move(*findings),
-                                  std::move(wrenches), std::make_unique<TissueWriter>(*participant, config));
+                                  std::move(wrenches), std::make_unique<TissueWriter>(*participant, config),
+                                  std::move(description));
 }
 
 }  // namespace cellmirror::dds

@@ -81,6 +81,11 @@ CdrFault decode(std::span<const std::byte> payload, TfMessage& message) {
   return in.fault();
 }
 
+void encode(std::string_view text, std::vector<std::byte>& out) {
+  CdrWriter writer(out);
+  writer.write_text(text);
+}
+
 void write(const Header& header, CdrWriter& out) {
   out.write(header.stamp.sec);
   out.write(header.stamp.nanosec);

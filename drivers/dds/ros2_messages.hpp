@@ -18,6 +18,7 @@ namespace cellmirror::dds {
 
 inline constexpr std::string_view kJointStateType = "sensor_msgs::msg::dds_::JointState_";
 inline constexpr std::string_view kTfMessageType = "tf2_msgs::msg::dds_::TFMessage_";
+inline constexpr std::string_view kStringType = "std_msgs::msg::dds_::String_";
 
 // More joints or transforms in one message are refused: no real one comes near, a hostile one may.
 inline constexpr std::uint32_t kMaxJointsInMessage = 4096;
@@ -80,6 +81,8 @@ struct TfMessage {
 // Little endian, with encapsulation header. `out` is overwritten and keeps its capacity.
 void encode(const JointState& message, std::vector<std::byte>& out);
 void encode(const TfMessage& message, std::vector<std::byte>& out);
+// std_msgs/String.
+void encode(std::string_view text, std::vector<std::byte>& out);
 // For messages that begin with a header.
 void write(const Header& header, CdrWriter& out);
 

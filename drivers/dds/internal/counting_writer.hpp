@@ -34,13 +34,15 @@ class CountingWriter {
     // At high rates there is always a sample on its way, so that a reader that stands still cannot be distinguished
     // from one that follows.
     bool counts_overwritten = true;
-    bool large = false;  // as EndpointConfig
+    bool large = false;            // as EndpointConfig
+    bool transient_local = false;  // likewise
   };
 
   [[nodiscard]] static Result<std::unique_ptr<CountingWriter>> make(const std::shared_ptr<Participant>& participant,
                                                                     const std::string& topic, std::string_view type,
                                                                     Options options) {
-    auto writer = BytesWriter::make(participant, {topic, type, true, options.depth, options.large});
+    auto writer =
+        BytesWriter::make(participant, {topic, type, true, options.depth, options.large, options.transient_local});
     if (!writer) return std::unexpected(writer.error());
     return std::unique_ptr<CountingWriter>(new CountingWriter(std::move(*writer), options));
   }

@@ -230,6 +230,7 @@ Result<fd::DataWriter*> Participant::add_writer(const EndpointConfig& config, fd
     if (!of_topic) return std::unexpected(of_topic.error());
     fd::DataWriterQos qos;
     set_common(qos, config);
+    if (config.transient_local) qos.durability().kind = fd::TRANSIENT_LOCAL_DURABILITY_QOS;
     qos.publish_mode().kind = config.large ? fd::ASYNCHRONOUS_PUBLISH_MODE : fd::SYNCHRONOUS_PUBLISH_MODE;
     qos.reliability().max_blocking_time = {0, 1'000'000};                // how long write() may wait for a lock: 1 ms
     qos.reliable_writer_qos().times.heartbeatPeriod = {0, 100'000'000};  // so that a lost last sample is noticed soon

@@ -29,7 +29,8 @@ struct EndpointConfig {
   std::string_view type;
   bool reliable = false;
   int depth = 1;
-  bool large = false;  // a writer's samples are larger than a datagram: sent by a thread of the library's
+  bool large = false;            // a writer's samples are larger than a datagram: sent by a thread of the library's
+  bool transient_local = false;  // a writer gives its history to readers that come later
 };
 
 [[nodiscard]] Result<void> check_domain(int domain);

@@ -119,6 +119,24 @@ dds_entity_t CyclonePeer::marker_reader(const std::string& name) {
   return reader(visualization_msgs_msg_dds__MarkerArray__desc, name);
 }
 
+dds_entity_t CyclonePeer::description_reader(const std::string& name) {
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+  const dds_entity_t reader =
+      dds_create_reader(participant_, topic(std_msgs_msg_dds__String__desc, name), qos, nullptr);
+  dds_delete_qos(qos);
+  return checked(reader, "Cyclone reader");
+}
+
+std::vector<std::string> CyclonePeer::take_texts(dds_entity_t reader) {
+  std::vector<std::string> taken;
+  take_all<std_msgs_msg_dds__String_>(
+      reader, [&](const std_msgs_msg_dds__String_& sample) { taken.emplace_back(sample.data); });
+  return taken;
+}
+
 bool CyclonePeer::write(dds_entity_t writer, const PlainJointState& message) {
   std::vector<char*> names;
   for (const std::string& name : message.name) names.push_back(const_cast<char*>(name.c_str()));

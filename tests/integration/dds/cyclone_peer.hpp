@@ -84,6 +84,8 @@ class CyclonePeer {
   [[nodiscard]] dds_entity_t image_reader(const std::string& topic);
   [[nodiscard]] dds_entity_t diagnostics_reader(const std::string& topic);
   [[nodiscard]] dds_entity_t marker_reader(const std::string& topic);
+  // As RViz asks for a robot's description: reliable and transient local.
+  [[nodiscard]] dds_entity_t description_reader(const std::string& topic);
 
   static bool write(dds_entity_t writer, const PlainJointState& message);
   static std::vector<PlainJointState> take_joint_states(dds_entity_t reader);
@@ -93,6 +95,7 @@ class CyclonePeer {
   static std::vector<PlainImage> take_images(dds_entity_t reader);
   static std::vector<PlainStatus> take_diagnostics(dds_entity_t reader);
   static std::vector<PlainMarker> take_markers(dds_entity_t reader);
+  static std::vector<std::string> take_texts(dds_entity_t reader);
   static int matched_readers(dds_entity_t writer);
   static int matched_writers(dds_entity_t reader);
 

@@ -1,6 +1,8 @@
 // A Cyclone DDS peer in a process of its own, to be stopped and killed by tests.
 //   dds_cyclone_peer write DOMAIN TOPIC PERIOD_MS   publishes {"a": n} for n = 1, 2, ... until it is ended
 //   dds_cyclone_peer read DOMAIN TOPIC              a reliable reader; prints a line for each message
+//   dds_cyclone_peer description DOMAIN TOPIC       prints the text that is there for readers that come later; 1 after
+//   20 s
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -32,6 +34,16 @@ int read(CyclonePeer& peer, const std::string& topic) {
   }
 }
 
+int description(CyclonePeer& peer, const std::string& topic) {
+  const dds_entity_t reader = peer.description_reader(topic);
+  for (int i = 0; i < 2000; ++i) {
+    const auto texts = CyclonePeer::take_texts(reader);
+    if (!texts.empty()) return std::fputs(texts.back().c_str(), stdout) < 0 ? 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,5 +51,6 @@ int main(int argc, char** argv) {
   CyclonePeer peer(std::atoi(argv[2]));
   if (std::string(argv[1]) == "write" && argc == 5) return write(peer, argv[3], std::atoi(argv[4]));
   if (std::string(argv[1]) == "read") return read(peer, argv[3]);
+  if (std::string(argv[1]) == "description") return description(peer, argv[3]);
   return 2;
 }

@@ -97,6 +97,41 @@ TEST_F(DdsOutputTest, CycloneDdsReadsJointStatesAndTransforms) {
   EXPECT_EQ(counter(*sut, "dropped"), 0U);
 }
 
+// RViz comes when it likes and has to find the description that was published long before; a large one too.
+TEST_F(DdsOutputTest, AReaderThatComesLaterGetsTheNewestDescription) {
+  auto made = make_dds_output(config_);
+  ASSERT_TRUE(made) << made.error().text();
+  const auto& sut = *made;
+  std::string large = "<robot name=\"r\">";
+  while (large.size() < 300'000) large += "<link name=\"link_" + std::to_string(large.size()) + "\"/>";
+  sut->publish_description("<robot name=\"old\"/>");
+  sut->publish_description(large);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  CyclonePeer peer(config_.domain);
+  const dds_entity_t reader = peer.description_reader("rt/robot_description");
+  std::vector<std::string> texts;
+  const auto arrived = [&] {
+    for (auto& text : CyclonePeer::take_texts(reader)) texts.push_back(std::move(text));
+    return !texts.empty();
+  };
+  ASSERT_TRUE(eventually(arrived));
+  ASSERT_EQ(texts.size(), 1U) << "the newest one alone";
+  EXPECT_EQ(texts[0], large);
+  texts.clear();
+  sut->publish_description("<robot name=\"new\"/>");
+  ASSERT_TRUE(eventually(arrived));
+  EXPECT_EQ(texts[0], "<robot name=\"new\"/>");
+  EXPECT_EQ(counter(*sut, "description_sent"), 3U);
+}
+
+TEST_F(DdsOutputTest, WithoutATopicThereIsNoDescription) {
+  config_.robot_description_topic.clear();
+  auto made = make_dds_output(config_);
+  ASSERT_TRUE(made) << made.error().text();
+  (*made)->publish_description("<robot name=\"r\"/>");
+  for (const auto& [key, value] : (*made)->counters()) EXPECT_NE(key, "description_sent");
+}
+
 TEST_F(DdsOutputTest, ManyFramesGoInSeveralMessages) {
   CyclonePeer peer(config_.domain);
   const dds_entity_t tf = peer.tf_reader(config_.tf_topic);
