@@ -104,9 +104,21 @@ Cia402NodeConfig read_node(TableReader& reader, const RobotFacts* robot, const F
   node.eds_file = read_file_name(reader, "eds", files);
   node.configure = reader.boolean("configure").value_or(false);
   constexpr std::size_t kMostTpdos = 64;
-  for (TableReader& tpdo : reader.tables("tpdo", kMostTpdos)) node.tpdos.push_back(read_tpdo(tpdo));
+  reader.belongs_to("[[stream.node.tpdo]]", keys_read_by(read_tpdo));
+  for (TableReader& tpdo : reader.tables("tpdo", kMostTpdos)) {
+    tpdo.belongs_to("[[stream.node]], above its [[stream.node.tpdo]]", reader.known());
+    node.tpdos.push_back(read_tpdo(tpdo));
+  }
   reader.finish();
   return node;
+}
+
+// For keys that stand in the wrong one of these tables: where they belong.
+void name_tables_of_keys(TableReader& reader) {
+  const auto read = [](TableReader& node) { static_cast<void>(read_node(node, nullptr, AnyFile())); };
+  reader.belongs_to("[[stream.node]]", keys_read_by(read));
+  reader.belongs_to("[[stream.node]]", keys_read_by(read, toml::table{{"increments_per_m", 1.0}}));
+  reader.belongs_to("[[stream.node.tpdo]]", keys_read_by(read_tpdo));
 }
 
 template <class Items, class Member>
@@ -117,6 +129,48 @@ void refuse_twice(const TableReader& reader, const Items& items, Member member, 
         reader.error({}, fmt::format("two nodes have the same {} {}", name, items[i].*member));
     }
   }
+}
+
+DbcSignalConfig read_signal(TableReader& item, const RobotFacts* robot) {
+  DbcSignalConfig signal;
+  item.require("message");
+  item.require("signal");
+  signal.place = item.place("signal");
+  signal.message_place = item.place("message");
+  signal.message = item.text("message").value_or("");
+  signal.signal = item.text("signal").value_or("");
+  if (const auto joint = read_joint_reference(item, robot)) {
+    signal.joint = joint->number;
+    signal.joint_name = joint->name;
+  }
+  signal.quantity = item.choice<JointQuantity>("quantity", {{"position", JointQuantity::position},
+                                                            {"velocity", JointQuantity::velocity},
+                                                            {"effort", JointQuantity::effort}})
+                        .value_or(JointQuantity::position);
+  signal.scale = item.number("scale").value_or(1.0);
+  signal.scale_given = item.has("scale");
+  if (signal.scale == 0.0) {
+    item.error("scale", "scale is 0", "the value would always be the offset");
+    signal.scale = 1.0;  // so that it is reported once
+  }
+  signal.offset = item.number("offset").value_or(0.0);
+  item.finish();
+  return signal;
+}
+
+// Nothing where the joint is unknown, with an error.
+std::string read_ros_joint(TableReader& item, const RobotFacts* robot, DdsJointConfig& joint) {
+  std::string own_name;
+  if (const auto reference = read_joint_reference(item, robot)) {
+    joint.joint = reference->number;
+    own_name = reference->name;
+  }
+  joint.ros_name = item.text("ros_name").value_or(own_name);
+  joint.scale = item.number("scale").value_or(1.0);
+  if (joint.scale == 0.0) item.error("scale", "scale is 0", "the value would always be the offset");
+  joint.offset = item.number("offset").value_or(0.0);
+  item.finish();
+  return own_name;
 }
 
 }  // namespace
@@ -139,7 +193,11 @@ Cia402StreamConfig read_cia402(TableReader& reader, const RobotFacts* robot, con
   config.heartbeat_producer_ms =
       static_cast<std::uint16_t>(std::lround(reader.number("heartbeat_producer_s", {0.0, 65.535}).value_or(0.0) * 1e3));
   constexpr std::size_t kMostNodes = 127;
-  for (TableReader& node : reader.tables("node", kMostNodes)) config.nodes.push_back(read_node(node, robot, files));
+  name_tables_of_keys(reader);
+  for (TableReader& node : reader.tables("node", kMostNodes)) {
+    node.belongs_to("[[stream]], above its [[stream.node]]", reader.known());
+    config.nodes.push_back(read_node(node, robot, files));
+  }
   if (config.nodes.empty()) reader.error({}, "no drives are given", "add [[stream.node]] with id and joint");
   refuse_twice(reader, config.nodes, &Cia402NodeConfig::node_id, "id");
   if (std::ranges::none_of(config.nodes, [](const auto& node) { return node.joint_name.empty(); }))
@@ -156,30 +214,11 @@ DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const Fil
   reader.require("dbc");
   config.dbc_file = read_file_name(reader, "dbc", files);
   constexpr std::size_t kMostSignals = 256;
+  const auto read_any = [](TableReader& item) { static_cast<void>(read_signal(item, nullptr)); };
+  reader.belongs_to("[[stream.signal]]", keys_read_by(read_any));
   for (TableReader& item : reader.tables("signal", kMostSignals)) {
-    DbcSignalConfig signal;
-    item.require("message");
-    item.require("signal");
-    signal.place = item.place("signal");
-    signal.message_place = item.place("message");
-    signal.message = item.text("message").value_or("");
-    signal.signal = item.text("signal").value_or("");
-    if (const auto joint = read_joint_reference(item, robot)) {
-      signal.joint = joint->number;
-      signal.joint_name = joint->name;
-    }
-    signal.quantity = item.choice<JointQuantity>("quantity", {{"position", JointQuantity::position},
-                                                              {"velocity", JointQuantity::velocity},
-                                                              {"effort", JointQuantity::effort}})
-                          .value_or(JointQuantity::position);
-    signal.scale = item.number("scale").value_or(1.0);
-    signal.scale_given = item.has("scale");
-    if (signal.scale == 0.0) {
-      item.error("scale", "scale is 0", "the value would always be the offset");
-      signal.scale = 1.0;  // so that it is reported once
-    }
-    signal.offset = item.number("offset").value_or(0.0);
-    item.finish();
+    item.belongs_to("[[stream]], above its [[stream.signal]]", reader.known());
+    DbcSignalConfig signal = read_signal(item, robot);
     const bool twice = std::ranges::any_of(config.signals, [&](const DbcSignalConfig& other) {
       return !signal.joint_name.empty() && other.joint_name == signal.joint_name && other.quantity == signal.quantity;
     });
@@ -197,9 +236,8 @@ DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot) {
   config.plausibility = read_plausibility(reader, config.ages);
   constexpr long long kHighestDomain = 232;  // DDSI-RTPS: the ports of higher ones do not exist
   config.domain = static_cast<int>(reader.integer("domain", 0, kHighestDomain).value_or(config.domain));
-  config.topic = reader.text("topic").value_or(config.topic);
-  if (config.topic.empty())
-    reader.error("topic", "the topic is empty", "ROS 2's joint_states is rt/joint_states on DDS");
+  config.topic = read_topic(reader, "topic").value_or(config.topic);
+  if (config.topic.empty()) reader.error("topic", "the topic is empty", "ROS 2's joint states are on /joint_states");
   config.interface_address = reader.text("interface_address").value_or(config.interface_address);
   if (!is_address(config.interface_address)) {
     reader.error("interface_address",
@@ -207,18 +245,15 @@ DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot) {
   }
   config.reliable = reader.boolean("reliable").value_or(false);
   constexpr std::size_t kMostJoints = 64;
+  const auto read_any = [](TableReader& item) {
+    DdsJointConfig ignored;
+    static_cast<void>(read_ros_joint(item, nullptr, ignored));
+  };
+  reader.belongs_to("[[stream.joint]]", keys_read_by(read_any));
   for (TableReader& item : reader.tables("joint", kMostJoints)) {
+    item.belongs_to("[[stream]], above its [[stream.joint]]", reader.known());
     DdsJointConfig joint;
-    std::string own_name;
-    if (const auto reference = read_joint_reference(item, robot)) {
-      joint.joint = reference->number;
-      own_name = reference->name;
-    }
-    joint.ros_name = item.text("ros_name").value_or(own_name);
-    joint.scale = item.number("scale").value_or(1.0);
-    if (joint.scale == 0.0) item.error("scale", "scale is 0", "the value would always be the offset");
-    joint.offset = item.number("offset").value_or(0.0);
-    item.finish();
+    const std::string own_name = read_ros_joint(item, robot, joint);
     const bool twice = !own_name.empty() && std::ranges::any_of(config.joints, [&](const DdsJointConfig& other) {
       return other.joint == joint.joint || other.ros_name == joint.ros_name;
     });

@@ -132,6 +132,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     reader.dds,
                     reader.queues,
                     reader.web,
+                    std::move(reader.record),
                     reader.pictures,
                     std::move(collision),
                     std::move(tissue),

@@ -14,6 +14,7 @@
 
 #include "config/foot_switches.hpp"
 #include "config/picture_settings.hpp"
+#include "config/record_settings.hpp"
 #include "config/tissue_setup.hpp"
 #include "config/web_settings.hpp"
 #include "rt_core/base/diagnostics.hpp"
@@ -83,6 +84,7 @@ struct LoadedCell {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  RecordSettings record;
   PictureSettings pictures;
   collision::Settings collision;  // paths in rules are full paths
   TissueSetup tissue;

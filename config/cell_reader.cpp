@@ -11,6 +11,7 @@
 #include "config/foot_switch_reader.hpp"
 #include "config/haptic_reader.hpp"
 #include "config/node_reader.hpp"
+#include "config/record_reader.hpp"
 #include "config/stream_reader.hpp"
 #include "config/web_reader.hpp"
 #include "rt_core/base/capacity.hpp"
@@ -72,6 +73,7 @@ bool CellReader::read(std::string_view text) {
   read_dds_output(top);
   read_queues(top);
   web = read_web(top);
+  record = read_record(top);
   pictures = read_display(top, files_, layout_file);
   collision.read(top);
   tissue.read(top, files_);
@@ -81,6 +83,9 @@ bool CellReader::read(std::string_view text) {
   constexpr std::size_t kMostStreams = kMaxRobots;
   stream_tables_ = top.tables("stream", kMostStreams);
   haptic_tables_ = top.tables("haptic", kMaxHapticDevices);
+  top.belongs_to("[loop]", {"rate_hz", "real_time", "priority"});
+  top.belongs_to("[[stream]]", {"robot", "kind", "channel", "topic", "dbc", "address"});
+  top.belongs_to("[startup]", {"script"});
   top.finish();
   return true;
 }
@@ -141,13 +146,14 @@ void CellReader::read_dds_output(TableReader& top) {
     table->error("interface_address", fmt::format("\"{}\" is not a numeric address", printable(dds.interface_address)),
                  "e.g. 127.0.0.1");
   }
-  dds.joint_states_topic = table->text("joint_states_topic").value_or(dds.joint_states_topic);
-  dds.tf_topic = table->text("tf_topic").value_or(dds.tf_topic);
-  dds.range_topic_prefix = table->text("range_topic_prefix").value_or(dds.range_topic_prefix);
-  dds.wrench_topic_prefix = table->text("wrench_topic_prefix").value_or(dds.wrench_topic_prefix);
-  dds.diagnostics_topic = table->text("diagnostics_topic").value_or(dds.diagnostics_topic);
-  dds.markers_topic = table->text("markers_topic").value_or(dds.markers_topic);
-  dds.tissue_topic = table->text("tissue_topic").value_or(dds.tissue_topic);
+  dds.joint_states_topic = read_topic(*table, "joint_states_topic").value_or(dds.joint_states_topic);
+  dds.tf_topic = read_topic(*table, "tf_topic").value_or(dds.tf_topic);
+  dds.robot_description_topic = read_topic(*table, "robot_description_topic").value_or(dds.robot_description_topic);
+  dds.range_topic_prefix = read_topic(*table, "range_topic_prefix").value_or(dds.range_topic_prefix);
+  dds.wrench_topic_prefix = read_topic(*table, "wrench_topic_prefix").value_or(dds.wrench_topic_prefix);
+  dds.diagnostics_topic = read_topic(*table, "diagnostics_topic").value_or(dds.diagnostics_topic);
+  dds.markers_topic = read_topic(*table, "markers_topic").value_or(dds.markers_topic);
+  dds.tissue_topic = read_topic(*table, "tissue_topic").value_or(dds.tissue_topic);
   dds.tissue_rate_hz = table->number("tissue_rate_hz", kTissueRate).value_or(dds.tissue_rate_hz);
   constexpr long long kMostTriangles = 100'000;  // 7.2 MB a message
   if (const auto triangles = table->integer("tissue_triangles", 1, kMostTriangles))

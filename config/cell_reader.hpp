@@ -39,6 +39,7 @@ class CellReader {
   DdsOutputConfig dds;
   QueueOverrides queues;
   WebSettings web;
+  RecordSettings record;
   PictureSettings pictures;
   CollisionReader collision;
   TissueReader tissue;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "config/layout_file.hpp"
+#include "config/stream_reader.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/ports/image.hpp"
 
@@ -70,7 +71,7 @@ PictureSettings read_display(TableReader& top, const FileFinder& files,
 }
 
 void read_dds_pictures(TableReader& table, DdsPictureConfig& config) {
-  config.topic = table.text("picture_topic").value_or(config.topic);
+  config.topic = read_topic(table, "picture_topic").value_or(config.topic);
   config.rate_hz = table.number("picture_rate_hz", kRate).value_or(config.rate_hz);
   if (const auto view = table.integer("picture_view", 0, 6)) config.view = static_cast<int>(*view);
   config.camera = table.text("picture_camera").value_or(config.camera);

@@ -43,8 +43,12 @@ RtdeStreamConfig read_rtde(TableReader& reader, const RobotFacts* robot) {
   }
   config.port = static_cast<std::uint16_t>(reader.integer("port", 1, 65535).value_or(config.port));
   config.rate_hz = reader.number("rate_hz", {1.0, kHighestRate}).value_or(config.rate_hz);
-  for (TableReader& item : reader.tables("joint", kControllerJoints))
+  const auto read_any = [](TableReader& item) { static_cast<void>(read_joint(item, nullptr, {})); };
+  reader.belongs_to("[[stream.joint]]", keys_read_by(read_any));
+  for (TableReader& item : reader.tables("joint", kControllerJoints)) {
+    item.belongs_to("[[stream]], above its [[stream.joint]]", reader.known());
     config.joints.push_back(read_joint(item, robot, config));
+  }
   if (!reader.has("joint") && robot != nullptr) {
     const auto joints = std::min<std::size_t>(robot->joint_names.size(), kControllerJoints);
     for (std::size_t i = 0; i < joints; ++i) config.joints.push_back({.joint = i, .number = i});

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt_core/base/dds_topic.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -58,6 +59,21 @@ bool is_address(std::string_view text) {
   in_addr v4{};
   in6_addr v6{};
   return inet_pton(AF_INET, address.c_str(), &v4) == 1 || inet_pton(AF_INET6, address.c_str(), &v6) == 1;
+}
+
+std::optional<std::string> read_topic(TableReader& reader, std::string_view key) {
+  const auto written = reader.text(key);
+  if (!written || written->empty()) return written;
+  const std::string shown = printable(*written);
+  std::string topic = dds_topic(*written);
+  if (written->starts_with('/') && !is_ros_topic(topic)) {
+    reader.error(key, fmt::format("\"{}\" is not a ROS 2 topic", shown),
+                 "letters, digits and _ between single slashes, e.g. /joint_states");
+  } else if (!topic.starts_with("rt/")) {
+    reader.diagnostics().warning(reader.place(key), fmt::format("no ROS 2 topic is called {} on DDS", shown),
+                                 fmt::format("write /{} if it is a topic of ROS 2", shown));
+  }
+  return topic;
 }
 
 std::optional<Nanoseconds> read_seconds(TableReader& reader, std::string_view key, double max, bool zero_allowed) {

@@ -37,6 +37,9 @@ struct JointReference {
 [[nodiscard]] CanChannelConfig read_channel(TableReader& reader, const FileFinder& files);
 [[nodiscard]] StreamAges read_ages(TableReader& reader);
 [[nodiscard]] PlausibilityConfig read_plausibility(TableReader& reader, const StreamAges& ages);
+// The DDS name of a topic; "/joint_states" is ROS 2's way to write rt/joint_states. A DDS name without "rt/" is warned
+// of, since no ROS 2 topic has it. Empty where the text is empty.
+[[nodiscard]] std::optional<std::string> read_topic(TableReader& reader, std::string_view key);
 // An IPv4 or IPv6 address as text, numeric.
 [[nodiscard]] bool is_address(std::string_view text);
 // Seconds in the key, within 0 and `max`; the value as nanoseconds.

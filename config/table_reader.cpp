@@ -322,6 +322,19 @@ std::string TableReader::unit_remedy(std::string_view key, const toml::node& nod
   return {};
 }
 
+void TableReader::belongs_to(std::string table, std::vector<std::string> keys) {
+  elsewhere_.emplace_back(std::move(table), std::move(keys));
+}
+
+std::string TableReader::place_remedy(std::string_view key) const {
+  std::string tables;
+  for (const auto& [table, keys] : elsewhere_) {
+    if (std::ranges::find(keys, key) != keys.end() && tables.find(table) == std::string::npos)
+      tables += (tables.empty() ? "" : " or ") + table;
+  }
+  return tables.empty() ? tables : "it belongs under " + tables;
+}
+
 void TableReader::format() {
   require("format");
   const auto version = integer("format", 0, std::numeric_limits<int>::max());
@@ -334,7 +347,9 @@ void TableReader::finish() {
   for (const auto& [key, value] : *table_) {
     if (std::ranges::find(known_, key.str()) != known_.end()) continue;
     const std::string shown = printable(key.str());
-    std::string remedy = unit_remedy(key.str(), value);
+    std::string remedy = place_remedy(key.str());
+    const char* what = remedy.empty() ? "is unknown" : "does not belong here";
+    if (remedy.empty()) remedy = unit_remedy(key.str(), value);
     if (remedy.empty()) {
       std::vector<std::string> known = known_;
       std::ranges::sort(known);
@@ -345,8 +360,8 @@ void TableReader::finish() {
       }
     }
     diagnostics_->error(place_of(*file_, key.source()),
-                        where_.empty() ? fmt::format("the key {} is unknown", shown)
-                                       : fmt::format("{}: the key {} is unknown", where_, shown),
+                        where_.empty() ? fmt::format("the key {} {}", shown, what)
+                                       : fmt::format("{}: the key {} {}", where_, shown, what),
                         std::move(remedy));
   }
 }

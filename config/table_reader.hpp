@@ -71,6 +71,12 @@ class TableReader {
   // An array of tables: [[key]] or key = [{...}, ...].
   std::vector<TableReader> tables(std::string_view key, std::size_t most);
 
+  // Keys that belong into another table, which is named as it is written: what finish() says of them where they are
+  // found in this one.
+  void belongs_to(std::string table, std::vector<std::string> keys);
+  // Every key that was asked for until now.
+  [[nodiscard]] const std::vector<std::string>& known() const { return known_; }
+
   // The key format: 1 is the only one yet.
   void format();
   // Unread keys are errors. Call it last.
@@ -86,6 +92,8 @@ class TableReader {
   const toml::node* get(std::string_view key);
   void refuse_type(std::string_view key, const toml::node& node, const char* wanted) const;
   void refuse_word(std::string_view key, const std::string& word, const std::vector<std::string>& known) const;
+  // "it belongs under [[stream.node]]"; empty where no other table is known to have the key.
+  [[nodiscard]] std::string place_remedy(std::string_view key) const;
   [[nodiscard]] std::string unit_remedy(std::string_view key, const toml::node& node) const;
   [[nodiscard]] bool in_range(std::string_view key, double value, Range range) const;
   std::optional<double> element(std::string_view key, const toml::node& node, Range range) const;
@@ -95,7 +103,18 @@ class TableReader {
   std::string where_;
   Diagnostics* diagnostics_;
   std::vector<std::string> known_;
+  std::vector<std::pair<std::string, std::vector<std::string>>> elsewhere_;  // table, its keys
 };
+
+// The keys that `read` asks a table like this one for.
+template <class Read>
+std::vector<std::string> keys_read_by(Read read, const toml::table& like = {}) {
+  const std::string file;
+  Diagnostics ignored;
+  TableReader reader(like, file, "", ignored);
+  read(reader);
+  return reader.known();
+}
 
 // The table of a TOML text; nothing, with the place of the error, if it is invalid.
 [[nodiscard]] std::optional<toml::table> parse_toml(std::string_view text, const std::string& file,

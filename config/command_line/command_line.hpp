@@ -20,6 +20,9 @@ class Option;
 namespace cellmirror::cli {
 
 inline constexpr int kExitWrongUsage = 2;
+// Alone on the command line of any of our programs: prints all of its options and subcommands as JSON, from which
+// cmake/command_pages.py makes manual pages and completion. Not in the help: it is no option for people.
+inline constexpr std::string_view kDescribe = "--describe-command-line";
 
 // One option of a command: a handle, valid as long as the CommandLine. Each call gives the option back.
 class Option {
@@ -36,6 +39,8 @@ class Option {
   Option& check(std::function<std::string(const std::string&)> wrong, std::string shown);
   Option& excludes(Option other);
   Option& needs(Option other);
+  // Exactly so many values follow it.
+  Option& values(int count);
   // "1,2,3" is a list of three.
   Option& list_divided_by(char delimiter);
   // An option that may be repeated takes one value each time, so that a positional may follow.

@@ -110,8 +110,9 @@ class Planner {
     }
     if (!has_position) {
       const std::string of = node.config.eds_file.empty() ? "" : " of " + node.config.eds_file;
-      error(node.config.place, fmt::format("{}: no TPDO{} holds the position actual value 0x6064", name, of),
-            "write the mapping into the cell file (tpdos), with configure = true if the drive lacks it");
+      error(
+          node.config.place, fmt::format("{}: no TPDO{} holds the position actual value 0x6064", name, of),
+          "write the mapping into the cell file as [[stream.node.tpdo]], with configure = true if the drive lacks it");
     }
   }
 

@@ -1,0 +1,55 @@
+#include "config/record_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+constexpr std::size_t kMostTopics = 64;
+constexpr double kShortestFile_s = 1;
+constexpr double kLongest_s = 7 * 86'400;
+constexpr std::size_t kMostFilesOfRing = 1000;
+
+void read_keep_on(TableReader& table, RecordSettings& settings) {
+  const auto words = table.texts("keep_on");
+  if (!words) return;
+  settings.keep_on_fault = std::ranges::find(*words, "fault") != words->end();
+  settings.keep_on_collision = std::ranges::find(*words, "collision") != words->end();
+  for (const std::string& word : *words) {
+    if (word != "fault" && word != "collision")
+      table.error("keep_on", fmt::format("\"{}\" is nothing to keep a recording for", printable(word)),
+                  "known: fault, collision");
+  }
+}
+
+}  // namespace
+
+RecordSettings read_record(TableReader& top) {
+  RecordSettings settings;
+  auto table = top.table("record");
+  if (!table) return settings;
+  settings.present = true;
+  settings.enabled = table->boolean("enabled").value_or(true);
+  settings.length_s = table->number("length_s", {kShortestFile_s, kLongest_s}).value_or(settings.length_s);
+  settings.file_s =
+      table->number("file_s", {kShortestFile_s, kLongest_s}).value_or(std::min(settings.file_s, settings.length_s));
+  if (settings.file_s > settings.length_s || settings.length_s / settings.file_s > kMostFilesOfRing)
+    table->error("file_s", "a ring has 1 to 1000 files", "give a file_s between length_s / 1000 and length_s");
+  settings.most_mb = static_cast<std::uint64_t>(table->integer("most_mb", 1, 1'000'000).value_or(1024));
+  settings.keep_after_s = table->number("keep_after_s", {0.0, 600.0}).value_or(settings.keep_after_s);
+  settings.rate_hz = table->number("rate_hz", {0.1, 4000.0}).value_or(settings.rate_hz);
+  settings.compression = table->choice<std::string>("compression", {{"zstd", "zstd"}, {"lz4", "lz4"}, {"none", "none"}})
+                             .value_or(settings.compression);
+  settings.topics = table->texts("topics").value_or(settings.topics);
+  if (settings.topics.size() > kMostTopics) table->error("topics", "more than 64 topics", "use \"/cellmirror/*\"");
+  read_keep_on(*table, settings);
+  table->finish();
+  return settings;
+}
+
+}  // namespace cellmirror
