@@ -183,6 +183,12 @@ std::uint64_t volume_fingerprint(const Scene& scene) {
   return hash.state();
 }
 
+std::uint64_t content_hash(std::string_view text) {
+  Hash hash;
+  hash.add(text);
+  return hash.state();
+}
+
 std::uint64_t fingerprint(const Scene& scene, std::span<const Pane> panes) {
   Hash hash;
   add_bodies(hash, scene);

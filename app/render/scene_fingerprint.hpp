@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "rt_core/ports/scene.hpp"
 
@@ -13,5 +14,8 @@ namespace cellmirror::app {
 [[nodiscard]] std::uint64_t fingerprint(const Scene& scene, std::span<const Pane> panes);
 // Of the voxel volumes alone: what they are, where, and how they are drawn.
 [[nodiscard]] std::uint64_t volume_fingerprint(const Scene& scene);
+
+// Of a text, for comparison only.
+[[nodiscard]] std::uint64_t content_hash(std::string_view text);
 
 }  // namespace cellmirror::app

@@ -17,6 +17,7 @@
 #include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/ports/picture_request.hpp"
 #include "rt_core/ports/tissue_state.hpp"
+#include "rt_core/scene/cameras.hpp"
 #include "rt_core/scene/panes.hpp"
 #include "rt_core/scene/scene_builder.hpp"
 
@@ -49,6 +50,10 @@ class SceneSource {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const CompiledCell& cell() const { return *cell_; }
   [[nodiscard]] bool has_scene() const { return cell_ != nullptr; }
+  // Of all cameras, in the order of the cell.
+  [[nodiscard]] std::vector<scene::CameraNow> cameras() const {
+    return scene::cameras_now(*cell_, poser_.poses(), *picture_->display);
+  }
   // What is in force for them there; null: not known.
   [[nodiscard]] const VolumeStates* volumes() const { return picture_ ? picture_->volumes.get() : nullptr; }
   [[nodiscard]] Timestamp refreshed() const { return now_; }
