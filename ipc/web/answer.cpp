@@ -103,6 +103,21 @@ Answer picture_answer(Result<EncodedImage> picture) {
   return out;
 }
 
+Answer geometry_answer(const Result<std::shared_ptr<const SceneGeometry>>& geometry, std::string_view known) {
+  if (!geometry) return text_answer(503, geometry.error().text());
+  const std::string etag = fmt::format("\"{:016x}\"", (*geometry)->hash);
+  Answer out;
+  out.content_type = "model/gltf-binary";
+  out.headers.emplace_back("ETag", etag);
+  out.headers.emplace_back("Cache-Control", "no-cache");
+  if (known.find(etag) != std::string_view::npos) {
+    out.status = 304;
+    return out;
+  }
+  out.body = {*geometry, (*geometry)->glb};
+  return out;
+}
+
 Answer file_answer(const PageFile& file, const HttpRequest& request) {
   Answer out;
   out.content_type = file.content_type;

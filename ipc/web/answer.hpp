@@ -1,6 +1,7 @@
 // Answers to HTTP requests: status, headers, body. Pure.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
+#include "rt_core/ports/scene_stream.hpp"
 
 namespace cellmirror::web {
 
@@ -26,6 +28,10 @@ struct Answer {
 [[nodiscard]] Answer json_answer(std::string text);
 // 503 with the reason where there is no picture.
 [[nodiscard]] Answer picture_answer(Result<EncodedImage> picture);
+// The file with its hash as ETag; 304 where that is `known`, the header If-None-Match (may be empty). 503 with the
+// reason where there is none.
+[[nodiscard]] Answer geometry_answer(const Result<std::shared_ptr<const SceneGeometry>>& geometry,
+                                     std::string_view known);
 // 304 where the client has this version; compressed where the client accepts it.
 [[nodiscard]] Answer file_answer(const PageFile& file, const HttpRequest& request);
 

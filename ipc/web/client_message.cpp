@@ -129,6 +129,11 @@ PickMessage read_pick(Fields& fields, std::int64_t id) {
           static_cast<int>(fields.whole("y", 0, 0, kLargestImageEdge))};
 }
 
+std::uint32_t read_sequence(Fields& fields) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  return static_cast<std::uint32_t>(fields.whole("sequence", 0, 0, kMost));
+}
+
 ClientMessage read_by_name(Fields& fields, std::string_view name, std::int64_t id) {
   constexpr std::size_t kLongestToken = 128;
   if (name == "hello") return HelloMessage{fields.text("token", kLongestToken)};
@@ -137,15 +142,16 @@ ClientMessage read_by_name(Fields& fields, std::string_view name, std::int64_t i
     if (const auto good = check_picture_request(message.request); !good) fields.refuse(good.error().text());
     return message;
   }
-  if (name == "shown") {
-    constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
-    return ShownMessage{static_cast<std::uint32_t>(fields.whole("sequence", 0, 0, kMost))};
-  }
+  if (name == "shown") return ShownMessage{read_sequence(fields)};
+  if (name == "scene") return SceneMessage{};
+  if (name == "no_scene") return NoSceneMessage{};
+  if (name == "posed") return PosedMessage{read_sequence(fields)};
   if (name == "command") return read_command(fields, id);
   if (name == "pick") return read_pick(fields, id);
   if (name != "no_picture")
     fields.refuse(
-        fmt::format("do is \"{}\"; expected hello, picture, no_picture, shown, command or pick", printable(name, 32)));
+        fmt::format("do is \"{}\"; expected hello, picture, no_picture, shown, scene, no_scene, posed, command or pick",
+                    printable(name, 32)));
   return NoPictureMessage{};
 }
 

@@ -28,6 +28,11 @@ struct NoPictureMessage {};
 struct ShownMessage {
   std::uint32_t sequence = 0;
 };
+struct SceneMessage {};
+struct NoSceneMessage {};
+struct PosedMessage {
+  std::uint32_t sequence = 0;
+};
 struct CommandMessage {
   std::int64_t id = 0;
   std::string text;
@@ -37,8 +42,8 @@ struct PickMessage {
   int x = 0;
   int y = 0;
 };
-using ClientMessage =
-    std::variant<HelloMessage, PictureMessage, NoPictureMessage, ShownMessage, CommandMessage, PickMessage>;
+using ClientMessage = std::variant<HelloMessage, PictureMessage, NoPictureMessage, ShownMessage, SceneMessage,
+                                   NoSceneMessage, PosedMessage, CommandMessage, PickMessage>;
 
 struct BadMessage {
   std::int64_t id = 0;  // of the message, where it has one

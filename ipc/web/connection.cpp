@@ -215,6 +215,22 @@ void Connection::do_route(TakeSnapshot& snapshot, Timestamp now) {
       });
 }
 
+// Bounded together with snapshots: each holds a connection, and the geometry of one moment is shared.
+void Connection::do_route(TakeGeometry& take, Timestamp now) {
+  std::atomic<std::uint64_t>& waiting = *context_.snapshots;
+  if (waiting.load(std::memory_order_relaxed) >= kMaxSnapshotsWaiting)
+    return answer_busy(503, "too many snapshots are pending; try again");
+  stage_ = Stage::waiting;
+  since_ = now;
+  waiting.fetch_add(1, std::memory_order_relaxed);
+  context_.backend.ask_geometry(
+      [inbox = context_.inbox, number = number_, known = std::move(take.known),
+       snapshots = context_.snapshots](const Result<std::shared_ptr<const SceneGeometry>>& geometry) {
+        snapshots->fetch_sub(1, std::memory_order_relaxed);
+        inbox->post(number, [made = geometry_answer(geometry, known)](Connection* client) { client->answer(made); });
+      });
+}
+
 void Connection::do_route(ExecuteBody& /*execute*/, Timestamp now) {
   stage_ = Stage::body;
   if (in_.size() >= request_.body_bytes) return execute_body(now);

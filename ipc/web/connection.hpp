@@ -61,6 +61,7 @@ class Connection {
   void do_route(Answer& answer_now, Timestamp now);
   void do_route(Work& work, Timestamp now);
   void do_route(TakeSnapshot& snapshot, Timestamp now);
+  void do_route(TakeGeometry& take, Timestamp now);
   void do_route(ExecuteBody& execute, Timestamp now);
   void do_route(OpenWebSocket& open, Timestamp now);
   void execute_body(Timestamp now);

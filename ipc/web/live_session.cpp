@@ -77,6 +77,19 @@ void LiveSession::handle(const ShownMessage& message, Outgoing& /*out*/) {
   if (credit_.may_send()) count_left_out(now_);
 }
 
+void LiveSession::handle(const SceneMessage& /*message*/, Outgoing& out) {
+  if (scene_) return;
+  auto scene = context_.backend.open_scene();
+  if (!scene) return send_text(out, refused_message(0, scene.error().text()));
+  scene_ = std::move(*scene);
+  newest_poses_ = 0;
+  newest_marks_ = 0;
+}
+
+void LiveSession::handle(const NoSceneMessage& /*message*/, Outgoing& /*out*/) { scene_.reset(); }
+
+void LiveSession::handle(const PosedMessage& message, Outgoing& /*out*/) { pose_credit_.shown(message.sequence); }
+
 void LiveSession::count_left_out(Timestamp now) {
   if (!no_credit_since_) return;
   const double periods = seconds(now - *no_credit_since_) * request_.rate_hz;
@@ -136,9 +149,31 @@ void LiveSession::report_problem(Outgoing& out) {
   send_text(out, refused_message(0, reported_problem_));
 }
 
-bool LiveSession::ready_for_picture(const Outgoing& out) const { return stream_ && credit_.may_send() && out.empty(); }
+bool LiveSession::ready_for_picture(const Outgoing& out) const {
+  if (!out.empty()) return false;
+  return (stream_ && credit_.may_send()) || (scene_ && pose_credit_.may_send());
+}
 
 void LiveSession::send_picture(Timestamp now, Outgoing& out) {
+  if (scene_ && pose_credit_.may_send()) send_poses(now, out);
+  if (stream_ && credit_.may_send() && out.empty()) send_picture_of_stream(now, out);
+}
+
+void LiveSession::send_poses(Timestamp now, Outgoing& out) {
+  const std::shared_ptr<const SceneUpdate> update = scene_->newest(newest_poses_);
+  if (!update) return;
+  newest_poses_ = update->sequence;
+  if (update->marks && update->marks_sequence != newest_marks_) {
+    newest_marks_ = update->marks_sequence;
+    out.push(frame_header(Opcode::text, update->marks->size()));
+    out.push(Chunk{update->marks, *update->marks});
+  }
+  out.push(frame_header(Opcode::binary, kPosesHeaderBytes + update->poses.size()) +
+           poses_header(pose_credit_.next(), *update, now));
+  out.push(Chunk{update, update->poses});
+}
+
+void LiveSession::send_picture_of_stream(Timestamp now, Outgoing& out) {
   const std::shared_ptr<const EncodedImage> picture = stream_->newest(newest_);
   if (!picture) return report_problem(out);
   newest_ = picture->sequence;

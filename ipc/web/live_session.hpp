@@ -31,11 +31,13 @@ class LiveSession {
   void command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out);
   void picked(std::int64_t id, const Result<std::optional<PickedObject>>& object, Outgoing& out);
 
-  // Whether a new picture would be sent now.
+  // Whether a new picture, or new poses, would be sent now.
   [[nodiscard]] bool ready_for_picture(const Outgoing& out) const;
   void send_picture(Timestamp now, Outgoing& out);
 
  private:
+  void send_picture_of_stream(Timestamp now, Outgoing& out);
+  void send_poses(Timestamp now, Outgoing& out);
   // Once for each request: why no picture comes.
   void report_problem(Outgoing& out);
   // Pictures that were skipped while the client had no credit.
@@ -44,6 +46,9 @@ class LiveSession {
   void handle(const PictureMessage& message, Outgoing& out);
   void handle(const NoPictureMessage& message, Outgoing& out);
   void handle(const ShownMessage& message, Outgoing& out);
+  void handle(const SceneMessage& message, Outgoing& out);
+  void handle(const NoSceneMessage& message, Outgoing& out);
+  void handle(const PosedMessage& message, Outgoing& out);
   void handle(const CommandMessage& message, Outgoing& out);
   void handle(const PickMessage& message, Outgoing& out);
 
@@ -63,6 +68,10 @@ class LiveSession {
   std::uint64_t newest_ = 0;      // sequence of the stream
   std::string reported_problem_;  // of the stream
   std::optional<Timestamp> no_credit_since_;
+  std::unique_ptr<SceneStream> scene_;
+  PictureCredit pose_credit_;
+  std::uint64_t newest_poses_ = 0;  // sequence of the stream
+  std::uint64_t newest_marks_ = 0;
 
   static constexpr double kFramesPerSecond = 500;  // more than any page sends
 };

@@ -47,6 +47,12 @@ std::optional<Route> document(const HttpRequest& request, ServerContext& context
   return std::nullopt;
 }
 
+// For those who watch the gateway and decide by the status alone.
+Answer health_answer(Backend& backend) {
+  const Health health = backend.health();
+  return text_answer(health.ok ? 200 : 503, health.text);
+}
+
 std::optional<Route> snapshot(const HttpRequest& request, ServerContext& context) {
   const bool png = request.path == "/snapshot.png";
   if (!png && request.path != "/snapshot.jpg") return std::nullopt;
@@ -93,8 +99,13 @@ Route route(const HttpRequest& request, ServerContext& context) {
   }
   if (request.path == "/") context.backend.expect_pictures();
   if (const PageFile* file = find_page_file(request.path)) return file_answer(*file, request);
+  if (request.path == "/healthz") return Work([&backend = context.backend] { return health_answer(backend); });
   if (auto found = document(request, context)) return std::move(*found);
   if (auto found = snapshot(request, context)) return std::move(*found);
+  if (request.path == "/scene.glb") {
+    const std::string* known = request.header("if-none-match");
+    return TakeGeometry{known == nullptr ? std::string() : *known};
+  }
   return text_answer(404, "not found");
 }
 

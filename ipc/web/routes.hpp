@@ -18,6 +18,10 @@ struct TakeSnapshot {
   PictureRequest request;
   ImageFormat format = ImageFormat::png;
 };
+// The cell's geometry, made by another thread.
+struct TakeGeometry {
+  std::string known;  // the header If-None-Match; may be empty
+};
 // The body is a SCRIPT command.
 struct ExecuteBody {};
 // The connection becomes a WebSocket.
@@ -26,7 +30,7 @@ struct OpenWebSocket {
   bool has_token = false;
   bool subprotocol = false;  // to be selected
 };
-using Route = std::variant<Answer, Work, TakeSnapshot, ExecuteBody, OpenWebSocket>;
+using Route = std::variant<Answer, Work, TakeSnapshot, TakeGeometry, ExecuteBody, OpenWebSocket>;
 
 // Decides by the head alone, access checks included, before any of the body is read.
 [[nodiscard]] Route route(const HttpRequest& request, ServerContext& context);

@@ -58,6 +58,15 @@ std::string command_answer(const CommandReply& reply) {
   return text_of(out);
 }
 
+std::string poses_header(std::uint32_t sequence, const SceneUpdate& update, Timestamp now) {
+  const double age = update.posture_time.known() ? seconds(now - update.posture_time) : 0.0;
+  std::string out = "CMS1";
+  append_little_endian(out, sequence, 4);
+  append_little_endian(out, update.geometry_hash, 8);
+  append_little_endian(out, std::bit_cast<std::uint64_t>(age), 8);
+  return out;
+}
+
 std::string picture_header(std::uint32_t sequence, const EncodedImage& picture, Timestamp now) {
   const double age = picture.posture_time.known() ? seconds(now - picture.posture_time) : 0.0;
   std::string out = "CMP1";

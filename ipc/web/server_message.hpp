@@ -36,4 +36,8 @@ inline constexpr std::size_t kPictureHeaderBytes = 32;
 // f64 0; little-endian.
 [[nodiscard]] std::string picture_header(std::uint32_t sequence, const EncodedImage& picture, Timestamp now);
 
+inline constexpr std::size_t kPosesHeaderBytes = 24;
+// Precedes SceneUpdate::poses: "CMS1", u32 sequence, u64 hash of the geometry, f64 age of the posture in s.
+[[nodiscard]] std::string poses_header(std::uint32_t sequence, const SceneUpdate& update, Timestamp now);
+
 }  // namespace cellmirror::web

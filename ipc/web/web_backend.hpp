@@ -12,12 +12,18 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
 #include "rt_core/ports/picture_request.hpp"
+#include "rt_core/ports/scene_stream.hpp"
 
 namespace cellmirror::web {
 
 struct CommandReply {
   bool done = false;
   std::string text;  // empty, or why it was refused, with the remedy
+};
+
+struct Health {
+  bool ok = false;
+  std::string text;  // one line: "ok", or what is wrong
 };
 
 // Who sent a command, for the log of commands.
@@ -40,6 +46,7 @@ class Backend {
   [[nodiscard]] virtual std::string names_json() = 0;        // for completion: robots, frames, cameras, sensors, files
   [[nodiscard]] virtual std::string command_log_json() = 0;  // the newest entries of the log of commands
   [[nodiscard]] virtual std::string metrics_text() = 0;      // Prometheus text format
+  [[nodiscard]] virtual Health health() = 0;                 // of the loop
   // Executes a SCRIPT command of `origin`; `reply` is called once, from another thread, or at once if it is refused.
   virtual void execute(std::string_view command, const CommandOrigin& origin,
                        std::function<void(const CommandReply&)> reply) = 0;
@@ -51,6 +58,10 @@ class Backend {
   // One picture; takes some tenths of a second after those requested before. Neither this nor the next one waits:
   // `reply` is called once, from another thread, or at once if it is refused; it may outlive the server.
   virtual void ask_picture(const PictureRequest& request, ImageFormat format, PictureReply reply) = 0;
+  // For clients that draw the cell themselves: poses as a stream, and the geometry that they belong to. Neither waits;
+  // `reply` as that of ask_picture().
+  virtual Result<std::unique_ptr<SceneStream>> open_scene() = 0;
+  virtual void ask_geometry(GeometryReply reply) = 0;
   // x, y: pixels in a picture of that request. None: nothing is there.
   virtual void ask_pick(const PictureRequest& request, int x, int y, PickReply reply) = 0;
 };

@@ -21,9 +21,14 @@ import time
 import traceback
 
 import standin_jpeg
+import standin_scene
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "ipc" / "web" / "page"
+SHARE = pathlib.Path("/usr/share/javascript")  # Debian's libjs-three and libjs-dygraphs, as ipc/web/CMakeLists.txt embeds them
+LIBRARIES = {"lib/three/build/three.module.js": "three/three.module.js",
+             "lib/three/examples/jsm/loaders/GLTFLoader.js": "three/examples/jsm/loaders/GLTFLoader.js",
+             "lib/dygraph.min.js": "dygraphs/dygraph.min.js", "lib/dygraph.min.css": "dygraphs/dygraph.min.css"}
 POLICY = ("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
           "base-uri 'none'; form-action 'none'; frame-ancestors 'none'")
 MODES = ["WFRM_display", "SMEAR", "BFRM", "CPU_BFRM", "CAM_MAINVIEW", "LGT_TWOSIDE", "TCP_DRAW", "ZPF_DRAW", "FLDR",
@@ -57,6 +62,7 @@ class Cell:
         self.displays = [{"id": i, "name": f"layout {i}", "views": [i] if i > 1 else [0, 1]} for i in range(1, 7)]
         self.hidden, self.revision = set(), 1
         self.problems = []
+        self.still = False  # joints stand where they are after a second
 
     def command_log(self):
         """Made up, one of each source; the last one is the newest."""
@@ -77,7 +83,7 @@ class Cell:
         return "stale" if i % 7 == 4 else "lost" if i % 7 == 6 else "fresh"
 
     def angle(self, i, k):
-        return 1.2 * math.sin(0.5 * self.now() + 0.7 * i + 0.9 * k) / (1 + 0.15 * k)
+        return 1.2 * math.sin(0.5 * (1 if self.still else self.now()) + 0.7 * i + 0.9 * k) / (1 + 0.15 * k)
 
     def robot(self, i):
         age = {"fresh": 0.004, "stale": 0.31, "lost": 12.5 + self.now(), "none": None}[self.state(i)]
@@ -211,6 +217,7 @@ class Client:
     def __init__(self, reader, writer, cell, options):
         self.reader, self.writer, self.cell, self.options = reader, writer, cell, options
         self.wish, self.sequence, self.shown, self.may_command = None, 0, 0, False
+        self.wants_scene, self.posed, self.poses_sent, self.marks_sent = False, 0, 0, ""
 
     def send(self, message):
         self.frame(1, json.dumps(message).encode())
@@ -225,10 +232,10 @@ class Client:
                    "may_command": self.may_command and not self.options.read_only, "read_only": self.options.read_only})
 
     async def serve(self):
-        """Until the first of its three parts ends. A fault of ours ends the connection and is printed: a part that
+        """Until the first of its parts ends. A fault of ours ends the connection and is printed: a part that
         ended alone would look like a gateway that sends nothing."""
         self.welcome()
-        parts = [asyncio.create_task(part()) for part in (self.listen, self.send_live, self.send_pictures)]
+        parts = [asyncio.create_task(part()) for part in (self.listen, self.send_live, self.send_pictures, self.send_scene)]
         done, others = await asyncio.wait(parts, return_when=asyncio.FIRST_COMPLETED)
         for part in others:
             part.cancel()
@@ -273,6 +280,10 @@ class Client:
                 self.wish = message
         elif do == "no_picture":
             self.wish = None
+        elif do in ("scene", "no_scene"):
+            self.wants_scene = do == "scene"
+        elif do == "posed":
+            self.posed = max(self.posed, min(message["sequence"], self.poses_sent))
         elif do == "shown":
             # Pages decode pictures in no particular order. An acknowledgement that comes late takes nothing back: with
             # two newer ones before it, no picture would be under way, and none would ever be sent again.
@@ -304,11 +315,26 @@ class Client:
             await asyncio.sleep(1 / 15)
 
 
+    async def send_scene(self):
+        while True:
+            if self.wants_scene and self.poses_sent - self.posed < 2:
+                marks = self.cell.scene.marks()
+                if marks != self.marks_sent:
+                    self.marks_sent = marks
+                    self.send(marks)
+                self.poses_sent += 1
+                self.frame(2, self.cell.scene.poses(self.poses_sent))
+                await self.writer.drain()
+            await asyncio.sleep(1 / 20)
+
+
 class Server:
     def __init__(self, options):
         self.options = options
         self.cell = Cell(options.robots, options.joints)
         self.cell.problems = options.problem
+        self.cell.still = options.still
+        self.cell.scene = standin_scene.Scene(self.cell, options.parts, options.triangles)
         self.commands = commands()
 
     async def answer(self, reader, writer):
@@ -340,10 +366,12 @@ class Server:
                      "/api/status": self.cell.live, "/api/command-log": self.cell.command_log}
         if path in documents:
             kind, body = "application/json", json.dumps(documents[path]()).encode()
+        elif path == "/scene.glb":
+            kind, body = f"model/gltf-binary\r\nETag: \"{self.cell.scene.hash:016x}\"", self.cell.scene.file
         else:
             name = "index.html" if path == "/" else path.removeprefix("/page/")
-            found = (PAGE / name).resolve()
-            if not found.is_relative_to(PAGE) or not found.is_file():
+            found = SHARE / LIBRARIES[name] if name in LIBRARIES else (PAGE / name).resolve()
+            if not (name in LIBRARIES or found.is_relative_to(PAGE)) or not found.is_file():
                 writer.write(b"HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\nConnection: close\r\n\r\n")
                 return
             kind, body = mimetypes.guess_type(found.name)[0] or "text/plain", found.read_bytes()
@@ -366,6 +394,9 @@ async def main():
     parser.add_argument("--robots", type=int, default=7)
     parser.add_argument("--joints", type=int, default=6)
     parser.add_argument("--token", default="standin")
+    parser.add_argument("--parts", type=int, default=0, help="spheres beside the robots, in 3D")
+    parser.add_argument("--triangles", type=int, default=0, help="of these spheres together")
+    parser.add_argument("--still", action="store_true", help="no joint moves")
     parser.add_argument("--read-only", action="store_true")
     parser.add_argument("--problem", action="append", default=[], help="text of a problem to report; repeatable")
     server = Server(parser.parse_args())

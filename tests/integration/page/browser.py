@@ -11,6 +11,7 @@ SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", HERE.parents[2]))
 BUILD = pathlib.Path(os.environ.get("CELLMIRROR_BIN_DIR", SOURCE / "build" / "bin")).parent
 ARTEFACTS = BUILD / "page-artefacts"
 PLAYWRIGHT = "playwright-core@~1.58.0"  # runs with Debian 12's node 18, which newer ones refuse
+AXE = "axe-core@~4.10.3"  # finds what people with disabilities would stumble over
 
 
 def chromium():
@@ -32,14 +33,14 @@ def playwright_core():
         return pathlib.Path(given)
     place = BUILD / "browser-tools"
     found = place / "node_modules" / "playwright-core"
-    if not (found / "index.mjs").is_file():
+    if not (found / "index.mjs").is_file() or not (found.parent / "axe-core" / "axe.min.js").is_file():
         npm = shutil.which("npm")
         if not npm:
             raise unittest.SkipTest("skipped: npm, which brings playwright-core, is not installed")
         place.mkdir(parents=True, exist_ok=True)
         try:
             done = subprocess.run([npm, "install", "--prefix", place, "--ignore-scripts", "--no-audit", "--no-fund", "--no-save",
-                                   "--no-package-lock", PLAYWRIGHT], capture_output=True, text=True, timeout=120)
+                                   "--no-package-lock", PLAYWRIGHT, AXE], capture_output=True, text=True, timeout=120)
         except subprocess.TimeoutExpired:
             raise unittest.SkipTest("skipped: npm could not fetch playwright-core within 120 s") from None
         if done.returncode != 0:
@@ -55,7 +56,8 @@ class Scenario:
     def __init__(self, name, address, *arguments):
         ARTEFACTS.mkdir(parents=True, exist_ok=True)
         self.command = [node(), HERE / "scenarios.mjs", name, address, *arguments]
-        self.environment = dict(os.environ, CHROMIUM=chromium(), PLAYWRIGHT_CORE=str(playwright_core()), ARTEFACTS=str(ARTEFACTS))
+        self.environment = dict(os.environ, CHROMIUM=chromium(), PLAYWRIGHT_CORE=str(playwright_core()),
+                                AXE_CORE=str(playwright_core().parent / "axe-core"), ARTEFACTS=str(ARTEFACTS))
 
     def run(self, answer=None, timeout=100):
         child = subprocess.Popen([str(part) for part in self.command], env=self.environment, text=True, stdin=subprocess.PIPE,

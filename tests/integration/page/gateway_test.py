@@ -1,8 +1,11 @@
 """The monitor page of a running gateway in headless Chromium: sees a robot move, orbits, commands, sees a refusal
 explained, loses the gateway and gets it back."""
 
+import json
+import re
 import socket
 import unittest
+import urllib.request
 
 import browser
 import gateway as g
@@ -30,6 +33,21 @@ class PageGateway(g.Gateway):
         g.Process.__init__(self, [g.BIN / "cellmirror", "run", scratch.cell_file, "--port", str(port), "--instance", scratch.instance],
                            scratch.environment)
         self.wait_ready(60)
+
+
+class Scene(unittest.TestCase):
+    """The 3D view; nothing moves but what is commanded."""
+
+    def test_the_view_moves_with_a_joint_and_names_what_is_clicked(self):
+        scratch = g.Scratch()
+        self.addCleanup(scratch.remove)
+        gateway = PageGateway(scratch, free_port())
+        self.addCleanup(gateway.close)
+        address = json.loads(scratch.cellmirror("page", "--json", "--instance", scratch.instance).stdout)
+        output = browser.Scenario("scene_gateway", f"{address['address']}#token={address['token']}").run()
+        path = re.search(r"^picked: (.+)$", output, re.M)[1]
+        shown = urllib.request.urlopen(f"{address['address']}api/tree", timeout=20).read()
+        self.assertIn(path, [node["path"] for node in json.loads(shown)["nodes"]])
 
 
 class Page(unittest.TestCase):

@@ -5,13 +5,19 @@ import path from "node:path";
 import {createInterface} from "node:readline";
 import {pathToFileURL} from "node:url";
 
+import {scene_scenarios} from "./scene_scenarios.mjs";
+
 const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT_CORE, "index.mjs")));
 const [scenario, address, ...rest] = process.argv.slice(2);
 const kPatience_ms = 20000;
 
+// Scenarios in 3D need WebGL, which a software renderer draws here; one has none, the others do as they like.
+const kDrawing = /without_webgl/.test(scenario) ? ["--disable-gpu", "--disable-3d-apis"]
+  : /^scene/.test(scenario) ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : ["--disable-gpu"];
+
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM, headless: true,
-  args: [...(process.getuid?.() === 0 ? ["--no-sandbox"] : []), "--disable-gpu", "--disable-dev-shm-usage"],
+  args: [...(process.getuid?.() === 0 ? ["--no-sandbox"] : []), ...kDrawing, "--disable-dev-shm-usage"],
 });
 const problems = [];
 
@@ -266,7 +272,7 @@ const scenarios = {
     assert.match(await text_of(page, "#near-note"), /the first \d+ of 180/);
     assert.match(await page.locator("#range-list li").nth(1).innerText(), /doubtful, may be nearer/);
 
-    const values = () => page.locator(".chart .legend").first().innerText();
+    const values = () => page.locator(".chart:not([hidden]) .legend").first().innerText();
     await page.click("#chart-pause");
     const paused = await values();
     await page.waitForFunction((before) => document.querySelector("#robot-list .joint .value").textContent !== before,
@@ -279,7 +285,7 @@ const scenarios = {
     const at = Date.now();
     await page.waitForFunction(() => /^no news/.test(document.getElementById("line-text").textContent));
     await page.waitForFunction(() => getComputedStyle(document.getElementById("touching-badge")).visibility === "hidden");
-    await page.waitForFunction(() => /until \d\d:\d\d:\d\d/.test(document.querySelector(".chart figcaption").textContent));
+    await page.waitForFunction(() => /until \d\d:\d\d:\d\d/.test(document.querySelector(".chart:not([hidden]) figcaption").textContent));
     await newer_picture(page);
     await shot(page, "old-news");
 
@@ -481,8 +487,8 @@ async function screen(name, options) {
   await page.context().close();
 }
 
-async function drag(page, dx, dy) {
-  const box = await page.locator("#view-canvas").boundingBox();
+async function drag(page, dx, dy, canvas = "#view-canvas") {
+  const box = await page.locator(canvas).boundingBox();
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -504,6 +510,8 @@ async function pick_something(page) {
   }
   assert.fail("nothing could be picked");
 }
+
+Object.assign(scenarios, scene_scenarios({opened, live, picture, shot, text_of, run, drag, address}));
 
 try {
   for (const name of scenario.split(",")) await scenarios[name]();

@@ -7,6 +7,7 @@ import stat
 import unittest
 
 import gateway as g
+from glb_reader import Glb, read_poses
 from page_client import Live, Page, picture_number
 
 SAMPLE = re.compile(r'^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="(\\.|[^"\\\n])*",?)*\})? '
@@ -64,6 +65,44 @@ class GatewayPage(unittest.TestCase):
         self.assertIn("startup.spt", names["scripts"])
         self.assertEqual(self.page.json("/api/status")["instance"], self.scratch.instance)
         self.assertIn("POS_ROB", [command["name"] for command in self.page.json("/api/commands")["commands"]])
+
+    def test_the_cell_in_three_dimensions(self):
+        status, headers, body = self.page.ask("/scene.glb")
+        self.assertEqual((status, headers["Content-Type"]), (200, "model/gltf-binary"))
+        glb = Glb(body)
+        self.assertGreater(glb.triangles, 1000)
+        paths = {node["path"] for node in self.page.json("/api/tree")["nodes"]}
+        for node in glb.bodies:
+            self.assertIn(node["extras"]["path"], paths)
+        robots = {node["extras"]["robot"] for node in glb.bodies}
+        self.assertIn("MANTEC_R3", robots)
+        self.assertEqual(self.page.ask("/scene.glb", headers={"If-None-Match": headers["ETag"]})[0], 304)
+        # Poses belong to this file, and a moved joint moves its bodies and no others.
+        live = Live(self.page)
+        self.addCleanup(live.close)
+        live.say(do="scene")
+        marks = live.until_is("marks")
+        self.assertTrue(marks["cameras"])
+        poses = read_poses(live.until(lambda message: isinstance(message, bytes)))
+        self.assertEqual(f'"{poses["geometry"]:016x}"', headers["ETag"])
+        self.assertEqual(len(poses["bodies"]), len(glb.bodies))
+        self.assertEqual(len(poses["cameras"]), len(marks["cameras"]))
+        self.assertLess(poses["age_s"], 2)
+        for pose, node in zip(poses["bodies"], glb.bodies):
+            self.assertAlmostEqual(sum(value * value for value in pose[3:7]), 1, places=4)
+        live.say(do="posed", sequence=poses["sequence"])
+        status, answer = self.page.command("POS_ROB PUMA_762 JOINT_INC 20")
+        self.assertTrue(json.loads(answer)["done"], answer)
+        end, moved = poses, set()
+        for _ in range(40):
+            end = read_poses(live.until(lambda message: isinstance(message, bytes)))
+            live.say(do="posed", sequence=end["sequence"])
+            moved |= {i for i, (a, b) in enumerate(zip(poses["bodies"], end["bodies"])) if max(map(abs, (x - y for x, y in zip(a, b)))) > 1e-3}
+            if moved and end["sequence"] > poses["sequence"] + 2:
+                break
+        self.assertTrue(moved, answer)
+        self.assertIn("PUMA_762", {glb.bodies[i]["extras"]["robot"] for i in moved})
+        self.assertTrue(any(glb.bodies[i]["extras"]["robot"] == "" and i not in moved for i in range(len(glb.bodies))), "all of the cell moved")
 
     def test_metrics_are_in_the_text_format(self):
         status, headers, body = self.page.ask("/metrics")

@@ -246,18 +246,79 @@ TEST_F(HostileClients, ThatDoNotAcknowledgeGetTwoPictures) {
   EXPECT_GE(sut->status().pictures_left_out, 10u) << "in half a second at 60 a second";
 }
 
+TEST_F(HostileClients, ThatDoNotAcknowledgePosesGetTwo) {
+  RawClient client(sut->port());
+  client.open_live(sut->port());
+  EXPECT_TRUE(client.read_until("CMS1", 0.3).empty()) << "who did not ask gets none";
+  client.say(R"({"do": "scene"})");
+  EXPECT_FALSE(client.read_until("\"is\":\"marks\"").empty()) << "words come before the poses that they belong to";
+  EXPECT_FALSE(client.read_until("CMS1").empty());
+  EXPECT_FALSE(client.read_until("CMS1").empty());
+  EXPECT_TRUE(client.read_until("CMS1", 0.5).empty()) << "not acknowledged";
+  client.say(R"({"do": "posed", "sequence": 4000000000})");
+  EXPECT_TRUE(client.read_until("CMS1", 0.3).empty()) << "never sent";
+  client.say(R"({"do": "scene"})");
+  EXPECT_TRUE(client.read_until("CMS1", 0.3).empty()) << "asking again opens no second stream";
+  EXPECT_EQ(backend.open_scenes, 1);
+  client.say(R"({"do": "posed", "sequence": 1})");
+  EXPECT_FALSE(client.read_until("CMS1").empty());
+  client.say(R"({"do": "no_scene"})");
+  client.say(R"({"do": "posed", "sequence": 3})");
+  EXPECT_TRUE(client.read_until("CMS1", 0.3).empty()) << "ended";
+  EXPECT_EQ(backend.open_scenes, 0);
+}
+
+TEST_F(HostileClients, ShareTheGeometryAndItsBound) {
+  const std::string first = get("/scene.glb");
+  EXPECT_TRUE(starts(first, 200));
+  EXPECT_NE(first.find("Content-Type: model/gltf-binary\r\n"), std::string::npos);
+  EXPECT_NE(first.find("ETag: \"000000000000abcd\"\r\n"), std::string::npos);
+  EXPECT_GE(first.size(), std::size_t{1} << 20U);
+  const auto again = [&](const std::string& known) {
+    return ask("GET /scene.glb HTTP/1.1\r\n" + host() + "If-None-Match: " + known + "\r\n\r\n");
+  };
+  EXPECT_TRUE(starts(again("\"000000000000abcd\""), 304));
+  EXPECT_TRUE(starts(again("\"000000000000abce\""), 200));
+  EXPECT_TRUE(starts(ask("POST /scene.glb HTTP/1.1\r\n" + host() + "Content-Length: 0\r\n\r\n"), 405));
+  EXPECT_LT(ask("HEAD /scene.glb HTTP/1.1\r\n" + host() + "\r\n").size(), 2000u);
+  backend.keep_waiting = true;
+  std::vector<std::unique_ptr<RawClient>> waiting;
+  for (std::size_t i = 0; i < kMaxSnapshotsWaiting; ++i) {
+    waiting.push_back(std::make_unique<RawClient>(sut->port()));
+    waiting.back()->send("GET /scene.glb HTTP/1.1\r\n" + host() + "\r\n");
+  }
+  const auto asked = [&] {
+    const std::scoped_lock lock(backend.mutex);
+    return backend.geometries.size();
+  };
+  const std::size_t before = 4;  // those above
+  for (int i = 0; i < 500 && asked() < before + kMaxSnapshotsWaiting; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(starts(get("/scene.glb"), 503));
+  EXPECT_TRUE(works());
+  backend.keep_waiting = false;
+  {
+    const std::scoped_lock lock(backend.mutex);
+    for (std::size_t i = before; i < backend.geometries.size(); ++i) backend.geometries[i]();
+  }
+  for (const auto& client : waiting) EXPECT_TRUE(starts(client->read_to_end().value_or(""), 200));
+  EXPECT_TRUE(starts(get("/scene.glb"), 200)) << "there is room again";
+}
+
 TEST_F(HostileClients, ThatVanishLeaveNothingBehind) {
   {
     RawClient client(sut->port());
     client.open_live(sut->port());
     client.say("{\"do\": \"hello\", \"token\": \""s + kToken + "\"}");
     client.say(R"({"do": "picture"})");
+    client.say(R"({"do": "scene"})");
     client.say(R"({"do": "command", "id": 1, "text": "LATER"})");
     client.read_until("CMP1");
   }
   for (int i = 0; i < 100 && sut->status().clients > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(sut->status().clients, 0u);
   EXPECT_EQ(backend.open_streams, 0);
+  EXPECT_EQ(backend.open_scenes, 0);
   for (const auto& reply : backend.held) reply({true, "to nobody"});
   EXPECT_TRUE(works());
   sut.reset();

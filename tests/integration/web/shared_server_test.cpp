@@ -55,6 +55,19 @@ TEST_F(SharedServer, LeavesWebSocketsToWhoeverHasTheToken) {
   EXPECT_EQ(open(kWithSubprotocol), kOpened);
 }
 
+TEST_F(SharedServer, TellsItsHealthByTheStatusOfAnAnswer) {
+  const auto answer = [&] {
+    RawClient client(sut->port());
+    client.send("GET /healthz HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(sut->port()) + "\r\n\r\n");
+    return client.read_to_end().value_or("");
+  };
+  EXPECT_TRUE(answer().starts_with("HTTP/1.1 200 OK\r\n")) << answer();
+  EXPECT_TRUE(answer().ends_with("\r\n\r\nok\n")) << answer();
+  backend.healthy = false;
+  EXPECT_TRUE(answer().starts_with(kFull)) << answer();
+  EXPECT_TRUE(answer().ends_with("\r\n\r\nthe loop stands still\n")) << answer();
+}
+
 TEST_F(SharedServer, SelectsTheSubprotocolOfThePage) {
   RawClient client(sut->port());
   const std::string head = client.open_live(sut->port(), kWithSubprotocol);

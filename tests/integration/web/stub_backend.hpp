@@ -37,6 +37,26 @@ class StubStream final : public PictureStream {
   const std::atomic<bool>& fails_;
 };
 
+class StubScene final : public SceneStream {
+ public:
+  StubScene(std::atomic<int>& open, Timestamp posture) : open_(open), posture_(posture) { ++open_; }
+  ~StubScene() override { --open_; }
+  [[nodiscard]] std::shared_ptr<const SceneUpdate> newest(std::uint64_t has) const override {
+    auto update = std::make_shared<SceneUpdate>();
+    update->sequence = has + 1;
+    update->posture_time = posture_;
+    update->geometry_hash = 0xABCD;
+    update->poses.assign(20'000, 'p');
+    update->marks_sequence = 1;
+    update->marks = std::make_shared<const std::string>(R"({"is":"marks"})");
+    return update;
+  }
+
+ private:
+  std::atomic<int>& open_;
+  Timestamp posture_;
+};
+
 class StubBackend final : public Backend {
  public:
   [[nodiscard]] const Clock& clock() const override { return clock_; }
@@ -57,6 +77,7 @@ class StubBackend final : public Backend {
   }
   [[nodiscard]] std::string command_log_json() override { return "{}"; }
   [[nodiscard]] std::string metrics_text() override { return "up 1\n"; }
+  [[nodiscard]] Health health() override { return {healthy, healthy ? "ok" : "the loop stands still"}; }
   void execute(std::string_view command, const CommandOrigin& /*origin*/,
                std::function<void(const CommandReply&)> reply) override {
     const std::scoped_lock lock(mutex);
@@ -78,6 +99,17 @@ class StubBackend final : public Backend {
     pictures.push_back(give);
     if (!keep_waiting) give();
   }
+  Result<std::unique_ptr<SceneStream>> open_scene() override {
+    return std::make_unique<StubScene>(open_scenes, SystemClock().now());
+  }
+  void ask_geometry(GeometryReply reply) override {
+    const auto give = [reply = std::move(reply)] {
+      reply(std::make_shared<const SceneGeometry>(SceneGeometry{std::string(1 << 20, 'g'), 0xABCD}));
+    };
+    const std::scoped_lock lock(mutex);
+    geometries.push_back(give);
+    if (!keep_waiting) give();
+  }
   void ask_pick(const PictureRequest& /*wish*/, int x, int /*y*/, PickReply reply) override {
     const auto give = [x, reply = std::move(reply)] {
       reply(x == 0 ? std::nullopt : std::optional(PickedObject{"Robot.J_1", "ROBOT"}));
@@ -90,13 +122,16 @@ class StubBackend final : public Backend {
   std::atomic<int> lives{0};  // documents that were made
   std::atomic<int> names{0};
   std::atomic<int> open_streams{0};
+  std::atomic<int> open_scenes{0};
   std::atomic<bool> pictures_fail{false};
   std::atomic<bool> status_throws{false};
+  std::atomic<bool> healthy{true};
   std::atomic<int> expected{0};           // times that somebody opened the page
   std::atomic<bool> keep_waiting{false};  // whoever asks for a picture or a pick
   std::mutex mutex;
   std::vector<std::function<void()>> pictures;  // that were asked for; each call answers once more
   std::vector<std::function<void()>> picks;
+  std::vector<std::function<void()>> geometries;
   std::vector<std::string> commands;
   std::vector<std::function<void(const CommandReply&)>> held;
 

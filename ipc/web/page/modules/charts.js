@@ -1,14 +1,20 @@
 // Which charts there are and what they show. All values are recorded as they come; drawn is what can be seen, as much
 // as fits into a small part of an update, in turns.
+import {csv_of, picture_of, save} from "./chart_export.js";
+import {describe_key} from "./chart_keys.js";
+import {ChartSearch} from "./chart_search.js";
 import {byId, element, setText, Visibility} from "./dom.js";
 import {clock_time, joint_unit, norm, scaled, shown_unit} from "./format.js";
 import {History} from "./history.js";
+import {short_labels} from "./short_labels.js";
 import {StripChart} from "./strip_chart.js";
 
 const kBudget_ms = 1.5;
 const kMostDrawn = 2;
 const kGap_s = 2;
 const kMostCurves = 6;
+const kLongest_s = 130;  // as long as is recorded
+const kShortestZoom_s = 0.3;
 const kSpare = 300;  // places that joints leave to what there is little of
 
 const kQuantities = {
@@ -22,6 +28,8 @@ export function record(history, live) {
   history.add(live.time_s ?? 0, (put) => {
     put("loop|wake-up p99", live.loop?.latency_p99_us);
     put("loop|tick p99", live.loop?.compute_p99_us);
+    put("loop|missed periods", live.loop?.missed);
+    for (const queue of live.queues ?? []) put(`queue|${queue.name}`, queue.dropped, kSpare);
     for (const pair of live.near ?? []) put(`near|${pair.a} – ${pair.b}`, pair.distance_m);
     for (const pair of live.touching ?? []) put(`near|${pair.a} – ${pair.b}`, 0);
     // A doubtful distance is no measurement: something nearer may be there.
@@ -44,7 +52,7 @@ function record_joints(put, live) {
 
 // What is not recorded, for people; empty where everything is.
 export function left_out_in_words(keys) {
-  const kinds = {q: "positions", v: "velocities", e: "efforts", near: "distances", range: "ranges", tcp: "forces", loop: "loop"};
+  const kinds = {q: "positions", v: "velocities", e: "efforts", near: "distances", range: "ranges", tcp: "forces", loop: "loop", queue: "queues"};
   const counts = new Map();
   for (const key of keys) {
     const kind = kinds[key.slice(0, key.indexOf("|"))];
@@ -65,24 +73,95 @@ export class Charts {
     this.turn_ = 0;
     this.nearest_ = [];
     const parent = byId("chart-list");
+    this.zoom_ = null;    // [from, to], s
+    const zoomed = (range) => this.zoom_to_(range);
+    const words_of = (key) => describe_key(key, this.robots_ ?? [], names).text;
+    this.search_ = new ChartSearch({keys: () => this.history_.keys(""), words_of, changed: () => this.chosen_changed_()});
     this.charts_ = [
-      {chart: new StripChart(parent, {title: "Joints", digits: 1}), show: (chart) => this.show_joints_(chart)},
-      {chart: new StripChart(parent, {title: "Distances", digits: 0}), show: (chart) => this.show_nearest_(chart)},
-      {chart: new StripChart(parent, {title: "Ranges", digits: 0}), show: (chart) => this.show_all_(chart, "range|", "mm", 1000)},
-      {chart: new StripChart(parent, {title: "Forces at the TCP", digits: 1}), show: (chart) => this.show_all_(chart, "tcp|", "N", 1)},
-      {chart: new StripChart(parent, {title: "Loop", digits: 0}), show: (chart) => this.show_all_(chart, "loop|", "µs", 1)},
+      {chart: new StripChart(parent, {title: "Chosen", digits: 2, zoomed}), show: (chart) => this.show_chosen_(chart)},
+      {chart: new StripChart(parent, {title: "Joints", digits: 1, zoomed}), show: (chart) => this.show_joints_(chart)},
+      {chart: new StripChart(parent, {title: "Distances", digits: 0, zoomed}), show: (chart) => this.show_nearest_(chart)},
+      {chart: new StripChart(parent, {title: "Ranges", digits: 0, zoomed}), show: (chart) => this.show_all_(chart, "range|", "mm", 1000)},
+      {chart: new StripChart(parent, {title: "Forces at the TCP", digits: 1, zoomed}), show: (chart) => this.show_all_(chart, "tcp|", "N", 1)},
+      {chart: new StripChart(parent, {title: "Loop", digits: 0, zoomed}), show: (chart) => this.show_all_(chart, "loop|", "µs", 1, /p99/)},
     ];
     this.visibility_ = new Visibility();
     for (const {chart} of this.charts_) this.visibility_.watch(chart.node);
     this.robot_choice_ = byId("chart-robot");
     this.robot_choice_.addEventListener("change", () => this.select(this.robot_choice_.value));
-    byId("chart-pause").addEventListener("click", (event) => {
-      this.paused_at_ = this.paused_at_ === null ? this.history_.newest_time() : null;
-      event.currentTarget.setAttribute("aria-pressed", String(this.paused_at_ !== null));
-      setText(event.currentTarget, this.paused_at_ === null ? "Pause" : "Go on");
-      this.draw_all_();
-    });
-    for (const id of ["chart-quantity", "chart-span"]) byId(id).addEventListener("change", () => this.draw_all_());
+    byId("chart-pause").addEventListener("click", () => this.pause_(this.paused_at_ === null));
+    byId("chart-unzoom").addEventListener("click", () => this.zoom_to_(null));
+    byId("chart-csv").addEventListener("click", () => this.save_table_());
+    byId("chart-png").addEventListener("click", () => this.save_picture_());
+    this.charts_[0].chart.node.hidden = true;
+    for (const id of ["chart-quantity", "chart-span"]) {
+      byId(id).addEventListener("change", () => {
+        this.draw_all_();
+        this.changed_?.();
+      });
+    }
+  }
+
+  // For the address of the page.
+  on_change(changed) {
+    this.changed_ = changed;
+  }
+
+  // As the user chose it; null: not yet.
+  get chosen_robot() {
+    return this.chosen_robot_ ?? null;
+  }
+
+  pause_(wanted) {
+    this.paused_at_ = wanted ? this.paused_at_ ?? this.history_.newest_time() : null;
+    if (!wanted) this.zoom_ = null;
+    const button = byId("chart-pause");
+    button.setAttribute("aria-pressed", String(wanted));
+    setText(button, wanted ? "Go on" : "Pause");
+    byId("chart-unzoom").hidden = this.zoom_ === null;
+    this.draw_all_();
+  }
+
+  // A part that is looked at does not run away: all charts pause and show it.
+  zoom_to_(range) {
+    const until = this.paused_at_ ?? this.history_.newest_time();
+    this.zoom_ = range && [Math.max(range[0], until - kLongest_s), Math.min(range[1], until)];
+    if (this.zoom_ && this.zoom_[1] - this.zoom_[0] < kShortestZoom_s) this.zoom_ = null;
+    this.pause_(this.zoom_ !== null || this.paused_at_ !== null);
+  }
+
+  // Keys of the chart of one's own.
+  get chosen() {
+    return this.search_.chosen;
+  }
+
+  choose(keys) {
+    this.search_.set(keys);
+  }
+
+  chosen_changed_() {
+    this.charts_[0].chart.node.hidden = this.chosen.length === 0;
+    if (this.robots_) this.draw_all_();
+    this.changed_?.();
+  }
+
+  show_chosen_(chart) {
+    const all = this.chosen.map((key) => ({key, ...describe_key(key, this.robots_ ?? [], this.names_)}));
+    const texts = all.map(({text}) => text);
+    this.show_(chart, short_labels(texts), all.map(({unit}) => unit), all.map(({key}) => key), all.map(({scale}) => scale), texts);
+  }
+
+  get shown_charts_() {
+    this.draw_all_();
+    return this.charts_.map(({chart}) => chart).filter((chart) => !chart.node.hidden);
+  }
+
+  save_table_() {
+    save(`${file_name()}.csv`, new Blob([csv_of(this.shown_charts_.map((chart) => chart.shown))], {type: "text/csv"}));
+  }
+
+  save_picture_() {
+    picture_of(this.shown_charts_)?.toBlob((blob) => save(`${file_name()}.png`, blob), "image/png");
   }
 
   record(live) {
@@ -105,8 +184,10 @@ export class Charts {
 
   select(robot) {
     this.robot_ = robot;
+    this.chosen_robot_ = robot;
     this.robot_choice_.value = robot;
-    this.draw_all_();
+    if (this.robots_) this.draw_all_();
+    this.changed_?.();
   }
 
   restyle() {
@@ -157,7 +238,8 @@ export class Charts {
     const keys = joints.map((joint) => `${quantity.prefix}|${this.robot_}|${joint.name}`);
     const scales = units.map((unit) => (quantity.unit ? scaled(1, quantity.unit(unit)) : 1));
     const unit_texts = units.map((unit) => (quantity.unit ? shown_unit(quantity.unit(unit)) : unit === "m" ? "N" : "Nm"));
-    this.show_(chart, joints.map((joint) => joint.name), unit_texts, keys, scales);
+    const names = joints.map((joint) => joint.name);
+    this.show_(chart, short_labels(names), unit_texts, keys, scales, names);
   }
 
   // The pairs that are nearest now.
@@ -179,14 +261,19 @@ export class Charts {
     return this.nearest_;
   }
 
-  show_all_(chart, prefix, unit, scale) {
-    const keys = this.history_.keys(prefix).slice(0, 2 * kMostCurves);
-    this.show_(chart, keys.map((key) => key.slice(prefix.length)), keys.map(() => unit), keys, keys.map(() => scale));
+  show_all_(chart, prefix, unit, scale, only = /./) {
+    const keys = this.history_.keys(prefix).filter((key) => only.test(key)).slice(0, 2 * kMostCurves);
+    this.show_(chart, short_labels(keys.map((key) => key.slice(prefix.length))), keys.map(() => unit), keys, keys.map(() => scale));
   }
 
   show_(chart, labels, units, keys, scales, titles = labels) {
-    const until = this.paused_at_ ?? this.history_.newest_time();
+    const until = this.zoom_?.[1] ?? this.paused_at_ ?? this.history_.newest_time();
+    const span = this.zoom_ ? this.zoom_[1] - this.zoom_[0] : this.span_;
     const end = this.paused_at_ !== null || this.quiet_ ? clock_time(new Date(until * 1000)) : "now";
-    chart.show({labels, titles, units}, this.history_.window(keys, this.span_, scales, until), {span: this.span_, until, end});
+    chart.show({labels, titles, units}, this.history_.window(keys, span, scales, until), {span, until, end});
   }
+}
+
+function file_name() {
+  return `cellmirror-charts-${new Date().toISOString().slice(0, 19).replaceAll(":", "")}`;
 }

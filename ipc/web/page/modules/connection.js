@@ -1,5 +1,6 @@
 // The WebSocket to the gateway: reconnects by itself, with growing pauses. Events, through `on(kind, f)`: opened,
-// closed({retry_s}), welcome, live, reply, picked, refused (the messages), picture (an ArrayBuffer).
+// closed({retry_s}), welcome, live, reply, picked, refused, marks (the messages), picture, poses (an ArrayBuffer).
+import {is_poses} from "./scene_format.js";
 
 const kFirstPause_s = 0.5;
 const kLongestPause_s = 8;
@@ -86,7 +87,7 @@ export class Connection {
   received_(data) {
     this.heard_ = Date.now();
     if (data instanceof ArrayBuffer) {
-      this.emit_("picture", data);
+      this.emit_(is_poses(data) ? "poses" : "picture", data);
       return;
     }
     let message;

@@ -73,7 +73,7 @@ export function start_of_free_view(choice, display) {
 }
 
 export class LiveView {
-  // `changed(choice)` is called when a hand made the view free, or went back.
+  // `changed(choice, moved)` is called when a hand made the view free, moved a free one (`moved`), or went back.
   constructor(connection, {changed, picked}) {
     this.connection_ = connection;
     this.changed_ = changed;
@@ -84,12 +84,13 @@ export class LiveView {
     this.choice_ = {kind: "display"};
     this.before_ = this.choice_;
     this.display_ = null;
+    this.draws_ = true;
     this.shown_ = null;   // {sequence, age_s, at}
     this.order_ = new PictureOrder();
     this.asked_at_ = 0;
     this.sent_ = "";
     this.size_ = [640, 480];
-    watch_gestures(this.canvas_, this.hand_());
+    watch_gestures(this.canvas_, this.hand());
     new ResizeObserver(() => this.resized_()).observe(this.area_);
     document.addEventListener("visibilitychange", () => this.ask_());
     connection.on("opened", () => {
@@ -125,22 +126,52 @@ export class LiveView {
     this.display_ = live.display ?? null;
   }
 
+  // `start(choice, otherwise)` may know better where a view is now: as a camera that moves.
+  follow(start) {
+    this.start_ = start;
+  }
+
+  current_view() {
+    const otherwise = start_of_free_view(this.choice_, this.display_);
+    return this.start_ ? this.start_(this.choice_, otherwise) : otherwise;
+  }
+
+  // False: another part draws, and tells by shown_now() and report().
+  show_pictures(wanted) {
+    if (this.draws_ === wanted) return;
+    this.draws_ = wanted;
+    this.shown_ = null;
+    this.problem_ = null;
+    this.waiting_since_ = performance.now();
+    this.ask_();
+  }
+
+  shown_now(age_s, sequence) {
+    this.shown_ = {sequence, age_s, at: performance.now(), width: 0};
+    this.problem_ = null;
+  }
+
+  report(problem) {
+    this.problem_ = problem;
+  }
+
   move(change) {
-    const view = change(start_of_free_view(this.choice_, this.display_));
+    const view = change(this.current_view());
     const was_free = this.choice_.kind === "free";
     this.choice_ = {kind: "free", view};
-    if (!was_free) this.changed_(this.choice_);
+    this.changed_(this.choice_, was_free);
     this.ask_soon_();
   }
 
-  hand_() {
+  // What movements by hand do; `pick(x, y)`: in place of asking the gateway.
+  hand(pick = (x, y) => this.pick_(x, y)) {
     return {
       orbit: (turn, rise) => this.move((view) => math.orbit(view, turn, rise)),
       pan: (x, y) => this.move((view) => math.pan(view, x, y)),
       zoom: (factor) => this.move((view) => math.zoom(view, factor)),
       home: () => this.choose(this.before_),
       leave: () => this.picked_(null),
-      pick: (x, y) => this.pick_(x, y),
+      pick,
     };
   }
 
@@ -172,7 +203,7 @@ export class LiveView {
   }
 
   ask_(again = false) {
-    const request = document.hidden ? {do: "no_picture"} : request_of(this.choice_, this.size_);
+    const request = document.hidden || !this.draws_ ? {do: "no_picture"} : request_of(this.choice_, this.size_);
     const text = JSON.stringify(request);
     if (text === this.sent_ && !again) return;
     if (!this.connection_.send(request)) return;
@@ -193,7 +224,7 @@ export class LiveView {
       this.problem_ = "a picture came that cannot be read";
     }
     if (connection !== this.order_.connection) return;  // the gateway of now never sent it
-    if (bitmap && this.order_.is_newer(picture.sequence)) this.show_(picture, bitmap, at);
+    if (bitmap && this.draws_ && this.order_.is_newer(picture.sequence)) this.show_(picture, bitmap, at);
     bitmap?.close();
     this.connection_.send({do: "shown", sequence: picture.sequence});
   }
@@ -222,17 +253,17 @@ export class LiveView {
     const now = performance.now();
     const since = this.shown_ ? (now - this.shown_.at) / 1000 : null;
     let text = "";
-    if (!this.connection_.open) text = this.shown_ ? `The gateway is gone. This picture is ${age(since + this.shown_.age_s)} old.` : "No connection to the gateway yet.";
-    else if (this.problem_) text = `No new picture: ${this.problem_}`;
-    else if (!this.shown_) text = now - (this.waiting_since_ ?? now) > 1500 ? "No picture has come yet." : "";
-    else if (since > kStale_s) text = `This picture is ${age(since + this.shown_.age_s)} old: no newer one has come.`;
+    if (!this.connection_.open) text = this.shown_ ? `The gateway is gone. What is shown is ${age(since + this.shown_.age_s)} old.` : "No connection to the gateway yet.";
+    else if (this.problem_) text = `${this.draws_ ? "No new picture" : "3D"}: ${this.problem_}`;
+    else if (!this.shown_) text = now - (this.waiting_since_ ?? now) > 1500 ? `No ${this.draws_ ? "picture" : "3D"} has come yet.` : "";
+    else if (since > kStale_s) text = `${this.draws_ ? "This picture" : "What is shown"} is ${age(since + this.shown_.age_s)} old: nothing newer has come.`;
     else if (this.shown_.age_s > kStale_s) text = `The posture shown is ${age(this.shown_.age_s)} old.`;
     setText(note, text);
     note.hidden = text === "";
     this.area_.classList.toggle("stale", text !== "" && this.shown_ !== null);
     const current = this.shown_ !== null && text === "";
-    this.area_.classList.toggle("speaks", current && text_is_readable(this.shown_.width, this.width_ ?? this.shown_.width));
-    const stamp = current ? stamp_of(this.shown_, since) : "";
+    this.area_.classList.toggle("speaks", current && this.draws_ && text_is_readable(this.shown_.width, this.width_ ?? this.shown_.width));
+    const stamp = current && this.draws_ ? stamp_of(this.shown_, since) : "";
     setText(byId("view-age"), stamp);
   }
 }

@@ -1,4 +1,5 @@
 // Puts the page together: what comes from the gateway goes to the panels, what people do goes to the gateway.
+import {AddressBar, read_address} from "./address.js";
 import {allow_bell} from "./bell.js";
 import {Charts} from "./charts.js";
 import {CommandLog} from "./command_log.js";
@@ -14,6 +15,7 @@ import {Presence} from "./presence.js";
 import {Problems} from "./problems.js";
 import {Programs} from "./programs.js";
 import {Robots} from "./robots.js";
+import {SceneMode} from "./scene_mode.js";
 import {ShortNames} from "./short_names.js";
 import {System} from "./system.js";
 import {Tabs} from "./tabs.js";
@@ -25,6 +27,7 @@ import {ViewChoice} from "./view_choice.js";
 import {Volume} from "./volume.js";
 
 take_token();
+const first_hash = window.location.hash;
 window.addEventListener("hashchange", () => {
   if (take_token()) connection.hello();
 });
@@ -39,12 +42,17 @@ const script = new Console(connection, {
   may_command: () => presence.may_command, why_not: () => presence.why_not()});
 const command = (text) => script.run(text);
 
+let selected = null;  // path of the node that was picked or chosen in the tree
 const tabs = new Tabs(byId("side-tabs"), {opened: (id) => id === "tab-messages" && messages.read()});
 const show_node = (path) => {
   tabs.open("tab-tree");
   tree.show(path);
 };
-const tree = new Tree({command});
+const tree = new Tree({command, selected: (path) => {
+  selected = path;
+  scene.select(path);
+  address.changed();
+}});
 const names = new ShortNames();
 const charts = new Charts({names});
 const robots = new Robots({select: (id) => charts.select(id), command});
@@ -63,15 +71,56 @@ const messages = new Messages({
 connection.on("welcome", ({run}) => messages.of_run(run));
 const picked = new PickedLabel({show_robot: (id) => robots.highlight(id), show_node});
 const view = new LiveView(connection, {
-  changed: (choice) => {
-    picked.show(null);
-    choices.chosen(choice);
+  changed: (choice, moved) => {
+    if (!moved) {
+      picked.show(null);
+      choices.chosen(choice);
+    }
+    scene.look();
+    address.changed();
   },
-  picked: (found) => picked.show(found),
+  picked: (found) => {
+    picked.show(found);
+    if (found?.path) select(found.path);
+  },
 });
+const scene = new SceneMode({
+  connection, view, picked: (found) => picked.show(found), selected: (path) => select(path), changed: () => {
+    picked.show(null);
+    address.changed();
+  }});
+// What was picked is chosen in the tree, and what is chosen there stands out in 3D.
+function select(path) {
+  tree.choose(path);
+  selected = path;  // the tree may know only the node above it
+  scene.select(path);
+  address.changed();
+}
 const choices = new ViewChoice({choose: (choice) => view.choose(choice), current: () => view.choice, command});
 watch_menus();
-watch_theme(byId("theme-button"), () => charts.restyle());
+watch_theme(byId("theme-button"), () => {
+  charts.restyle();
+  scene.restyle();
+});
+const address = new AddressBar({
+  state: () => ({
+    mode: scene.chosen, choice: view.choice, select: selected, robot: charts.chosen_robot, quantity: byId("chart-quantity").value,
+    span: byId("chart-span").value, values: charts.chosen}),
+  apply: (wanted) => apply(wanted),
+});
+charts.on_change(() => address.changed());
+
+// What an address says; a node that is not known yet is chosen when the tree has come.
+function apply({mode, choice, select: path, robot, quantity, span, values}) {
+  if (choice) view.choose(choice);
+  if (quantity) byId("chart-quantity").value = quantity;
+  if (span) byId("chart-span").value = span;
+  if (robot) charts.select(robot);
+  if (values.length > 0) charts.choose(values);
+  if (path) select(path);
+  scene.begin(mode);
+}
+apply(read_address(first_hash));
 
 // One update a frame at most, with the newest; what was recorded is not left out.
 let newest = null;
@@ -99,6 +148,7 @@ function draw() {
   problems.update(live);
   command_log.update(live, tabs.current === "tab-messages");
   view.update(live);
+  if (view.choice.kind !== "free") scene.look();
   choices.update(live);
   charts.update();
   const revision = live.tree_revision ?? live.revision;
@@ -125,6 +175,7 @@ async function learn_tree(revision) {
   try {
     const document_of_tree = await fetched("api/tree");
     tree.set(document_of_tree);
+    if (selected) select(selected);
     volume.know(document_of_tree.volumes);
     script.know_names(await fetched("api/names"));
   } catch {

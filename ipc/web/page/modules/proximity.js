@@ -102,7 +102,7 @@ export class Proximity {
     const near_badge = byId("near-badge");
     setText(near_badge, `${warned} near`);
     near_badge.hidden = warned === 0;
-    setText(byId("near-tab-count"), touching + near ? String(touching + near) : "");
+    setText(byId("near-tab-count"), near ? String(near) : "");
   }
 }
 

@@ -1,5 +1,7 @@
 // A card for each robot: mode, state and age of its data, joints as bars within their ranges.
+import {confirmed} from "./confirm.js";
 import {byId, element, setText, setAttribute, KeyedRows, Visibility} from "./dom.js";
+import {short_labels} from "./short_labels.js";
 import {age, joint_unit, joint_value, number, scaled, shown_unit} from "./format.js";
 
 // Where the value stands within the range: 0 to 1; null where there is no range.
@@ -64,15 +66,23 @@ export class Robots {
     card.activate.addEventListener("click", () => this.command_(`ROBACT ${robot.id}`));
     card.charts.addEventListener("click", () => this.select_(robot.id));
     card.stop.addEventListener("click", () => this.command_(`STOP_ROB ${robot.id}`));
-    card.online.addEventListener("click", () => this.command_(`ROBOT ${robot.id} ${card.online.dataset.to}`));
+    card.online.addEventListener("click", () => this.switch_(robot.id, card.online.dataset.to));
     const tools = element("div", {class: "tools"}, card.charts, card.activate, card.stop, card.online);
     card.node = element("details", {class: "robot", open: !this.narrow_, "data-robot": robot.id},
       element("summary", {}, element("span", {class: "name"}, robot.id), card.flags, card.age, card.badge),
       card.note, card.joints, tools);
     card.node.classList.toggle("chosen", robot.id === this.chosen_);
     card.rows = new KeyedRows(card.joints, make_joint, update_joint);
+    card.names = "";
     this.visibility_.watch(card.node);
     return card;
+  }
+
+  // Offline, the mirrored robot stands still whatever the real one does: nobody should do that by a slip.
+  async switch_(id, to) {
+    if (to === "offline" && !(await confirmed(`Take ${id} offline?`,
+      "The mirrored robot then no longer follows the real one: collisions and distances are those of where it stands.", "Take offline"))) return;
+    this.command_(`ROBOT ${id} ${to}`);
   }
 
   update_card_(card, robot) {
@@ -89,7 +99,16 @@ export class Robots {
     card.online.hidden = robot.mode !== "mirrored" && robot.has_stream === false;
     card.activate.disabled = robot.active === true;
     // A closed or scrolled-away card costs nothing.
-    if (card.node.open && this.visibility_.sees(card.node)) card.rows.show(robot.joints ?? [], (joint) => joint.name);
+    if (card.node.open && this.visibility_.sees(card.node)) this.show_joints_(card, robot.joints ?? []);
+  }
+
+  show_joints_(card, joints) {
+    card.rows.show(joints, (joint) => joint.name);
+    const names = joints.map((joint) => joint.name);
+    const text = names.join("\n");
+    if (text === card.names) return;
+    card.names = text;
+    short_labels(names).forEach((label, i) => setText(card.rows.get(names[i]).name, label));
   }
 }
 
@@ -98,10 +117,11 @@ function make_joint(joint) {
     value: element("span", {class: "value"}),
     unit: element("span", {class: "unit"}, shown_unit(joint_unit(joint))),
     mark: element("span", {class: "mark"}),
+    name: element("span", {class: "name", title: joint.name}, joint.name),
   };
   row.bar = element("span", {class: "bar"}, row.mark);
   row.node = element("div", {class: "joint", role: "listitem"},
-    element("span", {class: "name", title: joint.name}, joint.name), row.bar, row.value, row.unit);
+    row.name, row.bar, row.value, row.unit);
   return row;
 }
 

@@ -1,6 +1,6 @@
-// One chart of values over time, by uPlot (vendor/). Colours come from the style sheet, so that light and dark fit.
+// One chart of values over time, by dygraphs (lib/). Colours come from the style sheet, so that light and dark fit.
 import {element, setText} from "./dom.js";
-import {number} from "./format.js";
+import {clock_time, number} from "./format.js";
 
 // Okabe and Ito's palette, suited to colour-blind people; more series repeat it with dashes.
 // Orange, light blue and purple are darker than theirs: every curve stands out from white and from dark by 3 to 1.
@@ -25,77 +25,102 @@ function resolved(name) {
 }
 
 export class StripChart {
-  constructor(parent, {title, digits}) {
+  // `zoomed([from, to])`: a part was chosen with the mouse, s; null: all again.
+  constructor(parent, {title, digits, zoomed}) {
     this.digits_ = digits;
+    this.zoomed_ = zoomed;
     this.title_ = element("span", {class: "title"}, title);
     this.unit_ = element("span", {class: "unit"});
     this.until_ = element("span", {class: "unit"});
-    this.plot_area_ = element("div", {class: "plot", hidden: true});
+    this.plot_area = element("div", {class: "plot", role: "img", "aria-label": title, hidden: true});
     this.legend_ = element("div", {class: "legend"});
     this.empty_ = element("p", {class: "empty"}, "nothing to show");
-    this.node = element("figure", {class: "chart", role: "img", "aria-label": title},
-      element("figcaption", {}, this.title_, this.unit_, this.until_), this.plot_area_, this.empty_, this.legend_);
+    this.node = element("figure", {class: "chart"},
+      element("figcaption", {}, this.title_, this.unit_, this.until_), this.plot_area, this.empty_, this.legend_);
     parent.append(this.node);
-    this.name_ = title;
+    this.name = title;
     this.labels_ = null;
     this.plot_ = null;
-    new ResizeObserver(() => this.resize_()).observe(this.plot_area_);
+    this.cursor_px_ = null;
+    this.shown = {title, labels: [], units: [], columns: [[]]};
+    new ResizeObserver(() => this.resize_()).observe(this.plot_area);
   }
 
   // labels, titles, units: one for each value column of `columns`; times in s. A second unit has the scale on the right.
   // The axis ends `until`, and begins `span` before; `end`: "now", or the time of day.
   show({labels, titles, units}, columns, {span, until, end}) {
     const key = `${labels.join("\n")}\n${titles.join("\n")}\n${units.join("\n")}`;
-    const renamed = this.end_ !== end;
     this.end_ = end;
-    setText(this.until_, end === "now" ? "" : `until ${end}`);
+    this.shown = {title: this.name, labels, units, columns};
     const kinds = [...new Set(units)];
     setText(this.unit_, kinds.length > 1 ? `${kinds[0]}; right: ${kinds[1]}` : kinds[0] ?? "");
     this.empty_.hidden = labels.length > 0;
-    this.plot_area_.hidden = labels.length === 0;
+    this.plot_area.hidden = labels.length === 0;
     this.legend_.hidden = labels.length === 0;
-    if (labels.length === 0) return;
+    if (labels.length === 0 || this.plot_area.clientWidth === 0) return;
+    const rows = rows_of(columns);
+    const window_s = [until - span, until];
     if (key !== this.labels_) {
       this.labels_ = key;
-      this.make_({labels, titles}, units.map((unit) => (unit === kinds[0] ? "left" : "right")), columns);
+      this.make_({labels, titles}, units.map((unit) => (unit === kinds[0] ? "y" : "y2")), rows, window_s);
+    } else if (!this.dragging_()) {
+      this.plot_.updateOptions({file: rows, dateWindow: window_s});
     }
-    this.plot_.batch(() => {
-      this.plot_.setData(columns, false);
-      this.plot_.setScale("x", {min: until - span, max: until});
-    });
-    if (renamed) this.plot_.redraw(false, true);  // the same times would keep their names
-    this.show_values_(columns);
+    this.show_values_();
   }
 
   restyle() {
     this.labels_ = null;
   }
 
-  make_({labels, titles}, sides, columns) {
+  // A redraw would end the drag.
+  dragging_() {
+    return this.pressed_ === true;
+  }
+
+  make_({labels, titles}, sides, rows, window_s) {
     this.plot_?.destroy();
-    const text = resolved("--text-soft");
-    const grid = {stroke: resolved("--line-soft"), width: 1};
-    const values = (_plot, splits) => splits.map((value) => number(value, decimals(splits)));
-    const axis = {stroke: text, grid, ticks: {show: false}, font: "11px system-ui, sans-serif", labelSize: 0};
-    const relative = (plot, splits) => splits.map((time) => {
-      const back = Math.round(plot.scales.x.max - time);
-      return back === 0 ? (this.end_ === "now" ? "now" : "0 s") : `\u2212${back} s`;
+    const Dygraph = library();
+    const ids = labels.map((_, i) => `s${i}`);
+    const with_two = sides.includes("y2");
+    const axis = {axisLineColor: "transparent", gridLineColor: resolved("--line-soft"), gridLineWidth: 1, axisLabelFontSize: 11};
+    const values = (value, _granularity, _options, plot) => number(value, decimals(plot.yAxisRange()));
+    const press = Dygraph.defaultInteractionModel.mousedown;
+    this.plot_ = new Dygraph(this.plot_area, rows, {
+      labels: ["time", ...ids],
+      colors: labels.map((_, i) => colour(i)),
+      series: Object.fromEntries(ids.map((id, i) => [id, {axis: sides[i], strokePattern: i < kColours.length ? null : [5, 3]}])),
+      axes: {
+        x: {...axis, axisLabelWidth: 56, ticker: (from, to, pixels) => even_splits(from, to, pixels).map((v) => ({v, label: this.time_name_(v, from, to)}))},
+        y: {...axis, axisLabelWidth: 42, pixelsPerLabel: 24, axisLabelFormatter: values},
+        y2: {...axis, axisLabelWidth: 42, pixelsPerLabel: 24, independentTicks: true, drawGrid: false,
+          axisLabelFormatter: (value, _granularity, _options, plot) => number(value, decimals(plot.yAxisRange(1)))},
+      },
+      dateWindow: window_s,
+      legend: "never",
+      strokeWidth: 1.5,
+      yRangePad: 6,
+      rightGap: with_two ? 0 : 14,
+      highlightCircleSize: 0,
+      interactionModel: {
+        mousedown: (event, plot, context) => {
+          this.pressed_ = true;
+          window.addEventListener("mouseup", () => { this.pressed_ = false; }, {once: true});
+          press(event, plot, context);
+        },
+        willDestroyContextMyself: true,
+        dblclick: () => this.zoomed_(null),
+      },
+      zoomCallback: (from, to) => this.zoomed_([from, to]),
+      highlightCallback: (event) => {
+        this.cursor_px_ = event.clientX - this.plot_area.getBoundingClientRect().left;
+        this.show_values_();
+      },
+      unhighlightCallback: () => {
+        this.cursor_px_ = null;
+        this.show_values_();
+      },
     });
-    this.plot_ = new window.uPlot({
-      width: Math.max(120, this.plot_area_.clientWidth),
-      height: this.plot_area_.clientHeight || 100,
-      legend: {show: false},
-      cursor: {show: false},
-      scales: {x: {time: false}, left: {range: padded}, right: {range: padded}},
-      padding: [6, sides.includes("right") ? 0 : 14, 0, 0],
-      axes: [
-        {...axis, size: 20, gap: 2, splits: (plot) => even_splits(plot.scales.x.min, plot.scales.x.max), values: relative},
-        {...axis, values, scale: "left", size: 44, gap: 3, space: 24},
-        ...(sides.includes("right") ? [{...axis, values, scale: "right", side: 1, size: 44, gap: 3, space: 24, grid: {show: false}}] : []),
-      ],
-      series: [{}, ...labels.map((label, i) => ({
-        label, scale: sides[i], stroke: colour(i), width: 1.5, points: {show: false}, dash: i < kColours.length ? undefined : [5, 3]}))],
-    }, columns, this.plot_area_);
     this.values_ = labels.map(() => element("output", {}));
     this.legend_.replaceChildren(...labels.map((label, i) => {
       const swatch = element("i", {class: i < kColours.length ? "swatch" : "swatch dashed"});
@@ -104,42 +129,82 @@ export class StripChart {
     }));
   }
 
-  show_values_(columns) {
+  time_name_(time, from, to) {
+    if (this.end_ !== "now" && this.end_ !== undefined) return clock_time(new Date(time * 1000));
+    const back = Math.round(to - time);
+    return back === 0 ? "now" : `\u2212${back} s`;
+  }
+
+  // Those under the cursor, else the newest.
+  show_values_() {
+    const {columns} = this.shown;
+    const times = columns[0];
+    let row = times.length - 1;
+    let of = this.end_ === "now" ? "" : `until ${this.end_}`;
+    if (this.cursor_px_ !== null && times.length > 0) {
+      const time = this.plot_.toDataXCoord(this.cursor_px_);
+      row = nearest(times, time);
+      of = `at ${clock_time(new Date(times[row] * 1000))}`;
+    }
+    setText(this.until_, of);
     const texts = this.values_.map((node, i) => {
-      const column = columns[i + 1];
-      const text = number(column.length ? column[column.length - 1] : null, this.digits_);
+      const text = number(columns[i + 1]?.[row] ?? null, this.digits_);
       setText(node, text);
       return text;
     });
     const now = Date.now();
-    if (this.end_ === this.announced_end_ && now - (this.announced_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
+    if (of === this.announced_of_ && now - (this.announced_ ?? 0) < 5000) return;  // for those who listen, not ten times a second
     this.announced_ = now;
-    this.announced_end_ = this.end_;
-    const until = this.end_ === "now" ? "" : `, until ${this.end_}`;
-    this.node.setAttribute("aria-label", `${this.name_}${until}: ${texts.slice(0, 8).join(", ")}`);
+    this.announced_of_ = of;
+    this.plot_area.setAttribute("aria-label", `${this.name}${of ? `, ${of}` : ""}: ${texts.slice(0, 8).join(", ")}`);
+  }
+
+  // For a picture of the chart.
+  get caption() {
+    return [this.name, this.unit_.textContent, this.until_.textContent].filter(Boolean).join("   ");
+  }
+
+  get entries() {
+    return this.shown.labels.map((label, i) => ({text: `${label} ${this.values_[i].textContent}`, colour: colour(i)}));
   }
 
   resize_() {
-    if (this.plot_ && this.plot_area_.clientWidth > 0) {
-      this.plot_.setSize({width: this.plot_area_.clientWidth, height: this.plot_area_.clientHeight});
-    }
+    if (this.plot_ && this.plot_area.clientWidth > 0) this.plot_.resize();
   }
 }
 
-// Decimal places that distinguish neighbouring labels of the axis.
-function decimals(splits) {
-  const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) : 1;
+// Without its legend: ours stands in the page, and theirs writes styles into the document, which the page's policy refuses.
+function library() {
+  const {Dygraph} = window;
+  Dygraph.PLUGINS = Dygraph.PLUGINS.filter((plugin) => plugin !== Dygraph.Plugins.Legend);
+  return Dygraph;
+}
+
+// Rows as dygraphs takes them, from columns.
+function rows_of(columns) {
+  return columns[0].map((time, row) => columns.map((column, i) => (i === 0 ? time : column[row])));
+}
+
+// The place of the time in `times`, which grow.
+export function nearest(times, time) {
+  let low = 0;
+  let high = times.length - 1;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] < time) low = middle + 1;
+    else high = middle;
+  }
+  return low > 0 && time - times[low - 1] < times[low] - time ? low - 1 : low;
+}
+
+// Decimal places for labels of an axis with this range.
+function decimals([low, high]) {
+  const step = Math.max((high - low) / 4, 1e-9);
   return Math.max(0, Math.min(6, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 
-// Four even parts ending now: lines that stand still while the curves pass.
-function even_splits(from, to) {
-  return [0, 0.25, 0.5, 0.75, 1].map((part) => from + part * (to - from));
-}
-
-// A little room above and below; a value that stands still gets a scale of its own size.
-function padded(_plot, low, high) {
-  if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
-  const room = Math.max((high - low) * 0.08, Math.abs(high) * 0.002, 0.05);
-  return [low - room, high + room];
+// Even parts ending now: lines that stand still while the curves pass. The last one lies within, or it would be dropped.
+function even_splits(from, to, pixels) {
+  const parts = pixels < 180 ? [0, 0.5, 0.9999] : [0, 0.25, 0.5, 0.75, 0.9999];
+  return parts.map((part) => from + part * (to - from));
 }

@@ -29,7 +29,8 @@ export function take_token(place = window.location, store = tabs_store(), histor
   const given = token_in(place.hash);
   if (given !== null) {
     keep_token(given, store);
-    history.replaceState(null, "", place.pathname + place.search);
+    const rest = place.hash.replace(/([#&])token=[^&]*&?/, "$1").replace(/[#&]$/, "");
+    history.replaceState(null, "", place.pathname + place.search + rest);
   }
   return kept_token(store);
 }

@@ -35,7 +35,7 @@ export class Tree {
   }
 
   show(path) {
-    const below = [path, path.split(".").slice(0, -1).join(".")].find((known) => this.model_.get(known));
+    const below = this.known_(path);
     if (!below) return;
     this.filter_.value = "";
     this.model_.reveal(below);
@@ -44,6 +44,19 @@ export class Tree {
     const row = this.row_of_(below);
     row?.scrollIntoView({block: "nearest"});
     row?.focus({preventScroll: true});  // what was pressed may be out of sight now
+  }
+
+  // The node, or the one above it; null: the tree has neither.
+  known_(path) {
+    return [path ?? "", (path ?? "").split(".").slice(0, -1).join(".")].find((known) => this.model_.get(known)) ?? null;
+  }
+
+  // Without taking the focus or opening the panel; null, or what the tree does not have: nothing is chosen.
+  choose(path) {
+    const known = this.known_(path);
+    if (known) this.model_.reveal(known);
+    this.choose_(known);
+    this.draw_();
   }
 
   draw_() {

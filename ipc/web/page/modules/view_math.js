@@ -74,6 +74,15 @@ export function zoom(view, factor) {
   return {...view, viewpoint_m: plus(view.lookpoint_m, offset)};
 }
 
+// The same direction, so that the box between two corners fills the picture.
+export function fitted(view, low, high) {
+  const lookpoint_m = low.map((value, i) => (value + high[i]) / 2);
+  const radius = Math.hypot(...minus(high, low)) / 2;
+  const reach = Math.max(kNearest_m, Math.min(kFarthest_m, radius / Math.sin(view.opening_angle_rad / 2)));
+  const offset = times(minus(view.viewpoint_m, view.lookpoint_m), reach / distance(view));
+  return {...view, lookpoint_m, viewpoint_m: plus(lookpoint_m, offset)};
+}
+
 // The SCRIPT command that makes a view of the gateway look like this one; SCRIPT has mm and degrees.
 export function as_command(view, id, seconds = 1) {
   const mm = (point) => point.map((value) => (value * 1000).toFixed(1)).join(" ");
