@@ -1,0 +1,254 @@
+#include "ipc/record/scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/record/decode.hpp"
+#include "ipc/record/summary.hpp"
+
+namespace cellmirror::mcap {
+
+std::string Catalogue::add(Schema schema) {
+  const auto [known, is_new] = schemas.try_emplace(schema.id, schema);
+  if (is_new || known->second == schema) return {};
+  return fmt::format("the schema {} is described twice, differently", schema.id);
+}
+
+std::string Catalogue::add(Channel channel) {
+  const bool without_schema = channel.schema != 0 && !schemas.contains(channel.schema);
+  const auto [known, is_new] = channels.try_emplace(channel.id, channel);
+  if (!is_new && known->second != channel)
+    return fmt::format("the channel {} is described twice, differently", channel.id);
+  if (without_schema)
+    return fmt::format("the channel {} has a schema {} that is not there", channel.id, channel.schema);
+  return {};
+}
+
+const Schema* Catalogue::schema_of(const Channel& channel) const {
+  const auto found = schemas.find(channel.schema);
+  return found == schemas.end() ? nullptr : &found->second;
+}
+
+Result<View> ChunkOpener::open(const Chunk& chunk) {
+  if (chunk.uncompressed_size > limits_.chunk_bytes) {
+    return fail(fmt::format("the chunk would have {} bytes decompressed, more than the {} that are accepted",
+                            chunk.uncompressed_size, limits_.chunk_bytes));
+  }
+  auto content = decompressor_.decompress(chunk.compression, chunk.records, chunk.uncompressed_size);
+  if (!content) return content;
+  if (chunk.uncompressed_crc != 0 && chunk.uncompressed_crc != crc32(*content))
+    return fail("the CRC of the chunk is wrong");
+  return content;
+}
+
+namespace {
+
+class Scanner {
+ public:
+  Scanner(const Source& source, const Limits& limits, Visitor& visitor)
+      : source_(source), limits_(limits), visitor_(visitor), opener_(limits) {}
+
+  Result<ScanReport> run();
+
+ private:
+  // Up to the end of the data or what cannot be read; true where it came to the end.
+  bool run_from(std::uint64_t offset);
+  // The first chunk behind `offset` that the summary knows.
+  std::optional<std::uint64_t> chunk_behind(std::uint64_t offset);
+  void take(const RecordView& record);
+  void take_chunk(const RecordView& record);
+  void take_message(const Message& message, std::uint64_t offset);
+  // Of the data section or a chunk; false: it is none of these kinds.
+  bool take_inner(const RecordView& record, std::uint64_t offset);
+  void look_at_end(std::uint64_t offset);
+  void fault(std::uint64_t offset, std::string what) { out_.faults.add(offset, std::move(what)); }
+
+  const Source& source_;
+  Limits limits_;
+  Visitor& visitor_;
+  ChunkOpener opener_;
+  ScanReport out_;
+  std::optional<std::vector<std::uint64_t>> known_chunks_;
+  std::uint64_t last_time_ = 0;
+  bool in_chunk_ = false;
+  bool has_header_ = false;
+};
+
+void Scanner::take_message(const Message& message, std::uint64_t offset) {
+  const auto channel = out_.catalogue.channels.find(message.channel);
+  if (channel == out_.catalogue.channels.end())
+    return fault(offset, fmt::format("a message of the channel {}, which is not described", message.channel));
+  if (message.log_time < last_time_) ++out_.out_of_order;
+  last_time_ = message.log_time;
+  if (!in_chunk_) ++out_.messages_outside;
+  out_.statistics.count(message);
+  visitor_.on_message(message, channel->second);
+}
+
+bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
+  if (record.is(Opcode::schema)) {
+    const auto schema = decode_schema(record.content);
+    const std::string wrong = schema ? out_.catalogue.add(*schema) : "a schema that is cut off, or has the id 0";
+    if (!wrong.empty()) {
+      fault(offset, wrong);
+    } else {
+      visitor_.on_schema(*schema);
+    }
+    return true;
+  }
+  if (record.is(Opcode::channel)) {
+    const auto channel = decode_channel(record.content);
+    const std::string wrong = channel ? out_.catalogue.add(*channel) : "a channel that is cut off";
+    if (!wrong.empty()) {
+      fault(offset, wrong);
+    } else {
+      visitor_.on_channel(*channel);
+    }
+    return true;
+  }
+  if (record.is(Opcode::message)) {
+    if (const auto message = decode_message(record.content)) {
+      take_message(*message, offset);
+    } else {
+      fault(offset, "a message that is cut off");
+    }
+    return true;
+  }
+  return false;
+}
+
+void Scanner::take_chunk(const RecordView& record) {
+  const auto chunk = decode_chunk(record.content);
+  if (!chunk) {
+    ++out_.chunks_lost;
+    return fault(record.offset, "a chunk that is cut off");
+  }
+  const auto content = opener_.open(*chunk);
+  if (!content) {
+    ++out_.chunks_lost;
+    return fault(record.offset, content.error().what);
+  }
+  in_chunk_ = true;
+  RecordList records(*content);
+  while (const auto inner = records.next()) {
+    if (!take_inner(*inner, record.offset))
+      fault(record.offset,
+            fmt::format("the chunk has a record of kind {:#04x} at its byte {}", inner->opcode, inner->offset));
+  }
+  in_chunk_ = false;
+  if (!records.ok())
+    fault(record.offset, fmt::format("the chunk has a record at its byte {} that is cut off", records.offset()));
+  ChunkIndex index;
+  index.start_time = chunk->start_time;
+  index.end_time = chunk->end_time;
+  index.offset = record.offset;
+  index.length = kRecordHead + record.content.size();
+  index.compression = chunk->compression;
+  index.compressed_size = chunk->records.size();
+  index.uncompressed_size = chunk->uncompressed_size;
+  out_.chunks.push_back(std::move(index));
+  ++out_.statistics.chunks;
+}
+
+void Scanner::take(const RecordView& record) {
+  if (take_inner(record, record.offset)) return;
+  if (record.is(Opcode::chunk)) return take_chunk(record);
+  if (record.is(Opcode::header)) {
+    auto header = decode_header(record.content);
+    if (header && !has_header_) out_.header = *std::move(header);
+    if (!header || has_header_) fault(record.offset, "a header that is wrong or not the first");
+    has_header_ = true;
+  } else if (record.is(Opcode::attachment)) {
+    bool crc_ok = false;
+    const auto attachment = decode_attachment(record.content, crc_ok);
+    if (!attachment || !crc_ok) return fault(record.offset, "an attachment that is cut off, or has a wrong CRC");
+    ++out_.statistics.attachments;
+    visitor_.on_attachment(*attachment, record);
+  } else if (record.is(Opcode::metadata)) {
+    const auto metadata = decode_metadata(record.content);
+    if (!metadata) return fault(record.offset, "metadata that are cut off");
+    ++out_.statistics.metadata;
+    visitor_.on_metadata(*metadata, record);
+  }
+}
+
+std::optional<std::uint64_t> Scanner::chunk_behind(std::uint64_t offset) {
+  if (!known_chunks_) {
+    known_chunks_.emplace();
+    if (const auto summary = read_summary(source_, limits_)) {
+      for (const ChunkIndex& chunk : summary->chunks) known_chunks_->push_back(chunk.offset);
+      std::ranges::sort(*known_chunks_);
+    }
+  }
+  const auto found = std::ranges::upper_bound(*known_chunks_, offset);
+  if (found == known_chunks_->end() || *found >= source_.size()) return std::nullopt;
+  return *found;
+}
+
+bool Scanner::run_from(std::uint64_t offset) {
+  RecordStream stream(source_, offset, source_.size(), limits_);
+  for (;;) {
+    const auto record = stream.next();
+    if (!record) {
+      // "at byte N: ..." is the stream's way to say it to those who have nothing else.
+      const std::string& what = record.error().what;
+      const std::size_t colon = what.starts_with("at byte") ? what.find(": ") : std::string::npos;
+      fault(stream.offset(), colon == std::string::npos ? what : what.substr(colon + 2));
+      return false;
+    }
+    if (!*record) {
+      fault(stream.offset(), "the file ends without an end of its data");
+      return true;
+    }
+    if ((*record)->is(Opcode::data_end) || (*record)->is(Opcode::footer)) {
+      if (!decode_data_end((*record)->content)) fault((*record)->offset, "an end of data that is cut off");
+      out_.whole_until = (*record)->end();
+      look_at_end((*record)->offset);
+      return true;
+    }
+    take(**record);
+    if (!has_header_) {
+      fault((*record)->offset, "the first record is no header");
+      has_header_ = true;
+    }
+    out_.whole_until = (*record)->end();
+  }
+}
+
+void Scanner::look_at_end(std::uint64_t offset) {
+  std::array<std::byte, kMagic.size()> end;
+  const bool magic = source_.read(source_.size() - end.size(), end).has_value() &&
+                     std::ranges::equal(end, std::as_bytes(std::span(kMagic)));
+  out_.ended = magic;
+  if (!magic) fault(offset, "the file is cut off in its summary");
+}
+
+Result<ScanReport> Scanner::run() {
+  std::array<std::byte, kMagic.size()> begin;
+  if (source_.size() < begin.size() || !source_.read(0, begin) ||
+      !std::ranges::equal(begin, std::as_bytes(std::span(kMagic))))
+    return fail("at byte 0: this is no MCAP file of version 0: its first bytes are others",
+                "name a file that cellmirror record or another MCAP writer has made");
+  std::uint64_t from = begin.size();
+  out_.whole_until = from;
+  // Ends: each round begins behind the one before.
+  while (!run_from(from)) {
+    const auto next = chunk_behind(out_.whole_until);
+    if (!next) break;
+    from = *next;
+    out_.whole_until = from;
+  }
+  out_.statistics.schemas = static_cast<std::uint16_t>(out_.catalogue.schemas.size());
+  out_.statistics.channels = static_cast<std::uint32_t>(out_.catalogue.channels.size());
+  return std::move(out_);
+}
+
+}  // namespace
+
+Result<ScanReport> scan(const Source& source, const Limits& limits, Visitor& visitor) {
+  return Scanner(source, limits, visitor).run();
+}
+
+}  // namespace cellmirror::mcap

@@ -1,0 +1,193 @@
+// Bytes that no writer of ours makes: cut off, flipped, lying. Nothing may crash, and what is whole is found.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "ipc/record/encode.hpp"
+#include "ipc/record/reader.hpp"
+#include "ipc/record/record_stream.hpp"
+#include "tests/unit/record/record_parts.hpp"
+
+namespace cellmirror::mcap {
+namespace {
+
+using test::Collector;
+using test::scanned;
+using test::small_recording;
+
+Bytes begun() {
+  Bytes out;
+  append_magic(out);
+  append(Header{"", ""}, out);
+  append(Channel{1, 0, "/a", "json"}, out);
+  return out;
+}
+
+std::string first_fault(const ScanReport& report) {
+  return report.faults.first().empty() ? std::string() : report.faults.first().front().what;
+}
+
+TEST(HostileRecording, CutAtAnyByteGivesWhatIsWholeBefore) {
+  const Bytes file = small_recording(Compression::zstd);
+  Collector all;
+  scanned(file, all);
+  std::size_t before = 0;
+  for (std::size_t size = kMagic.size(); size < file.size(); ++size) {
+    Collector found;
+    const ScanReport report = scanned(View(file).first(size), found);
+    ASSERT_GE(found.messages.size(), before) << size;
+    ASSERT_LE(report.whole_until, size);
+    ASSERT_GT(report.faults.count(), 0U) << size;
+    for (std::size_t i = before; i < found.messages.size(); ++i) ASSERT_EQ(found.messages[i], all.messages[i]);
+    before = found.messages.size();
+  }
+  EXPECT_EQ(before, 100U);
+}
+
+TEST(HostileRecording, AFlippedBitInAChunkIsFoundByItsCrcAndTheOthersAreRead) {
+  Bytes file = small_recording(Compression::none);
+  const auto summary = read_summary(MemorySource(file), {});
+  ASSERT_TRUE(summary);
+  const ChunkIndex& second = summary->chunks.at(1);
+  file[second.offset + second.length - 5] ^= std::byte{0x10};
+  Collector found;
+  const ScanReport report = scanned(file, found);
+  EXPECT_EQ(report.faults.count(), 1U);
+  EXPECT_EQ(report.faults.first().front().offset, second.offset);
+  EXPECT_NE(first_fault(report).find("CRC"), std::string::npos);
+  EXPECT_EQ(report.chunks_lost, 1U);
+  EXPECT_GT(found.messages.size(), 80U);
+}
+
+TEST(HostileRecording, BehindALengthThatLiesTheSummaryShowsTheNextChunk) {
+  Bytes file = small_recording(Compression::zstd);
+  const auto summary = read_summary(MemorySource(file), {});
+  ASSERT_TRUE(summary);
+  file[summary->chunks.at(1).offset + 8] = std::byte{0x7F};  // the greatest byte of its length
+  Collector found;
+  const ScanReport report = scanned(file, found);
+  EXPECT_EQ(report.faults.count(), 1U);
+  EXPECT_EQ(report.faults.first().front().offset, summary->chunks[1].offset);
+  EXPECT_EQ(report.chunks.size(), summary->chunks.size() - 1);
+  EXPECT_TRUE(report.ended);
+}
+
+TEST(HostileRecording, AChunkThatBlowsUpIsRefused) {
+  const Bytes zeros(std::size_t{8} << 20);
+  for (const Compression compression : {Compression::zstd, Compression::lz4}) {
+    Compressor compressor(compression);
+    const auto small = compressor.compress(zeros);
+    ASSERT_TRUE(small);
+    ASSERT_LT(small->size(), zeros.size() / 100);
+    // More than it says.
+    Bytes file = begun();
+    append(Chunk{0, 0, 1000, 0, std::string(word(compression)), *small}, file);
+    Collector found;
+    EXPECT_EQ(scanned(file, found).chunks_lost, 1U);
+    // As much as it says, which is more than is accepted.
+    file = begun();
+    append(Chunk{0, 0, zeros.size(), 0, std::string(word(compression)), *small}, file);
+    const ScanReport report = scanned(file, found, {.chunk_bytes = std::size_t{1} << 20});
+    EXPECT_NE(first_fault(report).find("more than the 1048576 that are accepted"), std::string::npos)
+        << first_fault(report);
+    // Less than it says.
+    file = begun();
+    append(Chunk{0, 0, zeros.size() + 1, 0, std::string(word(compression)), *small}, file);
+    EXPECT_EQ(scanned(file, found).chunks_lost, 1U);
+    EXPECT_TRUE(found.messages.empty());
+  }
+}
+
+TEST(HostileRecording, TheDecompressorWritesNoMoreThanItIsGiven) {
+  const Bytes content(1000, std::byte{7});
+  for (const Compression compression : {Compression::zstd, Compression::lz4}) {
+    Compressor compressor(compression);
+    const auto small = compressor.compress(content);
+    ASSERT_TRUE(small);
+    Decompressor decompressor;
+    EXPECT_FALSE(decompressor.decompress(word(compression), *small, 999));
+    EXPECT_FALSE(decompressor.decompress(word(compression), *small, 0));
+    EXPECT_FALSE(decompressor.decompress(word(compression), *small, 1001));
+    const auto whole = decompressor.decompress(word(compression), *small, 1000);
+    ASSERT_TRUE(whole);
+    EXPECT_TRUE(std::ranges::equal(*whole, content));
+    EXPECT_FALSE(decompressor.decompress(word(compression), small->first(small->size() - 1), 1000));
+  }
+  EXPECT_FALSE(Decompressor().decompress("bz2", content, 1000));
+}
+
+TEST(HostileRecording, MessagesOfUnknownChannelsAreNotPassedOn) {
+  Bytes file = begun();
+  append(Message{2, 0, 0, 0, view_of("x")}, file);
+  append(Message{1, 0, 0, 0, view_of("y")}, file);
+  Collector found;
+  const ScanReport report = scanned(file, found);
+  EXPECT_EQ(found.messages, std::vector<std::string>{"/a 0 y"});
+  EXPECT_NE(first_fault(report).find("channel 2"), std::string::npos);
+}
+
+TEST(HostileRecording, AChannelIsWhatItsFirstDescriptionSays) {
+  Bytes file = begun();
+  append(Channel{1, 0, "/b", "json"}, file);
+  append(Channel{3, 9, "/c", "json"}, file);
+  append(Schema{0, "n", "e", "d"}, file);
+  append(Message{1, 0, 0, 0, view_of("y")}, file);
+  Collector found;
+  const ScanReport report = scanned(file, found);
+  EXPECT_EQ(found.messages, std::vector<std::string>{"/a 0 y"});
+  EXPECT_EQ(report.faults.count(), 4U);  // with the end that is not there
+}
+
+TEST(HostileRecording, ZerosAfterALostPowerEndTheReading) {
+  Bytes file = small_recording(Compression::lz4);
+  const auto summary = read_summary(MemorySource(file), {});
+  ASSERT_TRUE(summary);
+  file.resize(summary->chunks.at(2).offset);
+  file.resize(file.size() + 4096);
+  Collector found;
+  const ScanReport report = scanned(file, found);
+  EXPECT_EQ(report.chunks.size(), 2U);
+  EXPECT_EQ(report.whole_until, file.size() - 4096);
+}
+
+TEST(HostileRecording, WhatIsNoMcapFileIsRefused) {
+  Collector found;
+  EXPECT_FALSE(scan(MemorySource({}), {}, found));
+  EXPECT_FALSE(scan(MemorySource(view_of("#ROSBAG V2.0\n")), {}, found));
+  EXPECT_FALSE(Reader::open(MemorySource(view_of("short"))));
+}
+
+TEST(HostileRecording, ASummaryWithWrongOffsetsIsNotUsed) {
+  Bytes file = small_recording(Compression::zstd);
+  file[file.size() - 20 - 8] ^= std::byte{1};  // in the footer: the start of the summary
+  const MemorySource source(file);
+  EXPECT_FALSE(read_summary(source, {}));
+  auto reader = Reader::open(source);
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->indexed());
+  EXPECT_EQ(reader->statistics().messages, 100U);
+  EXPECT_EQ(reader->attachment("cell.toml"), "name = 1");
+}
+
+TEST(HostileRecording, AnIndexThatPointsElsewhereIsAnErrorWithItsOffset) {
+  const Bytes file = small_recording(Compression::zstd);
+  // The same file, its footer's CRC left out, and a chunk's offset in the summary changed.
+  Bytes changed = file;
+  const auto summary = read_summary(MemorySource(file), {});
+  ASSERT_TRUE(summary);
+  for (std::size_t i = 0; i < 4; ++i) changed[changed.size() - 8 - 4 + i] = std::byte{0};
+  Bytes index;
+  append(summary->chunks.at(0), index);
+  const auto at = std::ranges::search(changed, index);
+  ASSERT_FALSE(at.empty());
+  at[kRecordHead + 16] ^= std::byte{1};
+  const MemorySource source(changed);
+  auto reader = Reader::open(source);
+  ASSERT_TRUE(reader && reader->indexed());
+  const auto read = reader->read({}, [](const Message&, const Channel&) { return true; });
+  ASSERT_FALSE(read);
+  EXPECT_TRUE(read.error().what.starts_with("at byte ")) << read.error().what;
+}
+
+}  // namespace
+}  // namespace cellmirror::mcap
