@@ -12,6 +12,8 @@
 
 #include "app/gateway/monitor_page.hpp"
 #include "app/gateway/picture_outputs.hpp"
+#include "app/gateway/recordings.hpp"
+#include "app/gateway/tick_readers.hpp"
 #include "app/io/command_log.hpp"
 #include "app/io/flight_file.hpp"
 #include "app/io/outputs.hpp"
@@ -23,7 +25,9 @@
 #include "app/owner/tissue/tissue_parts.hpp"
 #include "app/pictures/snapshot_request.hpp"
 #include "app/render/render_service.hpp"
+#include "app/render/scene_service.hpp"
 #include "app/report/live_document.hpp"
+#include "app/report/loop_health.hpp"
 #include "app/report/status_document.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/tissue_sources.hpp"
@@ -81,35 +85,14 @@ Result<LoadedCell> load(const GatewayOptions& options) {
   // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same diagnostics.
   for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
   log_findings(diagnostics);
+  if (!options.state.empty()) {
+    auto home = loaded->home.with_state(options.state);
+    if (!home) return std::unexpected(home.error());
+    loaded->home = *std::move(home);
+  }
   if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
   return std::move(*loaded);
 }
-
-// Who reads what the tick publishes, beside the owner. Workers are named as their threads.
-struct TickReaders {
-  explicit TickReaders(engine::Engine& engine)
-      : status(engine.subscribe("status")),
-        collisions(engine.subscribe("collisions")),
-        ranging(engine.subscribe("ranging")),
-        contacts(engine.subscribe("contacts")),
-        forces(engine.subscribe("forces")),
-        tcp_force(engine.subscribe("tcp-force")),
-        traces(engine.subscribe("traces")),
-        tissue(engine.subscribe("tissue")),
-        publisher(engine.subscribe("publisher")),
-        pictures(engine.subscribe("pictures")) {}
-
-  engine::TickReader& status;
-  engine::TickReader& collisions;
-  engine::TickReader& ranging;
-  engine::TickReader& contacts;
-  engine::TickReader& forces;
-  engine::TickReader& tcp_force;
-  engine::TickReader& traces;
-  engine::TickReader& tissue;
-  engine::TickReader& publisher;
-  engine::TickReader& pictures;
-};
 
 }  // namespace
 
@@ -133,6 +116,7 @@ struct Gateway::Parts {
   PictureCounter picture_counter;
   std::unique_ptr<CommandLog> commands;  // null: the cell folder has no place for it
   std::string commands_problem;          // then
+  Recordings recordings{clock};
   std::unique_ptr<ScriptMessageReceiver> messages;
   std::unique_ptr<TissueWorker> tissue;  // null: the cell has no deformable object
   std::unique_ptr<CellOwner> owner;
@@ -145,6 +129,7 @@ struct Gateway::Parts {
   std::unique_ptr<TraceWorker> traces;
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<RenderService> renderer;
+  std::unique_ptr<SceneService> scene;
   std::unique_ptr<FaultMonitor> faults;
   std::mutex answering;  // of the engine's view for status and of what follows: several threads answer questions
   RobotStateBuilder status_builder;
@@ -155,7 +140,9 @@ struct Gateway::Parts {
     control.reset();
     // It stays until the end: its threads ask it for its report until it is closed.
     if (page) page->close();
+    recordings.stop();
     faults.reset();
+    scene.reset();
     renderer.reset();
     publisher.reset();
     forces.reset();
@@ -176,6 +163,7 @@ struct Gateway::Parts {
   Result<void> prepare_machine();
   Result<void> take_instance(const GatewayOptions& options);
   void open_command_log();
+  void log_command(CommandRecord record);
   void note_refused(const script::CommandSource& source, std::string_view command, const std::string& why);
   Result<void> make_tissue(const TissueSetup& setup);
   // Empty in a cell without deformable objects.
@@ -189,6 +177,7 @@ struct Gateway::Parts {
   Result<void> start_messages();
   Result<void> start_outputs(const DdsOutputConfig& dds);
   Result<void> start_renderer(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
+  void start_recorder(const RecordSettings& settings);
   void start_fault_monitor();
   Result<void> start_control();
   void make_page(const GatewayOptions& options, const WebSettings& settings);
@@ -198,6 +187,7 @@ struct Gateway::Parts {
   void answer_snapshot(const ControlRequest& request, ControlReply reply);
   void answer_queues(ControlReply reply);
   std::string status();
+  web::Health health();
   [[nodiscard]] Problems problems() const;
   [[nodiscard]] CommandLogReport command_log() const { return commands ? commands->report() : CommandLogReport{}; }
   [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;
@@ -232,9 +222,14 @@ void Gateway::Parts::open_command_log() {
   log_error("command-log", "{}", commands_problem);
 }
 
+void Gateway::Parts::log_command(CommandRecord record) {
+  recordings.command(record);
+  if (commands) commands->add(std::move(record));
+}
+
 void Gateway::Parts::note_refused(const script::CommandSource& source, std::string_view command,
                                   const std::string& why) {
-  if (commands) commands->add(refused_command(source, std::string(command), why, clock.now()));
+  log_command(refused_command(source, std::string(command), why, clock.now()));
 }
 
 Result<void> Gateway::Parts::make_tissue(const TissueSetup& setup) {
@@ -253,34 +248,34 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     if (!written) return std::unexpected(written.error());
     return {};
   };
-  script::ScriptRunner::TraceFunction traced;
-  if (commands) {
-    traced = [log = commands.get()](script::CommandTrace&& trace) { log->add(command_record_of(std::move(trace))); };
-  }
+  const auto traced = [this](script::CommandTrace&& trace) { log_command(command_record_of(std::move(trace))); };
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
-  owner = std::make_unique<CellOwner>(CellOwner::Parts{.cell = std::move(loaded.cell),
-                                                       .home = loaded.home,
-                                                       .streams = std::move(streams),
-                                                       .haptics = std::move(loaded.haptics),
-                                                       .views = std::move(loaded.views),
-                                                       .layout = std::move(loaded.layout),
-                                                       .collision = std::move(loaded.collision),
-                                                       .tissue = std::move(of_tissue),
-                                                       .foot_switches = loaded.foot_switches,
-                                                       .engine = *engine,
-                                                       .board = board,
-                                                       .clock = clock,
-                                                       .stream_priority = stream_priority,
-                                                       .instance = instance->info().name,
-                                                       .tcp_force_key = queues.tcp_force_key,
-                                                       .memory_mode = queues.mode,
-                                                       .guard = options.guard,
-                                                       .save_flight_record = save,
-                                                       .picture_updates = [this] { return picture_counter.count(); },
-                                                       .bell = options.bell,
-                                                       .traced = std::move(traced)});
+  owner = std::make_unique<CellOwner>(
+      CellOwner::Parts{.cell = std::move(loaded.cell),
+                       .home = loaded.home,
+                       .streams = std::move(streams),
+                       .haptics = std::move(loaded.haptics),
+                       .views = std::move(loaded.views),
+                       .layout = std::move(loaded.layout),
+                       .collision = std::move(loaded.collision),
+                       .tissue = std::move(of_tissue),
+                       .foot_switches = loaded.foot_switches,
+                       .engine = *engine,
+                       .board = board,
+                       .clock = clock,
+                       .stream_priority = stream_priority,
+                       .instance = instance->info().name,
+                       .tcp_force_key = queues.tcp_force_key,
+                       .memory_mode = queues.mode,
+                       .guard = options.guard,
+                       .can_tap = &recordings.can_tap(),
+                       .save_flight_record = save,
+                       .record = [this](RecordAction action) { return recordings.switch_ring(action); },
+                       .picture_updates = [this] { return picture_counter.count(); },
+                       .bell = options.bell,
+                       .traced = traced});
   const std::string script = options.startup_script.value_or(loaded.startup_script);
   // A file that the operator names may lie anywhere; a bare name is also looked for in the home, as in EXEC_SCRIPT.
   std::error_code error;
@@ -344,18 +339,29 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
                                             const DdsOutputConfig& dds) {
   auto outputs = make_picture_outputs(dds);
   if (!outputs) return std::unexpected(outputs.error());
-  renderer = std::make_unique<RenderService>(
-      RenderService::Options{settings, headless, std::move(*outputs), {}},
-      SceneSource::Boards{readers->pictures, board, collisions->board(), ranging->board(), forces->board(),
-                          traces->board(), clock, tissue_sources().view},
-      picture_counter);
+  const auto boards = [this](engine::TickReader& ticks) {
+    return SceneSource::Boards{ticks,           board, collisions->board(),  ranging->board(), forces->board(),
+                               traces->board(), clock, tissue_sources().view};
+  };
+  renderer = std::make_unique<RenderService>(RenderService::Options{settings, headless, std::move(*outputs), {}},
+                                             boards(readers->pictures), picture_counter);
+  scene = std::make_unique<SceneService>(settings.rate_hz, boards(readers->scene));
   return {};
+}
+
+void Gateway::Parts::start_recorder(const RecordSettings& settings) {
+  auto folder = home->file_to_write("records", "blackbox.mcap");
+  if (folder) folder = folder->parent_path();
+  recordings.begin_ring(settings, folder);
+  recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
+                    loop->options().period, [this] { return status(); }});
 }
 
 void Gateway::Parts::start_fault_monitor() {
   faults = std::make_unique<FaultMonitor>(*loop, watchdog, clock, [this](const std::string& reason) {
     const auto wall_seconds = to_wall_clock_ns(clock.now()) / 1'000'000'000;
     auto written = write_flight_record(fmt::format("{}{}.jsonl.gz", kFaultRecord, wall_seconds), reason);
+    recordings.fault();
     if (written) remove_old_records(std::filesystem::path(*written).parent_path(), kFaultRecord, kFaultRecordsKept);
     return written;
   });
@@ -389,8 +395,9 @@ void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
   if (request->request == "status") return reply(status());
   if (request->request == "snapshot") return answer_snapshot(*request, std::move(reply));
   if (request->request == "queues") return answer_queues(std::move(reply));
-  reply(
-      control_error({fmt::format("the request {} is not known", request->request), "known: status, snapshot, queues"}));
+  if (request->request == "record") return reply(recordings.answer(*request));
+  reply(control_error(
+      {fmt::format("the request {} is not known", request->request), "known: status, snapshot, queues, record"}));
 }
 
 void Gateway::Parts::answer_queues(ControlReply reply) {
@@ -419,7 +426,9 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.board = &board;
   parts.owner = owner.get();
   parts.renderer = renderer.get();
+  parts.scene = scene.get();
   parts.status = [this] { return status(); };
+  parts.health = [this] { return health(); };
   parts.command_log = [this] { return command_log(); };
   parts.refused = [this](std::string_view command, const script::CommandSource& source, const std::string& why) {
     note_refused(source, command, why);
@@ -464,6 +473,7 @@ Problems Gateway::Parts::problems() const {
   add("script_queue", status.input_problem);
   add("reply_queue", status.reply_problem);
   add("command_log", commands ? commands->report().problem : commands_problem);
+  add("recording", recordings.hub().problem());
   for (const PublishedOutput& output : publisher->outputs()) add("sensor_queue", output.output->problem());
   if (guard == nullptr || !guard->running()) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
@@ -471,6 +481,12 @@ Problems Gateway::Parts::problems() const {
                                    guard == nullptr ? "could not be started (see the log)" : "was ended"));
   }
   return out;
+}
+
+web::Health Gateway::Parts::health() {
+  const std::scoped_lock lock(answering);
+  const Timestamp newest = readers->status.newest().time;
+  return loop_health(clock.now() - newest, kLoopStandsStillAfter, faults->status());
 }
 
 std::string Gateway::Parts::status() {
@@ -514,7 +530,8 @@ std::string Gateway::Parts::status() {
                           problems(),
                           {guard != nullptr && guard->running(), guard != nullptr ? guard->process() : 0},
                           command_log(),
-                          tissue_sources().newest_report()});
+                          tissue_sources().newest_report(),
+                          recordings.hub().reports()});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -528,6 +545,8 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->guard = options.guard;
   parts->cell_name = loaded->name;
   parts->home = loaded->home;
+  std::vector<std::filesystem::path> files = loaded->files;
+  files.insert(files.begin(), loaded->file);
   parts->loop_settings = loaded->loop;
   parts->queues = default_queues(options.instance);
   loaded->queues.apply_to(parts->queues);
@@ -537,6 +556,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   const DdsOutputConfig dds = loaded->dds;
   const PictureSettings pictures = loaded->pictures;
   const WebSettings web = loaded->web;
+  const RecordSettings record = loaded->record;
   const Eigen::Vector3d gravity_W = loaded->gravity_m_s2;
   Result<void> step = check_instance_name(options.instance);
   if (step) step = parts->prepare_machine();
@@ -552,12 +572,17 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();
   parts->make_page(options, web);
+  parts->recordings.describe(
+      {options.instance, parts->cell_name, parts->loop_settings.rate_hz, cell_attachments(parts->home->root(), files)});
+  parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
   parts->page->open();
   // Last: the startup script finds everything running.
   parts->owner->start();
   return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));
 }
+
+std::uint64_t Gateway::ticks() const { return parts_->loop->cycles(); }
 
 std::string Gateway::greeting() const {
   const Parts& parts = *parts_;

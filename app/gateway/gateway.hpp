@@ -1,6 +1,7 @@
 // The running gateway: everything joined. Only app/ knows all of it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -20,6 +21,7 @@ namespace cellmirror::app {
 struct GatewayOptions {
   std::filesystem::path cell_file;
   std::optional<std::string> startup_script;  // instead of the cell file's own
+  std::filesystem::path state;                // folder of what is written; empty: the cell folder
   std::optional<double> rate_hz;              // instead of the cell file's own
   std::string instance = "default";
   bool headless = false;        // no pictures
@@ -41,6 +43,8 @@ class Gateway {
 
   // One line for the person who started it: cell, robots, rate, keys.
   [[nodiscard]] std::string greeting() const;
+  // Periods that the loop has run. Any thread.
+  [[nodiscard]] std::uint64_t ticks() const;
 
  private:
   struct Parts;

@@ -11,11 +11,11 @@ namespace cellmirror::app {
 
 namespace {
 
-// Gateways with a name of their own may run beside each other: they take a free port.
+// Gateways with a name of their own may run beside each other: where nobody chose a port they take a free one.
 int port_of(const MonitorPage::Options& options) {
   if (options.port) return *options.port;
-  if (options.instance != kDefaultInstance) return 0;
-  return options.settings.port.value_or(web::kDefaultPort);
+  if (options.settings.port) return *options.settings.port;
+  return options.instance == kDefaultInstance ? web::kDefaultPort : 0;
 }
 
 }  // namespace

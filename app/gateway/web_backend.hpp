@@ -9,9 +9,11 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "app/owner/cell_owner.hpp"
 #include "app/render/render_service.hpp"
+#include "app/render/scene_service.hpp"
 #include "app/report/live_document.hpp"
 #include "app/report/status_commands.hpp"
 #include "app/snapshot/cell_state.hpp"
@@ -28,8 +30,10 @@ class WebBackend final : public web::Backend {
     std::filesystem::path home;
     const Board<CellState>* board = nullptr;
     CellOwner* owner = nullptr;
-    RenderService* renderer = nullptr;                                       // null: no pictures
-    std::function<std::string()> status;                                     // as `cellmirror status --json`
+    RenderService* renderer = nullptr;  // null: no pictures
+    SceneService* scene = nullptr;
+    std::function<std::string()> status;  // as `cellmirror status --json`
+    std::function<web::Health()> health;
     std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
     std::function<web::ServerStatus()> server_status;
     std::function<CommandLogReport()> command_log;
@@ -47,11 +51,14 @@ class WebBackend final : public web::Backend {
   [[nodiscard]] std::string names_json() override;
   [[nodiscard]] std::string command_log_json() override { return command_log_document(parts_.command_log()); }
   [[nodiscard]] std::string metrics_text() override;
+  [[nodiscard]] web::Health health() override { return parts_.health(); }
   void execute(std::string_view command, const web::CommandOrigin& origin,
                std::function<void(const web::CommandReply&)> reply) override;
   void expect_pictures() override;
   Result<std::unique_ptr<PictureStream>> open_pictures(const PictureRequest& request) override;
   void ask_picture(const PictureRequest& request, ImageFormat format, PictureReply reply) override;
+  Result<std::unique_ptr<SceneStream>> open_scene() override { return parts_.scene->open(); }
+  void ask_geometry(GeometryReply reply) override { parts_.scene->ask_geometry(std::move(reply)); }
   void ask_pick(const PictureRequest& request, int x, int y, PickReply reply) override;
 
  private:

@@ -17,7 +17,9 @@ void add(std::vector<PublishedOutput>& outputs, std::unique_ptr<RobotStateOutput
   auto* cameras = dynamic_cast<CameraOutput*>(output.get());
   auto* tissue_events = dynamic_cast<TissueEventOutput*>(output.get());
   auto* tissue_shapes = dynamic_cast<TissueShapeOutput*>(output.get());
-  outputs.push_back({std::move(output), period_of(rate_hz), findings, forces, cameras, tissue_events, tissue_shapes});
+  auto* description = dynamic_cast<DescriptionOutput*>(output.get());
+  outputs.push_back(
+      {std::move(output), period_of(rate_hz), findings, forces, cameras, tissue_events, tissue_shapes, description});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <utility>
 
+#include "app/snapshot/robot_description.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/rt/scheduling.hpp"
 #include "rt_core/scene/camera_mount.hpp"
@@ -99,6 +100,20 @@ void Publisher::select_sending(const CellState& cell_state, std::span<const Robo
   sending_.resize(n);
 }
 
+void Publisher::publish_description(const CellState& cell_state) {
+  const bool told = cell_state.cell->revision == described_revision_ && wanted_ == described_robots_;
+  // Nothing was ever sent: there is nothing to take back either.
+  if (told || (description_.empty() && sending_.empty())) return;
+  described_revision_ = cell_state.cell->revision;
+  described_robots_ = wanted_;
+  std::string description = robot_description(*cell_state.cell, wanted_);
+  if (description == description_) return;
+  description_ = std::move(description);
+  for (const PublishedOutput& output : outputs_) {
+    if (output.description != nullptr) output.description->publish_description(description_);
+  }
+}
+
 Timestamp Publisher::publish_due(Timestamp now) {
   Timestamp next = now + kLongestSleep;
   const bool any_due =
@@ -110,6 +125,7 @@ Timestamp Publisher::publish_due(Timestamp now) {
     for (const std::string& text : range_watch_.look(now, robots, cell_state->robots))
       log_warning("joint.range", "{}", text);
     select_sending(*cell_state, robots);
+    publish_description(*cell_state);
     const std::shared_ptr<const ForceState> forces = forces_.latest();
     if (forces) take_efforts(*forces, sending_);
     const std::span<const FramePose> frames = builder_.frames(*cell_state, wanted_);

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/ports/camera_state.hpp"
+#include "rt_core/ports/description_output.hpp"
 #include "rt_core/ports/proximity_state.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/ports/tissue_output.hpp"
@@ -32,6 +34,7 @@ struct PublishedOutput {
   CameraOutput* cameras = nullptr;             // likewise
   TissueEventOutput* tissue_events = nullptr;  // likewise
   TissueShapeOutput* tissue_shapes = nullptr;  // likewise
+  DescriptionOutput* description = nullptr;    // likewise
 };
 
 // Gives what is on the boards to one output. Results that were replaced in the meantime are left out, but none of their
@@ -72,6 +75,8 @@ class Publisher {
   void loop(const std::stop_token& stop);
   // Puts out what is due by `now`; the earliest next due time.
   Timestamp publish_due(Timestamp now);
+  // Gives the description of the sending robots to the outputs where it is new.
+  void publish_description(const CellState& cell_state);
   void select_sending(const CellState& cell_state, std::span<const RobotState> robots);
 
   engine::TickReader& ticks_;
@@ -87,7 +92,10 @@ class Publisher {
   RangeWatch range_watch_;
   std::vector<RobotState> sending_;
   std::vector<bool> wanted_;
-  std::jthread thread_;  // last: it uses everything above
+  std::vector<bool> described_robots_;
+  std::uint64_t described_revision_ = 0;
+  std::string description_;  // that was given last; empty: none yet
+  std::jthread thread_;      // last: it uses everything above
 };
 
 }  // namespace cellmirror::app

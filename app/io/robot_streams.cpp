@@ -16,17 +16,18 @@ namespace {
 struct StreamMaker {
   const Clock& clock;
   int fifo_priority;
+  const can::ChannelOpener& open_can;
 
   Result<std::unique_ptr<JointStream>> operator()(const std::monostate&) const {
     return fail("the cell file names no stream");
   }
   Result<std::unique_ptr<JointStream>> operator()(const Cia402StreamConfig& config) const {
     return can::make_cia402_stream(config, clock,
-                                   {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = {}});
+                                   {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const DbcStreamConfig& config) const {
     return can::make_dbc_stream(config, clock,
-                                {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = {}});
+                                {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
     return dds::make_dds_stream(config, clock);
@@ -73,8 +74,8 @@ void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
 }
 
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
-                                                       int fifo_priority) {
-  return std::visit(StreamMaker{clock, fifo_priority}, config);
+                                                       int fifo_priority, const can::ChannelOpener& open_can) {
+  return std::visit(StreamMaker{clock, fifo_priority, open_can}, config);
 }
 
 }  // namespace cellmirror::app

@@ -77,12 +77,16 @@ class SensingHost {
   virtual Result<void> set_collision_pair(std::string_view a, std::string_view b, PairTreatment treatment) = 0;
 };
 
+// RECORD, in the order of its choices.
+enum class RecordAction : std::uint8_t { on, off, keep };
+
 // Of ours: what the manual does not have.
 class DiagnosisHost {
  public:
   virtual ~DiagnosisHost() = default;
   virtual Result<void> save_flight_record(
-      std::string_view file_name) = 0;  // SAVE_FLIGHT, into the cell folder's records/
+      std::string_view file_name) = 0;                   // SAVE_FLIGHT, into the cell folder's records/
+  virtual Result<void> record(RecordAction action) = 0;  // of the black box
 };
 
 struct CommandHost {

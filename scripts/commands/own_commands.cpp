@@ -9,6 +9,10 @@ Outcome save_flight(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.diagnosis.save_flight_record(command.text(kOnlySlot)));
 }
 
+Outcome record_black_box(const ParsedCommand& command, CommandHost& host) {
+  return Outcome::of(host.diagnosis.record(static_cast<RecordAction>(command.choice(kOnlySlot))));
+}
+
 Outcome reset_haptic(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.interaction.reset_haptic(command.text(kOnlySlot)));
 }
@@ -32,7 +36,7 @@ Outcome stop_script(const ParsedCommand& command, CommandHost& /*host*/) {
 
 constexpr Registration kHandlers[] = {
     {FormId::save_views, save_views}, {FormId::save_flight, save_flight}, {FormId::reset_haptic, reset_haptic},
-    {FormId::stop_all, stop_all},     {FormId::stop_script, stop_script},
+    {FormId::stop_all, stop_all},     {FormId::stop_script, stop_script}, {FormId::record, record_black_box},
 };
 
 }  // namespace

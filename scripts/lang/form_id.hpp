@@ -143,9 +143,10 @@ enum class FormId : std::uint8_t {
   effects_suction,
   effects_irrigation,
   vv_iso,
+  record,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::vv_iso) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::record) + 1;
 
 }  // namespace cellmirror::script

@@ -57,6 +57,11 @@ constexpr Parameter kCollisionPair[] = {word("pair"), named(NameKind::branch, "n
                                         named(NameKind::branch, "node_b", "second frame or joint"),
                                         choice("ignore | test | derive", "treatment", kPairTreatments)};
 
+// In the order of RecordAction.
+constexpr Choice kRecordActions[] = {
+    {"ON", "records"}, {"OFF", "ends the recording"}, {"KEEP", "keeps what the black box has, and the next seconds"}};
+constexpr Parameter kBlackBox[] = {choice("ON | OFF | KEEP", "action", kRecordActions)};
+
 constexpr Parameter kSuction[] = {word("SUCTION"), choice("ON | OFF", "switch", kOnOff)};
 constexpr Parameter kIrrigation[] = {word("IRRIGATION"), choice("ON | OFF", "switch", kOnOff)};
 
@@ -382,6 +387,17 @@ constexpr Form kForms[] = {
      .definition =
          "lit and opaque, at the value in the volume's unit (Hounsfield units of computed tomography), without "
          "VALUE at the one before; off draws with the table again; planes and volumes as with VV_CLIP",
+     .origin = Origin::ours},
+    {.id = FormId::record,
+     .name = "RECORD",
+     .syntax = "RECORD [ON | OFF | KEEP]",
+     .section = kSection,
+     .parameters = kBlackBox,
+     .help = "switches the black box of the cell, or keeps its files",
+     .example = "RECORD KEEP",
+     .definition =
+         "needs `[record]` in the cell file; kept files are renamed, so that newer ones do not replace them; what "
+         "`cellmirror record` writes is not touched",
      .origin = Origin::ours},
 };
 

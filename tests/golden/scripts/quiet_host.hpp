@@ -203,6 +203,7 @@ class QuietHost final : public WorldHost,
   }
   Result<std::string> reload_tables(std::string_view /*volume*/) override { return remarked(); }
   Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
+  Result<void> record(RecordAction /*action*/) override { return called(); }
 
  private:
   Result<void> called() {

@@ -339,6 +339,7 @@ class RecordingHost final : public WorldHost,
   Result<void> save_flight_record(std::string_view file_name) override {
     return record("save_flight_record {}", file_name);
   }
+  Result<void> record(RecordAction action) override { return record("record {}", static_cast<int>(action)); }
 
  private:
   // The answer of a call that may have a remark.

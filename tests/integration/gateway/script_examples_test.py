@@ -77,6 +77,7 @@ class Examples(unittest.TestCase):
     def test_all_other_examples(self):
         scratch = g.Scratch()
         (scratch.home / "programs" / "ird_getschr.src").write_text("WARTE 60\n")
+        scratch.cell_file.write_text(scratch.cell_file.read_text() + "\n[record]\n")  # for RECORD KEEP
         gateway = g.Gateway(scratch)
         try:
             count = 0

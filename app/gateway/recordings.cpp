@@ -1,0 +1,176 @@
+#include "app/gateway/recordings.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "app/report/status_recordings.hpp"
+#include "ipc/record/compression.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr Nanoseconds kLease{10'000'000'000};
+constexpr double kLongest_s = 1e7;
+constexpr std::size_t kMostTopics = 256;
+constexpr std::uint64_t kMostAttached = std::uint64_t{16} << 20;
+
+Result<double> number_of_argument(const ControlRequest& request, std::string_view name, double usual, double least,
+                                  double most) {
+  const auto text = request.argument(name);
+  if (!text) return usual;
+  const auto value = parse_number(*text);
+  if (!value || *value < least || *value > most)
+    return fail(fmt::format("{} = {} is no number from {} to {}", name, printable(*text), least, most));
+  return *value;
+}
+
+std::vector<std::string> divided(std::string_view text) {
+  std::vector<std::string> out;
+  while (!text.empty()) {
+    const std::string_view one = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), one.size() + 1));
+    if (!trimmed(one).empty()) out.emplace_back(trimmed(one));
+  }
+  return out;
+}
+
+std::string dumped(const nlohmann::json& document) {
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Recordings::Recordings(const Clock& clock) : hub_(clock), texts_(hub_, clock), can_tap_(clock) {
+  set_log_observer(
+      [this](LogLevel level, std::string_view kind, std::string_view text) { texts_.log(level, kind, text); });
+}
+
+Recordings::~Recordings() {
+  set_log_observer({});
+  stop();
+  hub_.close();
+}
+
+void Recordings::begin_ring(const RecordSettings& settings, const Result<std::filesystem::path>& folder) {
+  settings_ = settings;
+  if (!settings.present) return;
+  if (!folder) return log_error("recording", "there is no black box: {}", folder.error().text());
+  const auto ns = [](double s) { return Nanoseconds(static_cast<std::int64_t>(1e9 * s)); };
+  RecordingOptions options;
+  RecordingRing ring;
+  ring.folder = *folder;
+  ring.name = "blackbox-" + about_.instance;
+  ring.file_length = ns(settings.file_s);
+  ring.length = ns(settings.length_s);
+  ring.most_bytes = settings.most_mb * 1'000'000;
+  ring.keep_after = ns(settings.keep_after_s);
+  options.ring = std::move(ring);
+  options.topics = settings.topics;
+  options.compression = mcap::compression_of(settings.compression).value_or(mcap::Compression::zstd);
+  options.rate_hz = settings.rate_hz;
+  fill_about(options);
+  hub_.set_ring_options(std::move(options));
+  if (!settings.enabled) return;
+  if (auto started = hub_.switch_ring(true); !started)
+    log_error("recording", "there is no black box: {}", started.error().text());
+}
+
+Result<void> Recordings::switch_ring(RecordAction action) {
+  if (action == RecordAction::keep) return hub_.keep_ring();
+  return hub_.switch_ring(action == RecordAction::on);
+}
+
+void Recordings::watch(Recorder::Sources sources) {
+  sources.can_tap = &can_tap_;
+  sources.keeps_collisions = settings_.keep_on_collision;
+  recorder_ = std::make_unique<Recorder>(std::move(sources), hub_);
+}
+
+void Recordings::stop() { recorder_.reset(); }
+
+void Recordings::fill_about(RecordingOptions& options) const {
+  options.about = {{"version", CELLMIRROR_VERSION},
+                   {"instance", about_.instance},
+                   {"cell", about_.cell},
+                   {"loop_rate_hz", fmt::format("{}", about_.rate_hz)},
+                   {"record_rate_hz", fmt::format("{}", options.rate_hz)}};
+  options.attachments = about_.files;
+}
+
+Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) const {
+  RecordingOptions options;
+  options.file = request.argument("file").value_or("");
+  if (!options.file.is_absolute()) return fail("a recording needs an absolute path", "use cellmirror record -o F.mcap");
+  options.topics = divided(request.argument("topics").value_or(""));
+  if (options.topics.size() > kMostTopics) return fail(fmt::format("more than {} topics", kMostTopics));
+  const auto compression = mcap::compression_of(request.argument("compression").value_or("zstd"));
+  if (!compression) return fail("the compression is not known", "known: zstd, lz4, none");
+  options.compression = *compression;
+  const auto rate = number_of_argument(request, "rate_hz", options.rate_hz, 0.1, 4000.0);
+  if (!rate) return std::unexpected(rate.error());
+  options.rate_hz = *rate;
+  const auto length = number_of_argument(request, "for_s", 0.0, 0.0, kLongest_s);
+  if (!length) return std::unexpected(length.error());
+  options.length = Nanoseconds(static_cast<std::int64_t>(1e9 * *length));
+  options.lease = kLease;
+  fill_about(options);
+  return options;
+}
+
+std::string Recordings::answer(const ControlRequest& request) {
+  const std::string action = request.argument("action").value_or("");
+  Result<void> step;
+  if (action == "start") {
+    auto options = options_of(request);
+    step = options ? hub_.start_file(*std::move(options)) : Result<void>(std::unexpected(options.error()));
+  } else if (action == "stop" || action == "keep") {
+    const bool done = action == "stop" ? hub_.end_file() : hub_.renew_file();
+    if (!done) step = fail("nothing is being recorded");
+  } else {
+    step =
+        fail(fmt::format("the action {} of a recording is not known", printable(action)), "known: start, keep, stop");
+  }
+  if (!step) return control_error(step.error());
+  const auto report = hub_.file_report();
+  return report ? dumped(recording_json(*report)) : control_error({"nothing is being recorded", {}});
+}
+
+std::vector<RecordingAttachment> cell_attachments(const std::filesystem::path& root,
+                                                  const std::vector<std::filesystem::path>& files) {
+  std::vector<RecordingAttachment> out;
+  std::set<std::filesystem::path> seen;
+  std::uint64_t total = 0;
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
+    if (error || !seen.insert(path).second) continue;
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (error || total + size > kMostAttached) {
+      log_warning("recording", "{} is not attached to recordings: {}", file.string(),
+                  error ? error.message() : "the files of the cell are too large together");
+      continue;
+    }
+    total += size;
+    std::ostringstream content;
+    content << std::ifstream(path, std::ios::binary).rdbuf();
+    const std::filesystem::path place = path.lexically_relative(std::filesystem::weakly_canonical(root, error));
+    const bool below = !place.empty() && *place.begin() != "..";
+    const std::string ending = path.extension().string();
+    out.push_back({below ? place.string() : path.filename().string(),
+                   ending == ".urdf" ? "application/xml" : "application/toml", content.str()});
+  }
+  return out;
+}
+
+}  // namespace cellmirror::app

@@ -1,0 +1,71 @@
+// The recordings of the running gateway: what joins the recorder with the gateway's parts and with the control socket.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/io/can_tap.hpp"
+#include "app/recorder/recorder.hpp"
+#include "app/recorder/recording_hub.hpp"
+#include "config/record_settings.hpp"
+#include "ipc/control/control_request.hpp"
+#include "rt_core/base/time.hpp"
+#include "scripts/commands/host.hpp"
+
+namespace cellmirror::app {
+
+class Recordings {
+ public:
+  struct About {
+    std::string instance;
+    std::string cell;
+    double rate_hz = 0;  // of the loop
+    std::vector<RecordingAttachment> files;
+  };
+
+  // `clock` outlives it. From now on lines of the log are recorded, where a recording goes on.
+  explicit Recordings(const Clock& clock);
+  ~Recordings();
+  Recordings(const Recordings&) = delete;
+  Recordings& operator=(const Recordings&) = delete;
+
+  void describe(About about) { about_ = std::move(about); }
+  // The black box of the cell file, in `folder`; where it cannot be written, an error is logged. After describe().
+  void begin_ring(const RecordSettings& settings, const Result<std::filesystem::path>& folder);
+  // RECORD.
+  Result<void> switch_ring(RecordAction action);
+  void fault() {
+    if (settings_.keep_on_fault) static_cast<void>(hub_.keep_ring());
+  }
+  // What is recorded from now on; the sources live until stop().
+  void watch(Recorder::Sources sources);
+  // No source is looked at any more; what was recorded is written by and by.
+  void stop();
+
+  // One JSON document for {"request":"record", ...}: docs/recording.md.
+  [[nodiscard]] std::string answer(const ControlRequest& request);
+  void command(const CommandRecord& record) { texts_.command(record); }
+  [[nodiscard]] RecordingHub& hub() { return hub_; }
+  [[nodiscard]] CanTap& can_tap() { return can_tap_; }
+  [[nodiscard]] const RecordingHub& hub() const { return hub_; }
+
+ private:
+  [[nodiscard]] Result<RecordingOptions> options_of(const ControlRequest& request) const;
+  void fill_about(RecordingOptions& options) const;
+
+  About about_;
+  RecordSettings settings_;
+  RecordingHub hub_;
+  RecordedTexts texts_;
+  CanTap can_tap_;
+  std::unique_ptr<Recorder> recorder_;
+};
+
+// The files of a cell as attachments: `root` and those below it by their place in it. At most 16 MiB together; what is
+// left out, or cannot be read, is logged.
+[[nodiscard]] std::vector<RecordingAttachment> cell_attachments(const std::filesystem::path& root,
+                                                                const std::vector<std::filesystem::path>& files);
+
+}  // namespace cellmirror::app

@@ -1,0 +1,232 @@
+#include "app/recorder/output_messages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/recorder/ros2_definitions.hpp"
+#include "drivers/can/channel/candump_line.hpp"
+#include "drivers/dds/cdr.hpp"
+#include "drivers/dds/sensor_ranges.hpp"
+#include "rt_core/base/json_writer.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+constexpr std::string_view kCollisionsSchema = R"({
+"type":"object","title":"what touches and what is near, for one posture","properties":{
+"posture_time_ns":{"type":"integer"},"sequence":{"type":"integer"},"pairs":{"type":"integer"},
+"warning_distance_m":{"type":"number"},"nearest_m":{"type":"number"},"touching_count":{"type":"integer"},
+"touching":{"type":"array","items":{"type":"object","properties":{"a":{"type":"string"},"b":{"type":"string"},
+"depth_m":{"type":"number"},"point_m":{"type":"array","items":{"type":"number"}},
+"normal":{"type":"array","items":{"type":"number"}},"doubtful":{"type":"boolean"}}}},
+"near":{"type":"array","items":{"type":"object","properties":{"a":{"type":"string"},"b":{"type":"string"},
+"distance_m":{"type":"number"},"point_a_m":{"type":"array","items":{"type":"number"}},
+"point_b_m":{"type":"array","items":{"type":"number"}},"within_warning":{"type":"boolean"},
+"doubtful":{"type":"boolean"}}}},
+"doubts":{"type":"array","items":{"type":"string"}}}})";
+
+constexpr std::string_view kEventSchema = R"({
+"type":"object","title":"a pair of bodies that touches, parts, or passes the warning distance","properties":{
+"sequence":{"type":"integer"},"posture_time_ns":{"type":"integer"},"change":{"type":"string"},
+"a":{"type":"string"},"b":{"type":"string"},"distance_m":{"type":"number"}}})";
+
+constexpr std::string_view kForcesSchema = R"({
+"type":"object","title":"efforts of drives, and forces on tool centre points","properties":{
+"posture_time_ns":{"type":"integer"},"sequence":{"type":"integer"},
+"robots":{"type":"array","items":{"type":"object","properties":{"id":{"type":"string"},
+"efforts":{"type":"array","items":{"type":"number"}},"beyond_limit":{"type":"boolean"},
+"tcp_force_n":{"type":"array","items":{"type":"number"}},
+"tcp_torque_nm":{"type":"array","items":{"type":"number"}}}}}}})";
+
+constexpr std::string_view kCommandSchema = R"({
+"type":"object","title":"a SCRIPT command and its acknowledgement","properties":{
+"time":{"type":"string"},"took_s":{"type":"number"},"source":{"type":"string"},"process":{"type":"integer"},
+"user":{"type":"integer"},"session":{"type":"integer"},"peer":{"type":"string"},"place":{"type":"string"},
+"run":{"type":"integer"},"command":{"type":"string"},"outcome":{"type":"string"},"answer":{"type":"string"}}})";
+
+constexpr std::string_view kCanSchema = R"({
+"type":"object","title":"a CAN frame that a stream received or sent","properties":{
+"time_ns":{"type":"integer"},"sent":{"type":"boolean"},"id":{"type":"integer"},
+"frame":{"type":"string","description":"as candump writes it"}}})";
+
+constexpr std::string_view kStatusSchema = R"({"type":"object","title":"the document of cellmirror status"})";
+
+TopicPtr ros2_topic(std::string name, std::string_view type, std::string definition, Importance importance) {
+  return std::make_shared<const Topic>(
+      Topic{std::move(name), "cdr", std::string(type), "ros2msg", std::move(definition), importance});
+}
+
+TopicPtr json_topic(std::string name, std::string_view type, std::string_view schema, Importance importance) {
+  return std::make_shared<const Topic>(
+      Topic{std::move(name), "json", std::string(type), "jsonschema", std::string(schema), importance});
+}
+
+constexpr std::size_t kMostPairs = 200;  // of a message, as in status
+
+const char* word(ProximityChange change) {
+  switch (change) {
+    case ProximityChange::entered_warning:
+      return "entered_warning";
+    case ProximityChange::touched:
+      return "touched";
+    case ProximityChange::parted:
+      return "parted";
+    case ProximityChange::left_warning:
+      return "left_warning";
+  }
+  return "";
+}
+
+void write_touching(const ProximityState& state, JsonWriter& out) {
+  out.key("touching").begin_array();
+  for (std::size_t i = 0; i < std::min(state.touching.size(), kMostPairs); ++i) {
+    const TouchingPair& pair = state.touching[i];
+    out.begin_object()
+        .member("a", (*state.names)[pair.a])
+        .member("b", (*state.names)[pair.b])
+        .member("depth_m", pair.depth_m)
+        .member("point_m", pair.point_m)
+        .member("normal", pair.normal)
+        .member("doubtful", pair.doubtful)
+        .end_object();
+  }
+  out.end_array();
+}
+
+void write_near(const ProximityState& state, JsonWriter& out) {
+  out.key("near").begin_array();
+  for (std::size_t i = 0; i < std::min(state.near.size(), kMostPairs); ++i) {
+    const NearPair& pair = state.near[i];
+    out.begin_object()
+        .member("a", (*state.names)[pair.a])
+        .member("b", (*state.names)[pair.b])
+        .member("distance_m", pair.distance_m)
+        .member("point_a_m", pair.point_a_m)
+        .member("point_b_m", pair.point_b_m)
+        .member("within_warning", pair.within_warning)
+        .member("doubtful", pair.doubtful)
+        .end_object();
+  }
+  out.end_array();
+}
+
+}  // namespace
+
+TopicPtr OutputTopics::tf() {
+  return ros2_topic("/tf", "tf2_msgs/msg/TFMessage", ros2::tf_message(), Importance::bulk);
+}
+TopicPtr OutputTopics::log() { return ros2_topic("/rosout", "rcl_interfaces/msg/Log", ros2::log(), Importance::event); }
+TopicPtr OutputTopics::collisions() {
+  return json_topic("/cellmirror/collisions", "cellmirror.Collisions", kCollisionsSchema, Importance::state);
+}
+TopicPtr OutputTopics::collision_events() {
+  return json_topic("/cellmirror/collision_events", "cellmirror.CollisionEvent", kEventSchema, Importance::event);
+}
+TopicPtr OutputTopics::forces() {
+  return json_topic("/cellmirror/forces", "cellmirror.Forces", kForcesSchema, Importance::bulk);
+}
+TopicPtr OutputTopics::commands() {
+  return json_topic("/cellmirror/commands", "cellmirror.Command", kCommandSchema, Importance::event);
+}
+TopicPtr OutputTopics::status() {
+  return json_topic("/cellmirror/status", "cellmirror.Status", kStatusSchema, Importance::bulk);
+}
+TopicPtr OutputTopics::range(std::string_view sensor) {
+  return ros2_topic(dds::range_topic("/cellmirror/range", sensor), "sensor_msgs/msg/Range", ros2::range(),
+                    Importance::state);
+}
+TopicPtr OutputTopics::wrench(std::string_view robot) {
+  return ros2_topic(dds::topic_of("robot", "/cellmirror/tcp_wrench", robot), "geometry_msgs/msg/WrenchStamped",
+                    ros2::wrench_stamped(), Importance::state);
+}
+TopicPtr OutputTopics::can_frames(std::string_view robot) {
+  return json_topic(dds::topic_of("robot", "/inputs/can", robot), "cellmirror.CanFrame", kCanSchema, Importance::event);
+}
+TopicPtr OutputTopics::joint_states(mcap::Texts joints) {
+  return std::make_shared<const Topic>(Topic{"/joint_states", "cdr", "sensor_msgs/msg/JointState", "ros2msg",
+                                             ros2::joint_state(), Importance::state, std::move(joints)});
+}
+
+std::string collisions_message(const ProximityState& state) {
+  JsonWriter out;
+  out.begin_object()
+      .member("posture_time_ns", to_wall_clock_ns(state.posture_time))
+      .member("sequence", state.sequence)
+      .member("pairs", state.pairs)
+      .member("warning_distance_m", state.warning_distance_m);
+  const NearPair* nearest = state.nearest();
+  out.member("nearest_m", nearest == nullptr ? std::optional<double>() : std::optional(nearest->distance_m));
+  out.member("touching_count", state.touching.size());
+  write_touching(state, out);
+  write_near(state, out);
+  out.member("doubts", std::span<const std::string>(state.doubts)).end_object();
+  return out.take();
+}
+
+std::string collision_event_message(const ProximityEvent& event) {
+  JsonWriter out;
+  out.begin_object()
+      .member("sequence", event.sequence)
+      .member("posture_time_ns", to_wall_clock_ns(event.posture_time))
+      .member("change", word(event.change))
+      .member("a", std::string_view(event.a))
+      .member("b", std::string_view(event.b))
+      .member("distance_m", event.distance_m)
+      .end_object();
+  return out.take();
+}
+
+std::string forces_message(const ForceState& state) {
+  JsonWriter out;
+  out.begin_object()
+      .member("posture_time_ns", to_wall_clock_ns(state.posture_time))
+      .member("sequence", state.sequence)
+      .key("robots")
+      .begin_array();
+  for (const RobotForces& robot : state.robots) {
+    bool beyond = false;
+    out.begin_object().member("id", std::string_view(robot.id)).key("efforts").begin_array();
+    for (const JointForce& joint : robot.joints) {
+      out.value(joint.effort);
+      beyond = beyond || joint.beyond_limit;
+    }
+    out.end_array().member("beyond_limit", beyond);
+    if (robot.tcp_known) out.member("tcp_force_n", robot.tcp_T.force).member("tcp_torque_nm", robot.tcp_T.torque);
+    out.end_object();
+  }
+  out.end_array().end_object();
+  return out.take();
+}
+
+std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool sent) {
+  constexpr std::string_view kInterface = "can";
+  // "(time) can 123#00": what is behind the second blank.
+  const std::string line = can::format_candump_line(wall_ns, kInterface, frame);
+  const std::size_t from = line.find(kInterface) + kInterface.size() + 1;
+  JsonWriter out;
+  out.begin_object()
+      .member("time_ns", wall_ns)
+      .member("sent", sent)
+      .member("id", frame.id)
+      .member("frame", std::string_view(line).substr(std::min(from, line.size())))
+      .end_object();
+  return out.take();
+}
+
+void encode_log(dds::RosTime stamp, LogLevel level, std::string_view kind, std::string_view text,
+                std::vector<std::byte>& out) {
+  constexpr std::array<std::uint8_t, 4> kLevels = {10, 20, 30, 40};  // rcl_interfaces/msg/Log
+  dds::CdrWriter writer(out);
+  writer.write(stamp.sec);
+  writer.write(stamp.nanosec);
+  writer.write(kLevels.at(static_cast<std::size_t>(level)));
+  writer.write_text(kind);
+  writer.write_text(text);
+  writer.write_text("");
+  writer.write_text("");
+  writer.write(std::uint32_t{0});
+}
+
+}  // namespace cellmirror::app

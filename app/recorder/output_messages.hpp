@@ -1,0 +1,44 @@
+// What a recording has beside ROS 2's states: collisions and distances as JSON, lines of the log. Pure.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/recorder/topic.hpp"
+#include "drivers/dds/ros2_messages.hpp"
+#include "rt_core/base/log.hpp"
+#include "rt_core/ports/can_channel.hpp"
+#include "rt_core/ports/force_state.hpp"
+#include "rt_core/ports/proximity_state.hpp"
+
+namespace cellmirror::app {
+
+// The topics of each gateway, those of robots and sensors aside.
+struct OutputTopics {
+  static TopicPtr tf();
+  static TopicPtr log();
+  static TopicPtr collisions();
+  static TopicPtr collision_events();
+  static TopicPtr forces();
+  static TopicPtr commands();
+  static TopicPtr status();
+  // "/cellmirror/range/ID", "/cellmirror/tcp_wrench/ID".
+  static TopicPtr range(std::string_view sensor);
+  static TopicPtr wrench(std::string_view robot);
+  // "/inputs/can/ROBOT": the frames of its stream, as they came.
+  static TopicPtr can_frames(std::string_view robot);
+  // With "joint:NAME" = "ROBOT.JOINT" for each joint.
+  static TopicPtr joint_states(mcap::Texts joints);
+};
+
+[[nodiscard]] std::string collisions_message(const ProximityState& state);
+[[nodiscard]] std::string collision_event_message(const ProximityEvent& event);
+[[nodiscard]] std::string forces_message(const ForceState& state);
+// `wall_ns`: when it was received, or given to the channel.
+[[nodiscard]] std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool sent);
+// rcl_interfaces/msg/Log; `out` is overwritten.
+void encode_log(dds::RosTime stamp, LogLevel level, std::string_view kind, std::string_view text,
+                std::vector<std::byte>& out);
+
+}  // namespace cellmirror::app
