@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   try {
     cellmirror::cli::CommandLine program(
         "Mirrors a robot workcell in real time and takes SCRIPT commands.\n\n"
+        "  cellmirror new my_cell --urdf arm.urdf                  a cell folder for a robot of your own\n"
         "  cellmirror run config/cells/transfer_cell/cell.toml     start the gateway of a cell\n"
         "  cellmirror status --watch                               what it does now\n"
         "  cellmirror page                                         where its monitor page is\n"
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
     program.require_subcommand();
     program.version("cellmirror " CELLMIRROR_VERSION);
     Action action;
+    add_new(program, action);
     add_run(program, action);
     add_send(program, action);
     add_status(program, action);
@@ -35,6 +37,8 @@ int main(int argc, char** argv) {
     add_snapshot(program, action);
     add_page(program, action);
     add_simulate(program, action);
+    add_record(program, action);
+    add_recording(program, action);
     add_volume(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();

@@ -60,7 +60,8 @@ CellOwner::CellOwner(Parts parts)
           cell_, parts.engine, std::move(parts.streams), clock_, parts.stream_priority,
           Fleet::Events{.let_tick_pass = parts.let_tick_pass,
                         .move_given = std::move(parts.move_given),
-                        .device_stream = [this](std::string_view robot) { return haptics_.stream(robot); }})),
+                        .device_stream = [this](std::string_view robot) { return haptics_.stream(robot); },
+                        .can_tap = parts.can_tap})),
       display_(
           {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
            std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},
@@ -86,7 +87,7 @@ CellOwner::CellOwner(Parts parts)
           {haptics_, forces_, robot_forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
           static_cast<bool>(parts.let_tick_pass)),
       tissue_(cell_, names_, std::move(parts.tissue)),
-      diagnosis_(std::move(parts.save_flight_record)) {
+      diagnosis_(std::move(parts.save_flight_record), std::move(parts.record)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, tissue_,
                   volumes_, diagnosis_},

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "app/io/can_tap.hpp"
 #include "app/io/robot_streams.hpp"
 
 namespace cellmirror::app {
@@ -177,7 +178,9 @@ Result<void> Fleet::make_stream(FleetRobot& robot) {
         fmt::format("the cell file names no stream and no haptic device for the robot {}", robot.id),
         fmt::format("add a [[stream]] or [[haptic]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
   }
-  auto made = make_robot_stream(config->second, clock_, stream_priority_);
+  can::ChannelOpener open_can;
+  if (events_.can_tap != nullptr) open_can = events_.can_tap->opener(robot.id);
+  auto made = make_robot_stream(config->second, clock_, stream_priority_, open_can);
   if (!made) return std::unexpected(made.error());
   robot.stream = std::move(*made);
   return {};

@@ -97,11 +97,17 @@ class CellRobots final : public RobotHost {
 
 class CellDiagnosis final : public DiagnosisHost {
  public:
-  explicit CellDiagnosis(std::function<Result<void>(std::string_view)> save) : save_(std::move(save)) {}
+  CellDiagnosis(std::function<Result<void>(std::string_view)> save, std::function<Result<void>(RecordAction)> record)
+      : save_(std::move(save)), record_(std::move(record)) {}
   Result<void> save_flight_record(std::string_view file_name) override { return save_(file_name); }
+  Result<void> record(RecordAction action) override {
+    if (record_) return record_(action);
+    return fail("off line nothing is recorded");
+  }
 
  private:
   std::function<Result<void>(std::string_view)> save_;
+  std::function<Result<void>(RecordAction)> record_;  // empty: off line
 };
 
 }  // namespace cellmirror::app

@@ -20,6 +20,7 @@
 #include "app/report/status_pictures.hpp"
 #include "app/report/status_programs.hpp"
 #include "app/report/status_ranges.hpp"
+#include "app/report/status_recordings.hpp"
 #include "app/report/status_switches.hpp"
 #include "app/report/status_tissue.hpp"
 #include "app/report/status_values.hpp"
@@ -305,6 +306,7 @@ std::string status_document(const StatusSources& sources) {
       {"couplings", couplings_json(sources.cell_state.couplings, sources.tick)},
       {"tissue", tissue_json(sources.tissue, sources.cell_state, sources.now)},
       {"volumes", volumes_json(sources.cell_state)},
+      {"recordings", recordings_json(sources.recordings)},
       {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.
   return document.dump(-1, ' ', false, json::error_handler_t::replace);

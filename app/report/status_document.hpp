@@ -14,6 +14,7 @@
 #include "app/snapshot/fault_status.hpp"
 #include "app/snapshot/force_report.hpp"
 #include "app/snapshot/range_report.hpp"
+#include "app/snapshot/recorder_report.hpp"
 #include "app/snapshot/render_report.hpp"
 #include "app/snapshot/tissue_report.hpp"
 #include "ipc/control/control_server.hpp"
@@ -58,6 +59,7 @@ struct StatusSources {
   ForceGuardStatus force_guard = {};
   CommandLogReport commands = {};
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
+  std::vector<RecordingReport> recordings = {};
 };
 
 [[nodiscard]] std::string status_document(const StatusSources& sources);

@@ -9,7 +9,8 @@ namespace cellmirror::app {
 struct FaultStatus {
   std::uint64_t faults = 0;
   bool latched = false;
-  std::string last;  // empty where there was none
+  std::string reason;  // of the newest one, e.g. "the loop stood still"; empty where there was none
+  std::string last;    // the newest one whose record was due, with the place of that
 };
 
 }  // namespace cellmirror::app

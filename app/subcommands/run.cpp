@@ -13,6 +13,8 @@
 #include "app/subcommands/resource_limits.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
+#include "ipc/service_manager/notifier.hpp"
+#include "ipc/service_manager/service_watchdog.hpp"
 #include "ipc/sysv/force_guard.hpp"
 #include "rt_core/base/log.hpp"
 
@@ -26,6 +28,7 @@ struct RunOptions {
   GatewayOptions gateway;
   std::string cell;
   std::string script;
+  std::string state;
   double rate_hz = 0;
   double seconds = 0;  // 0: until a signal
   int port = kNoPort;
@@ -43,11 +46,35 @@ std::function<void()> terminal_bell() {
   return {};
 }
 
+// Of systemd, where it started this process.
+ServiceNotifier service_notifier() {
+  auto notifier = ServiceNotifier::take_from_environment();
+  if (notifier) return *std::move(notifier);
+  log_warning("service", "{}", notifier.error().text());
+  return {};
+}
+
+void notify(const ServiceNotifier& service, const std::string& lines) {
+  if (const auto sent = service.send(lines); !sent) log_warning("service", "{}", sent.error().text());
+}
+
+// The signal that ends it; 0: its time has passed.
+int serve(const Gateway& gateway, const ServiceNotifier& service, const EndSignals& signals, double seconds) {
+  std::printf("%s\n", gateway.greeting().c_str());
+  std::fflush(stdout);
+  notify(service, "READY=1\n" + status_line(gateway.greeting()));
+  const ServiceWatchdog watchdog(service, [&gateway] { return gateway.ticks(); });
+  const int signal = signals.wait(seconds);
+  notify(service, "STOPPING=1\nSTATUS=ending");
+  return signal;
+}
+
 int run(const RunOptions& options) {
   set_log_level(options.verbose ? LogLevel::info : LogLevel::warning);
   report_exhausted_resources();
   if (auto enough = check_resource_limits(); !enough) return refuse(enough.error().text());
-  // The first of all: it forks, which only a process of one thread does safely.
+  const ServiceNotifier service = service_notifier();
+  // Before all threads: it forks, which only a process of one thread does safely.
   const auto guard = ForceGuard::start();
   if (!guard) log_warning("force-guard", "{}", guard.error().text());
   const EndSignals signals;
@@ -56,6 +83,7 @@ int run(const RunOptions& options) {
   gateway_options.web = !options.no_web;
   if (options.port != kNoPort) gateway_options.port = options.port;
   gateway_options.cell_file = options.cell;
+  gateway_options.state = options.state;
   if (!options.script.empty()) gateway_options.startup_script = options.script;
   if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
   gateway_options.bell = terminal_bell();
@@ -65,9 +93,7 @@ int run(const RunOptions& options) {
   auto gateway = Gateway::start(gateway_options);
   line.reset();
   if (!gateway) return refuse(gateway.error().text());
-  std::printf("%s\n", (*gateway)->greeting().c_str());
-  std::fflush(stdout);
-  const int signal = signals.wait(options.seconds);
+  const int signal = serve(**gateway, service, signals, options.seconds);
   if (signal == 0 || is_ordinary_end(signal)) return kExitDone;
   gateway->reset();
   return refuse(fmt::format("the gateway was ended by {}", signal_text(signal)));
@@ -86,6 +112,8 @@ void add_run(cli::Command program, Action& action) {
   auto port = sub.option("--port", options->port, "port of the monitor page; 0: a free one").between(0, 65535);
   sub.flag("--no-web", options->no_web, "without the monitor page").excludes(port);
   sub.flag("--headless", options->headless, "without pictures");
+  sub.option("--state", options->state,
+             "folder for what is written: records, saved views, recorded programs; otherwise the cell folder");
   sub.option("--instance", options->gateway.instance, "name of this gateway where several run beside each other");
   sub.flag("--verbose", options->verbose, "log what is going on");
   sub.footer("Example: cellmirror run config/cells/transfer_cell/cell.toml --for 60 --instance test");

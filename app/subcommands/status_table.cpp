@@ -11,11 +11,13 @@
 #include "app/subcommands/status_table_haptics.hpp"
 #include "app/subcommands/status_table_pictures.hpp"
 #include "app/subcommands/status_table_programs.hpp"
+#include "app/subcommands/status_table_recordings.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
 #include "app/subcommands/status_table_switches.hpp"
 #include "app/subcommands/status_table_tissue.hpp"
 #include "app/subcommands/status_table_volumes.hpp"
 #include "rt_core/base/counted.hpp"
+#include "rt_core/base/text.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -45,6 +47,7 @@ class TableWriter {
     out_ += switches_table(status);
     out_ += display_table(status);
     out_ += pictures_table(status);
+    out_ += recordings_table(status);
     write_page(status);
     write_script(status);
     write_queues(status.at("queues"));
@@ -201,11 +204,17 @@ class TableWriter {
 
   void write_queues(const json& queues) {
     std::string dropped;
+    std::string unread;  // replaced without a reader: nobody has lost it
     for (const json& queue : queues) {
-      const auto count = queue.at("dropped").get<std::uint64_t>();
-      if (count > 0) dropped += fmt::format("{} {}   ", queue.at("name").get<std::string>(), count);
+      const auto without_reader = queue.value("unread", std::uint64_t{0});
+      const std::uint64_t count = queue.at("dropped").get<std::uint64_t>() - without_reader;
+      const auto name = queue.at("name").get<std::string>();
+      if (count > 0) dropped += fmt::format("{} {}   ", name, count);
+      if (without_reader > 0) unread += fmt::format("; nobody reads {}, so new records replace old ones", name);
     }
-    line("queues  {}", dropped.empty() ? fmt::format("{}, nothing dropped", queues.size()) : "dropped: " + dropped);
+    const std::string lost = dropped.empty() ? fmt::format("{}, nothing dropped", queues.size())
+                                             : "dropped: " + std::string(trimmed(dropped));
+    line("queues  {}{}", lost, unread);
   }
 
   bool colour_;

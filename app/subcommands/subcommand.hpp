@@ -17,6 +17,7 @@ inline constexpr int kExitRefused = 1;  // refused or failed, with a message on 
 
 using Action = std::function<int()>;
 
+void add_new(cli::Command program, Action& action);
 void add_run(cli::Command program, Action& action);
 void add_send(cli::Command program, Action& action);
 void add_status(cli::Command program, Action& action);
@@ -30,6 +31,8 @@ void add_range(cli::Command program, Action& action);
 void add_snapshot(cli::Command program, Action& action);
 void add_page(cli::Command program, Action& action);
 void add_simulate(cli::Command program, Action& action);
+void add_record(cli::Command program, Action& action);
+void add_recording(cli::Command program, Action& action);
 void add_volume(cli::Command program, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.

@@ -70,6 +70,12 @@ void FaultMonitor::fault(Timestamp now, const std::string& reason) {
   last_fault_ = now;
   // A latched fault is reported once; it stays latched for as long as the loop is not healthy.
   if (status().latched) return;
+  {
+    // Before the record is written, which takes time.
+    const std::scoped_lock lock(mutex_);
+    status_.latched = true;
+    status_.reason = reason;
+  }
   std::string told = reason;
   const bool record_due = records_ < kMaxRecords && (!last_record_.known() || now - last_record_ > kRecordEvery);
   if (record_due) {
@@ -81,7 +87,6 @@ void FaultMonitor::fault(Timestamp now, const std::string& reason) {
   log_error("loop.fault", "{}", told);
   const std::scoped_lock lock(mutex_);
   ++status_.faults;
-  status_.latched = true;
   // A fault without a record of its own must not hide where the record is.
   if (record_due || status_.last.empty()) status_.last = told;
 }

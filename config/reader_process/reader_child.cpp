@@ -110,7 +110,9 @@ std::filesystem::path program_beside_this(std::string_view name) {
     std::error_code error;
     return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
   }();
-  return folder / name;
+  std::error_code error;
+  const std::filesystem::path installed = folder.parent_path() / "libexec" / "cellmirror" / name;
+  return std::filesystem::exists(installed, error) ? installed : folder / name;
 }
 
 }  // namespace cellmirror

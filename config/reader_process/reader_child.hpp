@@ -41,7 +41,8 @@ struct StartedReader {
 // Why it could not be started, without starting it.
 [[nodiscard]] Result<void> check_reader_program(const std::filesystem::path& program);
 
-// In the folder of the running program, where ours are installed and built.
+// Where it is installed: ../libexec/cellmirror/ as seen from the folder of the running program; else that folder
+// itself, where ours are built.
 [[nodiscard]] std::filesystem::path program_beside_this(std::string_view name);
 
 }  // namespace cellmirror

@@ -187,6 +187,12 @@ std::uint64_t OwnedQueue::waiting() const {
   return ::msgctl(id(), IPC_STAT, &found) == 0 ? found.msg_qnum : 0;
 }
 
+bool OwnedQueue::last_read_by_another() const {
+  msqid_ds found{};
+  // The time is 0 until the first message is taken out; a process of another PID namespace has the number 0.
+  return ::msgctl(id(), IPC_STAT, &found) == 0 && found.msg_rtime != 0 && found.msg_lrpid != ::getpid();
+}
+
 std::int32_t OwnedQueue::last_sender() const {
   msqid_ds found{};
   return ::msgctl(id(), IPC_STAT, &found) == 0 ? found.msg_lspid : 0;

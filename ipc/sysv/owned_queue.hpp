@@ -58,6 +58,8 @@ class OwnedQueue {
   [[nodiscard]] std::uint64_t recreated() const { return recreated_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t waiting() const;     // messages in it now
   [[nodiscard]] std::int32_t last_sender() const;  // the process that sent last; 0 where unknown
+  // Whether another process took out the message that was taken out last.
+  [[nodiscard]] bool last_read_by_another() const;
 
  private:
   OwnedQueue(Options options, KeyLock lock, int id, std::uint64_t discarded);

@@ -23,6 +23,8 @@ namespace {
 // A record has the room of at most this many of the smallest records.
 constexpr int kMostPushedOut = 64;
 constexpr Nanoseconds kBetweenRepairs{1'000'000'000};
+// A program that has taken nothing out for so long is no reader any more.
+constexpr Nanoseconds kReaderGone{10'000'000'000};
 // More sensors than a cell has; a part's numbers are 16 bits wide.
 constexpr std::size_t kMostReadings = 4096;
 
@@ -61,7 +63,9 @@ struct SensorQueueOutput::Impl {
   std::uint64_t last_check = 0;  // number of the state whose events were sent last
   std::uint64_t last_event = 0;
   std::vector<RangeReading> finite;  // reused
+  Timestamp read_at;                 // when another program was last seen to read
   Count dropped;
+  Count unread;  // of these, those that nobody was there to read
   Count events_missing;
   std::uint64_t last_tissue_event = 0;
   Count tissue_events_missing;
@@ -76,7 +80,7 @@ struct SensorQueueOutput::Impl {
   void send(Record record, Timestamp time, Encode encode, SentAndRefused& counters);
   void send_events(const ProximityState& state);
   bool deliver(std::span<const std::byte> record, Timestamp time);
-  bool make_room();
+  bool make_room(Timestamp time);
   bool repair(Timestamp time);
   [[nodiscard]] std::array<const SentAndRefused*, 6> kinds() const {
     return {&robots, &ranges, &proximity, &events, &cameras, &tissue_events};
@@ -84,12 +88,14 @@ struct SensorQueueOutput::Impl {
 };
 
 // Of the records only: what others put there with another type goes first where no record is left.
-bool SensorQueueOutput::Impl::make_room() {
+bool SensorQueueOutput::Impl::make_room(Timestamp time) {
+  if (queue->last_read_by_another()) read_at = time;
   if (queue->discard_oldest(kSensorMessageType) != QueueOutcome::done &&
       queue->discard_oldest(0) != QueueOutcome::done) {
     return false;
   }
   dropped.add();
+  if (!read_at.known() || time - read_at > kReaderGone) unread.add();
   return true;
 }
 
@@ -119,7 +125,7 @@ bool SensorQueueOutput::Impl::deliver(std::span<const std::byte> record, Timesta
   for (int pushed_out = 0; pushed_out <= kMostPushedOut;) {
     const QueueOutcome outcome = queue->send_now(kSensorMessageType, text);
     if (outcome == QueueOutcome::done) return true;
-    if (outcome == QueueOutcome::full && make_room()) {
+    if (outcome == QueueOutcome::full && make_room(time)) {
       ++pushed_out;
     } else if (outcome == QueueOutcome::gone && !repaired && repair(time)) {
       repaired = true;
@@ -231,6 +237,7 @@ std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters()
   }
   return {{"sent", sent},
           {"dropped", impl_->dropped.get()},
+          {"unread", impl_->unread.get()},
           {"refused", refused},
           {"ranges_sent", impl_->ranges.sent.get()},
           {"ranges_refused", impl_->ranges.refused.get()},

@@ -17,9 +17,10 @@ namespace cellmirror {
 
 // Never waits for a reader: a full queue loses its oldest records, which is counted. A queue removed by another program
 // is recreated. FramePose is not sent here. All publishing by one thread. Counters: sent, dropped (old records taken
-// out unread), refused (new ones that found no room at all, or values that are not finite), of these sent and refused
-// by kind (ranges_sent, ...), events_missing and tissue_events_missing (gaps in the events that were given to this
-// output), recreated, discarded (left by an earlier process), waiting.
+// out unread), unread (of these, those for which no other program had read the queue within 10 s), refused (new ones
+// that found no room at all, or values that are not finite), of these sent and refused by kind (ranges_sent, ...),
+// events_missing and tissue_events_missing (gaps in the events that were given to this output), recreated, discarded
+// (left by an earlier process), waiting.
 class SensorQueueOutput final : public RobotStateOutput,
                                 public FindingsOutput,
                                 public CameraOutput,

@@ -82,6 +82,39 @@ Result<KismetHome> KismetHome::of_cell(const fs::path& cell_file) {
   return open(folder.empty() ? fs::path(".") : folder);
 }
 
+Result<KismetHome> KismetHome::with_state(const fs::path& state) const {
+  std::error_code error;
+  fs::create_directories(state, error);
+  if (error) return fail(fmt::format("the state folder {} cannot be created: {}", state.string(), error.message()));
+  fs::path canonical = fs::canonical(state, error);
+  if (error) return fail(fmt::format("the state folder {} cannot be opened: {}", state.string(), error.message()));
+  if (!fs::is_directory(canonical, error))
+    return fail(fmt::format("the state folder {} is not a folder", state.string()));
+  KismetHome out = *this;
+  out.state_ = std::move(canonical);
+  return out;
+}
+
+const fs::path& KismetHome::root_of(std::string_view folder, std::string_view name, std::string_view extension) const {
+  if (state_.empty()) return root_;
+  std::error_code error;
+  fs::path written = state_ / folder / name;
+  if (fs::exists(written, error)) return state_;
+  if (!written.has_extension() && fs::exists(written += extension, error)) return state_;
+  return root_;
+}
+
+bool KismetHome::has(std::string_view folder, std::string_view name) const {
+  std::error_code error;
+  const fs::path path = root_of(folder, name, {}) / folder / name;
+  return fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
+std::string KismetHome::shown_name(const fs::path& file) const {
+  const bool written = !state_.empty() && is_inside(file, state_);
+  return file.lexically_relative(written ? state_ : root_).string();
+}
+
 Result<fs::path> KismetHome::file(std::string_view folder, std::string_view name, std::string_view extension) const {
   return find(folder, name, extension, false);
 }
@@ -94,7 +127,8 @@ Result<fs::path> KismetHome::find(std::string_view folder, std::string_view name
                                   bool folders) const {
   if (auto named = check_name(name); !named) return std::unexpected(named.error());
   std::error_code error;
-  fs::path wanted = root_ / folder / name;
+  const fs::path& root = root_of(folder, name, extension);
+  fs::path wanted = root / folder / name;
   const bool extended = !extension.empty() && wanted.extension().empty() && !fs::exists(wanted, error);
   if (extended) wanted += extension;
   const fs::path found = fs::canonical(wanted, error);
@@ -105,8 +139,8 @@ Result<fs::path> KismetHome::find(std::string_view folder, std::string_view name
                 nearest_files(folder, name, extensions));
   }
   if (error) return fail(fmt::format("the file {} cannot be opened: {}", shown, error.message()));
-  if (!is_inside(found, root_)) {
-    return fail(fmt::format("the path {} leaves the cell folder {}", shown, root_.string()),
+  if (!is_inside(found, root)) {
+    return fail(fmt::format("the path {} leaves the cell folder {}", shown, root.string()),
                 "put the file into the cell folder");
   }
   if (fs::is_directory(found, error)) {
@@ -134,11 +168,12 @@ Result<fs::path> KismetHome::file_to_write(std::string_view folder, std::string_
     return fail(fmt::format("{} is not a plain file name", printable(name)), "give a name without folders");
   }
   std::error_code error;
-  const fs::path parent = root_ / folder;
+  const fs::path& root = state_.empty() ? root_ : state_;
+  const fs::path parent = root / folder;
   fs::create_directories(parent, error);
   if (error) return fail(fmt::format("the folder {} cannot be created: {}", parent.string(), error.message()));
   const fs::path canonical_parent = fs::canonical(parent, error);
-  if (error || !is_inside(canonical_parent, root_))
+  if (error || !is_inside(canonical_parent, root))
     return fail(fmt::format("the path {} leaves the cell folder", parent.string()));
   const fs::path target = canonical_parent / name;
   const fs::file_status status = fs::symlink_status(target, error);

@@ -18,6 +18,10 @@ class KismetHome {
   // The cell folder of the cell file at `cell_file`: $kis_home if set, else the file's own folder.
   static Result<KismetHome> of_cell(const std::filesystem::path& cell_file);
 
+  // The same cell folder, but what is written goes into `state`, in folders of the same names, and files there go
+  // before those of the cell folder, which may then be read-only. Makes `state` where missing.
+  [[nodiscard]] Result<KismetHome> with_state(const std::filesystem::path& state) const;
+
   // The regular, readable file `name` in `folder` ("scripts", "envlib", "robots", "" for the home itself), with
   // `extension` (".spt") added if the name has none and no file without it exists. Refused: absolute names, names that
   // leave the cell folder (also through links), folders, missing and unreadable files; the message gives the reason,
@@ -26,6 +30,8 @@ class KismetHome {
                                                    std::string_view extension = {}) const;
   // The same, but folders are found too: for what may be a folder of files.
   [[nodiscard]] Result<std::filesystem::path> file_or_folder(std::string_view folder, std::string_view name) const;
+  // Something of that name is there, and is no folder.
+  [[nodiscard]] bool has(std::string_view folder, std::string_view name) const;
   // "did you mean a or b?" of the files in `folder` with one of `extensions` (none given: with any), or empty if none
   // is near. Examines at most 512 entries.
   [[nodiscard]] std::string nearest_files(std::string_view folder, std::string_view name,
@@ -34,12 +40,17 @@ class KismetHome {
   [[nodiscard]] Result<std::filesystem::path> file_to_write(std::string_view folder, std::string_view name) const;
 
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+  // How a file of this home is named to people: relative to the folder that it is in.
+  [[nodiscard]] std::string shown_name(const std::filesystem::path& file) const;
 
  private:
+  [[nodiscard]] const std::filesystem::path& root_of(std::string_view folder, std::string_view name,
+                                                     std::string_view extension) const;
   [[nodiscard]] Result<std::filesystem::path> find(std::string_view folder, std::string_view name,
                                                    std::string_view extension, bool folders) const;
   explicit KismetHome(std::filesystem::path root) : root_(std::move(root)) {}
-  std::filesystem::path root_;  // canonical
+  std::filesystem::path root_;   // canonical
+  std::filesystem::path state_;  // canonical; empty: root_ is written to
 };
 
 // The whole content of a regular file, at most `limit` bytes; larger, missing, unreadable and other kinds are refused.

@@ -3,9 +3,13 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
 #include <map>
 #include <mutex>
+#include <shared_mutex>
+#include <utility>
 
+#include "rt_core/base/journal.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror {
@@ -34,6 +38,28 @@ spdlog::logger& logger() {
     return made;
   }();
   return *instance;
+}
+
+// As of syslog.
+int priority_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::debug:
+      return 7;
+    case LogLevel::info:
+      return 6;
+    case LogLevel::warning:
+      return 4;
+    case LogLevel::error:
+      return 3;
+  }
+  return 3;
+}
+
+// Where this process is a service, the fields of an entry are worth more than a line of text.
+const Journal& journal() {
+  static const Journal instance(standard_error_is_journal(std::getenv("JOURNAL_STREAM")) ? "/run/systemd/journal/socket"
+                                                                                         : "");
+  return instance;
 }
 
 struct Allowance {
@@ -69,7 +95,19 @@ class RateLimit {
   std::map<std::string, Allowance, std::less<>> allowances_;
 };
 
+// Those who log share the lock; it is taken alone while the observer changes.
+std::shared_mutex observing;
+LogObserver& current_observer() {
+  static LogObserver observer;
+  return observer;
+}
+
 }  // namespace
+
+void set_log_observer(LogObserver observer) {
+  const std::unique_lock lock(observing);
+  current_observer() = std::move(observer);
+}
 
 void set_log_level(LogLevel level) { logger().set_level(spdlog_level(level)); }
 
@@ -78,11 +116,14 @@ void log_text(LogLevel level, std::string_view kind, std::string_view message) {
   if (!logger().should_log(spdlog_level(level))) return;
   std::uint64_t swallowed = 0;
   if (!limit.pass(kind, swallowed)) return;
+  if (journal().send({priority_of(level), kind, message, swallowed})) return;
   if (swallowed > 0) {
     logger().log(spdlog_level(level), "[{}] {} ({} more of this kind were not written)", kind, message, swallowed);
   } else {
     logger().log(spdlog_level(level), "[{}] {}", kind, message);
   }
+  const std::shared_lock lock(observing);
+  if (current_observer()) current_observer()(level, kind, message);
 }
 
 }  // namespace cellmirror

@@ -195,6 +195,7 @@ struct DdsOutputConfig {
   std::string interface_address = "127.0.0.1";
   std::string joint_states_topic = "rt/cellmirror/joint_states";
   std::string tf_topic = "rt/tf";
+  std::string robot_description_topic = "rt/robot_description";  // empty: not published
   // Of what collision tests and sensors found; empty: not published.
   std::string range_topic_prefix = "rt/cellmirror/range";  // a sensor's topic is <prefix>/<id>
   std::string wrench_topic_prefix =

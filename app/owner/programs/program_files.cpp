@@ -39,12 +39,9 @@ std::string codes_of(const KismetHome& home, const program::Language& language) 
 
 Result<fs::path> find_program_file(const KismetHome& home, const program::Language& language, std::string_view name) {
   const std::vector<std::string> names = names_to_try(language, name);
-  std::error_code error;
   for (const std::string_view folder : kProgramFolders) {
     for (const std::string& candidate : names) {
-      const fs::path path = home.root() / folder / candidate;
-      if (!fs::exists(path, error) || fs::is_directory(path, error)) continue;
-      return home.file(folder, candidate);  // refuses what leaves the home or cannot be read
+      if (home.has(folder, candidate)) return home.file(folder, candidate);  // refuses what leaves the home
     }
   }
   std::string tried;
@@ -67,7 +64,7 @@ ProgramText read_program(const KismetHome& home, const program::Language& langua
     return read;
   }
   program::ParseContext context;
-  context.file = path.lexically_relative(home.root()).string();
+  context.file = home.shown_name(path);
   context.codes = codes_of(home, language);
   read.program = language.parse(*text, context, read.findings);
   if (*read.program != nullptr && read.findings.ok()) return read;
