@@ -10,6 +10,8 @@ find_package(CLI11 REQUIRED)
 find_package(Boost 1.74 REQUIRED)        # headers only: the yardstick of tests/bench/rt
 find_package(tinyxml2 REQUIRED)
 find_package(ZLIB REQUIRED)       # app/io: compressed records
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # ipc/record
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)    # ipc/record
 find_package(EXPAT REQUIRED)      # scripts/programs/crcl
 find_package(fastcdr REQUIRED)
 find_package(fastrtps REQUIRED)

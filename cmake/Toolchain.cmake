@@ -51,7 +51,10 @@ endif()
 find_package(Threads REQUIRED)
 
 add_library(cellmirror_flags INTERFACE)
-target_compile_options(cellmirror_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+# Off for packages: another compiler may warn of more.
+option(CELLMIRROR_WARNINGS_ARE_ERRORS "Warnings are errors" ON)
+target_compile_options(cellmirror_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  $<$<BOOL:${CELLMIRROR_WARNINGS_ARE_ERRORS}>:-Werror>
   $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Woverloaded-virtual>)
 # clang sees std::stable_sort of libstdc++ 12 use a function that the same header marks deprecated.
 target_compile_options(cellmirror_flags INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-deprecated-declarations>)

@@ -6,6 +6,7 @@ A block is run when the line before it is a comment:
     <!-- tested: NAME, eventually --> the same, repeated until the output is as shown, 30 s at most
     <!-- tested: NAME, background --> one command that goes on running; at the end of the page it gets Ctrl-C and has to end
                                       with status 0
+    <!-- tested: NAME, background in FOLDER -->   the same in a folder below the source root
 
 In the block, a line that begins with `$ ` is a command (a following line that begins with `> ` belongs to it), what
 follows is its output. `...` in a line stands for any text, a line of nothing but `...` for any lines. `[exit N]` as the
@@ -26,7 +27,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-BLOCK = re.compile(r"^<!-- tested: (?P<name>[^,>]+?)(?:, (?P<mode>eventually|background))? -->\s*\n```console\n(?P<body>.*?)^```",
+BLOCK = re.compile(r"^<!-- tested: (?P<name>[^,>]+?)(?:, (?P<mode>eventually|background)(?: in (?P<folder>[^ >]+))?)? -->\s*\n```console\n(?P<body>.*?)^```",
                    re.MULTILINE | re.DOTALL)
 COMMAND_SECONDS = 60
 EVENTUALLY_SECONDS = 30
@@ -149,7 +150,7 @@ def run_page(page: Path, root: Path, environment: dict[str, str]) -> tuple[int, 
             for step in steps_of(block["body"]):
                 count += 1
                 if block["mode"] == "background":
-                    backgrounds.append(Background(step.command, root, environment))
+                    backgrounds.append(Background(step.command, root / (block["folder"] or "."), environment))
                     if not backgrounds[-1].shows(step.expected):
                         return count, complain(place, step, backgrounds[-1].process.poll() or 0, backgrounds[-1].output())
                     continue

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/msg.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <limits>
@@ -101,6 +103,42 @@ TEST_F(SensorQueue, FullQueueLosesItsOldestRecordsAndNeverWaits) {
   }
   EXPECT_EQ(newest, 1000u) << "what is left are the newest, in order";
   EXPECT_EQ(read, counters["waiting"]);
+}
+
+TEST_F(SensorQueue, WithoutAReaderNothingIsLost) {
+  const RobotState robots[] = {robot_with(16)};
+  const Timestamp now = SystemClock().now();
+  for (int i = 0; i < 200; ++i) sut_->publish(now, robots, {});
+  auto counters = counters_of(*sut_);
+  EXPECT_GT(counters["dropped"], 0u);
+  EXPECT_EQ(counters["unread"], counters["dropped"]);
+}
+
+// A process of its own takes records out, as a reader does; its own would count as ours.
+std::uint64_t read_in_another_process(std::int32_t key, int count) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int got = 0;
+    while (got < count && next_message(key)) ++got;
+    ::_exit(got == count ? 0 : 1);
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  return status == 0 ? static_cast<std::uint64_t>(count) : 0;
+}
+
+TEST_F(SensorQueue, WhatAReaderMissesIsLostUntilItIsGone) {
+  const RobotState robots[] = {robot_with(16)};
+  const Timestamp now = SystemClock().now();
+  for (int i = 0; i < 200; ++i) sut_->publish(now, robots, {});
+  const auto before = counters_of(*sut_)["unread"];
+  ASSERT_EQ(read_in_another_process(queues_.sensor_key, 3), 3u);
+  for (int i = 0; i < 50; ++i) sut_->publish(now + std::chrono::seconds(1), robots, {});
+  auto counters = counters_of(*sut_);
+  EXPECT_EQ(counters["unread"], before) << "there is a reader, and it is too slow";
+  EXPECT_GT(counters["dropped"], before);
+  for (int i = 0; i < 50; ++i) sut_->publish(now + std::chrono::seconds(20), robots, {});
+  EXPECT_EQ(counters_of(*sut_)["unread"], before + 50) << "it has not read for more than 10 s";
 }
 
 TEST_F(SensorQueue, MessagesOfOthersCannotFillItForGood) {

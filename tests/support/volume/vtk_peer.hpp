@@ -34,7 +34,8 @@ struct VtkPicture {
 };
 
 inline bool vtk_is_there() {
-  return std::system("command -v xvfb-run > /dev/null 2>&1 && /usr/bin/python3 -c 'import vtk' > /dev/null 2>&1") == 0;
+  return std::system(
+             "command -v xvfb-run > /dev/null 2>&1 && /usr/bin/python3 -c 'import numpy, vtk' > /dev/null 2>&1") == 0;
 }
 
 inline std::string vector_text(const Eigen::Vector3d& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }

@@ -46,6 +46,17 @@ TEST(StatusTable, ShowsWhatIsStaleLateRefusedAndDropped) {
   EXPECT_THAT(*table, HasSubstr("sensor 4"));
 }
 
+TEST(StatusTable, AQueueThatNobodyReadsHasLostNothing) {
+  std::string text(kDocument);
+  const std::string_view queue = R"({"name":"sensor","dropped":4})";
+  text.replace(text.find(queue), queue.size(), R"({"name":"sensor","dropped":825,"unread":825})");
+  const std::string table = *status_table(text, false);
+  EXPECT_THAT(table, HasSubstr("nothing dropped; nobody reads sensor"));
+  EXPECT_THAT(table, Not(HasSubstr("825")));
+  text.replace(text.find(R"("unread":825)"), 12, R"("unread":800)");
+  EXPECT_THAT(*status_table(text, false), HasSubstr("dropped: sensor 25; nobody reads sensor"));
+}
+
 TEST(StatusTable, TellsJointsThatNothingGivesAndThoseBeyondTheirRange) {
   std::string text(kDocument);
   const std::string_view joint = R"({"name":"J_2","position":0.25,"unit":"m","state":"fresh"})";

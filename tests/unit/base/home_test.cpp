@@ -98,6 +98,33 @@ TEST_F(Home, WritesOnlyPlainNamesIntoAFolderOfTheHome) {
   EXPECT_FALSE(sut().file_to_write("records", "link"));
 }
 
+TEST_F(Home, WritesIntoItsStateFolderAndReadsThereFirst) {
+  const auto made = sut().with_state(root_ / "state/transfer_cell");
+  ASSERT_TRUE(made) << made.error().text();
+  fs::permissions(root_ / "cell", fs::perms::owner_read | fs::perms::owner_exec);
+  const auto target = made->file_to_write("scripts", "a.spt");
+  ASSERT_TRUE(target) << target.error().text();
+  EXPECT_EQ(*target, fs::canonical(root_) / "state/transfer_cell/scripts/a.spt");
+  EXPECT_EQ(*read_text_file(*made->file("scripts", "a", ".spt"), 9), "A") << "of the cell, while nothing was written";
+  std::ofstream(*target) << "B";
+  EXPECT_EQ(*read_text_file(*made->file("scripts", "a", ".spt"), 9), "B");
+  EXPECT_EQ(*read_text_file(*made->file("scripts", "a.spt"), 9), "B");
+  EXPECT_EQ(made->shown_name(*target), "scripts/a.spt");
+  EXPECT_EQ(made->shown_name(fs::canonical(root_) / "cell/scripts/a.spt"), "scripts/a.spt");
+  EXPECT_TRUE(made->has("scripts", "a.spt"));
+  EXPECT_FALSE(made->has("scripts", "b.spt"));
+  EXPECT_FALSE(made->has("", "scripts")) << "a folder";
+  EXPECT_FALSE(fs::exists(root_ / "cell/records"));
+  fs::create_symlink(root_ / "outside.spt", root_ / "state/transfer_cell/scripts/link.spt");
+  EXPECT_FALSE(made->file("scripts", "link.spt")) << "a link that leaves the state folder";
+  fs::permissions(root_ / "cell", fs::perms::owner_all);
+}
+
+TEST_F(Home, RefusesAStateFolderThatIsNone) {
+  EXPECT_FALSE(sut().with_state(root_ / "outside.spt"));
+  EXPECT_FALSE(sut().with_state(root_ / "outside.spt/below"));
+}
+
 TEST_F(Home, ReadsAWholeFileUpToTheLimitAndNeverWaitsForAPipe) {
   EXPECT_EQ(*read_text_file(root_ / "outside.spt", 6), "secret");
   EXPECT_FALSE(read_text_file(root_ / "outside.spt", 5));

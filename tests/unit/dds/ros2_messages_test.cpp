@@ -77,6 +77,15 @@ TEST(JointStateCodec, AgreesWithAnotherImplementation) {
   }
 }
 
+// By hand: encapsulation CDR_LE, the length with the zero behind the text, the text.
+TEST(StringCodec, WritesLittleEndianAsTheStandardSays) {
+  std::vector<std::byte> written;
+  encode(std::string_view("<r/>"), written);
+  std::vector<std::byte> golden;
+  for (const unsigned char b : std::string_view("\0\1\0\0\5\0\0\0<r/>\0", 13)) golden.push_back(std::byte{b});
+  EXPECT_EQ(written, golden);
+}
+
 TEST(JointStateCodec, RefusesEveryTruncation) {
   const std::vector<std::byte> whole = golden_joint_state_le();
   for (std::size_t length = 0; length < whole.size(); ++length) {

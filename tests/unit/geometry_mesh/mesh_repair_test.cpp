@@ -271,7 +271,7 @@ TEST(MeshRepair, makes_all_triangles_face_the_same_way) {
 
 TEST(MeshRepair, a_moebius_strip_is_a_surface) {
   Soup soup;
-  constexpr std::uint32_t n = 12;
+  const std::uint32_t n = 12;
   for (std::uint32_t i = 0; i < n; ++i) {
     const double u = 2.0 * std::numbers::pi * i / n;
     const Eigen::Vector3d across(std::cos(u) * std::cos(u / 2), std::sin(u) * std::cos(u / 2), std::sin(u / 2));

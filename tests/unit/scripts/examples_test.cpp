@@ -218,6 +218,7 @@ const Example kExamples[] = {
     {"VV_ISO on", FormId::vv_iso, {}, {0, 0}},
     {"VV_ISO off VALUE -12.5", FormId::vv_iso, {}, {1, -12.5}},
     {"SAVE_FLIGHT stop.csv", FormId::save_flight, {"stop.csv"}, {}},
+    {"RECORD keep", FormId::record, {}, {2}},
     {"rob_positioning jump", FormId::rob_positioning, {}, {1}},
     {"STOP_ROB MANTEC_RM3", FormId::stop_rob, {"MANTEC_RM3"}, {}},
     {"RESET_HAPTIC MANTEC_RM3", FormId::reset_haptic, {"MANTEC_RM3"}, {}},
