@@ -77,8 +77,7 @@ class Stage {
         world_({cell_, fleet_, motion_, programs_, volumes_, [] {}}),
         robots_(cell_, fleet_, motion_, couplings_, programs_, names_),
         sensing_(cell_, {}),
-        diagnosis_([](std::string_view) { return Result<void>(); },
-                   [](RecordAction) { return Result<void>(); }) {
+        diagnosis_([](std::string_view) { return Result<void>(); }, [](RecordAction) { return Result<void>(); }) {
     EXPECT_TRUE(fleet_.follow_cell());
   }
 
