@@ -157,8 +157,11 @@ void Scanner::take(const RecordView& record) {
   if (record.is(Opcode::chunk)) return take_chunk(record);
   if (record.is(Opcode::header)) {
     auto header = decode_header(record.content);
-    if (header && !has_header_) out_.header = *std::move(header);
-    if (!header || has_header_) fault(record.offset, "a header that is wrong or not the first");
+    if (header && !has_header_) {
+      out_.header = *std::move(header);
+    } else {
+      fault(record.offset, "a header that is wrong or not the first");
+    }
     has_header_ = true;
   } else if (record.is(Opcode::attachment)) {
     bool crc_ok = false;

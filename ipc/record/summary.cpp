@@ -16,8 +16,9 @@ constexpr std::size_t kCrcBytes = 4;
 
 template <class Record>
 bool take(std::optional<Record> record, std::vector<Record>& into) {
-  if (record) into.push_back(*std::move(record));
-  return record.has_value();
+  if (!record) return false;
+  into.push_back(*std::move(record));
+  return true;
 }
 
 // False where its content is wrong.
