@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/recorder/ros2_definitions.hpp"
+#include "app/snapshot/proximity_words.hpp"
 #include "drivers/can/channel/candump_line.hpp"
 #include "drivers/dds/cdr.hpp"
 #include "drivers/dds/sensor_ranges.hpp"
@@ -63,25 +64,9 @@ TopicPtr json_topic(std::string name, std::string_view type, std::string_view sc
       Topic{std::move(name), "json", std::string(type), "jsonschema", std::string(schema), importance});
 }
 
-constexpr std::size_t kMostPairs = 200;  // of a message, as in status
-
-const char* word(ProximityChange change) {
-  switch (change) {
-    case ProximityChange::entered_warning:
-      return "entered_warning";
-    case ProximityChange::touched:
-      return "touched";
-    case ProximityChange::parted:
-      return "parted";
-    case ProximityChange::left_warning:
-      return "left_warning";
-  }
-  return "";
-}
-
 void write_touching(const ProximityState& state, JsonWriter& out) {
   out.key("touching").begin_array();
-  for (std::size_t i = 0; i < std::min(state.touching.size(), kMostPairs); ++i) {
+  for (std::size_t i = 0; i < std::min(state.touching.size(), kMostPairsTold); ++i) {
     const TouchingPair& pair = state.touching[i];
     out.begin_object()
         .member("a", (*state.names)[pair.a])
@@ -97,7 +82,7 @@ void write_touching(const ProximityState& state, JsonWriter& out) {
 
 void write_near(const ProximityState& state, JsonWriter& out) {
   out.key("near").begin_array();
-  for (std::size_t i = 0; i < std::min(state.near.size(), kMostPairs); ++i) {
+  for (std::size_t i = 0; i < std::min(state.near.size(), kMostPairsTold); ++i) {
     const NearPair& pair = state.near[i];
     out.begin_object()
         .member("a", (*state.names)[pair.a])

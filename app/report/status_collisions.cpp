@@ -1,5 +1,6 @@
 #include "app/report/status_collisions.hpp"
 #include "app/report/status_values.hpp"
+#include "app/snapshot/proximity_words.hpp"
 
 #include <array>
 #include <cstddef>
@@ -13,22 +14,6 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t kMostPairs = 200;  // touching, and near: keeps the document within bounds
-
-const char* word(ProximityChange change) {
-  switch (change) {
-    case ProximityChange::entered_warning:
-      return "entered_warning";
-    case ProximityChange::touched:
-      return "touched";
-    case ProximityChange::parted:
-      return "parted";
-    case ProximityChange::left_warning:
-      return "left_warning";
-  }
-  return "touched";
-}
 
 json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
@@ -91,12 +76,12 @@ void add_findings(json& out, const ProximityState& state, Timestamp now) {
   out["age_s"] = seconds(now - state.posture_time);
   out["sequence"] = state.sequence;
   for (const TouchingPair& pair : state.touching) {
-    if (out["touching"].size() == kMostPairs) break;
+    if (out["touching"].size() == kMostPairsTold) break;
     out["touching"].push_back(touching_json(state, pair, now));
   }
   out["touching_count"] = state.touching.size();
   for (const NearPair& pair : state.near) {
-    if (out["near"].size() == kMostPairs) break;
+    if (out["near"].size() == kMostPairsTold) break;
     out["near"].push_back(near_json(state, pair));
   }
   out["near_count"] = state.near.size();
