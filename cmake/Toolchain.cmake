@@ -67,5 +67,10 @@ if(CELLMIRROR_SANITIZE)
   if(CELLMIRROR_SANITIZE MATCHES "undefined")
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
+  if(CELLMIRROR_SANITIZE MATCHES "fuzzer")
+    # The build that every ./check makes goes without four checks at each access to memory, most of whose findings the address
+    # sanitizer reports too: a source with much Eigen takes 11.2 s of processor time instead of 15.5. The preset asan has them.
+    add_compile_options(-fno-sanitize=null,object-size,vptr,pointer-overflow)
+  endif()
   add_compile_definitions(CELLMIRROR_SANITIZED=1)
 endif()
