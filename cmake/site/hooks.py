@@ -114,7 +114,7 @@ def with_links_of_the_site(text, source, place, has):
 
     def link(match):
         goal = goal_of(source, match[2])
-        if not goal:
+        if not goal or not goal.exists():  # a wrong one stays: mkdocs refuses it
             return match[0]
         goal_place = place_of(goal)
         if goal_place is None or not has(goal_place):
