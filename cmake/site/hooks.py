@@ -168,6 +168,11 @@ def on_page_markdown(markdown, page, config, files):
     return text + "\n\n" + "".join(f"*[{words}]: {meaning}\n" for words, meaning in EXPLAINED.items())
 
 
+def on_page_content(html, page, config, files):
+    """A heading of a column without words is none."""
+    return re.sub(r"<th([^>]*)></th>", r"<td\1></td>", html)
+
+
 def on_post_build(config):
     site = Path(config["site_dir"])
     index = json.dumps(json.loads((site / "search/search_index.json").read_text()), separators=(",", ":"), ensure_ascii=False)

@@ -1,5 +1,5 @@
 // The site of the documents from file://: node site_scenarios.mjs FOLDER. The search gives results, leads to the place, and
-// nothing is asked of any server, by day and at night.
+// nothing is asked of any server. By day and at night all figures are shown, and axe finds nothing.
 import assert from "node:assert/strict";
 import path from "node:path";
 import {pathToFileURL} from "node:url";
@@ -41,6 +41,9 @@ async function ground(name, colorScheme) {
     (images) => Promise.all(images.map((image) => image.decode().then(() => "", () => image.src))));
   assert.deepEqual(broken.filter(Boolean), [], "figures that are not shown");
   await page.screenshot({path: path.join(process.env.ARTEFACTS, `site-${colorScheme}.png`)});
+  await page.addScriptTag({path: path.join(process.env.AXE_CORE, "axe.min.js")});
+  const found = await page.evaluate(async () => (await axe.run({preload: false})).violations.map(({id, nodes}) => `${id}: ${nodes[0].html}`));
+  assert.deepEqual(found, [], `axe, ${name}, ${colorScheme}`);
   const [red] = (await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).match(/\d+/g).map(Number);
   return red;
 }
@@ -48,8 +51,10 @@ async function ground(name, colorScheme) {
 try {
   await search("index.html", "watchdog", "Installation and service");
   await search("decisions/index.html", "passivity", "Haptic devices");
-  assert.ok(await ground("architecture.html", "light") > 200);
-  assert.ok(await ground("architecture.html", "dark") < 100);
+  for (const name of ["architecture.html", "haptics.html"]) {
+    assert.ok(await ground(name, "light") > 200);
+    assert.ok(await ground(name, "dark") < 100);
+  }
   assert.deepEqual(problems, []);
 } catch (error) {
   console.log(error.stack ?? error, problems);

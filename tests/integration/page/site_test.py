@@ -1,4 +1,4 @@
-"""The site of the documents in headless Chromium, from file:// as the package has it: search, light and dark, no request."""
+"""The site of the documents in headless Chromium, from file:// as the package has it: search, light and dark, axe, no request."""
 
 import os
 import pathlib
@@ -17,7 +17,8 @@ class Site(unittest.TestCase):
     def test_the_search_works_without_a_server(self):
         if shutil.which("mkdocs") is None:
             self.skipTest("skipped: mkdocs and mkdocs-material are not installed")
-        environment = dict(os.environ, CHROMIUM=browser.chromium(), PLAYWRIGHT_CORE=str(browser.playwright_core()), ARTEFACTS=str(browser.ARTEFACTS))
+        environment = dict(os.environ, CHROMIUM=browser.chromium(), PLAYWRIGHT_CORE=str(browser.playwright_core()),
+                           AXE_CORE=str(browser.playwright_core().parent / "axe-core"), ARTEFACTS=str(browser.ARTEFACTS))
         browser.ARTEFACTS.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix="cellmirror-site-") as folder:
             subprocess.run([sys.executable, "-B", BUILD, folder], check=True, timeout=100)

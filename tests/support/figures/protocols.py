@@ -32,9 +32,9 @@ def stream_states():
     fresh = d.box(330, 60, 150, 52, "fresh\nnew values", "green")
     stale = d.box(710, 60, 130, 52, "stale\nold", "amber")
     lost = d.box(710, 290, 130, 52, "lost\nvery old", "red")
-    invalid = d.box(30, 290, 130, 52, "invalid\nrefused", "red")
-    implausible = d.box(225, 290, 140, 52, "implausible\ncannot be true", "red")
-    conflict = d.box(440, 290, 140, 52, "conflict\ntwo senders", "red")
+    d.box(30, 290, 130, 52, "invalid\nrefused", "red")
+    d.box(225, 290, 140, 52, "implausible\ncannot be true", "red")
+    d.box(440, 290, 140, 52, "conflict\ntwo senders", "red")
     d.arrow(none.right_at(), fresh.left_at(), label="first value")
     d.arrow(fresh.right_at(0.3), stale.left_at(0.3), label="older than stale_after_s")
     d.arrow(stale.left_at(0.75), fresh.right_at(0.75), label="new value", at=(595, 117))
@@ -81,7 +81,7 @@ def haptic_memory():
     for begin, end, fill, words in sections:
         x = left + begin / 512 * width
         d.box(x, 70, (end - begin) / 512 * width, 64, words, fill, 12, dash=fill == "white", radius=2)
-    for i, byte in enumerate((0, 76, 128, 144, 256, 320, 480, 512)):
+    for byte in (0, 76, 128, 144, 256, 320, 480, 512):
         x = left + byte / 512 * width
         d.path([(x, 134), (x, 142)], FAINT, 1)
         d.text(x + (3 if byte == 144 else -3 if byte == 128 else 0), 156, str(byte), 11, "start" if byte == 144 else "end" if byte == 128 else "middle", colour=FAINT)
@@ -140,11 +140,11 @@ def service():
     systemd = d.box(20, 60, 180, 66, "systemd\ncellmirror@NAME.service", "grey")
     gateway = d.box(340, 60, 200, 150, "cellmirror run\nuser cellmirror\n\nloop, SCHED_FIFO 80\npage and metrics on\n127.0.0.1:8420", "green")
     etc = d.box(20, 180, 180, 50, "/etc/cellmirror/cells/NAME\nthe cell, only read", "amber", 11)
-    var = d.box(20, 260, 180, 50, "/var/lib/cellmirror/NAME\nrecords, saved views", "amber", 11)
+    d.box(20, 260, 180, 50, "/var/lib/cellmirror/NAME\nrecords, saved views", "amber", 11)
     journal = d.box(340, 260, 200, 50, "journal\nCELLMIRROR_KIND=...", "grey")
     prometheus = d.box(680, 60, 180, 60, "Prometheus\nGET /metrics", "blue")
     health = d.box(680, 150, 180, 60, "a load balancer, a script\nGET /healthz", "blue", 12)
-    browser = d.box(680, 250, 180, 60, "browser\nthe page", "blue")
+    d.box(680, 250, 180, 60, "browser\nthe page", "blue")
     d.arrow(systemd.right_at(0.3), gateway.left_at(0.13), label="starts, watchdog", at=(270, 72))
     d.arrow(gateway.left_at(0.32), systemd.right_at(0.75), label="ready, status", at=(270, 124))
     d.arrow(etc.right_at(), (gateway.x, 190))

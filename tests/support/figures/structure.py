@@ -76,7 +76,7 @@ def threads():
     workers = d.box(680, 60, 180, 80, "workers\ncollisions, ranging, forces,\ncontacts, tissue", "green")
     out = d.box(680, 185, 180, 62, "outputs\nDDS, SENSOR queue, page", "green")
     recorder = d.box(680, 290, 180, 62, "recorders\nrecordings, flight records", "green")
-    render = d.box(680, 385, 180, 62, "render service\npictures", "green")
+    d.box(680, 385, 180, 62, "render service\npictures", "green")
     d.arrow(streams.right_at(), tick.left_at(0.18), label="Fifo of samples")
     d.arrow(device.right_at(), (tick.x, device.middle_y), label="shared memory", both=True)
     d.arrow(ways_in.right_at(), owner.left_at(), label="locked list")
