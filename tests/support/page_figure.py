@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Makes docs/figures/monitor_page_3d.png: the monitor page of the running demo in 3D, with its simulated devices, in headless Chromium.
+"""Takes the figures of the monitor page (tests/support/figures/figures.py) of the running demo, with its simulated devices, in
+headless Chromium.
 
-    python3 tests/support/page_figure.py
+    python3 tests/support/page_figure.py FOLDER
 """
 
 import json
@@ -15,15 +16,19 @@ import browser  # noqa: E402
 import gateway as g  # noqa: E402
 from first_picture_bench import simulators  # noqa: E402
 
+PICTURES_OF = {"scene_figure": ["monitor_page_3d"], "page_figure": ["monitor_page", "monitor_page_phone"]}
+
 
 def main():
     scratch = g.Scratch("transfer_cell", startup=True)
     devices = simulators("transfer_cell")
     gateway = g.Gateway(scratch, pictures=True, page=True)
     try:
-        page = json.loads(scratch.cellmirror("page", "--json", "--instance", scratch.instance).stdout)
-        browser.Scenario("scene_figure", f"{page['address']}#token={page['token']}").run()
-        shutil.copy(browser.ARTEFACTS / "monitor_page_3d.png", ROOT / "docs" / "figures" / "monitor_page_3d.png")
+        for scenario, names in PICTURES_OF.items():
+            page = json.loads(scratch.cellmirror("page", "--json", "--instance", scratch.instance).stdout)
+            browser.Scenario(scenario, f"{page['address']}#token={page['token']}").run()
+            for name in names:
+                shutil.copy(browser.ARTEFACTS / f"{name}.png", pathlib.Path(sys.argv[1]) / f"{name}.png")
     finally:
         gateway.close()
         for device in devices:

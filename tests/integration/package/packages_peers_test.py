@@ -176,9 +176,13 @@ class Packages(unittest.TestCase):
             self.assertNotIn(file.suffix, (".pyc", ".jsonl", ".gz.tmp"), file)
         for name in ("/usr/share/man/man1/cellmirror.1.gz", "/usr/share/bash-completion/completions/cellmirror",
                      "/usr/lib/systemd/system/cellmirror@.service", "/usr/share/cellmirror/grafana/cellmirror.json",
-                     "/usr/share/doc/cellmirror-doc/install.md", "/etc/cellmirror/cells"):
+                     "/usr/share/doc/cellmirror-doc/install.md", "/usr/share/doc/cellmirror-doc/html/index.html",
+                     "/usr/share/doc/cellmirror-doc/html/search/search_index.js", "/etc/cellmirror/cells"):
             self.assertTrue({pathlib.PurePath(name), pathlib.PurePath(name.removeprefix("/usr"))} & set(files), name)
         self.assertLess((self.root.folder / "usr/bin/cellmirror").stat().st_size, LARGEST_PROGRAM)
+        # Figures and examples are there once, for the pages as for the Markdown files.
+        for name in ("figures/tick.svg", "examples/send_command.c"):
+            self.assertTrue((self.root.folder / "usr/share/doc/cellmirror-doc/html" / name).is_file(), name)
         # No path of the builder's tree.
         for file in files:
             path = self.root.folder / str(file).lstrip("/")

@@ -345,6 +345,20 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       await shot(page, "monitor_page_3d");
     },
 
+    // The pictures of the gateway, at night; and the same page on a telephone.
+    async page_figure() {
+      const page = await opened({viewport: {width: 1440, height: 900}, colorScheme: "dark"}, with_hash("mode=pictures"));
+      await live(page);
+      await picture(page);
+      await page.waitForTimeout(25000);  // charts fill
+      await shot(page, "monitor_page");
+      const phone = await opened({viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true}, with_hash("mode=pictures"));
+      await live(phone);
+      await picture(phone);
+      await phone.waitForTimeout(3000);
+      await shot(phone, "monitor_page_phone");
+    },
+
     // A running gateway: what is drawn changes when a joint moves, and the body that is clicked is the gateway's.
     async scene_gateway() {
       const page = await opened({}, with_hash("mode=3d"));
