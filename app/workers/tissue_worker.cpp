@@ -20,6 +20,7 @@ constexpr Nanoseconds kLongStep{800'000};
 constexpr Nanoseconds kBetweenReports{20'000'000};
 constexpr Nanoseconds kBetweenViews{33'000'000};
 constexpr Nanoseconds kViewsAfterRequest{1'000'000'000};
+constexpr std::chrono::milliseconds kLongestWaitForView{100};
 
 }  // namespace
 
@@ -65,7 +66,13 @@ Result<void> TissueWorker::request(std::vector<tissue::Command> commands) {
 }
 
 std::shared_ptr<const TissueView> TissueWorker::view() {
-  view_wanted_ns_.store(clock_.now().ns, std::memory_order_relaxed);
+  const std::int64_t now_ns = clock_.now().ns;
+  const Nanoseconds since_request{now_ns - view_wanted_ns_.exchange(now_ns, std::memory_order_relaxed)};
+  if (since_request > kViewsAfterRequest && thread_.joinable()) {
+    // The newest one may be as old as the last request.
+    std::unique_lock lock(view_mutex_);
+    view_came_.wait_for(lock, kLongestWaitForView, [&] { return view_time_ns_ >= now_ns; });
+  }
   return views_.latest();
 }
 
@@ -118,6 +125,11 @@ void TissueWorker::publish_view(Timestamp now) {
   auto view = std::make_shared<TissueView>();
   stepper_.world().view(*view, cell_state_->tissue && cell_state_->tissue->network_shown);
   views_.publish(std::move(view));
+  {
+    const std::scoped_lock lock(view_mutex_);
+    view_time_ns_ = now.ns;
+  }
+  view_came_.notify_all();
 }
 
 // How old the posture of the step was when it began.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -49,8 +50,8 @@ class TissueWorker final : public TissuePort {
   Result<void> request(std::vector<tissue::Command> commands) override;
   // Any thread.
   [[nodiscard]] const Board<TissueReport>& reports() const { return reports_; }
-  // The newest shapes; they are made some thirty times a second for a while after each call, else not at all. Null
-  // before the first step.
+  // The newest shapes; they are made some thirty times a second for a while after each call, else not at all: the first
+  // call after a while waits for one, for a tenth of a second at most. Null before the first step.
   [[nodiscard]] std::shared_ptr<const TissueView> view();
 
  private:
@@ -83,6 +84,9 @@ class TissueWorker final : public TissuePort {
   Board<TissueReport> reports_;
   Board<TissueView> views_;
   std::atomic<std::int64_t> view_wanted_ns_{0};  // when it was asked for last
+  std::mutex view_mutex_;                        // of view_time_ns_
+  std::condition_variable view_came_;
+  std::int64_t view_time_ns_ = 0;  // of the newest view
   WakeSignal wake_;
   std::jthread thread_;  // last: it uses everything above
 };
