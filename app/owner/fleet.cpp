@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds kTickPatience{200};
 constexpr std::chrono::microseconds kTickPoll{200};
 
 Error tick_stands_still() {
-  return {"the loop does not take commands", "see cellmirror status; a fault record says why it stands still"};
+  return {"the loop does not take commands", "see cellmirror status; a fault record says why it stopped"};
 }
 
 StreamAges ages_of(const StreamConfig& config) {

@@ -145,7 +145,7 @@ Result<std::string> CellRobots::begin_at_start(const RobotModel& robot) {
   const auto began = fleet_.begin_at(robot.id(), robot.parameters().start_position);
   if (!began) return std::unexpected(began.error());
   if (*began) return std::string();
-  return fmt::format("{} does not stand at its start any more; MOVE_ROB {} PTP START moves it there", robot.id(),
+  return fmt::format("{} is no longer at its start position; MOVE_ROB {} PTP START moves it there", robot.id(),
                      robot.id());
 }
 

@@ -14,7 +14,7 @@ std::pair<RecordingHub::Shared, RecordingHub::Shared> RecordingHub::both() const
 
 Result<void> RecordingHub::start_file(RecordingOptions options) {
   if (const Shared before = both().first; goes_on(before)) {
-    return fail(fmt::format("a recording goes on already: {}", before->report().file),
+    return fail(fmt::format("a recording is running already: {}", before->report().file),
                 "end it first (Ctrl-C in its cellmirror record)");
   }
   auto made = Recording::start(std::move(options), clock_);

@@ -86,7 +86,7 @@ Result<std::unique_ptr<PictureStream>> RenderService::open_pictures(const Pictur
   if (const auto refused = refusal(request); !refused) return std::unexpected(refused.error());
   auto stream = streams_.open(request);
   if (!stream) {
-    return fail(fmt::format("{} look at pictures already", PictureStreams::kMost), "close a page that nobody needs");
+    return fail(fmt::format("{} look at pictures already", PictureStreams::kMost), "close a page that is not needed");
   }
   wake_.wake();
   return stream;

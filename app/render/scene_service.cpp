@@ -64,7 +64,7 @@ SceneService::~SceneService() {
 Result<std::unique_ptr<SceneStream>> SceneService::open() {
   if (shared_->streams.fetch_add(1, std::memory_order_relaxed) >= kMaxStreams) {
     shared_->streams.fetch_sub(1, std::memory_order_relaxed);
-    return fail(fmt::format("{} look at the cell already", kMaxStreams), "close a page that nobody needs");
+    return fail(fmt::format("{} pages show the cell already", kMaxStreams), "close a page that is not needed");
   }
   auto stream = std::make_unique<Stream>(shared_, boards_.clock);
   wake_.wake();

@@ -120,7 +120,7 @@ void add_fk(cli::Command program, Action& action) {
   auto options = std::make_shared<FkOptions>();
   cli::Command sub = program.subcommand("fk", "Compute where the tip is at given joint values (forward kinematics)");
   add_robot_options(sub, options->robot);
-  sub.option("--joints", options->joints, "'q1 q2 ...': a value a joint, rad or m").required();
+  sub.option("--joints", options->joints, "'q1 q2 ...': one value per joint, rad or m").required();
   sub.flag("--jacobian", options->jacobian, "the Jacobian too");
   sub.flag("--json", options->json, "one JSON document (docs/kinematics.md)");
   sub.footer("Example: cellmirror fk --urdf arm.urdf --base base_link --tip tool0 --joints '0 0.5 1 0 0.5 0'");

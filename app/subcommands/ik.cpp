@@ -143,9 +143,8 @@ int print(const IkOptions& options, const IkReport& report) {
     if (const auto drawn = plot::write_png(figure(report), options.plot); !drawn) return refuse(drawn.error().text());
   }
   if (report.run.false_claims > 0)
-    return refuse(
-        fmt::format("{} solutions did not stand the check by forward kinematics; this is a bug, please report it",
-                    report.run.false_claims));
+    return refuse(fmt::format("{} solutions failed the check by forward kinematics; this is a bug, please report it",
+                              report.run.false_claims));
   if (report.statistics.samples == 1 && report.statistics.solved == 0) return refuse(not_reached(report, 0));
   return kExitDone;
 }
@@ -183,7 +182,7 @@ void add_ik(cli::Command program, Action& action) {
                      .check(wrong_count, fmt::format("1..{}", kMaxTargets))
                      .excludes(targets);
   sub.option("--seed", options->seed, "of the drawing").show_default().needs(samples);
-  above_zero(sub.option("--timeout-ms", options->timeout_ms, "time limit a target").show_default(), kLongestTimeout);
+  above_zero(sub.option("--timeout-ms", options->timeout_ms, "time limit per target").show_default(), kLongestTimeout);
   above_zero(sub.option("--tol", options->tolerance, "bound of each component of the error: m, rad").show_default(),
              kWidestTolerance);
   sub.option("--method", options->method, "auto, ipopt or fast").show_default().one_of({"auto", "ipopt", "fast"});
@@ -191,7 +190,7 @@ void add_ik(cli::Command program, Action& action) {
       .check(wrong_class, "CLASS");
   sub.option("--seed-joints", options->start,
              "'q1 q2 ...': where the search starts, rad or m (default: middle of the range)");
-  sub.flag("--all", options->all, "several solutions a target");
+  sub.flag("--all", options->all, "several solutions per target");
   sub.option("--plot", options->plot, "draw the distributions of times and errors: a PNG file");
   sub.flag("--json", options->json, "one JSON document (docs/kinematics.md)");
   sub.footer("Example: cellmirror ik --urdf arm.urdf --base base_link --tip tool0 --samples 1000 --plot arm.png");

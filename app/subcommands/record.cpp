@@ -97,7 +97,7 @@ int record(const RecordOptions& options) {
     report = ask(options, action_request(over ? "stop" : "keep"));
     if (!report) return refuse(report.error().text());
   }
-  if (!report->at("ended").get<bool>()) return refuse("the gateway has not finished the file yet; it goes on with it");
+  if (!report->at("ended").get<bool>()) return refuse("the gateway has not finished the file yet; it continues");
   return report_end(options, *report);
 }
 
@@ -111,7 +111,7 @@ void add_record(cli::Command program, Action& action) {
   auto options = std::make_shared<RecordOptions>();
   cli::Command sub = program.subcommand("record", "Record what the running gateway publishes as an MCAP file");
   sub.option("-o,--output", options->output, "a new file").required().check(wrong_output, "F.mcap");
-  sub.option("--for", options->seconds, "end after so many seconds; else by Ctrl-C").positive();
+  sub.option("--for", options->seconds, "end after this many seconds; else by Ctrl-C").positive();
   sub.option("--topics", options->topics, "only these, e.g. /joint_states,/cellmirror/*").list_divided_by(',');
   sub.option("--rate", options->rate_hz, "robot states a second, at most as many as the loop has periods")
       .between(0.1, 4000.0)

@@ -107,15 +107,15 @@ void add_run(cli::Command program, Action& action) {
   sub.option("cell", options->cell, "the cell file, e.g. config/cells/transfer_cell/cell.toml").required();
   sub.option("--script", options->script,
              "startup SCRIPT, instead of the cell file's own: any path, or a name in the scripts/ of the cell");
-  sub.option("--for", options->seconds, "end after so many seconds").positive();
-  sub.option("--rate", options->rate_hz, "periods of the loop a second, 100 to 4000").between(100.0, 4000.0);
+  sub.option("--for", options->seconds, "end after this many seconds").positive();
+  sub.option("--rate", options->rate_hz, "periods of the loop per second, 100 to 4000").between(100.0, 4000.0);
   auto port = sub.option("--port", options->port, "port of the monitor page; 0: a free one").between(0, 65535);
   sub.flag("--no-web", options->no_web, "without the monitor page").excludes(port);
   sub.flag("--headless", options->headless, "without pictures");
   sub.option("--state", options->state,
              "folder for what is written: records, saved views, recorded programs; otherwise the cell folder");
   sub.option("--instance", options->gateway.instance, "name of this gateway where several run beside each other");
-  sub.flag("--verbose", options->verbose, "log what is going on");
+  sub.flag("--verbose", options->verbose, "log more");
   sub.footer("Example: cellmirror run config/cells/transfer_cell/cell.toml --for 60 --instance test");
   sub.when_named([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -195,7 +195,7 @@ void add_send(cli::Command program, Action& action) {
       "send", "Send SCRIPT commands to the running gateway, one after the other, and print their acknowledgements");
   sub.option("commands", options->commands, "the commands, each in quotes; - reads them from standard input");
   sub.option("--file", options->file, "send the commands of this file, - for standard input; each ends with ';'");
-  sub.flag("--keep-going", options->keep_going, "go on behind a command that is refused");
+  sub.flag("--keep-going", options->keep_going, "continue after a refused command");
   sub.flag("--json", options->json, "one JSON object a command (docs/messages.md)");
   sub.option("--timeout", options->timeout_s, "seconds to wait for each acknowledgement").positive().show_default();
   sub.option("--instance", options->instance, "name of the gateway").show_default();

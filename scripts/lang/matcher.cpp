@@ -281,7 +281,7 @@ void Matcher::no_choice(std::string_view meaning, const Token& word, std::span<c
   for (const std::string& choice : accepted) list += (list.empty() ? "" : ", ") + choice;
   std::string remedy = did_you_mean(word.text, accepted);
   if (remedy.empty()) remedy = expected();
-  findings_.error(word.begin, fmt::format("{} {} is none of {}", meaning, printable(word.text), list),
+  findings_.error(word.begin, fmt::format("{} {} is not one of {}", meaning, printable(word.text), list),
                   std::move(remedy));
 }
 

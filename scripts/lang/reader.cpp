@@ -91,7 +91,7 @@ const Form* select_form(std::span<const Form* const> forms, std::span<const Toke
     return nullptr;
   }
   const std::string_view word = words[position].text;
-  findings.error(words[position].begin, fmt::format("{} is none of {}", printable(word), list),
+  findings.error(words[position].begin, fmt::format("{} is not one of {}", printable(word), list),
                  did_you_mean(word, accepted));
   return nullptr;
 }

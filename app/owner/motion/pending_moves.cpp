@@ -53,7 +53,7 @@ void PendingMoves::end(const Watched& watched, motion::Outcome outcome) const {
       return;
     case motion::Outcome::blocked:
       watched.activity->refuse(
-          {fmt::format("{} could not go on along the straight line and stopped before it arrived", robot_),
+          {fmt::format("{} could not continue along the straight line and stopped before it arrived", robot_),
            fmt::format("cellmirror status shows where it stands; MOVE_ROB {} PTP does not need the line", robot_)});
       return;
   }

@@ -43,7 +43,7 @@ class IniReader {
     skipping_ = !is_new;
     if (!is_new) {
       diagnostics_->warning({file_, line_, column},
-                            fmt::format("the section [{}] stands twice, first in line {}: this one is skipped",
+                            fmt::format("the section [{}] appears twice, first in line {}: this one is skipped",
                                         printable(name), found->second.line));
       return;
     }
@@ -66,7 +66,7 @@ class IniReader {
     const int value_column = column + static_cast<int>(equals) + 1;
     const std::string name = lower_case(trimmed(content.substr(0, equals)));
     if (!current_->values.try_emplace(name, IniValue{std::string(value), line_, value_column}).second) {
-      diagnostics_->warning({file_, line_, column}, fmt::format("{} stands twice in [{}]: the first counts",
+      diagnostics_->warning({file_, line_, column}, fmt::format("{} appears twice in [{}]: the first counts",
                                                                 printable(name), printable(current_->name)));
     }
   }

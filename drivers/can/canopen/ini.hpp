@@ -24,7 +24,7 @@ struct IniSection {
 };
 
 // By their names in lower case. Lines that are neither section, key nor comment (;) are errors; a section or key that
-// stands twice is a warning, and the first one counts.
+// appears twice is a warning, and the first one counts.
 using IniFile = std::map<std::string, IniSection, std::less<>>;
 [[nodiscard]] IniFile parse_ini(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 

@@ -89,7 +89,7 @@ std::string_view parse_data(std::string_view text, CanFrame& frame) {
     // "_9" to "_F": the raw DLC of a classic frame of 8 bytes.
     if (text.front() == '_' && !frame.fd && count == 8 && text.size() == 2) {
       const auto dlc = hex_digit(text[1]);
-      if (!dlc || *dlc < 9) return "the raw DLC is none of 9 to F";
+      if (!dlc || *dlc < 9) return "the raw DLC is not one of 9 to F";
       break;
     }
     if (text.size() < 2) return "an odd number of digits of data";

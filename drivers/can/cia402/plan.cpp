@@ -46,7 +46,7 @@ class Planner {
       return result;
     }
     if (!node_ids_.insert(node.node_id).second)
-      error(node.place, fmt::format("{}: the node number stands twice", name));
+      error(node.place, fmt::format("{}: the node number appears twice", name));
     if (node.joint >= kMaxJointsPerRobot) {
       error(node.place, fmt::format("{}: joint {} is beyond {} joints", name, node.joint, kMaxJointsPerRobot));
     } else if (!joints_.insert(node.joint).second) {
@@ -105,7 +105,7 @@ class Planner {
       const bool fits = (id & kCobIdExtended) != 0 || id < 0x800;
       if (!fits) error(node.config.place, fmt::format("{}: 0x{:X} is no COB-ID of 11 bits", name, tpdo.cob_id));
       if (!cob_ids_.insert(id).second)
-        error(node.config.place, fmt::format("{}: the COB-ID 0x{:X} stands twice", name, id));
+        error(node.config.place, fmt::format("{}: the COB-ID 0x{:X} appears twice", name, id));
       has_position |= find_in_mapping(tpdo.entries, kPositionActual.index, kPositionActual.subindex).has_value();
     }
     if (!has_position) {

@@ -166,9 +166,9 @@ class DbcReader {
     }
     message.length = static_cast<std::uint8_t>(length);
     if (!messages_by_id_.emplace(id, dbc_.messages.size()).second) {
-      error_at(line, fmt::format("message {}: the identifier {} stands twice", name, id));
+      error_at(line, fmt::format("message {}: the identifier {} appears twice", name, id));
     }
-    if (!names_.insert(name).second) error_at(line, fmt::format("the message {} stands twice", name));
+    if (!names_.insert(name).second) error_at(line, fmt::format("the message {} appears twice", name));
     current_ = dbc_.messages.size();
     signal_names_.clear();
     dbc_.messages.push_back(std::move(message));
@@ -247,7 +247,7 @@ class DbcReader {
 
   void keep(DbcSignal signal) {
     if (current_ == kNone) {
-      if (!parked_) error_at(signal.line, fmt::format("the signal {} stands in no message", signal.name));
+      if (!parked_) error_at(signal.line, fmt::format("the signal {} belongs to no message", signal.name));
       return;
     }
     DbcMessage& message = dbc_.messages[current_];
@@ -257,7 +257,7 @@ class DbcReader {
       return;
     }
     if (!signal_names_.insert(signal.name).second) {
-      error_at(signal.line, fmt::format("the signal {} stands twice in {}", signal.name, message.name));
+      error_at(signal.line, fmt::format("the signal {} appears twice in {}", signal.name, message.name));
       return;
     }
     message.signals.push_back(std::move(signal));

@@ -55,7 +55,7 @@ std::vector<std::string> MeshFindings::repairs() const {
                               longest_lost_m));
   }
   if (duplicate_triangles > 0)
-    out.push_back(counted(duplicate_triangles, "triangle appears twice", "triangles stand twice"));
+    out.push_back(counted(duplicate_triangles, "triangle appears twice", "triangles appear twice"));
   if (flipped_triangles > 0) {
     out.push_back(counted(flipped_triangles, "triangle was oriented against its neighbours",
                           "triangles were oriented against their neighbours"));

@@ -113,7 +113,7 @@ class Record(RecordingCase):
         self.begin("a.mcap")
         done = self.scratch.cellmirror("record", "-o", str(self.scratch.root / "c.mcap"), "--instance", self.scratch.instance)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("goes on already", done.stderr)
+        self.assertIn("is running already", done.stderr)
 
     def test_the_end_of_the_gateway_finishes_the_file(self):
         gateway = self.start()

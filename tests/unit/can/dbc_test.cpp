@@ -159,11 +159,11 @@ TEST(Dbc, TellsAllMistakesWithTheirPlaces) {
   for (const char* expected :
        {"f.dbc:2: error: the signal Far reaches to byte 9, the message A has 8 bytes",
         "f.dbc:3:", "a factor other than 0", "f.dbc:4:", "the byte order, 0 or 1",
-        "f.dbc:6: error: the signal Twice stands twice in A",
+        "f.dbc:6: error: the signal Twice appears twice in A",
         "f.dbc:7: error: the signal Alone has no multiplexer in A",
         "f.dbc:8: error: message B: 4096 is no CAN identifier",
         "f.dbc:9: error: message C: 65 bytes, a CAN frame holds at most 64",
-        "f.dbc:10: error: message D: the identifier 1 stands twice", "f.dbc:11:", "f.dbc:13: error: a string"}) {
+        "f.dbc:10: error: message D: the identifier 1 appears twice", "f.dbc:11:", "f.dbc:13: error: a string"}) {
     EXPECT_THAT(told, HasSubstr(expected));
   }
 }

@@ -502,7 +502,7 @@ TEST(Cia402Plan, TellsAllMistakes) {
   EXPECT_FALSE(plan_cia402(config, diagnostics));
   const std::string told = diagnostics.text();
   for (const char* expected :
-       {"node 0 (J_1): node numbers go from 1 to 127", "node 3 (J_1): the node number stands twice",
+       {"node 0 (J_1): node numbers go from 1 to 127", "node 3 (J_1): the node number appears twice",
         "node 3 (J_1): the joint has two nodes", "node 4 (J_100): joint 99 is beyond 16 joints",
         "node 5 (J_6): the scale has to be positive", "node 5 (J_6): the sign is 1 or -1",
         "node 6 (J_7): TPDO5 needs a COB-ID of its own",

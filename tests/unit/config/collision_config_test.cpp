@@ -91,7 +91,7 @@ TEST_F(CollisionConfig, tells_what_was_repaired) {
   const auto sut = load("geometry = [\n{ mesh = \"twice.obj\" }, { mesh = \"twice.obj\" }]\n");
   ASSERT_TRUE(sut) << diagnostics.text();
   EXPECT_EQ(finding(),
-            "cell.toml:4:10: note: the mesh twice.obj: 1 triangle has no area, 2 triangles stand twice; it was "
+            "cell.toml:4:10: note: the mesh twice.obj: 1 triangle has no area, 2 triangles appear twice; it was "
             "repaired while reading\n");
 }
 
