@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/recording/flattener.hpp"
+#include "app/recording/recording_names.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -82,19 +83,21 @@ class Lines {
         length_s_(std::max(1e-9, 1e-9 * static_cast<double>(end_ns - start_ns))),
         panels_(fields.size()) {}
 
-  // False: a panel has too many lines.
-  bool add(std::uint64_t time_ns, const FlatMessage& message, bool has_joints) {
+  // False: a panel has too many lines. `robots`: null where these are no joints; else metadata of the channel, which
+  // may say whose they are.
+  bool add(std::uint64_t time_ns, const FlatMessage& message, const mcap::Texts* robots) {
     const double x = 1e-9 * static_cast<double>(time_ns - std::min(time_ns, zero_ns_));
     const double part = std::clamp((x - start_s_) / length_s_, 0.0, 1.0);
     const auto stretch = static_cast<std::size_t>(part * static_cast<double>(kStretches));
     for (const FlatValue& value : message) {
-      if (value.is_text && has_joints && is_of(value.path, "name"))
+      if (value.is_text && robots != nullptr && is_of(value.path, "name"))
         names_[std::string(index_of(value.path))] = value.text;
       const auto number = number_in(value);
       if (!number) continue;
       if (paths_.size() < kMostNames) paths_.insert(value.path);
       for (std::size_t i = 0; i < fields_.size(); ++i) {
-        if (!is_of(value.path, fields_[i])) continue;
+        if (!is_of(value.path, fields_[i]) && (robots == nullptr || !is_joint_of(value.path, fields_[i], *robots)))
+          continue;
         Series& series = panels_[i][value.path];
         if (panels_[i].size() > kMostLines) {
           crowded_ = fields_[i];
@@ -109,7 +112,7 @@ class Lines {
   [[nodiscard]] Result<std::vector<plot::Panel>> panels(bool has_joints) const {
     if (!crowded_.empty()) {
       return fail(fmt::format("{} has more than {} values", printable(crowded_), kMostLines),
-                  "name single ones, such as position[0]");
+                  "name single ones, such as position[0], or those of a robot: position[ROBOT]");
     }
     std::vector<plot::Panel> out;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -128,6 +131,19 @@ class Lines {
   }
 
  private:
+  // "position[3]" of the field "position[turn]" or "position[ROBOT]", where it is that joint, or one of that robot.
+  [[nodiscard]] bool is_joint_of(std::string_view path, std::string_view field, const mcap::Texts& robots) const {
+    const std::string_view index = index_of(path);
+    const std::string_view wanted = index_of(field);
+    if (index.empty() || wanted.empty()) return false;
+    if (path.substr(0, path.size() - index.size()) != field.substr(0, field.size() - wanted.size())) return false;
+    const auto joint = names_.find(index);
+    if (joint == names_.end()) return false;
+    const std::string_view name = wanted.substr(1, wanted.size() - 2);
+    if (joint->second == name) return true;
+    const auto owner = robots.find(std::string(kJointKey) + joint->second);
+    return owner != robots.end() && owner->second.starts_with(std::string(name) + ".");
+  }
   [[nodiscard]] std::string joint_of(const std::string& path) const {
     const auto found = names_.find(index_of(path));
     return found == names_.end() ? path : found->second;
@@ -174,7 +190,7 @@ Result<plot::Figure> recording_figure(mcap::Reader& reader, const std::string& t
     const mcap::Schema* schema = reader.catalogue().schema_of(channel);
     has_joints = schema != nullptr && schema->name == "sensor_msgs/msg/JointState";
     ++messages;
-    return lines.add(message.log_time, *values, has_joints);
+    return lines.add(message.log_time, *values, has_joints ? &channel.metadata : nullptr);
   };
   if (auto read = reader.read(filter, take); !read) return std::unexpected(read.error());
   if (messages == 0 && !first_problem.what.empty()) return std::unexpected(first_problem);

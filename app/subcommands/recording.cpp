@@ -222,12 +222,14 @@ void add_recording(cli::Command program, Action& action) {
   plotted.option("--topic", options->topic, "the topic").required();
   plotted
       .option("--fields", options->fields,
-              "a panel for each, separated by commas: a value such as nearest_m, or all below a name such as position")
+              "a panel for each, separated by commas: a value such as nearest_m, or all below a name such as position; "
+              "joints: position[ROBOT]")
       .required();
   plotted.option("--from", options->from_s, "seconds behind the start of the recording").between(0.0, 1e9);
   plotted.option("--to", options->to_s, "seconds behind the start of the recording").between(0.0, 1e9);
   plotted.option("-o,--output", options->output, "the picture, a .png file; an existing one is replaced").required();
-  plotted.footer("Example: cellmirror recording plot night.mcap --topic /joint_states --fields position -o joints.png");
+  plotted.footer(
+      "Example: cellmirror recording plot night.mcap --topic /joint_states --fields position[PUMA] -o joints.png");
   plotted.when_named([options, &action] { action = [options] { return recording_plot(*options); }; });
 }
 

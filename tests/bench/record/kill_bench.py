@@ -44,13 +44,14 @@ def kills(count):
         file = scratch.root / "a.mcap"
         recorder = g.Process([g.BIN / "cellmirror", "record", "-o", file, "--instance", scratch.instance], scratch.environment)
         g.eventually(lambda: file.exists() and file.stat().st_size > 0)
+        begun_ns = time.time_ns()  # a file without messages has lost what came since
         time.sleep(random.uniform(0.2, 1.5))
         killed_ns = time.time_ns()
         gateway.kill()
         good, end_ns, repaired_whole = repaired(scratch, file)
         readable += good
         whole += repaired_whole
-        lost.append((killed_ns - end_ns) / 1e9)
+        lost.append((killed_ns - max(begun_ns, end_ns)) / 1e9)
         recorder.close()
         gateway.close()
         scratch.remove()

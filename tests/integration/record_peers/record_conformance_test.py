@@ -8,7 +8,9 @@ index, bytes behind records) that ours does not have: it writes one layout, with
 
 import hashlib
 import json
+import pathlib
 import subprocess
+import tempfile
 import unittest
 
 import gateway as g
@@ -49,8 +51,7 @@ class Conformance(unittest.TestCase):
         cls.scratch.remove()
 
     def ours(self, compression):
-        copies = self.scratch.root / f"copies-{compression}"
-        copies.mkdir()
+        copies = pathlib.Path(tempfile.mkdtemp(dir=self.scratch.root))
         done = subprocess.run([g.BIN / "record_conformance", self.variants, copies, compression], capture_output=True, text=True,
                               timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)

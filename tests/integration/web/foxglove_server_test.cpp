@@ -45,24 +45,24 @@ constexpr foxglove::ChannelView kThin = {"/thin", "json", "a", "{}", "jsonschema
 class FoxgloveServer : public testing::Test {
  protected:
   void SetUp() override {
-    backend.data.topics.wants(kFat);
-    backend.data.topics.wants(kThin);
+    backend_.data.topics.wants(kFat);
+    backend_.data.topics.wants(kThin);
     ServerOptions options;
     options.port = 0;
     options.token = "0123456789abcdef0123456789abcdef";
-    auto started = Server::start(options, backend);
+    auto started = Server::start(options, backend_);
     ASSERT_TRUE(started) << started.error().text();
-    sut = std::move(*started);
+    sut_ = std::move(*started);
   }
 
   std::unique_ptr<RawClient> connect() {
-    auto client = std::make_unique<RawClient>(sut->port(), 16 * 1024);
-    const std::string head = client->open_foxglove(sut->port());
+    auto client = std::make_unique<RawClient>(sut_->port(), 16 * 1024);
+    const std::string head = client->open_foxglove(sut_->port());
     EXPECT_TRUE(head.starts_with("HTTP/1.1 101")) << head;
     EXPECT_TRUE(client->next_message().text.contains("serverInfo"));
     return client;
   }
-  bool soon(const std::function<bool()>& condition) {
+  static bool soon(const std::function<bool()>& condition) {
     for (int i = 0; i < 1000; ++i) {
       if (condition()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -70,21 +70,21 @@ class FoxgloveServer : public testing::Test {
     return false;
   }
 
-  BackendWithData backend;
-  std::unique_ptr<Server> sut;
+  BackendWithData backend_;
+  std::unique_ptr<Server> sut_;
 };
 
 // The client reads 64 KiB at a time, with pauses; the fat topic has a megabyte a message, a hundred times a second.
 TEST_F(FoxgloveServer, AFatTopicDoesNotDelayAThinOneOfASlowClient) {
   const auto client = connect();
   client->say(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
-  ASSERT_TRUE(soon([&] { return backend.data.topics.status().channels.size() == 2; }));
+  ASSERT_TRUE(soon([&] { return backend_.data.topics.status().channels.size() == 2; }));
   std::atomic<std::uint64_t> number{0};
   std::jthread source([&](const std::stop_token& stop) {
     const std::string fat(1'000'000, 'f');
     while (!stop.stop_requested()) {
-      backend.data.topics.put(kThin, ++number, "thin");
-      backend.data.topics.put(kFat, number, fat);
+      backend_.data.topics.put(kThin, ++number, "thin");
+      backend_.data.topics.put(kFat, number, fat);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   });
@@ -108,7 +108,7 @@ TEST_F(FoxgloveServer, AFatTopicDoesNotDelayAThinOneOfASlowClient) {
   source.request_stop();
   source.join();
   EXPECT_GE(thin, fat - 1);
-  const auto topics = backend.data.topics.status().channels;
+  const auto topics = backend_.data.topics.status().channels;
   EXPECT_GT(topics[0].dropped, 0U) << "the client was slow";
   EXPECT_EQ(topics[0].topic, "/fat");
   // The client is told.
@@ -154,12 +154,12 @@ TEST_F(FoxgloveServer, AClientThatIsGoneLeavesNothing) {
   {
     const auto client = connect();
     client->say(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
-    ASSERT_TRUE(soon([&] { return backend.data.topics.wants(kThin); }));
+    ASSERT_TRUE(soon([&] { return backend_.data.topics.wants(kThin); }));
   }
-  EXPECT_TRUE(soon([&] { return backend.data.topics.clients() == 0; }));
-  EXPECT_FALSE(backend.data.topics.wants(kThin));
-  backend.data.topics.put(kThin, 1, "x");
-  EXPECT_TRUE(soon([&] { return sut->status().clients == 0; }));
+  EXPECT_TRUE(soon([&] { return backend_.data.topics.clients() == 0; }));
+  EXPECT_FALSE(backend_.data.topics.wants(kThin));
+  backend_.data.topics.put(kThin, 1, "x");
+  EXPECT_TRUE(soon([&] { return sut_->status().clients == 0; }));
 }
 
 }  // namespace
