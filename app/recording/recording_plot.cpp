@@ -72,6 +72,21 @@ std::string_view index_of(std::string_view path) {
   return path.ends_with(']') && at != std::string_view::npos ? path.substr(at) : std::string_view();
 }
 
+// The lines of a panel, in the order of their first appearance.
+class SeriesList {
+ public:
+  Series& at(const std::string& path) {
+    const auto [found, is_new] = index_.try_emplace(path, list_.size());
+    if (is_new) list_.emplace_back(path, Series());
+    return list_[found->second].second;
+  }
+  [[nodiscard]] const std::vector<std::pair<std::string, Series>>& list() const { return list_; }
+
+ private:
+  std::map<std::string, std::size_t, std::less<>> index_;
+  std::vector<std::pair<std::string, Series>> list_;
+};
+
 // Collects the lines of all panels.
 class Lines {
  public:
@@ -98,8 +113,8 @@ class Lines {
       for (std::size_t i = 0; i < fields_.size(); ++i) {
         if (!is_of(value.path, fields_[i]) && (robots == nullptr || !is_joint_of(value.path, fields_[i], *robots)))
           continue;
-        Series& series = panels_[i][value.path];
-        if (panels_[i].size() > kMostLines) {
+        Series& series = panels_[i].at(value.path);
+        if (panels_[i].list().size() > kMostLines) {
           crowded_ = fields_[i];
           return false;
         }
@@ -116,12 +131,12 @@ class Lines {
     }
     std::vector<plot::Panel> out;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      if (panels_[i].empty()) return nothing_of(fields_[i]);
+      if (panels_[i].list().empty()) return nothing_of(fields_[i]);
       plot::Panel panel{
           .title = fields_[i], .x = {"time [s]"}, .y = {fields_[i]}, .histograms = {}, .lines = {}, .marks = {}};
-      for (const auto& [path, series] : panels_[i]) {
+      for (const auto& [path, series] : panels_[i].list()) {
         plot::Line line{.label = has_joints ? joint_of(path) : path, .x = {}, .y = {}};
-        if (panels_[i].size() == 1) line.label.clear();
+        if (panels_[i].list().size() == 1) line.label.clear();
         series.append_to(line);
         panel.lines.push_back(std::move(line));
       }
@@ -159,7 +174,7 @@ class Lines {
   double start_s_;
   std::uint64_t zero_ns_;
   double length_s_;
-  std::vector<std::map<std::string, Series>> panels_;
+  std::vector<SeriesList> panels_;
   std::map<std::string, std::string, std::less<>> names_;  // of joints, by "[3]"
   std::set<std::string> paths_;
   std::string crowded_;

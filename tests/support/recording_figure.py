@@ -22,7 +22,7 @@ def main():
         done = scratch.cellmirror("record", "-o", str(file), "--for", "20", "--instance", scratch.instance, timeout=60)
         assert done.returncode == 0, done.stderr
         done = scratch.cellmirror("recording", "plot", str(file), "--topic", "/joint_states", "--fields",
-                                  "position[MANTEC_R3],position[PUMA_762],position[MANTEC_RM3]", "-o",
+                                  "position[MANTEC_R3],position[PUMA_762]", "-o",
                                   str(ROOT / "docs" / "figures" / "recorded_joints.png"))
         assert done.returncode == 0, done.stderr
         print(done.stdout, end="")
