@@ -2,6 +2,8 @@
 """Makes docs/figures/recorded_joints.png: the running demo with its simulated devices, recorded for 20 s, and a chart of the file.
 
     python3 tests/support/recording_figure.py
+
+No other simulated devices may run meanwhile: they would send to the same addresses.
 """
 
 import pathlib
