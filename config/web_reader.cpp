@@ -16,8 +16,10 @@ constexpr std::size_t kMostOrigins = 16;
 
 bool is_loopback(std::string_view address) { return address.starts_with("127.") || address == "::1"; }
 
-// "http://host[:port]" or "https://host[:port]", nothing behind it.
+// "http://host[:port]" or "https://host[:port]", nothing behind it; or "file://", which programs on the desktop send
+// that show pages of their own.
 bool is_origin(std::string_view text) {
+  if (text == "file://") return true;
   const std::size_t scheme = text.starts_with("http://") ? 7 : text.starts_with("https://") ? 8 : 0;
   constexpr std::size_t kLongestHost = 255;
   const std::string_view host = text.substr(scheme);

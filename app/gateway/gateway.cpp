@@ -422,7 +422,9 @@ void Gateway::Parts::answer_snapshot(const ControlRequest& request, ControlReply
 void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings& settings) {
   WebBackend::Parts parts;
   parts.clock = &clock;
-  parts.home = home->root();
+  parts.home = &*home;
+  parts.topics = &recordings.live();
+  parts.loop_rate_hz = loop_settings.rate_hz;
   parts.board = &board;
   parts.owner = owner.get();
   parts.renderer = renderer.get();
@@ -504,7 +506,8 @@ std::string Gateway::Parts::status() {
   const ContactReport contact_report = contacts->report();
   const ForceReport force_report = forces->report();
   const RenderReport render_report = renderer->report();
-  const PageReport page_report = page->report();
+  PageReport page_report = page->report();
+  page_report.live = recordings.live().feed().status();
   const Timestamp now = clock.now();
   return status_document({instance->info().name,
                           cell_name,

@@ -52,6 +52,7 @@ std::string dumped(const nlohmann::json& document) {
 }  // namespace
 
 Recordings::Recordings(const Clock& clock) : hub_(clock), texts_(hub_, clock), can_tap_(clock) {
+  hub_.set_live(live_);
   set_log_observer(
       [this](LogLevel level, std::string_view kind, std::string_view text) { texts_.log(level, kind, text); });
 }

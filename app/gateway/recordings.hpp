@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/io/can_tap.hpp"
+#include "app/live/live_topics.hpp"
 #include "app/recorder/recorder.hpp"
 #include "app/recorder/recording_hub.hpp"
 #include "config/record_settings.hpp"
@@ -48,6 +49,8 @@ class Recordings {
   [[nodiscard]] std::string answer(const ControlRequest& request);
   void command(const CommandRecord& record) { texts_.command(record); }
   [[nodiscard]] RecordingHub& hub() { return hub_; }
+  // What clients watch; lives as long as this.
+  [[nodiscard]] LiveTopics& live() { return *live_; }
   [[nodiscard]] CanTap& can_tap() { return can_tap_; }
   [[nodiscard]] const RecordingHub& hub() const { return hub_; }
 
@@ -57,6 +60,7 @@ class Recordings {
 
   About about_;
   RecordSettings settings_;
+  std::shared_ptr<LiveTopics> live_ = std::make_shared<LiveTopics>();
   RecordingHub hub_;
   RecordedTexts texts_;
   CanTap can_tap_;

@@ -17,6 +17,14 @@ std::unexpected<Error> no_pictures() {
 
 }  // namespace
 
+WebBackend::WebBackend(Parts parts)
+    : parts_(std::move(parts)),
+      live_({parts_.topics, parts_.board, parts_.home, parts_.loop_rate_hz,
+             [this](std::string_view command, const web::CommandOrigin& origin,
+                    std::function<void(const web::CommandReply&)> reply) {
+               execute(command, origin, std::move(reply));
+             }}) {}
+
 std::string WebBackend::live_json() {
   std::string out;
   parts_.at([&](const LiveSources& sources) {
@@ -33,7 +41,7 @@ std::string WebBackend::tree_json() {
 
 std::string WebBackend::commands_json() { return script::commands_as_json(); }
 
-std::string WebBackend::names_json() { return names_document(*parts_.board->latest(), parts_.home); }
+std::string WebBackend::names_json() { return names_document(*parts_.board->latest(), parts_.home->root()); }
 
 std::string WebBackend::metrics_text() {
   std::string out;

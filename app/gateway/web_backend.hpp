@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/live/live_gateway.hpp"
 #include "app/owner/cell_owner.hpp"
 #include "app/render/render_service.hpp"
 #include "app/render/scene_service.hpp"
@@ -27,7 +28,9 @@ class WebBackend final : public web::Backend {
   // None of what is pointed to is owned; all of it outlives the backend.
   struct Parts {
     const Clock* clock = nullptr;
-    std::filesystem::path home;
+    const KismetHome* home = nullptr;
+    LiveTopics* topics = nullptr;
+    double loop_rate_hz = 0;
     const Board<CellState>* board = nullptr;
     CellOwner* owner = nullptr;
     RenderService* renderer = nullptr;  // null: no pictures
@@ -41,7 +44,7 @@ class WebBackend final : public web::Backend {
     std::function<void(std::string_view command, const script::CommandSource& source, const std::string& why)> refused;
   };
 
-  explicit WebBackend(Parts parts) : parts_(std::move(parts)) {}
+  explicit WebBackend(Parts parts);
 
   [[nodiscard]] const Clock& clock() const override { return *parts_.clock; }
   [[nodiscard]] std::string live_json() override;
@@ -60,6 +63,7 @@ class WebBackend final : public web::Backend {
   Result<std::unique_ptr<SceneStream>> open_scene() override { return parts_.scene->open(); }
   void ask_geometry(GeometryReply reply) override { parts_.scene->ask_geometry(std::move(reply)); }
   void ask_pick(const PictureRequest& request, int x, int y, PickReply reply) override;
+  [[nodiscard]] web::LiveData* live_data() override { return &live_; }
 
  private:
   static constexpr std::uint64_t kMostCommandsWaiting = 512;  // for their acknowledgement
@@ -70,6 +74,7 @@ class WebBackend final : public web::Backend {
   TreeRevision tree_revision_;
   std::mutex mutex_;  // of the window
   LoopWindow window_;
+  LiveGateway live_;
 };
 
 }  // namespace cellmirror::app

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/recorder/topic.hpp"
+#include "app/recorder/topic_sink.hpp"
 #include "app/snapshot/recorder_report.hpp"
 #include "ipc/record/writer.hpp"
 #include "rt_core/base/result.hpp"
@@ -53,27 +54,26 @@ struct RecordingOptions {
   std::vector<RecordingAttachment> attachments = {};
 };
 
-class Recording {
+class Recording final : public TopicSink {
  public:
   // Fails where the file cannot be made. `clock` outlives the recording.
   [[nodiscard]] static Result<std::unique_ptr<Recording>> start(RecordingOptions options, const Clock& clock);
   // Writes what is left.
-  ~Recording();
+  ~Recording() override;
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
   // All of these: any thread but the tick's; none waits for the disk.
-  void put(const TopicPtr& topic, std::int64_t log_time_ns, std::int64_t publish_time_ns, mcap::View data);
-  // Messages of the topic that were never made.
-  void count_missed(const TopicPtr& topic, std::uint64_t messages);
-  [[nodiscard]] bool wants(const Topic& topic) const;
+  void put(const TopicPtr& topic, std::int64_t log_time_ns, std::int64_t publish_time_ns, mcap::View data) override;
+  void count_missed(const TopicPtr& topic, std::uint64_t messages) override;
+  [[nodiscard]] bool wants(const Topic& topic) const override;
   void end();  // returns at once; ended() is true when the file is whole
   [[nodiscard]] bool ended() const;
   void renew();
   // Keeps the files of the ring, a while from now on. False: it is none, or has ended.
   bool keep();
   [[nodiscard]] RecordingReport report() const;
-  [[nodiscard]] double rate_hz() const { return options_.rate_hz; }
+  [[nodiscard]] double rate_hz() const override { return options_.rate_hz; }
 
  private:
   struct ChannelState {

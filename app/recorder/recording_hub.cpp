@@ -80,26 +80,31 @@ Result<void> RecordingHub::keep_ring() {
 
 void RecordingHub::put(const TopicPtr& topic, std::int64_t publish_time_ns, mcap::View data) const {
   const auto [file, ring] = both();
-  if (!file && !ring) return;
+  if (!file && !ring && !live_) return;
   const std::int64_t now = to_wall_clock_ns(clock_.now());
   if (file) file->put(topic, now, publish_time_ns, data);
   if (ring) ring->put(topic, now, publish_time_ns, data);
+  if (live_) live_->put(topic, now, publish_time_ns, data);
 }
 
 void RecordingHub::count_missed(const TopicPtr& topic, std::uint64_t messages) const {
   const auto [file, ring] = both();
   if (file) file->count_missed(topic, messages);
   if (ring) ring->count_missed(topic, messages);
+  if (live_) live_->count_missed(topic, messages);
 }
 
 bool RecordingHub::wants(const Topic& topic) const {
+  // First: so it gets to know all topics.
+  const bool live = live_ && live_->wants(topic);
   const auto [file, ring] = both();
-  return (goes_on(file) && file->wants(topic)) || (goes_on(ring) && ring->wants(topic));
+  return live || (goes_on(file) && file->wants(topic)) || (goes_on(ring) && ring->wants(topic));
 }
 
 double RecordingHub::rate_hz() const {
   const auto [file, ring] = both();
-  return std::max(goes_on(file) ? file->rate_hz() : 0.0, goes_on(ring) ? ring->rate_hz() : 0.0);
+  return std::max(
+      {goes_on(file) ? file->rate_hz() : 0.0, goes_on(ring) ? ring->rate_hz() : 0.0, live_ ? live_->rate_hz() : 0.0});
 }
 
 std::vector<RecordingReport> RecordingHub::reports() const {

@@ -1,9 +1,12 @@
-// The recordings of a gateway: one that a client asked for, and the ring of the cell file. Messages go to each of them.
+// The recordings of a gateway: one that a client asked for, and the ring of the cell file. Messages go to each of them,
+// and to clients that watch live.
 #pragma once
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/recorder/recording.hpp"
@@ -29,9 +32,12 @@ class RecordingHub {
   Result<void> switch_ring(bool on);
   Result<void> keep_ring();
 
+  // Takes messages too, from now on; before any other thread uses the hub.
+  void set_live(std::shared_ptr<TopicSink> live) { live_ = std::move(live); }
+
   void put(const TopicPtr& topic, std::int64_t publish_time_ns, mcap::View data) const;
   void count_missed(const TopicPtr& topic, std::uint64_t messages) const;
-  // Whether a recording goes on that wants the topic.
+  // Whether a recording goes on that wants the topic, or a client watches it live.
   [[nodiscard]] bool wants(const Topic& topic) const;
   // The greatest rate of robot states that is wanted; 0: nothing is recorded.
   [[nodiscard]] double rate_hz() const;
@@ -54,6 +60,7 @@ class RecordingHub {
   Shared file_;
   Shared ring_;
   std::optional<RecordingOptions> ring_options_;
+  std::shared_ptr<TopicSink> live_;  // null: nobody can watch
 };
 
 }  // namespace cellmirror::app

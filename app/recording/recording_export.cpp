@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/recording/flattener.hpp"
 #include "app/recording/recording_report.hpp"
 #include "app/recording/ros2_schema.hpp"
 #include "drivers/can/channel/candump_line.hpp"
@@ -23,44 +24,6 @@ constexpr std::string_view kCanTopics = "/inputs/can/";
 constexpr std::string_view kJointState = "sensor_msgs/msg/JointState";
 
 void put_text(std::FILE* out, std::string_view text) { std::fwrite(text.data(), 1, text.size(), out); }
-
-// Messages of channels as values, by the schema of each.
-class Flattener {
- public:
-  explicit Flattener(const mcap::Catalogue& catalogue) : catalogue_(catalogue) {}
-
-  Result<FlatMessage> flatten(const mcap::Message& message, const mcap::Channel& channel) {
-    if (channel.encoding == "json")
-      return flatten_json({reinterpret_cast<const char*>(message.data.data()), message.data.size()});
-    if (channel.encoding != "cdr")
-      return fail(fmt::format("messages of the encoding {} are not supported", printable(channel.encoding)),
-                  "supported are json, and cdr with a schema ros2msg");
-    auto known = schemas_.find(channel.schema);
-    if (known == schemas_.end()) known = schemas_.emplace(channel.schema, parse(channel)).first;
-    if (!known->second) return std::unexpected(known->second.error());
-    return known->second->flatten(message.data);
-  }
-
- private:
-  [[nodiscard]] Result<Ros2Schema> parse(const mcap::Channel& channel) const {
-    const mcap::Schema* schema = catalogue_.schema_of(channel);
-    if (schema == nullptr || schema->encoding != "ros2msg")
-      return fail(fmt::format("the topic {} has no schema of ROS 2", printable(channel.topic)));
-    return Ros2Schema::parse(schema->name, schema->data);
-  }
-
-  const mcap::Catalogue& catalogue_;
-  std::map<std::uint16_t, Result<Ros2Schema>> schemas_;
-};
-
-Result<void> topic_is_there(const mcap::Reader& reader, const std::string& topic) {
-  std::vector<std::string> topics;
-  for (const auto& [id, channel] : reader.catalogue().channels) topics.push_back(channel.topic);
-  if (std::ranges::find(topics, topic) != topics.end()) return {};
-  const std::string meant = did_you_mean(topic, topics);
-  return fail(fmt::format("the recording has no topic {}", printable(topic)),
-              meant.empty() ? "list them with: cellmirror recording info" : meant);
-}
 
 // Quoted where a table program needs it.
 std::string csv_field(std::string_view text) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "ipc/foxglove/topic_feed.hpp"
 #include "ipc/web/web_server.hpp"
 
 namespace cellmirror::app {
@@ -14,6 +15,7 @@ struct PageReport {
   std::string problem;  // why there is none although it is wanted; empty: nothing is wrong
   bool read_only = false;
   web::ServerStatus server;
+  foxglove::FeedStatus live;  // clients of the Foxglove protocol
 };
 
 }  // namespace cellmirror::app

@@ -7,6 +7,11 @@ namespace cellmirror::app {
 nlohmann::json page_json(const PageReport& report) {
   using nlohmann::json;
   const web::ServerStatus& server = report.server;
+  json topics = json::array();
+  for (const foxglove::ChannelStatus& one : report.live.channels) {
+    topics.push_back(
+        {{"topic", one.topic}, {"subscribers", one.subscribers}, {"sent", one.sent}, {"dropped", one.dropped}});
+  }
   return {{"on", report.on},
           {"address", report.address.empty() ? json(nullptr) : json(report.address)},
           {"problem", report.problem},
@@ -17,7 +22,8 @@ nlohmann::json page_json(const PageReport& report) {
           {"pictures_left_out", server.pictures_left_out},
           {"refused", server.refused},
           {"cut", server.cut},
-          {"commands", server.commands}};
+          {"commands", server.commands},
+          {"foxglove", {{"clients", report.live.clients}, {"topics", std::move(topics)}}}};
 }
 
 }  // namespace cellmirror::app

@@ -56,7 +56,10 @@ std::string origin_text(const Pose& X) {
 
 class Description {
  public:
-  Description(const CompiledCell& cell, const std::vector<bool>& wanted) : cell_(cell), wanted_(wanted) {
+  using MeshUri = std::function<std::string(std::string_view)>;
+
+  Description(const CompiledCell& cell, const std::vector<bool>& wanted, const MeshUri& mesh_uri)
+      : cell_(cell), wanted_(wanted), mesh_uri_(mesh_uri) {
     compute_poses(cell, zero_positions(), poses_);
   }
 
@@ -218,13 +221,19 @@ class Description {
       case Shape::mesh:
         return add_visual(link, X_LG,
                           fmt::format("<mesh filename=\"{}\" scale=\"{:.9g} {:.9g} {:.9g}\"/>",
-                                      xml_text(file_uri(geometry.mesh_file)), size.x(), size.y(), size.z()),
+                                      xml_text(uri_of(geometry.mesh_file)), size.x(), size.y(), size.z()),
                           geometry);
     }
   }
 
+  [[nodiscard]] std::string uri_of(std::string_view file) const {
+    std::string named = mesh_uri_ ? mesh_uri_(file) : std::string();
+    return named.empty() ? file_uri(file) : named;
+  }
+
   const CompiledCell& cell_;
   const std::vector<bool>& wanted_;
+  const MeshUri& mesh_uri_;
   CellPoses poses_;  // of all joints at zero
   std::vector<Link> links_;
   std::map<std::int32_t, std::size_t> link_of_node_;  // the world and joints
@@ -237,8 +246,9 @@ class Description {
 
 }  // namespace
 
-std::string robot_description(const CompiledCell& cell, const std::vector<bool>& wanted) {
-  return Description(cell, wanted).write();
+std::string robot_description(const CompiledCell& cell, const std::vector<bool>& wanted,
+                              const std::function<std::string(std::string_view)>& mesh_uri) {
+  return Description(cell, wanted, mesh_uri).write();
 }
 
 }  // namespace cellmirror::app

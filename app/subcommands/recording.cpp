@@ -1,6 +1,7 @@
 // cellmirror recording: what is in a recorded file, whether it is whole, its repair, and its messages as tables.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -9,14 +10,20 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "app/console/put.hpp"
+#include "app/plot/figure.hpp"
 #include "app/recording/recording_export.hpp"
+#include "app/recording/recording_plot.hpp"
 #include "app/recording/recording_report.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/record/recover.hpp"
+#include "rt_core/base/counted.hpp"
 #include "rt_core/base/json_writer.hpp"
+#include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
 
@@ -27,6 +34,7 @@ struct RecordingOptions {
   std::string output;
   std::string compression = "zstd";
   std::string topic;
+  std::string fields;
   bool joints = false;
   bool candump = false;
   double from_s = 0;
@@ -138,6 +146,30 @@ int recording_export(const RecordingOptions& options) {
   return kExitDone;
 }
 
+std::vector<std::string> divided(std::string_view text) {
+  std::vector<std::string> out;
+  while (!text.empty()) {
+    const std::string_view one = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), one.size() + 1));
+    if (!trimmed(one).empty()) out.emplace_back(trimmed(one));
+  }
+  return out;
+}
+
+int recording_plot(const RecordingOptions& options) {
+  const auto source = mcap::FileSource::open(options.file);
+  if (!source) return refuse(source.error().text());
+  auto reader = mcap::Reader::open(**source);
+  if (!reader) return refuse(options.file + ": " + reader.error().text());
+  const auto figure = recording_figure(*reader, options.topic, divided(options.fields), filter_of(options, *reader));
+  if (!figure) return refuse(options.file + ": " + figure.error().text());
+  if (const auto written = plot::write_png(*figure, options.output); !written) return refuse(written.error().text());
+  std::size_t lines = 0;
+  for (const plot::Panel& panel : figure->panels) lines += panel.lines.size();
+  put(stdout, "{}: {}, {}\n", options.output, figure->subtitle, number_of(lines, "line"));
+  return kExitDone;
+}
+
 void add_file(cli::Command& command, RecordingOptions& options) {
   command.option("file", options.file, "the recording, an .mcap file").required();
 }
@@ -185,6 +217,20 @@ void add_recording(cli::Command program, Action& action) {
                                    ? std::string("name --topic T, or --joints, or --candump")
                                    : std::string();
                       });
+  cli::Command plotted = sub.subcommand("plot", "Values of a topic over time, as a picture");
+  add_file(plotted, *options);
+  plotted.option("--topic", options->topic, "the topic").required();
+  plotted
+      .option("--fields", options->fields,
+              "a panel for each, separated by commas: a value such as nearest_m, or all below a name such as position; "
+              "joints: position[ROBOT]")
+      .required();
+  plotted.option("--from", options->from_s, "seconds behind the start of the recording").between(0.0, 1e9);
+  plotted.option("--to", options->to_s, "seconds behind the start of the recording").between(0.0, 1e9);
+  plotted.option("-o,--output", options->output, "the picture, a .png file; an existing one is replaced").required();
+  plotted.footer(
+      "Example: cellmirror recording plot night.mcap --topic /joint_states --fields position[PUMA] -o joints.png");
+  plotted.when_named([options, &action] { action = [options] { return recording_plot(*options); }; });
 }
 
 }  // namespace cellmirror::app

@@ -60,6 +60,19 @@ class TableWriter {
     out_ += fmt::format(format, std::forward<Args>(args)...) + "\n";
   }
 
+  // Clients of the Foxglove protocol; nothing where there were none.
+  void write_live(const json& live) {
+    const json& topics = live.at("topics");
+    if (live.at("clients") == 0 && topics.empty()) return;
+    std::string lost;
+    for (const json& one : topics) {
+      const auto dropped = one.at("dropped").get<std::uint64_t>();
+      if (dropped > 0) lost += fmt::format(", {} left out {}", one.at("topic").get<std::string>(), dropped);
+    }
+    line("foxglove  {}, {}{}", number_of(live.at("clients").get<std::uint64_t>(), "client"),
+         number_of(topics.size(), "topic"), lost);
+  }
+
   void write_page(const json& status) {
     if (!status.contains("page")) return;  // an older gateway
     const json& page = status.at("page");
@@ -69,6 +82,7 @@ class TableWriter {
          number_of(page.at("clients").get<std::uint64_t>(), "client"),
          number_of(page.at("pictures").get<std::uint64_t>(), "picture"), page.at("refused").get<std::uint64_t>(),
          page.at("read_only").get<bool>() ? ", read-only" : "");
+    if (page.contains("foxglove")) write_live(page.at("foxglove"));
   }
 
   [[nodiscard]] std::string state(const std::string& word) const {

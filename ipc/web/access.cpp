@@ -50,7 +50,10 @@ AccessRules::AccessRules(std::string_view address, int port, std::vector<std::st
     : loopback_(is_loopback(address)), port_(":" + std::to_string(port)), origins_(std::move(origins)) {}
 
 bool AccessRules::host_allowed(std::string_view host) const {
-  const auto named = [&](const std::string& origin) { return equal_ignoring_case(host_of(origin), host); };
+  // The origin file:// has no host.
+  const auto named = [&](const std::string& origin) {
+    return !host.empty() && equal_ignoring_case(host_of(origin), host);
+  };
   return std::ranges::any_of(origins_, named) || is_own_host(host);
 }
 

@@ -43,12 +43,13 @@ Connection::Connection(Descriptor socket, std::uint64_t number, ServerContext& c
       now_(now) {}
 
 Connection::~Connection() {
-  if (session_) context_.counters.clients.fetch_sub(1, std::memory_order_relaxed);
+  if (session_ || foxglove_) context_.counters.clients.fetch_sub(1, std::memory_order_relaxed);
 }
 
 short Connection::wanted_events() const {
   const bool reads = stage_ != Stage::waiting && stage_ != Stage::answering && stage_ != Stage::over;
-  return static_cast<short>((reads ? POLLIN : 0) | (out_.empty() ? 0 : POLLOUT));
+  const bool writes = !out_.empty() || (is_foxglove() && !closing_ && foxglove_->waiting());
+  return static_cast<short>((reads ? POLLIN : 0) | (writes ? POLLOUT : 0));
 }
 
 Timestamp Connection::deadline() const {
@@ -119,6 +120,7 @@ void Connection::handle_events(short events, Timestamp now) {
     stage_ = Stage::over;
   }
   if (!over() && !out_.empty()) write_some(now);
+  if (is_foxglove()) send_topics();
 }
 
 void Connection::read_some(Timestamp now) {
@@ -253,12 +255,17 @@ void Connection::do_route(OpenWebSocket& open, Timestamp now) {
   const int bytes = 128 * 1024;
   ::setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
   stage_ = Stage::live;
-  session_.emplace(context_, number_, peer);
-  out_.push(
-      fmt::format("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
-                  "Upgrade\r\nSec-WebSocket-Accept: {}\r\n{}\r\n",
-                  open.accept, open.subprotocol ? fmt::format("Sec-WebSocket-Protocol: {}\r\n", kSubprotocol) : ""));
-  session_->welcome(out_);
+  out_.push(fmt::format(
+      "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
+      "Upgrade\r\nSec-WebSocket-Accept: {}\r\n{}\r\n",
+      open.accept, open.subprotocol.empty() ? "" : fmt::format("Sec-WebSocket-Protocol: {}\r\n", open.subprotocol)));
+  if (open.foxglove != nullptr) {
+    foxglove_.emplace(context_, number_, peer, *open.foxglove, open.has_token);
+    foxglove_->welcome(out_);
+  } else {
+    session_.emplace(context_, number_, peer);
+    session_->welcome(out_);
+  }
   write_some(now);
   if (!in_.empty() && !over()) {
     frames_.push(std::exchange(in_, {}));
@@ -287,7 +294,7 @@ void Connection::take_frames(Timestamp now) {
   for (;;) {
     const auto message = frames_.next();
     // Frames count, not messages: a message may have any number of empty parts.
-    if (!closing_ && !session_->within_rate(frames_.take_count(), now)) {
+    if (!closing_ && !within_rate(frames_.take_count(), now)) {
       end(CloseCode::policy, "too much");
       break;
     }
@@ -295,7 +302,10 @@ void Connection::take_frames(Timestamp now) {
     if (closing_ && message->opcode != Opcode::close) continue;
     switch (message->opcode) {
       case Opcode::text:
-        if (!session_->receive(message->payload, now, out_)) end(CloseCode::policy, "wrong tokens");
+        take_text(message->payload, now);
+        break;
+      case Opcode::binary:
+        take_binary(message->payload, now);
         break;
       case Opcode::ping:
         out_.push(frame(Opcode::pong, message->payload));
@@ -310,7 +320,6 @@ void Connection::take_frames(Timestamp now) {
         end(close_code_of(message->payload), {});  // section 5.5.1: its code is echoed
         break;
       default:
-        end(CloseCode::unsupported, "only text messages are supported");
         break;
     }
   }
@@ -318,9 +327,26 @@ void Connection::take_frames(Timestamp now) {
     count(context_.counters.refused);
     end(*frames_.error(), "malformed or too long");
   }
-  if (out_.pending() > kMaxBacklogBytes) return cut();
+  if (out_.pending() > most_pending()) return cut();
   if (!over() && !out_.empty()) write_some(now);
 }
+
+bool Connection::within_rate(std::size_t frames, Timestamp now) {
+  return foxglove_ ? foxglove_->within_rate(frames, now) : session_->within_rate(frames, now);
+}
+
+void Connection::take_text(std::string_view text, Timestamp now) {
+  const bool good = foxglove_ ? foxglove_->receive_text(text, now, out_) : session_->receive(text, now, out_);
+  if (!good) end(CloseCode::policy, "wrong tokens");
+}
+
+void Connection::take_binary(std::string_view bytes, Timestamp now) {
+  if (!foxglove_) return end(CloseCode::unsupported, "only text messages are supported");
+  if (!foxglove_->receive_binary(bytes, now, out_)) end(CloseCode::policy, "wrong tokens");
+}
+
+// A client of the Foxglove protocol may have asked for a file, which is sent as one message.
+std::size_t Connection::most_pending() const { return kMaxBacklogBytes + (foxglove_ ? kMaxAssetBytes : 0); }
 
 void Connection::end(CloseCode code, std::string_view why) {
   if (!live() || closing_) return;
@@ -347,7 +373,7 @@ void Connection::answer(const Answer& answer) {
 }
 
 void Connection::send_live(const Chunk& frame) {
-  if (!live() || closing_ || !out_.empty()) return;
+  if (!live() || closing_ || !session_ || !out_.empty()) return;
   out_.push(frame);
   write_some(now_);
 }
@@ -360,7 +386,7 @@ void Connection::send_picture(Timestamp now) {
 }
 
 void Connection::command_answered(std::int64_t id, const CommandReply& reply) {
-  if (!live()) return;
+  if (!live() || !session_) return;
   session_->command_answered(id, reply, out_);
   if (closing_) return;
   if (out_.pending() > kMaxBacklogBytes) return cut();
@@ -368,9 +394,25 @@ void Connection::command_answered(std::int64_t id, const CommandReply& reply) {
 }
 
 void Connection::picked(std::int64_t id, const Result<std::optional<PickedObject>>& object) {
-  if (!live()) return;
+  if (!live() || !session_) return;
   session_->picked(id, object, out_);
   if (!closing_) write_some(now_);
+}
+
+void Connection::send_topics() {
+  with_foxglove([](FoxgloveSession& session, Outgoing& out) { session.send(out); });
+}
+
+void Connection::look_for_foxglove(Timestamp now) {
+  now_ = now;
+  with_foxglove([now](FoxgloveSession& session, Outgoing& out) { session.look(now, out); });
+}
+
+void Connection::with_foxglove(const std::function<void(FoxgloveSession&, Outgoing&)>& act) {
+  if (!is_foxglove() || closing_) return;
+  act(*foxglove_, out_);
+  if (out_.pending() > most_pending()) return cut();
+  if (!out_.empty()) write_some(now_);
 }
 
 }  // namespace cellmirror::web

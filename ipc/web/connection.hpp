@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "ipc/web/foxglove_session.hpp"
 #include "ipc/web/live_session.hpp"
 #include "ipc/web/routes.hpp"
 #include "rt_core/base/descriptor.hpp"
@@ -46,12 +48,18 @@ class Connection {
   // --- From the server.
   void answer(const Answer& answer);
   void send_live(const Chunk& frame);  // skipped while earlier output is pending
-  [[nodiscard]] bool ready_for_picture() const { return live() && session_->ready_for_picture(out_); }
+  [[nodiscard]] bool ready_for_picture() const { return live() && session_ && session_->ready_for_picture(out_); }
   void send_picture(Timestamp now);
+  [[nodiscard]] bool is_page() const { return live() && session_.has_value(); }
+  [[nodiscard]] bool is_foxglove() const { return live() && foxglove_.has_value(); }
+  void look_for_foxglove(Timestamp now);
 
   // --- From other threads, through the inbox.
   void command_answered(std::int64_t id, const CommandReply& reply);
   void picked(std::int64_t id, const Result<std::optional<PickedObject>>& object);
+  void send_topics();
+  // Does nothing where it is no client of the Foxglove protocol, or is being closed.
+  void with_foxglove(const std::function<void(FoxgloveSession&, Outgoing&)>& act);
 
  private:
   void read_some(Timestamp now);
@@ -66,6 +74,10 @@ class Connection {
   void do_route(OpenWebSocket& open, Timestamp now);
   void execute_body(Timestamp now);
   void take_frames(Timestamp now);
+  [[nodiscard]] bool within_rate(std::size_t frames, Timestamp now);
+  void take_text(std::string_view text, Timestamp now);
+  void take_binary(std::string_view bytes, Timestamp now);
+  [[nodiscard]] std::size_t most_pending() const;
   void cut();
   // With the header Retry-After.
   void answer_busy(int status, std::string why);
@@ -79,8 +91,9 @@ class Connection {
   HttpRequest request_;
   bool head_only_ = false;
   Outgoing out_;
-  std::optional<LiveSession> session_;
-  std::shared_ptr<void> place_;  // of a WebSocket
+  std::optional<LiveSession> session_;       // of a page
+  std::optional<FoxgloveSession> foxglove_;  // of a client of the Foxglove protocol
+  std::shared_ptr<void> place_;              // of a WebSocket
   FrameReader frames_{kMaxMessageBytes};
   bool closing_ = false;     // of a WebSocket: a close frame was sent
   std::size_t drained_ = 0;  // bytes

@@ -1,5 +1,6 @@
 #include "ipc/web/routes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -78,7 +79,8 @@ Route live(const HttpRequest& request, ServerContext& context) {
   auto accept = websocket_accept(request);
   if (accept) {
     const bool has_token = token_matches(opening_token(request), context.options.token);
-    return OpenWebSocket{std::move(*accept), has_token, offers_subprotocol(request)};
+    return OpenWebSocket{std::move(*accept), has_token,
+                         offers_subprotocol(request) ? std::string(kSubprotocol) : std::string(), nullptr};
   }
   Answer answer = refused(context, 426, "this URL is a WebSocket, version 13");
   answer.headers.emplace_back("Upgrade", "websocket");
@@ -86,11 +88,30 @@ Route live(const HttpRequest& request, ServerContext& context) {
   return answer;
 }
 
+// Clients of the Foxglove protocol give the address of the server without a path.
+std::optional<Route> foxglove_client(const HttpRequest& request, ServerContext& context) {
+  if (request.path != "/" && request.path != "/foxglove") return std::nullopt;
+  auto accept = websocket_accept(request);
+  if (!accept) return std::nullopt;
+  LiveData* data = context.backend.live_data();
+  const auto offered = std::ranges::find_if(foxglove::kSubprotocols, [&](std::string_view name) {
+    return request.header_has("sec-websocket-protocol", name);
+  });
+  if (data == nullptr || offered == foxglove::kSubprotocols.end()) {
+    return refused(context, 400,
+                   "a WebSocket here needs the subprotocol foxglove.websocket.v1 or foxglove.sdk.v1; the page's is at "
+                   "/live");
+  }
+  const bool has_token = token_matches(opening_token(request), context.options.token);
+  return OpenWebSocket{std::move(*accept), has_token, std::string(*offered), data};
+}
+
 }  // namespace
 
 Route route(const HttpRequest& request, ServerContext& context) {
   if (auto answer = check_access(request, context)) return std::move(*answer);
   if (request.path == "/live") return live(request, context);
+  if (auto found = foxglove_client(request, context)) return std::move(*found);
   if (request.path == "/api/command") return command(request, context);
   if (request.method != "GET" && request.method != "HEAD") {
     Answer answer = refused(context, 405, "only GET and HEAD are allowed");

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "ipc/web/answer.hpp"
+#include "ipc/web/live_data.hpp"
 #include "ipc/web/server_context.hpp"
 
 namespace cellmirror::web {
@@ -28,7 +29,8 @@ struct ExecuteBody {};
 struct OpenWebSocket {
   std::string accept;  // the header Sec-WebSocket-Accept
   bool has_token = false;
-  bool subprotocol = false;  // to be selected
+  std::string subprotocol;       // to be selected; empty: none
+  LiveData* foxglove = nullptr;  // null: a page
 };
 using Route = std::variant<Answer, Work, TakeSnapshot, TakeGeometry, ExecuteBody, OpenWebSocket>;
 

@@ -32,6 +32,8 @@ struct CommandOrigin {
   std::string peer;           // as of peer_of()
 };
 
+class LiveData;
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -64,6 +66,8 @@ class Backend {
   virtual void ask_geometry(GeometryReply reply) = 0;
   // x, y: pixels in a picture of that request. None: nothing is there.
   virtual void ask_pick(const PictureRequest& request, int x, int y, PickReply reply) = 0;
+  // For clients of the Foxglove protocol; null: there are none. Outlives the server.
+  [[nodiscard]] virtual LiveData* live_data() { return nullptr; }
 };
 
 }  // namespace cellmirror::web

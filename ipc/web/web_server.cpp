@@ -108,6 +108,7 @@ struct Server::Impl {
   std::uint64_t next_number = 1;
   Timestamp next_live;
   Timestamp next_picture;
+  Timestamp next_look;
   Timestamp accept_again;
   bool live_under_way = false;
   std::atomic<bool> stopping{false};
@@ -124,6 +125,7 @@ struct Server::Impl {
   bool make_room();
   void request_live(Timestamp now);
   void send_pictures(Timestamp now);
+  void look_for_foxglove(Timestamp now);
 };
 
 void Server::Impl::stop() {
@@ -143,10 +145,13 @@ bool Server::Impl::wants_pictures() const {
 int Server::Impl::poll_timeout_ms(Timestamp now) const {
   Timestamp next = now + kLongestWait;
   bool any_live = false;
+  bool any_foxglove = false;
   for (const auto& connection : connections) {
     next = std::min(next, connection->deadline());
-    any_live = any_live || connection->live();
+    any_live = any_live || connection->is_page();
+    any_foxglove = any_foxglove || connection->is_foxglove();
   }
+  if (any_foxglove) next = std::min(next, next_look);
   if (any_live && !live_under_way) next = std::min(next, next_live);
   if (wants_pictures()) next = std::min(next, next_picture);
   if (now < accept_again) next = std::min(next, accept_again);
@@ -175,6 +180,7 @@ void Server::Impl::serve() {
     for (const auto& connection : connections) connection->check_time(now);
     request_live(now);
     send_pictures(now);
+    look_for_foxglove(now);
     std::erase_if(connections, [](const auto& connection) { return connection->over(); });
     if (ready > 0 && (polled[1].revents & POLLIN) != 0) accept_some(now);
   }
@@ -228,7 +234,7 @@ bool Server::Impl::make_room() {
 // One document for all of them, made by another thread, ahead of documents that clients requested.
 void Server::Impl::request_live(Timestamp now) {
   if (live_under_way || now < next_live) return;
-  if (std::ranges::none_of(connections, [](const auto& connection) { return connection->live(); })) return;
+  if (std::ranges::none_of(connections, [](const auto& connection) { return connection->is_page(); })) return;
   next_live = now + kLivePeriod;
   live_under_way = jobs->submit_first([this, &backend = context->backend, box = inbox] {
     std::string text;
@@ -251,6 +257,12 @@ void Server::Impl::send_pictures(Timestamp now) {
   for (const auto& connection : connections) {
     if (connection->ready_for_picture()) connection->send_picture(now);
   }
+}
+
+void Server::Impl::look_for_foxglove(Timestamp now) {
+  if (now < next_look) return;
+  next_look = now + FoxgloveSession::kLookPeriod;
+  for (const auto& connection : connections) connection->look_for_foxglove(now);
 }
 
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

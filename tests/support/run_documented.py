@@ -16,6 +16,7 @@ Arguments: source root, folder of the programs, pages. Exit status: 1 where a bl
 there.
 """
 
+import contextlib
 import ctypes
 import os
 import re
@@ -71,7 +72,8 @@ class Shell:
     """One bash that keeps its variables and folder from command to command."""
 
     def __init__(self, root: Path, environment: dict[str, str]):
-        self.process = subprocess.Popen(["bash", "--norc"], cwd=root, env=environment, stdin=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(["bash", "--norc"], cwd=root, env=environment, stdin=subprocess.PIPE, text=True,
+                                        start_new_session=True)
         self.results = tempfile.TemporaryDirectory()
 
     def run(self, command: str) -> tuple[int, str]:
@@ -91,6 +93,9 @@ class Shell:
     def close(self) -> None:
         self.process.stdin.close()
         self.process.wait()
+        # What the page has left running, where one of its commands failed.
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.results.cleanup()
 
 

@@ -46,20 +46,22 @@ class Page:
 class Live:
     """The WebSocket: say() and hear()."""
 
-    def __init__(self, page, receive_buffer=None):
+    def __init__(self, page, receive_buffer=None, path="/live", headers=()):
         self.socket = socket.socket()
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
         self.socket.settimeout(10)
         self.socket.connect((page.host, page.port))
         key = base64.b64encode(os.urandom(16)).decode()
-        self.socket.sendall((f"GET /live HTTP/1.1\r\nHost: {page.host}:{page.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n").encode())
+        more = "".join(f"{name}: {value}\r\n" for name, value in headers)
+        self.socket.sendall((f"GET {path} HTTP/1.1\r\nHost: {page.host}:{page.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n{more}\r\n").encode())
         self.bytes = b""
         while b"\r\n\r\n" not in self.bytes:
             self.bytes += self.socket.recv(4096)
         head, self.bytes = self.bytes.split(b"\r\n\r\n", 1)
         assert head.startswith(b"HTTP/1.1 101"), head
+        self.head = head.decode()
 
     def close(self):
         self.socket.close()
@@ -68,6 +70,9 @@ class Live:
         mask = os.urandom(4)
         length = bytes([0x80 | len(payload)]) if len(payload) < 126 else bytes([0xFE]) + struct.pack(">H", len(payload))
         self.socket.sendall(bytes([0x80 | opcode]) + length + mask + bytes(b ^ mask[i % 4] for i, b in enumerate(payload)))
+
+    def say_bytes(self, payload):
+        self._send(2, payload)
 
     def say(self, **message):
         self._send(1, json.dumps(message).encode())

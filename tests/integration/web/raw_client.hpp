@@ -7,15 +7,23 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror::web {
+
+struct ServerMessage {
+  int opcode = 0;
+  std::string text;
+  bool ended = true;
+};
 
 class RawClient {
  public:
@@ -71,6 +79,42 @@ class RawClient {
          "Sec-WebSocket-Version: 13\r\n" +
          std::string(more_headers) + "\r\n");
     return read_until("\r\n\r\n");
+  }
+
+  // Opens a WebSocket of the Foxglove protocol; the answer's head.
+  std::string open_foxglove(int port) {
+    send("GET / HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+         "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n");
+    return read_until("\r\n\r\n");
+  }
+
+  // The next message of the server, which sends no parts of messages; pings are answered. `pause` before each read.
+  ServerMessage next_message(std::chrono::milliseconds pause = {}) {
+    const Timestamp end = SystemClock().now() + Nanoseconds(20'000'000'000);
+    const auto have = [&](std::size_t bytes) {
+      while (received_.size() < bytes) {
+        std::this_thread::sleep_for(pause);
+        if (SystemClock().now() >= end || !read_some(end)) return false;
+      }
+      return true;
+    };
+    for (;;) {
+      std::size_t head = 2;
+      if (!have(head)) return {};
+      std::size_t size = static_cast<unsigned char>(received_[1]);
+      const std::size_t bytes = size == 126 ? 2 : size == 127 ? 8 : 0;
+      if (!have(head + bytes)) return {};
+      if (bytes > 0) size = 0;
+      for (std::size_t i = 0; i < bytes; ++i) size = size << 8U | static_cast<unsigned char>(received_[head + i]);
+      head += bytes;
+      if (!have(head + size)) return {};
+      const int opcode = received_[0] & 0x0F;
+      ServerMessage out{opcode, received_.substr(head, size), opcode == 8};
+      received_.erase(0, head + size);
+      if (opcode != 9) return out;
+      say(out.text, 10);
+    }
   }
 
   // A masked text frame of at most 65,535 bytes.

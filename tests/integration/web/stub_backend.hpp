@@ -57,7 +57,7 @@ class StubScene final : public SceneStream {
   Timestamp posture_;
 };
 
-class StubBackend final : public Backend {
+class StubBackend : public Backend {
  public:
   [[nodiscard]] const Clock& clock() const override { return clock_; }
   [[nodiscard]] std::string live_json() override {

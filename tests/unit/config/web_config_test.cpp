@@ -81,6 +81,8 @@ TEST_F(WebConfig, OriginsHaveASchemeAndAHostAndNothingElse) {
   for (const char* origin : {"monitor.example.org", "ftp://a", "http://", "https://a/", "https://a/b", "https://a b",
                              "*", "null", "https://a\\nX: y", "https://user@a"})
     EXPECT_THAT(refusal("origins = [\"" + std::string(origin) + "\"]"), HasSubstr("is not an origin")) << origin;
+  EXPECT_THAT(refusal("origins = [\"file:///a\"]"), HasSubstr("is not an origin"));
+  EXPECT_TRUE(load("[web]\norigins = [\"file://\"]\n")) << "that of a desktop app";
   EXPECT_THAT(refusal("origins = \"https://a\""), HasSubstr("origins must be an array"));
 }
 

@@ -159,6 +159,15 @@ TEST(Origins, AreThoseOfThisServer) {
     EXPECT_FALSE(allowed(origin)) << origin;
 }
 
+TEST(Origins, OfDesktopAppsHaveNoHost) {
+  const AccessRules sut("127.0.0.1", 8420, {"file://"});
+  const std::string desktop = "file://";
+  const std::string other = "file:///home";
+  EXPECT_TRUE(sut.origin_allowed(&desktop));
+  EXPECT_FALSE(sut.origin_allowed(&other));
+  EXPECT_FALSE(sut.host_allowed("")) << "it names no server";
+}
+
 TEST(Tokens, AreComparedWhole) {
   EXPECT_TRUE(token_matches("abc", "abc"));
   for (const char* given : {"", "ab", "abcd", "abd", "abcabc"}) EXPECT_FALSE(token_matches(given, "abc")) << given;
