@@ -147,6 +147,7 @@ Nanoseconds TissueWorker::step() {
 
 void TissueWorker::loop(const std::stop_token& stop) {
   set_thread_name(ticks_.name());
+  prefer_short_work();  // pictures, which take much longer, would else delay forces by their time slices
   Timestamp next = clock_.now() + kPeriod;
   while (!stop.stop_requested()) {
     cell_state_ = cell_states_.latest();

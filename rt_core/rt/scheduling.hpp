@@ -31,6 +31,12 @@ struct SchedulingOutcome {
 // A failure where `policy` is `require` and the outcome is not ok.
 [[nodiscard]] Result<void> enforce(RealTimePolicy policy, const SchedulingOutcome& outcome);
 
+// Lets the calling thread, of the ordinary class, go before other ordinary threads with work of less than a
+// millisecond: it asks for short time slices, for which Linux (from 6.12 on) lets it run soon after it wakes, and for
+// nice -10. True where the system gave the second, too, for which it wants CAP_SYS_NICE or LimitNICE. Real-time threads
+// go before it.
+bool prefer_short_work();
+
 // Binds the calling thread to one processor (from 0).
 [[nodiscard]] Result<void> set_cpu_affinity(int cpu);
 // The name of the calling thread in top, ps and debuggers; the kernel keeps 15 bytes, the rest is cut.

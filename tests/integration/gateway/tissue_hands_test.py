@@ -7,9 +7,21 @@ import unittest
 import gateway as g
 import trainer as t
 
-# The steps of the trainer's left hand up to the lifted gallbladder.
-_MOTIONS = re.search(r"^LAP_LEFT .*--motion (\S+)", (g.CELLS / "trainer" / "simulators.txt").read_text(), re.M)[1]
-GRIP_AND_LIFT = ";".join(_MOTIONS.split(";")[:7])
+_SIMULATORS = (g.CELLS / "trainer" / "simulators.txt").read_text()
+
+
+def motions(robot):
+    """What the trainer's simulated hand does, step by step."""
+    return re.search(rf"^{robot} .*--motion (\S+)", _SIMULATORS, re.M)[1].split(";")
+
+
+# The left hand up to the lifted gallbladder.
+GRIP_AND_LIFT = ";".join(motions("LAP_LEFT")[:7])
+# The right hand up to the cystic duct, with open jaws.
+_RIGHT = [step for step in motions("LAP_RIGHT") if not step.startswith("hold")]
+TO_THE_DUCT = ";".join(_RIGHT[:_RIGHT.index("drag:gripper:-0.4014:speed=1.505")])
+CLOSE = "motion drag:gripper:-0.4014:speed=2.0;hold:60s"
+OPEN = "motion drag:gripper:0.4014:speed=2.0;hold:60s"
 
 
 class HandsOnTissue(unittest.TestCase):
@@ -63,12 +75,53 @@ class HandsOnTissue(unittest.TestCase):
         sim.finish()
         self.assertTrue(g.eventually(lambda: not self.instrument("LAP_RIGHT")["acting"], 10))
 
-    def test_3_open_jaws_let_go(self):
+    def press(self, switch, kind):
+        """A foot on the switch, once the right instrument is what it makes of it."""
+        foot = t.sim_footswitch(self.keys["switches"], "--hold", switch, "--for", 60)
+        self.assertTrue(g.eventually(lambda: self.instrument("LAP_RIGHT")["kind"] == kind, 10))
+        return foot
+
+    def leave(self, foot):
+        foot.child.terminate()
+        foot.finish()
+
+    def last(self, kind):
+        return next(one for one in reversed(self.tissue()["events"]["last"]) if one["kind"] == kind)
+
+    def test_3_hand_and_foot_clip_cut_and_coagulate(self):
+        right = t.Hand(self.scratch, self.keys["LAP_RIGHT"], "--axes", 7, "--motion", TO_THE_DUCT + ";hold:60s")
+        try:
+            start = self.tissue()["step"]
+            self.assertTrue(g.eventually(lambda: t.haptic(self.scratch, "LAP_RIGHT")["phase"] == "active", 10))
+            self.assertTrue(g.eventually(lambda: self.tissue()["step"] > start + 2500, 20))  # it is there after 2 s
+            foot = self.press("3", "clip applicator")
+            right.say(CLOSE)
+            self.assertTrue(g.eventually(lambda: self.count("clip") == 1, 10), self.instrument("LAP_RIGHT"))
+            self.assertEqual((self.last("clip")["object"], self.last("clip")["robot"]), ("cystic_duct.mpo", "LAP_RIGHT"))
+            right.say(OPEN)
+            self.assertTrue(g.eventually(lambda: not self.instrument("LAP_RIGHT")["acting"], 10))
+            self.leave(foot)
+            foot = self.press("2", "scissors")
+            right.say(CLOSE)
+            self.assertTrue(g.eventually(lambda: self.count("cut") > 0, 10), self.instrument("LAP_RIGHT"))
+            self.assertGreater(self.last("cut")["value"], 0)
+            right.say(OPEN)
+            self.assertTrue(g.eventually(lambda: not self.instrument("LAP_RIGHT")["acting"], 10))
+            self.leave(foot)
+            foot = self.press("1", "coagulation hook")  # current, whatever the jaws do
+            self.assertTrue(g.eventually(lambda: self.count("coagulate") == 1, 10), self.instrument("LAP_RIGHT"))
+            self.leave(foot)
+            self.assertTrue(g.eventually(lambda: self.count("coagulate") == 2, 10), "its end has how much was burnt")
+            self.assertGreater(self.last("coagulate")["value"], 0)
+        finally:
+            right.kill()
+
+    def test_4_open_jaws_let_go(self):
         self.hand.say("motion drag:gripper:0.4363:speed=2.0;hold:60s")
         self.assertTrue(g.eventually(lambda: self.count("release") == 1, 10))
         self.assertEqual(self.instrument("LAP_LEFT")["held"], 0)
 
-    def test_4_pedal_4_makes_everything_whole_again(self):
+    def test_5_pedal_4_makes_everything_whole_again(self):
         before = self.tissue()["events"]["counts"]
         t.sim_footswitch(self.keys["switches"], "--press", 4, "--times", 1, "--for", 0.2).finish()
 
@@ -78,7 +131,7 @@ class HandsOnTissue(unittest.TestCase):
         self.assertTrue(g.eventually(calm, 10), self.tissue()["objects"])
         self.assertEqual(before, self.tissue()["events"]["counts"])
 
-    def test_5_the_simulation_goes_on(self):
+    def test_6_the_simulation_goes_on(self):
         first = self.tissue()["step"]
         time.sleep(1)
         tissue = self.tissue()

@@ -51,6 +51,7 @@ class Unit(unittest.TestCase):
         self.assertEqual(lines_of("RestrictRealtime"), ["no"])
         self.assertEqual(lines_of("LimitMEMLOCK"), ["infinity"])
         self.assertGreaterEqual(int(lines_of("LimitRTPRIO")[0]), 80)
+        self.assertLessEqual(int(lines_of("LimitNICE")[0]), -10)
         self.assertNotIn("--headless", lines_of("ExecStart")[0])
         # The rasteriser of Mesa writes machine code and runs it.
         self.assertNotIn("yes", lines_of("MemoryDenyWriteExecute"))

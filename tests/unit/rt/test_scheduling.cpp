@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <thread>
@@ -38,6 +40,32 @@ TEST(Scheduling, APriorityThatDoesNotExistIsRefusedWithTheRange) {
   EXPECT_FALSE(sut.ok);
   EXPECT_THAT(sut.why_not, HasSubstr("200"));
   EXPECT_THAT(sut.remedy, HasSubstr("from 1 to 99"));
+}
+
+TEST(Scheduling, ShortWorkStaysInTheOrdinaryClassAndIsPreferredWhereAllowed) {
+  std::thread([] {
+    const bool preferred = prefer_short_work();
+    EXPECT_EQ(current_scheduling().scheduler, "SCHED_OTHER");
+    // Of Linux alone: the nice value of a thread.
+    EXPECT_EQ(getpriority(PRIO_PROCESS, static_cast<id_t>(thread_id())), preferred ? -10 : 0);
+  }).join();
+  EXPECT_EQ(getpriority(PRIO_PROCESS, static_cast<id_t>(thread_id())), 0) << "only its own thread";
+}
+
+TEST(Scheduling, ShortWorkOfAnOrdinaryUserGoesOnUnpreferred) {
+  if (geteuid() != 0) {
+    GTEST_SKIP() << "skipped: only root can become an ordinary user";
+  }
+  const std::string sut = in_child([] {
+    if (!become_ordinary_user(0)) {
+      return std::string("cannot become an ordinary user");
+    }
+    const bool preferred = prefer_short_work();
+    return std::string(preferred ? "preferred" : "as before") + "|" +
+           std::to_string(getpriority(PRIO_PROCESS, static_cast<id_t>(thread_id()))) + "|" +
+           current_scheduling().scheduler;
+  });
+  EXPECT_EQ(sut, "as before|0|SCHED_OTHER");
 }
 
 TEST(Scheduling, AnOrdinaryUserIsToldWhatIsInForceWhyAndWhatToDo) {
