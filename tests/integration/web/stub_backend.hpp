@@ -76,6 +76,7 @@ class StubBackend final : public Backend {
     return "{}";
   }
   [[nodiscard]] std::string command_log_json() override { return "{}"; }
+  [[nodiscard]] std::string alarms_json() override { return "{}"; }
   [[nodiscard]] std::string metrics_text() override { return "up 1\n"; }
   [[nodiscard]] Health health() override { return {healthy, healthy ? "ok" : "the loop stands still"}; }
   void execute(std::string_view command, const CommandOrigin& /*origin*/,

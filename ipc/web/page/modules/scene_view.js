@@ -4,6 +4,7 @@ import * as THREE from "../lib/three/build/three.module.js";
 import {SceneBodies} from "./scene_bodies.js";
 import {SceneLabels} from "./scene_labels.js";
 import {SceneMarks} from "./scene_marks.js";
+import {SceneTissue} from "./scene_tissue.js";
 import {picture_axes} from "./view_math.js";
 
 const kMostDensity = 2;
@@ -19,9 +20,12 @@ export class SceneView {
     this.camera_.matrixAutoUpdate = false;
     this.bodies = new SceneBodies();
     this.marks_ = new SceneMarks();
+    this.tissue_ = new SceneTissue();
     this.labels_ = new SceneLabels();
     this.light_ = new THREE.DirectionalLight(0xffffff, 0.55);
-    this.scene_.add(this.bodies.group, this.marks_.group, new THREE.HemisphereLight(0xffffff, 0x8f969c, 0.62), this.light_, this.light_.target);
+    const sky = new THREE.HemisphereLight(0xffffff, 0x8f969c, 0.62);
+    sky.position.set(0, 0, 1);  // z is up
+    this.scene_.add(this.bodies.group, this.tissue_.group, this.marks_.group, sky, this.light_, this.light_.target);
     this.plane_ = new THREE.Plane(new THREE.Vector3(-1, 0, 0), 0);
     this.gateway_labels_ = [];
     this.own_labels_ = [];
@@ -71,6 +75,14 @@ export class SceneView {
     this.bodies.place(poses.bodies, poses.states);
     this.marks_.place(poses);
     this.draw_soon();
+  }
+
+  take_tissue_shape(data) {
+    this.tissue_.take_shape(data);
+  }
+
+  take_tissue_motion(data) {
+    if (this.tissue_.take_motion(data)) this.draw_soon();
   }
 
   show_marks(marks, line_colour) {
@@ -173,6 +185,11 @@ export class SceneView {
     const at = new THREE.Vector3(...at_m).project(this.camera_);
     if (at.z > 1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1) return null;
     return [((at.x + 1) / 2) * this.size_[0], ((1 - at.y) / 2) * this.size_[1]];
+  }
+
+  // Of deformable objects that are drawn.
+  get tissue_vertices() {
+    return this.tissue_.vertices;
   }
 
   // Of the last drawing.
