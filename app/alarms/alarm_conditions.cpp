@@ -22,6 +22,7 @@ using namespace std::chrono_literals;
 constexpr Nanoseconds kTouchingDelay = 1s;
 constexpr Nanoseconds kNearDelay = 10s;
 constexpr Nanoseconds kStreamDelay = 1s;
+constexpr Nanoseconds kStaleOnDelay = 500ms;  // before the alarm is raised
 constexpr Nanoseconds kBleedingDelay = 1s;
 
 AlarmCondition touching(const std::string& a, const std::string& b) {
@@ -69,31 +70,14 @@ void add_events(std::span<const ProximityEvent> events, double warning_distance_
   }
 }
 
-void add_streams(const LiveSources& sources, std::vector<AlarmCondition>& out) {
-  for (std::size_t i = 0; i < sources.robots.size() && i < sources.cell_state.robots.size(); ++i) {
-    const RobotSnapshot& robot = sources.cell_state.robots[i];
-    const RobotState& state = sources.robots[i];
-    if (!state.online || state.state == DataState::fresh || state.state == DataState::none) continue;
-    const std::string why = condition_text(sources.tick.robots.at(robot.slot), state,
-                                           robot.stream ? robot.stream->status().condition : std::string());
-    out.push_back({.kind = "stream",
-                   .subject = robot.id,
-                   .text = fmt::format("the data of {} are {}{}{}", robot.id,
-                                       state.state == DataState::conflict ? "in conflict" : word(state.state),
-                                       why.empty() ? "" : ": ", why),
-                   .priority = state.state == DataState::stale ? AlarmPriority::medium : AlarmPriority::high,
-                   .off_delay = kStreamDelay});
-  }
-}
-
 void add_haptics(const LiveSources& sources, std::vector<AlarmCondition>& out) {
   for (const HapticSnapshot& haptic : sources.cell_state.haptics) {
     if (!haptic.online) continue;
-    std::string fault = fault_text(sources.tick.haptics.at(haptic.channel), haptic.robot);
+    const std::string fault = fault_text(sources.tick.haptics.at(haptic.channel), haptic.robot);
     if (fault.empty()) continue;
     out.push_back({.kind = "haptic",
                    .subject = haptic.robot,
-                   .text = std::move(fault),
+                   .text = fmt::format("{}: {}", haptic.robot, fault),
                    .priority = AlarmPriority::high,
                    .off_delay = {}});
   }
@@ -116,6 +100,29 @@ void add_bleeding(const TissueState& tissue, std::vector<AlarmCondition>& out) {
 }
 
 }  // namespace
+
+// Data that are late now and then are stale for moments: that is not worth an alarm.
+void AlarmConditions::add_streams(const LiveSources& sources, std::vector<AlarmCondition>& out) {
+  for (std::size_t i = 0; i < sources.robots.size() && i < sources.cell_state.robots.size(); ++i) {
+    const RobotSnapshot& robot = sources.cell_state.robots[i];
+    const RobotState& state = sources.robots[i];
+    const bool stale = state.online && state.state == DataState::stale;
+    if (!stale) stale_since_.erase(robot.id);
+    if (!state.online || state.state == DataState::fresh || state.state == DataState::none) continue;
+    if (stale && sources.now - stale_since_.try_emplace(robot.id, sources.now).first->second < kStaleOnDelay) continue;
+    std::string text =
+        fmt::format("the data of {} are {}", robot.id,
+                    state.state == DataState::conflict ? std::string_view("in conflict") : word(state.state));
+    const std::string why = condition_text(sources.tick.robots.at(robot.slot), state,
+                                           robot.stream ? robot.stream->status().condition : std::string());
+    if (!stale && !why.empty()) text += ": " + why;
+    out.push_back({.kind = "stream",
+                   .subject = robot.id,
+                   .text = std::move(text),
+                   .priority = stale ? AlarmPriority::medium : AlarmPriority::high,
+                   .off_delay = kStreamDelay});
+  }
+}
 
 // Tears and excesses happen and are over; they stay until they are acknowledged.
 void AlarmConditions::add_tissue_events(const LiveSources& sources, std::vector<AlarmCondition>& out) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "app/alarms/alarm_list.hpp"
@@ -21,10 +23,12 @@ class AlarmConditions {
   [[nodiscard]] std::uint64_t newest_event() const { return newest_event_; }
 
  private:
+  void add_streams(const LiveSources& sources, std::vector<AlarmCondition>& out);
   void add_tissue_events(const LiveSources& sources, std::vector<AlarmCondition>& out);
 
   std::uint64_t newest_event_ = 0;
   std::uint64_t newest_tissue_event_ = 0;
+  std::map<std::string, Timestamp> stale_since_;  // by robot
 };
 
 }  // namespace cellmirror::app

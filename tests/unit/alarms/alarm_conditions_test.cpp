@@ -50,7 +50,7 @@ class AlarmConditionsTest : public testing::Test {
                               .cell = "small",
                               .uptime_s = 12.5,
                               .rate_hz = 1000,
-                              .now = kNow,
+                              .now = now_,
                               .loop = loop_,
                               .cell_state = picture_,
                               .tick = tick_,
@@ -95,6 +95,7 @@ class AlarmConditionsTest : public testing::Test {
   std::vector<Problem> problems_;
   std::shared_ptr<TissueReport> tissue_;
   FaultStatus faults_;
+  Timestamp now_ = kNow;
   AlarmConditions sut_;
 };
 
@@ -136,8 +137,8 @@ TEST_F(AlarmConditionsTest, KnowsNothingOfPairsThatAreNotTested) {
 
 TEST_F(AlarmConditionsTest, HasAnAlarmForEachStreamThatIsNotFresh) {
   for (const auto& [state, priority] :
-       {std::pair(DataState::stale, AlarmPriority::medium), std::pair(DataState::lost, AlarmPriority::high),
-        std::pair(DataState::implausible, AlarmPriority::high), std::pair(DataState::conflict, AlarmPriority::high)}) {
+       {std::pair(DataState::lost, AlarmPriority::high), std::pair(DataState::implausible, AlarmPriority::high),
+        std::pair(DataState::conflict, AlarmPriority::high)}) {
     robots_[0].state = state;
     const auto found = look();
     ASSERT_THAT(words(found), ElementsAre("stream: ARM"));
@@ -145,6 +146,24 @@ TEST_F(AlarmConditionsTest, HasAnAlarmForEachStreamThatIsNotFresh) {
   }
   robots_[0].online = false;
   EXPECT_THAT(look(), IsEmpty()) << "taken offline on purpose";
+}
+
+TEST_F(AlarmConditionsTest, HasNoneForDataThatAreLateForAMoment) {
+  for (int i = 0; i < 3; ++i) {
+    robots_[0].state = DataState::stale;
+    EXPECT_THAT(look(), IsEmpty());
+    now_.ns += 400'000'000;
+    EXPECT_THAT(look(), IsEmpty());
+    robots_[0].state = DataState::fresh;
+    EXPECT_THAT(look(), IsEmpty());
+  }
+  robots_[0].state = DataState::stale;
+  EXPECT_THAT(look(), IsEmpty());
+  now_.ns += 500'000'000;
+  const auto found = look();
+  ASSERT_THAT(words(found), ElementsAre("stream: ARM"));
+  EXPECT_EQ(found[0].priority, AlarmPriority::medium);
+  EXPECT_EQ(found[0].text, "the data of ARM are stale");
 }
 
 TEST_F(AlarmConditionsTest, HasTheLoopAndProblems) {
