@@ -136,10 +136,17 @@ connection.on("live", (live) => {
   charts.record(live);
   presence.live(live);
   messages.update(live);
-  if (newest === null) requestAnimationFrame(draw);
+  if (newest === null) draw_soon();
   newest = live;
   measured("cellmirror.record", start);
 });
+
+// While a slow renderer turns the view, the rest of the page waits for it.
+const kInHaste_ms = 250;
+function draw_soon() {
+  if (scene.hasty) setTimeout(() => requestAnimationFrame(draw), kInHaste_ms);
+  else requestAnimationFrame(draw);
+}
 
 function draw() {
   const start = performance.now();

@@ -79,6 +79,11 @@ export class SceneMode {
     return this.chosen_ ?? null;
   }
 
+  // The renderer is slower than the hand that turns the view.
+  get hasty() {
+    return this.on_ && this.scene_.hasty;
+  }
+
   get scene() {
     return this.on_ ? this.scene_ : null;
   }
