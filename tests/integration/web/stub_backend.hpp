@@ -49,6 +49,9 @@ class StubScene final : public SceneStream {
     update->poses.assign(20'000, 'p');
     update->marks_sequence = 1;
     update->marks = std::make_shared<const std::string>(R"({"is":"marks"})");
+    update->tissue_number = 7;
+    update->tissue_shape = std::make_shared<const std::string>("CMT1" + std::string(5'000, 't'));
+    update->tissue_motion = std::make_shared<const std::string>("CMM1" + std::string(10'000, 'm'));
     return update;
   }
 
