@@ -8,6 +8,7 @@ import urllib.request
 import gateway as g
 
 ROBOT = "MANTEC_R3"  # CiA 402 over udp multicast in the transfer cell
+CHANNEL = "udp:239.74.163.9:43127"  # of this test alone: another simulated robot would keep the stream alive
 PATIENCE_S = 30
 
 
@@ -15,6 +16,9 @@ class Alarms(unittest.TestCase):
     def setUp(self):
         self.scratch = g.Scratch()
         self.addCleanup(self.scratch.remove)
+        cell = self.scratch.cell_file.read_text()
+        self.assertIn('channel = "udp:239.74.163.2:43113"', cell)
+        self.scratch.cell_file.write_text(cell.replace('channel = "udp:239.74.163.2:43113"', f'channel = "{CHANNEL}"'))
         self.file = self.scratch.home / "records" / f"alarms-{self.scratch.instance}.jsonl"
 
     def start(self):
@@ -23,7 +27,7 @@ class Alarms(unittest.TestCase):
         return gateway
 
     def robot(self):
-        robot = g.sim_robot("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100")
+        robot = g.sim_robot("cia402", "--channel", CHANNEL, "--nodes", "1-6", "--rate", "100")
         self.addCleanup(robot.close)
         return robot
 
