@@ -10,6 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/alarms/alarm_log.hpp"
+#include "app/gateway/gateway_alarms.hpp"
+#include "app/gateway/loaded_cell.hpp"
 #include "app/gateway/monitor_page.hpp"
 #include "app/gateway/picture_outputs.hpp"
 #include "app/gateway/recordings.hpp"
@@ -63,37 +66,6 @@ constexpr std::string_view kFaultRecord = "fault-";
 constexpr std::size_t kFaultRecordsKept = 20;  // of all runs
 constexpr std::int32_t kIdleWakeLimitUs = 10;  // keeps idle processors out of states that cost the loop its phase
 
-// Numbered, so that none falls to the log's rate limit by kind.
-void log_findings(const Diagnostics& diagnostics) {
-  std::size_t number = 0;
-  for (const Diagnostic& diagnostic : diagnostics.all()) {
-    ++number;
-    log_text(diagnostic.severity == Severity::note ? LogLevel::info : LogLevel::warning,
-             fmt::format("cell {}/{}", number, diagnostics.all().size()), diagnostic.text());
-  }
-}
-
-Result<LoadedCell> load(const GatewayOptions& options) {
-  Diagnostics diagnostics;
-  std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics, options.progress);
-  if (!loaded) {
-    const std::string count = diagnostics.errors() == 1 ? "an error" : fmt::format("{} errors", diagnostics.errors());
-    return fail(fmt::format("the cell {} has {}:\n{}nothing was started", options.cell_file.string(), count,
-                            diagnostics.text(Severity::warning)),
-                fmt::format("fix the cell and check it with: cellmirror check {}", options.cell_file.string()));
-  }
-  // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same diagnostics.
-  for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
-  log_findings(diagnostics);
-  if (!options.state.empty()) {
-    auto home = loaded->home.with_state(options.state);
-    if (!home) return std::unexpected(home.error());
-    loaded->home = *std::move(home);
-  }
-  if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
-  return std::move(*loaded);
-}
-
 }  // namespace
 
 // In the order in which they are made; they end in the reverse order.
@@ -116,6 +88,7 @@ struct Gateway::Parts {
   PictureCounter picture_counter;
   std::unique_ptr<CommandLog> commands;  // null: the cell folder has no place for it
   std::string commands_problem;          // then
+  std::unique_ptr<AlarmLog> alarms;      // once the instance is known
   Recordings recordings{clock};
   std::unique_ptr<ScriptMessageReceiver> messages;
   std::unique_ptr<TissueWorker> tissue;  // null: the cell has no deformable object
@@ -140,6 +113,7 @@ struct Gateway::Parts {
     control.reset();
     // It stays until the end: its threads ask it for its report until it is closed.
     if (page) page->close();
+    if (alarms) alarms->stop();
     recordings.stop();
     faults.reset();
     scene.reset();
@@ -273,6 +247,9 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .can_tap = &recordings.can_tap(),
                        .save_flight_record = save,
                        .record = [this](RecordAction action) { return recordings.switch_ring(action); },
+                       .acknowledge_alarms = [this](std::string_view name, std::uint64_t alarm) -> Result<std::string> {
+                         return alarms->acknowledged(name, alarm);
+                       },
                        .picture_updates = [this] { return picture_counter.count(); },
                        .bell = options.bell,
                        .traced = traced});
@@ -432,6 +409,7 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.status = [this] { return status(); };
   parts.health = [this] { return health(); };
   parts.command_log = [this] { return command_log(); };
+  parts.alarms = [this] { return alarms->report(); };
   parts.refused = [this](std::string_view command, const script::CommandSource& source, const std::string& why) {
     note_refused(source, command, why);
   };
@@ -460,10 +438,26 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
   const engine::TickState& tick = readers->status.newest();
   const std::span<const RobotState> robots = status_builder.build(*cell_state, tick);
   const Timestamp now = clock.now();
-  look({instance->info().name, cell_name, seconds(now - started), loop_settings.rate_hz, now, *loop, *cell_state, tick,
-        robots, status_builder.poses(), picture_counter.count(), collisions->board().latest(),
-        ranging->board().latest(), forces->board().latest(), queues_now, problems_now, commands_logged,
-        tissue_sources().newest_report(), renderer->counters()});
+  look({instance->info().name,
+        cell_name,
+        seconds(now - started),
+        loop_settings.rate_hz,
+        now,
+        *loop,
+        *cell_state,
+        tick,
+        robots,
+        status_builder.poses(),
+        picture_counter.count(),
+        collisions->board().latest(),
+        ranging->board().latest(),
+        forces->board().latest(),
+        queues_now,
+        problems_now,
+        commands_logged,
+        tissue_sources().newest_report(),
+        renderer->counters(),
+        alarms->counts()});
 }
 
 Problems Gateway::Parts::problems() const {
@@ -475,6 +469,7 @@ Problems Gateway::Parts::problems() const {
   add("script_queue", status.input_problem);
   add("reply_queue", status.reply_problem);
   add("command_log", commands ? commands->report().problem : commands_problem);
+  add("alarm_log", alarms->problem());
   add("recording", recordings.hub().problem());
   for (const PublishedOutput& output : publisher->outputs()) add("sensor_queue", output.output->problem());
   if (guard == nullptr || !guard->running()) {
@@ -534,7 +529,8 @@ std::string Gateway::Parts::status() {
                           {guard != nullptr && guard->running(), guard != nullptr ? guard->process() : 0},
                           command_log(),
                           tissue_sources().newest_report(),
-                          recordings.hub().reports()});
+                          recordings.hub().reports(),
+                          alarms->report()});
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -542,7 +538,7 @@ Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Gateway::~Gateway() = default;
 
 Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
-  auto loaded = load(options);
+  auto loaded = load_cell_of(options);
   if (!loaded) return std::unexpected(loaded.error());
   auto parts = std::make_unique<Parts>();
   parts->guard = options.guard;
@@ -565,6 +561,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->prepare_machine();
   if (step) step = parts->take_instance(options);
   if (step) parts->open_command_log();
+  if (step) parts->alarms = open_alarm_log(*parts->home, parts->instance->info().name, parts->clock);
   if (step) step = parts->make_tissue(loaded->tissue);
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
@@ -579,6 +576,8 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
       {options.instance, parts->cell_name, parts->loop_settings.rate_hz, cell_attachments(parts->home->root(), files)});
   parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
+  watch_for_alarms(*parts->alarms, {parts->collisions->board(), *parts->faults,
+                                    [all = parts.get()](const auto& look) { all->look_at(look); }});
   parts->page->open();
   // Last: the startup script finds everything running.
   parts->owner->start();

@@ -16,6 +16,7 @@
 #include "app/render/render_service.hpp"
 #include "app/render/scene_service.hpp"
 #include "app/report/live_document.hpp"
+#include "app/report/status_alarms.hpp"
 #include "app/report/status_commands.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "ipc/web/web_backend.hpp"
@@ -40,6 +41,7 @@ class WebBackend final : public web::Backend {
     std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
     std::function<web::ServerStatus()> server_status;
     std::function<CommandLogReport()> command_log;
+    std::function<AlarmReport()> alarms;
     // With each command that is refused before it reaches the owner.
     std::function<void(std::string_view command, const script::CommandSource& source, const std::string& why)> refused;
   };
@@ -53,6 +55,7 @@ class WebBackend final : public web::Backend {
   [[nodiscard]] std::string commands_json() override;
   [[nodiscard]] std::string names_json() override;
   [[nodiscard]] std::string command_log_json() override { return command_log_document(parts_.command_log()); }
+  [[nodiscard]] std::string alarms_json() override { return alarms_document(parts_.alarms(), parts_.clock->now()); }
   [[nodiscard]] std::string metrics_text() override;
   [[nodiscard]] web::Health health() override { return parts_.health(); }
   void execute(std::string_view command, const web::CommandOrigin& origin,

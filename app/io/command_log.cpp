@@ -1,6 +1,5 @@
 #include "app/io/command_log.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/io/line_file.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/utc_text.hpp"
@@ -24,7 +24,6 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr mode_t kMode = 0600;
 // Commands come in bursts; one write for many of them.
 constexpr std::chrono::milliseconds kGather{20};
 constexpr std::size_t kTailBytes = std::size_t{256} << 10;  // of the file, for the entries from before a restart
@@ -47,29 +46,6 @@ std::filesystem::path numbered(const std::filesystem::path& file, int number) {
   std::filesystem::path out = file;
   out += fmt::format(".{}", number);
   return out;
-}
-
-bool write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(file, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
-// The last lines of a file, at most so many bytes of it; the first of them may be cut.
-std::string tail_of(const std::filesystem::path& file) {
-  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-  struct stat info{};
-  if (!in.valid() || ::fstat(in.get(), &info) != 0 || !S_ISREG(info.st_mode)) return {};
-  const off_t size = info.st_size;
-  const off_t from = std::max<off_t>(0, size - static_cast<off_t>(kTailBytes));
-  std::string text(static_cast<std::size_t>(size - from), '\0');
-  const ssize_t got = ::pread(in.get(), text.data(), text.size(), from);
-  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-  return text;
 }
 
 }  // namespace
@@ -128,7 +104,7 @@ std::uint64_t CommandLog::count() const {
 
 // What others may have written into the file is shown only where it is an object of JSON.
 void CommandLog::load_last() {
-  const std::string text = tail_of(options_.file);
+  const std::string text = tail_of(options_.file, kTailBytes);
   std::string_view left = text;
   const std::scoped_lock lock(mutex_);
   while (!left.empty()) {
@@ -187,26 +163,14 @@ void CommandLog::write(const std::vector<CommandRecord>& records, std::uint64_t 
 }
 
 Result<void> CommandLog::open() {
-  const auto failed = [&](const char* why) {
+  auto opened = open_line_file(options_.file);
+  if (!opened) {
     file_.reset();
-    return fail(fmt::format("the log of commands {} cannot be written: {}", options_.file.string(), why),
+    return fail(fmt::format("the log of commands {} cannot be written: {}", options_.file.string(), opened.error()),
                 "make its folder writable for the user of the gateway; until then no command leaves a trace");
-  };
-  // Not through a link, and not into what is no plain file of this user.
-  file_ = Descriptor(
-      ::open(options_.file.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, kMode));
-  if (!file_.valid()) return failed(std::strerror(errno));
-  struct stat info{};
-  if (::fstat(file_.get(), &info) != 0) return failed(std::strerror(errno));
-  if (!S_ISREG(info.st_mode) || info.st_nlink > 1) return failed("it is no plain file with one name");
-  if (info.st_uid != ::geteuid()) return failed("it belongs to another user");
-  if (::fchmod(file_.get(), kMode) != 0) return failed(std::strerror(errno));
-  bytes_ = static_cast<std::uint64_t>(info.st_size);
-  // A killed gateway may have left half a line.
-  char last = '\n';
-  if (bytes_ > 0 && ::pread(file_.get(), &last, 1, info.st_size - 1) == 1 && last != '\n' &&
-      write_all(file_.get(), "\n"))
-    ++bytes_;
+  }
+  file_ = std::move(opened->file);
+  bytes_ = opened->bytes;
   return {};
 }
 

@@ -87,7 +87,7 @@ CellOwner::CellOwner(Parts parts)
           {haptics_, forces_, robot_forces_, couplings_, [this]() -> FootSwitchService& { return *switches_; }},
           static_cast<bool>(parts.let_tick_pass)),
       tissue_(cell_, names_, std::move(parts.tissue)),
-      diagnosis_(std::move(parts.save_flight_record), std::move(parts.record)) {
+      diagnosis_(std::move(parts.save_flight_record), std::move(parts.record), std::move(parts.acknowledge_alarms)) {
   runner_ = std::make_unique<script::ScriptRunner>(
       CommandHost{names_, world_, robots_, guarded_motion_, programs_, display_, sensing_, interaction_, tissue_,
                   volumes_, diagnosis_},

@@ -63,8 +63,10 @@ class CellOwner {
     CanTap* can_tap = nullptr;    // sees the frames of CAN streams; outlives the owner; null: nobody does
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
     std::function<Result<void>(RecordAction action)> record = {};  // empty: off line
-    std::function<std::uint64_t()> picture_updates = {};           // so far; empty: counted by the clock
-    std::function<void()> bell = {};                               // with a message while BEEP is on
+    // `alarm`: 0 for all. Empty: off line.
+    std::function<Result<std::string>(std::string_view name, std::uint64_t alarm)> acknowledge_alarms = {};
+    std::function<std::uint64_t()> picture_updates = {};  // so far; empty: counted by the clock
+    std::function<void()> bell = {};                      // with a message while BEEP is on
     // Off line nothing runs beside the owner: where it waits for the tick it lets one pass with this. Robots cannot be
     // mirrored then, and shared memories are not made. Empty: the gateway, where the tick has its own thread.
     std::function<void()> let_tick_pass = {};

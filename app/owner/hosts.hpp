@@ -97,17 +97,24 @@ class CellRobots final : public RobotHost {
 
 class CellDiagnosis final : public DiagnosisHost {
  public:
-  CellDiagnosis(std::function<Result<void>(std::string_view)> save, std::function<Result<void>(RecordAction)> record)
-      : save_(std::move(save)), record_(std::move(record)) {}
+  using Acknowledge = std::function<Result<std::string>(std::string_view name, std::uint64_t alarm)>;
+  CellDiagnosis(std::function<Result<void>(std::string_view)> save, std::function<Result<void>(RecordAction)> record,
+                Acknowledge acknowledge = {})
+      : save_(std::move(save)), record_(std::move(record)), acknowledge_(std::move(acknowledge)) {}
   Result<void> save_flight_record(std::string_view file_name) override { return save_(file_name); }
   Result<void> record(RecordAction action) override {
     if (record_) return record_(action);
     return fail("off line nothing is recorded");
   }
+  Result<std::string> acknowledge_alarms(std::string_view name, std::uint64_t alarm) override {
+    if (acknowledge_) return acknowledge_(name, alarm);
+    return fail("off line there are no alarms");
+  }
 
  private:
   std::function<Result<void>(std::string_view)> save_;
   std::function<Result<void>(RecordAction)> record_;  // empty: off line
+  Acknowledge acknowledge_;                           // empty: off line
 };
 
 }  // namespace cellmirror::app

@@ -1,48 +1,16 @@
 #include "app/render/scene_message.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 
+#include "app/render/message_bytes.hpp"
 #include "rt_core/base/json_writer.hpp"
 
 namespace cellmirror::app {
 
 namespace {
-
-// Appends numbers as they lie in the message.
-class Bytes {
- public:
-  void put(std::uint32_t value) {
-    for (int i = 0; i < 4; ++i) text_ += static_cast<char>(static_cast<std::uint8_t>(value >> (8 * i)));
-  }
-  void put(std::uint8_t value) { text_ += static_cast<char>(value); }
-  void put(double value) { put(std::bit_cast<std::uint32_t>(std::isfinite(value) ? static_cast<float>(value) : 0.0F)); }
-  void put(const Eigen::Vector3d& vector) {
-    for (int i = 0; i < 3; ++i) put(vector[i]);
-  }
-  void put(const Pose& pose) {
-    put(Eigen::Vector3d(pose.translation()));
-    const Eigen::Quaterniond turn(pose.linear());
-    for (const double value : {turn.x(), turn.y(), turn.z(), turn.w()}) put(value);
-  }
-  void put(const Colour& colour) {
-    std::uint32_t packed = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const float value = std::isfinite(colour[i]) ? std::clamp(colour[i], 0.0F, 1.0F) : 1.0F;
-      packed |= static_cast<std::uint32_t>(std::lround(255.0F * value)) << (8 * i);
-    }
-    put(packed);
-  }
-  void reserve(std::size_t bytes) { text_.reserve(bytes); }
-  [[nodiscard]] std::string take() { return std::move(text_); }
-
- private:
-  std::string text_;
-};
 
 template <class List>
 auto first_of(const List& list, std::size_t most) {
@@ -128,7 +96,7 @@ std::string scene_poses(const Scene& scene, std::span<const scene::CameraNow> ca
   const auto axes = first_of(scene.axes, kMostMarks);
   const auto cones = first_of(scene.cones, kMostMarks);
   const auto arrows = first_of(scene.arrows, kMostMarks);
-  Bytes out;
+  MessageBytes out;
   out.reserve(24 + 29 * scene.bodies.size() + 36 * (lines.size() + axes.size()) + 40 * cones.size() +
               32 * arrows.size() + 36 * cameras.size());
   for (const std::size_t count :

@@ -172,6 +172,26 @@ void SceneService::update(Timestamp now) {
   publish(scene_poses(source_.scene(), source_.cameras()), now);
 }
 
+void SceneService::add_tissue(SceneUpdate& update) {
+  const std::shared_ptr<const TissueView>& view = source_.scene().tissue;
+  if (!view) {
+    tissue_shown_.reset();
+    return;
+  }
+  TissueShapeKey key = tissue_shape_key(*view);
+  if (!tissue_shape_ || key != tissue_key_) {
+    tissue_key_ = std::move(key);
+    tissue_shape_ = std::make_shared<const std::string>(tissue_shape(*view, ++tissue_number_));
+  }
+  update.tissue_number = tissue_number_;
+  update.tissue_shape = tissue_shape_;
+  // As it was, where only something else has changed.
+  update.tissue_motion = view == tissue_shown_ && last_ && last_->tissue_motion
+                             ? last_->tissue_motion
+                             : std::make_shared<const std::string>(tissue_motion(*view, tissue_number_));
+  tissue_shown_ = view;
+}
+
 void SceneService::publish(std::string poses, Timestamp now) {
   std::shared_ptr<const std::string> marks = last_ ? last_->marks : nullptr;
   std::uint64_t marks_sequence = last_ ? last_->marks_sequence : 0;
@@ -184,7 +204,7 @@ void SceneService::publish(std::string poses, Timestamp now) {
     }
   }
   const bool same = last_ && last_->geometry_hash == geometry_->hash && last_->marks_sequence == marks_sequence &&
-                    last_->poses == poses;
+                    last_->poses == poses && tissue_shown_ == source_.scene().tissue;
   if (same && now - published_ < kAgainAfter) return;
   auto made = std::make_shared<SceneUpdate>();
   made->sequence = static_cast<std::uint64_t>(now.ns);
@@ -193,6 +213,7 @@ void SceneService::publish(std::string poses, Timestamp now) {
   made->poses = std::move(poses);
   made->marks_sequence = marks_sequence;
   made->marks = std::move(marks);
+  add_tissue(*made);
   published_ = now;
   last_ = std::move(made);
   std::shared_ptr<const SceneUpdate> shown = last_;

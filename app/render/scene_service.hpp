@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/render/scene_source.hpp"
+#include "app/render/tissue_message.hpp"
 #include "drivers/display/geometry_export.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -55,6 +56,8 @@ class SceneService {
   // Of the scene as it is; the file is kept while the bodies are the same.
   void update_geometry(Timestamp now);
   [[nodiscard]] bool same_bodies() const;
+  // Of the newest update, or made now: the part of deformable objects.
+  void add_tissue(SceneUpdate& update);
   void publish(std::string poses, Timestamp now);
 
   SceneSource::Boards boards_;
@@ -68,6 +71,10 @@ class SceneService {
   std::shared_ptr<const void> built_names_;
   std::shared_ptr<const SceneGeometry> geometry_;
   Timestamp built_;
+  TissueShapeKey tissue_key_;  // of the newest shape
+  std::uint32_t tissue_number_ = 0;
+  std::shared_ptr<const std::string> tissue_shape_;
+  std::shared_ptr<const TissueView> tissue_shown_;  // of the newest motion
   std::shared_ptr<const SceneUpdate> last_;
   Timestamp published_;
   Timestamp marked_;

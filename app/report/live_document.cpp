@@ -111,10 +111,15 @@ void add_touching(JsonWriter& out, const ProximityState& found) {
   out.end_array();
 }
 
-void add_near(JsonWriter& out, const ProximityState& found) {
+// Nearest first, without those that touch, which have a distance of 0 and are listed before.
+std::span<const NearPair> apart(const ProximityState& found) {
+  const auto first = std::ranges::find_if(found.near, [](const NearPair& pair) { return pair.distance_m > 0.0; });
+  return {first, found.near.end()};
+}
+
+void add_near(JsonWriter& out, const ProximityState& found, std::span<const NearPair> near) {
   out.begin_array();
-  for (std::size_t i = 0; i < std::min(kMostPairs, found.near.size()); ++i) {
-    const NearPair& pair = found.near[i];
+  for (const NearPair& pair : near.first(std::min(kMostPairs, near.size()))) {
     begin_pair(out, found, pair)
         .member("distance_m", pair.distance_m)
         .member("within_warning", pair.within_warning)
@@ -137,9 +142,10 @@ void add_proximity(JsonWriter& out, const LiveSources& sources) {
     out.null();
   }
   out.member("touching_count", found.touching.size()).key("near");
-  add_near(out, found);
-  out.member("near_count", found.near.size())
-      .member("within_warning_count", std::ranges::count_if(found.near, &NearPair::within_warning))
+  const std::span<const NearPair> near = apart(found);
+  add_near(out, found, near);
+  out.member("near_count", near.size())
+      .member("within_warning_count", std::ranges::count_if(near, &NearPair::within_warning))
       .member("warning_distance_m", sources.cell_state.collision->warning_distance_m)
       .member("collision_age_s", known ? age_s(sources.now, found.posture_time) : std::nullopt);
 }
@@ -193,6 +199,21 @@ void add_problems(JsonWriter& out, std::span<const Problem> problems) {
   for (const Problem& problem : problems)
     out.begin_object().member("kind", problem.kind).member("text", problem.text).end_object();
   out.end_array();
+}
+
+void add_alarms(JsonWriter& out, const AlarmCounts& alarms) {
+  out.key("alarms")
+      .begin_object()
+      .member("revision", alarms.revision)
+      .member("unacknowledged", alarms.unacknowledged())
+      .member("active", alarms.active())
+      .key("highest_priority");
+  if (alarms.highest) {
+    out.value(word(*alarms.highest));
+  } else {
+    out.null();
+  }
+  out.end_object();
 }
 
 void add_queues(JsonWriter& out, std::span<const engine::QueueStatus> queues) {
@@ -348,6 +369,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   add_programs(out, sources.cell_state.programs);
   add_queues(out, sources.queues);
   add_problems(out, sources.problems);
+  add_alarms(out, sources.alarms);
   out.member("commands_logged", sources.commands_logged);
   add_messages(out, *sources.cell_state.display, sources.now);
   add_display(out, sources);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/report/problem.hpp"
+#include "app/snapshot/alarm_report.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/proximity_board.hpp"
 #include "app/snapshot/range_readings.hpp"
@@ -43,6 +44,7 @@ struct LiveSources {
   std::uint64_t commands_logged = 0;                     // changes with the log of commands
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
   RendererCounters renderer = {};                        // of the newest picture
+  AlarmCounts alarms = {};
 };
 
 // Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at

@@ -126,6 +126,17 @@ void add_problems(MetricsText& out, std::span<const Problem> problems) {
   for (const std::string& kind : kinds) out.sample(1.0, {{"kind", kind}});
 }
 
+void add_alarms(MetricsText& out, const AlarmCounts& alarms) {
+  out.family("cellmirror_alarms", "gauge", "Alarms that are active, or that nobody has acknowledged.");
+  for (std::size_t i = 0; i < alarms.states.size(); ++i)
+    out.sample(static_cast<double>(alarms.states.at(i)), {{"state", kAlarmStateWords.at(i)}});
+  out.family("cellmirror_alarms_raised_total", "counter", "Alarms raised since the start.");
+  for (std::size_t i = 0; i < alarms.raised.size(); ++i)
+    out.sample(static_cast<double>(alarms.raised.at(i)), {{"priority", kAlarmPriorityWords.at(i)}});
+  out.one("cellmirror_alarms_not_listed", "gauge", "Conditions for which the list of alarms has no place.",
+          static_cast<double>(alarms.not_listed));
+}
+
 void add_traffic(MetricsText& out, const LiveSources& sources, const web::ServerStatus& web) {
   out.family("cellmirror_queue_dropped_total", "counter", "Values that a queue between threads refused.");
   for (const engine::QueueStatus& queue : sources.queues)
@@ -198,6 +209,7 @@ std::string metrics_document(const LiveSources& sources, const web::ServerStatus
   add_tissue_metrics(out, sources);
   add_volume_metrics(out, sources);
   add_problems(out, sources.problems);
+  add_alarms(out, sources.alarms);
   add_traffic(out, sources, web);
   return out.take();
 }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/implausible_values.hpp"
+#include "app/report/status_alarms.hpp"
 #include "app/report/status_collisions.hpp"
 #include "app/report/status_commands.hpp"
 #include "app/report/status_couplings.hpp"
@@ -35,6 +36,8 @@ namespace cellmirror::app {
 namespace {
 
 using nlohmann::json;
+
+constexpr std::size_t kMostAlarms = 100;
 
 std::string note(const std::string& why_not, const std::string& remedy) {
   return why_not.empty() || remedy.empty() ? why_not : why_not + "; " + remedy;
@@ -286,6 +289,7 @@ std::string status_document(const StatusSources& sources) {
       {"home", sources.home},
       {"uptime_s", sources.uptime_s},
       {"problems", problems_json(sources.problems)},
+      {"alarms", alarms_json(sources.alarms, sources.now, kMostAlarms)},
       {"force_guard", {{"running", sources.force_guard.running}, {"process", sources.force_guard.process}}},
       {"loop", loop_json(sources)},
       {"robots", robots_json(sources)},

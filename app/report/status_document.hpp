@@ -7,6 +7,7 @@
 
 #include "app/report/page_report.hpp"
 #include "app/report/problem.hpp"
+#include "app/snapshot/alarm_report.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/collision_report.hpp"
 #include "app/snapshot/command_record.hpp"
@@ -60,6 +61,7 @@ struct StatusSources {
   CommandLogReport commands = {};
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
   std::vector<RecordingReport> recordings = {};
+  AlarmReport alarms = {};
 };
 
 [[nodiscard]] std::string status_document(const StatusSources& sources);

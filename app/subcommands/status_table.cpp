@@ -35,6 +35,7 @@ class TableWriter {
   std::string write(const json& status) {
     write_head(status);
     write_problems(status);
+    write_alarms(status);
     write_loop(status.at("loop"));
     for (const json& robot : status.at("robots")) write_robot(robot);
     out_ += couplings_table(status);
@@ -110,6 +111,17 @@ class TableWriter {
       const std::string text = "PROBLEM  " + problem.at("text").get<std::string>();
       line("{}", colour_ ? "\x1b[31m" + text + "\x1b[0m" : text);
     }
+  }
+
+  void write_alarms(const json& status) {
+    const auto alarms = status.find("alarms");  // an older gateway has none
+    if (alarms == status.end()) return;
+    const auto waiting = alarms->at("unacknowledged").get<std::uint64_t>();
+    const auto active = alarms->at("active").get<std::uint64_t>();
+    if (waiting == 0 && active == 0) return;
+    const json& newest = alarms->at("open").at(0);
+    line("alarms    {} active, {} unacknowledged; newest: {} (ALARM_ACK acknowledges)", active, waiting,
+         newest.at("text").get<std::string>());
   }
 
   void write_loop(const json& loop) {

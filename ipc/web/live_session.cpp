@@ -84,6 +84,7 @@ void LiveSession::handle(const SceneMessage& /*message*/, Outgoing& out) {
   scene_ = std::move(*scene);
   newest_poses_ = 0;
   newest_marks_ = 0;
+  newest_tissue_ = 0;
 }
 
 void LiveSession::handle(const NoSceneMessage& /*message*/, Outgoing& /*out*/) { scene_.reset(); }
@@ -171,6 +172,16 @@ void LiveSession::send_poses(Timestamp now, Outgoing& out) {
   out.push(frame_header(Opcode::binary, kPosesHeaderBytes + update->poses.size()) +
            poses_header(pose_credit_.next(), *update, now));
   out.push(Chunk{update, update->poses});
+  // Behind the poses whose number is acknowledged: none of it is sent faster than the client draws.
+  const auto push_whole = [&](const std::shared_ptr<const std::string>& message) {
+    out.push(frame_header(Opcode::binary, message->size()));
+    out.push(Chunk{message, *message});
+  };
+  if (update->tissue_shape && update->tissue_number != newest_tissue_) {
+    newest_tissue_ = update->tissue_number;
+    push_whole(update->tissue_shape);
+  }
+  if (update->tissue_motion) push_whole(update->tissue_motion);
 }
 
 void LiveSession::send_picture_of_stream(Timestamp now, Outgoing& out) {

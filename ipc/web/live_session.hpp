@@ -72,6 +72,7 @@ class LiveSession {
   PictureCredit pose_credit_;
   std::uint64_t newest_poses_ = 0;  // sequence of the stream
   std::uint64_t newest_marks_ = 0;
+  std::uint32_t newest_tissue_ = 0;  // number of the shape
 
   static constexpr double kFramesPerSecond = 500;  // more than any page sends
 };

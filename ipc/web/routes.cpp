@@ -30,12 +30,13 @@ std::optional<Answer> check_access(const HttpRequest& request, ServerContext& co
 
 std::optional<Route> document(const HttpRequest& request, ServerContext& context) {
   using Make = std::string (Backend::*)();
-  constexpr std::array<std::pair<std::string_view, Make>, 6> kDocuments = {
+  constexpr std::array<std::pair<std::string_view, Make>, 7> kDocuments = {
       {{"/api/status", &Backend::status_json},
        {"/api/tree", &Backend::tree_json},
        {"/api/commands", &Backend::commands_json},
        {"/api/names", &Backend::names_json},
        {"/api/command-log", &Backend::command_log_json},
+       {"/api/alarms", &Backend::alarms_json},
        {"/metrics", &Backend::metrics_text}}};
   for (const auto& [path, make] : kDocuments) {
     if (request.path != path) continue;

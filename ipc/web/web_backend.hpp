@@ -47,6 +47,7 @@ class Backend {
   [[nodiscard]] virtual std::string commands_json() = 0;     // as `cellmirror commands --json`; never changes
   [[nodiscard]] virtual std::string names_json() = 0;        // for completion: robots, frames, cameras, sensors, files
   [[nodiscard]] virtual std::string command_log_json() = 0;  // the newest entries of the log of commands
+  [[nodiscard]] virtual std::string alarms_json() = 0;       // alarms that are open, and the newest of the others
   [[nodiscard]] virtual std::string metrics_text() = 0;      // Prometheus text format
   [[nodiscard]] virtual Health health() = 0;                 // of the loop
   // Executes a SCRIPT command of `origin`; `reply` is called once, from another thread, or at once if it is refused.

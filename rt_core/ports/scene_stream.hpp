@@ -26,6 +26,10 @@ struct SceneUpdate {
   std::string poses;                         // the message behind its head: counts, then numbers
   std::uint64_t marks_sequence = 0;          // another one where `marks` changed
   std::shared_ptr<const std::string> marks;  // JSON: words and what changes seldom; never null
+  // Whole binary messages; null where there is no deformable object.
+  std::uint32_t tissue_number = 0;  // another one where `tissue_shape` changed; 0: there is none
+  std::shared_ptr<const std::string> tissue_shape;
+  std::shared_ptr<const std::string> tissue_motion;
 };
 
 // A stream for one client. Any thread.

@@ -87,6 +87,8 @@ class DiagnosisHost {
   virtual Result<void> save_flight_record(
       std::string_view file_name) = 0;                   // SAVE_FLIGHT, into the cell folder's records/
   virtual Result<void> record(RecordAction action) = 0;  // of the black box
+  // ALARM_ACK: one alarm, or all (0). The remark says how many.
+  virtual Result<std::string> acknowledge_alarms(std::string_view name, std::uint64_t alarm) = 0;
 };
 
 struct CommandHost {

@@ -13,6 +13,13 @@ Outcome record_black_box(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.diagnosis.record(static_cast<RecordAction>(command.choice(kOnlySlot))));
 }
 
+Outcome acknowledge_alarms(const ParsedCommand& command, CommandHost& host) {
+  using namespace slots::alarm_ack;
+  const bool one = command.given(kAlarm);
+  return Outcome::with_remark(host.diagnosis.acknowledge_alarms(
+      command.text(kName), one ? static_cast<std::uint64_t>(command.integer(kAlarm)) : 0));
+}
+
 Outcome reset_haptic(const ParsedCommand& command, CommandHost& host) {
   return Outcome::of(host.interaction.reset_haptic(command.text(kOnlySlot)));
 }
@@ -35,8 +42,10 @@ Outcome stop_script(const ParsedCommand& command, CommandHost& /*host*/) {
 }
 
 constexpr Registration kHandlers[] = {
-    {FormId::save_views, save_views}, {FormId::save_flight, save_flight}, {FormId::reset_haptic, reset_haptic},
-    {FormId::stop_all, stop_all},     {FormId::stop_script, stop_script}, {FormId::record, record_black_box},
+    {FormId::save_views, save_views},        {FormId::save_flight, save_flight},
+    {FormId::reset_haptic, reset_haptic},    {FormId::stop_all, stop_all},
+    {FormId::stop_script, stop_script},      {FormId::record, record_black_box},
+    {FormId::alarm_ack, acknowledge_alarms},
 };
 
 }  // namespace

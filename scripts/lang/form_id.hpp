@@ -144,9 +144,10 @@ enum class FormId : std::uint8_t {
   effects_irrigation,
   vv_iso,
   record,
+  alarm_ack,
 };
 
 inline constexpr std::size_t kIndexRows = 98;  // rows of the index of the manual (tests/data/commands.tsv)
-inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::record) + 1;
+inline constexpr std::size_t kFormCount = static_cast<std::size_t>(FormId::alarm_ack) + 1;
 
 }  // namespace cellmirror::script

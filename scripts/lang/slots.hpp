@@ -236,6 +236,11 @@ inline constexpr Slot kOn{2, 2, "on | off"};
 inline constexpr Slot kValue{2, 2, "value"};
 }  // namespace program_input
 
+namespace alarm_ack {
+inline constexpr Slot kName{0, 0, "name"};
+inline constexpr Slot kAlarm{1, 1, "alarm"};
+}  // namespace alarm_ack
+
 namespace sensor_active {
 inline constexpr Slot kSensor{0, 1, "USS_id"};
 inline constexpr Slot kOn{1, 2, "0 | 1"};

@@ -62,6 +62,13 @@ constexpr Choice kRecordActions[] = {
     {"ON", "records"}, {"OFF", "ends the recording"}, {"KEEP", "keeps what the black box has, and the next seconds"}};
 constexpr Parameter kBlackBox[] = {choice("ON | OFF | KEEP", "action", kRecordActions)};
 
+constexpr Range kAlarmNumber{1.0, 1.0e12, false, false};
+constexpr Parameter kAlarmAck[] = {
+    identifier("name", "who acknowledges"),
+    optional(integer("alarm", "number of the alarm, from the page or `cellmirror status --json`", kAlarmNumber),
+             "all alarms")};
+static_assert(has_slots(kAlarmAck, {slots::alarm_ack::kName, slots::alarm_ack::kAlarm}));
+
 constexpr Parameter kSuction[] = {word("SUCTION"), choice("ON | OFF", "switch", kOnOff)};
 constexpr Parameter kIrrigation[] = {word("IRRIGATION"), choice("ON | OFF", "switch", kOnOff)};
 
@@ -398,6 +405,17 @@ constexpr Form kForms[] = {
      .definition =
          "needs `[record]` in the cell file; kept files are renamed, so that newer ones do not replace them; what "
          "`cellmirror record` writes is not touched",
+     .origin = Origin::ours},
+    {.id = FormId::alarm_ack,
+     .name = "ALARM_ACK",
+     .syntax = "ALARM_ACK <name> [alarm]",
+     .section = kSection,
+     .parameters = kAlarmAck,
+     .help = "acknowledges an alarm, or all of them",
+     .example = "ALARM_ACK Ada 12",
+     .definition =
+         "the name is one word of at most 64 bytes that does not begin with a digit; all users see it in the list of "
+         "alarms; an alarm that was acknowledged before keeps its name",
      .origin = Origin::ours},
 };
 

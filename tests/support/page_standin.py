@@ -20,6 +20,7 @@ import sys
 import time
 import traceback
 
+import standin_alarms
 import standin_jpeg
 import standin_scene
 
@@ -62,6 +63,7 @@ class Cell:
         self.displays = [{"id": i, "name": f"layout {i}", "views": [i] if i > 1 else [0, 1]} for i in range(1, 7)]
         self.hidden, self.revision = set(), 1
         self.problems = []
+        self.alarms = standin_alarms.Alarms()
         self.still = False  # joints stand where they are after a second
 
     def command_log(self):
@@ -125,6 +127,7 @@ class Cell:
                         "object": "Cell.Table_1.top", "object_short": "Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
             "forces": forces,
             "problems": [{"kind": "script_queue", "text": text} for text in self.problems], "commands_logged": 3,
+            "alarms": self.alarms.counts(),
             "queues": [{"name": name, "dropped": dropped, "high_water": 12, "capacity": 1024} for name, dropped in
                        (("messages (2351)", 0), ("sensor queue (1990)", int(3 * now)), ("ticks to the studio", 0))],
             "messages": [{"number": number, "text": text, "age_s": now - at} for number, at, text in self.messages[-20:]],
@@ -160,7 +163,8 @@ class Cell:
         word, *rest = text.split() or [""]
         known = {"robot": self.robot_command, "robact": self.robact, "hot_message": self.hot_message, "stdp": self.stdp,
                  "set_mode": self.set_mode, "level_down": self.node, "level_up": self.node, "swap_node": self.node,
-                 "activate": self.node, "deactivate": self.node, "stvw": self.stvw}.get(word.lower())
+                 "activate": self.node, "deactivate": self.node, "stvw": self.stvw,
+                 "alarm_ack": self.alarms.acknowledge}.get(word.lower())
         if not known:
             return f"there is no command {word}; commands lists what there is"
         return known(word, rest)
@@ -217,7 +221,7 @@ class Client:
     def __init__(self, reader, writer, cell, options):
         self.reader, self.writer, self.cell, self.options = reader, writer, cell, options
         self.wish, self.sequence, self.shown, self.may_command = None, 0, 0, False
-        self.wants_scene, self.posed, self.poses_sent, self.marks_sent = False, 0, 0, ""
+        self.wants_scene, self.posed, self.poses_sent, self.marks_sent, self.shape_sent = False, 0, 0, "", 0
 
     def send(self, message):
         self.frame(1, json.dumps(message).encode())
@@ -282,6 +286,7 @@ class Client:
             self.wish = None
         elif do in ("scene", "no_scene"):
             self.wants_scene = do == "scene"
+            self.shape_sent = 0
         elif do == "posed":
             self.posed = max(self.posed, min(message["sequence"], self.poses_sent))
         elif do == "shown":
@@ -324,6 +329,11 @@ class Client:
                     self.send(marks)
                 self.poses_sent += 1
                 self.frame(2, self.cell.scene.poses(self.poses_sent))
+                if self.options.tissue:
+                    if self.shape_sent != self.cell.scene.tissue_number():
+                        self.shape_sent = self.cell.scene.tissue_number()
+                        self.frame(2, self.cell.scene.tissue_shape())
+                    self.frame(2, self.cell.scene.tissue_motion())
                 await self.writer.drain()
             await asyncio.sleep(1 / 20)
 
@@ -334,7 +344,7 @@ class Server:
         self.cell = Cell(options.robots, options.joints)
         self.cell.problems = options.problem
         self.cell.still = options.still
-        self.cell.scene = standin_scene.Scene(self.cell, options.parts, options.triangles)
+        self.cell.scene = standin_scene.Scene(self.cell, options.parts, options.triangles, options.tissue, options.volumes)
         self.commands = commands()
 
     async def answer(self, reader, writer):
@@ -363,7 +373,8 @@ class Server:
 
     def file(self, path, writer):
         documents = {"/api/tree": self.cell.tree, "/api/names": self.cell.names, "/api/commands": lambda: self.commands,
-                     "/api/status": self.cell.live, "/api/command-log": self.cell.command_log}
+                     "/api/status": self.cell.live, "/api/command-log": self.cell.command_log,
+                     "/api/alarms": self.cell.alarms.document}
         if path in documents:
             kind, body = "application/json", json.dumps(documents[path]()).encode()
         elif path == "/scene.glb":
@@ -396,6 +407,8 @@ async def main():
     parser.add_argument("--token", default="standin")
     parser.add_argument("--parts", type=int, default=0, help="spheres beside the robots, in 3D")
     parser.add_argument("--triangles", type=int, default=0, help="of these spheres together")
+    parser.add_argument("--tissue", action="store_true", help="a sheet of tissue, which is cut and heals")
+    parser.add_argument("--volumes", type=int, default=0, help="voxel volumes that 3D is told of")
     parser.add_argument("--still", action="store_true", help="no joint moves")
     parser.add_argument("--read-only", action="store_true")
     parser.add_argument("--problem", action="append", default=[], help="text of a problem to report; repeatable")

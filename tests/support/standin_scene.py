@@ -43,8 +43,9 @@ def sphere(triangles):
 class Scene:
     """Bodies of a stand-in's cell; `parts`: so many spheres with `triangles` together."""
 
-    def __init__(self, cell, parts=0, triangles=0):
+    def __init__(self, cell, parts=0, triangles=0, tissue=False, volumes=0):
         self.cell = cell
+        self.tissue, self.volumes = tissue, volumes
         self.bodies = []  # (path, robot, mesh, size)
         for robot in cell.ids:
             path = robot
@@ -134,5 +135,28 @@ class Scene:
     def marks(self):
         return {"is": "marks", "labels": [{"at_m": [0, -0.6, 0.75], "text": "0.65 m", "mark": "near"}], "axes": ["base"],
                 "cameras": ["CAMERA_5"], "traces": [{"rgba": [0, 0.45, 0.7, 1], "points_m": [0, 0, 1, 0.5, 0, 1.2, 1, 0, 1]}],
-                "floor": {"shown": self.cell.modes["FLDR"], "z_m": 0, "low_m": [-2, -3], "high_m": [9, 6]}, "legend": [], "tissue": False,
-                "volumes": 0}
+                "floor": {"shown": self.cell.modes["FLDR"], "z_m": 0, "low_m": [-2, -3], "high_m": [9, 6]}, "legend": [], "tissue": self.tissue,
+                "volumes": self.volumes}
+
+    SHEET = 24  # vertices along an edge of the sheet of tissue
+
+    def tissue_number(self):
+        """Of the shape: a cut is made, and healed, every three seconds."""
+        return 1 + int(self.cell.now() / 3)
+
+    def tissue_shape(self):
+        n = self.SHEET
+        quads = [(i, k) for i in range(n - 1) for k in range(n - 1) if self.tissue_number() % 2 or i != n // 2]
+        corners = [corner for i, k in quads for corner in (i * n + k, (i + 1) * n + k, i * n + k + 1, (i + 1) * n + k, (i + 1) * n + k + 1, i * n + k + 1)]
+        clip = struct.pack("<2I9f3I", 3, 1, 0, 0, 0, 0.2, 0, 0, 0, 0, 0.2, 0, 1, 2)
+        return struct.pack("<4s3I3I", b"CMT1", self.tissue_number(), 1, 1, n * n, len(corners) // 3, len(corners) // 3) + \
+            struct.pack(f"<{len(corners)}I", *corners) + bytes((190, 70, 70, 0)) * (n * n) + clip
+
+    def tissue_motion(self):
+        n = self.SHEET
+        places = b"".join(struct.pack("<3H", round(65535 * i / (n - 1)), round(65535 * k / (n - 1)),
+                                      round(32767 * (1 + math.sin(3 * self.cell.now() + i / 3)))) for i in range(n) for k in range(n))
+        burns = bytes(255 if i == k else 0 for i in range(n) for k in range(n))
+        box = struct.pack("<6fI", 0.5, -2.4, 1.0, 1.5, 0.8, 0.3, 3)
+        return struct.pack("<4s5I", b"CMM1", self.tissue_number(), 1, 1, 1, 0) + box + places + bytes(2 * n * n) + burns + \
+            struct.pack("<7f", 1, -2, 1.4, 0, 0, 0, 1) + struct.pack("<4fI", 1, -2, 1.5, 0.01, 0)

@@ -36,7 +36,7 @@ def look(page, poses, stop, counts, number):
         live.say(do="scene")
     while not stop.is_set():
         message = live.hear()
-        if isinstance(message, bytes):
+        if isinstance(message, bytes) and message[:4] == b"CMS1":
             live.say(do="posed", sequence=int.from_bytes(message[4:8], "little"))
             counts[number][0] += 1
             counts[number][1] += len(message)

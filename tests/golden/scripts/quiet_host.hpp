@@ -204,6 +204,9 @@ class QuietHost final : public WorldHost,
   Result<std::string> reload_tables(std::string_view /*volume*/) override { return remarked(); }
   Result<void> save_flight_record(std::string_view /*file_name*/) override { return called(); }
   Result<void> record(RecordAction /*action*/) override { return called(); }
+  Result<std::string> acknowledge_alarms(std::string_view /*name*/, std::uint64_t /*alarm*/) override {
+    return remarked();
+  }
 
  private:
   Result<void> called() {

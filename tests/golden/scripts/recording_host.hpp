@@ -340,6 +340,9 @@ class RecordingHost final : public WorldHost,
     return record("save_flight_record {}", file_name);
   }
   Result<void> record(RecordAction action) override { return record("record {}", static_cast<int>(action)); }
+  Result<std::string> acknowledge_alarms(std::string_view name, std::uint64_t alarm) override {
+    return remarked(record("acknowledge_alarms {} {}", name, alarm));
+  }
 
  private:
   // The answer of a call that may have a remark.

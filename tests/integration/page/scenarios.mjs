@@ -66,6 +66,19 @@ const print_of = (page) => page.evaluate(() => {
 });
 const difference = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
 
+// Until pictures differ so much from an earlier print: the machine may be busy.
+async function differs(page, before, least, why) {
+  let found = 0;
+  for (let i = 0; i < 80; ++i) {
+    found = difference(before, await print_of(page));
+    if (found > least) return;
+    await page.waitForTimeout(250);
+  }
+  assert.fail(`${why}: ${found}`);
+}
+
+const value_is = (page, id, value) => page.waitForFunction(([name, wanted]) => document.getElementById(name).value === wanted, [id, value]);
+
 async function newer_picture(page, count = 3) {
   const before = Number(await page.getAttribute("#view-canvas", "data-sequence"));
   await page.waitForFunction((least) => Number(document.getElementById("view-canvas").dataset.sequence) >= least, before + count);
@@ -102,16 +115,13 @@ const scenarios = {
     const before = await value.innerText();
     const picture_before = await print_of(page);
     await page.waitForFunction(([id, text]) => document.querySelector(`[data-robot="${id}"] .joint .value`).textContent !== text, [robot, before]);
-    await newer_picture(page);
-    assert.ok(difference(picture_before, await print_of(page)) > 0, "the picture does not move");
+    await differs(page, picture_before, 0, "the picture does not move");
     await shot(page, "gateway-desk-light");
 
     const still = await print_of(page);
     await drag(page, 220, -60);
-    assert.equal(await page.inputValue("#view-choice"), "free");
-    await newer_picture(page, 4);
-    const turned = difference(still, await print_of(page));
-    assert.ok(turned > 1, `an orbit changed the picture by ${turned} only`);
+    await value_is(page, "view-choice", "free");
+    await differs(page, still, 1, "an orbit does not change the picture");
     await shot(page, "gateway-orbit");
     await page.click("#view-home");
 
@@ -134,7 +144,7 @@ const scenarios = {
     await outside("gone");
     await page.locator("#gone").waitFor();
     assert.match(await text_of(page, "#gone"), /cellmirror status/);
-    assert.match(await text_of(page, "#view-note"), /old/);
+    await page.locator("#view-note", {hasText: "old"}).waitFor();
     await shot(page, "gateway-gone");
     await outside("back");
     await page.locator("#gone").waitFor({state: "hidden", timeout: 40000});
@@ -208,11 +218,12 @@ const scenarios = {
     await page.focus("#view-canvas");
     const before = await print_of(page);
     for (const key of ["ArrowLeft", "ArrowLeft", "ArrowUp", "+", "Shift+ArrowRight"]) await page.keyboard.press(key);
-    await newer_picture(page, 4);
-    assert.ok(difference(before, await print_of(page)) > 0.5, "keys do not move the view");
+    await differs(page, before, 0.5, "keys do not move the view");
     await page.keyboard.press("Home");
-    assert.equal(await page.inputValue("#view-choice"), "display");
+    await value_is(page, "view-choice", "display");
     await page.focus("#tab-near");
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.getAttribute("#tab-alarms", "aria-selected"), "true");
     await page.keyboard.press("ArrowRight");
     assert.equal(await page.getAttribute("#tab-tree", "aria-selected"), "true");
     await page.locator("#tree-list li").first().focus();
@@ -231,10 +242,16 @@ const scenarios = {
     await run(page, "hot_message again");
     await unread("1");
     assert.match(await page.locator("#near-list .end").first().innerText(), /^ROBOT_\d+\.link$/);
-    const end = page.locator("#near-list .end").nth(1);
-    const whole = await end.getAttribute("title");
-    await end.focus();
-    await page.keyboard.press("Enter");
+    // Pairs change places while they are near: the focus stays with what it was given to, or another try gives it again.
+    let whole = null;
+    for (let i = 0; i < 20 && await page.getAttribute("#tab-tree", "aria-selected") !== "true"; ++i) {
+      whole = await page.evaluate(() => {
+        const end = document.querySelectorAll("#near-list .end")[1];
+        end.focus();
+        return end.title;
+      });
+      await page.keyboard.press("Enter");
+    }
     assert.equal(await page.getAttribute("#tab-tree", "aria-selected"), "true");
     await page.waitForFunction((path) => document.getElementById("tree-chosen").textContent.includes(path), whole);
     assert.equal(await page.evaluate(() => document.activeElement.dataset.path), whole);
@@ -252,6 +269,7 @@ const scenarios = {
     const page = await opened();
     await live(page);
     await page.waitForFunction(() => document.querySelector('#view-choice option[value="view:3"]').textContent === "View 3, angle 3");
+    await page.waitForFunction(() => document.querySelector("#display-choice option").textContent === "1, layout 1");
     const titles = await page.locator("#display-choice option").allInnerTexts();
     assert.deepEqual(titles, [1, 2, 3, 4, 5, 6].map((id) => `${id}, layout ${id}`));
     await page.selectOption("#display-choice", "2");
@@ -259,7 +277,7 @@ const scenarios = {
     await picture(page);
     await page.focus("#view-canvas");
     await page.keyboard.press("ArrowLeft");
-    assert.equal(await page.inputValue("#view-choice"), "free");
+    await value_is(page, "view-choice", "free");
   },
 
   // What is not of now does not look like it: a pause, news that stop while pictures come, pictures that stop.
@@ -274,7 +292,11 @@ const scenarios = {
 
     const values = () => page.locator(".chart:not([hidden]) .legend").first().innerText();
     await page.click("#chart-pause");
-    const paused = await values();
+    let paused = await values();
+    for (let before = null; before !== paused; paused = await values()) {  // the charts are drawn one after another
+      before = paused;
+      await page.waitForTimeout(500);
+    }
     await page.waitForFunction((before) => document.querySelector("#robot-list .joint .value").textContent !== before,
       await page.locator("#robot-list .joint .value").first().innerText());
     await page.selectOption("#chart-span", "20");
@@ -410,9 +432,8 @@ const scenarios = {
     await touch("touchStart", [x - 40, y], [x + 40, y]);
     for (let i = 1; i <= 6; ++i) await touch("touchMove", [x - 40 - 8 * i, y], [x + 40 + 8 * i, y]);
     await touch("touchEnd");
-    assert.equal(await page.inputValue("#view-choice"), "free");
-    await newer_picture(page, 4);
-    assert.ok(difference(before, await print_of(page)) > 0.5, "a pinch does not zoom");
+    await value_is(page, "view-choice", "free");
+    await differs(page, before, 0.5, "a pinch does not zoom");
     await page.touchscreen.tap(box.x + box.width * 0.75, y);
     await page.locator("#picked-path").waitFor();
     const wide = await page.evaluate(() => document.documentElement.scrollWidth > window.innerWidth + 1);

@@ -13,6 +13,8 @@ const kSizes = [
 export function scene_scenarios({opened, live, picture, shot, text_of, run, drag, address}) {
   const with_hash = (more) => `${address}&${more}`;
   const drawn = (page, least = 1) => page.waitForFunction((n) => Number(document.getElementById("scene-canvas").dataset.sequence) >= n, least);
+  // The bodies are there: poses come before the file.
+  const triangles = (page, least) => page.waitForFunction((n) => Number(document.getElementById("scene-canvas").dataset.triangles) > n, least);
   // What is drawn, as an image that the browser has composed, without what lies over it.
   const show_over = (page, visibility) => page.evaluate((value) => {
     for (const id of ["scene-tools", "scene-labels", "scene-note", "view-age"]) document.getElementById(id).style.visibility = value;
@@ -113,18 +115,18 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       await live(page);
       await drawn(page, 3);
       await page.click("#scene-fit");
-      await page.waitForTimeout(500);
-      const whole = Number(await page.getAttribute("#scene-canvas", "data-triangles"));
-      assert.ok(whole > 200, `${whole} triangles`);
+      await triangles(page, 200);
+      await rests(page, "nothing moves, and the view does");
       const first = await pick_a_body(page);
       const second = await pick_a_body(page, first.path);
       await page.click("#picked-close");
       await page.click("#scene-measure");
-      assert.match(await text_of(page, "#scene-measured"), /first/);
+      const measured = (pattern) => page.locator("#scene-measured", {hasText: pattern}).waitFor();
+      await measured(/first/);
       await page.mouse.click(first.x, first.y);
-      assert.match(await text_of(page, "#scene-measured"), /second/);
+      await measured(/second/);
       await page.mouse.click(second.x, second.y);
-      assert.match(await text_of(page, "#scene-measured"), /^[\d.]+ m?m \(x .* y .* z .*\)$/);
+      await measured(/^[\d.]+ m?m \(x .* y .* z .*\)$/);
       assert.ok(await page.locator("#picked").isHidden(), "a point that is measured is not named");
       await page.click("#scene-measure");
       assert.equal(await text_of(page, "#scene-measured"), "");
@@ -139,6 +141,31 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       await shot(page, "scene-cut");
       await page.selectOption("#scene-cut", "");
       assert.ok(await page.locator("#scene-cut-at").isHidden());
+    },
+
+    // A sheet of tissue moves and is cut; the gateway's picture of volumes is in the corner.
+    async scene_tissue() {
+      const page = await opened({}, with_hash("mode=3d"));
+      await live(page);
+      await page.waitForFunction(() => Number(document.getElementById("scene-canvas").dataset.tissue) > 500);
+      await triangles(page, 1000);
+      const whole = Number(await page.getAttribute("#scene-canvas", "data-triangles"));
+      await changes(page, await seen(page), "the tissue does not move");
+      await page.waitForFunction((before) => Number(document.getElementById("scene-canvas").dataset.triangles) !== before, whole);
+      await page.waitForFunction(() => document.getElementById("view-area").classList.contains("with-inset"));
+      assert.match(await text_of(page, "#scene-note"), /volumes are only in the gateway's picture/);
+      const shown = () => page.evaluate(() => Number(document.getElementById("view-canvas").dataset.sequence ?? 0));
+      await page.waitForFunction(() => Number(document.getElementById("view-canvas").dataset.sequence ?? 0) > 2);
+      const [inset, area] = await Promise.all(["#view-canvas", "#view-area"].map((id) => page.locator(id).boundingBox()));
+      assert.ok(inset.width < 0.45 * area.width, `a picture ${inset.width} px wide covers what lies below`);
+      await shot(page, "scene-tissue");
+      // Another viewpoint is that of the picture too.
+      const before = await shown();
+      await page.selectOption("#view-choice", "view:3");
+      await page.waitForFunction((n) => Number(document.getElementById("view-canvas").dataset.sequence) > n, before);
+      await page.click("#mode-picture");
+      await page.waitForFunction(() => !document.getElementById("view-area").classList.contains("with-inset"));
+      await page.waitForFunction(() => document.getElementById("view-canvas").width > 500);
     },
 
     // What is old does not look new, and a connection that is back goes on.
@@ -187,6 +214,11 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
         await page.locator("#confirm-dialog").waitFor();
         await axe(page, `${name}, a question`);
         await page.click("#confirm-no");
+        await page.click("#tab-alarms");
+        await page.locator("#alarm-list li").first().waitFor();
+        await axe(page, `${name}, alarms`);
+        if (options.isMobile) await page.locator("#side-panel").scrollIntoViewIfNeeded();
+        await shot(page, `alarms-${name}`);
         await page.click("#mode-picture");
         await picture(page);
         await axe(page, `${name}, pictures`);
@@ -196,6 +228,57 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       }
       const [light, dark] = await Promise.all([{}, {colorScheme: "dark"}].map(async (options) => colour_at(await opened(options), "scene-tools")));
       assert.notEqual(light, dark, "the tools have the same colour in dark mode");
+    },
+
+    // Alarms: how many wait, who has acknowledged what; two people see the same.
+    async alarms() {
+      const page = await opened();
+      const other = await opened();
+      await live(page);
+      await live(other);
+      await page.waitForFunction(() => document.getElementById("alarm-badge").textContent === "3 alarms");
+      assert.equal(await page.getAttribute("#alarm-badge", "data-state"), "lost", "one of them is of high priority");
+      await page.click("#alarm-badge");
+      assert.equal(await page.getAttribute("#tab-alarms", "aria-selected"), "true");
+      await page.locator("#alarm-list li").nth(2).waitFor();
+      assert.match(await page.locator("#alarm-list li").nth(0).innerText(), /high[^]*the data of ROBOT_7 are lost[^]*active for/);
+      assert.match(await page.locator("#alarm-list li").nth(1).innerText(), /3 times since/);
+      assert.match(await page.locator("#alarm-list li").nth(2).innerText(), /<b>liver<\/b> tears[^]*over since/);
+      assert.match(await page.locator("#alarm-history li").innerText(), /the disk was full[^]*acknowledged by Ada Lovelace at/);
+      await axe(page, "alarms");
+      await shot(page, "alarms");
+
+      // A name is asked for once; whoever does not tell it acknowledges nothing.
+      const acknowledge = (n) => page.locator("#alarm-list li").nth(n).locator("button").click();
+      await acknowledge(0);
+      await page.locator("#name-dialog").waitFor();
+      await axe(page, "asked for a name");
+      await page.click("#name-cancel");
+      assert.equal(await page.locator("#console-log li").count(), 0);
+      await acknowledge(0);
+      await page.fill("#name-input", "12");
+      await page.press("#name-input", "Enter");
+      await page.locator("#name-note", {hasText: "begins with a letter"}).waitFor();
+      await page.fill("#name-input", " Åsa  Berg; ");
+      await page.press("#name-input", "Enter");
+      await page.locator("#console-log li", {hasText: "ALARM_ACK Åsa_Berg 4"}).locator(".done").waitFor();
+      await page.locator('#alarm-list [data-alarm="4"]', {hasText: /acknowledged by Åsa Berg at/}).waitFor();
+      assert.ok(await page.locator('#alarm-list [data-alarm="4"] button').isHidden(), "acknowledged twice");
+      await other.waitForFunction(() => document.getElementById("alarm-badge").textContent === "2 alarms");
+      assert.equal(await other.getAttribute("#alarm-badge", "data-state"), "stale");
+      await other.click("#alarm-badge");
+      await other.locator('#alarm-list [data-alarm="4"]', {hasText: "acknowledged by Åsa Berg"}).waitFor();
+
+      await page.click("#alarm-all");
+      await page.locator("#alarm-badge").waitFor({state: "hidden"});
+      await page.locator('#alarm-history [data-alarm="2"]').waitFor();
+      assert.equal(await page.locator("#alarm-list li").count(), 2, "what is active stays");
+      await other.locator('#alarm-history [data-alarm="2"]', {hasText: "acknowledged by Åsa Berg"}).waitFor();
+      assert.equal(await text_of(page, "#alarm-name"), "You are Åsa Berg");
+      await page.reload();
+      await live(page);
+      await page.click("#tab-alarms");
+      assert.equal(await text_of(page, "#alarm-name"), "You are Åsa Berg", "the name was forgotten");
     },
 
     // Taking a robot offline asks first.
@@ -218,7 +301,7 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
     async charts() {
       const page = await opened({acceptDownloads: true});
       await live(page);
-      await page.waitForTimeout(3500);
+      await page.waitForFunction(() => window.measured.filter(({name}) => name === "cellmirror.record").length > 35);
       const plot = page.locator(".chart .plot", {has: page.locator("canvas")}).nth(1);
       const box = await plot.boundingBox();
       // Values under the cursor.
@@ -363,8 +446,7 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
     async scene_gateway() {
       const page = await opened({}, with_hash("mode=3d"));
       await live(page);
-      await drawn(page, 1);
-      assert.ok(Number(await page.getAttribute("#scene-canvas", "data-triangles")) > 1000);
+      await triangles(page, 1000);
       const still = await rests(page, "nothing moves, and the view does");
       assert.match(await run(page, "POS_ROB PUMA_762 JOINT_INC 20"), /^done/);
       await changes(page, still, "a joint moved, and the view did not");

@@ -21,6 +21,9 @@ class Scene(unittest.TestCase):
     def test_distances_are_measured_and_bodies_cut_in_three_dimensions(self):
         self.run_scenario("scene_tools", standin=("--robots", "3", "--still"))
 
+    def test_tissue_moves_and_is_cut_in_three_dimensions(self):
+        self.run_scenario("scene_tissue", standin=("--robots", "2", "--still", "--tissue", "--volumes", "1"))
+
     def test_what_is_old_does_not_look_new_in_three_dimensions(self):
         self.run_scenario("scene_old", standin=("--robots", "2"))
 
@@ -29,6 +32,9 @@ class Scene(unittest.TestCase):
 
     def test_axe_finds_nothing(self):
         self.run_scenario("scene_axe", standin=("--robots", "3"))
+
+    def test_alarms_are_acknowledged_by_name(self):
+        self.run_scenario("alarms", standin=("--robots", "7"))
 
     def test_taking_offline_asks_first(self):
         self.run_scenario("offline")

@@ -253,7 +253,12 @@ TEST_F(HostileClients, ThatDoNotAcknowledgePosesGetTwo) {
   client.say(R"({"do": "scene"})");
   EXPECT_FALSE(client.read_until("\"is\":\"marks\"").empty()) << "words come before the poses that they belong to";
   EXPECT_FALSE(client.read_until("CMS1").empty());
+  EXPECT_FALSE(client.read_until("CMT1").empty()) << "the shape of tissue comes before its motion";
+  EXPECT_FALSE(client.read_until("CMM1").empty());
   EXPECT_FALSE(client.read_until("CMS1").empty());
+  const std::string second = client.read_until("CMM1");
+  EXPECT_FALSE(second.empty());
+  EXPECT_EQ(second.find("CMT1"), std::string::npos) << "once, while nothing is cut";
   EXPECT_TRUE(client.read_until("CMS1", 0.5).empty()) << "not acknowledged";
   client.say(R"({"do": "posed", "sequence": 4000000000})");
   EXPECT_TRUE(client.read_until("CMS1", 0.3).empty()) << "never sent";

@@ -49,6 +49,9 @@ class StubScene final : public SceneStream {
     update->poses.assign(20'000, 'p');
     update->marks_sequence = 1;
     update->marks = std::make_shared<const std::string>(R"({"is":"marks"})");
+    update->tissue_number = 7;
+    update->tissue_shape = std::make_shared<const std::string>("CMT1" + std::string(5'000, 't'));
+    update->tissue_motion = std::make_shared<const std::string>("CMM1" + std::string(10'000, 'm'));
     return update;
   }
 
@@ -76,6 +79,7 @@ class StubBackend : public Backend {
     return "{}";
   }
   [[nodiscard]] std::string command_log_json() override { return "{}"; }
+  [[nodiscard]] std::string alarms_json() override { return "{}"; }
   [[nodiscard]] std::string metrics_text() override { return "up 1\n"; }
   [[nodiscard]] Health health() override { return {healthy, healthy ? "ok" : "the loop stands still"}; }
   void execute(std::string_view command, const CommandOrigin& /*origin*/,

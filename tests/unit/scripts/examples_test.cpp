@@ -219,6 +219,8 @@ const Example kExamples[] = {
     {"VV_ISO off VALUE -12.5", FormId::vv_iso, {}, {1, -12.5}},
     {"SAVE_FLIGHT stop.csv", FormId::save_flight, {"stop.csv"}, {}},
     {"RECORD keep", FormId::record, {}, {2}},
+    {"ALARM_ACK Ada 12", FormId::alarm_ack, {"Ada"}, {12}},
+    {"ALARM_ACK Ada", FormId::alarm_ack, {"Ada"}, {}},
     {"rob_positioning jump", FormId::rob_positioning, {}, {1}},
     {"STOP_ROB MANTEC_RM3", FormId::stop_rob, {"MANTEC_RM3"}, {}},
     {"RESET_HAPTIC MANTEC_RM3", FormId::reset_haptic, {"MANTEC_RM3"}, {}},

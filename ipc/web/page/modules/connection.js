@@ -1,6 +1,7 @@
 // The WebSocket to the gateway: reconnects by itself, with growing pauses. Events, through `on(kind, f)`: opened,
-// closed({retry_s}), welcome, live, reply, picked, refused, marks (the messages), picture, poses (an ArrayBuffer).
+// closed({retry_s}), welcome, live, reply, picked, refused, marks (the messages), picture, poses, tissue_shape, tissue_motion (an ArrayBuffer).
 import {is_poses} from "./scene_format.js";
+import {is_tissue_motion, is_tissue_shape} from "./tissue_format.js";
 
 const kFirstPause_s = 0.5;
 const kLongestPause_s = 8;
@@ -15,6 +16,12 @@ export function pause_after(failures, random = Math.random) {
 // there only as the name of a subprotocol; the server selects the first one.
 export function subprotocols(token) {
   return /^[0-9a-f]{32}$/.test(token ?? "") ? ["cellmirror.live", `cellmirror.token.${token}`] : [];
+}
+
+function kind_of(data) {
+  if (is_poses(data)) return "poses";
+  if (is_tissue_shape(data)) return "tissue_shape";
+  return is_tissue_motion(data) ? "tissue_motion" : "picture";
 }
 
 export class Connection {
@@ -87,7 +94,7 @@ export class Connection {
   received_(data) {
     this.heard_ = Date.now();
     if (data instanceof ArrayBuffer) {
-      this.emit_(is_poses(data) ? "poses" : "picture", data);
+      this.emit_(kind_of(data), data);
       return;
     }
     let message;

@@ -10,6 +10,8 @@ const kStale_s = 2;
 const kMostPixels = 1280 * 960;
 const kMostEdges = [1920, 1200];  // of the gateway
 const kRate_hz = 15;
+const kRateBeside_hz = 5;
+const kPartBeside = 0.4;  // of the edges of the area, as the style sheet has it
 const kWishEvery_ms = 40;
 const kAskAgain_ms = 5000;
 
@@ -50,12 +52,17 @@ export class PictureOrder {
   }
 }
 
-export function request_of(choice, [width, height]) {
-  const request = {do: "picture", width, height, rate_hz: kRate_hz, quality: 80};
+export function request_of(choice, [width, height], rate_hz = kRate_hz) {
+  const request = {do: "picture", width, height, rate_hz, quality: 80};
   if (choice.kind === "view") request.view = choice.id;
   if (choice.kind === "camera") request.camera = choice.name;
   if (choice.kind === "free") request.free = choice.view;
   return request;
+}
+
+// Of the gateway's display.
+function main_view(display) {
+  return display?.displays?.find(({id}) => id === display.display)?.views?.[0] ?? 0;
 }
 
 // Where a free view begins when the hand first moves what is shown.
@@ -63,10 +70,7 @@ export function start_of_free_view(choice, display) {
   const views = display?.views ?? [];
   if (choice.kind === "free") return choice.view;
   let found = null;
-  if (choice.kind === "display") {
-    const main = display?.displays?.find(({id}) => id === display.display)?.views?.[0] ?? 0;
-    found = views.find((view) => view.id === main);
-  }
+  if (choice.kind === "display") found = views.find((view) => view.id === main_view(display));
   if (choice.kind === "view") found = views.find((view) => view.id === choice.id);
   if (choice.kind === "camera") found = views.find((view) => view.camera === choice.name);
   return math.sound_view(found ?? views.find((view) => view.id === 0) ?? views[0]);
@@ -85,6 +89,7 @@ export class LiveView {
     this.before_ = this.choice_;
     this.display_ = null;
     this.draws_ = true;
+    this.beside_ = false;  // a small picture beside what another part draws
     this.shown_ = null;   // {sequence, age_s, at}
     this.order_ = new PictureOrder();
     this.asked_at_ = 0;
@@ -136,10 +141,15 @@ export class LiveView {
     return this.start_ ? this.start_(this.choice_, otherwise) : otherwise;
   }
 
-  // False: another part draws, and tells by shown_now() and report().
-  show_pictures(wanted) {
-    if (this.draws_ === wanted) return;
-    this.draws_ = wanted;
+  // "whole"; "none": another part draws, and tells by shown_now() and report(); "beside": so too, with a small picture of the
+  // same viewpoint beside it.
+  show_pictures(how) {
+    this.beside_ = how === "beside";
+    if (this.draws_ === (how === "whole")) {
+      this.ask_();
+      return;
+    }
+    this.draws_ = how === "whole";
     this.shown_ = null;
     this.problem_ = null;
     this.waiting_since_ = performance.now();
@@ -203,13 +213,19 @@ export class LiveView {
   }
 
   ask_(again = false) {
-    const request = document.hidden || !this.draws_ ? {do: "no_picture"} : request_of(this.choice_, this.size_);
+    const request = document.hidden || !(this.draws_ || this.beside_) ? {do: "no_picture"} : this.draws_ ? request_of(this.choice_, this.size_) : this.request_beside_();
     const text = JSON.stringify(request);
     if (text === this.sent_ && !again) return;
     if (!this.connection_.send(request)) return;
     if (document.hidden || this.sent_ === "" || again) this.waiting_since_ = performance.now();
     this.sent_ = text;
     this.asked_at_ = performance.now();
+  }
+
+  request_beside_() {
+    const choice = this.choice_.kind === "display" ? {kind: "view", id: main_view(this.display_)} : this.choice_;
+    const size = this.size_.map((edge) => Math.max(64, 2 * Math.floor((kPartBeside * edge) / 2)));
+    return request_of(choice, size, kRateBeside_hz);
   }
 
   async draw_(data) {
@@ -224,7 +240,7 @@ export class LiveView {
       this.problem_ = "a picture came that cannot be read";
     }
     if (connection !== this.order_.connection) return;  // the gateway of now never sent it
-    if (bitmap && this.draws_ && this.order_.is_newer(picture.sequence)) this.show_(picture, bitmap, at);
+    if (bitmap && (this.draws_ || this.beside_) && this.order_.is_newer(picture.sequence)) this.show_(picture, bitmap, at);
     bitmap?.close();
     this.connection_.send({do: "shown", sequence: picture.sequence});
   }
@@ -237,8 +253,10 @@ export class LiveView {
     }
     this.pen_.drawImage(bitmap, 0, 0);
     performance.clearMarks("cellmirror.picture");
-    this.shown_ = {sequence: picture.sequence, age_s: picture.age_s, at, width: bitmap.width};
-    this.problem_ = null;
+    if (this.draws_) {
+      this.shown_ = {sequence: picture.sequence, age_s: picture.age_s, at, width: bitmap.width};
+      this.problem_ = null;
+    }
     setAttribute(this.canvas_, "data-sequence", picture.sequence);
   }
 

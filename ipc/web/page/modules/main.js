@@ -1,5 +1,6 @@
 // Puts the page together: what comes from the gateway goes to the panels, what people do goes to the gateway.
 import {AddressBar, read_address} from "./address.js";
+import {Alarms} from "./alarms.js";
 import {allow_bell} from "./bell.js";
 import {Charts} from "./charts.js";
 import {CommandLog} from "./command_log.js";
@@ -23,6 +24,7 @@ import {watch_theme} from "./theme.js";
 import {Tissue} from "./tissue.js";
 import {kept_token, take_token} from "./token.js";
 import {Tree} from "./tree.js";
+import {UserName} from "./user_name.js";
 import {ViewChoice} from "./view_choice.js";
 import {Volume} from "./volume.js";
 
@@ -63,6 +65,10 @@ const volume = new Volume({command, left: () => tabs.current === "tab-volume" &&
 const system = new System();
 const problems = new Problems();
 const command_log = new CommandLog({fetched});
+const alarms = new Alarms({command, fetched, name: new UserName(), open: () => {
+  tabs.open("tab-alarms");
+  byId("side-panel").scrollIntoView({block: "nearest"});
+}});
 const messages = new Messages({
   unread: (n) => {
     if (n > 0 && tabs.current === "tab-messages") messages.read();
@@ -130,10 +136,17 @@ connection.on("live", (live) => {
   charts.record(live);
   presence.live(live);
   messages.update(live);
-  if (newest === null) requestAnimationFrame(draw);
+  if (newest === null) draw_soon();
   newest = live;
   measured("cellmirror.record", start);
 });
+
+// While a slow renderer turns the view, the rest of the page waits for it.
+const kInHaste_ms = 250;
+function draw_soon() {
+  if (scene.hasty) setTimeout(() => requestAnimationFrame(draw), kInHaste_ms);
+  else requestAnimationFrame(draw);
+}
 
 function draw() {
   const start = performance.now();
@@ -146,6 +159,7 @@ function draw() {
   programs.update(live, tabs.current === "tab-programs");
   system.update(live, tabs.current === "tab-system");
   problems.update(live);
+  alarms.update(live, tabs.current === "tab-alarms");
   command_log.update(live, tabs.current === "tab-messages");
   view.update(live);
   if (view.choice.kind !== "free") scene.look();
@@ -194,6 +208,7 @@ async function learn_commands() {
 connection.on("opened", () => {
   known_revision = null;
   command_log.forget();
+  alarms.forget();
   learn_commands();
 });
 

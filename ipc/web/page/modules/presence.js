@@ -6,6 +6,13 @@ import {keep_token} from "./token.js";
 const kQuiet_s = 2;
 const kLastKnown_s = 3;  // after so long nothing but the picture is shown as current
 
+// What shows and starts a gateway by its name. The package runs one service a cell, with the cell's name; the one without a name
+// was started by hand.
+export function commands_of(instance) {
+  if (!instance || instance === "default") return {status: "cellmirror status", start: "cellmirror run"};
+  return {status: `cellmirror status --instance ${instance}`, start: `systemctl start cellmirror@${instance}`};
+}
+
 export class Presence {
   // `quiet(whether)`: all but the picture is what was last known, or no longer.
   constructor(connection, {quiet = () => {}} = {}) {
@@ -48,6 +55,9 @@ export class Presence {
     if (this.version_ && message.version && message.version !== this.version_) byId("new-version").hidden = false;
     this.version_ ??= message.version;
     setText(byId("version"), message.version ? `cellmirror ${message.version}` : "");
+    const {status, start} = commands_of(message.instance);
+    setText(byId("gone-status"), status);
+    setText(byId("gone-start"), start);
     document.documentElement.classList.toggle("looking-only", !this.may_command);
     this.show_right_();
   }

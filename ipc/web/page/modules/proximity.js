@@ -71,7 +71,7 @@ export class Proximity {
     const touching = live.touching ?? [];
     const near = live.near ?? [];
     this.warning_m_ = live.warning_distance_m;
-    this.show_counts_(live.touching_count ?? touching.length, live.near_count ?? near.length, live);
+    this.show_counts_(live);
     if (!visible) return;
     this.touching_.show(touching.slice(0, kMostRows), pair_key);
     this.near_.show(near.slice(0, kMostRows), pair_key);
@@ -92,7 +92,7 @@ export class Proximity {
     setText(byId("force-note"), cut_note(shown(live.forces), live.forces?.length ?? 0));
   }
 
-  show_counts_(touching, near, live) {
+  show_counts_(live) {
     const badge = byId("touching-badge");
     const brief = collisions_in_brief(live);
     setText(badge, brief.text);
@@ -102,7 +102,7 @@ export class Proximity {
     const near_badge = byId("near-badge");
     setText(near_badge, `${warned} near`);
     near_badge.hidden = warned === 0;
-    setText(byId("near-tab-count"), near ? String(near) : "");
+    setText(byId("near-tab-count"), warned ? String(warned) : "");
   }
 }
 

@@ -63,6 +63,8 @@ export class SceneMode {
     document.addEventListener("visibilitychange", () => this.ask_());
     connection.on("opened", () => this.ask_());
     connection.on("poses", (data) => this.take_(data));
+    connection.on("tissue_shape", (data) => this.scene_?.take_tissue_shape(data));
+    connection.on("tissue_motion", (data) => this.on_ && this.scene_.take_tissue_motion(data));
     connection.on("marks", (marks) => this.take_marks_(marks));
     view.follow((choice, otherwise) => this.start_of_view_(choice, otherwise));
     this.show_mode_();
@@ -75,6 +77,11 @@ export class SceneMode {
   // As the user chose it; null: not yet.
   get chosen() {
     return this.chosen_ ?? null;
+  }
+
+  // The renderer is slower than the hand that turns the view.
+  get hasty() {
+    return this.on_ && this.scene_.hasty;
   }
 
   get scene() {
@@ -106,12 +113,18 @@ export class SceneMode {
   switch_(on) {
     this.on_ = on;
     this.area_.classList.toggle("in-scene", this.on_);
-    this.view_.show_pictures(!this.on_);
+    this.view_.show_pictures(this.pictures_());
     this.ask_();
     this.resize_();
     this.looked_ = "";
     this.look();
     this.changed_();
+  }
+
+  // Voxel volumes are cast by the gateway alone: where there are some, its picture from the same viewpoint is shown in a corner.
+  pictures_() {
+    if (!this.on_) return "whole";
+    return this.marks_?.volumes > 0 ? "beside" : "none";
   }
 
   async prepare_(say) {
@@ -145,11 +158,11 @@ export class SceneMode {
       setAttribute(byId(id), "aria-pressed", String(this.mode === mode));
     }
     this.canvas_.hidden = !this.on_;
-    byId("view-canvas").hidden = this.on_;
+    byId("view-canvas").hidden = this.pictures_() === "none";
+    this.area_.classList.toggle("with-inset", this.pictures_() === "beside");
     byId("scene-labels").hidden = !this.on_;
     this.tools_.show(this.on_);
-    const missing = [this.marks_?.tissue && "deformable objects", this.marks_?.volumes > 0 && "voxel volumes"].filter(Boolean);
-    const note = this.on_ && missing.length > 0 ? `Not in 3D yet: ${missing.join(" and ")}.` : this.problem_ ?? "";
+    const note = this.pictures_() === "beside" ? "Voxel volumes are only in the gateway's picture: see the corner." : this.problem_ ?? "";
     setText(byId("scene-note-text"), note);
     byId("scene-note").hidden = note === "";
     byId("scene-picture").hidden = !this.on_;
@@ -227,6 +240,7 @@ export class SceneMode {
     this.marks_ = marks;
     this.camera_names_ = marks.cameras ?? [];
     if (this.scene_) this.scene_.show_marks(marks, this.line_colour_());
+    this.view_.show_pictures(this.pictures_());
     this.show_mode_();
   }
 
@@ -269,6 +283,7 @@ export class SceneMode {
   drawn_() {
     if (this.poses_) setAttribute(this.canvas_, "data-sequence", this.poses_.sequence);
     setAttribute(this.canvas_, "data-triangles", this.scene_.triangles);
+    setAttribute(this.canvas_, "data-tissue", this.scene_.tissue_vertices);
     performance.mark("cellmirror.scene");
     performance.clearMarks("cellmirror.scene");
   }

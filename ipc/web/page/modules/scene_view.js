@@ -1,12 +1,15 @@
 // The cell in three dimensions, drawn by WebGL: loaded when the 3D mode is chosen for the first time. Draws when something has
 // changed, never else.
 import * as THREE from "../lib/three/build/three.module.js";
+import {Haste, kRests_ms} from "./haste.js";
 import {SceneBodies} from "./scene_bodies.js";
 import {SceneLabels} from "./scene_labels.js";
 import {SceneMarks} from "./scene_marks.js";
+import {SceneTissue} from "./scene_tissue.js";
 import {picture_axes} from "./view_math.js";
 
 const kMostDensity = 2;
+const kCoarse = 0.6;  // of the pixels along an edge
 
 export class SceneView {
   // `canvas`: of the page; `lost()`: WebGL is gone. Throws where there is none.
@@ -19,10 +22,16 @@ export class SceneView {
     this.camera_.matrixAutoUpdate = false;
     this.bodies = new SceneBodies();
     this.marks_ = new SceneMarks();
+    this.tissue_ = new SceneTissue();
     this.labels_ = new SceneLabels();
     this.light_ = new THREE.DirectionalLight(0xffffff, 0.55);
-    this.scene_.add(this.bodies.group, this.marks_.group, new THREE.HemisphereLight(0xffffff, 0x8f969c, 0.62), this.light_, this.light_.target);
+    const sky = new THREE.HemisphereLight(0xffffff, 0x8f969c, 0.62);
+    sky.position.set(0, 0, 1);  // z is up
+    this.scene_.add(this.bodies.group, this.tissue_.group, this.marks_.group, sky, this.light_, this.light_.target);
     this.plane_ = new THREE.Plane(new THREE.Vector3(-1, 0, 0), 0);
+    this.haste_ = new Haste();
+    this.coarse_ = false;
+    this.density_ = 1;
     this.gateway_labels_ = [];
     this.own_labels_ = [];
     this.measured_ = new THREE.Group();
@@ -34,11 +43,16 @@ export class SceneView {
   }
 
   resize(width, height, density) {
-    this.renderer_.setPixelRatio(Math.min(density, kMostDensity));
-    this.renderer_.setSize(width, height, false);
-    this.camera_.aspect = width / height;
+    this.density_ = Math.min(density, kMostDensity);
     this.size_ = [width, height];
+    this.set_size_();
+    this.camera_.aspect = width / height;
     this.draw_soon();
+  }
+
+  set_size_() {
+    this.renderer_.setPixelRatio(this.density_ * (this.coarse_ ? kCoarse : 1));
+    this.renderer_.setSize(...this.size_, false);
   }
 
   // A view as of view_math.js; `up` in place of its twist, where a camera of the cell is followed.
@@ -58,6 +72,7 @@ export class SceneView {
     camera.updateProjectionMatrix();
     this.light_.position.copy(at).addScaledVector(x, 0.4 * reach).addScaledVector(y, 0.7 * reach);
     this.light_.target.position.set(...view.lookpoint_m);
+    this.haste_.turned(performance.now());
     this.draw_soon();
   }
 
@@ -71,6 +86,14 @@ export class SceneView {
     this.bodies.place(poses.bodies, poses.states);
     this.marks_.place(poses);
     this.draw_soon();
+  }
+
+  take_tissue_shape(data) {
+    this.tissue_.take_shape(data);
+  }
+
+  take_tissue_motion(data) {
+    if (this.tissue_.take_motion(data)) this.draw_soon();
   }
 
   show_marks(marks, line_colour) {
@@ -163,6 +186,15 @@ export class SceneView {
 
   draw() {
     if (!this.size_) return;
+    const coarse = this.haste_.drawing(performance.now());
+    if (coarse !== this.coarse_) {
+      this.coarse_ = coarse;
+      this.set_size_();
+    }
+    if (coarse) {
+      clearTimeout(this.rest_);
+      this.rest_ = setTimeout(() => this.draw_soon(), kRests_ms + 50);  // nothing else may come
+    }
     this.camera_.updateMatrixWorld();
     this.renderer_.render(this.scene_, this.camera_);
     this.labels_.place((at_m) => this.on_screen_(at_m));
@@ -173,6 +205,15 @@ export class SceneView {
     const at = new THREE.Vector3(...at_m).project(this.camera_);
     if (at.z > 1 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1) return null;
     return [((at.x + 1) / 2) * this.size_[0], ((1 - at.y) / 2) * this.size_[1]];
+  }
+
+  get hasty() {
+    return this.coarse_;
+  }
+
+  // Of deformable objects that are drawn.
+  get tissue_vertices() {
+    return this.tissue_.vertices;
   }
 
   // Of the last drawing.

@@ -1,0 +1,49 @@
+#include "app/gateway/loaded_cell.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/io/robot_streams.hpp"
+#include "rt_core/base/log.hpp"
+
+namespace cellmirror::app {
+
+namespace {
+
+// Numbered, so that none falls to the log's rate limit by kind.
+void log_findings(const Diagnostics& diagnostics) {
+  std::size_t number = 0;
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    ++number;
+    log_text(diagnostic.severity == Severity::note ? LogLevel::info : LogLevel::warning,
+             fmt::format("cell {}/{}", number, diagnostics.all().size()), diagnostic.text());
+  }
+}
+
+}  // namespace
+
+Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
+  Diagnostics diagnostics;
+  std::optional<LoadedCell> loaded = load_cell(options.cell_file, diagnostics, options.progress);
+  if (!loaded) {
+    const std::string count = diagnostics.errors() == 1 ? "an error" : fmt::format("{} errors", diagnostics.errors());
+    return fail(fmt::format("the cell {} has {}:\n{}nothing was started", options.cell_file.string(), count,
+                            diagnostics.text(Severity::warning)),
+                fmt::format("fix the cell and check it with: cellmirror check {}", options.cell_file.string()));
+  }
+  // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same diagnostics.
+  for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
+  log_findings(diagnostics);
+  if (!options.state.empty()) {
+    auto home = loaded->home.with_state(options.state);
+    if (!home) return std::unexpected(home.error());
+    loaded->home = *std::move(home);
+  }
+  if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
+  return std::move(*loaded);
+}
+
+}  // namespace cellmirror::app

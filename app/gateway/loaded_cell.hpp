@@ -1,0 +1,12 @@
+// The cell as a gateway takes it from its file: with what its command line says instead, findings in the log.
+#pragma once
+
+#include "app/gateway/gateway.hpp"
+#include "config/cell_file.hpp"
+#include "rt_core/base/result.hpp"
+
+namespace cellmirror::app {
+
+[[nodiscard]] Result<LoadedCell> load_cell_of(const GatewayOptions& options);
+
+}  // namespace cellmirror::app
