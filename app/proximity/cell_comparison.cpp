@@ -100,12 +100,12 @@ std::vector<PairChange> compare(const CellOverPostures& before, const CellOverPo
   for (const auto& [bodies, pair] : before.pairs) all[bodies].before = pair;
   for (const auto& [bodies, pair] : after.pairs) all[bodies].after = pair;
   std::vector<PairChange> out;
+  std::vector<PairChange> of_distance;
   for (auto& [bodies, pair] : all) {
     pair.bodies = bodies;
-    if (differs(pair)) out.push_back(pair);
+    if (differs(pair)) (touches(pair.before) != touches(pair.after) ? out : of_distance).push_back(pair);
   }
-  std::ranges::stable_partition(out,
-                                [](const PairChange& pair) { return touches(pair.before) != touches(pair.after); });
+  out.insert(out.end(), of_distance.begin(), of_distance.end());
   return out;
 }
 
