@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     add_simulate(program, action);
     add_record(program, action);
     add_recording(program, action);
+    add_replay(program, action);
     add_volume(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();

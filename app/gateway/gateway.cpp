@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -94,6 +95,7 @@ struct Gateway::Parts {
   std::unique_ptr<TissueWorker> tissue;  // null: the cell has no deformable object
   std::unique_ptr<CellOwner> owner;
   std::unique_ptr<CyclicThread> loop;
+  std::atomic<bool> ticking{false};  // the loop runs, for threads that began before it
   std::unique_ptr<CollisionWorker> collisions;
   std::unique_ptr<RangingWorker> ranging;
   std::unique_ptr<ContactWorker> contacts;
@@ -197,6 +199,7 @@ void Gateway::Parts::open_command_log() {
 }
 
 void Gateway::Parts::log_command(CommandRecord record) {
+  if (ticking.load(std::memory_order_acquire)) record.tick = std::max<std::uint64_t>(loop->cycles(), 1) - 1;
   recordings.command(record);
   if (commands) commands->add(std::move(record));
 }
@@ -268,6 +271,7 @@ Result<void> Gateway::Parts::start_loop() {
   options.priority = loop_settings.priority;
   loop = std::make_unique<CyclicThread>(*engine, options);
   if (auto started_loop = loop->start(); !started_loop) return started_loop;
+  ticking.store(true, std::memory_order_release);
   const SchedulingOutcome& outcome = loop->scheduling();
   if (!outcome.ok) log_warning("scheduling", "the loop is not real time: {}; {}", outcome.why_not, outcome.remedy);
   return {};
@@ -327,11 +331,9 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
 }
 
 void Gateway::Parts::start_recorder(const RecordSettings& settings) {
-  auto folder = home->file_to_write("records", "blackbox.mcap");
-  if (folder) folder = folder->parent_path();
-  recordings.begin_ring(settings, folder);
+  recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
-                    loop->options().period, [this] { return status(); }});
+                    loop->options().period, [this] { return status(); }, nullptr, &engine->inputs()});
 }
 
 void Gateway::Parts::start_fault_monitor() {
@@ -572,8 +574,9 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (!step) return std::unexpected(step.error());
   parts->start_fault_monitor();
   parts->make_page(options, web);
-  parts->recordings.describe(
-      {options.instance, parts->cell_name, parts->loop_settings.rate_hz, cell_attachments(parts->home->root(), files)});
+  parts->recordings.describe({options.instance, parts->cell_name, parts->loop_settings.rate_hz,
+                              cell_attachments(parts->home->root(), files),
+                              std::filesystem::absolute(files.front()).lexically_normal().string()});
   parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
   watch_for_alarms(*parts->alarms, {parts->collisions->board(), *parts->faults,

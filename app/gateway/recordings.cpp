@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "app/recording/build_identity.hpp"
+#include "app/recording/recording_names.hpp"
 #include "app/report/status_recordings.hpp"
 #include "ipc/record/compression.hpp"
 #include "rt_core/base/log.hpp"
@@ -63,14 +65,14 @@ Recordings::~Recordings() {
   hub_.close();
 }
 
-void Recordings::begin_ring(const RecordSettings& settings, const Result<std::filesystem::path>& folder) {
+void Recordings::begin_ring(const RecordSettings& settings, const Result<std::filesystem::path>& place) {
   settings_ = settings;
   if (!settings.present) return;
-  if (!folder) return log_error("recording", "there is no black box: {}", folder.error().text());
+  if (!place) return log_error("recording", "there is no black box: {}", place.error().text());
   const auto ns = [](double s) { return Nanoseconds(static_cast<std::int64_t>(1e9 * s)); };
   RecordingOptions options;
   RecordingRing ring;
-  ring.folder = *folder;
+  ring.folder = place->parent_path();
   ring.name = "blackbox-" + about_.instance;
   ring.file_length = ns(settings.file_s);
   ring.length = ns(settings.length_s);
@@ -105,6 +107,9 @@ void Recordings::fill_about(RecordingOptions& options) const {
                    {"instance", about_.instance},
                    {"cell", about_.cell},
                    {"loop_rate_hz", fmt::format("{}", about_.rate_hz)},
+                   {std::string(kCellFileKey), about_.cell_file},
+                   {std::string(kBuildKey), build_identity()},
+                   {std::string(kTargetKey), std::string(compute_target())},
                    {"record_rate_hz", fmt::format("{}", options.rate_hz)}};
   options.attachments = about_.files;
 }

@@ -24,6 +24,7 @@ class Recordings {
     std::string cell;
     double rate_hz = 0;  // of the loop
     std::vector<RecordingAttachment> files;
+    std::string cell_file;  // where it is
   };
 
   // `clock` outlives it. From now on lines of the log are recorded, where a recording goes on.
@@ -33,8 +34,9 @@ class Recordings {
   Recordings& operator=(const Recordings&) = delete;
 
   void describe(About about) { about_ = std::move(about); }
-  // The black box of the cell file, in `folder`; where it cannot be written, an error is logged. After describe().
-  void begin_ring(const RecordSettings& settings, const Result<std::filesystem::path>& folder);
+  // The black box of the cell file, in the folder of `place`; where that cannot be written, an error is logged. After
+  // describe().
+  void begin_ring(const RecordSettings& settings, const Result<std::filesystem::path>& place);
   // RECORD.
   Result<void> switch_ring(RecordAction action);
   void fault() {

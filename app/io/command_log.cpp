@@ -53,6 +53,7 @@ std::filesystem::path numbered(const std::filesystem::path& file, int number) {
 std::string command_line_of(const CommandRecord& record) {
   JsonWriter out;
   out.begin_object().member("time", utc_text_ms(record.wall_ns)).fixed_member("took_s", record.took_s, 6);
+  if (record.tick != 0) out.member("tick", record.tick);
   out.member("source", record.source);
   if (record.process != 0) out.member("process", record.process);
   if (record.user) out.member("user", *record.user);

@@ -41,9 +41,13 @@ constexpr std::string_view kForcesSchema = R"({
 "tcp_force_n":{"type":"array","items":{"type":"number"}},
 "tcp_torque_nm":{"type":"array","items":{"type":"number"}}}}}}})";
 
+constexpr std::string_view kSwitchesSchema = R"({
+"type":"object","title":"foot switches and other binary inputs","properties":{
+"edges":{"type":"integer"},"on":{"type":"array","items":{"type":"integer"}}}})";
+
 constexpr std::string_view kCommandSchema = R"({
 "type":"object","title":"a SCRIPT command and its acknowledgement","properties":{
-"time":{"type":"string"},"took_s":{"type":"number"},"source":{"type":"string"},"process":{"type":"integer"},
+"time":{"type":"string"},"took_s":{"type":"number"},"tick":{"type":"integer"},"source":{"type":"string"},"process":{"type":"integer"},
 "user":{"type":"integer"},"session":{"type":"integer"},"peer":{"type":"string"},"place":{"type":"string"},
 "run":{"type":"integer"},"command":{"type":"string"},"outcome":{"type":"string"},"answer":{"type":"string"}}})";
 
@@ -118,6 +122,9 @@ TopicPtr OutputTopics::commands() {
 TopicPtr OutputTopics::status() {
   return json_topic("/cellmirror/status", "cellmirror.Status", kStatusSchema, Importance::bulk);
 }
+TopicPtr OutputTopics::foot_switches() {
+  return json_topic("/inputs/foot_switches", "cellmirror.FootSwitches", kSwitchesSchema, Importance::event);
+}
 TopicPtr OutputTopics::range(std::string_view sensor) {
   return ros2_topic(dds::range_topic("/cellmirror/range", sensor), "sensor_msgs/msg/Range", ros2::range(),
                     Importance::state);
@@ -181,6 +188,14 @@ std::string forces_message(const ForceState& state) {
     if (robot.tcp_known) out.member("tcp_force_n", robot.tcp_T.force).member("tcp_torque_nm", robot.tcp_T.torque);
     out.end_object();
   }
+  out.end_array().end_object();
+  return out.take();
+}
+
+std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint32_t> on) {
+  JsonWriter out;
+  out.begin_object().member("edges", edges).key("on").begin_array();
+  for (const std::uint32_t input : on) out.value(input);
   out.end_array().end_object();
   return out.take();
 }

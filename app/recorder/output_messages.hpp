@@ -1,6 +1,8 @@
 // What a recording has beside ROS 2's states: collisions and distances as JSON, lines of the log. Pure.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,7 @@ struct OutputTopics {
   static TopicPtr forces();
   static TopicPtr commands();
   static TopicPtr status();
+  static TopicPtr foot_switches();
   // "/cellmirror/range/ID", "/cellmirror/tcp_wrench/ID".
   static TopicPtr range(std::string_view sensor);
   static TopicPtr wrench(std::string_view robot);
@@ -35,6 +38,8 @@ struct OutputTopics {
 [[nodiscard]] std::string collisions_message(const ProximityState& state);
 [[nodiscard]] std::string collision_event_message(const ProximityEvent& event);
 [[nodiscard]] std::string forces_message(const ForceState& state);
+// `edges`: changes since the start; `on`: the inputs that are on, the first of them.
+[[nodiscard]] std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint32_t> on);
 // `wall_ns`: when it was received, or given to the channel.
 [[nodiscard]] std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool sent);
 // rcl_interfaces/msg/Log; `out` is overwritten.

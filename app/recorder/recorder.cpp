@@ -37,7 +37,11 @@ bool is_due(Timestamp now, Timestamp& last, Nanoseconds period) {
 }  // namespace
 
 Recorder::Recorder(Sources sources, RecordingHub& hub)
-    : sources_(std::move(sources)), hub_(hub), thread_([this](const std::stop_token& stop) { loop(stop); }) {}
+    : sources_(std::move(sources)),
+      hub_(hub),
+      inputs_(sources_.engine_inputs != nullptr ? std::make_unique<InputRecorder>(*sources_.engine_inputs, hub)
+                                                : nullptr),
+      thread_([this](const std::stop_token& stop) { loop(stop); }) {}
 
 Recorder::~Recorder() {
   thread_.request_stop();
@@ -51,9 +55,11 @@ void Recorder::loop(const std::stop_token& stop) {
     const double rate_hz = hub_.rate_hz();
     if (sources_.can_tap != nullptr) sources_.can_tap->set_on(rate_hz > 0);
     const Timestamp now = sources_.clock.now();
+    if (inputs_) inputs_->look(now, sources_.board.latest().get());
     if (rate_hz <= 0) {
       last_tick_ = 0;
       newest_event_ = 0;
+      newest_edge_.reset();
       wait_until(now + kIdle);
       continue;
     }
@@ -83,6 +89,7 @@ void Recorder::look(const engine::TickState& state, double rate_hz) {
     record_tick(state, *cell_state, forces.get());
   }
   record_ranges();
+  record_switches(to_wall_clock_ns(state.time), cell_state->switches);
   if (!is_due(state.time, last_findings_, kBetweenFindings)) return;
   record_proximity();
   if (forces) record_forces(*forces);
@@ -196,6 +203,13 @@ void Recorder::record_forces(const ForceState& state) {
     encode(wrench_, bytes_);
     hub_.put(topic->second, wall_ns, bytes_);
   }
+}
+
+void Recorder::record_switches(std::int64_t wall_ns, const FootSwitchSnapshot& switches) {
+  if (switches.key == 0 || (switches.edges == newest_edge_ && switches.inputs_on == inputs_on_)) return;
+  newest_edge_ = switches.edges;
+  inputs_on_ = switches.inputs_on;
+  if (hub_.wants(*switches_)) put_text(switches_, wall_ns, foot_switches_message(switches.edges, switches.inputs_on));
 }
 
 void Recorder::record_status(Timestamp now) {

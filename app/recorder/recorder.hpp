@@ -6,12 +6,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "app/io/can_tap.hpp"
+#include "app/recorder/input_recorder.hpp"
 #include "app/recorder/output_messages.hpp"
 #include "app/recorder/recording_hub.hpp"
 #include "app/snapshot/board.hpp"
@@ -40,9 +42,10 @@ class Recorder {
     const Board<ForceState>& forces;
     const Clock& clock;
     Nanoseconds tick_period{0};
-    std::function<std::string()> status;  // the document
-    CanTap* can_tap = nullptr;            // null: no inputs are recorded
-    bool keeps_collisions = false;        // the ring is kept where bodies touch
+    std::function<std::string()> status;        // the document
+    CanTap* can_tap = nullptr;                  // null: no inputs are recorded
+    engine::InputTap* engine_inputs = nullptr;  // null: the inputs of the tick are not recorded
+    bool keeps_collisions = false;              // the ring is kept where bodies touch
   };
 
   Recorder(Sources sources, RecordingHub& hub);
@@ -60,6 +63,7 @@ class Recorder {
   void record_proximity();
   void record_ranges();
   void record_forces(const ForceState& state);
+  void record_switches(std::int64_t wall_ns, const FootSwitchSnapshot& switches);
   void record_status(Timestamp now);
   const TopicPtr& joint_topic(const CellState& cell_state, std::span<const RobotState> robots);
   void put_text(const TopicPtr& topic, std::int64_t wall_ns, const std::string& text) {
@@ -73,6 +77,9 @@ class Recorder {
   TopicPtr events_ = OutputTopics::collision_events();
   TopicPtr forces_ = OutputTopics::forces();
   TopicPtr status_ = OutputTopics::status();
+  TopicPtr switches_ = OutputTopics::foot_switches();
+  std::optional<std::uint64_t> newest_edge_;
+  std::vector<std::uint32_t> inputs_on_;
   TopicPtr joints_;
   mcap::Texts joint_names_;                         // of joints_
   std::shared_ptr<const CompiledCell> joint_cell_;  // likewise
@@ -97,7 +104,8 @@ class Recorder {
   Timestamp last_frames_;
   Timestamp last_findings_;
   Timestamp last_status_;
-  std::jthread thread_;  // last: it uses everything above
+  std::unique_ptr<InputRecorder> inputs_;  // null: none are recorded
+  std::jthread thread_;                    // last: it uses everything above
 };
 
 // Gives lines of the log, and commands with their acknowledgements, to the recordings. Any thread but the tick's.

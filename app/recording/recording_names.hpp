@@ -9,6 +9,15 @@ namespace cellmirror::app {
 inline constexpr std::string_view kDropsName = "cellmirror.drops";
 // Version, instance, cell and settings of the gateway that recorded.
 inline constexpr std::string_view kGatewayName = "cellmirror.gateway";
+// In that: the program and the instruction set that it computes with; with others a replay differs in the last bits.
+inline constexpr std::string_view kBuildKey = "build";
+inline constexpr std::string_view kTargetKey = "target";
+// Where the cell file was.
+inline constexpr std::string_view kCellFileKey = "cell_file";
+inline constexpr std::string_view kJointsTopic = "/joint_states";
+// The topic that has all that the tick took (docs/recording.md).
+inline constexpr std::string_view kInputsTopic = "/inputs/ticks";
+inline constexpr std::string_view kInputsEncoding = "cellmirror.inputs";
 // Metadata of a channel: "joint:NAME" = "ROBOT.JOINT".
 inline constexpr std::string_view kJointKey = "joint:";
 

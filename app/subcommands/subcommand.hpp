@@ -33,6 +33,7 @@ void add_page(cli::Command program, Action& action);
 void add_simulate(cli::Command program, Action& action);
 void add_record(cli::Command program, Action& action);
 void add_recording(cli::Command program, Action& action);
+void add_replay(cli::Command program, Action& action);
 void add_volume(cli::Command program, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.

@@ -44,6 +44,16 @@ bool Couplings::couple(const Coupling& coupling, std::span<RobotSlot> slots) CEL
   return true;
 }
 
+bool Couplings::restore(const Coupling& coupling, std::span<const RobotSlot> slots) {
+  if (coupling.master >= slots.size() || coupling.slave >= slots.size()) return false;
+  if (coupling.count == 0 || coupling.count > kMaxJointsPerRobot || of_slave_[coupling.slave].count > 0) return false;
+  if (coupling.master == coupling.slave || follows(coupling.master, coupling.slave)) return false;
+  if (!joints_are_sound(coupling, slots[coupling.master].state(), slots[coupling.slave].state())) return false;
+  of_slave_[coupling.slave] = coupling;
+  sort();
+  return true;
+}
+
 bool Couplings::uncouple(std::uint8_t slave, std::span<RobotSlot> slots) CELL_RT {
   if (slave >= slots.size() || of_slave_[slave].count == 0) return false;
   of_slave_[slave].count = 0;

@@ -53,6 +53,11 @@ class Couplings {
   // where the master's data are not fresh. Returns the slots that have moved, valid until the next step.
   std::span<const std::uint8_t> step(double dt, std::span<RobotSlot> slots) CELL_RT;
 
+  // By the slave's slot; of a count of 0: it follows no master.
+  [[nodiscard]] std::span<Coupling> all() CELL_RT { return of_slave_; }
+  // As it was in another engine, whose robots stand in `slots` already. False where it is not sound. Not for the tick.
+  bool restore(const Coupling& coupling, std::span<const RobotSlot> slots);
+
  private:
   [[nodiscard]] bool follows(std::size_t slave, std::size_t master) const CELL_RT;
   void sort() CELL_RT;

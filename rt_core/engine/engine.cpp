@@ -55,7 +55,9 @@ Engine::Engine(Watchdog& watchdog, const EngineCapacity& capacity)
       states_(TickState(capacity.robots)),
       haptics_(capacity.haptic_devices),
       couplings_(capacity.robots),
-      watchdog_(watchdog) {
+      watchdog_(watchdog),
+      inputs_(capacity.robots, capacity.haptic_devices),
+      recorder_(inputs_) {
   CELLMIRROR_EXPECTS(capacity.robots <= kMaxRobots && capacity.haptic_devices <= kMaxHapticDevices);
   inlets_.reserve(capacity.robots);
   for (std::size_t i = 0; i < capacity.robots; ++i) inlets_.push_back(std::make_unique<Inlet>());
@@ -69,10 +71,12 @@ TickReader& Engine::subscribe(std::string name) {
 void Engine::run(const CycleContext& context) CELL_RT {
   // Relaxed: only the check of a contract reads it.
   started_.store(true, std::memory_order_relaxed);
+  recorder_.begin(head_.commands_done, [this](StateWriter& out) CELL_RT { write_start(out); });
   head_.tick = context.cycle;
   head_.time = context.now;
   head_.missed_periods += context.missed;
   const int commands = take_commands(context.now);
+  if (recorder_.recording()) recorder_.head(context, head_.commands_done, head_.commands_refused);
   const int samples = take_samples() + step_haptics(context);
   const double dt = passed_time(context);
   move_robots(context, dt);
@@ -81,6 +85,7 @@ void Engine::run(const CycleContext& context) CELL_RT {
   }
   follow_masters(context, dt);
   if (states_.has_readers()) publish();
+  if (recorder_.recording()) record_published();
   record_tick(context, commands, samples);
   watchdog_.beat();
 }
@@ -192,6 +197,7 @@ int Engine::take_samples() CELL_RT {
     int of_this_robot = 0;
     while (of_this_robot < kSamplesPerTick && inlets_[slot]->queue.pop(sample)) {
       ++of_this_robot;
+      if (recorder_.recording()) recorder_.sample(slot, slots_[slot].state().joint_count, sample);
       slots_[slot].take(sample, head_.time);
       record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
     }
@@ -206,7 +212,11 @@ int Engine::step_haptics(const CycleContext& context) CELL_RT {
   for (std::size_t channel = 0; channel < haptics_.size(); ++channel) {
     if (!haptics_.used(channel)) continue;
     const std::size_t slot = haptics_.slot(channel);
-    if (!haptics_.step(channel, context, slots_[slot].state(), sample)) continue;
+    const bool moved = haptics_.step(channel, context, slots_[slot].state(), sample);
+    if (recorder_.recording())
+      recorder_.haptic(channel, slot, haptics_.taken(channel), slots_[slot].state().joint_count,
+                       moved ? &sample : nullptr);
+    if (!moved) continue;
     ++taken;
     slots_[slot].take(sample, head_.time);
     record_robot(FlightEvent::sample, slot, sample.receive_time, sample.sequence);
@@ -264,9 +274,11 @@ void Engine::record_robot(FlightEvent event, std::size_t slot, Timestamp time, s
 
 std::uint64_t Engine::send(Command& command) {
   free_returned();
+  InputTap::Sending sending(inputs_, next_command_, command);
   Sent sent{next_command_, std::move(command)};
   if (!commands_.push_from(sent)) {
     command = std::move(sent.command);
+    sending.refused();
     return 0;
   }
   return next_command_++;

@@ -1,22 +1,30 @@
 // The tick: in, update, limit, out.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "rt_core/base/real_time.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/base/state_bytes.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/command.hpp"
 #include "rt_core/engine/coupling.hpp"
 #include "rt_core/engine/flight_record.hpp"
 #include "rt_core/engine/haptic_channels.hpp"
+#include "rt_core/engine/input_tap.hpp"
 #include "rt_core/engine/robot_slot.hpp"
 #include "rt_core/engine/tick_reader.hpp"
+#include "rt_core/engine/tick_recorder.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/rt/broadcast.hpp"
@@ -44,6 +52,12 @@ struct EngineCapacity {
 };
 // For a cell that begins with so many robots: kSpareRobots more, at most kMaxRobots.
 [[nodiscard]] EngineCapacity capacity_for(std::size_t robots);
+
+// What a recorded start state does not have, since it is in the devices' channels: those that were open.
+struct EngineStart {
+  std::uint64_t commands_done = 0;
+  std::array<std::uint64_t, kMaxHapticDevices> open_devices{};  // by channel, the address of the device; 0: closed
+};
 
 struct QueueStatus {
   std::string name;
@@ -78,6 +92,7 @@ class Engine final : public Cycle {
   // free_returned(), or with the engine. Only the owner's thread frees.
   template <class T>
   [[nodiscard]] Lease<T> lend(std::shared_ptr<T> object) {
+    if constexpr (std::is_same_v<T, const kinematics::Chain>) inputs_.note(object);
     return lender_.lend(std::move(object));
   }
   void free_returned() { lender_.collect(); }
@@ -90,6 +105,19 @@ class Engine final : public Cycle {
   [[nodiscard]] Latest<haptics::TissueForce>& tissue_inlet(std::size_t channel) {
     return haptics_.tissue_inlet(channel);
   }
+
+  // What the tick takes, for the one thread that records it.
+  [[nodiscard]] InputTap& inputs() { return inputs_; }
+  // Before the first tick and the first command: the state that another engine wrote into a recording
+  // (InputRecord::start), with the same capacity or more. `chain` gives a chain for the address that it had. What does
+  // not fit is an error, and the engine is not to be used then.
+  Result<EngineStart> restore(std::span<const std::byte> start,
+                              const std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t)>& chain);
+  // Of a recorded start state, without its content: what an engine for it needs.
+  [[nodiscard]] static Result<EngineCapacity> capacity_of(std::span<const std::byte> start);
+  // What a recording has of a slot's state: transfer_part() (state_transfer.hpp).
+  void write_published(StateWriter& out, std::size_t slot, std::size_t part);
+  [[nodiscard]] const HapticState& haptic_state(std::size_t channel) const { return haptics_.state(channel); }
 
   [[nodiscard]] std::vector<FlightTick> flight_ticks() const;
   [[nodiscard]] std::vector<FlightRobot> flight_robots() const;
@@ -108,6 +136,8 @@ class Engine final : public Cycle {
     Command command;
   };
 
+  void write_start(StateWriter& out) CELL_RT;
+  void record_published() CELL_RT;
   int take_commands(Timestamp now) CELL_RT;
   // False where the command was refused.
   bool carry_out(AddRobot& command) CELL_RT;
@@ -150,6 +180,8 @@ class Engine final : public Cycle {
   Watchdog& watchdog_;
   Ring<FlightTick, kFlightTicks> flight_ticks_;
   Ring<FlightRobot, kFlightRobots> flight_robots_;
+  InputTap inputs_;
+  TickRecorder recorder_;
 };
 
 }  // namespace cellmirror::engine

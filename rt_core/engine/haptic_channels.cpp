@@ -4,6 +4,12 @@
 
 namespace cellmirror::engine {
 
+HapticRead WatchedDevice::read(HapticSample& sample) CELL_RT {
+  outcome_ = device_->read(sample);
+  if (outcome_ == HapticRead::fresh) sample_ = sample;
+  return outcome_;
+}
+
 bool HapticChannels::open(OpenHaptic& command, Timestamp now) CELL_RT {
   if (command.channel >= channels_.size() || !command.instrument || !command.device) return false;
   Entry& entry = channels_[command.channel];
@@ -12,7 +18,8 @@ bool HapticChannels::open(OpenHaptic& command, Timestamp now) CELL_RT {
   } else {
     if (entry.channel.used()) entry.channel.close();
     entry.device_gone = false;
-    entry.channel.open(*command.instrument, *command.device);
+    entry.watched.watch(*command.device);
+    entry.channel.open(*command.instrument, entry.watched);
   }
   // Only now: until here the channel has used the ones before.
   entry.instrument = std::move(command.instrument);
@@ -47,7 +54,8 @@ bool HapticChannels::step(std::size_t channel, const CycleContext& context, cons
   Entry& entry = channels_[channel];
   JointValues q{};
   for (std::size_t i = 0; i < robot.joint_count; ++i) q[i] = robot.joints[i].position;
-  const haptics::ContactModel& newest = entry.inlet.read().value;
+  const auto model = entry.inlet.read();
+  const haptics::ContactModel& newest = model.value;
   haptics::TickInput input;
   input.now = context.now;
   input.period = context.period;
@@ -56,11 +64,17 @@ bool HapticChannels::step(std::size_t channel, const CycleContext& context, cons
   const bool fits =
       newest.sequence != 0 && newest.slot == entry.instrument->slot && newest.posture_time >= entry.opened;
   input.model = fits ? &newest : nullptr;
-  const haptics::TissueForce& tissue = entry.tissue_inlet.read().value;
+  const auto response = entry.tissue_inlet.read();
+  const haptics::TissueForce& tissue = response.value;
   input.tissue = tissue.sequence != 0 && tissue.posture_time >= entry.opened ? &tissue : nullptr;
   input.q = std::span<const double>(q).first(robot.joint_count);
   input.device_gone = entry.device_gone;
-  return entry.channel.step(input, sample);
+  const bool moved = entry.channel.step(input, sample);
+  entry.taken = {.outcome = entry.watched.outcome(),
+                 .sample = entry.watched.outcome() == HapticRead::fresh ? &entry.watched.sample() : nullptr,
+                 .model = model.is_new ? &newest : nullptr,
+                 .tissue = response.is_new ? &tissue : nullptr};
+  return moved;
 }
 
 void HapticChannels::publish(std::span<HapticState, kMaxHapticDevices> out) const CELL_RT {

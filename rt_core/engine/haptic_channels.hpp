@@ -19,6 +19,29 @@
 
 namespace cellmirror::engine {
 
+// Between a channel and its device: keeps what the device gave last, for a recording of the tick.
+class WatchedDevice final : public HapticDevicePort {
+ public:
+  void watch(HapticDevicePort& device) CELL_RT { device_ = &device; }
+  HapticRead read(HapticSample& sample) CELL_RT override;
+  void write(const HapticOutput& output) CELL_RT override { device_->write(output); }
+  [[nodiscard]] HapticRead outcome() const CELL_RT { return outcome_; }
+  [[nodiscard]] HapticSample& sample() CELL_RT { return sample_; }  // of the last read that was fresh
+
+ private:
+  HapticDevicePort* device_ = nullptr;
+  HapticRead outcome_ = HapticRead::none;
+  HapticSample sample_;
+};
+
+// What a channel took in a step. Null: nothing new.
+struct HapticTaken {
+  HapticRead outcome = HapticRead::none;
+  HapticSample* sample = nullptr;
+  const haptics::ContactModel* model = nullptr;
+  const haptics::TissueForce* tissue = nullptr;
+};
+
 // Tick thread only, but for the inlets.
 class HapticChannels {
  public:
@@ -40,6 +63,15 @@ class HapticChannels {
   // Reads the device, answers it. `robot` is the instrument's. True where `sample` holds where it is to stand.
   bool step(std::size_t channel, const CycleContext& context, const RobotTickState& robot, JointSample& sample) CELL_RT;
   void publish(std::span<HapticState, kMaxHapticDevices> out) const CELL_RT;
+  // Of the last step(); valid until the next one.
+  [[nodiscard]] const HapticTaken& taken(std::size_t channel) const CELL_RT { return channels_[channel].taken; }
+  [[nodiscard]] const HapticState& state(std::size_t channel) const CELL_RT {
+    return channels_[channel].channel.state();
+  }
+  // Which one it is: null where the channel is closed.
+  [[nodiscard]] const HapticDevicePort* device(std::size_t channel) const CELL_RT {
+    return channels_[channel].device.get();
+  }
 
   // For one worker thread.
   [[nodiscard]] Latest<haptics::ContactModel>& inlet(std::size_t channel) {
@@ -59,6 +91,8 @@ class HapticChannels {
     Lease<HapticDevicePort> device;
     Timestamp opened;
     bool device_gone = false;
+    WatchedDevice watched;
+    HapticTaken taken;
     Latest<haptics::ContactModel> inlet;
     Latest<haptics::TissueForce> tissue_inlet;
   };

@@ -66,6 +66,18 @@ class JointGate {
   void set_motion(const motion::MotionState& motion) CELL_RT { state_.motion = motion; }
   void set_follow(const FollowTickState& follow) CELL_RT { state_.follow = follow; }
 
+  // A part of what is published: transfer_part() (state_transfer.hpp).
+  template <class Archive>
+  void transfer_published(Archive& archive, std::size_t part) CELL_RT {
+    transfer_part(archive, state_, part);
+  }
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    transfer_state(archive, state_);
+    archive(limits_, ages_.stale_after, ages_.lost_after, given_, rates_, plausibility_);
+  }
+
  private:
   LimiterVerdict refuse(LimiterVerdict verdict) CELL_RT;
   void take_joint(const JointSample& sample, std::size_t i) CELL_RT;

@@ -40,8 +40,19 @@ class PlausibilityCheck {
   [[nodiscard]] Timestamp last_heard(std::size_t joint) const CELL_RT { return joints_[joint].heard; }
   void note_heard(std::size_t joint, Timestamp time) CELL_RT { joints_[joint].heard = time; }
 
+  // Its members, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(bounds_, joints_);
+  }
+
  private:
   struct Joint {
+    template <class Archive>
+    void transfer(Archive& archive) CELL_RT {
+      archive(last.position, last.velocity, last.effort, last.receive_time, heard, changed, doubt);
+    }
+
     StreamValue last;         // within the range; its time is "never" before the first one
     Timestamp heard;          // also where it was not within the range
     Timestamp changed;        // the first of the values that are equal to `last`

@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "rt_core/engine/state_transfer.hpp"
+
 namespace cellmirror::engine {
 
 bool RobotSlot::add(const RobotSetup& robot) CELL_RT {
@@ -167,6 +169,32 @@ bool RobotSlot::follow_joint(double wanted, std::size_t joint, double max_veloci
   if (gate_.step(step) != LimiterVerdict::passed) return false;
   if (std::abs(wanted - next) > kLimitSlack) follow.limited = static_cast<JointSet>(follow.limited | 1U << joint);
   return next != present;
+}
+
+void RobotSlot::write(StateWriter& out) CELL_RT {
+  out(gate_);
+  executor_.transfer(out, state().joint_count);
+  const kinematics::Chain* chain = chain_.get();
+  out.reference(chain);
+  out.bounded(retired_, retired_chains_.size());
+  for (std::size_t i = 0; i < retired_; ++i) {
+    chain = retired_chains_[i].get();
+    out.reference(chain);
+  }
+}
+
+void RobotSlot::restore(StateReader& in, const LendChain& lend) {
+  in(gate_);
+  executor_.transfer(in, state().joint_count);
+  const kinematics::Chain* chain = nullptr;
+  in.reference(chain);
+  chain_ = lend(chain);
+  std::size_t count = 0;
+  in.bounded(count, retired_chains_.size());
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    in.reference(chain);
+    retire(lend(chain));
+  }
 }
 
 void RobotSlot::publish(RobotTickState& out) const CELL_RT {

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "rt_core/base/real_time.hpp"
+#include "rt_core/base/state_bytes.hpp"
 #include "rt_core/engine/command.hpp"
 #include "rt_core/engine/joint_gate.hpp"
 #include "rt_core/engine/tick_state.hpp"
@@ -44,6 +46,17 @@ class RobotSlot {
   // Into a buffer that holds an older state.
   void publish(RobotTickState& out) const CELL_RT;
   [[nodiscard]] bool used() const CELL_RT { return state().mode != RobotMode::absent; }
+
+  // For a recording of the tick (input_tap.hpp): a part of what is published, and all that the next ticks depend on.
+  template <class Archive>
+  void transfer_published(Archive& archive, std::size_t part) CELL_RT {
+    gate_.transfer_published(archive, part);
+  }
+  void write(StateWriter& out) CELL_RT;
+  // As it was written, in a slot that was not used yet; chains are lent again. What does not fit makes `in` fail. Not
+  // for the tick.
+  using LendChain = std::function<Lease<const kinematics::Chain>(const kinematics::Chain* chain)>;
+  void restore(StateReader& in, const LendChain& lend);
 
  private:
   void retire(Lease<const kinematics::Chain> chain) CELL_RT;

@@ -1,6 +1,7 @@
 // Carries out the moves of one robot, tick by tick. Belongs to the tick thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -72,6 +73,32 @@ class MoveExecutor {
   [[nodiscard]] const MotionState& state() const CELL_RT { return state_; }
   // How fast each joint may be in this step: max_velocity of the move, or the speed from which it brakes.
   [[nodiscard]] const JointValues& fastest() const CELL_RT { return fastest_; }
+
+  // All that the next steps depend on, for a recording of the tick (rt_core/base/state_bytes.hpp). What is read is
+  // refused where it would not fit a robot with `joints` joints.
+  template <class Archive>
+  void transfer(Archive& archive, std::size_t joints) CELL_RT {
+    joints_ = std::min(joints, kMaxJointsPerRobot);
+    archive.reference(chain_);
+    archive(state_);
+    archive.choice(activity_, Activity::delay);
+    archive.choice(halt_outcome_, Outcome::blocked);
+    archive(blend_, brake_, braking_, halt_through_, newest_, delay_left_, pace_, wanted_pace_, gate_, now_, dt_, late_,
+            lag_, qd_, fastest_);
+    if (activity_ == Activity::joints) ptp_.transfer(archive, joints_);
+    if (activity_ == Activity::path) archive(linear_);
+    if constexpr (Archive::kReads) first_ = 0;
+    for (std::size_t i = 0; i < state_.waiting && i < kMoveQueue; ++i) {
+      Queued& queued = queue_[(first_ + i) % kMoveQueue];
+      archive(queued.move);
+      archive.reference(queued.chain);
+    }
+    if constexpr (Archive::kReads) {
+      const bool on_path = activity_ == Activity::path;
+      const bool nowhere = on_path && (linear_.chain() == nullptr || linear_.chain()->variable_count() != joints_);
+      if (nowhere || (blend_ && state_.waiting == 0)) archive.fail();
+    }
+  }
 
  private:
   struct Queued {

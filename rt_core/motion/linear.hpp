@@ -53,6 +53,15 @@ class LinearMotion {
   [[nodiscard]] const kinematics::Chain* chain() const CELL_RT { return chain_; }
   [[nodiscard]] const JointValues& max_velocity() const CELL_RT { return max_velocity_; }
   [[nodiscard]] const JointValues& acceleration() const CELL_RT { return move_.acceleration; }  // of the joints
+
+  // Its members, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive.reference(chain_);
+    archive(move_, path_, posture_, max_velocity_, linear_velocity_, rotational_velocity_, pace_, overrun_,
+            older_ended_);
+  }
+
  private:
   [[nodiscard]] double pace_of_tool(double dt, double pace) const CELL_RT;
   [[nodiscard]] bool find_posture(double later, JointValues& posture) const CELL_RT;

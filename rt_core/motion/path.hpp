@@ -77,6 +77,14 @@ class SuperposedPath {
   // Advances time. True if the older one of two has ended and was dropped.
   bool advance(double dt) CELL_RT;
 
+  // Its members, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(X_BS_);
+    archive.bounded(count_, kMost);
+    archive.first(ways_, count_);
+  }
+
  private:
   Pose X_BS_ = Pose::Identity();  // where the oldest begins
   std::array<Way, kMost> ways_{};

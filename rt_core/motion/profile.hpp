@@ -71,6 +71,14 @@ class Profile {
   // Before 0: as at 0; after the end: at rest exactly on the target.
   [[nodiscard]] State at(double t) const CELL_RT;
 
+  // Its members, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive.bounded(count_, kMostRamps);
+    archive.first(ramps_, count_);
+    archive(start_, target_, duration_);
+  }
+
  private:
   void append(double duration, double v0, double v1, VelocityProfile shape) CELL_RT;
   void append_from_rest(double way, double velocity, double acceleration, VelocityProfile shape) CELL_RT;

@@ -50,6 +50,17 @@ class PtpMotion {
   [[nodiscard]] const kinematics::Chain* chain() const CELL_RT { return chain_; }  // of the fly point
   [[nodiscard]] const Profile& axis(std::size_t joint) const CELL_RT { return axes_[joint]; }
 
+  // Its members for a recording of the tick (rt_core/base/state_bytes.hpp), those of the axes for `joints` of them.
+  template <class Archive>
+  void transfer(Archive& archive, std::size_t joints) CELL_RT {
+    archive.first(axes_, joints);
+    archive.first(cruise_, joints);
+    archive.first(acceleration_, joints);
+    archive.choice(fly_type_, FlyType::angle);
+    archive.reference(chain_);
+    archive(fly_parameter_, X_BG_, duration_, t_);
+  }
+
  private:
   void set_duration(std::size_t joints) CELL_RT;
   void plan(const Move& move, std::span<const double> q, std::span<const double> qd, const JointRange& range) CELL_RT;

@@ -1,0 +1,35 @@
+// Commands of the tick as bytes, with all that they lend, and back. Not for the tick.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "rt_core/base/state_bytes.hpp"
+#include "rt_core/engine/command.hpp"
+#include "rt_core/kinematics/chain.hpp"
+
+namespace cellmirror::engine {
+
+class Engine;
+
+void write_chain(StateWriter& out, const kinematics::Chain& chain);
+// None, and `in` fails, where it is no chain that Chain::make() makes.
+[[nodiscard]] std::optional<kinematics::Chain> read_chain(StateReader& in);
+
+void write_command(StateWriter& out, Command& command);
+
+// Who stands for what cannot be in a file.
+struct CommandParts {
+  Engine& engine;  // lends
+  // Chains are distinguished by their addresses, as the tick does it: gives the one that was read under this address
+  // before where it is the same, else keeps this one.
+  std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t address, kinematics::Chain&& chain)> chain;
+  // Stands for the device of a channel.
+  std::function<std::shared_ptr<HapticDevicePort>(std::uint8_t channel, std::uint64_t address)> device;
+};
+// From any bytes: values are checked as the owner checks them. None, and `in` fails, where they cannot be a command's.
+[[nodiscard]] std::optional<Command> read_command(StateReader& in, const CommandParts& parts);
+
+}  // namespace cellmirror::engine

@@ -1,0 +1,275 @@
+// Recorded inputs give the same states again, and what differs is found.
+#include "app/replay/engine_replay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "tests/unit/engine/commands.hpp"
+
+namespace cellmirror::app {
+namespace {
+
+using engine::Engine;
+using engine::EngineCapacity;
+using engine::InputRecord;
+
+constexpr Nanoseconds kPeriod{2'000'000};
+constexpr std::size_t kSimulated = 0;
+constexpr std::size_t kMirrored = 1;
+constexpr std::size_t kSlave = 2;
+
+// A hand that goes to and fro in front of a wall.
+class Hand final : public HapticDevicePort {
+ public:
+  HapticRead read(HapticSample& out) CELL_RT override {
+    out = HapticSample();
+    out.sequence = ++sequence_;
+    out.time = *now;
+    out.valid = true;
+    out.writer = 1;
+    out.p_DH.x() = 0.02 * std::sin(0.01 * static_cast<double>(sequence_));
+    return HapticRead::fresh;
+  }
+  void write(const HapticOutput& /*output*/) CELL_RT override {}
+  const Timestamp* now = nullptr;
+
+ private:
+  std::uint64_t sequence_ = 0;
+};
+
+kinematics::Chain slides() {
+  std::vector<kinematics::Variable> variables;
+  for (const char* name : {"X", "Y", "Z"}) variables.push_back({name, JointKind::prismatic, -1.0, 1.0});
+  Pose turn = Pose::Identity();
+  turn.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // x to y, y to z, z to x
+  std::vector<kinematics::ChainJoint> joints(3);
+  for (std::uint8_t i = 0; i < 3; ++i) joints[i] = {.X_PJ = turn, .kind = JointKind::prismatic, .variable = i};
+  return *kinematics::Chain::make(variables, joints, Pose::Identity());
+}
+
+class EngineReplayTest : public testing::Test {
+ protected:
+  EngineReplayTest() {
+    for (std::size_t slot = 0; slot < 3; ++slot) send_robot(*engine_, slot, engine::robot_of(3, -2, 2));
+    engine_->send(engine::SetMode{.slot = kMirrored, .mode = engine::RobotMode::mirrored});
+    engine_->send(engine::SetChain{.slot = kSimulated, .chain = engine_->lend(chain_)});
+    engine::Coupling coupling;
+    coupling.master = kMirrored;
+    coupling.slave = kSlave;
+    coupling.count = 1;
+    coupling.max_velocity.fill(1);
+    send_coupling(*engine_, coupling);
+    tick(3);
+  }
+
+  void tick(int times) {
+    for (int i = 0; i < times; ++i) {
+      now_ = now_ + kPeriod;
+      CycleContext context;
+      context.now = now_;
+      context.scheduled = now_ - Nanoseconds(1234);
+      context.cycle = cycle_++;
+      context.period = kPeriod;
+      context.missed = cycle_ % 50 == 0 ? 1 : 0;
+      JointSample sample;
+      sample.receive_time = now_ - Nanoseconds(100'000);
+      sample.sequence = cycle_;
+      sample.present = 7;
+      for (std::size_t j = 0; j < 3; ++j) sample.position[j] = std::sin(0.01 * static_cast<double>(cycle_ + j));
+      if (cycle_ % 3 != 0) engine_->inlet(kMirrored).push(sample);
+      engine_->run(context);
+    }
+  }
+
+  void move(motion::MoveKind kind, double to) {
+    motion::Move one;
+    one.kind = kind;
+    one.start = motion::Start::queue;
+    one.id = ++move_id_;
+    one.max_velocity.fill(3);
+    one.velocity.fill(1);
+    one.acceleration.fill(4);
+    one.target.fill(to);
+    one.X_BG.translation() = Eigen::Vector3d(to, 0.1, 0.2);
+    one.linear_velocity = one.rotational_velocity = 0.5;
+    one.linear_acceleration = one.rotational_acceleration = 2;
+    one.fly_parameter = 0.05;
+    send_move(*engine_, kSimulated, one);
+  }
+
+  void open_hand() {
+    auto hand = std::make_shared<Hand>();
+    hand->now = &now_;
+    haptics::Instrument instrument{.slot = kSimulated, .joint_count = 3, .chain = slides(), .settings = {}};
+    for (std::uint8_t i = 0; i < 3; ++i) instrument.variable_joint[i] = i;
+    instrument.lower.fill(-1);
+    instrument.upper.fill(1);
+    engine_->send(engine::SetMode{.slot = kSimulated, .mode = engine::RobotMode::mirrored});
+    engine_->send(engine::OpenHaptic{
+        .channel = 1,
+        .instrument = engine_->lend(std::make_shared<const haptics::Instrument>(std::move(instrument))),
+        .device = engine_->lend<HapticDevicePort>(std::move(hand))});
+  }
+  void give_model() {
+    haptics::ContactModel& model = engine_->contact_inlet(1).writable();
+    model = haptics::ContactModel();
+    model.sequence = ++models_;
+    model.posture_time = now_;
+    model.slot = kSimulated;
+    model.reach = 1;
+    model.count = 1;
+    model.constraints[0].a = model.constraints[0].normal = -Eigen::Vector3d::UnitX();
+    model.constraints[0].gap = 0.01;
+    engine_->contact_inlet(1).publish();
+  }
+
+  std::vector<std::byte> message() {
+    std::vector<std::byte> out{std::byte{engine::kInputsVersion}};
+    engine_->inputs().drain(out);
+    return out;
+  }
+
+  Watchdog watchdog_{std::chrono::milliseconds(100), {}};
+  std::unique_ptr<Engine> engine_ = std::make_unique<Engine>(watchdog_, EngineCapacity{.robots = 4});
+  engine::TickReader& ticks_ = engine_->subscribe("test");
+  std::shared_ptr<const kinematics::Chain> chain_ = std::make_shared<const kinematics::Chain>(slides());
+  Timestamp now_{1'000'000'000};
+  std::uint64_t cycle_ = 0;
+  std::uint32_t move_id_ = 0;
+  std::uint64_t models_ = 0;
+  EngineReplay sut_;
+};
+
+TEST_F(EngineReplayTest, EachTickIsEqualToTheBit) {
+  engine_->inputs().request_start();
+  move(motion::MoveKind::joints, 0.5);
+  move(motion::MoveKind::linear, -0.4);
+  move(motion::MoveKind::linear, 0.4);
+  tick(1000);
+  sut_.take(message());
+  EXPECT_FALSE(sut_.difference()) << sut_.difference()->what << sut_.difference()->computed;
+  EXPECT_EQ(sut_.counts().ticks, 1000U);
+  EXPECT_EQ(sut_.counts().first_problem, "");
+}
+
+// At any moment of a motion: on a path, within a fly point, while it brakes, with moves that wait.
+TEST_F(EngineReplayTest, ARecordingMayBeginWhileRobotsMove) {
+  for (int i = 0; i < 6; ++i)
+    move(i % 3 == 0 ? motion::MoveKind::joints : motion::MoveKind::linear, i % 2 == 0 ? 0.5 : -0.5);
+  for (int begin = 0; begin < 40; ++begin) {
+    tick(37);
+    if (begin == 30) {
+      engine_->send(engine::StopMotion{.slot = kSimulated});
+      tick(5);  // it brakes
+    }
+    engine_->inputs().request_start();
+    tick(60);
+    EngineReplay replay;
+    replay.take(message());
+    engine_->inputs().end();
+    ASSERT_FALSE(replay.difference()) << begin << ' ' << replay.difference()->what << ' '
+                                      << replay.difference()->recorded << ' ' << replay.difference()->computed;
+    ASSERT_EQ(replay.counts().ticks, 60U) << begin << replay.counts().first_problem;
+  }
+}
+
+TEST_F(EngineReplayTest, AHapticDeviceThatWasOpenedWhileRecordingIsComparedToo) {
+  engine_->inputs().request_start();
+  open_hand();
+  for (int i = 0; i < 500; ++i) {
+    give_model();
+    tick(1);
+  }
+  ASSERT_EQ(ticks_.newest().haptics[1].phase, HapticPhase::active);
+  sut_.take(message());
+  EXPECT_FALSE(sut_.difference()) << sut_.difference()->what << sut_.difference()->computed;
+  EXPECT_EQ(sut_.counts().ticks, 500U) << sut_.counts().first_problem;
+  EXPECT_TRUE(sut_.channels_taken_over().empty());
+}
+
+TEST_F(EngineReplayTest, OfOneThatWasOpenBeforeTheRobotIsComparedAlone) {
+  open_hand();
+  give_model();
+  tick(100);
+  engine_->inputs().request_start();
+  for (int i = 0; i < 300; ++i) {
+    give_model();
+    tick(1);
+  }
+  sut_.take(message());
+  EXPECT_FALSE(sut_.difference()) << sut_.difference()->what << sut_.difference()->computed;
+  EXPECT_EQ(sut_.counts().ticks, 300U) << sut_.counts().first_problem;
+  EXPECT_EQ(sut_.channels_taken_over(), std::vector<std::uint8_t>{1});
+}
+
+// The last bit of one position of a sample.
+TEST_F(EngineReplayTest, APlantedBitIsFoundWithTickRobotAndJoint) {
+  engine_->inputs().request_start();
+  tick(20);
+  std::vector<std::byte> bytes{std::byte{engine::kInputsVersion}};
+  const auto names = names_record({{kMirrored, {"ARM", {"J1", "J2", "J3"}}}});
+  bytes.push_back(static_cast<std::byte>(InputRecord::robots));
+  const auto length = static_cast<std::uint32_t>(names.size());
+  const auto length_bytes = std::as_bytes(std::span(&length, 1));
+  bytes.insert(bytes.end(), length_bytes.begin(), length_bytes.end());
+  bytes.insert(bytes.end(), names.begin(), names.end());
+  engine_->inputs().drain(bytes);
+  // In the last tick that has a sample, the second joint of that sample. Head of a tick: 8 numbers of 8 bytes.
+  std::size_t at = 0;
+  std::uint64_t tick = 0;
+  ASSERT_TRUE(for_each_record(bytes, [&](InputRecord kind, ByteSpan content) {
+    if (kind != InputRecord::tick || content[64] != std::byte{1}) return true;
+    std::memcpy(&tick, content.data(), 8);
+    constexpr std::size_t kBeforePositions = 64 + 1 + 1 + 2 + 3 * 8 + 3 * 4;
+    at = static_cast<std::size_t>(content.data() - bytes.data()) + kBeforePositions + 8;
+    return true;
+  }));
+  ASSERT_NE(at, 0U);
+  bytes[at] ^= std::byte{1};
+  sut_.take(bytes);
+  ASSERT_TRUE(sut_.difference());
+  EXPECT_EQ(sut_.difference()->tick, tick);
+  EXPECT_EQ(sut_.difference()->robot, "ARM");
+  EXPECT_EQ(sut_.difference()->joint, "J2");
+  EXPECT_EQ(sut_.difference()->what, "position");
+  EXPECT_NE(sut_.difference()->recorded, sut_.difference()->computed);
+}
+
+TEST_F(EngineReplayTest, BehindAGapItGoesOnAtTheNextStartState) {
+  engine_->inputs().request_start();
+  tick(20);
+  sut_.take(message());
+  tick(20);
+  static_cast<void>(message());  // lost
+  tick(20);
+  engine_->inputs().request_start();
+  tick(20);
+  sut_.take(message());
+  EXPECT_FALSE(sut_.difference());
+  EXPECT_EQ(sut_.counts().ticks, 40U);
+  EXPECT_EQ(sut_.counts().skipped, 20U);
+  EXPECT_EQ(sut_.counts().gaps, 1U);
+  EXPECT_EQ(sut_.counts().starts, 2U);
+}
+
+TEST_F(EngineReplayTest, AStartStateThatWasChangedIsRefusedOrDiffersAndNeverCrashes) {
+  move(motion::MoveKind::linear, 0.4);
+  move(motion::MoveKind::linear, -0.4);
+  tick(50);
+  engine_->inputs().request_start();
+  tick(3);
+  const std::vector<std::byte> whole = message();
+  for (std::size_t at = 1; at < whole.size(); at += 11) {
+    std::vector<std::byte> bytes = whole;
+    bytes[at] ^= std::byte{0x81};
+    EngineReplay replay;
+    replay.take(bytes);
+  }
+}
+
+}  // namespace
+}  // namespace cellmirror::app
