@@ -422,7 +422,8 @@ CELLMIRROR_LARGE_INLINE void cast_packet(const KernelJob& job, int x0, int y0, c
   };
   for (int lane = 0; lane < lanes; ++lane) {
     x[lane] = static_cast<float>(x0 + lane % packet.width) + 0.5F;
-    y[lane] = static_cast<float>(y0 + lane / packet.width) + 0.5F;
+    const int row = lane / packet.width;
+    y[lane] = static_cast<float>(y0 + row) + 0.5F;
     depth[lane] = job.scene_depth == nullptr ? 1.0F : job.scene_depth[pixel(lane)];
   }
   const Rays rays = rays_through(job, hn::Load(d, x), hn::Load(d, y), hn::Load(d, depth));
