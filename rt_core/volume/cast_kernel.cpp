@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 #include "rt_core/volume/bricks.hpp"
 
@@ -179,6 +182,19 @@ HWY_INLINE V power_of_two(VI exponent) {
   return hn::BitCast(D(), hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
 }
 
+struct Sample {
+  V t;       // m
+  VI place;  // in the table
+  V alpha;   // of one step
+};
+
+template <Stored kStored>
+HWY_INLINE Sample sample_at(const KernelJob& job, const Rays& rays, V t, bool coarse) {
+  const Point p = at(rays, t);
+  const VI place = table_place(job, coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p));
+  return {t, place, hn::GatherIndex(D(), job.alpha, place)};
+}
+
 template <Stored kStored>
 CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& sum, TileCounts& counts) {
   const D d;
@@ -214,16 +230,20 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
     const int samples = longest ? 1 : some_long ? 2 : kChecked;
     const bool coarse =
         job.has_coarse && (job.all_coarse || hn::AllTrue(d, hn::Or(hn::Not(sampling), hn::Gt(stride, set(2.0F)))));
+    // All values before all colours: the loads of several samples overlap.
+    Sample group[kChecked];
     for (int i = 0; i < samples; ++i) {
       const M counted = hn::And(sampling, hn::Le(hn::Add(step, stride), whole));
-      const V t = middle_of_steps(job, rays, step, stride);
-      const Point p = at(rays, t);
-      const VI place = table_place(job, coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p));
-      const V of_step = hn::IfThenElseZero(counted, hn::GatherIndex(d, job.alpha, place));
-      counts.samples += kLanes;
-      if (!hn::AllFalse(d, hn::Gt(of_step, hn::Zero(d))))
-        add_sample<kStored>(job, rays, p, t, place, opacity_of_steps(of_step, stride_log), sum);
+      group[i] = sample_at<kStored>(job, rays, middle_of_steps(job, rays, step, stride), coarse);
+      group[i].alpha = hn::IfThenElseZero(counted, group[i].alpha);
       step = hn::IfThenElse(counted, hn::Add(step, stride), step);
+    }
+    counts.samples += static_cast<std::uint64_t>(samples) * kLanes;
+    for (int i = 0; i < samples; ++i) {
+      const Sample& sample = group[i];
+      if (hn::AllFalse(d, hn::Gt(sample.alpha, hn::Zero(d)))) continue;
+      const V alpha = opacity_of_steps(sample.alpha, stride_log);
+      add_sample<kStored>(job, rays, at(rays, sample.t), sample.t, sample.place, alpha, sum);
     }
     active = hn::And(active, hn::And(hn::Lt(step, whole), hn::Lt(sum.alpha, opaque)));
   }
@@ -402,7 +422,8 @@ CELLMIRROR_LARGE_INLINE void cast_packet(const KernelJob& job, int x0, int y0, c
   };
   for (int lane = 0; lane < lanes; ++lane) {
     x[lane] = static_cast<float>(x0 + lane % packet.width) + 0.5F;
-    y[lane] = static_cast<float>(y0 + lane / packet.width) + 0.5F;
+    const int row = lane / packet.width;
+    y[lane] = static_cast<float>(y0 + row) + 0.5F;
     depth[lane] = job.scene_depth == nullptr ? 1.0F : job.scene_depth[pixel(lane)];
   }
   const Rays rays = rays_through(job, hn::Load(d, x), hn::Load(d, y), hn::Load(d, depth));

@@ -1,12 +1,16 @@
 // Pictures a second of a volume of 512^3 at 1280 x 720 with each table, at full quality and while it moves; beside
 // VTK's vtkFixedPointVolumeRayCastMapper at the same step and its mean error against a picture of fine steps; the time
-// over the size of the volume. Writes a table (CSV) and a figure (PNG).
+// over the size of the volume (--size: of one alone). Writes a table (CSV) and a figure (PNG).
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
+#include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -25,6 +29,7 @@ constexpr int kHeight = 720;
 constexpr int kPictures = 15;
 constexpr int kMovingReduction = 2;  // pixels
 constexpr std::array<std::uint32_t, 7> kSizes = {128, 192, 256, 384, 512, 768, 1024};
+constexpr std::uint32_t kLeastSize = 16;
 constexpr int kThreads = 1;  // beside the calling one
 
 double now_s(clockid_t clock) {
@@ -175,12 +180,40 @@ void compare_with_vtk(volume::Caster& caster, const std::shared_ptr<const VoxelG
       own.wall_ms, own.cpu_ms, mean_error(fine, picture.rgba, 4), mean_error(fine, vtk.rgb, 3), vtk.times);
 }
 
+struct Options {
+  bool vtk = false;
+  std::vector<std::uint32_t> sizes{kSizes.begin(), kSizes.end()};
+  std::string table;
+  std::string picture;
+};
+
+std::optional<Options> options_of(std::span<char* const> arguments) {
+  Options options;
+  std::vector<std::string> files;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string word = arguments[i];
+    if (word == "--vtk") {
+      options.vtk = true;
+    } else if (word == "--size" && i + 1 < arguments.size()) {
+      const unsigned long size = std::strtoul(arguments[++i], nullptr, 10);
+      if (size < kLeastSize || size > kSizes.back()) return std::nullopt;
+      options.sizes = {static_cast<std::uint32_t>(size)};
+    } else {
+      files.push_back(word);
+    }
+  }
+  if (files.size() != 2) return std::nullopt;
+  options.table = files[0];
+  options.picture = files[1];
+  return options;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bool vtk = count == 4 && std::string(arguments[1]) == "--vtk";
-  if (count != 3 && !vtk) {
-    std::fputs("usage: volume_pictures [--vtk] CSV PNG\n", stderr);
+  const std::optional<Options> options = options_of(std::span(arguments, static_cast<std::size_t>(count)).subspan(1));
+  if (!options) {
+    std::fputs("usage: volume_pictures [--vtk] [--size VOXELS] CSV PNG\n", stderr);
     return 2;
   }
   fmt::print("instruction set {}, {} threads\n", volume::caster_simd_target(), 1 + kThreads);
@@ -188,7 +221,7 @@ int main(int count, char** arguments) {
   std::string table = "size,table,full_ms,full_cpu_ms,moving_ms,moving_cpu_ms,prepare_ms\n";
   plot::Line full_line{.label = "full quality", .x = {}, .y = {}};
   plot::Line moving_line{.label = "moving", .x = {}, .y = {}};
-  for (const std::uint32_t size : kSizes) {
+  for (const std::uint32_t size : options->sizes) {
     const std::shared_ptr<const VoxelGrid> grid = phantoms::trunk_grid(size, 0.40, 1 + kThreads);
     caster.keep_only({});
     const double begun = now_s(CLOCK_MONOTONIC);
@@ -217,7 +250,7 @@ int main(int count, char** arguments) {
     }
     if (size == 512) measure_change_of_table(caster, grid);
     const char* const source = std::getenv("CELLMIRROR_SOURCE_DIR");
-    if (size == 512 && vtk) compare_with_vtk(caster, grid, source != nullptr ? source : ".");
+    if (size == 512 && options->vtk) compare_with_vtk(caster, grid, source != nullptr ? source : ".");
   }
   plot::Panel panel;
   panel.x = {.label = "voxels along an edge", .logarithmic = true};
@@ -229,13 +262,12 @@ int main(int count, char** arguments) {
                                 volume::caster_simd_target(), 1 + kThreads);
   figure.panels.push_back(panel);
   figure.columns = 1;
-  const char* const csv = arguments[count - 2];
-  std::FILE* file = std::fopen(csv, "w");
+  std::FILE* file = std::fopen(options->table.c_str(), "w");
   if (file == nullptr || std::fputs(table.c_str(), file) < 0 || std::fclose(file) != 0) {
-    fmt::print(stderr, "{} cannot be written\n", csv);
+    fmt::print(stderr, "{} cannot be written\n", options->table);
     return 1;
   }
-  if (auto written = plot::write_png(figure, arguments[count - 1]); !written) {
+  if (auto written = plot::write_png(figure, options->picture); !written) {
     fmt::print(stderr, "{}\n", written.error().text());
     return 1;
   }

@@ -1,5 +1,6 @@
 """A hand and a foot act on living tissue: the gateway, a simulated haptic device and simulated foot switches together."""
 
+import math
 import re
 import time
 import unittest
@@ -81,6 +82,14 @@ class HandsOnTissue(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: self.instrument("LAP_RIGHT")["kind"] == kind, 10))
         return foot
 
+    def tip(self):
+        return t.haptic(self.scratch, "LAP_RIGHT")["device_position_m"]
+
+    def rests(self):
+        before = self.tip()
+        time.sleep(0.3)
+        return math.dist(self.tip(), before) < 5e-4
+
     def leave(self, foot):
         foot.child.terminate()
         foot.finish()
@@ -91,9 +100,10 @@ class HandsOnTissue(unittest.TestCase):
     def test_3_hand_and_foot_clip_cut_and_coagulate(self):
         right = t.Hand(self.scratch, self.keys["LAP_RIGHT"], "--axes", 7, "--motion", TO_THE_DUCT + ";hold:60s")
         try:
-            start = self.tissue()["step"]
             self.assertTrue(g.eventually(lambda: t.haptic(self.scratch, "LAP_RIGHT")["phase"] == "active", 10))
-            self.assertTrue(g.eventually(lambda: self.tissue()["step"] > start + 2500, 20))  # it is there after 2 s
+            start = self.tip()
+            # The last way but one ends 45 mm from there, the last one 75 mm.
+            self.assertTrue(g.eventually(lambda: math.dist(self.tip(), start) > 0.06 and self.rests(), 30), self.tip())
             foot = self.press("3", "clip applicator")
             right.say(CLOSE)
             self.assertTrue(g.eventually(lambda: self.count("clip") == 1, 10), self.instrument("LAP_RIGHT"))

@@ -72,17 +72,16 @@ TEST(TissueSqueeze, ABodyThatIsPulledComesBack) {
   }
 }
 
-// As ligaments and vessel walls are: their waves are up to fifteen times as fast.
-TEST(TissueSqueeze, StiffBodiesComeBackToo) {
-  for (const double modulus : {5e4, 1e6}) {
-    for (const double factor : {0.2, 0.5, 2.0, 4.0}) {
-      const Recovery r = recover(held_ball(modulus), [&](const Eigen::Vector3d& p) {
-        return Eigen::Vector3d(p.x(), p.y(), factor * (p.z() + 0.03) - 0.03);
-      });
-      EXPECT_LT(r.peak, 1.1 * r.start) << modulus << ' ' << factor;
-      EXPECT_LT(r.end, 0.02 * r.start) << modulus << ' ' << factor;
-      EXPECT_LT(r.worst, 0.001) << modulus << ' ' << factor;
-    }
+// As ligaments and vessel walls are: the waves are fourteen times as fast.
+TEST(TissueSqueeze, AStiffBodyComesBackToo) {
+  constexpr double kModulus = 1e6;  // Pa
+  for (const double factor : {0.2, 4.0}) {
+    const Recovery r = recover(held_ball(kModulus), [&](const Eigen::Vector3d& p) {
+      return Eigen::Vector3d(p.x(), p.y(), factor * (p.z() + 0.03) - 0.03);
+    });
+    EXPECT_LT(r.peak, 1.1 * r.start) << factor;
+    EXPECT_LT(r.end, 0.02 * r.start) << factor;
+    EXPECT_LT(r.worst, 0.001) << factor;
   }
 }
 
