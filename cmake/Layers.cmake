@@ -94,7 +94,7 @@ set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/ki
   scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/rapid scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot
-  app/console app/snapshot app/io app/owner app/workers app/render app/report app/kinematics app/proximity app/pictures app/simulation app/volume_info app/new_cell app/recording app/recorder app/live app/gateway app tests app/alarms app/replay)
+  app/console app/snapshot app/io app/owner app/workers app/render app/report app/alarms app/kinematics app/proximity app/pictures app/simulation app/volume_info app/new_cell app/recording app/replay app/recorder app/live app/gateway app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

@@ -536,7 +536,6 @@ std::string Gateway::Parts::status() {
 }
 
 Gateway::Gateway(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-
 Gateway::~Gateway() = default;
 
 Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
@@ -546,8 +545,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->guard = options.guard;
   parts->cell_name = loaded->name;
   parts->home = loaded->home;
-  std::vector<std::filesystem::path> files = loaded->files;
-  files.insert(files.begin(), loaded->file);
+  const std::vector<std::filesystem::path> files = files_of(*loaded);
   parts->loop_settings = loaded->loop;
   parts->queues = default_queues(options.instance);
   loaded->queues.apply_to(parts->queues);

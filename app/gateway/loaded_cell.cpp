@@ -46,4 +46,10 @@ Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
   return std::move(*loaded);
 }
 
+std::vector<std::filesystem::path> files_of(const LoadedCell& cell) {
+  std::vector<std::filesystem::path> files = cell.files;
+  files.insert(files.begin(), cell.file);
+  return files;
+}
+
 }  // namespace cellmirror::app
