@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Makes docs/figures/recorded_joints.png: the running demo with its simulated devices, recorded for 20 s, and a chart of the file.
+"""Makes the figure recorded_joints.png: the running demo with its simulated devices, recorded for 20 s, and a chart of the file.
 
-    python3 tests/support/recording_figure.py
+    python3 tests/support/recording_figure.py FILE
 
 No other simulated devices may run meanwhile: they would send to the same addresses.
 """
@@ -24,8 +24,7 @@ def main():
         done = scratch.cellmirror("record", "-o", str(file), "--for", "20", "--instance", scratch.instance, timeout=60)
         assert done.returncode == 0, done.stderr
         done = scratch.cellmirror("recording", "plot", str(file), "--topic", "/joint_states", "--fields",
-                                  "position[MANTEC_R3],position[PUMA_762]", "-o",
-                                  str(ROOT / "docs" / "figures" / "recorded_joints.png"))
+                                  "position[MANTEC_R3],position[PUMA_762]", "-o", sys.argv[1])
         assert done.returncode == 0, done.stderr
         print(done.stdout, end="")
     finally:

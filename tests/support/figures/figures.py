@@ -40,6 +40,7 @@ MEASURED = {
     "engine_tick.png": "build/bin/engine_tick SCRATCH/t.csv FILE",
     "tissue_steps.png": "build/bin/tissue_steps SCRATCH/t.csv FILE",
     "haptic_stiffness.png": "build/bin/haptics_stiffness SCRATCH/t.csv FILE",
+    "recorded_joints.png": "/usr/bin/python3 -B tests/support/recording_figure.py FILE",
     "trainer.webp": "/usr/bin/python3 -B tests/bench/gateway/trainer_bench.py 38 --film SCRATCH/t.mp4 && ffmpeg -y -loglevel error -i SCRATCH/t.mp4 "
                     "-vf setpts=PTS/3.8,fps=12,scale=480:-1 -quality 50 -loop 0 FILE",
 }
