@@ -33,6 +33,7 @@ REFUSED = {
     "STOP_SCRIPT 3": "there is no run 3",
     "RESET_HAPTIC MANTEC_RM3": "has no haptic device",
     "VV_ISO on VALUE 300": "the cell has no voxel volume",
+    "ALARM_ACK Ada 12": "no alarm 12 is open",
 }
 # The examples of 1.2.2 fit robots with so many joints; ROBACT comes first, as the manual says.
 ROBOT_OF_COUNT = {6: "MANTEC_R3", 3: "ZELLENKRAN"}
