@@ -20,6 +20,11 @@ class RecordingCase(unittest.TestCase):
         self.addCleanup(gateway.close)
         return gateway
 
+    def loop_goes_on(self, loop):
+        """It does not stand still for the recording. A busy machine may take the processor from it for a moment, which is a fault
+        of its own, so its share of missed periods is judged."""
+        self.assertLess(loop["missed"], 0.05 * loop["ticks"], loop)
+
     def record(self, name, *arguments, seconds="1.5"):
         """A recording of so many seconds; its report."""
         done = self.scratch.cellmirror("record", "-o", str(self.scratch.root / name), "--for", seconds, "--json", "--instance",
@@ -152,7 +157,7 @@ class Record(RecordingCase):
         self.assertIn("was removed", recorder.output())
         status = self.scratch.status()
         self.assertIn("was removed", status["recordings"][0]["why"])
-        self.assertEqual(status["loop"]["faults"], 0)
+        self.loop_goes_on(status["loop"])
         self.assertIn(status["loop"]["allocations"], (0, None))
 
     def test_a_client_that_is_gone_ends_the_recording(self):
@@ -179,7 +184,7 @@ class FullDisk(RecordingCase):
         self.assertEqual(recorder.child.wait(40), 1)
         self.assertIn("room", recorder.output())
         status = self.scratch.status()
-        self.assertEqual(status["loop"]["faults"], 0)
+        self.loop_goes_on(status["loop"])
         self.assertIn(status["loop"]["allocations"], (0, None))
         self.assertGreater(self.info("small/a.mcap")["messages"], 0)
 
