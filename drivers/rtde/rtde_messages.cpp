@@ -98,7 +98,8 @@ std::string robot_mode_text(std::int32_t mode) {
       "no controller", "disconnected", "confirm safety", "booting", "power off",
       "power on",      "idle",         "backdrive",      "running", "updating firmware"};
   if (mode < -1 || mode > 8) return fmt::format("robot mode {}", mode);
-  return std::string(kTexts[static_cast<std::size_t>(mode + 1)]);
+  const std::int32_t index = mode + 1;
+  return std::string(kTexts[static_cast<std::size_t>(index)]);
 }
 
 std::string safety_mode_text(std::int32_t mode) {

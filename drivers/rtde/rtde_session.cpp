@@ -114,7 +114,7 @@ void RtdeSession::count_lost(double timestamp_s) {
   if (periods > 1.5) counters_.lost += static_cast<std::uint64_t>(std::llround(std::min(periods, kMost))) - 1;
 }
 
-void RtdeSession::refuse(std::string why) {
+void RtdeSession::refuse(std::string_view why) {
   phase_ = Phase::refused;
   failed_ = true;
   reject(why);

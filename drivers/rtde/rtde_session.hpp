@@ -56,7 +56,7 @@ class RtdeSession {
   void take_start(std::span<const std::uint8_t> payload);
   void take_data(std::span<const std::uint8_t> payload, Timestamp now);
   void count_lost(double timestamp_s);
-  void refuse(std::string why);
+  void refuse(std::string_view why);
   void reject(std::string_view why);
 
   const RtdeStreamConfig config_;

@@ -100,8 +100,9 @@ const fs::path& KismetHome::root_of(std::string_view folder, std::string_view na
   std::error_code error;
   fs::path written = state_ / folder / name;
   if (fs::exists(written, error)) return state_;
-  if (!written.has_extension() && fs::exists(written += extension, error)) return state_;
-  return root_;
+  if (written.has_extension()) return root_;
+  written += extension;
+  return fs::exists(written, error) ? state_ : root_;
 }
 
 bool KismetHome::has(std::string_view folder, std::string_view name) const {

@@ -21,7 +21,7 @@ class LayerMeasurer {
       StoredRange* const out =
           bricks.ranges.data() + std::size_t{bricks.count[0]} * (row + std::size_t{bricks.count[1]} * layer);
       for (std::uint32_t b = 0; b < bricks.count[0]; ++b) {
-        const auto begin = static_cast<std::ptrdiff_t>(b * kBrickCells);
+        const auto begin = static_cast<std::ptrdiff_t>(b) * kBrickCells;
         const auto end = static_cast<std::ptrdiff_t>(std::min(b * kBrickCells + kBrickCells + 1, size_[0]));
         out[b] = {*std::min_element(low_.begin() + begin, low_.begin() + end),
                   *std::max_element(high_.begin() + begin, high_.begin() + end)};

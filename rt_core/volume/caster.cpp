@@ -20,7 +20,7 @@ namespace {
 constexpr int kTileEdge = 32;  // pixels
 constexpr std::uint32_t kSlicesAtOnce = 8;
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32U;
-constexpr double kFullyLit_HU = 60;        // a voxel: such a gradient is a surface
+constexpr double kFullyLitHu = 60;         // a voxel: such a gradient is a surface
 constexpr double kFullyLitPart = 0.04;     // of the range, where the unit is another one
 constexpr double kStepsOfDiagonal = 8192;  // steps are longer in volumes with one very short spacing
 constexpr double kFarthest = 1e6;          // m
@@ -54,7 +54,7 @@ std::uint32_t packed(const Appearance& look) {
 }
 
 // Of a volume, index space from V.
-Eigen::Matrix4d index_from_V(const VoxelGrid& grid) {
+Eigen::Matrix4d volume_to_index(const VoxelGrid& grid) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   for (int axis = 0; axis < 3; ++axis) {
     m(axis, axis) = 1 / grid.spacing_m[axis];
@@ -125,10 +125,10 @@ bool set_rays(const CastRequest& request, const Eigen::Matrix4d& clip_from_index
 }
 
 void set_planes(const CastRequest& request, const Eigen::Matrix4d& index_from_V, KernelJob& job) {
-  const Eigen::Matrix4d V_from_index = index_from_V.inverse();
+  const Eigen::Matrix4d index_to_volume = index_from_V.inverse();
   for (const HalfSpace& kept : clipping(request.settings)) {
     const Eigen::Vector4d row(kept.normal.x(), kept.normal.y(), kept.normal.z(), -kept.distance);
-    const Eigen::RowVector4d plane = row.transpose() * V_from_index;  // <= 0 is kept
+    const Eigen::RowVector4d plane = row.transpose() * index_to_volume;  // <= 0 is kept
     job.planes[job.plane_count++] = {static_cast<float>(plane[0]), static_cast<float>(plane[1]),
                                      static_cast<float>(plane[2]), static_cast<float>(-plane[3])};
   }
@@ -279,7 +279,7 @@ KernelJob Caster::Impl::job_of(const CastRequest& request, const Prepared& prepa
   job.table_offset = static_cast<float>(0.5 - scale * all.low);  // the nearest entry
   job.table_last = static_cast<float>(last + 0.49);
   const double span = static_cast<double>(all.high) - all.low;
-  const double fully_lit = grid.hounsfield ? kFullyLit_HU / std::abs(grid.slope) : kFullyLitPart * std::max(1.0, span);
+  const double fully_lit = grid.hounsfield ? kFullyLitHu / std::abs(grid.slope) : kFullyLitPart * std::max(1.0, span);
   job.gradient_scale = static_cast<float>(grid.spacing_m.minCoeff() / fully_lit);
   job.step_m = static_cast<float>(prepared.step_m);
   job.opaque = static_cast<float>(request.quality.opaque);
@@ -310,7 +310,7 @@ Result<void> Caster::cast(const CastRequest& request, VolumePicture& picture) {
   prepared.look_as(request);
   prepared.cast_as(request.quality);
   KernelJob job = Impl::job_of(request, prepared);
-  const Eigen::Matrix4d from_V = index_from_V(*request.grid);
+  const Eigen::Matrix4d from_V = volume_to_index(*request.grid);
   if (!set_rays(request, request.clip_from_V * from_V.inverse(), job))
     return fail("volume " + request.grid->name + " is not drawn: its placement is not finite");
   set_planes(request, from_V, job);

@@ -13,7 +13,7 @@ namespace {
 template <class Values>
 Eigen::Vector3d mixed(const EmbeddedPoint& point, const Values& values) {
   // From the first node on, so that the error is that of an element's size, not of its place.
-  const Eigen::Vector3d origin = values[point.node[0]];
+  const Eigen::Vector3d& origin = values[point.node[0]];
   Eigen::Vector3d result = origin;
   for (std::size_t k = 1; k < 4; ++k) {
     if (point.weight[k] != 0) result += static_cast<double>(point.weight[k]) * (values[point.node[k]] - origin);
