@@ -7,7 +7,6 @@
 #include <gdcmImageReader.h>
 #include <gdcmPixelFormat.h>
 
-#include <bit>
 #include <cstring>
 #include <istream>
 
@@ -40,7 +39,8 @@ void keep_stored_bits(std::vector<char>& bytes, std::uint32_t stored, std::uint3
 void widen_signed_bytes(std::vector<char>& bytes) {
   std::vector<char> wide(2 * bytes.size());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const auto value = static_cast<std::int16_t>(std::bit_cast<std::int8_t>(bytes[i]));  // with its sign
+    const int byte = static_cast<unsigned char>(bytes[i]);
+    const auto value = static_cast<std::int16_t>(byte < 128 ? byte : byte - 256);
     std::memcpy(wide.data() + 2 * i, &value, sizeof(value));
   }
   bytes = std::move(wide);
