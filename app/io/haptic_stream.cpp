@@ -27,7 +27,6 @@ void HapticStream::set_memory(std::string endpoint, std::shared_ptr<const Haptic
   const std::scoped_lock lock(mutex_);
   endpoint_ = std::move(endpoint);
   meter_ = std::move(meter);
-  rate_.restart();
 }
 
 JointStreamStatus HapticStream::status() const {
@@ -39,7 +38,7 @@ JointStreamStatus HapticStream::status() const {
   out.condition = is_open_ ? "see haptics" : "closed";
   if (!meter_) return out;
   out.received = meter_->samples.load(std::memory_order_relaxed);
-  out.rate_hz = rate_.read(clock_.now(), out.received);
+  if (is_open_) out.rate_hz = meter_->samples_per_second.load(std::memory_order_relaxed);
   return out;
 }
 

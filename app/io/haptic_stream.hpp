@@ -9,17 +9,15 @@
 #include <string>
 
 #include "app/snapshot/haptic_meter.hpp"
-#include "rt_core/base/rate_meter.hpp"
-#include "rt_core/base/time.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 
 namespace cellmirror::app {
 
 class HapticStream final : public JointStream {
  public:
-  // `open` and `close` the robot's channel; `clock` outlives the stream.
-  HapticStream(std::function<Result<void>()> open, std::function<void()> close, const Clock& clock)
-      : open_(std::move(open)), close_(std::move(close)), clock_(clock) {}
+  // `open` and `close` the robot's channel.
+  HapticStream(std::function<Result<void>()> open, std::function<void()> close)
+      : open_(std::move(open)), close_(std::move(close)) {}
 
   Result<void> open(JointSampleSink& sink) override;
   void close() override;
@@ -33,12 +31,10 @@ class HapticStream final : public JointStream {
  private:
   std::function<Result<void>()> open_;
   std::function<void()> close_;
-  const Clock& clock_;
   mutable std::mutex mutex_;  // of what follows: status() comes from other threads
   bool is_open_ = false;
   std::string endpoint_ = "no shared memory";
   std::shared_ptr<const HapticMeter> meter_;
-  mutable CounterRate rate_{Nanoseconds(500'000'000)};  // between calls of status()
 };
 
 }  // namespace cellmirror::app

@@ -1,4 +1,4 @@
-// A haptic device whose latency is measured.
+// A haptic device whose latency and rate are measured.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,7 @@
 
 #include "app/snapshot/haptic_meter.hpp"
 #include "drivers/haptic/shared_memory_device.hpp"
+#include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/haptic_device.hpp"
@@ -25,12 +26,15 @@ class MeteredDevice final : public HapticDevicePort {
 
   HapticRead read(HapticSample& sample) CELL_RT override {
     const HapticRead outcome = device_.read(sample);
+    const Timestamp now = clock_.now();
     if (outcome == HapticRead::fresh) {
       measured_ = sample.time;
       unanswered_ = true;
+      rate_.count(now);
       // Only the tick writes it.
       meter_->samples.store(meter_->samples.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     }
+    meter_->samples_per_second.store(rate_.per_second(now), std::memory_order_relaxed);
     return outcome;
   }
 
@@ -46,6 +50,7 @@ class MeteredDevice final : public HapticDevicePort {
   const Clock& clock_;
   std::shared_ptr<HapticMeter> meter_;
   Timestamp measured_;
+  RateMeter rate_;
   bool unanswered_ = false;
 };
 

@@ -1,4 +1,4 @@
-// The latency of a haptic device: from its measurement to the force that answers it.
+// What is measured of a haptic device: the latency from its measurement to the force that answers it, and its samples.
 #pragma once
 
 #include <atomic>
@@ -10,8 +10,10 @@ namespace cellmirror::app {
 
 // Written by the tick, read by any thread.
 struct HapticMeter {
-  LatencyHistogram latency;               // device's time of a sample to its force in the memory
-  std::atomic<std::uint64_t> samples{0};  // relaxed: a number for people
+  LatencyHistogram latency;  // device's time of a sample to its force in the memory
+  // Relaxed: numbers for people.
+  std::atomic<std::uint64_t> samples{0};
+  std::atomic<double> samples_per_second{0};
 };
 
 }  // namespace cellmirror::app

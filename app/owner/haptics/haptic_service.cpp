@@ -49,7 +49,7 @@ HapticService::Device& HapticService::add(RobotHaptic config) {
   device.channel = static_cast<std::uint8_t>(devices_.size() - 1);
   device.meter = std::make_shared<HapticMeter>();
   device.stream = std::make_shared<HapticStream>([this, robot] { return open(devices_.find(robot)->second); },
-                                                 [this, robot] { close(devices_.find(robot)->second); }, clock_);
+                                                 [this, robot] { close(devices_.find(robot)->second); });
   return device;
 }
 

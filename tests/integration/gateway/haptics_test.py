@@ -163,6 +163,8 @@ class Moving(Trainer):
         status = self.scratch.status()
         self.assertIn(status["loop"]["allocations"], (0, None))
         self.assertGreater(self.haptic()["latency_us"]["count"], 0)
+        stream = next(robot["stream"] for robot in status["robots"] if robot["id"] == "LAP_LEFT")
+        self.assertGreater(stream["rate_hz"], 100, stream)  # told at the first question too
         self.assertGreater(status["haptics"]["contact_models"]["rate_hz"], 0)
 
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "app/io/haptic_stream.hpp"
 #include "app/owner/tcp_force_service.hpp"
 #include "app/report/status_haptics.hpp"
 #include "app/snapshot/haptic_names.hpp"
@@ -56,6 +57,22 @@ TEST_F(Haptics, ForceAtTheTcpIsThatOfTheActiveRobotsDevice) {
   EXPECT_EQ(sut.flags, kTcpForceValid);
   EXPECT_EQ(sut.robot.view(), "LAP");
   EXPECT_EQ(sut.time, tick.time);
+}
+
+TEST_F(Haptics, RateOfSamplesIsThatOfTheTickWhileTheDeviceIsOpen) {
+  const auto meter = std::make_shared<HapticMeter>();
+  meter->samples_per_second = 998;
+  HapticStream sut([] { return Result<void>(); }, [] {});
+  sut.set_memory("shared memory", meter);
+  EXPECT_EQ(sut.status().rate_hz, 0.0);
+  struct Ignored final : JointSampleSink {
+    bool push(const JointSample& /*sample*/) noexcept override { return true; }
+  };
+  Ignored sink;
+  ASSERT_TRUE(sut.open(sink));
+  EXPECT_EQ(sut.status().rate_hz, 998.0);
+  sut.close();
+  EXPECT_EQ(sut.status().rate_hz, 0.0);
 }
 
 TEST_F(Haptics, NothingIsKnownOfOtherRobotsAndClosedDevices) {

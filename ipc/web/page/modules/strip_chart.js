@@ -93,7 +93,7 @@ export class StripChart {
       axes: {
         x: {...axis, axisLabelWidth: 56, ticker: (from, to, pixels) => even_splits(from, to, pixels).map((v) => ({v, label: this.time_name_(v, from, to)}))},
         y: {...axis, axisLabelWidth: 42, pixelsPerLabel: 24, axisLabelFormatter: values},
-        y2: {...axis, axisLabelWidth: 42, pixelsPerLabel: 24, independentTicks: true, drawGrid: false,
+        y2: {...axis, axisLabelWidth: 56, pixelsPerLabel: 24, independentTicks: true, drawGrid: false,
           axisLabelFormatter: (value, _granularity, _options, plot) => number(value, decimals(plot.yAxisRange(1)))},
       },
       dateWindow: window_s,
