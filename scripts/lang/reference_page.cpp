@@ -1,7 +1,10 @@
 // docs/script-reference.md, generated from the table; a test compares the committed page with it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scripts/lang/help.hpp"
 #include "scripts/lang/values.hpp"
@@ -21,73 +24,143 @@ std::string_view section_title(std::string_view section) {
   return "Commands of ours";
 }
 
-// A '|' would end a cell of a Markdown table.
-std::string cell(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|') out += '\\';
-    out += c;
-  }
-  return out;
+// Longer lists of words have one line for each.
+constexpr std::size_t kChoicesOnALine = 6;
+// A parameter that as many forms have with the same meaning and values is explained once.
+constexpr int kFormsOfACommonRow = 3;
+
+// Words with a meaning of their own; those of plain switches explain themselves.
+bool explained(const Choice& choice) {
+  return !choice.meaning.empty() && choice.meaning != choice.word && choice.meaning != "on" && choice.meaning != "off";
 }
 
-std::string choices_cell(const Parameter& parameter) {
+std::string choices_text(const Parameter& parameter) {
+  if (parameter.name == "on | off" || parameter.name == "ON | OFF") return "";
+  const bool one_a_line =
+      parameter.choices.size() > kChoicesOnALine && std::ranges::any_of(parameter.choices, explained);
   std::string out;
   for (const Choice& choice : parameter.choices) {
-    out += fmt::format("{}`{}`", out.empty() ? "" : ", ", choice.word);
+    out += one_a_line ? "\n  - " : out.empty() ? "" : ", ";
+    out += fmt::format("`{}`", choice.word);
     if (!choice.meaning.empty() && choice.meaning != choice.word) out += fmt::format(" {}", choice.meaning);
   }
   return out;
 }
 
-std::string values_cell(const Parameter& parameter) {
+std::string number_text(const Parameter& parameter) {
+  const std::string range = range_text(parameter.range, parameter.unit);
+  // The page says at its head that numbers without a range are any.
+  const std::string_view any = "any number ";
+  return range.starts_with(any) ? range.substr(any.size()) : range;
+}
+
+std::string values_text(const Parameter& parameter) {
   switch (parameter.kind) {
     case ParameterKind::choice:
-      return choices_cell(parameter);
+      return choices_text(parameter);
     case ParameterKind::name:
-      return parameter.checked_by_host ? "a name, looked up at execution" : "a name that exists";
     case ParameterKind::identifier:
-      return "a name";
     case ParameterKind::file:
-      return "a file of the cell folder";
     case ParameterKind::text:
-      return "the rest of the command";
+      return "";  // the meaning says what is named
     case ParameterKind::integer:
-      return "whole number, " + range_text(parameter.range, parameter.unit);
+      return "whole number, " + number_text(parameter);
     case ParameterKind::number_list:
       return fmt::format("0 to {} numbers", parameter.width);
     case ParameterKind::slaves:
       return "for each slave: name, number of joints, pairs of joints";
     default:
-      return (parameter.width > 1 ? fmt::format("{} numbers, ", parameter.width) : "") +
-             range_text(parameter.range, parameter.unit);
+      return (parameter.width > 1 ? fmt::format("{} numbers, ", parameter.width) : "") + number_text(parameter);
   }
 }
 
-std::string parameters_table(const Form& form) {
-  std::string rows;
-  for (const Parameter& parameter : form.parameters) {
-    if (parameter.kind == ParameterKind::word) continue;
-    std::string meaning(parameter.meaning);
-    if (parameter.optional) meaning += ", optional";
-    if (!parameter.default_text.empty()) meaning += fmt::format(", default {}", parameter.default_text);
-    const std::string label = parameter.label.empty() ? "" : std::string(parameter.label) + " ";
-    rows +=
-        fmt::format("| `{}{}` | {} | {} |\n", label, cell(parameter.name), cell(meaning), cell(values_cell(parameter)));
+struct Row {
+  std::string names;
+  std::string text;
+};
+
+Row row_of(const Parameter& parameter) {
+  std::string text = parameter.meaning == parameter.name ? "" : std::string(parameter.meaning);
+  if (parameter.optional) text += text.empty() ? "optional" : ", optional";
+  if (!parameter.default_text.empty()) text += fmt::format(", default {}", parameter.default_text);
+  const std::string values = values_text(parameter);
+  if (!values.empty()) text += values.starts_with('\n') ? ":" + values : (text.empty() ? "" : ": ") + values;
+  const std::string label = parameter.label.empty() ? "" : std::string(parameter.label) + " ";
+  return {fmt::format("`{}{}`", label, parameter.name), text};
+}
+
+std::vector<Row> rows_of(const Form& form) {
+  std::vector<Row> rows;
+  for (const Parameter& parameter : form.parameters)
+    if (parameter.kind != ParameterKind::word) rows.push_back(row_of(parameter));
+  return rows;
+}
+
+// Rows that several forms have stand once, at the head of the page.
+const std::vector<Row>& common_rows() {
+  static const std::vector<Row> common = [] {
+    std::vector<std::pair<Row, int>> counted;
+    for (const Form* form : forms()) {
+      for (const Row& row : rows_of(*form)) {
+        const auto same = [&row](const auto& known) {
+          return known.first.names == row.names && known.first.text == row.text;
+        };
+        const auto found = std::ranges::find_if(counted, same);
+        if (found == counted.end()) {
+          counted.emplace_back(row, 1);
+        } else {
+          ++found->second;
+        }
+      }
+    }
+    std::vector<Row> often;
+    for (auto& [row, count] : counted)
+      if (count >= kFormsOfACommonRow) often.push_back(std::move(row));
+    return often;
+  }();
+  return common;
+}
+
+bool is_common(const Row& row) {
+  return std::ranges::any_of(common_rows(),
+                             [&row](const Row& known) { return known.names == row.names && known.text == row.text; });
+}
+
+std::string as_list(const std::vector<Row>& rows) {
+  std::string out;
+  for (std::size_t i = 0; i < rows.size();) {
+    std::string names = rows[i].names;
+    std::size_t next = i + 1;
+    for (; next < rows.size() && rows[next].text == rows[i].text; ++next) names += ", " + rows[next].names;
+    out += rows[i].text.empty() ? fmt::format("- {}\n", names) : fmt::format("- {}: {}\n", names, rows[i].text);
+    i = next;
   }
-  return rows.empty() ? "" : "\n| parameter | meaning | values |\n|---|---|---|\n" + rows;
+  return out;
+}
+
+std::string parameter_list(const Form& form) {
+  std::vector<Row> rows = rows_of(form);
+  std::erase_if(rows, is_common);
+  return rows.empty() ? "" : "\n" + as_list(rows);
+}
+
+bool all_need_an_active_robot(std::string_view section) {
+  return std::ranges::all_of(
+      forms(), [section](const Form* form) { return form->section != section || form->needs_active_robot; });
 }
 
 std::string form_entry(const Form& form) {
   std::string out = fmt::format(
-      "\n```\n{}\n```\n\n{}{}.\n", form.syntax,
+      "\n```\n{}\n```\n\n{}{}.", form.syntax,
       static_cast<char>(form.help[0] >= 'a' && form.help[0] <= 'z' ? form.help[0] - 'a' + 'A' : form.help[0]),
       form.help.substr(1));
-  if (form.needs_active_robot) out += "Needs an active robot (`ROBACT`).\n";
-  if (!form.definition.empty()) out += fmt::format("Our definition: {}.\n", form.definition);
-  out += parameters_table(form);
-  if (!form.example.empty()) out += fmt::format("\nExample: `{}`\n", form.example);
-  if (!form.conflict.empty()) out += fmt::format("\nBeside the manual's other examples: {}.\n", form.conflict);
+  if (form.needs_active_robot && !all_need_an_active_robot(form.section)) out += " Needs an active robot.";
+  out += '\n';
+  if (!form.definition.empty()) out += fmt::format("**Ours:** {}.\n", form.definition);
+  out += parameter_list(form);
+  if (!form.example.empty())
+    out += fmt::format("\nExample: `{}`{}\n", form.example,
+                       form.conflict.empty() ? "" : fmt::format(" ({})", form.conflict));
   return out;
 }
 
@@ -114,14 +187,22 @@ std::string own_tables() {
 
 std::string reference_page() {
   std::string out =
-      "# SCRIPT reference\n\nThis page is generated from the command table (`scripts/lang/table_*.cpp`); a test "
-      "compares the two. How SCRIPT\nis read and run, and what the manual leaves open, is described in "
-      "[script.md](script.md).\n\nKeywords are case-insensitive, names are case-sensitive. Numbers are in the units "
-      "given here and are\nconverted to SI where a command is parsed.\n";
+      "# SCRIPT reference\n\nGenerated from the command table (`scripts/lang/table_*.cpp`). "
+      "[script.md](script.md) describes how SCRIPT is read and run. The\nsections 1.2.1 to 1.2.7 are those of the "
+      "manual: "
+      "\"The KISMET SCRIPT-Command Interface\", March 1999. **Ours** marks rules that it\nleaves open.\n\n"
+      "Keywords are case-insensitive, names case-sensitive. The name of a robot, frame, camera, sensor or workframe "
+      "must "
+      "exist.\nFiles are files of the cell folder. Numbers are in the units given here, and any where no range is "
+      "given.\n\n## Common parameters\n\nA command lists only parameters that are missing here or differ.\n\n";
+  out += as_list(common_rows());
   std::string_view section;
   std::string_view command;
   for (const Form* form : forms()) {
-    if (form->section != section) out += fmt::format("\n## {}\n", section_title(form->section));
+    if (form->section != section) {
+      out += fmt::format("\n## {}\n", section_title(form->section));
+      if (all_need_an_active_robot(form->section)) out += "\nAll act on the active robot (`ROBACT`) and need one.\n";
+    }
     if (form->section != section || form->name != command) out += fmt::format("\n### {}\n", form->name);
     section = form->section;
     command = form->name;
