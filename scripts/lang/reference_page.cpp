@@ -25,7 +25,7 @@ std::string_view section_title(std::string_view section) {
 }
 
 // Longer lists of words have one line for each.
-constexpr std::size_t kChoicesOnALine = 6;
+constexpr std::size_t kChoicesOnALine = 5;
 // A parameter that as many forms have with the same meaning and values is explained once.
 constexpr int kFormsOfACommonRow = 3;
 
@@ -36,6 +36,7 @@ bool explained(const Choice& choice) {
 
 std::string choices_text(const Parameter& parameter) {
   if (parameter.name == "on | off" || parameter.name == "ON | OFF") return "";
+  if (parameter.meaning.find("(table ") != std::string_view::npos) return "";  // at the end of the page
   const bool one_a_line =
       parameter.choices.size() > kChoicesOnALine && std::ranges::any_of(parameter.choices, explained);
   std::string out;
@@ -79,12 +80,20 @@ struct Row {
   std::string text;
 };
 
+// Words behind a colon, numbers behind a comma.
 Row row_of(const Parameter& parameter) {
   std::string text = parameter.meaning == parameter.name ? "" : std::string(parameter.meaning);
-  if (parameter.optional) text += text.empty() ? "optional" : ", optional";
-  if (!parameter.default_text.empty()) text += fmt::format(", default {}", parameter.default_text);
+  const auto add = [&text](std::string_view separator, std::string_view part) {
+    if (part.empty()) return;
+    if (!text.empty()) text += separator;
+    text += part;
+  };
   const std::string values = values_text(parameter);
-  if (!values.empty()) text += values.starts_with('\n') ? ":" + values : (text.empty() ? "" : ": ") + values;
+  const bool words = parameter.kind == ParameterKind::choice;
+  if (!words) add(", ", values);
+  if (parameter.optional) add(", ", "optional");
+  if (!parameter.default_text.empty()) add(", ", fmt::format("default {}", parameter.default_text));
+  if (words) add(values.starts_with('\n') ? ":" : ": ", values);
   const std::string label = parameter.label.empty() ? "" : std::string(parameter.label) + " ";
   return {fmt::format("`{}{}`", label, parameter.name), text};
 }
@@ -132,7 +141,8 @@ std::string as_list(const std::vector<Row>& rows) {
     std::string names = rows[i].names;
     std::size_t next = i + 1;
     for (; next < rows.size() && rows[next].text == rows[i].text; ++next) names += ", " + rows[next].names;
-    out += rows[i].text.empty() ? fmt::format("- {}\n", names) : fmt::format("- {}: {}\n", names, rows[i].text);
+    const std::string_view text = rows[i].text;
+    out += fmt::format("- {}{}{}\n", names, text.empty() ? "" : text.starts_with('\n') ? ":" : ": ", text);
     i = next;
   }
   return out;
@@ -149,14 +159,15 @@ bool all_need_an_active_robot(std::string_view section) {
       forms(), [section](const Form* form) { return form->section != section || form->needs_active_robot; });
 }
 
-std::string form_entry(const Form& form) {
+std::string form_entry(const Form& form, const Form* before) {
   std::string out = fmt::format(
       "\n```\n{}\n```\n\n{}{}.", form.syntax,
       static_cast<char>(form.help[0] >= 'a' && form.help[0] <= 'z' ? form.help[0] - 'a' + 'A' : form.help[0]),
       form.help.substr(1));
   if (form.needs_active_robot && !all_need_an_active_robot(form.section)) out += " Needs an active robot.";
   out += '\n';
-  if (!form.definition.empty()) out += fmt::format("**Ours:** {}.\n", form.definition);
+  const bool repeated = before != nullptr && before->name == form.name && before->definition == form.definition;
+  if (!form.definition.empty()) out += fmt::format("**Ours:** {}.\n", repeated ? "as above" : form.definition);
   out += parameter_list(form);
   if (!form.example.empty())
     out += fmt::format("\nExample: `{}`{}\n", form.example,
@@ -187,26 +198,28 @@ std::string own_tables() {
 
 std::string reference_page() {
   std::string out =
-      "# SCRIPT reference\n\nGenerated from the command table (`scripts/lang/table_*.cpp`). "
-      "[script.md](script.md) describes how SCRIPT is read and run. The\nsections 1.2.1 to 1.2.7 are those of the "
-      "manual: "
-      "\"The KISMET SCRIPT-Command Interface\", March 1999. **Ours** marks rules that it\nleaves open.\n\n"
-      "Keywords are case-insensitive, names case-sensitive. The name of a robot, frame, camera, sensor or workframe "
-      "must "
-      "exist.\nFiles are files of the cell folder. Numbers are in the units given here, and any where no range is "
-      "given.\n\n## Common parameters\n\nA command lists only parameters that are missing here or differ.\n\n";
+      "# SCRIPT reference\n\n"
+      "Generated from the command table (`scripts/lang/table_*.cpp`). [script.md](script.md) describes how SCRIPT is "
+      "read\n"
+      "and run. The sections 1.2.1 to 1.2.7 are those of the manual, \"The KISMET SCRIPT-Command Interface\", March "
+      "1999.\n"
+      "**Ours** marks rules that it leaves open.\n\n"
+      "Keywords are case-insensitive, names case-sensitive. Robots, frames, cameras, sensors and workframes are "
+      "named;\n"
+      "they must exist. Files are in the cell folder. Numbers have the units given here; without a range any number "
+      "is\n"
+      "permitted.\n\n"
+      "## Common parameters\n\nA command lists only parameters that are missing here or differ.\n\n";
   out += as_list(common_rows());
-  std::string_view section;
-  std::string_view command;
+  const Form* before = nullptr;
   for (const Form* form : forms()) {
-    if (form->section != section) {
-      out += fmt::format("\n## {}\n", section_title(form->section));
-      if (all_need_an_active_robot(form->section)) out += "\nAll act on the active robot (`ROBACT`) and need one.\n";
-    }
-    if (form->section != section || form->name != command) out += fmt::format("\n### {}\n", form->name);
-    section = form->section;
-    command = form->name;
-    out += form_entry(*form);
+    const bool new_section = before == nullptr || before->section != form->section;
+    if (new_section) out += fmt::format("\n## {}\n", section_title(form->section));
+    if (new_section && all_need_an_active_robot(form->section))
+      out += "\nAll act on the active robot (`ROBACT`) and need one.\n";
+    if (new_section || before->name != form->name) out += fmt::format("\n### {}\n", form->name);
+    out += form_entry(*form, before);
+    before = form;
   }
   return out + own_tables();
 }

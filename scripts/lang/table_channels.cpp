@@ -90,8 +90,8 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kClip,
      .help = "sets geometry and pose of a clip at the effector",
-     .definition = "of the active robot; the file is one of envlib; the pose is relative to the robot's TCP, rotations "
-                   "about fixed axes: x, then y, then z",
+     .definition =
+         "the file is in envlib; the pose is relative to the TCP, rotations about fixed axes: x, then y, then z",
      .needs_active_robot = true},
     {.id = FormId::eladyn_geo_def_cylinders,
      .name = "eladyn_geo_def",

@@ -40,8 +40,8 @@ constexpr std::array<Choice, kVolumeTables - kFirst> table_choices() {
 constexpr auto kPlanes = plane_choices();
 constexpr Choice kPlaneModes[] = {{"active", "hides what lies beyond it"},
                                   {"reverse", "hides what lies before it"},
-                                  {"visible", "its outline is drawn, what it hides stays"},
-                                  {"off", "hides nothing and is not drawn"}};
+                                  {"visible", "draws its outline only"},
+                                  {"off", "ends both"}};
 constexpr auto kTables = table_choices<0>();
 constexpr auto kOtherTables = table_choices<1>();
 
