@@ -26,7 +26,7 @@ std::string_view section_title(std::string_view section) {
 
 // Longer lists of words have one line for each.
 constexpr std::size_t kChoicesOnALine = 5;
-// A parameter that as many forms have with the same meaning and values is explained once.
+// A row of as many forms is listed once, at the head of the page.
 constexpr int kFormsOfACommonRow = 3;
 
 // Words with a meaning of their own; those of plain switches explain themselves.
@@ -35,7 +35,6 @@ bool explained(const Choice& choice) {
 }
 
 std::string choices_text(const Parameter& parameter) {
-  if (parameter.name == "on | off" || parameter.name == "ON | OFF") return "";
   if (parameter.meaning.find("(table ") != std::string_view::npos) return "";  // at the end of the page
   const bool one_a_line =
       parameter.choices.size() > kChoicesOnALine && std::ranges::any_of(parameter.choices, explained);
@@ -78,6 +77,8 @@ std::string values_text(const Parameter& parameter) {
 struct Row {
   std::string names;
   std::string text;
+
+  bool operator==(const Row&) const = default;
 };
 
 // Words behind a colon, numbers behind a comma.
@@ -98,23 +99,35 @@ Row row_of(const Parameter& parameter) {
   return {fmt::format("`{}{}`", label, parameter.name), text};
 }
 
+// on or off, online or offline: the sentence about the form says of what.
+bool is_plain_switch(const Parameter& parameter) {
+  const auto in_words = [](const Choice& choice) {
+    return !explained(choice) && (choice.word[0] < '0' || choice.word[0] > '9');
+  };
+  return parameter.kind == ParameterKind::choice && parameter.choices.size() == 2 &&
+         std::ranges::all_of(parameter.choices, in_words);
+}
+
 std::vector<Row> rows_of(const Form& form) {
   std::vector<Row> rows;
   for (const Parameter& parameter : form.parameters)
-    if (parameter.kind != ParameterKind::word) rows.push_back(row_of(parameter));
+    if (parameter.kind != ParameterKind::word && !is_plain_switch(parameter)) rows.push_back(row_of(parameter));
   return rows;
 }
 
-// Rows that several forms have stand once, at the head of the page.
+// An example of the command and one value shows no more than the syntax, unless the value is a name.
+bool shows_more_than_the_syntax(const Form& form) {
+  if (form.example.empty() || form.parameters.empty()) return false;
+  return std::ranges::count(form.example, ' ') > 1 || form.parameters[0].kind == ParameterKind::name;
+}
+
+// Rows of several forms are listed once, at the head of the page.
 const std::vector<Row>& common_rows() {
   static const std::vector<Row> common = [] {
     std::vector<std::pair<Row, int>> counted;
     for (const Form* form : forms()) {
       for (const Row& row : rows_of(*form)) {
-        const auto same = [&row](const auto& known) {
-          return known.first.names == row.names && known.first.text == row.text;
-        };
-        const auto found = std::ranges::find_if(counted, same);
+        const auto found = std::ranges::find(counted, row, &std::pair<Row, int>::first);
         if (found == counted.end()) {
           counted.emplace_back(row, 1);
         } else {
@@ -130,10 +143,7 @@ const std::vector<Row>& common_rows() {
   return common;
 }
 
-bool is_common(const Row& row) {
-  return std::ranges::any_of(common_rows(),
-                             [&row](const Row& known) { return known.names == row.names && known.text == row.text; });
-}
+bool is_common(const Row& row) { return std::ranges::find(common_rows(), row) != common_rows().end(); }
 
 std::string as_list(const std::vector<Row>& rows) {
   std::string out;
@@ -169,7 +179,7 @@ std::string form_entry(const Form& form, const Form* before) {
   const bool repeated = before != nullptr && before->name == form.name && before->definition == form.definition;
   if (!form.definition.empty()) out += fmt::format("**Ours:** {}.\n", repeated ? "as above" : form.definition);
   out += parameter_list(form);
-  if (!form.example.empty())
+  if (shows_more_than_the_syntax(form))
     out += fmt::format("\nExample: `{}`{}\n", form.example,
                        form.conflict.empty() ? "" : fmt::format(" ({})", form.conflict));
   return out;
