@@ -47,11 +47,14 @@ std::string choices_text(const Parameter& parameter) {
   return out;
 }
 
+// The page says at its head that numbers without a range are any.
 std::string number_text(const Parameter& parameter) {
-  const std::string range = range_text(parameter.range, parameter.unit);
-  // The page says at its head that numbers without a range are any.
-  const std::string_view any = "any number ";
-  return range.starts_with(any) ? range.substr(any.size()) : range;
+  const std::string_view any = "any number";
+  const std::string_view unit = unit_text(parameter.unit);
+  std::string range = range_text(parameter.range, Unit::none);
+  if (range == any) return std::string(unit.empty() ? any : unit);
+  if (unit.empty()) return range;
+  return range + (unit.find(' ') == std::string_view::npos ? " " : ", ") + std::string(unit);
 }
 
 std::string values_text(const Parameter& parameter) {

@@ -39,12 +39,13 @@ constexpr Parameter kClip[] = {
     number("ry", "rotation about y", Unit::degree), number("rz", "rotation about z", Unit::degree),
     number("tx", "translation along x", Unit::mm),  number("ty", "translation along y", Unit::mm),
     number("tz", "translation along z", Unit::mm)};
-constexpr Parameter kCylinders[] = {identifier("geo_name", "geometry of the effector"),
-                                    integer("flags", "flags", kUnsigned),
-                                    number("geom1", "shaft diameter", Unit::mm, kCylinderRadius),
-                                    number("geom2", "mean distance of the surface", Unit::mm, kCylinderRadius),
-                                    number("geom3", "length of the effector", Unit::mm, kCylinderLength),
-                                    number("geom4", "fourth value", Unit::none)};
+constexpr Parameter kCylinders[] = {
+    identifier("geo_name", "geometry of the effector"),
+    integer("flags", "flags", kUnsigned),
+    number("geom1", "shaft diameter", Unit::mm, kCylinderRadius),
+    number("geom2", "mean distance of the jaws from the axis", Unit::mm, kCylinderRadius),
+    number("geom3", "length of the effector", Unit::mm, kCylinderLength),
+    number("geom4", "fourth value", Unit::none)};
 constexpr Parameter kForceMemory[] = {integer("send_type", "protocol", kUnsigned),
                                       integer("re_shmkey", "shared memory key", kSharedMemoryKey),
                                       integer("re_buflen", "size", kForceBytes, Unit::byte)};
