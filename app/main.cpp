@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
         "  cellmirror status --watch                               what it does now\n"
         "  cellmirror page                                         where its monitor page is\n"
         "  cellmirror send 'POS_ROB PUMA_762 JOINT_INC 5'          command it\n"
-        "  cellmirror doctor                                       what this machine allows",
+        "  cellmirror doctor                                       check this machine",
         "cellmirror");
     program.require_subcommand();
     program.version("cellmirror " CELLMIRROR_VERSION);

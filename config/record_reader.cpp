@@ -22,7 +22,7 @@ void read_keep_on(TableReader& table, RecordSettings& settings) {
   settings.keep_on_collision = std::ranges::find(*words, "collision") != words->end();
   for (const std::string& word : *words) {
     if (word != "fault" && word != "collision")
-      table.error("keep_on", fmt::format("\"{}\" is nothing to keep a recording for", printable(word)),
+      table.error("keep_on", fmt::format("\"{}\" is not an event that keeps a recording", printable(word)),
                   "known: fault, collision");
   }
 }

@@ -109,7 +109,7 @@ Result<Alarm> read_alarm_line(std::string_view line) {
   out.text = members.text("text", AlarmList::kMostTextBytes, true);
   const auto priority = std::ranges::find(kAlarmPriorityWords, members.text("priority", kMostKindBytes));
   if (priority == kAlarmPriorityWords.end()) {
-    members.refuse("priority", "is none of low, medium, high");
+    members.refuse("priority", "is not low, medium or high");
   } else {
     out.priority = static_cast<AlarmPriority>(priority - kAlarmPriorityWords.begin());
   }

@@ -36,7 +36,7 @@ void AlarmList::move_to_history(std::map<Key, Open>::iterator open) {
 }
 
 Result<void> AlarmList::restore(Alarm alarm, const AlarmMoment& at) {
-  if (alarm.id == 0 || alarm.id > kMostIds) return fail(fmt::format("the number {} is none of an alarm", alarm.id));
+  if (alarm.id == 0 || alarm.id > kMostIds) return fail(fmt::format("there is no alarm number {}", alarm.id));
   if (!ids_.insert(alarm.id).second) return fail(fmt::format("there are two alarms {}", alarm.id));
   Key key{alarm.kind, alarm.subject};
   const bool over = alarm.state() == AlarmState::normal;

@@ -155,7 +155,7 @@ int doctor(bool json) {
 
 void add_doctor(cli::Command program, Action& action) {
   auto json = std::make_shared<bool>(false);
-  cli::Command sub = program.subcommand("doctor", "Show what this machine allows, and how to fix what it does not");
+  cli::Command sub = program.subcommand("doctor", "Check this machine for the gateway; findings have a remedy");
   sub.flag("--json", *json, "one JSON document");
   sub.when_named([json, &action] { action = [json] { return doctor(*json); }; });
 }

@@ -181,7 +181,7 @@ void add_ik(cli::Command program, Action& action) {
   auto samples = sub.option("--samples", options->samples, "draw so many reachable targets at random")
                      .check(wrong_count, fmt::format("1..{}", kMaxTargets))
                      .excludes(targets);
-  sub.option("--seed", options->seed, "of the drawing").show_default().needs(samples);
+  sub.option("--seed", options->seed, "seed of the random targets").show_default().needs(samples);
   above_zero(sub.option("--timeout-ms", options->timeout_ms, "time limit per target").show_default(), kLongestTimeout);
   above_zero(sub.option("--tol", options->tolerance, "bound of each component of the error: m, rad").show_default(),
              kWidestTolerance);

@@ -97,7 +97,7 @@ void add_new(cli::Command program, Action& action) {
   cli::Command sub = program.subcommand("new", "Make the folder of a new cell from the files of a robot");
   sub.option("name", options->folder, "folder to make; its last part is the name of the cell").required();
   sub.option("--urdf", options->urdf, "URDF of the robot; its meshes are copied with it");
-  sub.option("--base", options->base, "link that stands at --xyz; default: the root link");
+  sub.option("--base", options->base, "link that is placed at --xyz; default: the root link");
   sub.option("--xyz", options->xyz_m, "where the robot stands, in metres; default: 0 0 0").values(3);
   sub.option("--topic", options->topic, "ROS 2 topic of its joint states; default: /joint_states");
   sub.option("--eds", options->eds, "EDS or DCF of CiA 402 drives: one for all nodes, or one for each")
@@ -107,9 +107,11 @@ void add_new(cli::Command program, Action& action) {
   sub.option("--dbc", options->dbc, "DBC with the signals of joints");
   sub.option("--channel", options->channel, "CAN channel; default: socketcan:can0");
   sub.footer(
-      "On a terminal it asks for what it was not told. Drives and signals become joints of the robot if there are as "
+      "On a terminal it asks for missing options. Drives and signals drive the joints of the robot if they are as "
       "many\n"
-      "and --topic is not given, else a robot of their own. Nothing is overwritten; with an error nothing is written.\n"
+      "and --topic is not given; else they become a robot of their own. Nothing is overwritten; after an error "
+      "nothing\n"
+      "is written.\n"
       "Examples: cellmirror new my_cell --urdf ur5e.urdf --topic /joint_states\n"
       "          cellmirror new cells/line_3 --urdf arm.urdf --base base_link --xyz 0 0 0.8 --eds axis.eds --node 11");
   sub.when_named([options, &action] { action = [options] { return make_new_cell(*options); }; });

@@ -1,7 +1,10 @@
 // docs/script-reference.md, generated from the table; a test compares the committed page with it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scripts/lang/help.hpp"
 #include "scripts/lang/values.hpp"
@@ -21,73 +24,167 @@ std::string_view section_title(std::string_view section) {
   return "Commands of ours";
 }
 
-// A '|' would end a cell of a Markdown table.
-std::string cell(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|') out += '\\';
-    out += c;
-  }
-  return out;
+// Longer lists of words have one line for each.
+constexpr std::size_t kChoicesOnALine = 5;
+// A row of as many forms is listed once, at the head of the page.
+constexpr int kFormsOfACommonRow = 3;
+
+// Words with a meaning of their own; those of plain switches explain themselves.
+bool explained(const Choice& choice) {
+  return !choice.meaning.empty() && choice.meaning != choice.word && choice.meaning != "on" && choice.meaning != "off";
 }
 
-std::string choices_cell(const Parameter& parameter) {
+std::string choices_text(const Parameter& parameter) {
+  if (parameter.meaning.find("(table ") != std::string_view::npos) return "";  // at the end of the page
+  const bool one_a_line =
+      parameter.choices.size() > kChoicesOnALine && std::ranges::any_of(parameter.choices, explained);
   std::string out;
   for (const Choice& choice : parameter.choices) {
-    out += fmt::format("{}`{}`", out.empty() ? "" : ", ", choice.word);
+    out += one_a_line ? "\n  - " : out.empty() ? "" : ", ";
+    out += fmt::format("`{}`", choice.word);
     if (!choice.meaning.empty() && choice.meaning != choice.word) out += fmt::format(" {}", choice.meaning);
   }
   return out;
 }
 
-std::string values_cell(const Parameter& parameter) {
+// The page says at its head that numbers without a range are any.
+std::string number_text(const Parameter& parameter) {
+  const std::string_view any = "any number";
+  const std::string_view unit = unit_text(parameter.unit);
+  std::string range = range_text(parameter.range, Unit::none);
+  if (range == any) return std::string(unit.empty() ? any : unit);
+  if (unit.empty()) return range;
+  return range + (unit.find(' ') == std::string_view::npos ? " " : ", ") + std::string(unit);
+}
+
+std::string values_text(const Parameter& parameter) {
   switch (parameter.kind) {
     case ParameterKind::choice:
-      return choices_cell(parameter);
+      return choices_text(parameter);
     case ParameterKind::name:
-      return parameter.checked_by_host ? "a name, looked up at execution" : "a name that exists";
     case ParameterKind::identifier:
-      return "a name";
     case ParameterKind::file:
-      return "a file of the cell folder";
     case ParameterKind::text:
-      return "the rest of the command";
+      return "";  // the meaning says what is named
     case ParameterKind::integer:
-      return "whole number, " + range_text(parameter.range, parameter.unit);
+      return "whole number, " + number_text(parameter);
     case ParameterKind::number_list:
       return fmt::format("0 to {} numbers", parameter.width);
     case ParameterKind::slaves:
       return "for each slave: name, number of joints, pairs of joints";
     default:
-      return (parameter.width > 1 ? fmt::format("{} numbers, ", parameter.width) : "") +
-             range_text(parameter.range, parameter.unit);
+      return (parameter.width > 1 ? fmt::format("{} numbers, ", parameter.width) : "") + number_text(parameter);
   }
 }
 
-std::string parameters_table(const Form& form) {
-  std::string rows;
-  for (const Parameter& parameter : form.parameters) {
-    if (parameter.kind == ParameterKind::word) continue;
-    std::string meaning(parameter.meaning);
-    if (parameter.optional) meaning += ", optional";
-    if (!parameter.default_text.empty()) meaning += fmt::format(", default {}", parameter.default_text);
-    const std::string label = parameter.label.empty() ? "" : std::string(parameter.label) + " ";
-    rows +=
-        fmt::format("| `{}{}` | {} | {} |\n", label, cell(parameter.name), cell(meaning), cell(values_cell(parameter)));
-  }
-  return rows.empty() ? "" : "\n| parameter | meaning | values |\n|---|---|---|\n" + rows;
+struct Row {
+  std::string names;
+  std::string text;
+
+  bool operator==(const Row&) const = default;
+};
+
+// Words behind a colon, numbers behind a comma.
+Row row_of(const Parameter& parameter) {
+  std::string text = parameter.meaning == parameter.name ? "" : std::string(parameter.meaning);
+  const auto add = [&text](std::string_view separator, std::string_view part) {
+    if (part.empty()) return;
+    if (!text.empty()) text += separator;
+    text += part;
+  };
+  const std::string values = values_text(parameter);
+  const bool words = parameter.kind == ParameterKind::choice;
+  if (!words) add(", ", values);
+  if (parameter.optional) add(", ", "optional");
+  if (!parameter.default_text.empty()) add(", ", fmt::format("default {}", parameter.default_text));
+  if (words) add(values.starts_with('\n') ? ":" : ": ", values);
+  const std::string label = parameter.label.empty() ? "" : std::string(parameter.label) + " ";
+  return {fmt::format("`{}{}`", label, parameter.name), text};
 }
 
-std::string form_entry(const Form& form) {
+// on or off, online or offline: the sentence about the form says of what.
+bool is_plain_switch(const Parameter& parameter) {
+  const auto in_words = [](const Choice& choice) {
+    return !explained(choice) && (choice.word[0] < '0' || choice.word[0] > '9');
+  };
+  return parameter.kind == ParameterKind::choice && parameter.choices.size() == 2 &&
+         std::ranges::all_of(parameter.choices, in_words);
+}
+
+std::vector<Row> rows_of(const Form& form) {
+  std::vector<Row> rows;
+  for (const Parameter& parameter : form.parameters)
+    if (parameter.kind != ParameterKind::word && !is_plain_switch(parameter)) rows.push_back(row_of(parameter));
+  return rows;
+}
+
+// An example of the command and one value shows no more than the syntax, unless the value is a name.
+bool shows_more_than_the_syntax(const Form& form) {
+  if (form.example.empty() || form.parameters.empty()) return false;
+  return std::ranges::count(form.example, ' ') > 1 || form.parameters[0].kind == ParameterKind::name;
+}
+
+// Rows of several forms are listed once, at the head of the page.
+const std::vector<Row>& common_rows() {
+  static const std::vector<Row> common = [] {
+    std::vector<std::pair<Row, int>> counted;
+    for (const Form* form : forms()) {
+      for (const Row& row : rows_of(*form)) {
+        const auto found = std::ranges::find(counted, row, &std::pair<Row, int>::first);
+        if (found == counted.end()) {
+          counted.emplace_back(row, 1);
+        } else {
+          ++found->second;
+        }
+      }
+    }
+    std::vector<Row> often;
+    for (auto& [row, count] : counted)
+      if (count >= kFormsOfACommonRow) often.push_back(std::move(row));
+    return often;
+  }();
+  return common;
+}
+
+bool is_common(const Row& row) { return std::ranges::find(common_rows(), row) != common_rows().end(); }
+
+std::string as_list(const std::vector<Row>& rows) {
+  std::string out;
+  for (std::size_t i = 0; i < rows.size();) {
+    std::string names = rows[i].names;
+    std::size_t next = i + 1;
+    for (; next < rows.size() && rows[next].text == rows[i].text; ++next) names += ", " + rows[next].names;
+    const std::string_view text = rows[i].text;
+    out += fmt::format("- {}{}{}\n", names, text.empty() ? "" : text.starts_with('\n') ? ":" : ": ", text);
+    i = next;
+  }
+  return out;
+}
+
+std::string parameter_list(const Form& form) {
+  std::vector<Row> rows = rows_of(form);
+  std::erase_if(rows, is_common);
+  return rows.empty() ? "" : "\n" + as_list(rows);
+}
+
+bool all_need_an_active_robot(std::string_view section) {
+  return std::ranges::all_of(
+      forms(), [section](const Form* form) { return form->section != section || form->needs_active_robot; });
+}
+
+std::string form_entry(const Form& form, const Form* before) {
   std::string out = fmt::format(
-      "\n```\n{}\n```\n\n{}{}.\n", form.syntax,
+      "\n```\n{}\n```\n\n{}{}.", form.syntax,
       static_cast<char>(form.help[0] >= 'a' && form.help[0] <= 'z' ? form.help[0] - 'a' + 'A' : form.help[0]),
       form.help.substr(1));
-  if (form.needs_active_robot) out += "Needs an active robot (`ROBACT`).\n";
-  if (!form.definition.empty()) out += fmt::format("Our definition: {}.\n", form.definition);
-  out += parameters_table(form);
-  if (!form.example.empty()) out += fmt::format("\nExample: `{}`\n", form.example);
-  if (!form.conflict.empty()) out += fmt::format("\nBeside the manual's other examples: {}.\n", form.conflict);
+  if (form.needs_active_robot && !all_need_an_active_robot(form.section)) out += " Needs an active robot.";
+  out += '\n';
+  const bool repeated = before != nullptr && before->name == form.name && before->definition == form.definition;
+  if (!form.definition.empty()) out += fmt::format("**Ours:** {}.\n", repeated ? "as above" : form.definition);
+  out += parameter_list(form);
+  if (shows_more_than_the_syntax(form))
+    out += fmt::format("\nExample: `{}`{}\n", form.example,
+                       form.conflict.empty() ? "" : fmt::format(" ({})", form.conflict));
   return out;
 }
 
@@ -114,18 +211,28 @@ std::string own_tables() {
 
 std::string reference_page() {
   std::string out =
-      "# SCRIPT reference\n\nThis page is generated from the command table (`scripts/lang/table_*.cpp`); a test "
-      "compares the two. How SCRIPT\nis read and run, and what the manual leaves open, is described in "
-      "[script.md](script.md).\n\nKeywords are case-insensitive, names are case-sensitive. Numbers are in the units "
-      "given here and are\nconverted to SI where a command is parsed.\n";
-  std::string_view section;
-  std::string_view command;
+      "# SCRIPT reference\n\n"
+      "Generated from the command table (`scripts/lang/table_*.cpp`). [script.md](script.md) describes how SCRIPT is "
+      "read\n"
+      "and run. The sections 1.2.1 to 1.2.7 are those of the manual, \"The KISMET SCRIPT-Command Interface\", March "
+      "1999.\n"
+      "**Ours** marks rules that it leaves open.\n\n"
+      "Keywords are case-insensitive, names case-sensitive. Robots, frames, cameras, sensors and workframes are "
+      "named;\n"
+      "they must exist. Files are in the cell folder. Numbers have the units given here; without a range any number "
+      "is\n"
+      "permitted.\n\n"
+      "## Common parameters\n\nA command lists only parameters that are missing here or differ.\n\n";
+  out += as_list(common_rows());
+  const Form* before = nullptr;
   for (const Form* form : forms()) {
-    if (form->section != section) out += fmt::format("\n## {}\n", section_title(form->section));
-    if (form->section != section || form->name != command) out += fmt::format("\n### {}\n", form->name);
-    section = form->section;
-    command = form->name;
-    out += form_entry(*form);
+    const bool new_section = before == nullptr || before->section != form->section;
+    if (new_section) out += fmt::format("\n## {}\n", section_title(form->section));
+    if (new_section && all_need_an_active_robot(form->section))
+      out += "\nAll act on the active robot (`ROBACT`) and need one.\n";
+    if (new_section || before->name != form->name) out += fmt::format("\n### {}\n", form->name);
+    out += form_entry(*form, before);
+    before = form;
   }
   return out + own_tables();
 }

@@ -28,8 +28,8 @@ constexpr Choice kModes[] = {
     {cellmirror::word(DisplayMode::floor), "floor"},
     {cellmirror::word(DisplayMode::visibility_test), "visibility test of geometries"},
     {cellmirror::word(DisplayMode::shadows), "shadows; needs the floor"},
-    {cellmirror::word(DisplayMode::bell), "sound with messages"},
-    {cellmirror::word(DisplayMode::textures), "textures"},
+    {cellmirror::word(DisplayMode::bell), "a bell with messages, at the terminal of the gateway and at the page"},
+    {cellmirror::word(DisplayMode::textures), "textures and colours of meshes, and the tiles of the floor"},
     {cellmirror::word(DisplayMode::antialiasing), "antialiasing"},
     {"LEGEND", "legend of marks and colours; ours"},
 };
@@ -67,8 +67,8 @@ constexpr Form kForms[] = {
      .parameters = kDisplay,
      .help = "sets the display: 1 perspective, 2 top and side, 3 top, 4 side, 5 side in perspective, 6 bird's eye",
      .example = "STDP 1 FULL",
-     .definition = "without FULL or FULL_OFF: FULL_OFF. Its first view is the current one, whose axes SCREEN_INC uses; "
-                   "FULL shows its views without titles and legend"},
+     .definition = "the default is FULL_OFF; the display's first view is the current one, whose axes SCREEN_INC uses; "
+                   "FULL omits titles and legend"},
     {.id = FormId::stvw,
      .name = "STVW",
      .syntax = "STVW <view_id> [VP x y z] [LP x y z] [TW twist] [VA angle] [FCP d] [BCP d] [STEPS n | TIME s]",
@@ -76,9 +76,9 @@ constexpr Form kForms[] = {
      .parameters = kStvw,
      .help = "sets parameters of a view, at once or as a sequence of n updates or s seconds",
      .example = "STVW 0 VP 519.7 -539 -850 LP 2183 9570 3391 TIME 15.0",
-     .definition = "the groups come in any order, each at most once; with neither STEPS nor TIME: at once. It begins "
-                   "at the view's present state, also during a sequence or at a camera (COVW), which it releases; all "
-                   "parameters change evenly. STEPS counts updates of the picture, TIME is real time"},
+     .definition = "groups in any order, each at most once; at once without STEPS and TIME. Starts from the view's "
+                   "present state, also during a sequence or at a camera (COVW), which it releases; all parameters "
+                   "change evenly. STEPS counts updates of the picture, TIME is real time"},
     {.id = FormId::covw,
      .name = "COVW",
      .syntax = "COVW <view_id> <cam_id>",

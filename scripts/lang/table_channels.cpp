@@ -39,12 +39,13 @@ constexpr Parameter kClip[] = {
     number("ry", "rotation about y", Unit::degree), number("rz", "rotation about z", Unit::degree),
     number("tx", "translation along x", Unit::mm),  number("ty", "translation along y", Unit::mm),
     number("tz", "translation along z", Unit::mm)};
-constexpr Parameter kCylinders[] = {identifier("geo_name", "geometry of the effector"),
-                                    integer("flags", "flags", kUnsigned),
-                                    number("geom1", "shaft diameter", Unit::mm, kCylinderRadius),
-                                    number("geom2", "mean distance of the surface", Unit::mm, kCylinderRadius),
-                                    number("geom3", "length of the effector", Unit::mm, kCylinderLength),
-                                    number("geom4", "fourth value", Unit::none)};
+constexpr Parameter kCylinders[] = {
+    identifier("geo_name", "geometry of the effector"),
+    integer("flags", "flags", kUnsigned),
+    number("geom1", "shaft diameter", Unit::mm, kCylinderRadius),
+    number("geom2", "mean distance of the jaws from the axis", Unit::mm, kCylinderRadius),
+    number("geom3", "length of the effector", Unit::mm, kCylinderLength),
+    number("geom4", "fourth value", Unit::none)};
 constexpr Parameter kForceMemory[] = {integer("send_type", "protocol", kUnsigned),
                                       integer("re_shmkey", "shared memory key", kSharedMemoryKey),
                                       integer("re_buflen", "size", kForceBytes, Unit::byte)};
@@ -74,16 +75,15 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kCalc,
      .help = "starts or stops the elastodynamic calculation",
-     .definition = "off freezes all objects where they are and what instruments do to them; on at the start"},
+     .definition = "off freezes all objects and what instruments do to them; on at the start"},
     {.id = FormId::rob_ela_interact,
      .name = "rob_ela_interact",
      .syntax = "rob_ela_interact <int_jnt> <test_function> <testval1> <testval2> <inst_type>",
      .section = kSection,
      .parameters = kInteract,
      .help = "sets which joint of the active robot triggers its instrument's action, and when",
-     .definition =
-         "joints count from 1 in the order of the component file; test values in mm or degrees by the kind of "
-         "that joint; test 0 takes the instrument's action away",
+     .definition = "joints are numbered from 1 as in the component file; test values are in mm or degrees by the kind "
+                   "of the joint; test 0 removes the action",
      .needs_active_robot = true},
     {.id = FormId::ela_clip_def,
      .name = "ela_clip_def",
@@ -91,8 +91,8 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kClip,
      .help = "sets geometry and pose of a clip at the effector",
-     .definition = "of the active robot; the file is one of envlib; the pose is relative to the robot's TCP, rotations "
-                   "about fixed axes: x, then y, then z",
+     .definition =
+         "the file is in envlib; the pose is relative to the TCP, rotations about fixed axes: x, then y, then z",
      .needs_active_robot = true},
     {.id = FormId::eladyn_geo_def_cylinders,
      .name = "eladyn_geo_def",
@@ -100,11 +100,9 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kCylinders,
      .help = "sets the virtual cylinders of the active robot's effector for the contact test",
-     .definition =
-         "geo_name is a frame or joint with geometry that moves with the robot, or the name of that geometry; "
-         "the cylinders lie about the z axis of the TCP and end there: the effector with geom2 as its radius and "
-         "geom3 as its length (18 mm unless more than 0), and the shaft behind it; flags and geom4 are kept and "
-         "reported only",
+     .definition = "geo_name is a frame or joint whose geometry moves with the robot, or that geometry; the cylinders "
+                   "lie on the z axis of the TCP: the effector with radius geom2 and length geom3 (18 mm unless more "
+                   "than 0) ends at the TCP, behind it is the shaft; flags and geom4 are only kept and reported",
      .selector = Selector::by_shape,
      .needs_active_robot = true},
     {.id = FormId::rob_ela_shm,
@@ -113,10 +111,9 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kForceMemory,
      .help = "sets the shared memory for forces and joint torques to a haptic device program",
-     .definition =
-         "of the active robot; at least 12 bytes: force x, y, z as float32, then the joint torques as far as they "
-         "fit (the answer names those that do not), of every robot whose forces are computed; from 512 bytes "
-         "on the memory of a haptic device, with our extensions; the key also in hexadecimal, not 0",
+     .definition = "for the active robot; from 12 bytes on: force x, y, z as float32, then the robot's joint torques "
+                   "as far as they fit (the answer names those that do not), if its forces are computed; from 512 "
+                   "bytes on: the memory of a haptic device, with our extensions; the key may be hexadecimal, not 0",
      .effect = LoopEffect::queued,
      .needs_active_robot = true},
     {.id = FormId::bin_ela_shm,
@@ -126,7 +123,7 @@ constexpr Form kForms[] = {
      .parameters = kSwitchMemory,
      .help = "sets the shared memory from which binary inputs (foot switches) are read",
      .definition = "bit 0 of the first byte is BININP1, bit 0 of the second BININP9, and so on, up to 4096 bytes; the "
-                   "key also in hexadecimal, not 0; BIN_ELA online starts the processing",
+                   "key may be hexadecimal, not 0; BIN_ELA online starts the processing",
      .effect = LoopEffect::queued},
     {.id = FormId::binary_input_files,
      .name = "BININPn_ON.spt, BININPn_OFF.spt",
@@ -149,10 +146,8 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kMessage,
      .help = "shows a text for about 5 s",
-     .definition =
-         "the text is the rest of the command, UTF-8: in a file up to the next ';', in a message all of it, but "
-         "for one ';' at its end; in every picture, on the page, in status and log. With SET_MODE BEEP a "
-         "bell, too"},
+     .definition = "UTF-8: in a file up to the next ';', in a message to its end, without a final ';'; shown in every "
+                   "picture, on the page, in status and log. With SET_MODE BEEP a bell, too"},
 };
 
 }  // namespace

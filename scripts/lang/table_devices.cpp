@@ -60,21 +60,20 @@ constexpr Parameter kCameraSwitch[] = {camera(), on_off()};
 
 // docs/script.md, "Motion", says the rest.
 constexpr std::string_view kJointNote =
-    "a PTP move that replaces the running move; in a file the next command waits for its end. Fewer values than "
-    "joints: the others stay; more, or one beyond a limit: refused, nothing moves";
+    "a PTP move that replaces the running move; in a file the next command waits for its end. Joints without a value "
+    "stay; too many values, or one beyond a limit: refused";
 constexpr std::string_view kFrameAbsNote =
-    "a PTP move to the nearest posture that inverse kinematics finds for rob_inverse_class; out of reach: refused with "
-    "the nearest pose";
+    "a PTP move to the nearest posture found for rob_inverse_class; out of reach: refused with the nearest pose";
 constexpr std::string_view kFrameIncNote =
-    "a linear move from the last commanded position; the rotation is about the TCP, in axes of the ZP frame. The "
-    "groups come in any order, each at most once, with or without commas between them";
+    "a linear move from the last commanded position; rotation about the TCP, in axes of the ZP frame. Groups in any "
+    "order, each at most once, commas optional";
 constexpr std::string_view kToolIncNote =
-    "a linear move from the last commanded position, in the axes of its TCP. The groups come in any order, each at "
-    "most once, with or without commas between them";
+    "a linear move from the last commanded position, in axes of the TCP. Groups in any order, each at most once, "
+    "commas optional";
 constexpr std::string_view kScreenIncNote =
-    "a linear move from the last commanded position; the rotation is about the TCP, in the axes of the current view "
-    "(the first of the display selected by STDP) at that moment, also in a sequence or at a camera. The groups come in "
-    "any order, each at most once, with or without commas between them";
+    "a linear move from the last commanded position; rotation about the TCP, in axes of the current view (the first of "
+    "the display that STDP selects) at that moment, also in a sequence or at a camera. Groups in any order, each at "
+    "most once, commas optional";
 
 // The slots by which scripts/commands reads the values.
 static_assert(has_slots(kRender, {slots::render::kFrame, slots::render::kMode}));
@@ -186,7 +185,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kRender,
      .help = "sets the rendering mode of a frame and of all detail levels below it",
-     .definition = "for everything below the frame by name, loaded now or later"},
+     .definition = "for everything below the frame in the tree of names, loaded now or later"},
     {.id = FormId::robot_online,
      .name = "ROBOT",
      .syntax = "ROBOT <Robot_id> [online | offline]",
@@ -219,7 +218,7 @@ constexpr Form kForms[] = {
      .parameters = kSensorActive,
      .help = "switches the simulation of an ultrasonic sensor on or off",
      .example = "SET_USSPAR active USS_1B 0",
-     .definition = "the name of the sensor's workframe, or its dotted path if the name is not unique",
+     .definition = "a sensor has the name of its workframe; if that is not unique, its dotted path",
      .effect = LoopEffect::queued,
      .selector = Selector::by_first_word},
     {.id = FormId::set_usspar_sendmode,

@@ -124,9 +124,9 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kGeoFlags,
      .help = "sets the attributes of one deformable object or of all by flags",
-     .definition = "attributes with their bit in flags are on, all others off (table A.1); 0 to 4 values, without "
-                   "effect as in the manual; with four values the object must be ALL or a name that ends in .mpo, else "
-                   "the command means the cylinders of an effector (1.2.6)",
+     .definition =
+         "attributes with their bit in flags are on, all others off (table A.1); 0 to 4 values, without effect as in "
+         "the manual; with four values, a name that does not end in .mpo means the cylinders of an effector (1.2.6)",
      .selector = Selector::by_shape},
     {.id = FormId::eladyn_geo_def_token,
      .name = "eladyn_geo_def",
@@ -141,9 +141,9 @@ constexpr Form kForms[] = {
      .syntax = "eladyn_hyper_name <hyper_file>",
      .section = kSection,
      .parameters = kHyper,
-     .help = "names the file of the interconnections between deformable objects",
-     .definition = "a file of envlib; its connections replace all that there are, torn ones included; a file with any "
-                   "error changes nothing"},
+     .help = "loads the file of the interconnections between deformable objects",
+     .definition =
+         "a file of envlib; its connections replace all present ones, also torn ones; a faulty file changes nothing"},
     {.id = FormId::eladyn_show_def,
      .name = "eladyn_show_def",
      .syntax = "eladyn_show_def [0 | 1]",
@@ -156,17 +156,16 @@ constexpr Form kForms[] = {
      .syntax = "eladyn_model_reset",
      .section = kSection,
      .help = "resets all deformable objects and interconnections",
-     .definition =
-         "shape, cuts, clips, burns, connections and the pool are as at the start; attributes, limits, effects "
-         "and instruments stay as commands have set them, which ends FREEZE (table A.4)"},
+     .definition = "restores shape, cuts, clips, burns, connections and the pool, and ends FREEZE (table A.4); "
+                   "attributes, limits, effects and instruments stay as commands have set them"},
     {.id = FormId::eladyn_plaus_param,
      .name = "eladyn_plaus_param",
      .syntax = "eladyn_plaus_param <token> <flags> <val>",
      .section = kSection,
      .parameters = kPlausibility,
      .help = "sets a limit of the plausibility test of interactions",
-     .definition = "flags say what happens beyond the limit (table A.4); flags or a value of 0 turn it off; the token "
-                   "defines the unit of the limit and what it is at the start (table A.5)"},
+     .definition = "table A.4 has the flags, table A.5 the tokens with unit and initial limit; flags or a value of 0 "
+                   "turn the limit off"},
     {.id = FormId::effects_pulse,
      .name = "EFFECTS",
      .syntax = "EFFECTS PULSE [ON | OFF]",

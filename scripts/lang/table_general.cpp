@@ -52,7 +52,7 @@ constexpr Form kForms[] = {
      .parameters = kComment,
      .help = "a line with # in column 1 is a comment",
      .example = "# This is an example of a comment line",
-     .definition = "also between the lines of a command, and as a message of its own",
+     .definition = "allowed between the lines of a command, and as a message",
      .kind = FormKind::convention},
     {.id = FormId::activate,
      .name = "ACTIVATE",
@@ -61,8 +61,7 @@ constexpr Form kForms[] = {
      .parameters = kUnloadedFrame,
      .help = "shows a branch and includes it in collision tests; loads its component file if it is not in memory",
      .example = "ACTIVATE Testlab_1.FL_Klein.Flansch_Typ1",
-     .definition = "refused on a node that has no component file; the name is looked up at execution, since it may not "
-                   "be loaded yet",
+     .definition = "refused on a node without a component file; the name is looked up at execution",
      .effect = LoopEffect::queued},
     {.id = FormId::deactivate,
      .name = "DEACTIVATE",
@@ -80,8 +79,8 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "removes a branch from the model in memory; its file stays",
      .example = "DELETE_NODE Testlab_1.FL_Klein.Flansch_Typ1",
-     .definition = "takes back where SET_FRAME PLACEMENT, CONNECT and FRAME_TO_WFRM have put the part: ACTIVATE brings "
-                   "what the files have",
+     .definition = "ACTIVATE loads the part again as in its files, without the effects of SET_FRAME PLACEMENT, CONNECT "
+                   "and FRAME_TO_WFRM",
      .effect = LoopEffect::queued},
     {.id = FormId::swap_node,
      .name = "SWAP_NODE",
@@ -90,7 +89,7 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "exchanges a node's detailed geometry for its father's coarse one, or back",
      .example = "SWAP_NODE Testlab_1.FL_Klein.Flansch_Typ1",
-     .definition = "refused on a node that has no component file or no father geometry",
+     .definition = "refused on a node without a component file or father geometry",
      .effect = LoopEffect::queued},
     {.id = FormId::level_down,
      .name = "LEVEL_DOWN",
@@ -99,8 +98,8 @@ constexpr Form kForms[] = {
      .parameters = kFrame,
      .help = "loads and activates one more layer of details below a node and swaps the father's geometry out",
      .example = "LEVEL_DOWN Testlab_1.FL_Klein",
-     .conflict = "refused after the example of SWAP_NODE, which has shown the only details below this node",
-     .definition = "refused on a node that has no component file below it",
+     .conflict = "refused after the example of SWAP_NODE, which shows the only details below this node",
+     .definition = "refused on a node without a component file below it",
      .effect = LoopEffect::queued},
     {.id = FormId::level_up,
      .name = "LEVEL_UP",
@@ -117,8 +116,8 @@ constexpr Form kForms[] = {
      .parameters = {},  // general_forms()
      .help = "sets the language in which robot programs loaded after it are parsed",
      .example = "ROBOT_LANGUAGE jet_tarm",
-     .definition = "irdata is the default, as in the manual; the manual's four are our own dialects, "
-                   "docs/robot-programs.md; the others are not in the manual"},
+     .definition = "the default is irdata, as in the manual; irdata, srcl, jet_boom and jet_tarm are our dialects "
+                   "(docs/robot-programs.md); the manual does not have the others"},
     {.id = FormId::robact,
      .name = "ROBACT",
      .syntax = "ROBACT <Robot_id>",
@@ -133,10 +132,10 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "loads and validates a robot program for a robot without starting it",
      .example = "TF_LOAD r3demo mantec_R3",
-     .conflict = "after the example of ROBOT_LANGUAGE it needs a program in jet_tarm; the r3demo of our cell is irdata",
+     .conflict = "after the example of ROBOT_LANGUAGE it needs a jet_tarm program; our r3demo is irdata",
      .definition =
-         "searched in the cell folder's programs, then in scripts, with and without the extensions of the current "
-         "language; a program with any error is not loaded; an existing name is replaced unless it runs or is queued"},
+         "searched in the cell folder's programs, then in scripts, with and without the extensions of the language; a "
+         "program with any error is not loaded; one of the same name is replaced unless it runs or is queued"},
     {.id = FormId::tf_run,
      .name = "TF_RUN",
      .syntax = "TF_RUN <teach_filename> <Robot_id> [exec_wait]",
@@ -144,10 +143,10 @@ constexpr Form kForms[] = {
      .parameters = kRun,
      .help = "starts a loaded robot program, or queues it after the robot's running one",
      .example = "TF_RUN hs2 ZELLENKRAN exec_wait",
-     .conflict = "no example loads r3demo2, hs1, hs2 and hs3: refused until TF_LOAD has",
-     .definition = "refused for a program that is not loaded for that robot, or runs or is queued already, or while "
-                   "another program of the robot runs, without exec_wait; done when the program is started or queued; "
-                   "WAIT and TF_WAIT wait for its end",
+     .conflict = "refused until TF_LOAD loads r3demo2, hs1, hs2 and hs3; no example does",
+     .definition =
+         "refused if the program is not loaded for the robot, runs, or is queued, and, without exec_wait, while "
+         "another program of the robot runs; done when started or queued; WAIT and TF_WAIT wait for its end",
      .effect = LoopEffect::queued},
     {.id = FormId::tf_delete,
      .name = "TF_DELETE",
@@ -156,17 +155,17 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "removes a robot program from a robot's virtual controller",
      .example = "TF_DELETE ird_getschr MANTEC_RM3",
-     .conflict = "no example loads ird_getschr: refused until TF_LOAD has",
+     .conflict = "refused until TF_LOAD loads ird_getschr; no example does",
      .definition = "refused while the program runs or is queued"},
     {.id = FormId::load_views,
      .name = "LOAD_VIEWS",
      .syntax = "LOAD_VIEWS <view_filename>",
      .section = kSection,
      .parameters = kViewFile,
-     .help = "sets the stored views of a file (default extension .vws) of the cell folder's scripts",
+     .help = "sets the views that a file of the cell folder's scripts contains (default extension .vws)",
      .example = "LOAD_VIEWS view1.vws",
-     .definition =
-         "the format is ours, docs/cell-files.md; a file with any error sets nothing; other views stay unchanged"},
+     .definition = "the format is ours (docs/cell-files.md); a faulty file changes nothing; views that a file does not "
+                   "contain stay unchanged"},
     {.id = FormId::exec_script,
      .name = "EXEC_SCRIPT",
      .syntax = "EXEC_SCRIPT <script_file>",
@@ -174,8 +173,7 @@ constexpr Form kForms[] = {
      .parameters = kScriptFile,
      .help = "calls another SCRIPT file (default extension .spt) like a subroutine",
      .example = "EXEC_SCRIPT trs_demo.spt",
-     .definition = "refused for the calling file, any file in the call chain, beyond a depth of 32, and for a file "
-                   "with syntax errors",
+     .definition = "refused for a file in the call chain, beyond a depth of 32, and for a file with syntax errors",
      .effect = LoopEffect::none},
     {.id = FormId::draw_scene,
      .name = "DRAW_SCENE",
@@ -183,8 +181,8 @@ constexpr Form kForms[] = {
      .section = kSection,
      .help = "recalculates the kinematics and renders the views",
      .example = "DRAW_SCENE",
-     .definition = "done when the render thread has the result; it draws continuously, so this only waits until robots "
-                   "have jumped",
+     .definition = "done when the render thread has the new positions; rendering is continuous, so the command matters "
+                   "only after a jump of a robot",
      .effect = LoopEffect::queued},
     {.id = FormId::connect,
      .name = "CONNECT",

@@ -96,9 +96,9 @@ constexpr Parameter kAnalogueInput[] = {robot(), integer("number", "analogue inp
                                         number("value", "value", Unit::none)};
 
 constexpr std::string_view kQueued =
-    "begins after all earlier moves of the robot; the command is done when the move is queued (at most 32 per robot)";
+    "starts after all earlier moves of the robot; done when queued (at most 32 per robot)";
 constexpr std::string_view kQueuedIncrement =
-    "as in POS_ROB, from the end of the previous move; begins after all earlier moves of the robot";
+    "as in POS_ROB, but from the end of the robot's previous move, and starts then";
 
 constexpr Form move_form(FormId id, std::string_view syntax, std::span<const Parameter> parameters,
                          std::string_view help, std::string_view example) {
@@ -223,9 +223,9 @@ constexpr Form kForms[] = {
      .parameters = kCollisionPair,
      .help = "sets whether bodies of two branches are tested against each other",
      .example = "SET_COLLPAR pair Toolbox.Tool1 Mantec_1.HAND ignore",
-     .definition = "a frame means itself and everything below it by name, the cell's name the cell's own geometry; the "
-                   "newest matching rule counts, those of the cell file are older; derive removes the rules for just "
-                   "these two, including those of the cell file",
+     .definition = "a frame stands for itself and everything below it by name, the cell's name for the cell's own "
+                   "geometry; the newest matching rule applies, before those of the cell file; derive removes the "
+                   "rules for exactly these two, also those of the cell file",
      .selector = Selector::by_first_word,
      .origin = Origin::ours},
     {.id = FormId::reset_haptic,
@@ -255,8 +255,7 @@ constexpr Form kForms[] = {
      .parameters = kProgramOfRobot,
      .help = "runs a loaded robot program backward, from its last check point to its first",
      .example = "TF_BACK r3_taught mantec_R3",
-     .definition =
-         "for programs of check points (jet_boom, jet_tarm); its comments and outputs are skipped; refused like TF_RUN",
+     .definition = "for programs of check points (jet_boom, jet_tarm); skips comments and outputs; refused like TF_RUN",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::tf_hold,
@@ -308,8 +307,8 @@ constexpr Form kForms[] = {
      .parameters = kProgramRobot,
      .help = "waits until the robot's programs have ended",
      .example = "TF_WAIT MANTEC_RM3",
-     .definition = "suspends the SCRIPT file that contains it; a message is answered then; refused with the failure; "
-                   "not allowed in robot programs",
+     .definition = "suspends the SCRIPT file that contains it; a message is answered at that time; refused with the "
+                   "reason if a program fails; not allowed in robot programs",
      .effect = LoopEffect::blocking,
      .origin = Origin::ours},
     {.id = FormId::tf_record,
@@ -347,10 +346,9 @@ constexpr Form kForms[] = {
      .parameters = {},
      .help = "ends all SCRIPT files and robot programs, and brakes all moves",
      .example = "STOP_ALL",
-     .definition =
-         "effective at once, also in endless loops; a SCRIPT file that contains it ends, too, and files of foot "
-         "switches that wait are not started; moves of "
-         "mirrored robots are their controllers', and continue; not a safety function",
+     .definition = "effective at once, also in endless loops; ends also the SCRIPT file that contains it; waiting "
+                   "files of foot switches are not started; moves of mirrored robots continue, since their controllers "
+                   "make them; not a safety function",
      .effect = LoopEffect::queued,
      .origin = Origin::ours},
     {.id = FormId::stop_script,
@@ -369,9 +367,8 @@ constexpr Form kForms[] = {
      .parameters = kSuction,
      .help = "switches suction at the TCP of the active robot",
      .example = "EFFECTS SUCTION ON",
-     .definition =
-         "lowers the pool while the TCP is in it and clears smoke; the robot that is active when it is switched "
-         "on stays its tool, whichever robot is active later; off needs no active robot",
+     .definition = "lowers the pool while the TCP is in it and clears smoke; the robot that is active at ON stays the "
+                   "tool; OFF needs no active robot",
      .selector = Selector::by_first_word,
      .origin = Origin::ours},
     {.id = FormId::effects_irrigation,
@@ -391,9 +388,8 @@ constexpr Form kForms[] = {
      .parameters = kSurface,
      .help = "draws the surface of one value of a volume in place of its look-up table",
      .example = "VV_ISO on VALUE 300",
-     .definition =
-         "lit and opaque, at the value in the volume's unit (Hounsfield units of computed tomography), without "
-         "VALUE at the one before; off draws with the table again; planes and volumes as with VV_CLIP",
+     .definition = "lit and opaque; the value is in the volume's unit (Hounsfield units for computed tomography), by "
+                   "default the one before; off draws with the table again; planes and volumes as with VV_CLIP",
      .origin = Origin::ours},
     {.id = FormId::record,
      .name = "RECORD",
@@ -413,9 +409,8 @@ constexpr Form kForms[] = {
      .parameters = kAlarmAck,
      .help = "acknowledges an alarm, or all of them",
      .example = "ALARM_ACK Ada 12",
-     .definition =
-         "the name is one word of at most 64 bytes that does not begin with a digit; all users see it in the list of "
-         "alarms; an alarm that was acknowledged before keeps its name",
+     .definition = "the name is one word of at most 64 bytes that does not begin with a digit; the list of alarms "
+                   "shows it to all users; an alarm acknowledged before keeps its name",
      .origin = Origin::ours},
 };
 

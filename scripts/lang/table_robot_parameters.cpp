@@ -39,7 +39,7 @@ constexpr Choice kInverseClasses[] = {
     {cellmirror::word(InverseClass::align_yz_a_axis), "position in yz and the a vector"},
     {cellmirror::word(InverseClass::edith), "redundant boom in the horizontal plane, all joints evenly bent"},
     {cellmirror::word(InverseClass::boom_3),
-     "such a boom, the last 3 joints evenly bent, the others near where they are"},
+     "as EDITH, but only the last 3 joints evenly bent, the others near their present values"},
     {cellmirror::word(InverseClass::boom_4), "the same with the last 4 joints"},
     {cellmirror::word(InverseClass::boom_5), "the same with the last 5 joints"},
     {cellmirror::word(InverseClass::boom_6), "the same with the last 6 joints"},
@@ -72,15 +72,14 @@ constexpr Parameter kProfile[] = {choice("sine | ramp", "velocity profile", kPro
 constexpr Parameter kInverse[] = {choice("solution_hint", "inverse kinematics class", kInverseClasses)};
 constexpr Parameter kArc[] = {on_off("welding spark")};
 
-constexpr std::string_view kOneForEachJoint = "exactly one value for each joint of the active robot";
+constexpr std::string_view kOneForEachJoint = "one value for each joint";
 constexpr std::string_view kLimited =
-    "exactly one value for each joint of the active robot; a lower maximum limits it while it is in force, and status "
-    "shows both";
+    "one value for each joint; a lower maximum limits it while in force; status shows both";
 constexpr std::string_view kStartPosition =
-    "exactly one value for each joint of the active robot; the robot is put there at once while nothing has moved it "
-    "yet, as in a startup script; later the position is only the target of MOVE_ROB ... START, and the answer says so";
+    "one value for each joint; a robot that nothing has moved yet, as in a startup script, is set there at once; later "
+    "the position is only the target of MOVE_ROB ... START, and the answer says so";
 constexpr std::string_view kForThreeJoints =
-    "for a robot with three joints, the examples around it for one with six: refused unless ROBACT comes between";
+    "for a robot with three joints; refused for the robot with six joints of the other examples";
 constexpr std::string_view kOffsetOrder = "translation, then roll, pitch, yaw; with or without commas";
 
 constexpr Form joint_form(FormId id, std::string_view name, std::string_view syntax,
@@ -118,17 +117,17 @@ static_assert(has_slots(kOffset, {{slots::offset::kTranslation, 0, "X"}, {slots:
 
 constexpr Form kForms[] = {
     scalar_form(FormId::rob_cart_lin_vel, "rob_cart_lin_vel", "rob_cart_lin_vel <lin_vel>", kLinearVelocity,
-                "sets the active robot's maximum velocity in linear moves", "rob_cart_lin_vel 1200.0"),
+                "sets the maximum velocity in linear moves", "rob_cart_lin_vel 1200.0"),
     scalar_form(FormId::rob_cart_lin_acc, "rob_cart_lin_acc", "rob_cart_lin_acc <lin_acc>", kLinearAcceleration,
-                "sets its maximum acceleration in linear moves", "rob_cart_lin_acc 4800.0"),
+                "sets the maximum acceleration in linear moves", "rob_cart_lin_acc 4800.0"),
     scalar_form(FormId::rob_cart_rot_vel, "rob_cart_rot_vel", "rob_cart_rot_vel <ang_vel>", kAngularVelocity,
-                "sets its maximum angular velocity of the tool in linear moves", "rob_cart_rot_vel 360.0"),
+                "sets the maximum angular velocity of the tool in linear moves", "rob_cart_rot_vel 360.0"),
     scalar_form(FormId::rob_cart_rot_acc, "rob_cart_rot_acc", "rob_cart_rot_acc <ang_acc>", kAngularAcceleration,
-                "sets its maximum angular acceleration of the tool in linear moves", "rob_cart_rot_acc 720.0"),
+                "sets the maximum angular acceleration of the tool in linear moves", "rob_cart_rot_acc 720.0"),
     scalar_form(FormId::rob_cart_vel_scal, "rob_cart_vel_scal", "rob_cart_vel_scal <scale>", kVelocityScale,
-                "scales its linear and angular velocity in linear moves", "rob_cart_vel_scal 0.3"),
+                "scales linear and angular velocity in linear moves", "rob_cart_vel_scal 0.3"),
     scalar_form(FormId::rob_cart_acc_scal, "rob_cart_acc_scal", "rob_cart_acc_scal <scale>", kAccelerationScale,
-                "scales its acceleration in linear moves", "rob_cart_acc_scal 0.65"),
+                "scales the acceleration in linear moves", "rob_cart_acc_scal 0.65"),
     scalar_form(FormId::rob_cart_fly_radius, "rob_cart_fly_radius", "rob_cart_fly_radius <fly_type> <fly_parameter>",
                 kFly,
                 "sets the fly point of linear moves: 0 below a fraction of the velocity, 1 within a distance, 2 within "

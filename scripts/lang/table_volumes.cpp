@@ -40,8 +40,8 @@ constexpr std::array<Choice, kVolumeTables - kFirst> table_choices() {
 constexpr auto kPlanes = plane_choices();
 constexpr Choice kPlaneModes[] = {{"active", "hides what lies beyond it"},
                                   {"reverse", "hides what lies before it"},
-                                  {"visible", "its outline is drawn, what it hides stays"},
-                                  {"off", "hides nothing and is not drawn"}};
+                                  {"visible", "draws its outline only"},
+                                  {"off", "ends both"}};
 constexpr auto kTables = table_choices<0>();
 constexpr auto kOtherTables = table_choices<1>();
 
@@ -92,17 +92,17 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kClip,
      .help = "sets the mode of a clipping plane of the volume",
-     .definition = "without a word: active; visible draws the plane's outline within the volume and changes nothing "
-                   "else, off ends both; off at the start; behind the word a volume may be named, as in each of these "
-                   "commands: the path of its component; refused in a cell without volumes"},
+     .definition = "the default mode is active; visible draws the plane's outline within the volume and changes "
+                   "nothing else, off ends both; off at the start; a volume may follow, as in all these commands: the "
+                   "path of its component; refused in a cell without volumes"},
     {.id = FormId::vv_clip_pos,
      .name = "VV_CLIP_POS",
      .syntax = "VV_CLIP_POS <plane> ELE <elevation> AZI <azimuth> DIST <distance>",
      .section = kSection,
      .parameters = kClipPosition,
      .help = "sets the position of a clipping plane in the volume's frame",
-     .definition = "the three groups come in any order; the frame's origin is the middle of the volume; the normal is "
-                   "(cos ELE cos AZI, cos ELE sin AZI, sin ELE), the distance is measured along it; the mode stays"},
+     .definition = "groups in any order; the origin is the middle of the volume; DIST is along the normal (cos ELE cos "
+                   "AZI, cos ELE sin AZI, sin ELE); the mode stays"},
     {.id = FormId::vv_set_lut,
      .name = "VV_SET_LUT",
      .syntax = "VV_SET_LUT <LUT_name>",
@@ -132,7 +132,7 @@ constexpr Form kForms[] = {
      .section = kSection,
      .parameters = kReload,
      .help = "reloads all look-up tables",
-     .definition = "reads the tables of users in the cell folder's envlib again; a file with an error changes nothing"},
+     .definition = "reads the users' tables in the cell folder's envlib again; a faulty file changes nothing"},
 };
 
 }  // namespace

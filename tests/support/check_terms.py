@@ -49,12 +49,12 @@ def prose_pattern(phrase: str) -> re.Pattern:
 
 
 def retired_words(glossary: str) -> list[Retired]:
-    """The rows of every table of the glossary: term | meaning | retired identifiers | retired prose."""
+    """The rows of the glossary's table of retired words: use instead | retired identifiers | retired prose."""
     words = []
     for row in glossary.splitlines():
-        if not row.startswith("|") or len(cells(row)) != 4 or cells(row)[0] in ("term", "---"):
+        if not row.startswith("|") or len(cells(row)) != 3 or cells(row)[0] in ("use instead", "---"):
             continue
-        term, _, identifiers, prose = cells(row)
+        term, identifiers, prose = cells(row)
         words += [Retired(identifier_pattern(word), word, term, False) for word in re.findall(r"`([^`]+)`", identifiers)]
         words += [Retired(prose_pattern(word.strip()), word.strip(), term, True) for word in prose.split(",") if word.strip()]
     return words

@@ -46,7 +46,7 @@ void PendingMoves::end(const Watched& watched, motion::Outcome outcome) const {
       return;
     case motion::Outcome::superseded:
       watched.activity->refuse({fmt::format("a newer command took the place of this move of {}", robot_),
-                                "MOVE_ROB moves it behind what it does"});
+                                "MOVE_ROB queues a move behind its present ones"});
       return;
     case motion::Outcome::stopped:
       watched.activity->refuse({fmt::format("{} was stopped before it arrived", robot_), {}});

@@ -74,8 +74,8 @@ class ManualScript(unittest.TestCase):
         names = {*(example.split()[0] for example in REFUSED), CONTRADICTION, "TF_LOAD"}
         for name in sorted(names):
             entry = next((one for one in entries if one.startswith(name + " ")), "")
-            self.assertIn("Beside the manual's other examples: ", entry, name)
-        self.assertEqual(page.count("Beside the manual's other examples: "), len(names))
+            self.assertRegex(entry, r"(?m)^Example: `[^`]+` \(.+\)$", name)
+        self.assertEqual(len(re.findall(r"(?m)^Example: `[^`]+` \(", page)), len(names))
 
 
 if __name__ == "__main__":
