@@ -40,8 +40,8 @@ def purpose(folder: str) -> str:
 
 
 def table(rows: dict[str, list[str]]) -> str:
-    lines = ["| folder | what it is for | may include |", "| --- | --- | --- |"]
-    lines += [f"| `{folder}` | {purpose(folder)} | {names(allowed)} |" for folder, allowed in rows.items() if folder != "tests"]
+    lines = ["| folder | what it is for |", "| --- | --- |"]
+    lines += [f"| `{folder}` | {purpose(folder)} |" for folder in rows if folder != "tests"]
     return "\n".join(lines)
 
 
