@@ -36,16 +36,6 @@ bool is_loopback(std::string_view address) {
   return address.starts_with("127.") && is_numeric(AF_INET, address);
 }
 
-bool is_origin(std::string_view text) {
-  const std::string_view host = host_of(text);
-  if (!text.starts_with("http://") && !text.starts_with("https://")) return false;
-  return !host.empty() && host.size() <= 255 && std::ranges::all_of(host, [](char c) {
-    constexpr std::string_view kOthers = "-.:[]";
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           kOthers.find(c) != std::string_view::npos;
-  });
-}
-
 AccessRules::AccessRules(std::string_view address, int port, std::vector<std::string> origins)
     : loopback_(is_loopback(address)), port_(":" + std::to_string(port)), origins_(std::move(origins)) {}
 

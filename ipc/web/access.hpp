@@ -32,8 +32,6 @@ class AccessRules {
 
 // Whether only this machine can reach the address.
 [[nodiscard]] bool is_loopback(std::string_view address);
-// "http://host[:port]" or "https://host[:port]", without a path.
-[[nodiscard]] bool is_origin(std::string_view text);
 
 // Takes a time that depends on the length of `given` alone. An empty token never matches.
 [[nodiscard]] bool token_matches(std::string_view given, std::string_view token);

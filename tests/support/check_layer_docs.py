@@ -26,6 +26,9 @@ def names(folders: list[str]) -> str:
     return ", ".join(f"`{folder}`" for folder in folders) or "nothing of this project"
 
 
+LONGEST_PURPOSE = 14  # words; of a longer sentence the table has what stands before the first colon
+
+
 def purpose(folder: str) -> str:
     """What the README's title says behind its colon, else its first sentence; without links."""
     readme = ROOT / folder / "README.md"
@@ -36,12 +39,15 @@ def purpose(folder: str) -> str:
         return title.split(": ", 1)[1]
     paragraph = " ".join(body.strip().split("\n\n")[0].split())
     paragraph = re.sub(r"^- (\*\*Purpose\*\*: )?", "", re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", paragraph))
-    return re.split(r"(?<=[.]) ", paragraph)[0].rstrip(".:").replace("|", "/")
+    sentence = re.split(r"(?<=[.]) ", paragraph)[0]
+    if len(sentence.split()) > LONGEST_PURPOSE:
+        sentence = sentence.split(": ", 1)[0]
+    return sentence.rstrip(".:").replace("|", "/")
 
 
 def table(rows: dict[str, list[str]]) -> str:
-    lines = ["| folder | what it is for | may include |", "| --- | --- | --- |"]
-    lines += [f"| `{folder}` | {purpose(folder)} | {names(allowed)} |" for folder, allowed in rows.items() if folder != "tests"]
+    lines = ["| folder | what it is for |", "| --- | --- |"]
+    lines += [f"| `{folder}` | {purpose(folder)} |" for folder in rows if folder != "tests"]
     return "\n".join(lines)
 
 

@@ -17,6 +17,8 @@ from sbom_test import check_form
 WORK = g.SOURCE / "build-package-test"
 UPGRADE = "99.0.0"
 CELL = "/usr/share/cellmirror/cells/transfer_cell"
+TISSUE = "/usr/share/cellmirror/cells/trainer"
+EXPOSURE = 20  # of systemd-analyze security, in tenths
 LARGEST_PROGRAM = 16 << 20  # bytes; a build for development has six times as many
 
 
@@ -220,13 +222,17 @@ class Packages(unittest.TestCase):
         self.root.sh(f"""
           apt-get update -qq; apt-get install -y -qq --no-install-recommends systemd iproute2 /packages/*.deb
           cp -r {CELL} /etc/cellmirror/cells/first
+          cp -r {TISSUE} /etc/cellmirror/cells/second
           printf '\\n[web]\\nport = 8431\\n' >>/etc/cellmirror/cells/first/cell.toml
+          cp /lib/systemd/system/cellmirror@.service /tmp/cellmirror@first.service
+          systemd-analyze security --offline=yes --no-pager --threshold={EXPOSURE} /tmp/cellmirror@first.service >/dev/null
           mkdir -p /etc/systemd/system/cellmirror@.service.d
           printf '[Service]\\nWatchdogSec=2\\n{more}' >/etc/systemd/system/cellmirror@.service.d/soon.conf
         """)
         booted = Booted(self.root)
         try:
             self.check_the_service(booted)
+            self.check_the_priority_of_tissue(booted)
         finally:
             booted.close()
             self.root.sh("apt-get purge -y -qq cellmirror cellmirror-doc; rm -r /etc/cellmirror /etc/systemd/system/cellmirror@.service.d")
@@ -253,6 +259,17 @@ class Packages(unittest.TestCase):
         self.assertTrue(after, booted.sh("journalctl -u cellmirror@first --no-pager | tail -n 20"))
         booted.sh("systemctl stop cellmirror@first")
         self.assertIn("Result=success", booted.sh("systemctl show cellmirror@first -p Result"))
+
+    def check_the_priority_of_tissue(self, booted):
+        """LimitNICE= lets its thread go before the others."""
+        booted.sh("systemctl start cellmirror@second || { journalctl -u cellmirror@second --no-pager; exit 1; }")
+        # Behind the name in stat, which may contain blanks: the nice value is the 17th field.
+        threads = """for task in /proc/$(systemctl show --value -p MainPID cellmirror@second)/task/*; do
+                       echo "$(cat $task/comm) $(sed 's/.*) //' $task/stat | cut -d' ' -f17)"; done"""
+        nice = g.eventually(lambda: re.search(r"^tissue (-?\d+)$", booted.sh(threads), re.MULTILINE), timeout=20)
+        self.assertTrue(nice, booted.sh(threads))
+        self.assertEqual(nice[1], "-10")
+        booted.sh("systemctl stop cellmirror@second")
 
     def restarted(self, booted, before):
         shown = dict(line.split("=", 1) for line in booted.sh(
