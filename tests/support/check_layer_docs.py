@@ -45,9 +45,13 @@ def purpose(folder: str) -> str:
     return sentence.rstrip(".:").replace("|", "/")
 
 
+def with_capital(text: str) -> str:
+    return text if "_" in text.split(" ")[0] else text[:1].upper() + text[1:]
+
+
 def table(rows: dict[str, list[str]]) -> str:
     lines = ["| folder | what it is for |", "| --- | --- |"]
-    lines += [f"| `{folder}` | {purpose(folder)} |" for folder in rows if folder != "tests"]
+    lines += [f"| `{folder}` | {with_capital(purpose(folder))} |" for folder in rows if folder != "tests"]
     return "\n".join(lines)
 
 
