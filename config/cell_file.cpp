@@ -67,13 +67,25 @@ void check_streams(const CellReader& reader, const std::string& file, const Stre
 
 }  // namespace
 
-std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnostics, const LoadProgress& progress,
+fs::path cell_file_of(const fs::path& path) {
+  std::error_code unreadable;  // reading it says why
+  return fs::is_directory(path, unreadable) ? path / "cell.toml" : path;
+}
+
+std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnostics, const LoadProgress& progress,
                                     const StreamCheck& check_stream) {
+  const fs::path path = cell_file_of(given);
   const Place whole_file{path.string(), 0, 0};
   const auto refuse = [&](const Error& error) {
     diagnostics.error(whole_file, error.what, error.remedy);
     return std::nullopt;
   };
+  std::error_code unreadable;
+  if (path != given && !fs::exists(path, unreadable)) {
+    diagnostics.error({given.string(), 0, 0}, "there is no cell.toml in this folder",
+                      "name a cell file, or the folder of a cell");
+    return std::nullopt;
+  }
   const auto text = read_text_file(path, kLargestText);
   if (!text) return refuse(text.error());
   auto home = KismetHome::of_cell(path);

@@ -102,7 +102,11 @@ using LoadProgress = std::function<void(std::size_t done, std::size_t total, std
 // Called for each valid stream, also if the cell has errors: its driver's diagnostics.
 using StreamCheck = std::function<void(const RobotStream& stream, Diagnostics& diagnostics)>;
 
-// Nothing if there is any error; all diagnostics of all files in `diagnostics`, each with file:line:column.
+// A folder stands for the cell.toml in it; any other path for itself.
+[[nodiscard]] std::filesystem::path cell_file_of(const std::filesystem::path& path);
+
+// `path`: the cell file or its folder. Nothing if there is any error; all diagnostics of all files in `diagnostics`,
+// each with file:line:column.
 [[nodiscard]] std::optional<LoadedCell> load_cell(const std::filesystem::path& path, Diagnostics& diagnostics,
                                                   const LoadProgress& progress = {},
                                                   const StreamCheck& check_stream = {});

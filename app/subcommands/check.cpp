@@ -55,7 +55,8 @@ struct Checked {
   const program::Language* language = nullptr;  // null: by the extension
 };
 
-void check_one(const std::filesystem::path& path, const Checked& against, Diagnostics& diagnostics) {
+void check_one(const std::filesystem::path& given, const Checked& against, Diagnostics& diagnostics) {
+  const std::filesystem::path path = cell_file_of(given);
   ProgressLine line("files loaded");
   const program::Language* language = against.language;
   if (language != nullptr) check_language(path, *language, diagnostics);
@@ -135,7 +136,8 @@ void add_check(cli::Command program, Action& action) {
   auto options = std::make_shared<CheckOptions>();
   cli::Command sub = program.subcommand("check", "Check files and print everything that is wrong with them");
   sub.option("files", options->files,
-             ".spt .toml .mpc .urdf .mpo .hyper .msh .vws .lay .dbc .eds .dcf " + program_extensions())
+             ".spt .toml .mpc .urdf .mpo .hyper .msh .vws .lay .dbc .eds .dcf " + program_extensions() +
+                 ", or the folder of a cell")
       .required();
   auto cell = sub.option("--cell", options->cell,
                          "check names, files and ranges in SCRIPT, view files and programs against this cell");

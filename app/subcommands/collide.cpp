@@ -102,7 +102,7 @@ int collide(const CollideOptions& options) {
 void add_collide(cli::Command program, Action& action) {
   auto options = std::make_shared<CollideOptions>();
   cli::Command sub = program.subcommand("collide", "Find what touches and what is near in a cell");
-  sub.option("--cell", options->cell, "the cell file").required();
+  sub.option("--cell", options->cell, "the cell file or its folder").required();
   auto postures = sub.option("--poses", options->postures,
                              "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
   auto warning = sub.option("--warning", options->warning, "warning distance in m, instead of the cell file's")

@@ -65,7 +65,7 @@ int range(const RangeOptions& options) {
 void add_range(cli::Command program, Action& action) {
   auto options = std::make_shared<RangeOptions>();
   cli::Command sub = program.subcommand("range", "Read the ultrasonic sensors of a cell");
-  sub.option("--cell", options->cell, "the cell file").required();
+  sub.option("--cell", options->cell, "the cell file or its folder").required();
   sub.option("--poses", options->postures,
              "CSV of postures: header robot.joint,...; rad or m; default: the start posture");
   sub.option("--plot", options->plot, "draw the readings over the frames: a PNG file");

@@ -12,6 +12,7 @@
 #include "app/subcommands/end_signals.hpp"
 #include "app/subcommands/resource_limits.hpp"
 #include "app/subcommands/subcommand.hpp"
+#include "config/cell_file.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/service_manager/notifier.hpp"
 #include "ipc/service_manager/service_watchdog.hpp"
@@ -82,7 +83,7 @@ int run(const RunOptions& options) {
   gateway_options.headless = options.headless;
   gateway_options.web = !options.no_web;
   if (options.port != kNoPort) gateway_options.port = options.port;
-  gateway_options.cell_file = options.cell;
+  gateway_options.cell_file = cell_file_of(options.cell);
   gateway_options.state = options.state;
   if (!options.script.empty()) gateway_options.startup_script = options.script;
   if (options.rate_hz > 0) gateway_options.rate_hz = options.rate_hz;
@@ -104,7 +105,7 @@ int run(const RunOptions& options) {
 void add_run(cli::Command program, Action& action) {
   auto options = std::make_shared<RunOptions>();
   cli::Command sub = program.subcommand("run", "Start the gateway of a cell; Ctrl-C ends it");
-  sub.option("cell", options->cell, "the cell file, e.g. config/cells/transfer_cell/cell.toml").required();
+  sub.option("cell", options->cell, "the cell file or its folder, e.g. config/cells/transfer_cell").required();
   sub.option("--script", options->script,
              "startup SCRIPT, instead of the cell file's own: any path, or a name in the scripts/ of the cell");
   sub.option("--for", options->seconds, "end after this many seconds").positive();

@@ -115,7 +115,7 @@ void add_simulate(cli::Command program, Action& action) {
   auto options = std::make_shared<SimulateOptions>();
   cli::Command sub =
       program.subcommand("simulate", "Run a script and its robot programs off line, faster than real time");
-  sub.option("--cell", options->cell, "the cell file").required();
+  sub.option("--cell", options->cell, "the cell file or its folder").required();
   sub.option("--script", options->simulation.script, "the SCRIPT file: any path, or a name in the scripts/ of the cell")
       .required();
   auto off = sub.flag("--no-collisions", options->no_collisions, "do not test for collisions");

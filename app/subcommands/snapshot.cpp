@@ -176,7 +176,8 @@ void add_snapshot(cli::Command program, Action& action) {
   cli::Command sub =
       program.subcommand("snapshot", "Take a picture or a film of the running gateway, or of a cell file");
   sub.option("-o,--output", options->output, "the picture: FILE.png or FILE.jpg");
-  auto cell = sub.option("--cell", options->cell, "of this cell file at its start; needs no gateway");
+  auto cell =
+      sub.option("--cell", options->cell, "of this cell file, or folder of a cell, at its start; needs no gateway");
   sub.option("--instance", options->instance, "name of the gateway").show_default().excludes(cell);
   auto view = sub.option("--view", options->wanted.view, "view 0 to 6; else the display as SCRIPT has set it");
   view.between(0, 6);

@@ -51,6 +51,15 @@ TEST_F(CellFile, hasDefaultsForEverythingButFormatAndName) {
   EXPECT_TRUE(sut->streams.empty());
 }
 
+TEST_F(CellFile, isFoundInItsFolder) {
+  const std::filesystem::path file = home.write("cell.toml", "format = 1\nname = \"c\"\n");
+  const auto sut = load_cell(file.parent_path(), diagnostics);
+  ASSERT_TRUE(sut) << findings();
+  EXPECT_EQ(sut->name, "c");
+  EXPECT_FALSE(load_cell(file.parent_path() / "envlib", diagnostics));
+  EXPECT_THAT(findings(), HasSubstr("no cell.toml in this folder"));
+}
+
 TEST_F(CellFile, readsGravity) {
   auto sut = load("");
   ASSERT_TRUE(sut) << findings();
@@ -422,7 +431,7 @@ TEST_F(CellFile, refusesWhatIsNoReadableFile) {
     return found.text();
   };
   EXPECT_THAT(refused(home.root() / "none.toml"), HasSubstr("No such file"));
-  EXPECT_THAT(refused(home.root()), HasSubstr("is a folder"));
+  EXPECT_THAT(refused(home.root()), HasSubstr("no cell.toml in this folder"));
   EXPECT_THAT(refused(home.write("noise.toml", std::string("\xff\xfe\x00\x01", 4))), HasSubstr("noise.toml"));
 }
 
