@@ -233,6 +233,7 @@ class Packages(unittest.TestCase):
         try:
             self.check_the_service(booted)
             self.check_the_priority_of_tissue(booted)
+            self.check_upgrade_and_removal(booted)
         finally:
             booted.close()
             self.root.sh("apt-get purge -y -qq cellmirror cellmirror-doc; rm -r /etc/cellmirror /etc/systemd/system/cellmirror@.service.d")
@@ -270,6 +271,18 @@ class Packages(unittest.TestCase):
         self.assertTrue(nice, booted.sh(threads))
         self.assertEqual(nice[1], "-10")
         booted.sh("systemctl stop cellmirror@second")
+
+    def check_upgrade_and_removal(self, booted):
+        """A running gateway stays through an upgrade of the packages, and stops when they are removed."""
+        state = "systemctl show cellmirror@first -p ActiveState -p MainPID"
+        booted.sh("systemctl start cellmirror@first")
+        before = booted.sh(state)
+        shutil.copytree(self.later, self.root.folder / "var/later")
+        booted.sh("dpkg --install /var/later/*.deb")
+        self.assertEqual(booted.sh(state), before)
+        booted.sh("dpkg --remove cellmirror cellmirror-doc")
+        self.assertIn("ActiveState=inactive", booted.sh(state))
+        shutil.rmtree(self.root.folder / "var/later")
 
     def restarted(self, booted, before):
         shown = dict(line.split("=", 1) for line in booted.sh(
