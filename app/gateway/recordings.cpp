@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "app/recording/build_identity.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "app/report/status_recordings.hpp"
 #include "ipc/record/compression.hpp"
 #include "rt_core/base/log.hpp"

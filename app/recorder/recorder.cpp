@@ -7,7 +7,7 @@
 
 #include "app/io/command_log.hpp"
 #include "app/io/publisher.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "drivers/dds/sensor_ranges.hpp"
 #include "rt_core/rt/scheduling.hpp"
 

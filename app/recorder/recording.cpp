@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/utc_text.hpp"
 #include "rt_core/rt/scheduling.hpp"

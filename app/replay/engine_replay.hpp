@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/replay/tick_inputs.hpp"
+#include "app/recording_layout/tick_inputs.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/input_commands.hpp"

@@ -17,7 +17,7 @@
 #include "app/console/put.hpp"
 #include "app/proximity/cell_comparison.hpp"
 #include "app/recording/recording_export.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "rt_core/base/text.hpp"
 

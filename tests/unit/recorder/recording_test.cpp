@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "app/recorder/recording_hub.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "ipc/record/reader.hpp"
 
 namespace cellmirror::app {
