@@ -139,7 +139,7 @@ std::optional<LoadedCell> load_cell(const fs::path& path, Diagnostics& diagnosti
                     std::move(reader.views),
                     std::move(layout),
                     std::move(reader.startup_script),
-                    source->files(),
+                    files.found(),
                     std::move(*cell)};
 }
 

@@ -41,6 +41,7 @@ RecordSettings read_record(TableReader& top) {
   if (settings.file_s > settings.length_s || settings.length_s / settings.file_s > kMostFilesOfRing)
     table->error("file_s", "a ring has 1 to 1000 files", "give a file_s between length_s / 1000 and length_s");
   settings.most_mb = static_cast<std::uint64_t>(table->integer("most_mb", 1, 1'000'000).value_or(1024));
+  settings.attach_mb = static_cast<std::uint64_t>(table->integer("attach_mb", 0, 1024).value_or(64));
   settings.keep_after_s = table->number("keep_after_s", {0.0, 600.0}).value_or(settings.keep_after_s);
   settings.rate_hz = table->number("rate_hz", {0.1, 4000.0}).value_or(settings.rate_hz);
   settings.compression = table->choice<std::string>("compression", {{"zstd", "zstd"}, {"lz4", "lz4"}, {"none", "none"}})

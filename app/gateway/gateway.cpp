@@ -573,7 +573,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->start_fault_monitor();
   parts->make_page(options, web);
   parts->recordings.describe({options.instance, parts->cell_name, parts->loop_settings.rate_hz,
-                              cell_attachments(parts->home->root(), files),
+                              cell_files(parts->home->root(), files),
                               std::filesystem::absolute(files.front()).lexically_normal().string()});
   parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());

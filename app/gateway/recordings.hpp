@@ -23,7 +23,7 @@ class Recordings {
     std::string instance;
     std::string cell;
     double rate_hz = 0;  // of the loop
-    std::vector<RecordingAttachment> files;
+    CellFiles files;
     std::string cell_file;  // where it is
   };
 
@@ -68,10 +68,5 @@ class Recordings {
   CanTap can_tap_;
   std::unique_ptr<Recorder> recorder_;
 };
-
-// The files of a cell as attachments: `root` and those below it by their place in it. At most 16 MiB together; what is
-// left out, or cannot be read, is logged.
-[[nodiscard]] std::vector<RecordingAttachment> cell_attachments(const std::filesystem::path& root,
-                                                                const std::vector<std::filesystem::path>& files);
 
 }  // namespace cellmirror::app

@@ -219,6 +219,13 @@ void Recording::loop() {
   ended_ = true;
 }
 
+std::uint64_t Recording::most_attached() const {
+  if (!options_.ring) return options_.most_attached;
+  const RecordingRing& ring = *options_.ring;
+  const auto files = static_cast<std::uint64_t>(ring.length / std::max(ring.file_length, Nanoseconds(1)) + 1);
+  return std::min(options_.most_attached, ring.most_bytes / files / 4);
+}
+
 Result<void> Recording::open_file() {
   const Timestamp now = clock_.now();
   std::filesystem::path path = options_.file;
@@ -230,9 +237,12 @@ Result<void> Recording::open_file() {
   Result<void> step = file->writer.begin();
   if (step) step = file->writer.put(mcap::Metadata{std::string(kGatewayName), options_.about});
   const auto wall = static_cast<std::uint64_t>(to_wall_clock_ns(now));
-  for (const RecordingAttachment& one : options_.attachments)
-    if (step) step = file->writer.put({wall, wall, one.name, one.media_type, mcap::view_of(one.content)});
   if (!step) return step;
+  const auto left_out = attach_cell_files(file->writer, options_.cell, most_attached(), wall);
+  if (!left_out) return std::unexpected(left_out.error());
+  if (report_.files == 0) {
+    for (const std::string& one : *left_out) log_warning("recording", "{} is not attached", one);
+  }
   file_ = std::move(file);
   const std::scoped_lock lock(mutex_);
   file_->bytes_before = report_.bytes;

@@ -33,6 +33,7 @@ struct RecordOptions {
   std::vector<std::string> topics;
   double seconds = 0;
   double rate_hz = 100;
+  double attach_mb = 64;
   std::string compression = "zstd";
   std::string instance{kDefaultInstance};
   bool json = false;
@@ -60,6 +61,7 @@ ControlRequest start_request(const RecordOptions& options) {
            {"topics", topics},
            {"compression", options.compression},
            {"rate_hz", fmt::format("{}", options.rate_hz)},
+           {"attach_mb", fmt::format("{}", options.attach_mb)},
            {"for_s", fmt::format("{}", options.seconds)}}};
 }
 
@@ -115,6 +117,9 @@ void add_record(cli::Command program, Action& action) {
   sub.option("--topics", options->topics, "only these, e.g. /joint_states,/cellmirror/*").list_divided_by(',');
   sub.option("--rate", options->rate_hz, "robot states a second, at most as many as the loop has periods")
       .between(0.1, 4000.0)
+      .show_default();
+  sub.option("--attach-mb", options->attach_mb, "megabytes of the cell's files that are attached at most")
+      .between(0.0, 1024.0)
       .show_default();
   sub.option("--compression", options->compression, "of the file").one_of({"zstd", "lz4", "none"}).show_default();
   sub.option("--instance", options->instance, "name of the gateway").show_default();
