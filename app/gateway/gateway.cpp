@@ -248,6 +248,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .memory_mode = queues.mode,
                        .guard = options.guard,
                        .can_tap = &recordings.can_tap(),
+                       .payload_tap = &recordings.payload_tap(),
                        .save_flight_record = save,
                        .record = [this](RecordAction action) { return recordings.switch_ring(action); },
                        .acknowledge_alarms = [this](std::string_view name, std::uint64_t alarm) -> Result<std::string> {
@@ -333,7 +334,7 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
 void Gateway::Parts::start_recorder(const RecordSettings& settings) {
   recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
-                    loop->options().period, [this] { return status(); }, nullptr, &engine->inputs()});
+                    loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs()});
 }
 
 void Gateway::Parts::start_fault_monitor() {

@@ -93,6 +93,7 @@ Result<void> Recordings::switch_ring(RecordAction action) {
 
 void Recordings::watch(Recorder::Sources sources) {
   sources.can_tap = &can_tap_;
+  sources.payload_tap = &payload_tap_;
   sources.keeps_collisions = settings_.keep_on_collision;
   recorder_ = std::make_unique<Recorder>(std::move(sources), hub_);
 }

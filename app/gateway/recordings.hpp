@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/io/can_tap.hpp"
+#include "app/io/payload_tap.hpp"
 #include "app/live/live_topics.hpp"
 #include "app/recorder/recorder.hpp"
 #include "app/recorder/recording_hub.hpp"
@@ -54,6 +55,7 @@ class Recordings {
   // What clients watch; lives as long as this.
   [[nodiscard]] LiveTopics& live() { return *live_; }
   [[nodiscard]] CanTap& can_tap() { return can_tap_; }
+  [[nodiscard]] PayloadTap& payload_tap() { return payload_tap_; }
   [[nodiscard]] const RecordingHub& hub() const { return hub_; }
 
  private:
@@ -66,6 +68,7 @@ class Recordings {
   RecordingHub hub_;
   RecordedTexts texts_;
   CanTap can_tap_;
+  PayloadTap payload_tap_;
   std::unique_ptr<Recorder> recorder_;
 };
 

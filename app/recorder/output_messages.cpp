@@ -56,6 +56,8 @@ constexpr std::string_view kCanSchema = R"({
 "time_ns":{"type":"integer"},"sent":{"type":"boolean"},"id":{"type":"integer"},
 "frame":{"type":"string","description":"as candump writes it"}}})";
 
+constexpr std::string_view kRtdeEncoding = "cellmirror.rtde";
+
 constexpr std::string_view kStatusSchema = R"({"type":"object","title":"the document of cellmirror status"})";
 
 TopicPtr ros2_topic(std::string name, std::string_view type, std::string definition, Importance importance) {
@@ -135,6 +137,16 @@ TopicPtr OutputTopics::wrench(std::string_view robot) {
 }
 TopicPtr OutputTopics::can_frames(std::string_view robot) {
   return json_topic(dds::topic_of("robot", "/inputs/can", robot), "cellmirror.CanFrame", kCanSchema, Importance::event);
+}
+TopicPtr OutputTopics::dds_samples(std::string_view robot) {
+  return ros2_topic(dds::topic_of("robot", "/inputs/dds", robot), "sensor_msgs/msg/JointState", ros2::joint_state(),
+                    Importance::event);
+}
+TopicPtr OutputTopics::rtde_packages(std::string_view robot) {
+  return std::make_shared<const Topic>(Topic{dds::topic_of("robot", "/inputs/rtde", robot), std::string(kRtdeEncoding),
+                                             "cellmirror.RtdeData", std::string(kRtdeEncoding),
+                                             "A data package of RTDE without its head, as received (docs/recording.md).",
+                                             Importance::event});
 }
 TopicPtr OutputTopics::joint_states(mcap::Texts joints) {
   return std::make_shared<const Topic>(Topic{"/joint_states", "cdr", "sensor_msgs/msg/JointState", "ros2msg",
