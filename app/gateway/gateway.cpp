@@ -334,7 +334,8 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
 void Gateway::Parts::start_recorder(const RecordSettings& settings) {
   recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
-                    loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs()});
+                    loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs(),
+                    [this](const PictureRequest& request) { return renderer->open_pictures(request); }});
 }
 
 void Gateway::Parts::start_fault_monitor() {

@@ -78,6 +78,7 @@ void Recordings::begin_ring(const RecordSettings& settings, const Result<std::fi
   options.topics = settings.topics;
   options.compression = mcap::compression_of(settings.compression).value_or(mcap::Compression::zstd);
   options.rate_hz = settings.rate_hz;
+  for (const RecordedPicture& one : settings.pictures) options.pictures.push_back({one.view, one.rate_hz});
   options.most_attached = settings.attach_mb * 1'000'000;
   fill_about(options);
   hub_.set_ring_options(std::move(options));
@@ -131,6 +132,14 @@ Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) c
       number_of_argument(request, "attach_mb", 1e-6 * static_cast<double>(kMostAttached), 0.0, kMostAttached_mb);
   if (!attached) return std::unexpected(attached.error());
   options.most_attached = static_cast<std::uint64_t>(1e6 * *attached);
+  for (const std::string& text : divided(request.argument("pictures").value_or(""))) {
+    const auto picture = recorded_picture(text);
+    if (!picture)
+      return fail(fmt::format("{} is no view with a rate", printable(text)), "write VIEW@HZ, with 0.01 to 10 Hz");
+    options.pictures.push_back({picture->view, picture->rate_hz});
+  }
+  if (options.pictures.size() > kMostRecordedPictures)
+    return fail(fmt::format("more than {} views are to be recorded", kMostRecordedPictures));
   options.lease = kLease;
   fill_about(options);
   return options;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/recorder/picture_recorder.hpp"
 #include "app/recorder/ros2_definitions.hpp"
 #include "app/snapshot/proximity_words.hpp"
 #include "drivers/can/channel/candump_line.hpp"
@@ -143,10 +144,14 @@ TopicPtr OutputTopics::dds_samples(std::string_view robot) {
                     Importance::event);
 }
 TopicPtr OutputTopics::rtde_packages(std::string_view robot) {
-  return std::make_shared<const Topic>(Topic{dds::topic_of("robot", "/inputs/rtde", robot), std::string(kRtdeEncoding),
-                                             "cellmirror.RtdeData", std::string(kRtdeEncoding),
-                                             "A data package of RTDE without its head, as received (docs/recording.md).",
-                                             Importance::event});
+  return std::make_shared<const Topic>(
+      Topic{dds::topic_of("robot", "/inputs/rtde", robot), std::string(kRtdeEncoding), "cellmirror.RtdeData",
+            std::string(kRtdeEncoding), "A data package of RTDE without its head, as received (docs/recording.md).",
+            Importance::event});
+}
+TopicPtr OutputTopics::pictures(std::string_view view) {
+  return ros2_topic(pictures_topic_name(view), "sensor_msgs/msg/CompressedImage", ros2::compressed_image(),
+                    Importance::picture);
 }
 TopicPtr OutputTopics::joint_states(mcap::Texts joints) {
   return std::make_shared<const Topic>(Topic{"/joint_states", "cdr", "sensor_msgs/msg/JointState", "ros2msg",

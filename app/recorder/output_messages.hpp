@@ -34,6 +34,8 @@ struct OutputTopics {
   // "/inputs/dds/ROBOT", "/inputs/rtde/ROBOT": what its stream received, byte by byte.
   static TopicPtr dds_samples(std::string_view robot);
   static TopicPtr rtde_packages(std::string_view robot);
+  // "/cellmirror/pictures/VIEW": sensor_msgs/msg/CompressedImage.
+  static TopicPtr pictures(std::string_view view);
   // With "joint:NAME" = "ROBOT.JOINT" for each joint.
   static TopicPtr joint_states(mcap::Texts joints);
 };

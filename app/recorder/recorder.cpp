@@ -39,6 +39,7 @@ bool is_due(Timestamp now, Timestamp& last, Nanoseconds period) {
 Recorder::Recorder(Sources sources, RecordingHub& hub)
     : sources_(std::move(sources)),
       hub_(hub),
+      pictures_(sources_.open_pictures, hub),
       inputs_(sources_.engine_inputs != nullptr ? std::make_unique<InputRecorder>(*sources_.engine_inputs, hub)
                                                 : nullptr),
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
@@ -72,6 +73,7 @@ void Recorder::loop(const std::stop_token& stop) {
     if (state.time.known()) look(state, rate_hz);
     record_inputs();
     record_status(now);
+    pictures_.look(now);
     // The tick that is due next, and a little later.
     const auto period = std::max(sources_.tick_period, Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)));
     const std::int64_t ticks = std::max<std::int64_t>(1, (period + sources_.tick_period / 2) / sources_.tick_period);

@@ -16,6 +16,7 @@
 #include "app/io/payload_tap.hpp"
 #include "app/recorder/input_recorder.hpp"
 #include "app/recorder/output_messages.hpp"
+#include "app/recorder/picture_recorder.hpp"
 #include "app/recorder/recording_hub.hpp"
 #include "app/snapshot/board.hpp"
 #include "app/snapshot/cell_state.hpp"
@@ -47,6 +48,7 @@ class Recorder {
     CanTap* can_tap = nullptr;                  // null: frames are not recorded
     PayloadTap* payload_tap = nullptr;          // null: what DDS and RTDE streams receive is not recorded
     engine::InputTap* engine_inputs = nullptr;  // null: the inputs of the tick are not recorded
+    PictureRecorder::Open open_pictures = {};   // empty: no pictures are recorded
     bool keeps_collisions = false;              // the ring is kept where bodies touch
   };
 
@@ -110,6 +112,7 @@ class Recorder {
   Timestamp last_frames_;
   Timestamp last_findings_;
   Timestamp last_status_;
+  PictureRecorder pictures_;
   std::unique_ptr<InputRecorder> inputs_;  // null: none are recorded
   std::jthread thread_;                    // last: it uses everything above
 };

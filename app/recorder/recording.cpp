@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/recorder/picture_recorder.hpp"
 #include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/utc_text.hpp"
@@ -84,6 +85,8 @@ Recording::~Recording() {
 
 std::size_t Recording::limit_of(Importance importance) const {
   switch (importance) {
+    case Importance::picture:
+      return options_.buffer_bytes / 4;
     case Importance::bulk:
       return options_.buffer_bytes / 2;
     case Importance::state:
@@ -99,7 +102,7 @@ Recording::ChannelState& Recording::channel_of(const TopicPtr& topic) {
   if (is_new) {
     ChannelState state;
     state.topic = topic;
-    state.wanted = fits(options_.topics, topic->name) && channels_.size() < kMostTopics;
+    state.wanted = wants(*topic) && channels_.size() < kMostTopics;
     channels_.push_back(std::move(state));
   }
   return channels_[entry->second - 1U];
@@ -138,7 +141,11 @@ void Recording::count_missed(const TopicPtr& topic, std::uint64_t messages) {
   channel.dropped += messages;
 }
 
-bool Recording::wants(const Topic& topic) const { return fits(options_.topics, topic.name); }
+bool Recording::wants(const Topic& topic) const {
+  if (topic.importance != Importance::picture) return fits(options_.topics, topic.name);
+  return std::ranges::any_of(options_.pictures,
+                             [&](const WantedPicture& one) { return pictures_topic_name(one.view) == topic.name; });
+}
 
 void Recording::end() {
   {

@@ -38,10 +38,17 @@ struct RecordingRing {
 
 inline constexpr std::uint64_t kMostAttached = 64'000'000;
 
+// A view that is recorded as pictures: 0 to 6, or a camera. Not more often than that.
+struct WantedPicture {
+  std::string view;
+  double rate_hz = 1;
+};
+
 struct RecordingOptions {
   std::filesystem::path file;  // a new one; ignored with a ring
   std::optional<RecordingRing> ring;
-  std::vector<std::string> topics;  // none: all; "/tf", or "/cellmirror/*" for all that begin so
+  std::vector<std::string> topics;           // none: all; "/tf", or "/cellmirror/*" for all that begin so
+  std::vector<WantedPicture> pictures = {};  // beside the topics; none: no pictures
   mcap::Compression compression = mcap::Compression::zstd;
   double rate_hz = 100;   // of robot states, at most
   Nanoseconds length{0};  // ends after it; 0: no end
@@ -73,6 +80,7 @@ class Recording final : public TopicSink {
   bool keep();
   [[nodiscard]] RecordingReport report() const;
   [[nodiscard]] double rate_hz() const override { return options_.rate_hz; }
+  [[nodiscard]] const std::vector<WantedPicture>& pictures() const { return options_.pictures; }
 
  private:
   struct ChannelState {

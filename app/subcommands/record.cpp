@@ -31,6 +31,7 @@ constexpr int kLongestEnd = 150;  // looks: half a minute for what is in the buf
 struct RecordOptions {
   std::string output;
   std::vector<std::string> topics;
+  std::vector<std::string> pictures;
   double seconds = 0;
   double rate_hz = 100;
   double attach_mb = 64;
@@ -53,12 +54,16 @@ Result<json> ask(const RecordOptions& options, const ControlRequest& request) {
 ControlRequest action_request(const char* action) { return {"record", {{"action", action}}}; }
 
 ControlRequest start_request(const RecordOptions& options) {
-  std::string topics;
-  for (const std::string& topic : options.topics) topics += (topics.empty() ? "" : ",") + topic;
+  const auto joined = [](const std::vector<std::string>& texts) {
+    std::string out;
+    for (const std::string& text : texts) out += (out.empty() ? "" : ",") + text;
+    return out;
+  };
   return {"record",
           {{"action", "start"},
            {"file", std::filesystem::absolute(options.output).lexically_normal().string()},
-           {"topics", topics},
+           {"topics", joined(options.topics)},
+           {"pictures", joined(options.pictures)},
            {"compression", options.compression},
            {"rate_hz", fmt::format("{}", options.rate_hz)},
            {"attach_mb", fmt::format("{}", options.attach_mb)},
@@ -115,6 +120,9 @@ void add_record(cli::Command program, Action& action) {
   sub.option("-o,--output", options->output, "a new file").required().check(wrong_output, "F.mcap");
   sub.option("--for", options->seconds, "end after this many seconds; else by Ctrl-C").positive();
   sub.option("--topics", options->topics, "only these, e.g. /joint_states,/cellmirror/*").list_divided_by(',');
+  sub.option("--pictures", options->pictures,
+             "views as pictures: VIEW@HZ,..., a view (0 to 6) or a camera, at most 10 Hz")
+      .list_divided_by(',');
   sub.option("--rate", options->rate_hz, "robot states a second, at most as many as the loop has periods")
       .between(0.1, 4000.0)
       .show_default();

@@ -160,7 +160,7 @@ def recording():
     d.arrow(writer.bottom_at(), (790, 260), label="chunks in an MCAP file,\nat the latest after 0.5 s", at=(776, 222), anchor="end")
     d.box(730, 260, 120, 30, "F.mcap", "white", 12)
     d.text(20, 28, "The loop waits for none of them. What finds no room is left out and counted for its topic:", 13, "start")
-    d.text(500, 62, "half full: /tf, forces, status;  three quarters: states;\nfull: log, commands, events, inputs", 11, "start", colour=FAINT)
+    d.text(500, 62, "a quarter full: pictures;  half: /tf, forces, status;\nthree quarters: states;  full: log, commands, events, inputs", 11, "start", colour=FAINT)
     return d
 
 
