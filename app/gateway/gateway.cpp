@@ -575,15 +575,13 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->start_fault_monitor();
   parts->make_page(options, web);
   parts->recordings.describe({options.instance, parts->cell_name, parts->loop_settings.rate_hz,
-                              cell_files(parts->home->root(), files),
-                              std::filesystem::absolute(files.front()).lexically_normal().string()});
+                              cell_files(parts->home->root(), files), files.front().string()});
   parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
   watch_for_alarms(*parts->alarms, {parts->collisions->board(), *parts->faults,
                                     [all = parts.get()](const auto& look) { all->look_at(look); }});
   parts->page->open();
-  // Last: the startup script finds everything running.
-  parts->owner->start();
+  parts->owner->start();  // last: the startup script finds everything running
   return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));
 }
 
