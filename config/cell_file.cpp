@@ -151,7 +151,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
                     std::move(reader.views),
                     std::move(layout),
                     std::move(reader.startup_script),
-                    source->files(),
+                    files.found(),
                     std::move(*cell)};
 }
 

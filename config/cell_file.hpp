@@ -91,7 +91,7 @@ struct LoadedCell {
   std::vector<ViewSetting> views;
   DisplayLayout layout;                      // of the layout file, else the standard setting
   std::string startup_script;                // name of an existing file in the cell folder's scripts/; empty: none
-  std::vector<std::filesystem::path> files;  // every component file that was read
+  std::vector<std::filesystem::path> files;  // that were found: components, meshes, ...; no keys and certificates
   Cell cell;
 };
 

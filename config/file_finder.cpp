@@ -6,7 +6,9 @@
 #include <array>
 #include <string>
 #include <system_error>
+#include <utility>
 
+#include "config/mesh_check.hpp"
 #include "config/msh/msh_file.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -88,7 +90,25 @@ Result<fs::path> find_in_package(const KismetHome& root, const fs::path& urdf, s
 }  // namespace
 
 Result<fs::path> HomeFiles::find(FileUse use, std::string_view name) const {
-  return home_.file(folder_of(use, name), name, default_extension(use));
+  auto found = home_.file(folder_of(use, name), name, default_extension(use));
+  return use == FileUse::security ? found : noted(std::move(found));
+}
+
+Result<fs::path> HomeFiles::noted(Result<fs::path> found) const {
+  if (found) found_->note(*found);
+  return found;
+}
+
+// The reader of meshes takes them from the folder of the mesh.
+void HomeFiles::note_buffers(const fs::path& gltf) const {
+  constexpr std::size_t kMostBuffers = 16;
+  const auto text = read_text_file(gltf, kLargestMesh);
+  if (!text) return;
+  std::error_code error;
+  for (const std::string& name : gltf_buffer_files(*text, kMostBuffers)) {
+    const fs::path file = fs::weakly_canonical(gltf.parent_path() / name, error);
+    if (!error && !below(gltf.parent_path(), file).empty() && fs::is_regular_file(file, error)) found_->note(file);
+  }
 }
 
 Result<void> FileFinder::check_private(const fs::path& /*file*/) const { return {}; }
@@ -103,7 +123,7 @@ Result<void> HomeFiles::check_private(const fs::path& file) const {
 }
 
 Result<fs::path> HomeFiles::find_mesh_of_urdf(const fs::path& urdf, std::string_view name) const {
-  return find_named_in(urdf, "URDF", name, "mesh");
+  return noted(find_named_in(urdf, "URDF", name, "mesh"));
 }
 
 Result<fs::path> HomeFiles::find_named_in(const fs::path& file, std::string_view kind, std::string_view name,
@@ -137,7 +157,8 @@ Result<CollisionMesh> FileFinder::mesh(const fs::path&, const Eigen::Vector3d&, 
 Result<CollisionMesh> HomeFiles::mesh(const fs::path& file, const Eigen::Vector3d& scale,
                                       std::optional<CollideAs> collide_as, const Place& place,
                                       Diagnostics& diagnostics) const {
-  const auto beside = [&](const std::string& name) { return find_named_in(file, "mesh", name, "picture"); };
+  const auto beside = [&](const std::string& name) { return noted(find_named_in(file, "mesh", name, "picture")); };
+  if (!meshes_->is_counting() && equal_ignoring_case(file.extension().string(), ".gltf")) note_buffers(file);
   return meshes_->mesh(file, scale, collide_as.value_or(CollideAs::exact), beside, place, diagnostics);
 }
 
@@ -162,7 +183,16 @@ std::shared_ptr<const VolumeData> HomeFiles::volume(const VolumeRequest& request
     diagnostics.error(place, found.error().what, found.error().remedy);
     return nullptr;
   }
-  return volumes_->volume(*found, request, place, diagnostics);
+  auto volume = volumes_->volume(*found, request, place, diagnostics);
+  std::error_code error;
+  const bool is_folder = fs::is_directory(*found, error);
+  if (!is_folder) found_->note(*found);
+  if (!volume) return volume;
+  for (const std::string& name : volume->facts.files) {
+    const fs::path file = fs::weakly_canonical((is_folder ? *found : found->parent_path()) / name, error);
+    if (!error && fs::is_regular_file(file, error)) found_->note(file);
+  }
+  return volume;
 }
 
 Result<fs::path> AnyFile::find(FileUse, std::string_view name) const { return fs::path("/") / fs::path(name); }

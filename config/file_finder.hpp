@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "config/found_files.hpp"
 #include "config/mesh_library.hpp"
 #include "config/volume_library.hpp"
 #include "rt_core/base/home.hpp"
@@ -56,11 +57,12 @@ class FileFinder {
 
 class HomeFiles final : public FileFinder {
  public:
-  // Copies share their meshes.
+  // Copies share their meshes, and the list of what they found.
   explicit HomeFiles(KismetHome home)
       : home_(std::move(home)),
         meshes_(std::make_shared<MeshLibrary>()),
-        volumes_(std::make_shared<VolumeLibrary>(*meshes_)) {}
+        volumes_(std::make_shared<VolumeLibrary>(*meshes_)),
+        found_(std::make_shared<FoundFiles>()) {}
   [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override;
   [[nodiscard]] Result<void> check_private(const std::filesystem::path& file) const override;
   [[nodiscard]] Result<std::filesystem::path> find_mesh_of_urdf(const std::filesystem::path& urdf,
@@ -74,15 +76,20 @@ class HomeFiles final : public FileFinder {
                                                          Diagnostics& diagnostics) const override;
   [[nodiscard]] const KismetHome& home() const { return home_; }
   [[nodiscard]] MeshLibrary& meshes() const { return *meshes_; }
+  // All that was found, with what meshes and volumes name; without files of FileUse::security.
+  [[nodiscard]] const std::vector<std::filesystem::path>& found() const { return found_->files(); }
 
  private:
   // A file, a `what`, that `file`, a `kind`, names; the rules are those of find_mesh_of_urdf().
   [[nodiscard]] Result<std::filesystem::path> find_named_in(const std::filesystem::path& file, std::string_view kind,
                                                             std::string_view name, std::string_view what) const;
+  [[nodiscard]] Result<std::filesystem::path> noted(Result<std::filesystem::path> found) const;
+  void note_buffers(const std::filesystem::path& gltf) const;
 
   KismetHome home_;
   std::shared_ptr<MeshLibrary> meshes_;
   std::shared_ptr<VolumeLibrary> volumes_;
+  std::shared_ptr<FoundFiles> found_;
 };
 
 // The same files; meshes without their own collide_as use this one.

@@ -248,6 +248,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .memory_mode = queues.mode,
                        .guard = options.guard,
                        .can_tap = &recordings.can_tap(),
+                       .payload_tap = &recordings.payload_tap(),
                        .save_flight_record = save,
                        .record = [this](RecordAction action) { return recordings.switch_ring(action); },
                        .acknowledge_alarms = [this](std::string_view name, std::uint64_t alarm) -> Result<std::string> {
@@ -333,7 +334,8 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
 void Gateway::Parts::start_recorder(const RecordSettings& settings) {
   recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
-                    loop->options().period, [this] { return status(); }, nullptr, &engine->inputs()});
+                    loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs(),
+                    [this](const PictureRequest& request) { return renderer->open_pictures(request); }});
 }
 
 void Gateway::Parts::start_fault_monitor() {
@@ -573,15 +575,13 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->start_fault_monitor();
   parts->make_page(options, web);
   parts->recordings.describe({options.instance, parts->cell_name, parts->loop_settings.rate_hz,
-                              cell_attachments(parts->home->root(), files),
-                              std::filesystem::absolute(files.front()).lexically_normal().string()});
+                              cell_files(parts->home->root(), files), files.front().string()});
   parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
   watch_for_alarms(*parts->alarms, {parts->collisions->board(), *parts->faults,
                                     [all = parts.get()](const auto& look) { all->look_at(look); }});
   parts->page->open();
-  // Last: the startup script finds everything running.
-  parts->owner->start();
+  parts->owner->start();  // last: the startup script finds everything running
   return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));
 }
 

@@ -48,7 +48,7 @@ Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
 
 std::vector<std::filesystem::path> files_of(const LoadedCell& cell) {
   std::vector<std::filesystem::path> files = cell.files;
-  files.insert(files.begin(), cell.file);
+  files.insert(files.begin(), std::filesystem::absolute(cell.file).lexically_normal());
   return files;
 }
 

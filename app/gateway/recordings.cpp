@@ -4,15 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
-#include <system_error>
 #include <utility>
 
 #include "app/recording/build_identity.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "app/report/status_recordings.hpp"
 #include "ipc/record/compression.hpp"
 #include "rt_core/base/log.hpp"
@@ -25,7 +21,7 @@ namespace {
 constexpr Nanoseconds kLease{10'000'000'000};
 constexpr double kLongest_s = 1e7;
 constexpr std::size_t kMostTopics = 256;
-constexpr std::uint64_t kMostAttached = std::uint64_t{16} << 20;
+constexpr double kMostAttached_mb = 1024;
 
 Result<double> number_of_argument(const ControlRequest& request, std::string_view name, double usual, double least,
                                   double most) {
@@ -82,6 +78,8 @@ void Recordings::begin_ring(const RecordSettings& settings, const Result<std::fi
   options.topics = settings.topics;
   options.compression = mcap::compression_of(settings.compression).value_or(mcap::Compression::zstd);
   options.rate_hz = settings.rate_hz;
+  for (const RecordedPicture& one : settings.pictures) options.pictures.push_back({one.view, one.rate_hz});
+  options.most_attached = settings.attach_mb * 1'000'000;
   fill_about(options);
   hub_.set_ring_options(std::move(options));
   if (!settings.enabled) return;
@@ -96,6 +94,7 @@ Result<void> Recordings::switch_ring(RecordAction action) {
 
 void Recordings::watch(Recorder::Sources sources) {
   sources.can_tap = &can_tap_;
+  sources.payload_tap = &payload_tap_;
   sources.keeps_collisions = settings_.keep_on_collision;
   recorder_ = std::make_unique<Recorder>(std::move(sources), hub_);
 }
@@ -111,7 +110,7 @@ void Recordings::fill_about(RecordingOptions& options) const {
                    {std::string(kBuildKey), build_identity()},
                    {std::string(kTargetKey), std::string(compute_target())},
                    {"record_rate_hz", fmt::format("{}", options.rate_hz)}};
-  options.attachments = about_.files;
+  options.cell = about_.files;
 }
 
 Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) const {
@@ -129,6 +128,18 @@ Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) c
   const auto length = number_of_argument(request, "for_s", 0.0, 0.0, kLongest_s);
   if (!length) return std::unexpected(length.error());
   options.length = Nanoseconds(static_cast<std::int64_t>(1e9 * *length));
+  const auto attached =
+      number_of_argument(request, "attach_mb", 1e-6 * static_cast<double>(kMostAttached), 0.0, kMostAttached_mb);
+  if (!attached) return std::unexpected(attached.error());
+  options.most_attached = static_cast<std::uint64_t>(1e6 * *attached);
+  for (const std::string& text : divided(request.argument("pictures").value_or(""))) {
+    const auto picture = recorded_picture(text);
+    if (!picture)
+      return fail(fmt::format("{} is no view with a rate", printable(text)), "write VIEW@HZ, with 0.01 to 10 Hz");
+    options.pictures.push_back({picture->view, picture->rate_hz});
+  }
+  if (options.pictures.size() > kMostRecordedPictures)
+    return fail(fmt::format("more than {} views are to be recorded", kMostRecordedPictures));
   options.lease = kLease;
   fill_about(options);
   return options;
@@ -150,33 +161,6 @@ std::string Recordings::answer(const ControlRequest& request) {
   if (!step) return control_error(step.error());
   const auto report = hub_.file_report();
   return report ? dumped(recording_json(*report)) : control_error({"nothing is being recorded", {}});
-}
-
-std::vector<RecordingAttachment> cell_attachments(const std::filesystem::path& root,
-                                                  const std::vector<std::filesystem::path>& files) {
-  std::vector<RecordingAttachment> out;
-  std::set<std::filesystem::path> seen;
-  std::uint64_t total = 0;
-  for (const std::filesystem::path& file : files) {
-    std::error_code error;
-    const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
-    if (error || !seen.insert(path).second) continue;
-    const std::uint64_t size = std::filesystem::file_size(path, error);
-    if (error || total + size > kMostAttached) {
-      log_warning("recording", "{} is not attached to recordings: {}", file.string(),
-                  error ? error.message() : "the files of the cell are too large together");
-      continue;
-    }
-    total += size;
-    std::ostringstream content;
-    content << std::ifstream(path, std::ios::binary).rdbuf();
-    const std::filesystem::path place = path.lexically_relative(std::filesystem::weakly_canonical(root, error));
-    const bool below = !place.empty() && *place.begin() != "..";
-    const std::string ending = path.extension().string();
-    out.push_back({below ? place.string() : path.filename().string(),
-                   ending == ".urdf" ? "application/xml" : "application/toml", content.str()});
-  }
-  return out;
 }
 
 }  // namespace cellmirror::app

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/io/can_tap.hpp"
+#include "app/io/payload_tap.hpp"
 #include "app/live/live_topics.hpp"
 #include "app/recorder/recorder.hpp"
 #include "app/recorder/recording_hub.hpp"
@@ -23,7 +24,7 @@ class Recordings {
     std::string instance;
     std::string cell;
     double rate_hz = 0;  // of the loop
-    std::vector<RecordingAttachment> files;
+    CellFiles files;
     std::string cell_file;  // where it is
   };
 
@@ -54,6 +55,7 @@ class Recordings {
   // What clients watch; lives as long as this.
   [[nodiscard]] LiveTopics& live() { return *live_; }
   [[nodiscard]] CanTap& can_tap() { return can_tap_; }
+  [[nodiscard]] PayloadTap& payload_tap() { return payload_tap_; }
   [[nodiscard]] const RecordingHub& hub() const { return hub_; }
 
  private:
@@ -66,12 +68,8 @@ class Recordings {
   RecordingHub hub_;
   RecordedTexts texts_;
   CanTap can_tap_;
+  PayloadTap payload_tap_;
   std::unique_ptr<Recorder> recorder_;
 };
-
-// The files of a cell as attachments: `root` and those below it by their place in it. At most 16 MiB together; what is
-// left out, or cannot be read, is logged.
-[[nodiscard]] std::vector<RecordingAttachment> cell_attachments(const std::filesystem::path& root,
-                                                                const std::vector<std::filesystem::path>& files);
 
 }  // namespace cellmirror::app

@@ -17,6 +17,7 @@ struct StreamMaker {
   const Clock& clock;
   int fifo_priority;
   const can::ChannelOpener& open_can;
+  const std::shared_ptr<PayloadSink>& payloads;
 
   Result<std::unique_ptr<JointStream>> operator()(const std::monostate&) const {
     return fail("the cell file names no stream");
@@ -30,10 +31,10 @@ struct StreamMaker {
                                 {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
-    return dds::make_dds_stream(config, clock);
+    return dds::make_dds_stream(config, clock, payloads);
   }
   Result<std::unique_ptr<JointStream>> operator()(const RtdeStreamConfig& config) const {
-    return rtde::make_rtde_stream(config, clock, fifo_priority);
+    return rtde::make_rtde_stream(config, clock, fifo_priority, payloads);
   }
 };
 
@@ -74,8 +75,9 @@ void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
 }
 
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
-                                                       int fifo_priority, const can::ChannelOpener& open_can) {
-  return std::visit(StreamMaker{clock, fifo_priority, open_can}, config);
+                                                       int fifo_priority, const can::ChannelOpener& open_can,
+                                                       std::shared_ptr<PayloadSink> payloads) {
+  return std::visit(StreamMaker{clock, fifo_priority, open_can, payloads}, config);
 }
 
 }  // namespace cellmirror::app

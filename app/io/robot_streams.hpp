@@ -9,15 +9,18 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/payload_sink.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
 namespace cellmirror::app {
 
 // Closed; `clock` outlives it. `fifo_priority`: of the threads of CAN streams, 0 for none; frames then reach the tick
 // also while the machine is busy with other things. Fails for what can never work, e.g. a DBC file without the signal
-// that the cell names. `open_can`: opens the channels of CAN streams; empty: as their endpoints say.
+// that the cell names. `open_can`: opens the channels of CAN streams; empty: as their endpoints say. `payloads`: is
+// given what DDS and RTDE streams receive.
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
-                                                       int fifo_priority, const can::ChannelOpener& open_can = {});
+                                                       int fifo_priority, const can::ChannelOpener& open_can = {},
+                                                       std::shared_ptr<PayloadSink> payloads = {});
 
 // Reads the EDS, DCF or DBC files of the stream and tells what is wrong with them and with what the cell file takes
 // from them, each at its place; warns of joints without a source. What the reader of the cell file told is not told

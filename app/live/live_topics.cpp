@@ -11,6 +11,7 @@ namespace {
 // How many messages may wait for a client: of states the newest ones count, events should all arrive.
 std::size_t depth_of(Importance importance) {
   switch (importance) {
+    case Importance::picture:
     case Importance::bulk:
       return 4;
     case Importance::state:

@@ -61,7 +61,8 @@ CellOwner::CellOwner(Parts parts)
           Fleet::Events{.let_tick_pass = parts.let_tick_pass,
                         .move_given = std::move(parts.move_given),
                         .device_stream = [this](std::string_view robot) { return haptics_.stream(robot); },
-                        .can_tap = parts.can_tap})),
+                        .can_tap = parts.can_tap,
+                        .payload_tap = parts.payload_tap})),
       display_(
           {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
            std::move(parts.bell), [this](std::size_t slot) { return is_online(slot); }, std::move(parts.message_shown)},

@@ -59,8 +59,9 @@ class CellOwner {
     std::string instance;
     std::int32_t tcp_force_key = kTcpForceKey;
     std::uint32_t memory_mode = 0600;
-    ForceGuard* guard = nullptr;  // of the shared memories; outlives the owner; null: none
-    CanTap* can_tap = nullptr;    // sees the frames of CAN streams; outlives the owner; null: nobody does
+    ForceGuard* guard = nullptr;        // of the shared memories; outlives the owner; null: none
+    CanTap* can_tap = nullptr;          // sees the frames of CAN streams; outlives the owner; null: nobody does
+    PayloadTap* payload_tap = nullptr;  // what DDS and RTDE streams receive; likewise
     std::function<Result<void>(std::string_view file_name)> save_flight_record;
     std::function<Result<void>(RecordAction action)> record = {};  // empty: off line
     // `alarm`: 0 for all. Empty: off line.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/io/can_tap.hpp"
+#include "app/io/payload_tap.hpp"
 #include "app/io/robot_streams.hpp"
 
 namespace cellmirror::app {
@@ -180,7 +181,9 @@ Result<void> Fleet::make_stream(FleetRobot& robot) {
   }
   can::ChannelOpener open_can;
   if (events_.can_tap != nullptr) open_can = events_.can_tap->opener(robot.id);
-  auto made = make_robot_stream(config->second, clock_, stream_priority_, open_can);
+  std::shared_ptr<PayloadSink> payloads;
+  if (events_.payload_tap != nullptr) payloads = events_.payload_tap->sink_for(config->second, robot.id);
+  auto made = make_robot_stream(config->second, clock_, stream_priority_, open_can, std::move(payloads));
   if (!made) return std::unexpected(made.error());
   robot.stream = std::move(*made);
   return {};

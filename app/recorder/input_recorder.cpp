@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "app/recording/recording_names.hpp"
-#include "app/replay/tick_inputs.hpp"
+#include "app/recording_layout/recording_names.hpp"
+#include "app/recording_layout/tick_inputs.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 
 namespace cellmirror::app {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/recorder/picture_recorder.hpp"
 #include "app/recorder/ros2_definitions.hpp"
 #include "app/snapshot/proximity_words.hpp"
 #include "drivers/can/channel/candump_line.hpp"
@@ -55,6 +56,8 @@ constexpr std::string_view kCanSchema = R"({
 "type":"object","title":"a CAN frame that a stream received or sent","properties":{
 "time_ns":{"type":"integer"},"sent":{"type":"boolean"},"id":{"type":"integer"},
 "frame":{"type":"string","description":"as candump writes it"}}})";
+
+constexpr std::string_view kRtdeEncoding = "cellmirror.rtde";
 
 constexpr std::string_view kStatusSchema = R"({"type":"object","title":"the document of cellmirror status"})";
 
@@ -135,6 +138,20 @@ TopicPtr OutputTopics::wrench(std::string_view robot) {
 }
 TopicPtr OutputTopics::can_frames(std::string_view robot) {
   return json_topic(dds::topic_of("robot", "/inputs/can", robot), "cellmirror.CanFrame", kCanSchema, Importance::event);
+}
+TopicPtr OutputTopics::dds_samples(std::string_view robot) {
+  return ros2_topic(dds::topic_of("robot", "/inputs/dds", robot), "sensor_msgs/msg/JointState", ros2::joint_state(),
+                    Importance::event);
+}
+TopicPtr OutputTopics::rtde_packages(std::string_view robot) {
+  return std::make_shared<const Topic>(
+      Topic{dds::topic_of("robot", "/inputs/rtde", robot), std::string(kRtdeEncoding), "cellmirror.RtdeData",
+            std::string(kRtdeEncoding), "A data package of RTDE without its head, as received (docs/recording.md).",
+            Importance::event});
+}
+TopicPtr OutputTopics::pictures(std::string_view view) {
+  return ros2_topic(pictures_topic_name(view), "sensor_msgs/msg/CompressedImage", ros2::compressed_image(),
+                    Importance::picture);
 }
 TopicPtr OutputTopics::joint_states(mcap::Texts joints) {
   return std::make_shared<const Topic>(Topic{"/joint_states", "cdr", "sensor_msgs/msg/JointState", "ros2msg",

@@ -31,6 +31,11 @@ struct OutputTopics {
   static TopicPtr wrench(std::string_view robot);
   // "/inputs/can/ROBOT": the frames of its stream, as they came.
   static TopicPtr can_frames(std::string_view robot);
+  // "/inputs/dds/ROBOT", "/inputs/rtde/ROBOT": what its stream received, byte by byte.
+  static TopicPtr dds_samples(std::string_view robot);
+  static TopicPtr rtde_packages(std::string_view robot);
+  // "/cellmirror/pictures/VIEW": sensor_msgs/msg/CompressedImage.
+  static TopicPtr pictures(std::string_view view);
   // With "joint:NAME" = "ROBOT.JOINT" for each joint.
   static TopicPtr joint_states(mcap::Texts joints);
 };

@@ -7,7 +7,7 @@
 
 #include "app/io/command_log.hpp"
 #include "app/io/publisher.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "drivers/dds/sensor_ranges.hpp"
 #include "rt_core/rt/scheduling.hpp"
 
@@ -39,6 +39,7 @@ bool is_due(Timestamp now, Timestamp& last, Nanoseconds period) {
 Recorder::Recorder(Sources sources, RecordingHub& hub)
     : sources_(std::move(sources)),
       hub_(hub),
+      pictures_(sources_.open_pictures, hub),
       inputs_(sources_.engine_inputs != nullptr ? std::make_unique<InputRecorder>(*sources_.engine_inputs, hub)
                                                 : nullptr),
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
@@ -46,14 +47,19 @@ Recorder::Recorder(Sources sources, RecordingHub& hub)
 Recorder::~Recorder() {
   thread_.request_stop();
   thread_.join();
-  if (sources_.can_tap != nullptr) sources_.can_tap->set_on(false);
+  switch_taps(false);
+}
+
+void Recorder::switch_taps(bool on) const {
+  if (sources_.can_tap != nullptr) sources_.can_tap->set_on(on);
+  if (sources_.payload_tap != nullptr) sources_.payload_tap->set_on(on);
 }
 
 void Recorder::loop(const std::stop_token& stop) {
   set_thread_name("recorder");
   while (!stop.stop_requested()) {
     const double rate_hz = hub_.rate_hz();
-    if (sources_.can_tap != nullptr) sources_.can_tap->set_on(rate_hz > 0);
+    switch_taps(rate_hz > 0);
     const Timestamp now = sources_.clock.now();
     if (inputs_) inputs_->look(now, sources_.board.latest().get());
     if (rate_hz <= 0) {
@@ -65,8 +71,9 @@ void Recorder::loop(const std::stop_token& stop) {
     }
     const engine::TickState& state = sources_.ticks.newest();
     if (state.time.known()) look(state, rate_hz);
-    if (sources_.can_tap != nullptr) record_inputs();
+    record_inputs();
     record_status(now);
+    pictures_.look(now);
     // The tick that is due next, and a little later.
     const auto period = std::max(sources_.tick_period, Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)));
     const std::int64_t ticks = std::max<std::int64_t>(1, (period + sources_.tick_period / 2) / sources_.tick_period);
@@ -104,8 +111,30 @@ void Recorder::record_tick(const engine::TickState& state, const CellState& cell
   if (is_due(state.time, last_frames_, kBetweenFrames)) record_frames(wall_ns, cell_state);
 }
 
-// Frames as they came, in the order of each channel.
+// As they came, in the order of each stream.
 void Recorder::record_inputs() {
+  if (sources_.can_tap != nullptr) record_frames_of_can();
+  if (sources_.payload_tap != nullptr) record_payloads();
+}
+
+void Recorder::record_payloads() {
+  const auto topic_of = [this](PayloadKind kind, const std::string& robot) -> const TopicPtr& {
+    TopicPtr& topic = payload_topics_[{kind, robot}];
+    if (!topic)
+      topic = kind == PayloadKind::dds ? OutputTopics::dds_samples(robot) : OutputTopics::rtde_packages(robot);
+    return topic;
+  };
+  sources_.payload_tap->drain(
+      [&](PayloadKind kind, const std::string& robot, Timestamp time, std::span<const std::byte> payload) {
+        const TopicPtr& topic = topic_of(kind, robot);
+        if (hub_.wants(*topic)) hub_.put(topic, to_wall_clock_ns(time), payload);
+      },
+      [&](PayloadKind kind, const std::string& robot, std::uint64_t payloads) {
+        hub_.count_missed(topic_of(kind, robot), payloads);
+      });
+}
+
+void Recorder::record_frames_of_can() {
   const auto topic_of_robot = [this](const std::string& robot) -> const TopicPtr& {
     auto topic = can_topics_.find(robot);
     if (topic == can_topics_.end()) topic = can_topics_.emplace(robot, OutputTopics::can_frames(robot)).first;

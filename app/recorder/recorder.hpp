@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "app/io/can_tap.hpp"
+#include "app/io/payload_tap.hpp"
 #include "app/recorder/input_recorder.hpp"
 #include "app/recorder/output_messages.hpp"
+#include "app/recorder/picture_recorder.hpp"
 #include "app/recorder/recording_hub.hpp"
 #include "app/snapshot/board.hpp"
 #include "app/snapshot/cell_state.hpp"
@@ -43,8 +45,10 @@ class Recorder {
     const Clock& clock;
     Nanoseconds tick_period{0};
     std::function<std::string()> status;        // the document
-    CanTap* can_tap = nullptr;                  // null: no inputs are recorded
+    CanTap* can_tap = nullptr;                  // null: frames are not recorded
+    PayloadTap* payload_tap = nullptr;          // null: what DDS and RTDE streams receive is not recorded
     engine::InputTap* engine_inputs = nullptr;  // null: the inputs of the tick are not recorded
+    PictureRecorder::Open open_pictures = {};   // empty: no pictures are recorded
     bool keeps_collisions = false;              // the ring is kept where bodies touch
   };
 
@@ -57,7 +61,10 @@ class Recorder {
   void loop(const std::stop_token& stop);
   void look(const engine::TickState& state, double rate_hz);
   void record_tick(const engine::TickState& state, const CellState& cell_state, const ForceState* forces);
+  void switch_taps(bool on) const;
   void record_inputs();
+  void record_frames_of_can();
+  void record_payloads();
   void record_joints(std::int64_t wall_ns, const CellState& cell_state, std::span<const RobotState> robots);
   void record_frames(std::int64_t wall_ns, const CellState& cell_state);
   void record_proximity();
@@ -86,6 +93,7 @@ class Recorder {
   std::map<std::string, TopicPtr, std::less<>> range_topics_;
   std::map<std::string, TopicPtr, std::less<>> wrench_topics_;
   std::map<std::string, TopicPtr, std::less<>> can_topics_;
+  std::map<std::pair<PayloadKind, std::string>, TopicPtr> payload_topics_;
 
   RobotStateBuilder builder_;
   std::vector<RobotState> robots_;
@@ -104,6 +112,7 @@ class Recorder {
   Timestamp last_frames_;
   Timestamp last_findings_;
   Timestamp last_status_;
+  PictureRecorder pictures_;
   std::unique_ptr<InputRecorder> inputs_;  // null: none are recorded
   std::jthread thread_;                    // last: it uses everything above
 };

@@ -7,7 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "app/recording/recording_names.hpp"
+#include "app/recorder/picture_recorder.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/utc_text.hpp"
 #include "rt_core/rt/scheduling.hpp"
@@ -84,6 +85,8 @@ Recording::~Recording() {
 
 std::size_t Recording::limit_of(Importance importance) const {
   switch (importance) {
+    case Importance::picture:
+      return options_.buffer_bytes / 4;
     case Importance::bulk:
       return options_.buffer_bytes / 2;
     case Importance::state:
@@ -99,7 +102,7 @@ Recording::ChannelState& Recording::channel_of(const TopicPtr& topic) {
   if (is_new) {
     ChannelState state;
     state.topic = topic;
-    state.wanted = fits(options_.topics, topic->name) && channels_.size() < kMostTopics;
+    state.wanted = wants(*topic) && channels_.size() < kMostTopics;
     channels_.push_back(std::move(state));
   }
   return channels_[entry->second - 1U];
@@ -138,7 +141,11 @@ void Recording::count_missed(const TopicPtr& topic, std::uint64_t messages) {
   channel.dropped += messages;
 }
 
-bool Recording::wants(const Topic& topic) const { return fits(options_.topics, topic.name); }
+bool Recording::wants(const Topic& topic) const {
+  if (topic.importance != Importance::picture) return fits(options_.topics, topic.name);
+  return std::ranges::any_of(options_.pictures,
+                             [&](const WantedPicture& one) { return pictures_topic_name(one.view) == topic.name; });
+}
 
 void Recording::end() {
   {
@@ -219,6 +226,13 @@ void Recording::loop() {
   ended_ = true;
 }
 
+std::uint64_t Recording::most_attached() const {
+  if (!options_.ring) return options_.most_attached;
+  const RecordingRing& ring = *options_.ring;
+  const auto files = static_cast<std::uint64_t>(ring.length / std::max(ring.file_length, Nanoseconds(1)) + 1);
+  return std::min(options_.most_attached, ring.most_bytes / files / 4);
+}
+
 Result<void> Recording::open_file() {
   const Timestamp now = clock_.now();
   std::filesystem::path path = options_.file;
@@ -230,9 +244,12 @@ Result<void> Recording::open_file() {
   Result<void> step = file->writer.begin();
   if (step) step = file->writer.put(mcap::Metadata{std::string(kGatewayName), options_.about});
   const auto wall = static_cast<std::uint64_t>(to_wall_clock_ns(now));
-  for (const RecordingAttachment& one : options_.attachments)
-    if (step) step = file->writer.put({wall, wall, one.name, one.media_type, mcap::view_of(one.content)});
   if (!step) return step;
+  const auto left_out = attach_cell_files(file->writer, options_.cell, most_attached(), wall);
+  if (!left_out) return std::unexpected(left_out.error());
+  if (report_.files == 0) {
+    for (const std::string& one : *left_out) log_warning("recording", "{} is not attached", one);
+  }
   file_ = std::move(file);
   const std::scoped_lock lock(mutex_);
   file_->bytes_before = report_.bytes;

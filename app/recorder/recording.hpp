@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "app/recorder/cell_files.hpp"
 #include "app/recorder/topic.hpp"
 #include "app/recorder/topic_sink.hpp"
 #include "app/snapshot/recorder_report.hpp"
@@ -35,23 +36,28 @@ struct RecordingRing {
   Nanoseconds keep_after{5'000'000'000};              // so long behind a request it is kept
 };
 
-struct RecordingAttachment {
-  std::string name;
-  std::string media_type;
-  std::string content;
+inline constexpr std::uint64_t kMostAttached = 64'000'000;
+
+// A view that is recorded as pictures: 0 to 6, or a camera. Not more often than that.
+struct WantedPicture {
+  std::string view;
+  double rate_hz = 1;
 };
 
 struct RecordingOptions {
   std::filesystem::path file;  // a new one; ignored with a ring
   std::optional<RecordingRing> ring;
-  std::vector<std::string> topics;  // none: all; "/tf", or "/cellmirror/*" for all that begin so
+  std::vector<std::string> topics;           // none: all; "/tf", or "/cellmirror/*" for all that begin so
+  std::vector<WantedPicture> pictures = {};  // beside the topics; none: no pictures
   mcap::Compression compression = mcap::Compression::zstd;
   double rate_hz = 100;   // of robot states, at most
   Nanoseconds length{0};  // ends after it; 0: no end
   Nanoseconds lease{0};   // ends where nobody called renew() so long; 0: no lease
   std::size_t buffer_bytes = std::size_t{16} << 20;
   mcap::Texts about = {};  // into the file: version, cell, ...
-  std::vector<RecordingAttachment> attachments = {};
+  CellFiles cell = {};     // attached
+  std::uint64_t most_attached =
+      kMostAttached;  // bytes of them; of a ring at most a quarter of what a file of it may have
 };
 
 class Recording final : public TopicSink {
@@ -74,6 +80,7 @@ class Recording final : public TopicSink {
   bool keep();
   [[nodiscard]] RecordingReport report() const;
   [[nodiscard]] double rate_hz() const override { return options_.rate_hz; }
+  [[nodiscard]] const std::vector<WantedPicture>& pictures() const { return options_.pictures; }
 
  private:
   struct ChannelState {
@@ -104,6 +111,7 @@ class Recording final : public TopicSink {
 
   void loop();
   Result<void> open_file();
+  [[nodiscard]] std::uint64_t most_attached() const;
   void write(const Batch& batch);
   void look_after_file(Timestamp now);
   void finish_file();

@@ -101,6 +101,23 @@ bool RecordingHub::wants(const Topic& topic) const {
   return live || (goes_on(file) && file->wants(topic)) || (goes_on(ring) && ring->wants(topic));
 }
 
+std::vector<WantedPicture> RecordingHub::pictures() const {
+  const auto [file, ring] = both();
+  std::vector<WantedPicture> out;
+  for (const Shared& one : {file, ring}) {
+    if (!goes_on(one)) continue;
+    for (const WantedPicture& picture : one->pictures()) {
+      const auto known = std::ranges::find(out, picture.view, &WantedPicture::view);
+      if (known == out.end()) {
+        out.push_back(picture);
+      } else {
+        known->rate_hz = std::max(known->rate_hz, picture.rate_hz);
+      }
+    }
+  }
+  return out;
+}
+
 double RecordingHub::rate_hz() const {
   const auto [file, ring] = both();
   return std::max(

@@ -39,6 +39,8 @@ class RecordingHub {
   void count_missed(const TopicPtr& topic, std::uint64_t messages) const;
   // Whether a recording goes on that wants the topic, or a client watches it live.
   [[nodiscard]] bool wants(const Topic& topic) const;
+  // The views of all recordings that go on, each once with its greatest rate.
+  [[nodiscard]] std::vector<WantedPicture> pictures() const;
   // The greatest rate of robot states that is wanted; 0: nothing is recorded.
   [[nodiscard]] double rate_hz() const;
   // The newest of each kind, also one that has ended.

@@ -27,6 +27,7 @@ inline constexpr std::string_view kRange =
     "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
     "float32 min_range\nfloat32 max_range\nfloat32 range\nfloat32 variance\n";
 inline constexpr std::string_view kWrenchStamped = "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n";
+inline constexpr std::string_view kCompressedImage = "std_msgs/Header header\nstring format\nuint8[] data\n";
 inline constexpr std::string_view kLog =
     "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\nbuiltin_interfaces/Time stamp\n"
     "uint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n";
@@ -39,6 +40,7 @@ inline std::string with_header(std::string_view definition) {
 }
 
 inline std::string joint_state() { return with_header(kJointState); }
+inline std::string compressed_image() { return with_header(kCompressedImage); }
 inline std::string range() { return with_header(kRange); }
 inline std::string log() { return std::string(kLog) + part("builtin_interfaces/Time", kTime); }
 inline std::string wrench_stamped() {

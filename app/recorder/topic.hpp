@@ -11,9 +11,10 @@ namespace cellmirror::app {
 
 // What is left out first while the disk does not keep up.
 enum class Importance : std::uint8_t {
-  bulk,   // frames, status: left out from half a buffer on
-  state,  // joints, collisions, ranges, forces: from three quarters on
-  event,  // log, commands, events of collisions: only where the buffer is full
+  picture,  // left out from a quarter of a buffer on
+  bulk,     // frames, status: left out from half a buffer on
+  state,    // joints, collisions, ranges, forces: from three quarters on
+  event,    // log, commands, events of collisions: only where the buffer is full
 };
 
 struct Topic {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "app/recording/flattener.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/text.hpp"
 

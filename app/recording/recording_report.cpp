@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <utility>
 
+#include "app/recording/recorded_cell.hpp"
 #include "ipc/record/summary.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/base/utc_text.hpp"
@@ -96,6 +98,26 @@ std::string faults_text(const mcap::Faults& faults) {
   return out;
 }
 
+constexpr std::size_t kMostMissingTold = 20;
+
+std::string cell_text(const mcap::Reader& reader) {
+  const RecordedCell cell = recorded_cell(reader);
+  if (cell.cell_file.empty()) return {};
+  if (cell.complete())
+    return fmt::format("cell files: complete, {} with {}\n", cell.files.size(), printable(cell.cell_file));
+  std::string out = fmt::format("cell files: NOT complete, {} are missing\n", cell.missing.size());
+  for (const std::string& one : cell.missing | std::views::take(kMostMissingTold))
+    out += fmt::format("  {}\n", printable(one));
+  return out;
+}
+
+json cell_json(const mcap::Reader& reader) {
+  const RecordedCell cell = recorded_cell(reader);
+  if (cell.cell_file.empty()) return nullptr;
+  return {
+      {"file", cell.cell_file}, {"files", cell.files.size()}, {"complete", cell.complete()}, {"missing", cell.missing}};
+}
+
 }  // namespace
 
 std::string recording_info_text(const std::string& file, std::uint64_t bytes, const mcap::Reader& reader) {
@@ -122,7 +144,7 @@ std::string recording_info_text(const std::string& file, std::uint64_t bytes, co
   for (const mcap::AttachmentIndex& attachment : reader.attachments())
     out += fmt::format("attachment {}: {} bytes, {}\n", printable(attachment.name), attachment.data_size,
                        printable(attachment.media_type));
-  return out;
+  return out + cell_text(reader);
 }
 
 std::string recording_info_json(const std::string& file, std::uint64_t bytes, const mcap::Reader& reader) {
@@ -158,6 +180,7 @@ std::string recording_info_json(const std::string& file, std::uint64_t bytes, co
               {"topics", std::move(topics)}};
   out.update(statistics_json(statistics));
   out["attachments"] = std::move(attachments);
+  out["cell"] = cell_json(reader);
   const auto gateway = reader.metadata(kGatewayName);
   out["gateway"] = gateway ? json(gateway->values) : json(nullptr);
   return dumped(out);

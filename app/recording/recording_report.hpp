@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "ipc/record/reader.hpp"
 #include "rt_core/base/result.hpp"
 

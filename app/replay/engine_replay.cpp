@@ -34,7 +34,7 @@ struct EngineReplay::Session {
   PublishedRobots published;
   std::optional<std::uint64_t> last_tick;
   std::uint64_t commands_done = 0;
-  std::array<std::uint64_t, kMaxHapticDevices> devices{};  // addresses of devices
+  std::array<std::uint64_t, kMaxHapticDevices> devices{};  // ids of devices
   std::array<bool, kMaxHapticDevices> taken_over{};        // opened before the start state
   bool counts_refused = true;                              // whether refused commands can be compared
   std::array<std::shared_ptr<RecordedDevice>, kMaxHapticDevices> recorded_devices{};
@@ -91,8 +91,8 @@ void EngineReplay::take_record(InputRecord kind, ByteSpan content) {
   note({"a record is of an unknown kind", {}});
 }
 
-EngineReplay::ChainPtr EngineReplay::chain_of(std::uint64_t address, kinematics::Chain&& chain, ByteSpan bytes) {
-  KnownChain& known = chains_[address];
+EngineReplay::ChainPtr EngineReplay::chain_of(std::uint64_t object_id, kinematics::Chain&& chain, ByteSpan bytes) {
+  KnownChain& known = chains_[object_id];
   if (known.chain && std::ranges::equal(known.bytes, bytes)) return known.chain;
   known.bytes.assign(bytes.begin(), bytes.end());
   known.chain = std::make_shared<const kinematics::Chain>(std::move(chain));
@@ -102,22 +102,22 @@ EngineReplay::ChainPtr EngineReplay::chain_of(std::uint64_t address, kinematics:
 
 void EngineReplay::take_chain(ByteSpan content) {
   StateReader in(content);
-  std::uint64_t address = 0;
-  in(address);
+  std::uint64_t object_id = 0;
+  in(object_id);
   const ByteSpan bytes = in.rest();
   auto chain = engine::read_chain(in);
   if (!chain || !in.at_end() || all_chains_.size() >= kMostChains) return note({"a chain of joints is not sound", {}});
-  chain_of(address, *std::move(chain), bytes);
+  chain_of(object_id, *std::move(chain), bytes);
 }
 
-// While the replay goes on it is right already.
+// While the replay goes on it is right already, unless the next tick shows that some are missing.
 void EngineReplay::begin(ByteSpan start) {
-  if (session_) return;
+  if (session_) return spare_start_.assign(start.begin(), start.end());
   const auto capacity = engine::Engine::capacity_of(start);
   if (!capacity) return note(capacity.error());
   auto session = std::make_unique<Session>(*capacity);
-  const auto restored = session->engine.restore(start, [this](std::uint64_t address) -> ChainPtr {
-    const auto known = chains_.find(address);
+  const auto restored = session->engine.restore(start, [this](std::uint64_t object_id) -> ChainPtr {
+    const auto known = chains_.find(object_id);
     return known == chains_.end() ? ChainPtr() : known->second.chain;
   });
   if (!restored) return note(restored.error());
@@ -145,18 +145,18 @@ Result<void> EngineReplay::send_commands(std::uint64_t up_to) {
     StateReader in(bytes->second);
     auto command = engine::read_command(
         in, {.engine = session.engine,
-             .chain = [&](std::uint64_t address, kinematics::Chain&& chain) -> ChainPtr {
+             .chain = [&](std::uint64_t object_id, kinematics::Chain&& chain) -> ChainPtr {
                std::vector<std::byte> encoded(std::size_t{64} << 10);
                StateWriter out(encoded);
                engine::write_chain(out, chain);
-               return chain_of(address, std::move(chain), out.written());
+               return chain_of(object_id, std::move(chain), out.written());
              },
-             .device = [&](std::uint8_t channel, std::uint64_t address) -> std::shared_ptr<HapticDevicePort> {
-               device = address;
+             .device = [&](std::uint8_t channel, std::uint64_t object_id) -> std::shared_ptr<HapticDevicePort> {
+               device = object_id;
                if (channel >= kMaxHapticDevices) return nullptr;
                // Another device is another object: the channel distinguishes them by that.
                auto& recorded = session.recorded_devices[channel];
-               if (!recorded || session.devices[channel] != address) recorded = std::make_shared<RecordedDevice>();
+               if (!recorded || session.devices[channel] != object_id) recorded = std::make_shared<RecordedDevice>();
                return recorded;
              }});
     if (!command) return fail(fmt::format("command {} is not sound", id));
@@ -221,7 +221,19 @@ Result<void> EngineReplay::give(const TickInputs& inputs) {
   return {};
 }
 
+void EngineReplay::begin_again_behind_a_gap(ByteSpan record) {
+  std::uint64_t tick = 0;
+  StateReader in(record);
+  in(tick);
+  if (session_ && session_->last_tick && in.ok() && tick != *session_->last_tick + 1) {
+    gap(fmt::format("ticks are missing before tick {}", tick));
+    if (!spare_start_.empty()) begin(std::exchange(spare_start_, {}));
+  }
+  spare_start_.clear();
+}
+
 void EngineReplay::run(ByteSpan record) {
+  begin_again_behind_a_gap(record);
   if (!session_) {
     ++counts_.skipped;
     return;
@@ -230,11 +242,6 @@ void EngineReplay::run(ByteSpan record) {
   const auto inputs = read_tick(record, session.published);
   if (!inputs) return note(inputs.error());
   const std::uint64_t tick = inputs->context.cycle;
-  if (session.last_tick && tick != *session.last_tick + 1) {
-    gap(fmt::format("ticks are missing before tick {}", tick));
-    ++counts_.skipped;
-    return;
-  }
   session.last_tick = tick;
   Result<void> step = send_commands(inputs->commands_done);
   if (step) step = give(*inputs);

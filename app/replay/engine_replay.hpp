@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/replay/tick_inputs.hpp"
+#include "app/recording_layout/tick_inputs.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/input_commands.hpp"
@@ -66,6 +66,7 @@ class EngineReplay {
   void take_record(engine::InputRecord kind, ByteSpan content);
   void take_chain(ByteSpan content);
   void begin(ByteSpan start);
+  void begin_again_behind_a_gap(ByteSpan record);
   void run(ByteSpan record);
   Result<void> send_commands(std::uint64_t up_to);
   Result<void> give(const TickInputs& inputs);
@@ -73,7 +74,7 @@ class EngineReplay {
   bool compare_robot(const TickInputs& inputs, std::size_t slot);
   void compare_haptics(const TickInputs& inputs);
   void note(const Error& error);
-  ChainPtr chain_of(std::uint64_t address, kinematics::Chain&& chain, ByteSpan bytes);
+  ChainPtr chain_of(std::uint64_t object_id, kinematics::Chain&& chain, ByteSpan bytes);
   [[nodiscard]] ReplayDifference difference_in(const TickInputs& inputs, std::size_t slot, std::string what) const;
 
   std::function<void(const engine::TickState& state)> on_tick_;
@@ -83,8 +84,9 @@ class EngineReplay {
     std::vector<std::byte> bytes;
     ChainPtr chain;
   };
-  std::map<std::uint64_t, KnownChain> chains_;  // by address
+  std::map<std::uint64_t, KnownChain> chains_;  // by id
   std::vector<ChainPtr> all_chains_;            // as long as an engine may refer to them
+  std::vector<std::byte> spare_start_;          // came while a replay went on; for a gap right before it
   NamesBySlot names_;
   std::optional<ReplayDifference> difference_;
   ReplayCounts counts_;

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "app/recording/build_identity.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/base/text.hpp"
 

@@ -31,8 +31,10 @@ constexpr int kLongestEnd = 150;  // looks: half a minute for what is in the buf
 struct RecordOptions {
   std::string output;
   std::vector<std::string> topics;
+  std::vector<std::string> pictures;
   double seconds = 0;
   double rate_hz = 100;
+  double attach_mb = 64;
   std::string compression = "zstd";
   std::string instance{kDefaultInstance};
   bool json = false;
@@ -52,14 +54,19 @@ Result<json> ask(const RecordOptions& options, const ControlRequest& request) {
 ControlRequest action_request(const char* action) { return {"record", {{"action", action}}}; }
 
 ControlRequest start_request(const RecordOptions& options) {
-  std::string topics;
-  for (const std::string& topic : options.topics) topics += (topics.empty() ? "" : ",") + topic;
+  const auto joined = [](const std::vector<std::string>& texts) {
+    std::string out;
+    for (const std::string& text : texts) out += (out.empty() ? "" : ",") + text;
+    return out;
+  };
   return {"record",
           {{"action", "start"},
            {"file", std::filesystem::absolute(options.output).lexically_normal().string()},
-           {"topics", topics},
+           {"topics", joined(options.topics)},
+           {"pictures", joined(options.pictures)},
            {"compression", options.compression},
            {"rate_hz", fmt::format("{}", options.rate_hz)},
+           {"attach_mb", fmt::format("{}", options.attach_mb)},
            {"for_s", fmt::format("{}", options.seconds)}}};
 }
 
@@ -113,8 +120,14 @@ void add_record(cli::Command program, Action& action) {
   sub.option("-o,--output", options->output, "a new file").required().check(wrong_output, "F.mcap");
   sub.option("--for", options->seconds, "end after this many seconds; else by Ctrl-C").positive();
   sub.option("--topics", options->topics, "only these, e.g. /joint_states,/cellmirror/*").list_divided_by(',');
+  sub.option("--pictures", options->pictures,
+             "views as pictures: VIEW@HZ,..., a view (0 to 6) or a camera, at most 10 Hz")
+      .list_divided_by(',');
   sub.option("--rate", options->rate_hz, "robot states a second, at most as many as the loop has periods")
       .between(0.1, 4000.0)
+      .show_default();
+  sub.option("--attach-mb", options->attach_mb, "megabytes of the cell's files that are attached at most")
+      .between(0.0, 1024.0)
       .show_default();
   sub.option("--compression", options->compression, "of the file").one_of({"zstd", "lz4", "none"}).show_default();
   sub.option("--instance", options->instance, "name of the gateway").show_default();

@@ -16,8 +16,9 @@
 
 #include "app/console/put.hpp"
 #include "app/proximity/cell_comparison.hpp"
+#include "app/recording/recorded_cell.hpp"
 #include "app/recording/recording_export.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -68,17 +69,29 @@ std::vector<std::string> changed_files(const mcap::Reader& reader, const fs::pat
   return out;
 }
 
-Result<std::string> recorded_cell(const mcap::Reader& reader, const ReplayCells& cells) {
+// Where the cell is no longer, its files in the recording are used, in `folder`.
+Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayCells& cells,
+                                       std::optional<TemporaryFolder>& folder) {
   if (!cells.recorded.empty()) return cells.recorded;
   const auto about = reader.metadata(kGatewayName);
   const auto file = about ? about->values.find(kCellFileKey) : mcap::Texts::const_iterator();
   if (!about || file == about->values.end())
     return fail("the recording does not say where its cell was", "name the cell file with --recorded-cell");
   std::error_code error;
-  if (!fs::is_regular_file(file->second, error))
-    return fail(fmt::format("the recorded cell {} is not there any more", printable(file->second)),
-                "name its cell file with --recorded-cell");
-  return file->second;
+  if (fs::is_regular_file(file->second, error)) return file->second;
+  auto made = TemporaryFolder::make();
+  if (!made) return std::unexpected(made.error());
+  folder.emplace(*std::move(made));
+  const auto extracted = extract_cell(reader, folder->path());
+  if (!extracted) {
+    return fail(
+        fmt::format("the recorded cell {} is not there any more, and the recording's own files cannot be used: {}",
+                    printable(file->second), extracted.error().text()),
+        "name its cell file with --recorded-cell");
+  }
+  for (const std::string& one : extracted->missing)
+    put(stderr, "cellmirror: not in the recording: {}\n", printable(one));
+  return extracted->cell_file.string();
 }
 
 // Seconds behind the start of the recording, of the last `count` messages of joint states.
@@ -96,7 +109,8 @@ std::vector<double> times_of(mcap::Reader& reader, const mcap::Filter& filter, s
 }  // namespace
 
 int compare_cells(mcap::Reader& reader, const mcap::Filter& filter, const ReplayCells& cells) {
-  const auto file = recorded_cell(reader, cells);
+  std::optional<TemporaryFolder> folder;
+  const auto file = find_recorded_cell(reader, cells, folder);
   if (!file) return refuse(file.error().text());
   TemporaryFile postures;
   if (postures.file() == nullptr) return refuse(postures.path() + " cannot be written; set TMPDIR to another folder");

@@ -121,11 +121,13 @@ class DdsStream final : public JointStream {
 
 }  // namespace
 
-Result<std::unique_ptr<JointStream>> make_dds_stream(const DdsStreamConfig& config, const Clock& clock) {
+Result<std::unique_ptr<JointStream>> make_dds_stream(const DdsStreamConfig& config, const Clock& clock,
+                                                     std::shared_ptr<PayloadSink> payloads) {
   if (auto ok = check_domain(config.domain); !ok) return std::unexpected(ok.error());
   if (auto ok = check_topic(config.topic); !ok) return std::unexpected(ok.error());
   auto feed = RobotFeed::make(config.joints, config.ages.lost_after);
   if (!feed) return std::unexpected(feed.error());
+  (*feed)->set_payload_sink(std::move(payloads));
   return std::make_unique<DdsStream>(config, std::move(*feed), clock);
 }
 

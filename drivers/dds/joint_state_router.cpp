@@ -162,6 +162,7 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
   ++message_;
   const std::uint64_t missing = take_missing(origin);
   if (const CdrFault fault = decode(payload, view_); fault != CdrFault::none) {
+    if (!feeds_.empty() && feeds_.front()->payloads_) feeds_.front()->payloads_->take(payload, receive_time);
     return refuse_message(fmt::format("a sample of {} bytes is no JointState: {}", payload.size(), words(fault)));
   }
   touched_.clear();
@@ -170,6 +171,7 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
     if (known == names_.end()) continue;
     for (const Target& target : known->second.targets) touch(*target.feed, receive_time);
   }
+  give_payload(payload, receive_time);
   for (RobotFeed* feed : touched_) feed->counters_.lost += missing;
   if (lengths_fit(view_)) {
     route_values(origin);
@@ -181,6 +183,12 @@ void JointStateRouter::accept(std::span<const std::byte> payload, Timestamp rece
     publisher->second.feeds_us = true;
     publisher->second.missing = 0;
   }
+}
+
+// Once, however many robots share it.
+void JointStateRouter::give_payload(std::span<const std::byte> payload, Timestamp receive_time) const {
+  const auto first = std::ranges::find_if(feeds_, [](const RobotFeed* feed) { return feed->touched_; });
+  if (first != feeds_.end() && (*first)->payloads_) (*first)->payloads_->take(payload, receive_time);
 }
 
 void JointStateRouter::refuse_too_long(std::size_t bytes, std::size_t most, MessageOrigin origin) {

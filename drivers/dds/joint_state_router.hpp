@@ -17,6 +17,7 @@
 #include "rt_core/base/rate_meter.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/payload_sink.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/rt/latest.hpp"
 
@@ -63,6 +64,9 @@ class RobotFeed {
   // `conflict_window`: a publisher that was silent for longer has ended.
   [[nodiscard]] static Result<std::unique_ptr<RobotFeed>> make(
       const std::vector<DdsJointConfig>& joints, Nanoseconds conflict_window = Nanoseconds(1'000'000'000));
+  // Is given the messages that the router takes for this robot, each message once: where several robots are named, by
+  // the one that was added first. Before add().
+  void set_payload_sink(std::shared_ptr<PayloadSink> sink) { payloads_ = std::move(sink); }
   // As the router names joints: the ROS 2 name of a joint of the robot; empty where there is none.
   [[nodiscard]] std::string_view ros_name(std::size_t joint) const;
 
@@ -90,9 +94,10 @@ class RobotFeed {
   void publish();
 
   std::vector<DdsJointConfig> joints_;
-  std::vector<SenderConflict> senders_;  // by joints_
-  FeedReport newest_;                    // its conflict counts; the rest is filled in when it is published
-  JointSampleSink* sink_ = nullptr;      // set while it is part of a router
+  std::vector<SenderConflict> senders_;    // by joints_
+  FeedReport newest_;                      // its conflict counts; the rest is filled in when it is published
+  JointSampleSink* sink_ = nullptr;        // set while it is part of a router
+  std::shared_ptr<PayloadSink> payloads_;  // null: nobody wants them
   FeedCounters counters_;
   RateMeter rate_;
   std::vector<std::string> last_errors_;
@@ -144,6 +149,7 @@ class JointStateRouter {
 
   void rebuild();
   void refuse_message(const std::string& why);
+  void give_payload(std::span<const std::byte> payload, Timestamp receive_time) const;
   [[nodiscard]] bool lengths_fit(const JointStateView& message) const;
   void touch(RobotFeed& feed, Timestamp receive_time);
   void route_values(const MessageOrigin& origin);

@@ -75,6 +75,7 @@ void RtdeSession::take_start(std::span<const std::uint8_t> payload) {
 }
 
 void RtdeSession::take_data(std::span<const std::uint8_t> payload, Timestamp now) {
+  output_.data(payload, now);
   const auto data = decode_data(payload, recipe_);
   if (phase_ != Phase::running || !data) return reject("a data package of another length or recipe");
   if (!std::isfinite(data->timestamp_s)) return reject("a data package without a time");

@@ -20,6 +20,8 @@ class SessionOutput {
   virtual ~SessionOutput() = default;
   virtual void send(std::span<const std::uint8_t> bytes) = 0;
   virtual void sample(const JointSample& sample) = 0;
+  // A data package as it came, without its head, before it is looked into.
+  virtual void data(std::span<const std::uint8_t> /*payload*/, Timestamp /*now*/) {}
   virtual void rejected(const std::string& why) = 0;
   virtual void message(const std::string& text) = 0;  // of the controller
 };

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -34,8 +35,13 @@ constexpr std::size_t kErrorsKept = 16;
 
 class RtdeStream final : public JointStream, private SessionOutput {
  public:
-  RtdeStream(const RtdeStreamConfig& config, const Clock& clock, int fifo_priority)
-      : config_(config), clock_(clock), fifo_priority_(fifo_priority), session_(config, *this) {}
+  RtdeStream(const RtdeStreamConfig& config, const Clock& clock, int fifo_priority,
+             std::shared_ptr<PayloadSink> payloads)
+      : config_(config),
+        clock_(clock),
+        fifo_priority_(fifo_priority),
+        payloads_(std::move(payloads)),
+        session_(config, *this) {}
   ~RtdeStream() override { close(); }
   RtdeStream(const RtdeStream&) = delete;
   RtdeStream& operator=(const RtdeStream&) = delete;
@@ -191,6 +197,9 @@ class RtdeStream final : public JointStream, private SessionOutput {
     report_.rate.count(clock_.now());
     sink_->push(sample);
   }
+  void data(std::span<const std::uint8_t> payload, Timestamp now) override {
+    if (payloads_) payloads_->take(std::as_bytes(payload), now);
+  }
   void rejected(const std::string& why) override {
     last_rejection_ = why;
     if (report_.errors.empty() || report_.errors.back() != why) note(why);
@@ -200,7 +209,8 @@ class RtdeStream final : public JointStream, private SessionOutput {
   const RtdeStreamConfig config_;
   const Clock& clock_;
   const int fifo_priority_;
-  RtdeSession session_;  // the thread's, as what follows
+  const std::shared_ptr<PayloadSink> payloads_;  // null: nobody wants them
+  RtdeSession session_;                          // the thread's, as what follows
   TcpConnection connection_;
   Report report_;
   std::string last_rejection_;
@@ -215,12 +225,12 @@ class RtdeStream final : public JointStream, private SessionOutput {
 }  // namespace
 
 Result<std::unique_ptr<JointStream>> make_rtde_stream(const RtdeStreamConfig& config, const Clock& clock,
-                                                      int fifo_priority) {
+                                                      int fifo_priority, std::shared_ptr<PayloadSink> payloads) {
   for (const RtdeJointConfig& joint : config.joints) {
     if (joint.number >= kJoints)
       return fail(fmt::format("joint number {}: the controller has {}", joint.number + 1, kJoints));
   }
-  return std::make_unique<RtdeStream>(config, clock, fifo_priority);
+  return std::make_unique<RtdeStream>(config, clock, fifo_priority, std::move(payloads));
 }
 
 }  // namespace cellmirror::rtde

@@ -11,6 +11,7 @@ namespace cellmirror::mcap {
 namespace {
 
 // The chunk's content begins so far behind the start of its record, with a compression's word of so many letters.
+constexpr std::size_t kLargeScratch = std::size_t{4} << 20;
 constexpr std::size_t kChunkHead = kRecordHead + 8 + 8 + 8 + 4 + 4 + 8;
 
 }  // namespace
@@ -150,6 +151,7 @@ Result<void> Writer::put(const Attachment& attachment) {
   attachments_.push_back({offset, scratch_.size(), attachment.log_time, attachment.create_time, attachment.data.size(),
                           attachment.name, attachment.media_type});
   ++statistics_.attachments;
+  if (scratch_.capacity() > kLargeScratch) Bytes().swap(scratch_);
   return {};
 }
 

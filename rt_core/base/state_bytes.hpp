@@ -112,11 +112,11 @@ class StateWriter : public StateBytes<StateWriter> {
     std::memcpy(buffer_.data() + size_, data, size);
     size_ += size;
   }
-  // A reference to something that is written elsewhere: as its address.
+  // A reference to something that is written elsewhere: as its number (ObjectId); null: 0.
   template <class T>
   void reference(const T*& object) CELL_RT {
-    std::uint64_t address = reinterpret_cast<std::uintptr_t>(object);
-    bytes(&address, sizeof(address));
+    const std::uint64_t id = object == nullptr ? 0 : object->reference_id();
+    bytes(&id, sizeof(id));
   }
   // At most 255 bytes.
   void text(std::string_view text) CELL_RT {
@@ -147,8 +147,8 @@ class StateWriter : public StateBytes<StateWriter> {
 class StateReader : public StateBytes<StateReader> {
  public:
   static constexpr bool kReads = true;
-  // The object that was written under that address; null: there is none.
-  using Resolve = std::function<const void*(std::uint64_t address)>;
+  // The object that was written under that number; null: there is none.
+  using Resolve = std::function<const void*(std::uint64_t id)>;
 
   explicit StateReader(std::span<const std::byte> data, Resolve resolve = {})
       : data_(data), resolve_(std::move(resolve)) {}
@@ -160,11 +160,11 @@ class StateReader : public StateBytes<StateReader> {
   }
   template <class T>
   void reference(const T*& object) noexcept {
-    std::uint64_t address = 0;
-    bytes(&address, sizeof(address));
+    std::uint64_t id = 0;
+    bytes(&id, sizeof(id));
     object = nullptr;
-    if (address == 0 || !ok_) return;
-    object = static_cast<const T*>(resolve_ ? resolve_(address) : nullptr);
+    if (id == 0 || !ok_) return;
+    object = static_cast<const T*>(resolve_ ? resolve_(id) : nullptr);
     if (object == nullptr) fail();
   }
   void text(std::string& out) {

@@ -56,7 +56,7 @@ struct EngineCapacity {
 // What a recorded start state does not have, since it is in the devices' channels: those that were open.
 struct EngineStart {
   std::uint64_t commands_done = 0;
-  std::array<std::uint64_t, kMaxHapticDevices> open_devices{};  // by channel, the address of the device; 0: closed
+  std::array<std::uint64_t, kMaxHapticDevices> open_devices{};  // by channel, the id of the device; 0: closed
 };
 
 struct QueueStatus {
@@ -109,7 +109,7 @@ class Engine final : public Cycle {
   // What the tick takes, for the one thread that records it.
   [[nodiscard]] InputTap& inputs() { return inputs_; }
   // Before the first tick and the first command: the state that another engine wrote into a recording
-  // (InputRecord::start), with the same capacity or more. `chain` gives a chain for the address that it had. What does
+  // (InputRecord::start), with the same capacity or more. `chain` gives a chain for the id that it had. What does
   // not fit is an error, and the engine is not to be used then.
   Result<EngineStart> restore(std::span<const std::byte> start,
                               const std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t)>& chain);

@@ -1,6 +1,6 @@
 // The state of the engine between two ticks as bytes, and back. Beginning of a recording of its inputs.
 //
-// A start state: robots and channels of the engine's capacity; periods missed, commands done and refused; the addresses
+// A start state: robots and channels of the engine's capacity; periods missed, commands done and refused; the ids
 // of the devices of open haptic channels; used slots with their state; couplings. The state of a haptic channel is not
 // in it: a replay takes what such a channel gave until it is opened again.
 #include <fmt/format.h>
@@ -74,8 +74,8 @@ Result<EngineStart> Engine::restore(
     std::span<const std::byte> start,
     const std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t)>& chain) {
   std::vector<std::shared_ptr<const kinematics::Chain>> found;
-  StateReader in(start, [&](std::uint64_t address) -> const void* {
-    const auto one = chain(address);
+  StateReader in(start, [&](std::uint64_t id) -> const void* {
+    const auto one = chain(id);
     if (one && std::ranges::find(found, one) == found.end()) found.push_back(one);
     return one.get();
   });

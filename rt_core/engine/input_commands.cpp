@@ -78,9 +78,9 @@ struct Members {
     archive(there);
     if (!there || !archive.ok()) return;
     if constexpr (Archive::kReads) {
-      std::uint64_t address = 0;
-      archive(address);
-      if (auto chain = read_chain(archive)) one.chain = parts->engine.lend(parts->chain(address, *std::move(chain)));
+      std::uint64_t id = 0;
+      archive(id);
+      if (auto chain = read_chain(archive)) one.chain = parts->engine.lend(parts->chain(id, *std::move(chain)));
     } else {
       const kinematics::Chain* chain = one.chain.get();
       archive.reference(chain);
@@ -132,15 +132,15 @@ void Members<Archive>::operator()(OpenHaptic& one) const {
   archive(one.channel, there);
   if (!there || !archive.ok()) return;
   if constexpr (Archive::kReads) {
-    std::uint64_t address = 0;
-    archive(address);
+    std::uint64_t id = 0;
+    archive(id);
     auto chain = read_chain(archive);
     if (!chain) return;
     auto instrument = std::make_shared<Instrument>(Instrument{.chain = *std::move(chain), .settings = {}});
     transfer_instrument(archive, *instrument);
     if (archive.ok() && !is_sound(*instrument)) archive.fail();
     if (!archive.ok()) return;
-    one.device = parts->engine.lend(parts->device(one.channel, address));
+    one.device = parts->engine.lend(parts->device(one.channel, id));
     one.instrument = parts->engine.lend(std::shared_ptr<const Instrument>(std::move(instrument)));
   } else {
     const HapticDevicePort* device = one.device.get();

@@ -23,11 +23,11 @@ void write_command(StateWriter& out, Command& command);
 // Who stands for what cannot be in a file.
 struct CommandParts {
   Engine& engine;  // lends
-  // Chains are distinguished by their addresses, as the tick does it: gives the one that was read under this address
-  // before where it is the same, else keeps this one.
-  std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t address, kinematics::Chain&& chain)> chain;
+  // Chains are distinguished by their ids, as the tick does it by their addresses: gives the one that was read under
+  // this id before where it is the same, else keeps this one.
+  std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t id, kinematics::Chain&& chain)> chain;
   // Stands for the device of a channel.
-  std::function<std::shared_ptr<HapticDevicePort>(std::uint8_t channel, std::uint64_t address)> device;
+  std::function<std::shared_ptr<HapticDevicePort>(std::uint8_t channel, std::uint64_t id)> device;
 };
 // From any bytes: values are checked as the owner checks them. None, and `in` fails, where they cannot be a command's.
 [[nodiscard]] std::optional<Command> read_command(StateReader& in, const CommandParts& parts);

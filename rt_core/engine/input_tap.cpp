@@ -92,8 +92,8 @@ void InputTap::append_chains(std::vector<std::byte>& out) const {
   for (const LentChain& one : chains_) {
     if (!one.kept) continue;
     StateWriter writer(buffer);
-    const kinematics::Chain* address = one.kept.get();
-    writer.reference(address);
+    const kinematics::Chain* chain = one.kept.get();
+    writer.reference(chain);
     write_chain(writer, *one.kept);
     if (writer.ok()) append(out, InputRecord::chain, writer.written());
   }

@@ -20,7 +20,7 @@ namespace cellmirror::engine {
 inline constexpr std::uint8_t kInputsVersion = 1;
 enum class InputRecord : std::uint8_t {
   command = 1,  // id, command (input_commands.hpp)
-  chain = 2,    // address, chain: what a start state refers to
+  chain = 2,    // id, chain: what a start state refers to
   robots = 3,   // names of slots and joints (written by who records)
   start = 4,    // the state of the engine before a tick (engine_state.cpp)
   tick = 5,     // what it took, and what has changed in what it publishes (tick_recorder.hpp)

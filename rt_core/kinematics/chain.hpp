@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rt_core/base/capacity.hpp"
+#include "rt_core/base/object_id.hpp"
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/result.hpp"
@@ -69,6 +70,8 @@ class Chain {
   [[nodiscard]] Chain with_tip(const Pose& X_LT) const;
   [[nodiscard]] Result<Chain> with_limits(std::span<const double> lower, std::span<const double> upper) const;
 
+  // How recordings name it.
+  [[nodiscard]] std::uint64_t reference_id() const CELL_RT { return id_.value(); }
   // For forward().
   [[nodiscard]] const ForwardConstants& forward_constants() const CELL_RT { return forward_constants_; }
 
@@ -86,6 +89,7 @@ class Chain {
   Pose X_LT_ = Pose::Identity();
   std::vector<Variable> variables_;
   ForwardConstants forward_constants_;
+  ObjectId id_;
 };
 
 }  // namespace cellmirror::kinematics

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "rt_core/base/object_id.hpp"
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
@@ -60,6 +61,11 @@ class HapticDevicePort {
   virtual ~HapticDevicePort() = default;
   virtual HapticRead read(HapticSample& sample) CELL_RT = 0;
   virtual void write(const HapticOutput& output) CELL_RT = 0;
+  // How recordings name it.
+  [[nodiscard]] std::uint64_t reference_id() const CELL_RT { return id_.value(); }
+
+ private:
+  ObjectId id_;
 };
 
 }  // namespace cellmirror

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Many robots into the running gateway, over DDS or as CAN FD frames over udp: 32 of seven joints at 500 Hz unless said otherwise.
 
-  load_bench.py dds|can [SECONDS=60] [--robots N] [--joints N] [--rate HZ]
+  load_bench.py dds|can [SECONDS=60] [--robots N] [--joints N] [--rate HZ] [--record none|lz4|zstd]
 
 Prints what was sent, what arrived in the tick, what was lost anywhere inside, the processor time of the gateway over
-wall time, and its largest resident memory. Goals: nothing lost, under one core, under 200 MB.
+wall time, and its largest resident memory. Goals: nothing lost, under one core, under 200 MB. With --record a recording goes
+on all the time: what was dropped, its size beside that of the uncompressed one, and the processor time of the threads that
+record. Goals: nothing dropped, under 0.3 cores, with lz4 at most 40 %.
 """
 
 import argparse
@@ -27,6 +29,7 @@ parser.add_argument("seconds", nargs="?", type=float, default=60.0)
 parser.add_argument("--robots", type=int, default=32)
 parser.add_argument("--joints", type=int, default=7)
 parser.add_argument("--rate", type=int, default=500)
+parser.add_argument("--record", choices=("none", "lz4", "zstd"))
 OPTIONS = parser.parse_args()
 ROBOTS, JOINTS, RATE = OPTIONS.robots, OPTIONS.joints, OPTIONS.rate
 
@@ -68,6 +71,44 @@ def processor_s(pid):
     return (int(fields[11]) + int(fields[12])) / CLOCK_TICKS
 
 
+def recording_s(pid):
+    """Processor time of the threads that record."""
+    ticks = 0
+    for task in pathlib.Path(f"/proc/{pid}/task").iterdir():
+        if (task / "comm").read_text().strip() in ("recorder", "recording"):
+            fields = (task / "stat").read_text().rsplit(")", 1)[1].split()
+            ticks += int(fields[11]) + int(fields[12])
+    return ticks / CLOCK_TICKS
+
+
+class Recording:
+    """Of the whole load, where one is wanted."""
+
+    def __init__(self, scratch, pid):
+        self.scratch, self.pid, self.child = scratch, pid, None
+        if OPTIONS.record is None:
+            return
+        self.file = scratch.root / "load.mcap"
+        self.child = g.Process([g.BIN / "cellmirror", "record", "-o", self.file, "--compression", OPTIONS.record, "--instance",
+                                scratch.instance], scratch.environment)
+        g.eventually(lambda: self.file.exists() and self.file.stat().st_size > 0)
+        self.cpu, self.start = recording_s(pid), time.monotonic()
+
+    def report(self):
+        if self.child is None:
+            return
+        cores = (recording_s(self.pid) - self.cpu) / (time.monotonic() - self.start)
+        self.child.stop(timeout=60)
+        self.child.close()
+        info = json.loads(self.scratch.cellmirror("recording", "info", str(self.file), "--json").stdout)
+        dropped = {topic["topic"]: topic["dropped"] for topic in info["topics"] if topic["dropped"]}
+        raw = info["uncompressed_bytes"]
+        print(f"recording: {cores:.3f} cores, {info['messages']} messages, dropped {dropped or 0}; {info['bytes'] / 1e6:.1f} MB, "
+              f"{100 * info['bytes'] / raw:.0f} % of {raw / 1e6:.1f} MB uncompressed")
+        for topic in sorted(info["topics"], key=lambda one: -one["messages"])[:4]:
+            print(f"  {topic['topic']}: {topic['messages']} messages")
+
+
 def memory_mb(pid):
     line = next(line for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines() if line.startswith("VmHWM"))
     return int(line.split()[1]) / 1024
@@ -87,6 +128,7 @@ def main():
     gateway = g.Gateway(scratch)
     try:
         g.eventually(lambda: scratch.status()["script"]["done"] >= ROBOTS)
+        recording = Recording(scratch, gateway.child.pid)
         cpu, start = processor_s(gateway.child.pid), time.monotonic()
         done = subprocess.run([str(part) for part in load(kind, seconds)], capture_output=True, text=True, check=True)
         cpu, wall = processor_s(gateway.child.pid) - cpu, time.monotonic() - start
@@ -104,6 +146,7 @@ def main():
         print(f"gateway: {cpu / wall:.2f} cores, {memory_mb(gateway.child.pid):.0f} MB; tick p99 {loop['compute_us']['p99']:.0f} us, "
               f"wake-up p99 {loop['wakeup_latency_us']['p99']:.0f} us, missed {loop['missed']} of {loop['ticks']}, "
               f"allocations in ticks {loop['allocations']}")
+        recording.report()
     finally:
         gateway.stop()
         gateway.close()

@@ -144,22 +144,23 @@ def paths():
 
 
 def recording():
-    d = Drawing(880, 270, "From the tick to a recording")
-    tick_box = d.box(20, 60, 130, 50, "tick", "red")
-    results = d.box(20, 130, 130, 50, "workers, owner", "green")
-    streams = d.box(20, 200, 130, 50, "CAN streams", "blue")
-    recorder = d.box(270, 95, 140, 80, "recorder\nencodes messages", "amber")
-    buffer = d.box(500, 95, 130, 80, "buffer\n16 MiB", "grey")
-    writer = d.box(720, 95, 140, 80, "recording\ncompresses, writes", "amber")
-    d.arrow(tick_box.right_at(), recorder.left_at(0.25), label="Broadcast", at=(212, 80))
-    d.arrow(results.right_at(), recorder.left_at(0.6), label="boards", at=(212, 138))
-    d.arrow(streams.right_at(), recorder.bottom_at(0.2), label="4,096 frames a robot", at=(246, 222), anchor="start")
+    d = Drawing(880, 330, "From the tick to a recording")
+    tick_box = d.box(20, 60, 130, 90, "tick", "red")
+    results = d.box(20, 170, 130, 50, "workers, owner", "green")
+    streams = d.box(20, 240, 130, 70, "streams\nCAN, DDS, RTDE", "blue")
+    recorder = d.box(320, 80, 140, 150, "recorder\nencodes messages", "amber")
+    buffer = d.box(530, 115, 120, 80, "buffer\n16 MiB", "grey")
+    writer = d.box(720, 115, 140, 80, "recording\ncompresses, writes", "amber")
+    d.arrow(tick_box.right_at(0.25), recorder.left_at(0.15), label="Broadcast: newest state", at=(235, 76))
+    d.arrow(tick_box.right_at(0.75), recorder.left_at(0.4), label="ring of ticks, from 4 MiB", at=(235, 122))
+    d.arrow(results.right_at(), recorder.left_at(0.75), label="boards", at=(235, 186))
+    d.arrow(streams.right_at(), recorder.bottom_at(0.2), label="4,096 frames or 256 KiB a stream", at=(180, 292), anchor="start")
     d.arrow(recorder.right_at(), buffer.left_at())
     d.arrow(buffer.right_at(), writer.left_at())
-    d.arrow(writer.bottom_at(), (790, 225), label="chunks in an MCAP file,\nat the latest after 0.5 s", at=(776, 200), anchor="end")
-    d.box(730, 225, 120, 30, "F.mcap", "white", 12)
+    d.arrow(writer.bottom_at(), (790, 260), label="chunks in an MCAP file,\nat the latest after 0.5 s", at=(776, 222), anchor="end")
+    d.box(730, 260, 120, 30, "F.mcap", "white", 12)
     d.text(20, 28, "The loop waits for none of them. What finds no room is left out and counted for its topic:", 13, "start")
-    d.text(500, 62, "half full: /tf, forces, status;  three quarters: states;\nfull: log, commands, events", 11, "start", colour=FAINT)
+    d.text(500, 62, "a quarter full: pictures;  half: /tf, forces, status;\nthree quarters: states;  full: log, commands, events, inputs", 11, "start", colour=FAINT)
     return d
 
 

@@ -145,7 +145,7 @@ collide_as = "hull"
   EXPECT_EQ(content("A")->geometry[0].mesh, content("B")->geometry[0].mesh);
   EXPECT_EQ(geometry(*sut, "C.base")[0].collide_as, CollideAs::hull);
   EXPECT_EQ(geometry(*sut, "C.base")[0].pieces, content("A")->geometry[0].pieces);
-  EXPECT_EQ(sut->files.size(), 2U);
+  EXPECT_EQ(sut->files.size(), 3U);
 }
 
 TEST_F(CollisionConfig, refuses_collide_as_where_it_means_nothing) {

@@ -31,6 +31,16 @@ std::vector<std::byte> encoded(const JointState& message) {
   return out;
 }
 
+class Payloads final : public PayloadSink {
+ public:
+  void take(std::span<const std::byte> payload, Timestamp receive_time) override {
+    taken.emplace_back(payload.begin(), payload.end());
+    times.push_back(receive_time);
+  }
+  std::vector<std::vector<std::byte>> taken;
+  std::vector<Timestamp> times;
+};
+
 struct Robot {
   explicit Robot(const std::vector<DdsJointConfig>& joints) : feed(RobotFeed::make(joints).value()) {}
   std::unique_ptr<RobotFeed> feed;
@@ -81,6 +91,28 @@ TEST_F(JointStateRouterTest, ServesSeveralRobotsFromOneMessage) {
   EXPECT_EQ(arm_.sink.samples[0].present, 0b10U);
   EXPECT_EQ(other.sink.samples[0].present, 0b100001U);
   EXPECT_EQ(other.sink.samples[0].position[5], 8.0);
+}
+
+TEST_F(JointStateRouterTest, GivesEachMessageOnceAsItCame) {
+  Robot other{{{"boom", 0, 1.0, 0.0}, {"elbow", 5, 1.0, 0.0}}};
+  const auto of_arm = std::make_shared<Payloads>();
+  const auto of_other = std::make_shared<Payloads>();
+  arm_.feed->set_payload_sink(of_arm);
+  other.feed->set_payload_sink(of_other);
+  sut_.add(*arm_.feed, arm_.sink);
+  sut_.add(*other.feed, other.sink);
+  const JointState both{.name = {"boom", "elbow"}, .position = {7.0, 8.0}};
+  accept(both);
+  EXPECT_EQ(of_arm->taken, (std::vector<std::vector<std::byte>>{encoded(both)}));
+  EXPECT_EQ(of_arm->times.back(), now_);
+  EXPECT_TRUE(of_other->taken.empty());
+  accept({.name = {"boom"}, .position = {7.0}});
+  EXPECT_EQ(of_other->taken.size(), 1U);
+  accept({.name = {"nobody"}, .position = {1.0}});
+  EXPECT_EQ(of_arm->taken.size() + of_other->taken.size(), 2U);
+  const std::vector<std::byte> malformed(3, std::byte{7});
+  sut_.accept(malformed, now_);
+  EXPECT_EQ(of_arm->taken.back(), malformed);
 }
 
 TEST_F(JointStateRouterTest, ScalesAndShifts) {

@@ -147,7 +147,7 @@ class CommandBytesTest : public testing::Test {
     std::vector<std::byte> second(std::size_t{64} << 10);
     StateWriter out_again(second);
     write_command(out_again, *again);
-    // But for addresses of what is lent.
+    // But for ids of what is lent.
     ASSERT_EQ(out.size(), out_again.size());
     std::size_t different = 0;
     for (std::size_t i = 0; i < out.size(); ++i) different += first[i] != second[i] ? 1 : 0;

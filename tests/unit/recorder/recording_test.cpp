@@ -8,10 +8,11 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "app/recorder/recording_hub.hpp"
-#include "app/recording/recording_names.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "ipc/record/reader.hpp"
 
 namespace cellmirror::app {
@@ -80,7 +81,8 @@ class RecordingTest : public testing::Test {
 TEST_F(RecordingTest, WhatIsPutIsInTheFile) {
   RecordingOptions options = to_file();
   options.about = {{"cell", "demo"}};
-  options.attachments = {{"cell.toml", "application/toml", "name"}};
+  std::ofstream(folder_ / "cell.toml") << "name";
+  options.cell = cell_files(folder_, {folder_ / "cell.toml"});
   const auto recording = start(options);
   const TopicPtr a = topic("/a");
   put(*recording, a, "one");

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "tests/unit/engine/commands.hpp"
@@ -156,6 +158,22 @@ TEST_F(EngineReplayTest, EachTickIsEqualToTheBit) {
   EXPECT_EQ(sut_.counts().first_problem, "");
 }
 
+// They would say where the memory of the gateway is.
+TEST_F(EngineReplayTest, NoAddressOfTheProcessIsInARecording) {
+  move(motion::MoveKind::linear, 0.4);
+  tick(10);
+  engine_->inputs().request_start();
+  engine_->send(engine::SetChain{.slot = kSlave, .chain = engine_->lend(chain_)});
+  open_hand();
+  tick(10);
+  const std::vector<std::byte> bytes = message();
+  const kinematics::Chain* const chain = chain_.get();
+  const auto address = std::as_bytes(std::span(&chain, 1));
+  EXPECT_TRUE(std::ranges::search(bytes, address).empty());
+  sut_.take(bytes);
+  EXPECT_EQ(sut_.counts().ticks, 10U) << sut_.counts().first_problem;
+}
+
 // At any moment of a motion: on a path, within a fly point, while it brakes, with moves that wait.
 TEST_F(EngineReplayTest, ARecordingMayBeginWhileRobotsMove) {
   for (int i = 0; i < 6; ++i)
@@ -252,6 +270,23 @@ TEST_F(EngineReplayTest, BehindAGapItGoesOnAtTheNextStartState) {
   EXPECT_FALSE(sut_.difference());
   EXPECT_EQ(sut_.counts().ticks, 40U);
   EXPECT_EQ(sut_.counts().skipped, 20U);
+  EXPECT_EQ(sut_.counts().gaps, 1U);
+  EXPECT_EQ(sut_.counts().starts, 2U);
+}
+
+// As it is where the tick itself found no room for a record.
+TEST_F(EngineReplayTest, AStartStateRightBehindAGapIsTaken) {
+  engine_->inputs().request_start();
+  tick(20);
+  sut_.take(message());
+  tick(20);
+  static_cast<void>(message());  // lost
+  engine_->inputs().request_start();
+  tick(20);
+  sut_.take(message());
+  EXPECT_FALSE(sut_.difference());
+  EXPECT_EQ(sut_.counts().ticks, 40U);
+  EXPECT_EQ(sut_.counts().skipped, 0U);
   EXPECT_EQ(sut_.counts().gaps, 1U);
   EXPECT_EQ(sut_.counts().starts, 2U);
 }

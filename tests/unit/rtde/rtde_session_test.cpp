@@ -16,11 +16,17 @@ constexpr std::uint8_t kRecipe = 4;
 struct Recorder final : SessionOutput {
   void send(std::span<const std::uint8_t> bytes) override { sent.emplace_back(bytes.begin(), bytes.end()); }
   void sample(const JointSample& one) override { samples.push_back(one); }
+  void data(std::span<const std::uint8_t> payload, Timestamp now) override {
+    payloads.emplace_back(payload.begin(), payload.end());
+    payload_times.push_back(now);
+  }
   void rejected(const std::string& why) override { reasons.push_back(why); }
   void message(const std::string& text) override { messages.push_back(text); }
 
   std::vector<Bytes> sent;
   std::vector<JointSample> samples;
+  std::vector<Bytes> payloads;
+  std::vector<Timestamp> payload_times;
   std::vector<std::string> reasons;
   std::vector<std::string> messages;
 };
@@ -80,6 +86,20 @@ TEST(RtdeSession, SamplesHaveScaleAndOffsetAndTheJointsThatAreNamed) {
   EXPECT_DOUBLE_EQ(sample.position[2], 0.5 - 1.2);
   EXPECT_DOUBLE_EQ(sample.velocity[2], 0.2);
   EXPECT_EQ(sample.receive_time, Link::at(1.0));
+}
+
+TEST(RtdeSession, DataPackagesAreGivenAsTheyCameEvenThoseThatAreRejected) {
+  Link link;
+  link.run();
+  link.data(1.0, 0.25);
+  Bytes other = data_package({.timestamp_s = 2.0}, kRecipe + 1);
+  link.receive(other, 2.0);
+  ASSERT_EQ(link.out.payloads.size(), 2U);
+  EXPECT_EQ(link.out.samples.size(), 1U);
+  constexpr std::ptrdiff_t kHead = 3;  // size and type
+  EXPECT_EQ(link.out.payloads[1], Bytes(other.begin() + kHead, other.end()));
+  EXPECT_EQ(link.out.payload_times[1], Link::at(2.0));
+  EXPECT_EQ(decode_data(link.out.payloads[0], kRecipe)->q[0], 0.25);
 }
 
 TEST(RtdeSession, GapsInTheControllersTimeAreLostSamples) {

@@ -1,4 +1,4 @@
-#include "app/replay/tick_inputs.hpp"
+#include "app/recording_layout/tick_inputs.hpp"
 
 #include <fmt/format.h>
 

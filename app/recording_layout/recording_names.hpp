@@ -14,6 +14,14 @@ inline constexpr std::string_view kBuildKey = "build";
 inline constexpr std::string_view kTargetKey = "target";
 // Where the cell file was.
 inline constexpr std::string_view kCellFileKey = "cell_file";
+// Which files of the cell are attached: kCellFileRoot = the cell file's place in its folder, and for each file
+// kCellFileListed + PLACE = kAttached, kSameAs + PLACE of one with the same content, or kLeftOut + why.
+inline constexpr std::string_view kCellFilesName = "cellmirror.cell_files";
+inline constexpr std::string_view kCellFileRoot = "cell";
+inline constexpr std::string_view kCellFileListed = "file:";
+inline constexpr std::string_view kAttached = "attached";
+inline constexpr std::string_view kSameAs = "same as ";
+inline constexpr std::string_view kLeftOut = "left out: ";
 inline constexpr std::string_view kJointsTopic = "/joint_states";
 // The topic that has all that the tick took (docs/recording.md).
 inline constexpr std::string_view kInputsTopic = "/inputs/ticks";
