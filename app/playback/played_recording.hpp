@@ -16,8 +16,8 @@ namespace cellmirror::app {
 
 struct PlayOptions {
   std::filesystem::path file;
-  double from_s = 0;           // behind the start of the recording
-  std::optional<double> to_s;  // likewise; none: to its end
+  double from_s = 0;                // behind the start of the recording
+  std::optional<double> to_s = {};  // likewise; none: to its end
   double speed = 1;
   bool playing = true;  // from the start
 };

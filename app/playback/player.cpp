@@ -76,16 +76,21 @@ void Player::play(Timestamp from, const std::stop_token& stop) {
       over = true;
       return false;
     }
-    if (!arrived && time + period / 2 >= from) {
+    if (!arrived) {
+      last = time;
+      if (time + period / 2 < from) return !stop.stop_requested() && !control_.seek_waits();
       arrived = true;
+      // First, so that who sees that it has arrived sees its state.
+      publish();
       control_.arrived(time, wall_.now());
-    } else if (arrived && behind_gap) {
+      return true;
+    }
+    if (behind_gap) {
       control_.jumped(time, wall_.now(),
                       fmt::format("nothing was recorded for {:.3f} s; they were jumped over", seconds(time - last)));
       log_warning("replay.gap", "nothing was recorded for {:.3f} s; they are jumped over", seconds(time - last));
     }
     last = time;
-    if (!arrived) return !stop.stop_requested() && !control_.seek_waits();
     const Timestamp now = control_.due(wall_.now());
     if (now < time && !wait_for(time, stop)) return false;
     // One of several that are due at once is passed over, as by readers of the loop that come too late.

@@ -30,7 +30,7 @@ struct PlaybackState {
   std::uint64_t seeks = 0;    // that were asked for
   std::uint64_t gaps = 0;     // that were jumped over
   std::string file;
-  std::string note;  // the newest gap, or why nothing goes on; empty: nothing to tell
+  std::string note;  // the newest gap, or why nothing goes on; empty: none
 };
 
 // What is not given stays as it is.

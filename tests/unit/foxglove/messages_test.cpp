@@ -89,8 +89,7 @@ TEST(FoxgloveClientMessage, ACallOfAServiceIsBinary) {
 }
 
 TEST(FoxgloveClientMessage, PlaybackControlIsBinary) {
-  const auto with_seek =
-      read_binary_message("\x03\x01\0\0\xC0\x3F\x01\x18\x17\x16\x15\x14\x13\x12\x11\x02\0\0\0id"s);
+  const auto with_seek = read_binary_message("\x03\x01\0\0\xC0\x3F\x01\x18\x17\x16\x15\x14\x13\x12\x11\x02\0\0\0id"s);
   ASSERT_TRUE(with_seek) << with_seek.error();
   const auto& control = std::get<PlaybackControl>(*with_seek);
   EXPECT_FALSE(control.play);
@@ -102,9 +101,9 @@ TEST(FoxgloveClientMessage, PlaybackControlIsBinary) {
   EXPECT_TRUE(std::get<PlaybackControl>(*without).play);
   EXPECT_FALSE(std::get<PlaybackControl>(*without).seek_ns);
   const std::string head = "\x03\0\0\0\x80\x3F\0\0\0\0\0\0\0\0\0"s;
-  for (const std::string& bytes : {"\x03"s, head, head + "\x03\0\0\0id"s, head + "\xFF\xFF\xFF\xFFid"s,
-                                   head + "\x01\0\0\0\xFF"s, "\x03\x02" + head.substr(2) + "\0\0\0\0"s,
-                                   "\x03\0\0\0\xC0\x7F" + head.substr(6) + "\0\0\0\0"s})
+  for (const std::string& bytes :
+       {"\x03"s, head, head + "\x03\0\0\0id"s, head + "\xFF\xFF\xFF\xFFid"s, head + "\x01\0\0\0\xFF"s,
+        "\x03\x02" + head.substr(2) + "\0\0\0\0"s, "\x03\0\0\0\xC0\x7F" + head.substr(6) + "\0\0\0\0"s})
     EXPECT_FALSE(read_binary_message(bytes)) << bytes.size();
 }
 

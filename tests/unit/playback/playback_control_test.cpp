@@ -84,7 +84,7 @@ TEST_F(PlaybackControlTest, ASeekStandsThereUntilItsStateHasArrived) {
   EXPECT_EQ(status(), PlaybackStatus::seeking);
   EXPECT_EQ(at(50), 7);
   sut_.arrived(kFrom + s(7), kWall + s(50));
-  EXPECT_EQ(at(50.5), 7.5);
+  EXPECT_DOUBLE_EQ(at(50.5), 7.5);
   EXPECT_EQ(sut_.state().seeks, 1U);
 }
 

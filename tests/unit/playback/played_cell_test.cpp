@@ -56,8 +56,8 @@ class WriteCell : public testing::Test {
         attachment.data = mcap::view_of(content);
         EXPECT_TRUE(writer.put(attachment));
       }
-      EXPECT_TRUE(writer.put(mcap::Metadata{
-          .name = std::string(kGatewayName), .values = {{std::string(kCellFileKey), "/home/a/cells/cell.toml"}}}));
+      EXPECT_TRUE(writer.put(mcap::Metadata{.name = std::string(kGatewayName),
+                                            .values = {{std::string(kCellFileKey), "/srv/cells/cell.toml"}}}));
       EXPECT_TRUE(writer.finish());
     }
     const auto source = mcap::FileSource::open(recording);

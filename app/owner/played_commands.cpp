@@ -1,4 +1,4 @@
-#include "app/gateway/played_commands.hpp"
+#include "app/owner/played_commands.hpp"
 
 namespace cellmirror::app {
 
