@@ -76,6 +76,7 @@ std::optional<Timestamp> PlaybackControl::take_seek() {
   if (!seek_) return std::nullopt;
   seeking_ = true;
   note_.clear();
+  failure_.clear();
   set_time(*seek_);
   return std::exchange(seek_, std::nullopt);
 }
@@ -134,8 +135,14 @@ void PlaybackControl::failed(std::string why) {
   seeking_ = false;
   playing_ = false;
   ended_ = true;
-  note_ = std::move(why);
+  note_ = why;
+  failure_ = std::move(why);
   ++changes_;
+}
+
+std::string PlaybackControl::failure() const {
+  const std::scoped_lock lock(mutex_);
+  return failure_;
 }
 
 }  // namespace cellmirror::app

@@ -27,6 +27,8 @@ class PlaybackControl final : public PlaybackPort {
 
   [[nodiscard]] PlaybackState state() const override;
   Result<void> apply(const PlaybackRequest& request) override;
+  // Why it cannot go on where it is; empty: it can.
+  [[nodiscard]] std::string failure() const;
   [[nodiscard]] const Clock& clock() const { return clock_; }
   [[nodiscard]] const Range& range() const { return range_; }
 
@@ -68,6 +70,7 @@ class PlaybackControl final : public PlaybackPort {
   std::uint64_t seeks_ = 0;
   std::uint64_t gaps_ = 0;
   std::string note_;
+  std::string failure_;
 };
 
 }  // namespace cellmirror::app

@@ -18,6 +18,8 @@
 #include "app/subcommands/resource_limits.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/cell_file.hpp"
+#include "rt_core/base/counted.hpp"
+#include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/base/time.hpp"
@@ -30,6 +32,16 @@ namespace fs = std::filesystem;
 
 constexpr double kLookEvery_s = 0.05;
 
+// The first error, and how many there are: a file that is not attached makes many.
+std::string not_whole(const Diagnostics& findings) {
+  for (const Diagnostic& finding : findings.all()) {
+    if (finding.severity == Severity::error)
+      return fmt::format("its attached files are not a whole cell ({}; the first: {})",
+                         number_of(findings.errors(), "error"), finding.text());
+  }
+  return "its attached files are not a whole cell";
+}
+
 // The attached files, where they are a whole cell; else the cell file where it was recorded, if it is still there.
 Result<fs::path> cell_of(const mcap::Reader& reader, const ReplayGateway& options, const fs::path& folder) {
   if (!options.recorded_cell.empty()) return fs::path(options.recorded_cell);
@@ -38,7 +50,7 @@ Result<fs::path> cell_of(const mcap::Reader& reader, const ReplayGateway& option
   if (attached) {
     Diagnostics findings;
     if (load_cell(*attached, findings)) return *attached;
-    why = "its attached files are not a whole cell:\n" + findings.text(Severity::error);
+    why = not_whole(findings);
   }
   const fs::path recorded = recorded_cell_file(reader);
   std::error_code error;
@@ -106,7 +118,9 @@ int play_recording(const ReplayGateway& options) {
   std::printf("%s\n", (*gateway)->greeting().c_str());
   std::fflush(stdout);
   const int signal = serve(signals, **recording, options.page || options.wait);
+  const std::string failure = (*recording)->control().failure();
   gateway->reset();
+  if (signal == 0 && !failure.empty()) return refuse(fmt::format("{}: {}", options.file, failure));
   if (signal == 0 || is_ordinary_end(signal)) return kExitDone;
   return refuse(fmt::format("the replay was ended by {}", signal_text(signal)));
 }

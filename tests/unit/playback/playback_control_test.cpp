@@ -148,6 +148,10 @@ TEST_F(PlaybackControlTest, WhatCannotBeReadEndsWithTheReason) {
   sut_.failed("a chunk is not sound");
   EXPECT_EQ(status(), PlaybackStatus::ended);
   EXPECT_EQ(sut_.state().note, "a chunk is not sound");
+  EXPECT_EQ(sut_.failure(), "a chunk is not sound");
+  ASSERT_TRUE(sut_.apply({.play = {}, .speed = {}, .seek_ns = utc(3)}));
+  ASSERT_TRUE(sut_.take_seek());
+  EXPECT_EQ(sut_.failure(), "") << "elsewhere it may go on";
 }
 
 }  // namespace

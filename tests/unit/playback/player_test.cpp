@@ -84,9 +84,10 @@ class PlayerTest : public testing::Test {
     data.insert(data.end(), names.begin(), names.end());
     engine_->inputs().drain(data);
     const auto utc = static_cast<std::uint64_t>(now_.ns + kUtc);
-    if (!lost)
+    if (!lost) {
       ASSERT_TRUE(writer_->put(
           mcap::Message{.channel = 1, .sequence = sequence_, .log_time = utc, .publish_time = utc, .data = data}));
+    }
     ++sequence_;
   }
 
