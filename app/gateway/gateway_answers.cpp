@@ -38,6 +38,9 @@ void Gateway::Parts::answer_playback(const ControlRequest& request, ControlReply
 }
 
 void Gateway::Parts::answer_queues(ControlReply reply) {
+  if (playback != nullptr)
+    return reply(control_error({"this is a replay: it takes no SCRIPT messages",
+                                "views are set on its page: cellmirror replay F.mcap --page"}));
   const ScriptMessageStatus status = messages->status();
   reply(queue_answer_text({status.input_queue, status.reply_queue, status.input_problem, status.reply_problem}));
 }

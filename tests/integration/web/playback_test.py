@@ -30,6 +30,16 @@ class Replay(g.Process):
         if not g.eventually(lambda: "Ctrl-C ends it" in self.output() or not self.running(), 20) or not self.running():
             raise AssertionError(f"the replay did not start:\n{self.output()}")
 
+    def close(self):
+        """In order, so that its private folder goes with it."""
+        if self.running():
+            self.child.terminate()
+            try:
+                self.child.wait(10)
+            except subprocess.TimeoutExpired:
+                pass
+        super().close()
+
     def status(self):
         return self.scratch.status(instance=self.instance)
 
@@ -174,6 +184,7 @@ class Controls(PlaybackCase):
             status, body = page.command(command)
             self.assertIn("this is a replay", body, command)
         self.assertIn('"done":true', page.command("STDP 2")[1].replace(" ", ""))
+        self.assertIn("takes no SCRIPT messages", self.scratch.send("STDP 1", instance=replay.instance).stderr)
         self.assertIn("recorded already", replay.ask(request="record", action="start", file="/tmp/x.mcap")["error"])
 
     def test_foxglove_controls_it(self):
