@@ -99,11 +99,12 @@ void add_replay(cli::Command program, Action& action) {
   of_playing(sub.option("--speed", gateway.speed, "times as fast as it was recorded")
                  .between(kSlowestPlayback, kFastestPlayback)
                  .show_default());
-  of_playing(sub.flag("--paused", gateway.paused, "stands at the begin until it is played"));
+  of_playing(sub.flag("--paused", gateway.paused, "stands at the beginning until it is played"));
   of_playing(sub.flag("--wait", gateway.wait, "waits at the end for Ctrl-C, without the page too"));
   of_playing(sub.flag("--headless", gateway.headless, "without pictures"));
-  of_playing(sub.flag("--publish", gateway.publish,
-                      "SENSOR records and DDS too, with the names of the cell file: not beside its gateway"));
+  of_playing(
+      sub.flag("--publish", gateway.publish,
+               "SENSOR records and DDS too, with the domain and topics of the cell file: not beside its gateway"));
   of_playing(sub.option("--instance", gateway.instance, "name for cellmirror status and others").show_default());
   sub.flag("--json", options->json, "one JSON document (docs/recording.md); of --verify and --cell");
   sub.footer(
