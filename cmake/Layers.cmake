@@ -77,6 +77,7 @@ set(CELLMIRROR_LAYERS
   "app/recording: rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds ipc/record app/plot app/recording_layout"
   "app/replay: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/motion rt_core/haptics rt_core/engine drivers/can drivers/dds ipc/record app/recording_layout app/recording"
   "app/recorder: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/engine drivers/can drivers/dds ipc/record app/snapshot app/io app/recording_layout rt_core/kinematics rt_core/motion rt_core/haptics rt_core/cell"
+  "app/playback: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/motion rt_core/haptics rt_core/engine rt_core/cell drivers/can drivers/dds ipc/record app/snapshot app/recording_layout app/recording app/replay"
   "app/live: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/engine drivers/can drivers/dds ipc/record app/snapshot app/io app/recording_layout rt_core/cell rt_core/collision ipc/runtime ipc/foxglove ipc/web app/recorder"
   "app/kinematics: rt_core/base rt_core/ports rt_core/kinematics rt_core/inverse_kinematics rt_core/cell config config/command_line app/plot"
   "app/proximity: rt_core/base rt_core/rt rt_core/ports rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging config app/plot app/console"
@@ -84,7 +85,7 @@ set(CELLMIRROR_LAYERS
   "app/new_cell: rt_core/base rt_core/ports rt_core/cell config drivers/can app/io"
   "app/volume_info: rt_core/base rt_core/ports config config/volume app/plot"
   "app/simulation: rt_core/base rt_core/rt rt_core/ports rt_core/motion rt_core/geometry rt_core/collision rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine config scripts/programs/controller app/plot app/console app/snapshot app/owner app/workers"
-  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording"
+  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording app/replay app/playback"
   "app: *"
   "tests: *")
 
@@ -95,7 +96,7 @@ set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/ki
   scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/rapid scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot
-  app/console app/snapshot app/io app/owner app/workers app/render app/report app/alarms app/kinematics app/proximity app/pictures app/simulation app/volume_info app/new_cell app/recording_layout app/recording app/replay app/recorder app/live app/gateway app tests)
+  app/console app/snapshot app/io app/owner app/workers app/render app/report app/alarms app/kinematics app/proximity app/pictures app/simulation app/volume_info app/new_cell app/recording_layout app/recording app/replay app/playback app/recorder app/live app/gateway app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

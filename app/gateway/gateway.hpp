@@ -18,6 +18,8 @@ class ForceGuard;
 
 namespace cellmirror::app {
 
+class PlayedRecording;
+
 struct GatewayOptions {
   std::filesystem::path cell_file;
   std::optional<std::string> startup_script;  // instead of the cell file's own
@@ -30,6 +32,10 @@ struct GatewayOptions {
   std::function<void()> bell;   // rings with messages while BEEP is on (SET_MODE); may be empty
   ForceGuard* guard = nullptr;  // of the shared memories; outlives the gateway; null: none
   LoadProgress progress;        // told while the cell is loaded; may be empty
+  // Takes the place of the loop and of all devices: nothing is opened but the control socket and the monitor page.
+  // Outlives the gateway; null: a gateway of real robots.
+  PlayedRecording* playback = nullptr;
+  bool publish = false;  // of a recording that is played: SENSOR records and DDS as well
 };
 
 class Gateway {

@@ -2,16 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "app/io/robot_streams.hpp"
+#include "app/playback/played_recording.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
 
 namespace {
+
+constexpr std::size_t kMostScripts = 256;
 
 // Numbered, so that none falls to the log's rate limit by kind.
 void log_findings(const Diagnostics& diagnostics) {
@@ -35,7 +40,9 @@ Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
                 fmt::format("fix the cell and check it with: cellmirror check {}", options.cell_file.string()));
   }
   // A robot whose stream cannot be made is still there to be simulated; online refuses it with the same diagnostics.
-  for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
+  if (options.playback == nullptr) {
+    for (const RobotStream& stream : loaded->streams) check_robot_stream(stream, diagnostics);
+  }
   log_findings(diagnostics);
   if (!options.state.empty()) {
     auto home = loaded->home.with_state(options.state);
@@ -43,12 +50,21 @@ Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
     loaded->home = *std::move(home);
   }
   if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
+  if (options.playback != nullptr) loaded->loop.rate_hz = options.playback->rate_hz();
   return std::move(*loaded);
 }
 
 std::vector<std::filesystem::path> files_of(const LoadedCell& cell) {
   std::vector<std::filesystem::path> files = cell.files;
   files.insert(files.begin(), std::filesystem::absolute(cell.file).lexically_normal());
+  // What the startup script says is part of the cell: views, what is sent, workframes that it moves.
+  std::error_code error;
+  std::vector<std::filesystem::path> scripts;
+  for (const auto& entry : std::filesystem::directory_iterator(cell.home.root() / "scripts", error)) {
+    if (scripts.size() < kMostScripts && entry.is_regular_file(error)) scripts.push_back(entry.path());
+  }
+  std::ranges::sort(scripts);
+  files.insert(files.end(), scripts.begin(), scripts.end());
   return files;
 }
 

@@ -11,7 +11,7 @@
 namespace cellmirror::app {
 
 [[nodiscard]] Result<LoadedCell> load_cell_of(const GatewayOptions& options);
-// The cell file first (an absolute path), then what it refers to.
+// The cell file first (an absolute path), then what it refers to, and the files of scripts/.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const LoadedCell& cell);
 
 }  // namespace cellmirror::app

@@ -109,6 +109,7 @@ void Recordings::fill_about(RecordingOptions& options) const {
                    {std::string(kCellFileKey), about_.cell_file},
                    {std::string(kBuildKey), build_identity()},
                    {std::string(kTargetKey), std::string(compute_target())},
+                   {std::string(kUtcKey), fmt::format("{}", to_wall_clock_ns(Timestamp{0}))},
                    {"record_rate_hz", fmt::format("{}", options.rate_hz)}};
   options.cell = about_.files;
 }

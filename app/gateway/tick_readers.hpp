@@ -7,7 +7,9 @@ namespace cellmirror::app {
 
 // Workers are named as their threads.
 struct TickReaders {
-  explicit TickReaders(engine::Engine& engine)
+  // `engine`: the engine, or what takes its place.
+  template <class Source>
+  explicit TickReaders(Source& engine)
       : status(engine.subscribe("status")),
         collisions(engine.subscribe("collisions")),
         ranging(engine.subscribe("ranging")),

@@ -28,7 +28,9 @@ class WebBackend final : public web::Backend {
  public:
   // None of what is pointed to is owned; all of it outlives the backend.
   struct Parts {
-    const Clock* clock = nullptr;
+    const Clock* clock = nullptr;       // of the server
+    const Clock* cell_clock = nullptr;  // of what it shows
+    PlaybackPort* playback = nullptr;   // null: real robots
     const KismetHome* home = nullptr;
     LiveTopics* topics = nullptr;
     double loop_rate_hz = 0;
@@ -49,13 +51,17 @@ class WebBackend final : public web::Backend {
   explicit WebBackend(Parts parts);
 
   [[nodiscard]] const Clock& clock() const override { return *parts_.clock; }
+  [[nodiscard]] const Clock& cell_clock() const override { return *parts_.cell_clock; }
+  [[nodiscard]] PlaybackPort* playback() override { return parts_.playback; }
   [[nodiscard]] std::string live_json() override;
   [[nodiscard]] std::string status_json() override { return parts_.status(); }
   [[nodiscard]] std::string tree_json() override;
   [[nodiscard]] std::string commands_json() override;
   [[nodiscard]] std::string names_json() override;
   [[nodiscard]] std::string command_log_json() override { return command_log_document(parts_.command_log()); }
-  [[nodiscard]] std::string alarms_json() override { return alarms_document(parts_.alarms(), parts_.clock->now()); }
+  [[nodiscard]] std::string alarms_json() override {
+    return alarms_document(parts_.alarms(), parts_.cell_clock->now());
+  }
   [[nodiscard]] std::string metrics_text() override;
   [[nodiscard]] web::Health health() override { return parts_.health(); }
   void execute(std::string_view command, const web::CommandOrigin& origin,

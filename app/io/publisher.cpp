@@ -17,9 +17,11 @@ namespace {
 constexpr Nanoseconds kBehindTick{150'000};
 constexpr Nanoseconds kLongestSleep{100'000'000};  // how long stopping may take
 
-void sleep_until(Timestamp t) {
-  const timespec wanted{t.ns / 1'000'000'000, t.ns % 1'000'000'000};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wanted, nullptr);
+// Of the machine's time, whatever clock the cell goes by.
+void sleep_for(Nanoseconds d) {
+  const std::int64_t ns = std::max<std::int64_t>(0, d.count());
+  const timespec wanted{ns / 1'000'000'000, ns % 1'000'000'000};
+  clock_nanosleep(CLOCK_MONOTONIC, 0, &wanted, nullptr);
 }
 
 }  // namespace
@@ -84,7 +86,10 @@ void Publisher::loop(const std::stop_token& stop) {
     const Timestamp tick = ticks_.newest().time;
     const std::int64_t periods =
         tick.known() ? std::max<std::int64_t>(1, (due - tick + tick_period_ / 2) / tick_period_) : 0;
-    sleep_until(tick.known() ? std::max(tick + periods * tick_period_ + kBehindTick, now + kBehindTick) : due);
+    const Timestamp wanted =
+        tick.known() ? std::clamp(tick + periods * tick_period_ + kBehindTick, now + kBehindTick, now + kLongestSleep)
+                     : due;
+    sleep_for(wanted - clock_.now());
   }
 }
 
@@ -116,6 +121,8 @@ void Publisher::publish_description(const CellState& cell_state) {
 
 Timestamp Publisher::publish_due(Timestamp now) {
   Timestamp next = now + kLongestSleep;
+  // Where the time was set back, nothing waits until it is there again.
+  for (std::size_t i = 0; i < due_.size(); ++i) due_[i] = std::min(due_[i], now + outputs_[i].period);
   const bool any_due =
       std::any_of(due_.begin(), due_.end(), [now, this](Timestamp due) { return due <= now + tick_period_ / 2; });
   if (any_due) {

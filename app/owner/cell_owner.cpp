@@ -95,6 +95,7 @@ CellOwner::CellOwner(Parts parts)
       home_, clock_,
       script::ScriptRunner::Events{.refused = std::move(parts.refused),
                                    .all_stopped = [this] { switches_->forget_waiting(); },
+                                   .withheld = std::move(parts.withheld),
                                    .traced = std::move(parts.traced)});
   switches_ = std::make_unique<FootSwitchService>(
       FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -73,6 +74,8 @@ class CellOwner {
     std::function<void()> let_tick_pass = {};
     std::function<void(const Diagnostics& findings)> refused = {};  // with each command of a file that is refused
     script::ScriptRunner::TraceFunction traced = {};                // with each command that is done or refused
+    std::function<std::optional<Error>(script::FormId command, script::CommandSource::Kind from)> withheld =
+        {};                                                                                 // ScriptRunner::Events
     std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};  // to the tick
     std::function<void(const program::ProgramEvent&)> program_event = {};
     std::function<void(const ShownText& message)> message_shown = {};

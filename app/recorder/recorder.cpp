@@ -23,13 +23,16 @@ constexpr Nanoseconds kBetweenFindings{20'000'000};  // collisions, distances, f
 constexpr Nanoseconds kBetweenStatus{1'000'000'000};
 constexpr std::size_t kMostTopicsOfAKind = 256;
 
-void wait_until(Timestamp t) {
-  const timespec wanted{t.ns / 1'000'000'000, t.ns % 1'000'000'000};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wanted, nullptr);
+// Of the machine's time, whatever clock the cell goes by.
+void wait_for(Nanoseconds d) {
+  const std::int64_t ns = std::max<std::int64_t>(0, d.count());
+  const timespec wanted{ns / 1'000'000'000, ns % 1'000'000'000};
+  clock_nanosleep(CLOCK_MONOTONIC, 0, &wanted, nullptr);
 }
 
 bool is_due(Timestamp now, Timestamp& last, Nanoseconds period) {
-  if (last.known() && now - last < period) return false;
+  // A time before the last one: a recording that is played was set back.
+  if (last.known() && now >= last && now - last < period) return false;
   last = now;
   return true;
 }
@@ -66,7 +69,7 @@ void Recorder::loop(const std::stop_token& stop) {
       last_tick_ = 0;
       newest_event_ = 0;
       newest_edge_.reset();
-      wait_until(now + kIdle);
+      wait_for(kIdle);
       continue;
     }
     const engine::TickState& state = sources_.ticks.newest();
@@ -78,7 +81,7 @@ void Recorder::loop(const std::stop_token& stop) {
     const auto period = std::max(sources_.tick_period, Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)));
     const std::int64_t ticks = std::max<std::int64_t>(1, (period + sources_.tick_period / 2) / sources_.tick_period);
     const Timestamp due = state.time + ticks * sources_.tick_period + kAfterTick;
-    wait_until(std::clamp(due, now + kAfterTick, now + kIdle));
+    wait_for(std::clamp(due, now + kAfterTick, now + kIdle) - sources_.clock.now());
   }
 }
 
@@ -88,7 +91,7 @@ void Recorder::look(const engine::TickState& state, double rate_hz) {
   const std::shared_ptr<const ForceState> forces = sources_.forces.latest();
   const double tick_rate_hz = 1e9 / static_cast<double>(sources_.tick_period.count());
   const auto step = static_cast<std::uint64_t>(std::max(1.0, std::round(tick_rate_hz / rate_hz)));
-  if (last_tick_ == 0 || state.tick >= last_tick_ + step) {
+  if (last_tick_ == 0 || state.tick >= last_tick_ + step || state.tick < last_tick_) {
     // Ticks that this thread came too late for.
     if (last_tick_ != 0 && state.tick >= last_tick_ + 2 * step && joints_)
       hub_.count_missed(joints_, (state.tick - last_tick_) / step - 1);

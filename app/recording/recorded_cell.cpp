@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "app/recording_layout/recording_names.hpp"
+#include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -26,26 +27,6 @@ namespace {
 constexpr std::size_t kMostFiles = 10'000;
 constexpr std::size_t kMostFolders = 16;
 constexpr std::size_t kLongestPart = 255;  // NAME_MAX
-
-class Descriptor {
- public:
-  explicit Descriptor(int file) : file_(file) {}
-  ~Descriptor() {
-    if (file_ >= 0) ::close(file_);
-  }
-  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(file_, other.file_);
-    return *this;
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return file_; }
-  [[nodiscard]] bool valid() const { return file_ >= 0; }
-
- private:
-  int file_;
-};
 
 Error failed(const std::string& place, std::string_view what) {
   return {fmt::format("{} cannot be {}: {}", printable(place), what, std::strerror(errno)), {}};
@@ -119,10 +100,8 @@ Result<void> write_below(const Descriptor& folder, const std::string& place, std
 // Of versions that attached small files only, and did not list them.
 RecordedCell cell_without_list(const mcap::Reader& reader) {
   RecordedCell out;
-  const auto about = reader.metadata(kGatewayName);
-  const auto file = about ? about->values.find(kCellFileKey) : mcap::Texts::const_iterator();
-  if (!about || file == about->values.end()) return out;
-  const std::string name = fs::path(file->second).filename().string();
+  const std::string name = recorded_cell_path(reader).filename().string();
+  if (name.empty()) return out;
   for (const mcap::AttachmentIndex& index : reader.attachments()) out.files[index.name] = index.name;
   if (out.files.contains(name)) out.cell_file = name;
   out.missing.emplace_back("the recording does not list the files of its cell: an older version made it");
@@ -130,6 +109,15 @@ RecordedCell cell_without_list(const mcap::Reader& reader) {
 }
 
 }  // namespace
+
+bool is_below_a_folder(std::string_view place) { return parts_of(place).has_value(); }
+
+fs::path recorded_cell_path(const mcap::Reader& reader) {
+  const auto about = reader.metadata(kGatewayName);
+  if (!about) return {};
+  const auto file = about->values.find(kCellFileKey);
+  return file == about->values.end() ? fs::path() : fs::path(file->second);
+}
 
 RecordedCell recorded_cell(const mcap::Reader& reader) {
   const auto list = reader.metadata(kCellFilesName);

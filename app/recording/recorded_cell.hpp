@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ipc/record/reader.hpp"
@@ -24,6 +25,11 @@ struct RecordedCell {
 // From the metadata; of a recording without these (by an older version) the attachments as they are.
 [[nodiscard]] RecordedCell recorded_cell(const mcap::Reader& reader);
 
+// Whether the name of a file stays below a folder that it is written to or read from: relative, printable, no "..".
+[[nodiscard]] bool is_below_a_folder(std::string_view place);
+// Where the cell file was when it was recorded; empty: the recording does not say.
+[[nodiscard]] std::filesystem::path recorded_cell_path(const mcap::Reader& reader);
+
 struct ExtractedCell {
   std::filesystem::path cell_file;
   std::vector<std::string> missing;  // as above
@@ -31,10 +37,9 @@ struct ExtractedCell {
 
 // Writes the attached files of the cell into `folder`: an existing, empty folder of this user that nobody else may
 // enter (mode 0700), and no link. Files get mode 0600, folders 0700. Refused as a whole: names that are absolute, that
-// have
-// "..", a character that is not printable or more than 16 folders; more than `most_bytes` or 10,000 files together.
-// After an error the folder may have some of the files. Mind $kis_home where the cell is loaded: it goes before the
-// folder.
+// have "..", a character that is not printable or more than 16 folders; more than `most_bytes` or 10,000 files
+// together. After an error the folder may have some of the files. Mind $kis_home where the cell is loaded: it goes
+// before the folder.
 [[nodiscard]] Result<ExtractedCell> extract_cell(const mcap::Reader& reader, const std::filesystem::path& folder,
                                                  std::uint64_t most_bytes = std::uint64_t{2} << 30);
 

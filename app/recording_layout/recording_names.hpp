@@ -12,6 +12,8 @@ inline constexpr std::string_view kGatewayName = "cellmirror.gateway";
 // In that: the program and the instruction set that it computes with; with others a replay differs in the last bits.
 inline constexpr std::string_view kBuildKey = "build";
 inline constexpr std::string_view kTargetKey = "target";
+// UTC minus the instants of the machine's monotonic clock, ns, when the recording began.
+inline constexpr std::string_view kUtcKey = "utc_minus_monotonic_ns";
 // Where the cell file was.
 inline constexpr std::string_view kCellFileKey = "cell_file";
 // Which files of the cell are attached: kCellFileRoot = the cell file's place in its folder, and for each file

@@ -325,7 +325,7 @@ Result<std::shared_ptr<const EncodedImage>> RenderService::encode(RenderedPictur
   picture->sequence = ++sequence_;
   const Timestamp end = boards_.clock.now();
   encode_time_.record(end - start);
-  age_.record(end - rendered.posture_time);
+  age_.record(boards_.cell_now() - rendered.posture_time);
   rendered.encoded.emplace_back(quality, picture);
   return picture;
 }

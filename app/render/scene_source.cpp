@@ -36,7 +36,8 @@ bool SceneSource::refresh() {
   picture_ = std::move(picture);
   cell_ = picture_->cell;
   now_ = boards_.clock.now();
-  take_conditions(tick, now_);
+  cell_now_ = boards_.cell_now();
+  take_conditions(tick, cell_now_);
   const auto proximity = boards_.proximity.latest();
   const auto ranges = boards_.ranges.latest();
   const auto forces = boards_.forces.latest();
@@ -57,13 +58,13 @@ bool SceneSource::refresh() {
   if (boards_.tissue) input.tissue = boards_.tissue();
   input.volumes = picture_->volumes.get();
   input.posture_time = tick.time;
-  input.now = now_;
+  input.now = cell_now_;
   builder_.build(input, scene_);
   return true;
 }
 
 Result<std::vector<Pane>> SceneSource::panes(const PictureRequest& request, std::uint64_t updates) const {
-  return panes_of({*cell_, poser_.poses(), *picture_->display, now_, updates}, request);
+  return panes_of({*cell_, poser_.poses(), *picture_->display, cell_now_, updates}, request);
 }
 
 }  // namespace cellmirror::app

@@ -37,8 +37,11 @@ class SceneSource {
     const Board<RangeReadings>& ranges;
     const Board<ForceState>& forces;
     const Board<TraceState>& traces;
-    const Clock& clock;
+    const Clock& clock;                                              // by which pictures are made
     std::function<std::shared_ptr<const TissueView>()> tissue = {};  // empty: the cell has none
+    const Clock* cell_clock = nullptr;                               // of what they show; null: the same
+
+    [[nodiscard]] Timestamp cell_now() const { return cell_clock != nullptr ? cell_clock->now() : clock.now(); }
   };
 
   explicit SceneSource(const Boards& boards) : boards_(boards) {}
@@ -70,6 +73,7 @@ class SceneSource {
   scene::SceneBuilder builder_;
   Scene scene_;
   Timestamp now_;
+  Timestamp cell_now_;  // likewise, by the time of the cell
 };
 
 }  // namespace cellmirror::app

@@ -7,6 +7,7 @@
 #include "app/report/implausible_values.hpp"
 #include "app/report/live_tissue.hpp"
 #include "app/report/live_volumes.hpp"
+#include "app/report/playback_document.hpp"
 #include "app/snapshot/haptic_names.hpp"
 #include "rt_core/base/json_writer.hpp"
 #include "rt_core/ports/words.hpp"
@@ -373,6 +374,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   out.member("commands_logged", sources.commands_logged);
   add_messages(out, *sources.cell_state.display, sources.now);
   add_display(out, sources);
+  if (sources.playback) add_playback(out.key("replay"), *sources.playback);
   return out.end_object().take();
 }
 

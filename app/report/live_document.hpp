@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/ports/force_state.hpp"
+#include "rt_core/ports/playback.hpp"
 #include "rt_core/ports/renderer_counters.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
@@ -45,6 +47,7 @@ struct LiveSources {
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
   RendererCounters renderer = {};                        // of the newest picture
   AlarmCounts alarms = {};
+  std::optional<PlaybackState> playback = {};  // of a recording; none: real robots
 };
 
 // Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at

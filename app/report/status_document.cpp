@@ -1,4 +1,5 @@
 #include "app/report/status_document.hpp"
+#include "app/report/playback_document.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -311,6 +312,7 @@ std::string status_document(const StatusSources& sources) {
       {"tissue", tissue_json(sources.tissue, sources.cell_state, sources.now)},
       {"volumes", volumes_json(sources.cell_state)},
       {"recordings", recordings_json(sources.recordings)},
+      {"replay", sources.playback ? json::parse(playback_document(*sources.playback)) : json(nullptr)},
       {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.
   return document.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -1,6 +1,7 @@
 // Writes the status document (docs/status.md).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "ipc/control/control_server.hpp"
 #include "ipc/sysv/script_message_receiver.hpp"
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/playback.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/rt/cyclic_thread.hpp"
 #include "rt_core/rt/memory_lock.hpp"
@@ -62,6 +64,7 @@ struct StatusSources {
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
   std::vector<RecordingReport> recordings = {};
   AlarmReport alarms = {};
+  std::optional<PlaybackState> playback = {};  // of a recording; none: real robots
 };
 
 [[nodiscard]] std::string status_document(const StatusSources& sources);

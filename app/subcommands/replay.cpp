@@ -12,10 +12,12 @@
 #include "app/console/put.hpp"
 #include "app/replay/verification.hpp"
 #include "app/subcommands/replay_cells.hpp"
+#include "app/subcommands/replay_gateway.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/record/reader.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/ports/playback.hpp"
 
 namespace cellmirror::app {
 
@@ -30,6 +32,7 @@ struct ReplayOptions {
   std::string recorded_cell;
   double from_s = 0;
   std::optional<double> to_s;
+  ReplayGateway gateway;  // but for what is above
 };
 
 // Log times `from_s` and `to_s` behind the first.
@@ -44,6 +47,14 @@ mcap::Filter filter_of(const ReplayOptions& options, const mcap::Reader& reader)
 }
 
 int replay(const ReplayOptions& options) {
+  if (!options.verify && options.cell.empty()) {
+    ReplayGateway gateway = options.gateway;
+    gateway.file = options.file;
+    gateway.recorded_cell = options.recorded_cell;
+    gateway.from_s = options.from_s;
+    gateway.to_s = options.to_s;
+    return play_recording(gateway);
+  }
   const auto source = mcap::FileSource::open(options.file);
   if (!source) return refuse(source.error().text());
   auto reader = mcap::Reader::open(**source);
@@ -68,27 +79,43 @@ int replay(const ReplayOptions& options) {
 
 void add_replay(cli::Command program, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
-  cli::Command sub = program.subcommand("replay", "Run a recording again: compare each tick, or try another cell");
+  cli::Command sub =
+      program.subcommand("replay", "Play a recording as if the gateway ran, compare each tick, or try another cell");
   sub.option("file", options->file, "the recording, an .mcap file").required();
   auto verifies =
       sub.flag("--verify", options->verify, "compare what each tick published, bit by bit; 1 if one differs");
   sub.flag("--force", options->force, "also where another build or processor has recorded");
-  sub.option("--cell", options->cell, "what touches, and what is near, differently in this cell file")
-      .excludes(verifies);
+  auto other_cell = sub.option("--cell", options->cell, "what touches, and what is near, differently in this cell file")
+                        .excludes(verifies);
   sub.option("--recorded-cell", options->recorded_cell, "the cell file that was recorded, if it is elsewhere now")
       .excludes(verifies);
+  ReplayGateway& gateway = options->gateway;
+  const auto of_playing = [&](cli::Option option) { option.excludes(verifies).excludes(other_cell); };
   sub.option("--from", options->from_s, "seconds behind the start of the recording").between(0.0, 1e9);
   sub.option("--to", options->to_s, "seconds behind the start of the recording").between(0.0, 1e9);
-  sub.flag("--json", options->json, "one JSON document (docs/recording.md)");
+  auto page = sub.flag("--page", gateway.page, "with the monitor page; waits at the end for Ctrl-C");
+  of_playing(page);
+  of_playing(sub.option("--port", gateway.port, "of the page; otherwise a free one").between(0, 65535).needs(page));
+  of_playing(sub.option("--speed", gateway.speed, "times as fast as it was recorded")
+                 .between(kSlowestPlayback, kFastestPlayback)
+                 .show_default());
+  of_playing(sub.flag("--paused", gateway.paused, "stands at the beginning until it is played"));
+  of_playing(sub.flag("--wait", gateway.wait, "waits at the end for Ctrl-C, without the page too"));
+  of_playing(sub.flag("--headless", gateway.headless, "without pictures"));
+  of_playing(
+      sub.flag("--publish", gateway.publish,
+               "SENSOR records and DDS too, with the domain and topics of the cell file: not beside its gateway"));
+  of_playing(sub.option("--instance", gateway.instance, "name for cellmirror status and others").show_default());
+  sub.flag("--json", options->json, "one JSON document (docs/recording.md); of --verify and --cell");
   sub.footer(
+      "Without --verify and --cell it is played: page, pictures and status are as they were then, no device is "
+      "opened,\n"
+      "and commands that would change the cell are refused. It ends with the recording, or waits there with --page.\n"
       "Collisions in another cell are results, not failures: the exit status is 0.\n"
-      "Example: cellmirror replay drive.mcap --verify\n"
+      "Example: cellmirror replay drive.mcap --page --from 60 --speed 2\n"
+      "         cellmirror replay drive.mcap --verify\n"
       "         cellmirror replay drive.mcap --cell longer_tool/cell.toml --from 10 --to 40");
-  sub.when_named([options, &action] { action = [options] { return replay(*options); }; },
-                 [options] {
-                   return options->verify || !options->cell.empty() ? std::string()
-                                                                    : std::string("name --verify, or --cell OTHER");
-                 });
+  sub.when_named([options, &action] { action = [options] { return replay(*options); }; });
 }
 
 }  // namespace cellmirror::app

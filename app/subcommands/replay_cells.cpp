@@ -52,19 +52,15 @@ class TemporaryFile {
   std::FILE* file_ = nullptr;
 };
 
-bool stays_below(const fs::path& place) {
-  return !place.is_absolute() && std::ranges::none_of(place, [](const fs::path& part) { return part == ".."; });
-}
-
 // Attached files that are others in the folder of the cell now, or are no longer there.
 std::vector<std::string> changed_files(const mcap::Reader& reader, const fs::path& folder) {
   std::vector<std::string> out;
-  for (const mcap::AttachmentIndex& index : reader.attachments()) {
-    const auto recorded = reader.attachment(index.name);
-    if (!recorded || !stays_below(index.name)) continue;
+  for (const auto& [place, attachment] : recorded_cell(reader).files) {
+    const auto recorded = reader.attachment(attachment);
+    if (!recorded || !is_below_a_folder(place)) continue;
     std::ostringstream now;
-    now << std::ifstream(folder / index.name, std::ios::binary).rdbuf();
-    if (now.view() != *recorded) out.push_back(printable(index.name));
+    now << std::ifstream(folder / place, std::ios::binary).rdbuf();
+    if (now.view() != *recorded) out.push_back(printable(place));
   }
   return out;
 }
@@ -73,12 +69,11 @@ std::vector<std::string> changed_files(const mcap::Reader& reader, const fs::pat
 Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayCells& cells,
                                        std::optional<TemporaryFolder>& folder) {
   if (!cells.recorded.empty()) return cells.recorded;
-  const auto about = reader.metadata(kGatewayName);
-  const auto file = about ? about->values.find(kCellFileKey) : mcap::Texts::const_iterator();
-  if (!about || file == about->values.end())
+  const fs::path file = recorded_cell_path(reader);
+  if (file.empty())
     return fail("the recording does not say where its cell was", "name the cell file with --recorded-cell");
   std::error_code error;
-  if (fs::is_regular_file(file->second, error)) return file->second;
+  if (fs::is_regular_file(file, error)) return file.string();
   auto made = TemporaryFolder::make();
   if (!made) return std::unexpected(made.error());
   folder.emplace(*std::move(made));
@@ -86,7 +81,7 @@ Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayC
   if (!extracted) {
     return fail(
         fmt::format("the recorded cell {} is not there any more, and the recording's own files cannot be used: {}",
-                    printable(file->second), extracted.error().text()),
+                    printable(file.string()), extracted.error().text()),
         "name its cell file with --recorded-cell");
   }
   for (const std::string& one : extracted->missing)

@@ -64,7 +64,7 @@ void TickWorker::loop(const std::stop_token& stop) {
       wait_for_tick(tick, tries++);
       continue;
     }
-    if (!first) skipped_.fetch_add(tick.tick - done - 1, std::memory_order_relaxed);
+    if (!first && tick.tick > done) skipped_.fetch_add(tick.tick - done - 1, std::memory_order_relaxed);
     job_.run(*cell_state, tick);
     count_run();
     done = tick.tick;

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "rt_core/base/text.hpp"
+#include "rt_core/base/utf8.hpp"
 
 namespace cellmirror::foxglove {
 
@@ -144,10 +147,30 @@ Read read_fetch(const json& object) {
   return FetchAsset{*std::move(uri), *request};
 }
 
-std::uint32_t little_endian(std::string_view bytes) {
-  std::uint32_t out = 0;
+template <class Number = std::uint32_t>
+Number little_endian(std::string_view bytes) {
+  Number out = 0;
   for (std::size_t i = 0; i < sizeof out; ++i)
-    out |= std::uint32_t{static_cast<std::uint8_t>(bytes[i])} << (8 * static_cast<unsigned>(i));
+    out |= Number{static_cast<std::uint8_t>(bytes[i])} << (8 * static_cast<unsigned>(i));
+  return out;
+}
+
+// Operation, command (0: play, 1: pause), speed (float), whether there is a time, time (ns), length of the id, id.
+Read read_playback_control(std::string_view bytes) {
+  constexpr std::size_t kHead = 1 + 1 + 4 + 1 + 8 + 4;
+  if (bytes.size() < kHead) return refused("the playback control request is too short");
+  const auto command = static_cast<std::uint8_t>(bytes[1]);
+  if (command > 1) return refused(fmt::format("the playback command {} is not known", unsigned{command}));
+  PlaybackControl out;
+  out.play = command == 0;
+  out.speed = static_cast<double>(std::bit_cast<float>(little_endian(bytes.substr(2))));
+  if (!std::isfinite(out.speed)) return refused("the playback speed is no number");
+  if (bytes[6] != 0) out.seek_ns = little_endian<std::uint64_t>(bytes.substr(7));
+  const std::size_t length = little_endian(bytes.substr(15));
+  if (length > kLongestName || length > bytes.size() - kHead)
+    return refused("the playback control request has an id that is longer than the message or 1024 bytes");
+  out.request = bytes.substr(kHead, length);
+  if (!is_utf8(out.request)) return refused("the id of the playback control request is no UTF-8");
   return out;
 }
 
@@ -179,7 +202,9 @@ Read read_text_message(std::string_view text) {
 Read read_binary_message(std::string_view bytes) {
   constexpr char kServiceCall = 2;
   constexpr std::size_t kHead = 1 + 3 * sizeof(std::uint32_t);
+  constexpr char kPlaybackControl = 3;
   if (bytes.empty()) return refused("the binary message is empty");
+  if (bytes.front() == kPlaybackControl) return read_playback_control(bytes);
   if (bytes.front() != kServiceCall) {
     return refused(fmt::format("the binary operation {} is not offered",
                                static_cast<unsigned>(static_cast<std::uint8_t>(bytes.front()))));

@@ -61,8 +61,15 @@ struct CallService {
   std::string encoding;
   std::string payload;
 };
+// Of a server that plays a recording.
+struct PlaybackControl {
+  bool play = false;
+  double speed = 1;
+  std::optional<std::uint64_t> seek_ns;  // since 1970, UTC
+  std::string request;                   // its id
+};
 using ClientMessage = std::variant<Subscribe, Unsubscribe, GetParameters, SetParameters, SubscribeParameters,
-                                   UnsubscribeParameters, FetchAsset, CallService>;
+                                   UnsubscribeParameters, FetchAsset, CallService, PlaybackControl>;
 
 // Both never throw; their cost is bounded by the length of the bytes. The error says in a sentence what is wrong. What
 // this server does not offer (publishing, the connection graph) is refused as unknown operations are.

@@ -1,6 +1,8 @@
 #include "ipc/foxglove/server_message.hpp"
 
+#include <bit>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace cellmirror::foxglove {
 
@@ -27,12 +29,20 @@ json value_of(const ParameterValue& value) {
 }  // namespace
 
 std::string server_info_message(const ServerInfo& info) {
-  return written({{"op", "serverInfo"},
-                  {"name", info.name},
-                  {"capabilities", {"time", "parameters", "parametersSubscribe", "services", "assets"}},
-                  {"supportedEncodings", {"json"}},
-                  {"metadata", info.metadata},
-                  {"sessionId", info.session}});
+  json out = {{"op", "serverInfo"},
+              {"name", info.name},
+              {"capabilities", {"time", "parameters", "parametersSubscribe", "services", "assets"}},
+              {"supportedEncodings", {"json"}},
+              {"metadata", info.metadata},
+              {"sessionId", info.session}};
+  if (info.played) {
+    constexpr std::uint64_t kSecond_ns = 1'000'000'000;
+    const auto time = [](std::uint64_t ns) { return json{{"sec", ns / kSecond_ns}, {"nsec", ns % kSecond_ns}}; };
+    out["capabilities"].push_back("playbackControl");
+    out["dataStartTime"] = time(info.played->first);
+    out["dataEndTime"] = time(info.played->second);
+  }
+  return written(out);
 }
 
 std::string advertise_message(std::span<const Channel> channels) {
@@ -105,6 +115,16 @@ std::string service_response(const CallService& of, std::string_view response) {
   append(out, of.call, 4);
   append(out, of.encoding.size(), 4);
   return out.append(of.encoding).append(response);
+}
+
+std::string playback_message(const PlaybackReport& report, std::string_view request) {
+  std::string out = begun(5);
+  append(out, std::to_underlying(report.word), 1);
+  append(out, report.time_ns, 8);
+  append(out, std::bit_cast<std::uint32_t>(static_cast<float>(report.speed)), 4);
+  append(out, report.sought ? 1 : 0, 1);
+  append(out, request.size(), 4);
+  return out.append(request);
 }
 
 std::string asset_head(std::uint32_t request) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "ipc/foxglove/client_message.hpp"
 
@@ -37,6 +38,8 @@ struct ServerInfo {
   std::string name;
   std::map<std::string, std::string> metadata;
   std::string session;  // changes with a restart of the gateway
+  // Begin and end of a recording that is played, ns since 1970, UTC: clients may control it. None: real robots.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> played = {};
 };
 
 // With the capabilities that this server has: time, parameters and their updates, services, assets.
@@ -54,6 +57,15 @@ inline constexpr std::size_t kDataHead = 13;
 [[nodiscard]] std::string data_head(std::uint32_t subscription, std::uint64_t time_ns);
 [[nodiscard]] std::string time_message(std::uint64_t time_ns);
 [[nodiscard]] std::string service_response(const CallService& of, std::string_view response);
+enum class PlaybackWord : std::uint8_t { playing = 0, paused = 1, buffering = 2, ended = 3 };
+struct PlaybackReport {
+  PlaybackWord word = PlaybackWord::paused;
+  std::uint64_t time_ns = 0;  // since 1970, UTC
+  double speed = 1;
+  bool sought = false;  // the time is another one than that which has passed
+};
+// `request`: the id of the request that it answers; empty: something else has changed it.
+[[nodiscard]] std::string playback_message(const PlaybackReport& report, std::string_view request);
 // Precedes the content of a file.
 [[nodiscard]] std::string asset_head(std::uint32_t request);
 [[nodiscard]] std::string asset_failed_message(std::uint32_t request, std::string_view why);

@@ -7,6 +7,8 @@
 #include <memory>
 #include <utility>
 
+#include "rt_core/base/wall_clock.hpp"
+
 namespace cellmirror::web {
 
 namespace {
@@ -56,7 +58,7 @@ std::string_view reason(int status) {
 }
 
 std::string http_date(Timestamp now) {
-  const std::time_t wall = to_wall_clock_ns(now) / 1'000'000'000;
+  const std::time_t wall = machine_wall_clock_ns(now) / 1'000'000'000;
   std::tm parts{};
   gmtime_r(&wall, &parts);
   std::array<char, 64> text{};

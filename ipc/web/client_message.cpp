@@ -134,6 +134,17 @@ std::uint32_t read_sequence(Fields& fields) {
   return static_cast<std::uint32_t>(fields.whole("sequence", 0, 0, kMost));
 }
 
+PlaybackMessage read_playback(Fields& fields) {
+  PlaybackMessage out;
+  if (fields.has("play")) {
+    if (!fields["play"].is_boolean()) fields.refuse("play is neither true nor false");
+    out.play = fields["play"].is_boolean() && fields["play"].get<bool>();
+  }
+  if (fields.has("speed")) out.speed = fields.number("speed", 1);
+  if (fields.has("seek_s")) out.seek_s = fields.number("seek_s", 0);
+  return out;
+}
+
 ClientMessage read_by_name(Fields& fields, std::string_view name, std::int64_t id) {
   constexpr std::size_t kLongestToken = 128;
   if (name == "hello") return HelloMessage{fields.text("token", kLongestToken)};
@@ -148,10 +159,11 @@ ClientMessage read_by_name(Fields& fields, std::string_view name, std::int64_t i
   if (name == "posed") return PosedMessage{read_sequence(fields)};
   if (name == "command") return read_command(fields, id);
   if (name == "pick") return read_pick(fields, id);
+  if (name == "playback") return read_playback(fields);
   if (name != "no_picture")
-    fields.refuse(
-        fmt::format("do is \"{}\"; expected hello, picture, no_picture, shown, scene, no_scene, posed, command or pick",
-                    printable(name, 32)));
+    fields.refuse(fmt::format(
+        "do is \"{}\"; expected hello, picture, no_picture, shown, scene, no_scene, posed, command, pick or playback",
+        printable(name, 32)));
   return NoPictureMessage{};
 }
 

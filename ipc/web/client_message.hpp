@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -42,8 +43,14 @@ struct PickMessage {
   int x = 0;
   int y = 0;
 };
+// Of a recording that is played.
+struct PlaybackMessage {
+  std::optional<bool> play;
+  std::optional<double> speed;
+  std::optional<double> seek_s;  // behind the begin of what is played
+};
 using ClientMessage = std::variant<HelloMessage, PictureMessage, NoPictureMessage, ShownMessage, SceneMessage,
-                                   NoSceneMessage, PosedMessage, CommandMessage, PickMessage>;
+                                   NoSceneMessage, PosedMessage, CommandMessage, PickMessage, PlaybackMessage>;
 
 struct BadMessage {
   std::int64_t id = 0;  // of the message, where it has one

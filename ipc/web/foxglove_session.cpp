@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -75,11 +76,17 @@ FoxgloveSession::FoxgloveSession(ServerContext& context, std::uint64_t connectio
 
 void FoxgloveSession::welcome(Outgoing& out) {
   const ServerOptions& options = context_.options;
-  send_text(out, foxglove::server_info_message(
-                     {"cellmirror " + options.cell,
-                      {{"version", options.version}, {"cell", options.cell}, {"instance", options.instance}},
-                      options.run}));
+  foxglove::ServerInfo info{"cellmirror " + options.cell,
+                            {{"version", options.version}, {"cell", options.cell}, {"instance", options.instance}},
+                            options.run};
+  PlaybackPort* const playback = context_.backend.playback();
+  if (playback != nullptr) {
+    const PlaybackState state = playback->state();
+    info.played = {static_cast<std::uint64_t>(state.from_ns), static_cast<std::uint64_t>(state.to_ns)};
+  }
+  send_text(out, foxglove::server_info_message(info));
   send_text(out, foxglove::advertise_message(topics_->new_channels()));
+  if (playback != nullptr) send_playback(playback->state(), {}, out);
   if (options.read_only) return;
   const std::array<foxglove::Service, 1> services = {
       {{kCommandService, "/cellmirror/command", "cellmirror.Command", kRequestSchema, kResponseSchema}}};
@@ -304,6 +311,51 @@ void FoxgloveSession::handle(const foxglove::CallService& message, Outgoing& out
       });
 }
 
+// --- The playing of a recording.
+
+void FoxgloveSession::send_playback(const PlaybackState& state, std::string_view request, Outgoing& out) {
+  const auto word_of = [](PlaybackStatus status) {
+    switch (status) {
+      case PlaybackStatus::playing:
+        return foxglove::PlaybackWord::playing;
+      case PlaybackStatus::paused:
+        return foxglove::PlaybackWord::paused;
+      case PlaybackStatus::seeking:
+        return foxglove::PlaybackWord::buffering;
+      case PlaybackStatus::ended:
+        return foxglove::PlaybackWord::ended;
+    }
+    return foxglove::PlaybackWord::paused;
+  };
+  const bool sought = state.seeks != known_seeks_;
+  known_playback_ = state.changes;
+  known_seeks_ = state.seeks;
+  send_binary(out,
+              foxglove::playback_message(
+                  {word_of(state.status), static_cast<std::uint64_t>(state.now_ns), state.speed, sought}, request));
+}
+
+void FoxgloveSession::handle(const foxglove::PlaybackControl& message, Outgoing& out) {
+  PlaybackPort* const playback = context_.backend.playback();
+  if (playback == nullptr) return report_problem("this gateway plays no recording", out);
+  if (context_.options.read_only) return report_problem("playback: this gateway was started read-only", out);
+  PlaybackRequest request{.play = message.play, .speed = message.speed, .seek_ns = {}};
+  constexpr auto kLatest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (message.seek_ns) request.seek_ns = static_cast<std::int64_t>(std::min(*message.seek_ns, kLatest));
+  if (const auto done = playback->apply(request); !done) {
+    count(context_.counters.refused);
+    report_problem(done.error().text(), out);
+  }
+  send_playback(playback->state(), message.request, out);
+}
+
+void FoxgloveSession::report_playback(Outgoing& out) {
+  PlaybackPort* const playback = context_.backend.playback();
+  if (playback == nullptr) return;
+  const PlaybackState state = playback->state();
+  if (state.changes != known_playback_) send_playback(state, {}, out);
+}
+
 // --- What is sent without being asked for.
 
 bool FoxgloveSession::waiting() const {
@@ -325,7 +377,9 @@ void FoxgloveSession::send(Outgoing& out) {
 
 void FoxgloveSession::look(Timestamp now, Outgoing& out) {
   if (out.pending() >= kMostAhead) return;
-  send_binary(out, foxglove::time_message(static_cast<std::uint64_t>(to_wall_clock_ns(now))));
+  send_binary(
+      out, foxglove::time_message(static_cast<std::uint64_t>(to_wall_clock_ns(context_.backend.cell_clock().now()))));
+  report_playback(out);
   if (const std::vector<foxglove::Channel> channels = topics_->new_channels(); !channels.empty())
     send_text(out, foxglove::advertise_message(channels));
   if (!last_dropped_.known() || now - last_dropped_ >= kDroppedPeriod) {

@@ -52,6 +52,10 @@ class FoxgloveSession {
   void handle(const foxglove::UnsubscribeParameters& message, Outgoing& out);
   void handle(const foxglove::FetchAsset& message, Outgoing& out);
   void handle(const foxglove::CallService& message, Outgoing& out);
+  void handle(const foxglove::PlaybackControl& message, Outgoing& out);
+  // What has changed in how a recording is played, other than by this client's request.
+  void report_playback(Outgoing& out);
+  void send_playback(const PlaybackState& state, std::string_view request, Outgoing& out);
   // Empty: the request may be executed.
   [[nodiscard]] std::string why_not_executed(const foxglove::CommandRequest& request);
   void report_problem(std::string_view text, Outgoing& out, std::string_view id = {});
@@ -69,6 +73,8 @@ class FoxgloveSession {
   std::string peer_;
   LiveData& data_;
   bool may_command_;
+  std::uint64_t known_playback_ = 0;  // PlaybackState::changes, as sent
+  std::uint64_t known_seeks_ = 0;     // likewise
   std::unique_ptr<foxglove::TopicFeed::Subscriber> topics_;
   Timestamp now_;  // of the message that is handled
   int wrong_tokens_ = 0;

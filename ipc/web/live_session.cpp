@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -133,6 +134,16 @@ void LiveSession::handle(const PickMessage& message, Outgoing& out) {
       });
 }
 
+void LiveSession::handle(const PlaybackMessage& message, Outgoing& out) {
+  PlaybackPort* const playback = context_.backend.playback();
+  if (playback == nullptr) return send_text(out, refused_message(0, "this gateway plays no recording"));
+  if (context_.options.read_only) return send_text(out, refused_message(0, "this gateway was started read-only"));
+  PlaybackRequest request{.play = message.play, .speed = message.speed, .seek_ns = {}};
+  if (message.seek_s && std::isfinite(*message.seek_s))
+    request.seek_ns = playback->state().from_ns + std::llround(1e9 * std::clamp(*message.seek_s, -1e9, 1e9));
+  if (const auto done = playback->apply(request); !done) send_text(out, refused_message(0, done.error().text()));
+}
+
 void LiveSession::command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out) {
   --commands_waiting_;
   send_text(out, reply_message(id, reply));
@@ -156,11 +167,11 @@ bool LiveSession::ready_for_picture(const Outgoing& out) const {
 }
 
 void LiveSession::send_picture(Timestamp now, Outgoing& out) {
-  if (scene_ && pose_credit_.may_send()) send_poses(now, out);
+  if (scene_ && pose_credit_.may_send()) send_poses(out);
   if (stream_ && credit_.may_send() && out.empty()) send_picture_of_stream(now, out);
 }
 
-void LiveSession::send_poses(Timestamp now, Outgoing& out) {
+void LiveSession::send_poses(Outgoing& out) {
   const std::shared_ptr<const SceneUpdate> update = scene_->newest(newest_poses_);
   if (!update) return;
   newest_poses_ = update->sequence;
@@ -170,7 +181,7 @@ void LiveSession::send_poses(Timestamp now, Outgoing& out) {
     out.push(Chunk{update->marks, *update->marks});
   }
   out.push(frame_header(Opcode::binary, kPosesHeaderBytes + update->poses.size()) +
-           poses_header(pose_credit_.next(), *update, now));
+           poses_header(pose_credit_.next(), *update, context_.backend.cell_clock().now()));
   out.push(Chunk{update, update->poses});
   // Behind the poses whose number is acknowledged: none of it is sent faster than the client draws.
   const auto push_whole = [&](const std::shared_ptr<const std::string>& message) {
@@ -191,7 +202,7 @@ void LiveSession::send_picture_of_stream(Timestamp now, Outgoing& out) {
   reported_problem_.clear();
   const std::string_view bytes(reinterpret_cast<const char*>(picture->bytes.data()), picture->bytes.size());
   out.push(frame_header(Opcode::binary, kPictureHeaderBytes + bytes.size()) +
-           picture_header(credit_.next(), *picture, now));
+           picture_header(credit_.next(), *picture, context_.backend.cell_clock().now()));
   out.push(Chunk{picture, bytes});
   count(context_.counters.pictures);
   if (!credit_.may_send()) no_credit_since_ = now;

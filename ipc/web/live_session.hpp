@@ -37,7 +37,7 @@ class LiveSession {
 
  private:
   void send_picture_of_stream(Timestamp now, Outgoing& out);
-  void send_poses(Timestamp now, Outgoing& out);
+  void send_poses(Outgoing& out);
   // Once for each request: why no picture comes.
   void report_problem(Outgoing& out);
   // Pictures that were skipped while the client had no credit.
@@ -51,6 +51,7 @@ class LiveSession {
   void handle(const PosedMessage& message, Outgoing& out);
   void handle(const CommandMessage& message, Outgoing& out);
   void handle(const PickMessage& message, Outgoing& out);
+  void handle(const PlaybackMessage& message, Outgoing& out);
 
   ServerContext& context_;
   std::uint64_t connection_;

@@ -12,6 +12,7 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
 #include "rt_core/ports/picture_request.hpp"
+#include "rt_core/ports/playback.hpp"
 #include "rt_core/ports/scene_stream.hpp"
 
 namespace cellmirror::web {
@@ -39,6 +40,10 @@ class Backend {
   virtual ~Backend() = default;
   // The time source of the server; outlives it.
   [[nodiscard]] virtual const Clock& clock() const = 0;
+  // The time of what it shows: that of a recording, where one is played.
+  [[nodiscard]] virtual const Clock& cell_clock() const { return clock(); }
+  // Of that recording; null: real robots. Outlives the server.
+  [[nodiscard]] virtual PlaybackPort* playback() { return nullptr; }
   // JSON documents, each made when called. The live one is sent to pages several times a second: small, with the keys
   // of `status --json` for the same things (docs/monitor-page.md).
   [[nodiscard]] virtual std::string live_json() = 0;

@@ -123,7 +123,9 @@ std::optional<Result<std::string>> ScriptRunner::begin_message(ParsedCommand& co
     result = fail(fmt::format("{}: a robot program cannot wait for programs", command.form().name),
                   "synchronise programs by semaphores");
   } else if (step == CommandReader::Step::command) {
-    Outcome outcome = script::execute(command, host_);
+    std::optional<Error> withheld;
+    if (events_.withheld) withheld = events_.withheld(command.id(), from);
+    Outcome outcome = withheld ? Outcome::refused(*std::move(withheld)) : script::execute(command, host_);
     if (outcome.kind == Outcome::Kind::pending) {
       activity = std::move(outcome.activity);
       return std::nullopt;

@@ -204,7 +204,8 @@ void ScriptRunner::step_run(ScriptRun& run, std::size_t until) {
 void ScriptRunner::execute_command(ScriptRun& run) {
   const ScriptFile& file = *run.stack.back();
   const Position place = command_.begin();
-  Outcome outcome = script::execute(command_, host_);
+  const bool passed_over = events_.withheld && events_.withheld(command_.id(), CommandSource::Kind::file).has_value();
+  Outcome outcome = passed_over ? Outcome::done() : script::execute(command_, host_);
   Diagnostics findings;
   if (outcome.kind == Outcome::Kind::wait) {
     run.waiting = true;

@@ -90,6 +90,8 @@ class ScriptRunner {
     std::function<void(const Diagnostics&)> refused = {};
     // STOP_ALL: what still waits to be started by others is to be discarded.
     std::function<void()> all_stopped = {};
+    // Why a command is not to be executed here; none: it is. Commands of files are passed over then, others refused.
+    std::function<std::optional<Error>(FormId command, CommandSource::Kind from)> withheld = {};
     // A command is done or refused, whatever its source; also called by replies that outlive the runner.
     TraceFunction traced = {};
   };

@@ -23,7 +23,7 @@ EXCEPTIONS = {
     "config/volume/volume_process.cpp": "I/O: how long the process that reads a slice may take, on the thread that waits for it",
     "config/volume/volume_process.hpp": "the same",
     "config/mesh_process.cpp": "I/O: how long the process that reads a mesh may take, on the thread that waits for it",
-    "app/gateway/gateway.cpp": "wiring: makes the clock of the gateway",
+    "app/gateway/gateway_parts.hpp": "wiring: makes the clock of the gateway",
     "app/subcommands": "wiring: makes the clock of a command that runs no gateway",
     "app/console/progress_line.hpp": "how often a command shows its progress",
     "app/console/progress_line.cpp": "how often a command shows its progress",

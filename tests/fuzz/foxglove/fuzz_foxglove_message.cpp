@@ -1,4 +1,5 @@
 // What a client of the Foxglove protocol sends: the first byte says text, binary, or a request of the service.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -25,6 +26,10 @@ void look(const ClientMessage& message) {
     std::abort();
   if (const auto* call = std::get_if<CallService>(&message);
       call && service_response(*call, "").size() != 13 + call->encoding.size())
+    std::abort();
+  if (const auto* control = std::get_if<PlaybackControl>(&message);
+      control && (!std::isfinite(control->speed) || control->request.size() > kLongestName ||
+                  playback_message({}, control->request).size() != 19 + control->request.size()))
     std::abort();
 }
 

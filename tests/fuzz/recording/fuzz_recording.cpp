@@ -1,9 +1,10 @@
-// Any text as the definition of a message, and any bytes as that message; the same bytes as JSON. The text ends at the
-// first zero.
+// Any text as the definition of a message, and any bytes as that message; the same bytes as JSON, and as
+// the name of a file of the cell. The text ends at the first zero.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
+#include "app/recording/recorded_cell.hpp"
 #include "app/recording/ros2_schema.hpp"
 #include "rt_core/base/contract.hpp"
 
@@ -19,5 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto json = app::flatten_json(message);
   CELLMIRROR_EXPECTS(!json || json->size() <= app::kMostValues);
+  if (app::is_below_a_folder(all))
+    CELLMIRROR_EXPECTS(!all.empty() && all.front() != '/' && !all.starts_with("../") && !all.contains("/../"));
   return 0;
 }

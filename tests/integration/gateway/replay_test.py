@@ -87,7 +87,7 @@ class Verify(ReplayCase):
         self.start()
         self.record("a.mcap", "--topics", "/joint_states", seconds="0.5")
         self.assertIn("/inputs/ticks", self.verify(self.scratch.root / "a.mcap", code=1))
-        self.assertEqual(self.scratch.cellmirror("replay", str(self.scratch.root / "a.mcap")).returncode, 2)
+        self.assertEqual(self.scratch.cellmirror("replay", str(self.scratch.root / "a.mcap"), "--verify", "--page").returncode, 2)
 
 
 if __name__ == "__main__":

@@ -88,6 +88,42 @@ TEST(FoxgloveClientMessage, ACallOfAServiceIsBinary) {
     EXPECT_FALSE(read_binary_message(bytes));
 }
 
+TEST(FoxgloveClientMessage, PlaybackControlIsBinary) {
+  const auto with_seek = read_binary_message("\x03\x01\0\0\xC0\x3F\x01\x18\x17\x16\x15\x14\x13\x12\x11\x02\0\0\0id"s);
+  ASSERT_TRUE(with_seek) << with_seek.error();
+  const auto& control = std::get<PlaybackControl>(*with_seek);
+  EXPECT_FALSE(control.play);
+  EXPECT_EQ(control.speed, 1.5);
+  EXPECT_EQ(control.seek_ns, 0x1112131415161718U);
+  EXPECT_EQ(control.request, "id");
+  const auto without = read_binary_message("\x03\0\0\0\x80\x3F\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF\0\0\0\0"s);
+  ASSERT_TRUE(without) << without.error();
+  EXPECT_TRUE(std::get<PlaybackControl>(*without).play);
+  EXPECT_FALSE(std::get<PlaybackControl>(*without).seek_ns);
+  const std::string head = "\x03\0\0\0\x80\x3F\0\0\0\0\0\0\0\0\0"s;
+  for (const std::string& bytes :
+       {"\x03"s, head, head + "\x03\0\0\0id"s, head + "\xFF\xFF\xFF\xFFid"s, head + "\x01\0\0\0\xFF"s,
+        "\x03\x02" + head.substr(2) + "\0\0\0\0"s, "\x03\0\0\0\xC0\x7F" + head.substr(6) + "\0\0\0\0"s})
+    EXPECT_FALSE(read_binary_message(bytes)) << bytes.size();
+}
+
+TEST(FoxgloveServerMessage, PlaybackState) {
+  EXPECT_EQ(playback_message({PlaybackWord::paused, 0x1112131415161718, 1.5, true}, "id"),
+            "\x05\x01\x18\x17\x16\x15\x14\x13\x12\x11\0\0\xC0\x3F\x01\x02\0\0\0id"s);
+  EXPECT_EQ(playback_message({PlaybackWord::ended, 5, 1, false}, {}),
+            "\x05\x03\x05\0\0\0\0\0\0\0\0\0\x80\x3F\0\0\0\0\0"s);
+}
+
+TEST(FoxgloveServerMessage, OnlyARecordingOffersPlaybackControl) {
+  ServerInfo info{"n", {}, "s"};
+  EXPECT_FALSE(server_info_message(info).contains("playbackControl"));
+  info.played = {1'700'000'000'000'000'001U, 1'700'000'002'500'000'000U};
+  const std::string text = server_info_message(info);
+  EXPECT_TRUE(text.contains(R"("assets","playbackControl"])")) << text;
+  EXPECT_TRUE(text.contains(R"("dataStartTime":{"nsec":1,"sec":1700000000})")) << text;
+  EXPECT_TRUE(text.contains(R"("dataEndTime":{"nsec":500000000,"sec":1700000002})")) << text;
+}
+
 TEST(FoxgloveClientMessage, ARequestForACommand) {
   const auto request = read_command_request(R"({"command":"BEEP","token":"t"})", 100);
   ASSERT_TRUE(request);

@@ -135,5 +135,24 @@ TEST_F(ScriptRunnerTest, MessagesLeavePlacesToThePageAndBothToFootSwitches) {
   EXPECT_TRUE(sut_->start_file("a"));
 }
 
+TEST_F(ScriptRunnerTest, AWithheldCommandIsPassedOverInAFileAndRefusedAsAMessage) {
+  sut_.emplace(gateway_.host(), *home_, clock_,
+               ScriptRunner::Events{.refused = [this](const Diagnostics& findings) { refused_.take(findings); },
+                                    .withheld =
+                                        [](FormId command, CommandSource::Kind /*from*/) {
+                                          return command == FormId::robact ? std::optional(Error{"not here", {}})
+                                                                           : std::nullopt;
+                                        }});
+  write("a.spt", "ROBACT PUMA_762;\nhot_message one;\n");
+  ASSERT_TRUE(sut_->start_file("a"));
+  run_all();
+  EXPECT_EQ(gateway_.calls, Calls{"show_message [one]"});
+  EXPECT_TRUE(refused_.ok());
+  const auto refused = sut_->execute_message("ROBACT PUMA_762");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().what, "not here");
+  EXPECT_TRUE(sut_->execute_message("hot_message two"));
+}
+
 }  // namespace
 }  // namespace cellmirror::script

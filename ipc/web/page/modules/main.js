@@ -12,6 +12,7 @@ import {LiveView} from "./live_view.js";
 import {watch_menus} from "./menus.js";
 import {Messages} from "./messages.js";
 import {PickedLabel} from "./picked_label.js";
+import {Playback} from "./playback.js";
 import {Presence} from "./presence.js";
 import {Problems} from "./problems.js";
 import {Programs} from "./programs.js";
@@ -63,6 +64,7 @@ const programs = new Programs({command});
 const tissue = new Tissue({command, left: () => tabs.current === "tab-tissue" && tabs.open("tab-near")});
 const volume = new Volume({command, left: () => tabs.current === "tab-volume" && tabs.open("tab-near")});
 const system = new System();
+const playback = new Playback(connection);
 const problems = new Problems();
 const command_log = new CommandLog({fetched});
 const alarms = new Alarms({command, fetched, name: new UserName(), open: () => {
@@ -158,6 +160,7 @@ function draw() {
   volume.update(live, tabs.current === "tab-volume");
   programs.update(live, tabs.current === "tab-programs");
   system.update(live, tabs.current === "tab-system");
+  playback.update(live);
   problems.update(live);
   alarms.update(live, tabs.current === "tab-alarms");
   command_log.update(live, tabs.current === "tab-messages");

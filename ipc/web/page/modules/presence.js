@@ -44,6 +44,7 @@ export class Presence {
   live(live) {
     this.heard_ = performance.now();
     this.heard_at_ = new Date();
+    this.replay_ = Boolean(live.replay);
     if (this.quiet_) this.show_line_();
     setText(byId("cell-name"), live.cell ?? "");
     document.title = live.cell ? `${live.cell} – cellmirror` : "cellmirror";
@@ -124,7 +125,7 @@ export class Presence {
     // Pictures do not count: they come from another part of the gateway, which may continue alone.
     const silent = this.heard_ === null ? null : (performance.now() - this.heard_) / 1000;
     this.be_quiet_(silent !== null && (!this.connection_.open || silent > kLastKnown_s));
-    let [text, state] = ["live", "fresh"];
+    let [text, state] = [this.replay_ ? "replay" : "live", "fresh"];
     if (!this.connection_.open) [text, state] = [this.heard_ === null ? "connecting" : "gateway gone", "lost"];
     else if (silent === null) [text, state] = ["connecting", "none"];
     else if (silent > kQuiet_s) [text, state] = [`no news for ${age(silent)}`, "stale"];
