@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "app/playback/played_cell.hpp"
 #include "app/playback/played_recording.hpp"
+#include "app/recording/recorded_cell.hpp"
 #include "app/recording_layout/recording_names.hpp"
 #include "ipc/record/byte_stream.hpp"
 #include "ipc/record/writer.hpp"
