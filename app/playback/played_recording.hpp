@@ -16,7 +16,7 @@ namespace cellmirror::app {
 
 struct PlayOptions {
   std::filesystem::path file;
-  double from_s = 0;                // behind the start of the recording
+  double from_s = 0;                // after the start of the recording
   std::optional<double> to_s = {};  // likewise; none: to its end
   double speed = 1;
   bool playing = true;  // from the start

@@ -204,8 +204,8 @@ void add_recording(cli::Command program, Action& action) {
   exported.option("--topic", options->topic, "the topic; with --joints: only that one");
   auto joints = exported.flag("--joints", options->joints, "postures for collide, range and sim_robot");
   auto candump = exported.flag("--candump", options->candump, "recorded CAN frames as a candump log").excludes(joints);
-  exported.option("--from", options->from_s, "seconds behind the start of the recording").between(0.0, 1e9);
-  exported.option("--to", options->to_s, "seconds behind the start of the recording").between(0.0, 1e9);
+  exported.option("--from", options->from_s, "seconds after the start of the recording").between(0.0, 1e9);
+  exported.option("--to", options->to_s, "seconds after the start of the recording").between(0.0, 1e9);
   exported.option("-o,--output", options->output, "a new file; else standard output");
   exported.flag("--json", options->json, "one JSON document (docs/recording.md)").excludes(joints).excludes(candump);
   exported.footer(
@@ -225,8 +225,8 @@ void add_recording(cli::Command program, Action& action) {
               "a panel for each, separated by commas: a value such as nearest_m, or all below a name such as position; "
               "joints: position[ROBOT]")
       .required();
-  plotted.option("--from", options->from_s, "seconds behind the start of the recording").between(0.0, 1e9);
-  plotted.option("--to", options->to_s, "seconds behind the start of the recording").between(0.0, 1e9);
+  plotted.option("--from", options->from_s, "seconds after the start of the recording").between(0.0, 1e9);
+  plotted.option("--to", options->to_s, "seconds after the start of the recording").between(0.0, 1e9);
   plotted.option("-o,--output", options->output, "the picture, a .png file; an existing one is replaced").required();
   plotted.footer(
       "Example: cellmirror recording plot night.mcap --topic /joint_states --fields position[PUMA] -o joints.png");

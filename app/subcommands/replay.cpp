@@ -91,15 +91,15 @@ void add_replay(cli::Command program, Action& action) {
       .excludes(verifies);
   ReplayGateway& gateway = options->gateway;
   const auto of_playing = [&](cli::Option option) { option.excludes(verifies).excludes(other_cell); };
-  sub.option("--from", options->from_s, "seconds behind the start of the recording").between(0.0, 1e9);
-  sub.option("--to", options->to_s, "seconds behind the start of the recording").between(0.0, 1e9);
+  sub.option("--from", options->from_s, "seconds after the start of the recording").between(0.0, 1e9);
+  sub.option("--to", options->to_s, "seconds after the start of the recording").between(0.0, 1e9);
   auto page = sub.flag("--page", gateway.page, "with the monitor page; waits at the end for Ctrl-C");
   of_playing(page);
   of_playing(sub.option("--port", gateway.port, "of the page; otherwise a free one").between(0, 65535).needs(page));
   of_playing(sub.option("--speed", gateway.speed, "times as fast as it was recorded")
                  .between(kSlowestPlayback, kFastestPlayback)
                  .show_default());
-  of_playing(sub.flag("--paused", gateway.paused, "stands at the beginning until it is played"));
+  of_playing(sub.flag("--paused", gateway.paused, "paused at the beginning"));
   of_playing(sub.flag("--wait", gateway.wait, "waits at the end for Ctrl-C, without the page too"));
   of_playing(sub.flag("--headless", gateway.headless, "without pictures"));
   of_playing(

@@ -89,7 +89,7 @@ Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayC
   return extracted->cell_file.string();
 }
 
-// Seconds behind the start of the recording, of the last `count` messages of joint states.
+// Seconds after the start of the recording, of the last `count` messages of joint states.
 std::vector<double> times_of(mcap::Reader& reader, const mcap::Filter& filter, std::uint64_t count) {
   std::vector<double> out;
   const std::uint64_t start = reader.statistics().start_time;

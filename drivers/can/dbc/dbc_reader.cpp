@@ -212,7 +212,7 @@ class DbcReader {
   bool layout(DbcSignal& signal) {
     const auto start = unsigned_number(8 * kCanMaxData - 1);
     if (!expect(start.has_value(), "the start bit, 0 to 511")) return false;
-    if (!expect(in_.take('|'), "'|' behind the start bit")) return false;
+    if (!expect(in_.take('|'), "'|' after the start bit")) return false;
     const auto length = unsigned_number(64);
     if (!expect(length && *length > 0, "the length in bits, 1 to 64")) return false;
     if (!expect(in_.take('@'), "'@' behind the length")) return false;

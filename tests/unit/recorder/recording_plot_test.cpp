@@ -91,7 +91,7 @@ TEST_F(RecordingPlot, AFieldIsAValueOrAllBelowIt) {
   ASSERT_EQ(sut->panels.size(), 4U);
   EXPECT_EQ(sut->panels[0].lines.size(), 1U);
   EXPECT_EQ(sut->panels[0].lines[0].y.front(), 5000.0);
-  EXPECT_NEAR(sut->panels[0].lines[0].x.front(), 5.0, 1e-9) << "behind the start of the recording";
+  EXPECT_NEAR(sut->panels[0].lines[0].x.front(), 5.0, 1e-9) << "after the start of the recording";
   EXPECT_EQ(sut->panels[1].lines.size(), 2U);
   EXPECT_EQ(sut->panels[1].lines[1].label, "list[1]");
   EXPECT_EQ(sut->panels[2].lines.size(), 1U);
