@@ -11,7 +11,7 @@
 # cellmirror_fuzz_target(name SOURCE f.cpp CORPUS dir USES ... [LINK ...]) an LLVMFuzzerTestOneInput function: with
 #   CELLMIRROR_FUZZERS a libFuzzer program, which begins with the corpus, else <name>_replay, which runs that as an ordinary
 #   test; where it is built it is as with unit tests.
-# cellmirror_benchmark(name SOURCES ... USES ... [LINK ...] [SMOKE])       with SMOKE, a short round of it is a test
+# cellmirror_benchmark(name SOURCES ... USES ... [LINK ...] [SMOKE])       with SMOKE, a short round of it is a test (./check --label bench, --full)
 if(CELLMIRROR_TESTS)
   enable_testing()
   find_package(GTest REQUIRED)
@@ -26,7 +26,7 @@ foreach(label unit integration golden fuzz stress concurrency sanitized)
   add_custom_target(tests_${label})
 endforeach()
 
-# Builds the programs of tests/bench that no test runs; the others (SMOKE) are built with the tests.
+# Builds the programs of tests/bench, for ./check --label bench and --full.
 add_custom_target(benches)
 
 # What nearly every unit test includes is parsed once a build (PrecompiledHeaders.cmake).
@@ -121,7 +121,6 @@ function(cellmirror_benchmark name)
   cmake_parse_arguments(ARG "SMOKE" "" "SOURCES;USES;LINK" ${ARGN})
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK benchmark::benchmark ${ARG_LINK})
   if(ARG_SMOKE)
-    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL OFF)
     add_test(NAME ${name}_smoke COMMAND ${name} --benchmark_min_time=0.01)
     cellmirror_describe_test(${name}_smoke)
   endif()

@@ -10,7 +10,8 @@ if(CELLMIRROR_SANITIZE)  # for finding mistakes, not for speed: builds in two th
   set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O1 -g1")
 endif()
 # How a test is compiled decides nothing: fast to build is what counts, measured as CPU time of a typical source: g++ -O2 5.6 s,
-# -O1 4.6 s; clang with sanitizers -O1 8.5 s, -O0 4.4 s, and 3.3 s without the fuzzer's counters, which no fuzz target sees.
+# -O1 4.6 s; clang with sanitizers -O1 8.5 s, -O0 4.4 s, and 3.3 s without the fuzzer's counters, which no fuzz target sees. Without line tables a tenth to a fifth less: a
+# test tells its lines itself, and back traces show those of the libraries.
 # With sanitizers the libraries that read and write are not optimised either (CELLMIRROR_READS_AND_WRITES); what computes is, or
 # the tests would take longer than is saved. The same holds for tests that compute much themselves (CELLMIRROR_COMPUTING_TESTS):
 # those of ranging took 127 s at -O0 with sanitizers.
@@ -23,11 +24,11 @@ if(CELLMIRROR_SANITIZE)
   set(CELLMIRROR_TEST_OPTIONS -O0)
   set(CELLMIRROR_COMPUTING_TEST_OPTIONS -O1)
   if(CELLMIRROR_SANITIZE MATCHES "fuzzer")
-    list(APPEND CELLMIRROR_TEST_OPTIONS -fno-sanitize=fuzzer-no-link)
-    list(APPEND CELLMIRROR_COMPUTING_TEST_OPTIONS -fno-sanitize=fuzzer-no-link)
+    list(APPEND CELLMIRROR_TEST_OPTIONS -g0 -fno-sanitize=fuzzer-no-link)
+    list(APPEND CELLMIRROR_COMPUTING_TEST_OPTIONS -g0 -fno-sanitize=fuzzer-no-link)
   endif()
 elseif(CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo")
-  set(CELLMIRROR_TEST_OPTIONS -O1)
+  set(CELLMIRROR_TEST_OPTIONS -O1 -g0)
 endif()
 
 # g++ collects its garbage while it compiles; with 500 MB before the first time a source takes up to a sixth less (9.8 s of processor

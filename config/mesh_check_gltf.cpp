@@ -80,8 +80,8 @@ class GltfCheck {
       if (!node.contains("children")) continue;
       for (const auto& child : node["children"]) open.push_back(child.get<std::size_t>());
     }
-    constexpr std::size_t kDeepest = 2000;  // a chain of all nodes: assimp walks by recursion
-    return reached == nodes.size() && nodes.size() <= kDeepest;
+    constexpr std::size_t kMostNodes = 2000;  // a chain of all nodes: assimp walks by recursion
+    return reached == nodes.size() && nodes.size() <= kMostNodes;
   }
 
   // What is allocated for all primitives together.

@@ -11,7 +11,7 @@ namespace {
 
 enum class VolumeOrigin { middle, corner, patient };
 
-constexpr Range kShare{0.0, 1.0};
+constexpr Range kFraction{0.0, 1.0};
 constexpr Range kTableOpacity{0.0, kMostVolumeOpacity};
 constexpr Range kTableGain{0.0, kMostVolumeGain};
 constexpr Range kTableLevel{kLeastVolumeLevel, kMostVolumeLevel};
@@ -35,10 +35,10 @@ std::optional<std::size_t> index_of_word(TableReader& table, std::string_view ke
 void read_medical(TableReader& volume, MedicalTableParameters& medical) {
   auto table = volume.table("medical");
   if (!table) return;
-  medical.air = table->number("air", kShare).value_or(medical.air);
-  medical.fat = table->number("fat", kShare).value_or(medical.fat);
-  medical.tissue = table->number("tissue", kShare).value_or(medical.tissue);
-  medical.bone = table->number("bone", kShare).value_or(medical.bone);
+  medical.air = table->number("air", kFraction).value_or(medical.air);
+  medical.fat = table->number("fat", kFraction).value_or(medical.fat);
+  medical.tissue = table->number("tissue", kFraction).value_or(medical.tissue);
+  medical.bone = table->number("bone", kFraction).value_or(medical.bone);
   table->finish();
 }
 

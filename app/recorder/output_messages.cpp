@@ -150,8 +150,13 @@ TopicPtr OutputTopics::rtde_packages(std::string_view robot) {
             Importance::event});
 }
 TopicPtr OutputTopics::pictures(std::string_view view) {
-  return ros2_topic(pictures_topic_name(view), "sensor_msgs/msg/CompressedImage", ros2::compressed_image(),
-                    Importance::picture);
+  return std::make_shared<const Topic>(Topic{.name = pictures_topic_name(view),
+                                             .encoding = "cdr",
+                                             .schema_name = "sensor_msgs/msg/CompressedImage",
+                                             .schema_encoding = "ros2msg",
+                                             .schema = ros2::compressed_image(),
+                                             .importance = Importance::picture,
+                                             .view = std::string(view)});
 }
 TopicPtr OutputTopics::joint_states(mcap::Texts joints) {
   return std::make_shared<const Topic>(Topic{"/joint_states", "cdr", "sensor_msgs/msg/JointState", "ros2msg",

@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "app/recorder/picture_recorder.hpp"
 #include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/utc_text.hpp"
@@ -143,8 +142,7 @@ void Recording::count_missed(const TopicPtr& topic, std::uint64_t messages) {
 
 bool Recording::wants(const Topic& topic) const {
   if (topic.importance != Importance::picture) return fits(options_.topics, topic.name);
-  return std::ranges::any_of(options_.pictures,
-                             [&](const WantedPicture& one) { return pictures_topic_name(one.view) == topic.name; });
+  return std::ranges::find(options_.pictures, topic.view, &WantedPicture::view) != options_.pictures.end();
 }
 
 void Recording::end() {

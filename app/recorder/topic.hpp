@@ -25,6 +25,7 @@ struct Topic {
   std::string schema;
   Importance importance = Importance::state;
   mcap::Texts metadata = {};
+  std::string view = {};  // of pictures: what they show, as in WantedPicture
 };
 
 // A topic is known by its address: two topics of one name are two channels.

@@ -12,7 +12,7 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr float kFarthest = 1000.0F;  // m; farther tissue is a fault of the simulation and not drawn
+constexpr float kFarthestTissue = 1000.0F;  // m; farther tissue is a fault of the simulation and not drawn
 constexpr std::array<float, 3> kFlesh{0.72F, 0.36F, 0.34F};
 
 // The surfaces and clips of a message, within its bounds.
@@ -111,7 +111,7 @@ void put_motion(MessageBytes& out, const TissueSurface& surface) {
   Eigen::AlignedBox3f box;
   bool sound = true;
   for (const Eigen::Vector3f& vertex : surface.vertices) {
-    sound = sound && vertex.allFinite() && vertex.cwiseAbs().maxCoeff() < kFarthest;
+    sound = sound && vertex.allFinite() && vertex.cwiseAbs().maxCoeff() < kFarthestTissue;
     box.extend(vertex);
   }
   sound = sound && !box.isEmpty();

@@ -18,7 +18,7 @@ constexpr std::size_t kMostArrows = 500;  // keeps the document within bounds
 
 json optional_limit(double limit) { return limit > 0.0 ? json(limit) : json(nullptr); }
 
-const char* word(ArrowComponent component) {
+const char* component_word(ArrowComponent component) {
   switch (component) {
     case ArrowComponent::none:
       return "none";
@@ -70,9 +70,9 @@ json arrows_json(const ForceSettings& settings, const ForceState* state) {
           {{"from_m", vector_json(arrow.from_m)}, {arrow.torque ? "torque_nm" : "force_n", vector_json(arrow.vector)}});
     }
   }
-  return {{"joint_forces", word(settings.arrows.joint_forces)},
-          {"joint_torques", word(settings.arrows.joint_torques)},
-          {"tcp_force", word(settings.arrows.tcp_force)},
+  return {{"joint_forces", component_word(settings.arrows.joint_forces)},
+          {"joint_torques", component_word(settings.arrows.joint_torques)},
+          {"tcp_force", component_word(settings.arrows.tcp_force)},
           {"motors_only", settings.arrows.motors_only},
           {"shown", std::move(shown)}};
 }

@@ -27,7 +27,7 @@ std::vector<std::string_view> kinds_of(const CompiledCell& cell) {
   return kinds;
 }
 
-std::string_view word(Shown shown) {
+std::string_view shown_word(Shown shown) {
   switch (shown) {
     case Shown::hidden:
       return "hidden";
@@ -70,7 +70,7 @@ std::string tree_document(const CellState& cell_state, std::uint64_t tree_revisi
     }
     out.member("kind", kinds[i]).member("shown", cell.visible[i] != 0);
     const NodeLevel level = cell_state.levels && i < cell_state.levels->size() ? (*cell_state.levels)[i] : NodeLevel{};
-    out.member("has_detail", level.has_detail).member("level", word(level.shown));
+    out.member("has_detail", level.has_detail).member("level", shown_word(level.shown));
     if (!robots[i].empty()) out.member("robot", robots[i]);
     out.end_object();
   }

@@ -149,11 +149,11 @@ void apply_limits(RobotParameters& p, std::size_t joints) {
 }
 
 Result<void> check_pose(const Pose& X, const std::string& robot, const char* name) {
-  constexpr double kFarthest = 1e3;  // m; a tool is no building
+  constexpr double kFarthestTool = 1e3;  // m; a tool is no building
   if (!X.matrix().allFinite()) return fail(fmt::format("the {} of {} has a value that is not a number", name, robot));
-  if (X.translation().norm() > kFarthest)
+  if (X.translation().norm() > kFarthestTool)
     return fail(fmt::format("the {} of {} is {:.6g} m away", name, robot, X.translation().norm()),
-                fmt::format("give at most {:g} m", kFarthest));
+                fmt::format("give at most {:g} m", kFarthestTool));
   return {};
 }
 
@@ -234,8 +234,8 @@ Result<void> RobotModel::set_scalar_parameter(ScalarParameter which, double valu
 Result<void> RobotModel::set_fly(FlyType type, double parameter) {
   const bool fraction = type == FlyType::speed_fraction;
   const bool angle = type == FlyType::angle;
-  constexpr double kFarthest = 1e3;  // m
-  const double largest = fraction ? 1.0 : (angle ? std::numbers::pi : kFarthest);
+  constexpr double kFarthestJoint = 1e3;  // m
+  const double largest = fraction ? 1.0 : (angle ? std::numbers::pi : kFarthestJoint);
   if (!std::isfinite(parameter) || parameter < 0.0 || parameter > largest) {
     return fail(fmt::format("the fly parameter of {} is {:.6g}, but must be between 0 and {:.6g}{}", id_, parameter,
                             largest, fraction ? "" : (angle ? " rad" : " m")));

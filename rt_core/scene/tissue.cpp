@@ -19,7 +19,7 @@ namespace cellmirror::scene {
 
 namespace {
 
-constexpr double kArrowPart = 0.3;         // of the network's diagonal: the longest arrow
+constexpr double kNetworkArrowPart = 0.3;  // of the network's diagonal: the longest arrow
 constexpr double kShortestLongest = 0.01;  // m
 constexpr double kLongestLongest = 0.3;
 constexpr double kAxesPart = 0.12;  // of the diagonal: the axes of a central node
@@ -72,7 +72,7 @@ void TissueMarks::draw(const std::shared_ptr<const TissueView>& view, std::span<
   for (const TissueSurface& surface : view->surfaces) scene.tissue_modes.push_back(mode_of(surface.name, rules));
   const double diagonal = diagonal_of(view->network);
   if (!(diagonal > 0)) return;
-  draw_forces(*view, std::clamp(kArrowPart * diagonal, kShortestLongest, kLongestLongest), scene);
+  draw_forces(*view, std::clamp(kNetworkArrowPart * diagonal, kShortestLongest, kLongestLongest), scene);
   draw_central_nodes(*view, kAxesPart * diagonal, scene);
 }
 

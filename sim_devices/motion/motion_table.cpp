@@ -17,7 +17,7 @@ struct Field {
 };
 
 // At most kMostJoints + 2 fields, so that a hostile line cannot fill the memory.
-std::vector<Field> split(std::string_view line) {
+std::vector<Field> fields_of(std::string_view line) {
   std::vector<Field> fields;
   std::size_t begin = 0;
   while (fields.size() < kMostJoints + 2) {
@@ -37,7 +37,7 @@ class TableReader {
   void line(int number, std::string_view text) {
     const std::string_view content = trimmed(text);
     if (content.empty() || content.front() == '#') return;
-    const std::vector<Field> fields = split(text);
+    const std::vector<Field> fields = fields_of(text);
     if (first_) {
       first_ = false;
       if (!parse_number(fields.front().text)) return;  // the heading

@@ -121,7 +121,7 @@ class Check:
         cache = ROOT / "build/CMakeCache.txt"
         without_tests = cache.exists() and "CELLMIRROR_TESTS:BOOL=OFF" in cache.read_text()
         targets = []  # all; what runs with sanitizers in a whole check is built without them only where that check is not whole
-        if self.options.label == "bench":
+        if self.options.label == "bench" or self.options.full:
             targets = ["all", "benches"]
         elif self.options.quick or self.options.label in ("unit", "golden", "fuzz"):
             targets = ["all", "tests_sanitized"]
@@ -138,7 +138,7 @@ class Check:
         else:
             early = EarlyBuild(SANITIZED_BUILD)
             try:
-                self.tests("tests", "build", "-LE", "^sanitized$")
+                self.tests("tests", "build", "-LE", "^sanitized$" if self.options.full else "^(sanitized|bench)$")
             finally:
                 early.end()
 
@@ -174,7 +174,7 @@ class Check:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="./check", description="Installs missing packages, builds, and runs every test.")
     parser.add_argument("--quick", action="store_true", help="release build only: lint and tests without timing")
-    parser.add_argument("--full", action="store_true", help="clang-tidy over every source, without a time limit")
+    parser.add_argument("--full", action="store_true", help="also clang-tidy over every source, without a time limit, and benchmarks")
     parser.add_argument("--label", help="only the release tests with this label: unit, integration, golden, fuzz, stress, lint, docs, bench")
     parser.add_argument("--peers", action="store_true",
                         help="installs the programs in cmake/packages-peers.txt, and runs only the comparisons with them; a skip fails")

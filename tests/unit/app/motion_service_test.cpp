@@ -88,8 +88,8 @@ TEST_F(MotionDeskTest, RobotBeginsAtItsStartPositionUntilSomethingHasMovedIt) {
   began = fleet_.begin_at(kMantec, corrected);
   ASSERT_TRUE(began && *began) << "a start script may correct it";
   tick();
-  constexpr std::array kStep = {0.01};
-  arrive(sut_.position(kMantec, {.mode = TargetMode::joint_inc, .joints = kStep}));
+  constexpr std::array kIncrement = {0.01};
+  arrive(sut_.position(kMantec, {.mode = TargetMode::joint_inc, .joints = kIncrement}));
   EXPECT_NEAR(first_joint(), -0.29, 1e-9);
   began = fleet_.begin_at(kMantec, start);
   ASSERT_TRUE(began);
@@ -109,16 +109,16 @@ TEST_F(MotionDeskTest, RobotThatWasSetToAPositionHasBegun) {
 }
 
 TEST_F(MotionDeskTest, EveryMoveThatIsAcceptedIsGoneThoughTheTickHasBegunNone) {
-  constexpr std::array kStep = {0.001};
+  constexpr std::array kIncrement = {0.001};
   const double from = first_joint();
   std::size_t accepted = 0;
   while (accepted < 1000 &&
-         sut_.queue_move(kMantec, MovePath::joints, {.mode = TargetMode::joint_inc, .joints = kStep})) {
+         sut_.queue_move(kMantec, MovePath::joints, {.mode = TargetMode::joint_inc, .joints = kIncrement})) {
     ++accepted;
   }
   EXPECT_EQ(accepted, motion::kMoveQueue);
   for (int most = 60'000; sut_.moving() && most > 0; --most) tick();
-  EXPECT_NEAR(first_joint(), from + static_cast<double>(accepted) * kStep[0], 1e-9);
+  EXPECT_NEAR(first_joint(), from + static_cast<double>(accepted) * kIncrement[0], 1e-9);
 }
 
 }  // namespace
