@@ -87,6 +87,7 @@ function(cellmirror_test name)
       set(ARG_PRECOMPILED tests_computing)
     endif()
   endif()
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE ${CELLMIRROR_LARGE_BATCH})
   cellmirror_executable(${name} SOURCES ${ARG_SOURCES} USES ${ARG_USES} LINK GTest::gtest GTest::gmock GTest::gtest_main ${ARG_LINK}
     PRECOMPILED ${ARG_PRECOMPILED})
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
