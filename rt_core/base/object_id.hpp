@@ -24,9 +24,11 @@ class ObjectId {
 
  private:
   // Relaxed: a counter.
-  static std::uint64_t next() noexcept { return newest_.fetch_add(1, std::memory_order_relaxed) + 1; }
+  static std::uint64_t next() noexcept {
+    static std::atomic<std::uint64_t> newest{0};
+    return newest.fetch_add(1, std::memory_order_relaxed) + 1;
+  }
 
-  static inline std::atomic<std::uint64_t> newest_{0};
   std::uint64_t value_;
 };
 
