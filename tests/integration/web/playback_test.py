@@ -114,10 +114,6 @@ class PlaybackCase(unittest.TestCase):
             n += 1
         return names
 
-    def behind_begin(self, replay, message):
-        begin = replay["now_ns"] - round(1e9 * replay["position_s"])
-        return 1e-9 * (message["publish_time_ns"] - begin)
-
 
 class States(PlaybackCase):
     def test_at_any_time_they_are_those_that_were_recorded(self):
@@ -125,17 +121,17 @@ class States(PlaybackCase):
         status = replay.seek(0)
         self.assertEqual((status["replay"]["state"], status["recordings"], status["problems"]), ("paused", [], []))
         self.assertFalse([queue for queue in status["queues"] if "sensor" in queue["name"]], "nothing leaves it")
-        before = status["replay"]["seeks"]
+        before, begin = status["replay"]["seeks"], status["replay"]["now_ns"]
         different = {}
         for message in self.states:
-            if 0 < self.behind_begin(status["replay"], message) < status["replay"]["length_s"]:
+            if 0 < 1e-9 * (message["publish_time_ns"] - begin) < status["replay"]["length_s"]:
                 different.setdefault(tuple(self.recorded(message).values()), message)
         different = list(different.values())
         self.assertGreater(len(different), 10, "nothing moves in the recording")
         chosen = [different[(len(different) - 1) * share // 100] for share in (100, 10, 50, 10, 50, 75)]
         seen = {}
         for message in chosen:
-            status = replay.seek(self.behind_begin(status["replay"], message))
+            status = replay.seek(1e-9 * (message["publish_time_ns"] - begin))
             shown = sorted(positions_of(status).values())
             self.assertEqual(shown, sorted(self.recorded(message).values()), "to the bit")
             self.assertLess(abs(status["replay"]["now_ns"] - message["publish_time_ns"]), 2_000_000)
