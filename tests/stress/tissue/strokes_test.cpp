@@ -15,7 +15,7 @@ namespace {
 
 using namespace tissue_bodies;
 
-constexpr std::size_t kUsualStrokes = 40'000;
+constexpr std::size_t kUsualStrokes = 15'000;
 constexpr std::size_t kStrokesOfABody = 400;  // until hardly a link is left; then it is made whole again
 
 std::size_t wanted_strokes() {
