@@ -72,6 +72,7 @@ void TissueContacts::renew(Pair& pair, DeformableObject& with_points, Deformable
     pair.revision_of_points = points.revision();
     pair.revision_of_triangles = triangles.revision();
     pair.near.resize(points.clusters().size());
+    choose_points(*with_points.body, pair.chosen);
   }
   of_points_.clear();
   points.near_box(triangles.low(), triangles.high(), kNearReach, of_points_);
@@ -85,6 +86,7 @@ void TissueContacts::renew(Pair& pair, DeformableObject& with_points, Deformable
   std::vector<Near>& old = pair.near[cluster];
   fresh_.clear();
   for (const std::uint32_t point : points.points(box)) {
+    if (pair.chosen[point] == 0) continue;
     Near found{.point = point};
     double gap = 0;
     if (!find_nearest(points.position(*with_points.body, point), found.triangle, gap)) continue;
@@ -93,6 +95,26 @@ void TissueContacts::renew(Pair& pair, DeformableObject& with_points, Deformable
     fresh_.push_back(found);
   }
   old.swap(fresh_);
+}
+
+// Of each node the surface point that depends on it most: what lies between follows the same nodes, and more contacts
+// than nodes only ask these several times.
+void TissueContacts::choose_points(const Body& body, std::vector<std::uint8_t>& chosen) {
+  const auto points = body.surface_points();
+  struct Best {
+    float weight = 0;
+    std::uint32_t point = 0;
+  };
+  std::vector<Best> best(body.positions().size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const auto most = std::ranges::max_element(points[i].weight);
+    Best& of_node = best[points[i].node[static_cast<std::size_t>(most - points[i].weight.begin())]];
+    if (*most > of_node.weight) of_node = {*most, i};
+  }
+  chosen.assign(points.size(), 0);
+  for (const Best& one : best) {
+    if (one.weight > 0) chosen[one.point] = 1;
+  }
 }
 
 // Triangles that may be near a point within the box, grown by `reach`: computed once for all points of a cluster.

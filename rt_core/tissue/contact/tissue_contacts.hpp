@@ -33,6 +33,7 @@ class TissueContacts {
     std::uint64_t revision_of_points = 0;
     std::uint64_t revision_of_triangles = 0;
     std::vector<std::vector<Near>> near;  // by cluster of the object with points
+    std::vector<std::uint8_t> chosen;     // by surface point of the object with points: 1: it is looked at
     std::uint32_t next_cluster = 0;
   };
 
@@ -44,6 +45,7 @@ class TissueContacts {
   };
 
   void renew(Pair& pair, DeformableObject& with_points, DeformableObject& with_triangles);
+  static void choose_points(const Body& body, std::vector<std::uint8_t>& chosen);
   void collect_candidates(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double reach,
                           DeformableObject& with_triangles);
   [[nodiscard]] bool find_nearest(const Eigen::Vector3d& p, std::uint32_t& triangle, double& gap) const;
