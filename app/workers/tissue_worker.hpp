@@ -43,7 +43,8 @@ class TissueWorker final : public TissuePort {
                                                     engine::Engine& engine, engine::TickReader& ticks,
                                                     const Board<CellState>& cell_states, const Clock& clock);
 
-  void start();
+  // `fifo_priority`: of SCHED_FIFO, where the machine allows it; 0: an ordinary thread with short time slices.
+  void start(int fifo_priority = 0);
   // No step any more; commands are still taken, without effect.
   void stop();
 
