@@ -102,7 +102,7 @@ Result<Body> Body::make(const ObjectDescription& description) {
   auto parts = std::make_unique<Parts>(std::move(d), *std::move(mesh));
   BodyState& now = parts->now;
   now.elements = Elements(parts->mesh, now.topology, materials_of(parts->description, parts->mesh, now.topology),
-                          kStep_s);
+                          kStep_s, parts->description.most_substeps);
   if (auto filled = check_filling(parts->description, now.elements.volume()); !filled) {
     return std::unexpected(filled.error());
   }

@@ -75,7 +75,8 @@ double wave_speed(const Material& material) {
   return std::sqrt((m.bulk + 4.0 / 3.0 * m.shear) / material.density_kg_m3);
 }
 
-Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step) {
+Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step,
+                   int most_substeps) {
   const std::span<const Element> elements = topology.elements();
   states_.resize(elements.size());
   double slowest_alone = std::numeric_limits<double>::infinity();
@@ -101,7 +102,8 @@ Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<M
   }
   stable_step_ = std::max(slowest_alone, damped_step(fastest_mode(mesh, topology), largest_damping));
   element_share_ = std::min(kMostShare, stable_step_ / slowest_alone);
-  substeps_ = std::clamp(static_cast<int>(std::ceil(step / (kStepSafety * stable_step_))), 1, kMostSubsteps);
+  substeps_ = std::clamp(static_cast<int>(std::ceil(step / (kStepSafety * stable_step_))), 1,
+                         std::clamp(most_substeps, 1, kMostSubsteps));
   step_ = step / substeps_;
   add_mass(mesh, topology);
   stored_step_ = step_;

@@ -38,8 +38,10 @@ struct ElementState {
 class Elements {
  public:
   Elements() = default;
-  // For steps of `step` seconds; `substeps` says in how many parts one of them has to be made.
-  Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step);
+  // For steps of `step` seconds; `substeps` says in how many parts one of them has to be made, `most_substeps` (at most
+  // kMostSubsteps) at most.
+  Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step,
+           int most_substeps = kMostSubsteps);
 
   [[nodiscard]] int substeps() const { return substeps_; }
   // Before mass is added, s: 2 / omega of the fastest mode, shortened for the damping.
