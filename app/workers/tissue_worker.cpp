@@ -52,11 +52,12 @@ void TissueWorker::stop() {
   thread_.join();
 }
 
-void TissueWorker::start(int fifo_priority) {
-  thread_ = std::jthread([this, fifo_priority](const std::stop_token& stop) {
+void TissueWorker::start(RealTimePolicy policy, int priority) {
+  thread_ = std::jthread([this, policy, priority](const std::stop_token& stop) {
     set_thread_name(ticks_.name());
     // Pictures, which take much longer, would else delay forces by their time slices.
-    if (fifo_priority <= 0 || !set_real_time_scheduling(RealTimePolicy::prefer, fifo_priority).ok) prefer_short_work();
+    const bool asked = policy != RealTimePolicy::off;
+    if (!asked || !set_real_time_scheduling(policy, std::max(1, priority)).ok) prefer_short_work();
     loop(stop);
   });
 }

@@ -53,7 +53,7 @@ TEST(TissueWorkerView, TheFirstOneAfterAWhileIsFresh) {
   state->cell = cell->compile();
   board.publish(std::move(state));
   constexpr int kPriority = 5;
-  sut.start(kPriority);
+  sut.start(RealTimePolicy::prefer, kPriority);
   std::shared_ptr<const TissueView> first;
   for (int i = 0; i < 2000 && !first; ++i) {
     std::this_thread::sleep_for(5ms);
