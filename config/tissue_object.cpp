@@ -77,6 +77,7 @@ class ObjectReader {
     if (!table) return;
     const auto size = table->number("element_size_m", kElementSize);
     object.element_size_m = size.value_or(object.element_size_m);
+    object.most_substeps = static_cast<int>(table->integer("most_substeps", 1, 4).value_or(object.most_substeps));
     const auto name = table->text("msh");
     const double scale = table->number("scale", kTissueScale).value_or(1.0);
     for (const auto& [key, other, given] :

@@ -194,7 +194,7 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W);
   tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period);
   traces = std::make_unique<TraceWorker>(readers->traces, board, clock, period);
-  if (tissue) tissue->start();
+  if (tissue) tissue->start(loop_settings.real_time, loop_settings.priority - 20);  // below the loop and the streams
 }
 
 Result<void> Gateway::Parts::start_messages() {

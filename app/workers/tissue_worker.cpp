@@ -14,8 +14,8 @@ namespace {
 constexpr Nanoseconds kPeriod{1'000'000};
 // Further behind than this, milliseconds are given up: the tissue would run fast to catch up.
 constexpr Nanoseconds kMostBehind{4'000'000};
-// After a step that took longer, the next millisecond is given up, so that the rest of the gateway has its share of the
-// processors.
+// After a step that took longer, the next millisecond is given up, and the thread rests for a quarter of what it took:
+// whatever its priority, the rest of the gateway has its share of the processors.
 constexpr Nanoseconds kLongStep{800'000};
 constexpr Nanoseconds kBetweenReports{20'000'000};
 constexpr Nanoseconds kBetweenViews{33'000'000};
@@ -52,8 +52,14 @@ void TissueWorker::stop() {
   thread_.join();
 }
 
-void TissueWorker::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { loop(stop); });
+void TissueWorker::start(RealTimePolicy policy, int priority) {
+  thread_ = std::jthread([this, policy, priority](const std::stop_token& stop) {
+    set_thread_name(ticks_.name());
+    // Pictures, which take much longer, would else delay forces by their time slices.
+    const bool asked = policy != RealTimePolicy::off;
+    if (!asked || !set_real_time_scheduling(policy, std::max(1, priority)).ok) prefer_short_work();
+    loop(stop);
+  });
 }
 
 Result<void> TissueWorker::request(std::vector<tissue::Command> commands) {
@@ -146,8 +152,6 @@ Nanoseconds TissueWorker::step() {
 }
 
 void TissueWorker::loop(const std::stop_token& stop) {
-  set_thread_name(ticks_.name());
-  prefer_short_work();  // pictures, which take much longer, would else delay forces by their time slices
   Timestamp next = clock_.now() + kPeriod;
   while (!stop.stop_requested()) {
     cell_state_ = cell_states_.latest();
@@ -160,7 +164,7 @@ void TissueWorker::loop(const std::stop_token& stop) {
     const Timestamp now = clock_.now();
     next = next + kPeriod;
     if (now - begin > kLongStep) {
-      next = next + kPeriod;
+      next = std::max(next + kPeriod, now + (now - begin) / 4);
       ++late_steps_;
     }
     while (now - next > kMostBehind) {

@@ -17,6 +17,7 @@
 #include "app/snapshot/tissue_report.hpp"
 #include "app/workers/tissue_stepper.hpp"
 #include "rt_core/base/rate_meter.hpp"
+#include "rt_core/base/real_time.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/ports/tissue_state.hpp"
@@ -43,7 +44,9 @@ class TissueWorker final : public TissuePort {
                                                     engine::Engine& engine, engine::TickReader& ticks,
                                                     const Board<CellState>& cell_states, const Clock& clock);
 
-  void start();
+  // Under SCHED_FIFO at `priority` (at least 1), unless `policy` is off or the machine does not allow it: then as an
+  // ordinary thread with short time slices.
+  void start(RealTimePolicy policy = RealTimePolicy::off, int priority = 1);
   // No step any more; commands are still taken, without effect.
   void stop();
 

@@ -101,8 +101,8 @@ Result<Body> Body::make(const ObjectDescription& description) {
   if (!mesh) return std::unexpected(mesh.error());
   auto parts = std::make_unique<Parts>(std::move(d), *std::move(mesh));
   BodyState& now = parts->now;
-  now.elements =
-      Elements(parts->mesh, now.topology, materials_of(parts->description, parts->mesh, now.topology), kStep_s);
+  now.elements = Elements(parts->mesh, now.topology, materials_of(parts->description, parts->mesh, now.topology),
+                          kStep_s, parts->description.most_substeps);
   if (auto filled = check_filling(parts->description, now.elements.volume()); !filled) {
     return std::unexpected(filled.error());
   }
@@ -122,6 +122,7 @@ Result<Body> Body::make(const ObjectDescription& description) {
     now.fixed.push_back(fixed ? 1 : 0);
   }
   now.inverse_mass.assign(nodes, 0.0);
+  now.usual_inverse_mass.assign(nodes, 0.0);
   now.own_mass.assign(nodes, 0.0);
   std::vector<std::uint32_t> numbers(nodes);
   std::iota(numbers.begin(), numbers.end(), 0U);
@@ -156,7 +157,8 @@ void Body::Parts::set_masses(std::span<const std::uint32_t> nodes) {
         own += now.elements.corner_mass(element) / now.elements.states()[element].mass_factor;
       }
     }
-    now.inverse_mass[node] = now.fixed[node] != 0 || mass <= 0 ? 0.0 : 1.0 / mass;
+    now.usual_inverse_mass[node] = now.fixed[node] != 0 || mass <= 0 ? 0.0 : 1.0 / mass;
+    now.inverse_mass[node] = now.usual_inverse_mass[node];
     now.own_mass[node] = own;
   }
 }
@@ -164,23 +166,23 @@ void Body::Parts::set_masses(std::span<const std::uint32_t> nodes) {
 // A node that becomes heavier keeps its momentum, one that becomes lighter its velocity: so changes of mass take energy
 // away and never give any.
 void Body::Parts::add_extra_masses() {
-  now.elements.extra_masses(sums, now.topology, now.x, extras);
+  now.elements.extra_masses(sums, extras);
   if (extras.empty() && heavy.empty()) return;
-  set_masses(heavy);
+  for (const std::uint32_t node : heavy) now.inverse_mass[node] = now.usual_inverse_mass[node];
   extra_mass.resize(now.x.size(), 0.0);
   extra_mass_before.resize(now.x.size(), 0.0);
   for (const std::uint32_t node : heavy) extra_mass_before[node] = std::exchange(extra_mass[node], 0.0);
   heavy_before.swap(heavy);
   heavy.clear();
   for (const Elements::Extra& extra : extras) {
-    for (const std::uint32_t node : now.topology.elements()[extra.element].nodes) {
+    for (const std::uint32_t node : extra.nodes) {
       if (now.inverse_mass[node] == 0) continue;
       if (extra_mass[node] == 0) heavy.push_back(node);
       extra_mass[node] += extra.corner_mass;
     }
   }
   for (const std::uint32_t node : heavy) {
-    const double usual = 1.0 / now.inverse_mass[node];
+    const double usual = 1.0 / now.usual_inverse_mass[node];
     const double mass = usual + extra_mass[node];
     if (extra_mass[node] > extra_mass_before[node]) now.v[node] *= (usual + extra_mass_before[node]) / mass;
     now.inverse_mass[node] = 1.0 / mass;
@@ -193,7 +195,7 @@ void Body::begin_step(double dt, const Eigen::Vector3d& gravity) {
   if (!has(p.attributes, TissueAttribute::calculate)) return;
   BodyState& now = p.now;
   std::ranges::fill(p.force, Eigen::Vector3d::Zero());
-  p.sums = now.elements.add_forces(now.topology, now.x, dt, p.force);
+  p.sums = now.elements.add_forces(now.x, dt, p.force);
   p.add_extra_masses();
   const double drag = 1.0 / (1.0 + p.description.material.drag_1_s * dt);
   const Eigen::Vector3d g = has(p.attributes, TissueAttribute::gravity) ? gravity : Eigen::Vector3d::Zero();

@@ -39,6 +39,7 @@ void Body::Parts::adopt(const TopologyChange& change) {
     now.burn.push_back(now.burn[parent]);
     now.fixed.push_back(0);
     now.inverse_mass.push_back(0);
+    now.usual_inverse_mass.push_back(0);
     now.own_mass.push_back(0);
   }
   force.resize(nodes, Eigen::Vector3d::Zero());

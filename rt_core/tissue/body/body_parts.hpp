@@ -23,11 +23,12 @@ struct BodyState {
   Topology topology;
   Elements elements;
   EmbeddedSurface surface;
-  std::vector<Eigen::Vector3d> x;    // m, by node of the simulation, as all below
-  std::vector<Eigen::Vector3d> v;    // m/s
-  std::vector<double> inverse_mass;  // 1/kg, of the mass that is moved; 0: fixed
-  std::vector<double> own_mass;      // kg, without what was added for a stable step: what has weight
-  std::vector<double> burn;          // 0 raw, 1 coagulated, 2 charred
+  std::vector<Eigen::Vector3d> x;          // m, by node of the simulation, as all below
+  std::vector<Eigen::Vector3d> v;          // m/s
+  std::vector<double> inverse_mass;        // 1/kg, of the mass that is moved; 0: fixed
+  std::vector<double> usual_inverse_mass;  // 1/kg, without the mass that a deformed element needs in a step
+  std::vector<double> own_mass;            // kg, without what was added for a stable step: what has weight
+  std::vector<double> burn;                // 0 raw, 1 coagulated, 2 charred
   std::vector<std::uint8_t> fixed;
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -27,35 +28,42 @@ struct alignas(64) LaneRow {
   return rows[e / kLanes * values + v].lane[e % kLanes];
 }
 
-inline constexpr float kSqueezedAreas = 1e3F;
+// Position (m) or force (N) of a node: x, y, z and a fourth value without meaning, so that a vector register takes it
+// in one piece.
+struct alignas(32) NodeVector {
+  std::array<double, 4> xyz0{};
+};
+
+// (omega step / 2)^2 of a deformed element, above which it needs more mass; 1 is the limit of a stable step.
+inline constexpr float kMostLoad = 0.9F;
 
 struct ElementBlocks {
-  static constexpr std::size_t kMaterialValues =
-      13;  // B (9, by rows), mu V, K V, viscous mu V / dt, viscous lambda V / dt
+  // B (9, by rows), mu V, K V, viscous mu V / dt, viscous lambda V / dt, and the factors of load: of the elastic
+  // stiffness (1 / (Pa m3)) and of the largest stretch squared.
+  static constexpr std::size_t kMaterialValues = 15;
   std::vector<LaneRow> material;
-  std::vector<LaneRow> last_strain;  // 6: xx, yy, zz, xy, xz, yz
+  std::vector<LaneRow> last_strain;                 // 6: xx, yy, zz, xy, xz, yz
+  std::vector<std::array<std::uint32_t, 4>> nodes;  // by place; of places without an element: 0, with a material of 0
   // Per step.
-  std::vector<LaneRow> edges;   // 9: x of nodes 1, 2, 3 less x of node 0, by component and then node
-  std::vector<LaneRow> forces;  // 9: on nodes 1, 2, 3, by component and then node
   std::vector<LaneRow> strain;  // 1: J^(-2/3) I1 - 3, from which the equivalent strain follows
-  // 1: sum of the squares of cof(F)^T cof(F), 3 at rest: its root bounds the square of the largest stretch of an area,
-  // by which the stiffness against compression grows. At least kSqueezedAreas where the volume is less than 3/4.
-  std::vector<LaneRow> areas;
-  std::size_t count = 0;  // of elements
+  // 1: what (omega step / 2)^2 of the deformed element is at most; the closer to that the more it exceeds kMostLoad.
+  std::vector<LaneRow> load;
+  std::size_t count = 0;  // of places
 
-  void resize(std::size_t elements);
+  void resize(std::size_t places);
   [[nodiscard]] std::size_t blocks() const { return (count + kLanes - 1) / kLanes; }
 };
 
 struct KernelSums {
   float largest_strain = 0;  // of `strain`
-  float largest_areas = 0;   // of `areas`
+  float largest_load = 0;    // of `load`
   std::uint32_t inverted = 0;
   double energy = 0;  // J, elastic; of small strains only as good as floats are
 };
 
-// Fills forces, strain and last_strain from edges and material. No heap memory; any thread, one a set of blocks.
-KernelSums compute_element_forces(ElementBlocks& blocks);
+// Fills strain, last_strain and load of elements with nodes at x, and adds their forces to f. No heap memory; any
+// thread, one a set of blocks.
+KernelSums compute_element_forces(ElementBlocks& blocks, std::span<const NodeVector> x, std::span<NodeVector> f);
 
 // The instruction set in use, as Highway names it: "AVX2", "SSE4", ...
 [[nodiscard]] std::string_view simd_target();

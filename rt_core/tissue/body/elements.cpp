@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,7 +17,6 @@ constexpr int kMostMassTrials = 6;
 // What neighbours of the same kind take off the fastest mode. Soft neighbours of a stiff element take off more, but
 // only until a cut parts them from it.
 constexpr double kMostShare = 1.5;
-constexpr double kMostLoad = 0.9;      // (omega step / 2)^2 of a deformed element
 constexpr double kMostYieldMass = 16;  // an element yields no further once it needs so much of its mass
 
 struct Moduli {
@@ -41,28 +41,6 @@ Eigen::Matrix3d edges_of(const Element& e, std::span<const Eigen::Vector3d> x) {
   Eigen::Matrix3d edges;
   for (int k = 0; k < 3; ++k) edges.col(k) = x[e.nodes[static_cast<std::size_t>(k) + 1]] - x[e.nodes[0]];
   return edges;
-}
-
-// Stiffness and viscosity of a deformed element over those at rest, from above.
-struct Stiffening {
-  double elastic = 1;
-  double viscous = 1;
-};
-
-// Elastic: the largest eigenvalue of the second derivative of the energy for waves (acoustic tensor), term by term; 1.2
-// at rest. Viscous: F takes part on both sides of the moduli.
-Stiffening stiffening_of(const Moduli& m, const Eigen::Matrix3d& f) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal;
-  principal.computeDirect(f.transpose() * f, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d stretch = principal.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // rising
-  const double j = f.determinant();
-  const double kept = std::max(j, 0.1);
-  const double i1 = f.squaredNorm();
-  const double area = stretch[1] * stretch[2];
-  const double across = m.bulk + (j > 0.1 ? 5.0 / 9.0 * m.shear * std::pow(kept, -8.0 / 3.0) * i1 : 0.0);
-  const double pressure = m.bulk * (j - 1.0) - (j > 0.1 ? m.shear / 3.0 * i1 * std::pow(kept, -5.0 / 3.0) : 0.0);
-  const double sum = across * area * area + m.shear * std::pow(kept, -2.0 / 3.0) + std::abs(pressure) * stretch[2];
-  return {.elastic = sum / (m.bulk + 4.0 / 3.0 * m.shear), .viscous = stretch[2] * stretch[2]};
 }
 
 double shrunk(double burn) { return 1.0 - kBurntShrinking * std::min(burn, 1.0); }
@@ -97,7 +75,8 @@ double wave_speed(const Material& material) {
   return std::sqrt((m.bulk + 4.0 / 3.0 * m.shear) / material.density_kg_m3);
 }
 
-Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step) {
+Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step,
+                   int most_substeps) {
   const std::span<const Element> elements = topology.elements();
   states_.resize(elements.size());
   double slowest_alone = std::numeric_limits<double>::infinity();
@@ -115,50 +94,46 @@ Elements::Elements(const RestMesh& mesh, const Topology& topology, std::vector<M
     largest_damping = std::max(largest_damping, s.material.damping_s);
   }
   stored_step_ = step_ = step;
-  blocks_.resize(states_.size());
-  for (std::uint32_t e = 0; e < states_.size(); ++e) store(e);
+  spread_ = static_cast<std::uint32_t>((states_.size() + kLanes - 1) / kLanes);
+  blocks_.resize(kLanes * spread_);
+  for (std::uint32_t e = 0; e < states_.size(); ++e) {
+    blocks_.nodes[place(e)] = elements[e].nodes;
+    store(e);
+  }
   stable_step_ = std::max(slowest_alone, damped_step(fastest_mode(mesh, topology), largest_damping));
   element_share_ = std::min(kMostShare, stable_step_ / slowest_alone);
-  substeps_ = std::clamp(static_cast<int>(std::ceil(step / (kStepSafety * stable_step_))), 1, kMostSubsteps);
+  substeps_ = std::clamp(static_cast<int>(std::ceil(step / (kStepSafety * stable_step_))), 1,
+                         std::clamp(most_substeps, 1, kMostSubsteps));
   step_ = step / substeps_;
   add_mass(mesh, topology);
   stored_step_ = step_;
   for (std::uint32_t e = 0; e < states_.size(); ++e) store(e);
-  find_usual_areas();
 }
 
-// Square of the step over the stable one, of an element at rest.
-double Elements::load_of(const ElementState& state) const {
-  const double ratio = stored_step_ / (stable_step_of(state) * (state.loose ? 1.0 : element_share_));
-  return ratio * ratio / state.mass_factor;
+std::size_t Elements::place(std::uint32_t element) const {
+  const std::uint32_t lane = element / spread_;
+  return lane < kLanes ? element % spread_ * kLanes + lane : element;
 }
 
-// The more room there is at rest, the fewer elements have to be looked at. Burnt and loose elements have kStepSafety at
-// the worst, but are few; they get mass a little later.
-void Elements::find_usual_areas() {
-  double load = 0;
-  for (const ElementState& s : states_) load = std::max(load, load_of(s));
-  const double stretch = 0.75 * kMostLoad / load;  // of an area, squared; the rest of the stiffening is shear
-  usual_areas_ = static_cast<float>(std::clamp(stretch * stretch + 1.0, 4.0, 20.0));
+std::uint32_t Elements::element_at(std::size_t place) const {
+  const std::size_t block = place / kLanes;
+  return static_cast<std::uint32_t>(block < spread_ ? place % kLanes * spread_ + block : place);
 }
 
-void Elements::extra_masses(const KernelSums& sums, const Topology& topology, std::span<const Eigen::Vector3d> x,
-                            std::vector<Extra>& extras) const {
+void Elements::extra_masses(const KernelSums& sums, std::vector<Extra>& extras) const {
   extras.clear();
-  if (sums.largest_areas <= usual_areas_) return;
-  for (std::uint32_t e = 0; e < states_.size(); ++e) {
-    if (blocks_.areas[e / kLanes].lane[e % kLanes] <= usual_areas_) continue;
-    const ElementState& s = states_[e];
-    const Eigen::Matrix3d f = edges_of(topology.elements()[e], x) * s.inverse_shape / shrunk(s.burn);
-    const Stiffening stiffening = stiffening_of(moduli(s.material, s.burn), f);
-    const double share = s.loose ? 1.0 : element_share_;
-    // An explicit step is stable while (omega step / 2)^2 + omega^2 damping step / 2 is less than 1.
-    const double elastic = stiffening.elastic * 0.25 * stored_step_ * stored_step_;
-    const double viscous = stiffening.viscous * 0.5 * s.material.damping_s * stored_step_;
-    const double load = fastest_squared(s) * (elastic + viscous) / (share * share * s.mass_factor);
-    if (load <= kMostLoad) continue;
-    // What neighbours take off at rest does not count for one element that is deformed more than they are.
-    extras.push_back({.element = e, .corner_mass = share * share * (load / kMostLoad - 1.0) * corner_mass(e)});
+  if (sums.largest_load <= kMostLoad) return;
+  for (std::size_t block = 0; block < blocks_.blocks(); ++block) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const float load = blocks_.load[block].lane[lane];
+      if (load <= kMostLoad) continue;
+      const std::size_t at = block * kLanes + lane;
+      const std::uint32_t e = element_at(at);
+      // What neighbours take off at rest does not count for one element that is deformed more than they are.
+      const double share = share_of(states_[e]);
+      const double part = static_cast<double>(load) / static_cast<double>(kMostLoad) - 1.0;
+      extras.push_back({.nodes = blocks_.nodes[at], .corner_mass = share * share * part * corner_mass(e)});
+    }
   }
 }
 
@@ -208,7 +183,7 @@ double Elements::fastest_mode(const RestMesh& mesh, const Topology& topology) {
       kinetic += mass[n] * u[n].squaredNorm();
     }
     std::ranges::fill(blocks_.last_strain, LaneRow{});
-    add_forces(topology, x, 1e6 * step_, f);  // so slowly that damping does not count
+    add_forces(x, 1e6 * step_, f);  // so slowly that damping does not count
     double work = 0;
     for (std::size_t n = 0; n < nodes; ++n) {
       work -= u[n].dot(f[n]);
@@ -221,7 +196,7 @@ double Elements::fastest_mode(const RestMesh& mesh, const Topology& topology) {
 }
 
 void Elements::set_mass_factor(ElementState& state) const {
-  const double alone = stable_step_of(state) * (state.loose ? 1.0 : element_share_);
+  const double alone = stable_step_of(state) * share_of(state);
   const double ratio = step_ / (kStepSafety * alone);
   state.mass_factor = std::max(1.0, ratio * ratio);
 }
@@ -231,14 +206,16 @@ void Elements::set_loose(std::uint32_t element, bool loose) {
   if (s.loose == loose) return;
   s.loose = loose;
   set_mass_factor(s);
+  store(element);
 }
 
 void Elements::store(std::uint32_t element) {
   const ElementState& s = states_[element];
+  const std::size_t at = place(element);
   const Moduli m = moduli(s.material, s.burn);
   const Eigen::Matrix3d b = s.inverse_shape / shrunk(s.burn);
   const auto put = [&](std::size_t v, double value) {
-    lane_value(blocks_.material, ElementBlocks::kMaterialValues, element, v) = static_cast<float>(value);
+    lane_value(blocks_.material, ElementBlocks::kMaterialValues, at, v) = static_cast<float>(value);
   };
   for (std::size_t k = 0; k < 9; ++k) put(k, b(static_cast<int>(k) / 3, static_cast<int>(k) % 3));
   put(9, m.shear * s.carried);
@@ -246,6 +223,11 @@ void Elements::store(std::uint32_t element) {
   const double viscosity = s.material.damping_s / stored_step_ * s.carried;
   put(11, 2.0 * m.shear * viscosity);
   put(12, (m.bulk - 2.0 / 3.0 * m.shear) * viscosity);
+  // An explicit step is stable while (omega step / 2)^2 + omega^2 damping step / 2 is less than 1.
+  const double share = share_of(s);
+  const double squared = fastest_squared(s) / (share * share * s.mass_factor);
+  put(13, squared * 0.25 * stored_step_ * stored_step_ / ((m.bulk + 4.0 / 3.0 * m.shear) * s.carried));
+  put(14, squared * 0.5 * s.material.damping_s * stored_step_);
 }
 
 double Elements::volume() const {
@@ -275,14 +257,18 @@ void Elements::follow(const RestMesh& mesh, const Topology& topology, std::span<
                       std::span<const std::uint32_t> origins) {
   const std::size_t before = states_.size();
   states_.resize(topology.elements().size());
-  blocks_.resize(states_.size());
+  const auto last = static_cast<std::uint32_t>(states_.size() - 1);
+  blocks_.resize(std::max(blocks_.count, place(last) + 1));
   for (std::size_t i = 0; i < origins.size(); ++i) {
     states_[before + i] = states_[origins[i]];
+    const std::size_t to = place(static_cast<std::uint32_t>(before + i));
+    const std::size_t from = place(origins[i]);
     for (std::size_t v = 0; v < 6; ++v) {
-      lane_value(blocks_.last_strain, 6, before + i, v) = lane_value(blocks_.last_strain, 6, origins[i], v);
+      lane_value(blocks_.last_strain, 6, to, v) = lane_value(blocks_.last_strain, 6, from, v);
     }
   }
   for (const std::uint32_t e : elements) {
+    blocks_.nodes[place(e)] = topology.elements()[e].nodes;
     states_[e].volume = material_volume(mesh, topology, e);
     states_[e].carried =
         std::max(states_[e].volume, kLeastFill * mesh.tetrahedra[topology.elements()[e].tetrahedron].volume);
@@ -292,14 +278,15 @@ void Elements::follow(const RestMesh& mesh, const Topology& topology, std::span<
 
 void Elements::rebase_strain(std::uint32_t element, const Eigen::Matrix3d& change) {
   constexpr std::array<std::array<int, 2>, 6> kAt{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  const std::size_t at = place(element);
   Eigen::Matrix3d c;
   for (std::size_t v = 0; v < 6; ++v) {
     const auto [row, column] = kAt[v];
-    c(row, column) = c(column, row) = 2.0 * static_cast<double>(lane_value(blocks_.last_strain, 6, element, v));
+    c(row, column) = c(column, row) = 2.0 * static_cast<double>(lane_value(blocks_.last_strain, 6, at, v));
   }
   c = change.transpose() * (c + Eigen::Matrix3d::Identity()) * change - Eigen::Matrix3d::Identity();
   for (std::size_t v = 0; v < 6; ++v) {
-    lane_value(blocks_.last_strain, 6, element, v) = static_cast<float>(0.5 * c(kAt[v][0], kAt[v][1]));
+    lane_value(blocks_.last_strain, 6, at, v) = static_cast<float>(0.5 * c(kAt[v][0], kAt[v][1]));
   }
 }
 
@@ -310,48 +297,16 @@ void Elements::set_burn(std::uint32_t element, double burn) {
   store(element);
 }
 
-void Elements::gather(const Topology& topology, std::span<const Eigen::Vector3d> x) {
-  const std::span<const Element> elements = topology.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    LaneRow* const rows = &blocks_.edges[e / kLanes * 9];
-    const std::size_t lane = e % kLanes;
-    const std::array<std::uint32_t, 4>& nodes = elements[e].nodes;
-    const double* const origin = x[nodes[0]].data();
-    for (std::size_t n = 0; n < 3; ++n) {
-      const double* const p = x[nodes[n + 1]].data();
-      rows[n].lane[lane] = static_cast<float>(p[0] - origin[0]);
-      rows[3 + n].lane[lane] = static_cast<float>(p[1] - origin[1]);
-      rows[6 + n].lane[lane] = static_cast<float>(p[2] - origin[2]);
-    }
-  }
-}
-
-void Elements::scatter(const Topology& topology, std::span<Eigen::Vector3d> f) const {
-  const std::span<const Element> elements = topology.elements();
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    const LaneRow* const rows = &blocks_.forces[e / kLanes * 9];
-    const std::size_t lane = e % kLanes;
-    const std::array<std::uint32_t, 4>& nodes = elements[e].nodes;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t n = 0; n < 3; ++n) {
-      const Eigen::Vector3d force(static_cast<double>(rows[n].lane[lane]), static_cast<double>(rows[3 + n].lane[lane]),
-                                  static_cast<double>(rows[6 + n].lane[lane]));
-      f[nodes[n + 1]] += force;
-      sum += force;
-    }
-    f[nodes[0]] -= sum;  // in doubles, so that forces within a body add up to zero
-  }
-}
-
-KernelSums Elements::add_forces(const Topology& topology, std::span<const Eigen::Vector3d> x, double step,
-                                std::span<Eigen::Vector3d> f) {
+KernelSums Elements::add_forces(std::span<const Eigen::Vector3d> x, double step, std::span<Eigen::Vector3d> f) {
   if (step != stored_step_) {
     stored_step_ = step;
     for (std::uint32_t e = 0; e < states_.size(); ++e) store(e);
   }
-  gather(topology, x);
-  const KernelSums sums = compute_element_forces(blocks_);
-  scatter(topology, f);
+  kernel_x_.resize(x.size());
+  kernel_f_.assign(x.size(), NodeVector{});
+  for (std::size_t n = 0; n < x.size(); ++n) kernel_x_[n] = {{x[n][0], x[n][1], x[n][2], 0.0}};
+  const KernelSums sums = compute_element_forces(blocks_, kernel_x_, kernel_f_);
+  for (std::size_t n = 0; n < x.size(); ++n) f[n] += Eigen::Map<const Eigen::Vector3d>(kernel_f_[n].xyz0.data());
   return sums;
 }
 
@@ -362,7 +317,7 @@ std::uint32_t Elements::yield(const Topology& topology, std::span<const Eigen::V
     ElementState& s = states_[e];
     const double limit = s.material.yield_strain;
     // sqrt(strain / 3) is the equivalent strain of a small stretch; the exact test follows.
-    if (limit <= 0 || static_cast<double>(blocks_.strain[e / kLanes].lane[e % kLanes]) < 1.5 * limit * limit) continue;
+    if (limit <= 0 || static_cast<double>(lane_value(blocks_.strain, 1, place(e), 0)) < 1.5 * limit * limit) continue;
     const Eigen::Matrix3d f = edges_of(topology.elements()[e], x) * s.inverse_shape / shrunk(s.burn);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(f.transpose() * f);
     const Eigen::Vector3d stretch = principal.eigenvalues().cwiseMax(1e-4).cwiseSqrt();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,8 +38,10 @@ struct ElementState {
 class Elements {
  public:
   Elements() = default;
-  // For steps of `step` seconds; `substeps` says in how many parts one of them has to be made.
-  Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step);
+  // For steps of `step` seconds; `substeps` says in how many parts one of them has to be made, `most_substeps` (at most
+  // kMostSubsteps) at most.
+  Elements(const RestMesh& mesh, const Topology& topology, std::vector<Material> materials, double step,
+           int most_substeps = kMostSubsteps);
 
   [[nodiscard]] int substeps() const { return substeps_; }
   // Before mass is added, s: 2 / omega of the fastest mode, shortened for the damping.
@@ -64,17 +67,15 @@ class Elements {
   std::uint32_t yield(const Topology& topology, std::span<const Eigen::Vector3d> x);
 
   // Adds the forces at positions x (m, by node of the simulation) to f (N). `step`: seconds since the last call.
-  KernelSums add_forces(const Topology& topology, std::span<const Eigen::Vector3d> x, double step,
-                        std::span<Eigen::Vector3d> f);
+  KernelSums add_forces(std::span<const Eigen::Vector3d> x, double step, std::span<Eigen::Vector3d> f);
   // An element that is deformed much is stiffer than at rest, so its stable step is shorter: the mass that each of its
-  // corners needs in this step beside its own. Of elements at x, after add_forces() at x; hardly any work where nothing
+  // corners needs in this step beside its own. After add_forces(), whose sums they are; hardly any work where nothing
   // is deformed much.
   struct Extra {
-    std::uint32_t element = 0;
+    std::array<std::uint32_t, 4> nodes{};
     double corner_mass = 0;  // kg
   };
-  void extra_masses(const KernelSums& sums, const Topology& topology, std::span<const Eigen::Vector3d> x,
-                    std::vector<Extra>& extras) const;
+  void extra_masses(const KernelSums& sums, std::vector<Extra>& extras) const;
   // J, by the formula of the kernel, in doubles.
   [[nodiscard]] double elastic_energy(const Topology& topology, std::span<const Eigen::Vector3d> x) const;
 
@@ -85,19 +86,23 @@ class Elements {
   void rebase_strain(std::uint32_t element, const Eigen::Matrix3d& change);
   void add_mass(const RestMesh& mesh, const Topology& topology);
   void set_mass_factor(ElementState& state) const;
-  [[nodiscard]] double load_of(const ElementState& state) const;
-  void find_usual_areas();
+  // By which the stable step of an element within the body is longer than that of the same element alone.
+  [[nodiscard]] double share_of(const ElementState& state) const { return state.loose ? 1.0 : element_share_; }
+  // Where the blocks have an element, and the other way. The elements of one block come from all over the body, so that
+  // they have hardly a node in common, and forces on a node need not wait for each other; those of cuts come last.
+  [[nodiscard]] std::size_t place(std::uint32_t element) const;
+  [[nodiscard]] std::uint32_t element_at(std::size_t place) const;
   [[nodiscard]] double fastest_mode(const RestMesh& mesh, const Topology& topology);
-  void gather(const Topology& topology, std::span<const Eigen::Vector3d> x);
-  void scatter(const Topology& topology, std::span<Eigen::Vector3d> f) const;
 
   std::vector<ElementState> states_;
   ElementBlocks blocks_;
+  std::uint32_t spread_ = 1;          // blocks of the elements that there were at first
+  std::vector<NodeVector> kernel_x_;  // as the kernel takes them
+  std::vector<NodeVector> kernel_f_;
   double step_ = 0.001;     // s, of a substep
   double stable_step_ = 0;  // s
   double size_ = 0;         // m
   double stored_step_ = 0;  // s, that the viscous values in the blocks are for
-  float usual_areas_ = 3;   // of ElementBlocks::areas: up to it no element needs extra mass
   int substeps_ = 1;
   double element_share_ =
       1;  // stable step of an element within the body over that of the same element alone, at least 1

@@ -8,6 +8,7 @@ namespace cellmirror::tissue {
 namespace {
 
 using Eigen::Vector3d;
+using Eigen::Vector4d;
 
 // 1/kg: a point that seems heavier than this does not move.
 constexpr double kImmovable = 1e-9;
@@ -37,7 +38,7 @@ std::uint32_t ConstraintSystem::node(std::uint32_t object, std::uint32_t index, 
   if (place.round != round_) {
     place = {round_, static_cast<std::uint32_t>(nodes_.size())};
     nodes_.push_back({object, index, velocity, Vector3d::Zero()});
-    states_.push_back({velocity, inverse_mass});
+    states_.emplace_back(velocity.x(), velocity.y(), velocity.z(), inverse_mass);
   }
   return place.at;
 }
@@ -49,14 +50,15 @@ void ConstraintSystem::add_term(std::uint32_t node, double weight) {
       return;
     }
   }
-  terms_.push_back({node, weight});
+  terms_.push_back({.node = node, .weight = weight});
 }
 
 template <class Row>
 ConstraintSystem::Entry<Row> ConstraintSystem::take_terms(const Row& row) {
   Entry<Row> entry{.row = row, .first = open_, .count = static_cast<std::uint32_t>(terms_.size()) - open_};
   for (std::size_t i = open_; i < terms_.size(); ++i) {
-    entry.inverse_mass += terms_[i].weight * terms_[i].weight * states_[terms_[i].node].inverse_mass;
+    terms_[i].yielding = terms_[i].weight * states_[terms_[i].node][3];
+    entry.inverse_mass += terms_[i].weight * terms_[i].yielding;
   }
   entry.movable = entry.inverse_mass > kImmovable;
   open_ = static_cast<std::uint32_t>(terms_.size());
@@ -75,18 +77,18 @@ std::size_t ConstraintSystem::add(const Hold& hold) {
 
 template <class Row>
 Vector3d ConstraintSystem::relative_velocity(const Entry<Row>& entry) const {
-  Vector3d v = -entry.row.velocity;
+  Vector4d v = Vector4d::Zero();  // and a sum of masses without meaning
   for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
-    v += terms_[i].weight * states_[terms_[i].node].velocity;
+    v += terms_[i].weight * states_[terms_[i].node];
   }
-  return v;
+  return v.head<3>() - entry.row.velocity;
 }
 
 template <class Row>
 void ConstraintSystem::apply(const Entry<Row>& entry, const Vector3d& impulse) {
+  const Vector4d change(impulse.x(), impulse.y(), impulse.z(), 0.0);
   for (std::uint32_t i = entry.first; i < entry.first + entry.count; ++i) {
-    State& state = states_[terms_[i].node];
-    state.velocity += (terms_[i].weight * state.inverse_mass) * impulse;
+    states_[terms_[i].node] += terms_[i].yielding * change;
   }
 }
 

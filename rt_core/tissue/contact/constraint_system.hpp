@@ -60,7 +60,7 @@ class ConstraintSystem {
   void solve(std::uint32_t sweeps);
 
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
-  [[nodiscard]] const Eigen::Vector3d& velocity(std::size_t node) const { return states_[node].velocity; }  // m/s
+  [[nodiscard]] Eigen::Vector3d velocity(std::size_t node) const { return states_[node].head<3>(); }  // m/s
   [[nodiscard]] const Push& push(std::size_t number) const { return pushes_[number].row; }
   [[nodiscard]] const Hold& hold(std::size_t number) const { return holds_[number].row; }
   // False where no node of the constraint can move: it has no effect.
@@ -69,13 +69,13 @@ class ConstraintSystem {
 
  private:
   struct Term {
-    std::uint32_t node;
-    double weight;
+    std::uint32_t node = 0;
+    double weight = 0;
+    double yielding = 0;  // 1/kg: weight times the node's inverse mass
   };
-  struct State {                                         // what the sweeps need of a node
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s
-    double inverse_mass = 0;                             // 1/kg; 0: constraints do not move it
-  };
+  // What the sweeps need of a node, in two registers: its velocity, m/s, and its inverse mass, 1/kg; 0: constraints do
+  // not move it.
+  using State = Eigen::Vector4d;
   template <class Row>
   struct Entry {
     Row row;

@@ -34,6 +34,8 @@ class SurfaceIndex {
 
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
   [[nodiscard]] std::span<const Cluster> clusters() const { return clusters_; }
+  // m that any point can have gone at most since rebuild(), on all steps together.
+  [[nodiscard]] double way() const { return drift_; }
   [[nodiscard]] double margin(const Cluster& cluster) const { return drift_ - cluster.drift; }  // m
   [[nodiscard]] std::span<const std::uint32_t> triangles(const Cluster& cluster) const {
     return std::span(triangles_).subspan(cluster.first, cluster.count);

@@ -72,6 +72,7 @@ void TissueContacts::renew(Pair& pair, DeformableObject& with_points, Deformable
     pair.revision_of_points = points.revision();
     pair.revision_of_triangles = triangles.revision();
     pair.near.resize(points.clusters().size());
+    choose_points(*with_points.body, pair.chosen);
   }
   of_points_.clear();
   points.near_box(triangles.low(), triangles.high(), kNearReach, of_points_);
@@ -81,44 +82,80 @@ void TissueContacts::renew(Pair& pair, DeformableObject& with_points, Deformable
   pair.next_cluster = cluster + 1;
 
   const SurfaceIndex::Cluster& box = points.clusters()[cluster];
-  const double margin = points.margin(box) + kNearReach;
-  clusters_.clear();
-  triangles.near_box(box.low, box.high, margin, clusters_);
+  collect_candidates(box.low, box.high, points.margin(box) + kNearReach, with_triangles);
   std::vector<Near>& old = pair.near[cluster];
   fresh_.clear();
   for (const std::uint32_t point : points.points(box)) {
-    const Vector3d p = points.position(*with_points.body, point);
-    double best = kNearReach * kNearReach;
+    if (pair.chosen[point] == 0) continue;
     Near found{.point = point};
-    bool any = false;
     double gap = 0;
-    for (const std::uint32_t candidate : clusters_) {
-      const SurfaceIndex::Cluster& other = triangles.clusters()[candidate];
-      const double grown = triangles.margin(other) + kNearReach;
-      if (((other.low.array() - grown) > p.array()).any() || ((other.high.array() + grown) < p.array()).any()) continue;
-      for (const std::uint32_t triangle : triangles.triangles(other)) {
-        const geometry::Triangle corners = triangles.corners(*with_triangles.body, triangle);
-        const double edge = std::max((corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[0]).squaredNorm());
-        const double within = std::sqrt(edge) + std::sqrt(best);
-        if ((p - corners[0]).squaredNorm() > within * within) continue;
-        const Vector3d nearest = geometry::closest_on_triangle(p, corners);
-        const double squared = (p - nearest).squaredNorm();
-        if (squared >= best) continue;
-        Vector3d normal;
-        const double signed_distance = signed_gap(p, nearest, corners, normal);
-        if (!std::isfinite(signed_distance)) continue;
-        best = squared;
-        gap = signed_distance;
-        found.triangle = triangle;
-        any = true;
-      }
-    }
-    if (!any) continue;
+    if (!find_nearest(points.position(*with_points.body, point), found.triangle, gap)) continue;
     const auto same = std::ranges::lower_bound(old, point, {}, &Near::point);
     found.seen_outside = gap > kOutside || (same != old.end() && same->point == point && same->seen_outside);
     fresh_.push_back(found);
   }
   old.swap(fresh_);
+}
+
+// Of each node the surface point that depends on it most: what lies between follows the same nodes, and more contacts
+// than nodes only ask these several times.
+void TissueContacts::choose_points(const Body& body, std::vector<std::uint8_t>& chosen) {
+  const auto points = body.surface_points();
+  struct Best {
+    float weight = 0;
+    std::uint32_t point = 0;
+  };
+  std::vector<Best> best(body.positions().size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const auto most = std::ranges::max_element(points[i].weight);
+    Best& of_node = best[points[i].node[static_cast<std::size_t>(most - points[i].weight.begin())]];
+    if (*most > of_node.weight) of_node = {*most, i};
+  }
+  chosen.assign(points.size(), 0);
+  for (const Best& one : best) {
+    if (one.weight > 0) chosen[one.point] = 1;
+  }
+}
+
+// Triangles that may be near a point within the box, grown by `reach`: computed once for all points of a cluster.
+void TissueContacts::collect_candidates(const Vector3d& low, const Vector3d& high, double reach,
+                                        DeformableObject& with_triangles) {
+  SurfaceIndex& triangles = with_triangles.surface;
+  clusters_.clear();
+  candidates_.clear();
+  triangles.near_box(low, high, reach, clusters_);
+  for (const std::uint32_t cluster : clusters_) {
+    for (const std::uint32_t triangle : triangles.triangles(triangles.clusters()[cluster])) {
+      Candidate one{.corners = triangles.corners(*with_triangles.body, triangle), .triangle = triangle};
+      const Vector3d least = one.corners[0].cwiseMin(one.corners[1]).cwiseMin(one.corners[2]);
+      const Vector3d most = one.corners[0].cwiseMax(one.corners[1]).cwiseMax(one.corners[2]);
+      if ((least.array() > high.array() + reach).any() || (most.array() < low.array() - reach).any()) continue;
+      one.centre = 0.5 * (least + most);
+      for (const Vector3d& corner : one.corners) one.radius = std::max(one.radius, (corner - one.centre).norm());
+      candidates_.push_back(one);
+    }
+  }
+}
+
+// The candidate nearest to p within kNearReach; false where there is none.
+bool TissueContacts::find_nearest(const Vector3d& p, std::uint32_t& triangle, double& gap) const {
+  double best = kNearReach;
+  bool any = false;
+  for (const Candidate& one : candidates_) {
+    const double within = one.radius + best;
+    if ((p - one.centre).squaredNorm() >= within * within) continue;
+    const Vector3d nearest = geometry::closest_on_triangle(p, one.corners);
+    const double squared = (p - nearest).squaredNorm();
+    if (squared >= best * best) continue;
+    Vector3d normal;
+    const double signed_distance = signed_gap(p, nearest, one.corners, normal);
+    if (!std::isfinite(signed_distance)) continue;
+    best = std::sqrt(squared);
+    gap = signed_distance;
+    triangle = one.triangle;
+    any = true;
+  }
+  return any;
 }
 
 void TissueContacts::use(Pair& pair, DeformableObject& with_points, std::uint32_t number,
@@ -129,19 +166,26 @@ void TissueContacts::use(Pair& pair, DeformableObject& with_points, std::uint32_
     std::ranges::fill(used_, 0U);
     round_ = 1;
   }
-  for (const std::vector<Near>& cluster : pair.near) {
-    for (const Near& near : cluster) {
+  const double way = with_points.surface.way() + with_triangles.surface.way();
+  for (std::vector<Near>& cluster : pair.near) {
+    for (Near& near : cluster) {
       if (!near.seen_outside || used_[near.point] == round_ || appended_ >= kMostContacts) continue;
       used_[near.point] = round_;
+      if (way < near.apart_until) continue;
       const Vector3d p = with_points.surface.position(*with_points.body, near.point);
       const geometry::Triangle corners = with_triangles.surface.corners(*with_triangles.body, near.triangle);
       const Vector3d facing = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
       const double height = (p - corners[0]).dot(facing);
       // Farther from the plane than any contact: most points end here.
-      if (height * height > kNearReach * kNearReach * facing.squaredNorm()) continue;
+      const double size = facing.norm();
+      if (std::abs(height) > kDeepestInTissue * size) {
+        near.apart_until = way + std::abs(height) / size - kDeepestInTissue;
+        continue;
+      }
       const Vector3d nearest = geometry::closest_on_triangle(p, corners);
       Vector3d normal;
       const double gap = signed_gap(p, nearest, corners, normal);
+      if (std::isfinite(gap) && gap > kTouchReach) near.apart_until = way + gap - kTouchReach;
       if (!(gap < kTouchReach) || gap < -kDeepestInTissue) continue;
       Contact contact;
       contact.key = {ContactKey::Other::tissue, other, number, near.point};

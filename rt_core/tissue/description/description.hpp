@@ -83,6 +83,7 @@ struct ObjectDescription {
   SurfaceMesh surface;
   TetraMesh volume;               // empty: lattice
   double element_size_m = 0.007;  // edge of the cubes of the lattice
+  int most_substeps = 4;          // of a step; where more were needed, mass is added
   Material material;
   std::vector<Region> regions;  // the last one that holds a point counts
   std::vector<FixedZone> fixed;

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""The trainer cell with two hands and feet at work, pictures 15 times a second beside it, and the same without tissue.
+"""The trainer cell with two hands and feet at work, pictures 15 times a second beside it, and the same without tissue;
+the latter also with a program that does the same work of a step's length each millisecond, at the simulation's priority:
+how far its 99th percentile is above its median is what the machine adds.
 
   trainer_bench.py [SECONDS=30] [--rate PICTURES_A_SECOND] [--film F.mp4]
 
@@ -9,6 +11,7 @@ ratio 1.
 """
 
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -46,7 +49,11 @@ def cpu_s(pid):
     return (int(fields[11]) + int(fields[12])) / CLOCK_TICKS
 
 
-def measure(tissue):
+# Below the loop, as the gateway does it.
+TISSUE_PRIORITY = 60
+
+
+def measure(tissue, work_us=None):
     scratch = g.Scratch("trainer", startup=True)
     hands = []
     try:
@@ -58,6 +65,11 @@ def measure(tissue):
             for name, program, *rest in SIMULATORS:
                 rest[rest.index("--key") + 1] = str(keys[KEYS[name]])
                 hands.append(subprocess.Popen([str(g.BIN / program), *rest, "--no-input", "--quiet"]))
+            work = None
+            if work_us:
+                work = subprocess.Popen([str(g.BIN / "rt_fixed_work"), str(max(1, round(OPTIONS.seconds) - 2)), str(TISSUE_PRIORITY), str(work_us)],
+                                        stdout=subprocess.PIPE, text=True)
+                hands.append(work)
             before, start = cpu_s(gateway.child.pid), time.monotonic()
             film = OPTIONS.film if tissue and OPTIONS.film else scratch.root / "film.mjpeg"
             done = subprocess.run(
@@ -67,7 +79,8 @@ def measure(tissue):
             if done.returncode != 0:
                 raise SystemExit(done.stderr)
             cores = (cpu_s(gateway.child.pid) - before) / (time.monotonic() - start)
-            return scratch.status(), cores, done.stdout.strip()
+            fixed = json.loads(work.communicate(timeout=30)[0]) if work else None
+            return scratch.status(), cores, done.stdout.strip(), fixed
         finally:
             for hand in hands:
                 hand.kill()
@@ -77,14 +90,18 @@ def measure(tissue):
         scratch.remove()
 
 
-plain, plain_cores, _ = measure(False)
-full, full_cores, film_line = measure(True)
+plain, plain_cores, _, _ = measure(False)
+full, full_cores, film_line, _ = measure(True)
 tissue = full["tissue"]
+_, _, _, fixed = measure(False, round(tissue["step_us"]["p50"]))
 elements = sum(one["elements"] for one in tissue["objects"])
 print(f"{elements} elements, {tissue['step']} steps with {tissue['simd']}, {tissue['late_steps']} late; {film_line}")
 for key, name in (("step_us", "tissue step"), ("pose_to_force_us", "pose to force")):
     values = tissue[key]
     print(f"{name:<22} p50 {values['p50']:6.0f}  p99 {values['p99']:6.0f}  p99.9 {values['p999']:6.0f} us")
+step = tissue["step_us"]
+print(f"{'same work, no tissue':<22} p50 {fixed['p50']:6.0f}  p99 {fixed['p99']:6.0f}  p99.9 {fixed['p999']:6.0f} us ({fixed['scheduler']} "
+      f"{fixed['priority']}): p99 over p50 {fixed['p99'] / fixed['p50']:.2f}, of the step {step['p99'] / step['p50']:.2f}")
 for status, cores, name in ((plain, plain_cores, "loop without tissue"), (full, full_cores, "loop with tissue")):
     wake, tick = status["loop"]["wakeup_latency_us"], status["loop"]["compute_us"]
     print(f"{name:<22} wake-up p50 {wake['p50']:4.0f}  p99 {wake['p99']:5.0f} us, tick p99 {tick['p99']:4.0f} us, "

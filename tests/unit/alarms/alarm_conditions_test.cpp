@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/scene/small_cell.hpp"
+#include "tests/unit/app/live_sources.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -19,24 +19,11 @@ using testing::IsEmpty;
 
 constexpr Timestamp kNow{10'000'000'000};
 
-class Idle final : public Cycle {
- public:
-  void run(const CycleContext&) CELL_RT override {}
-};
-
 class AlarmConditionsTest : public testing::Test {
  protected:
   AlarmConditionsTest() {
-    RobotSnapshot robot;
-    robot.id = "ARM";
-    picture_.robots = {robot};
-    RobotState state;
-    state.id = "ARM";
-    state.online = true;
-    state.state = DataState::fresh;
-    state.joints.resize(1);
-    robots_ = {state};
-    picture_.collision = std::make_shared<const collision::Settings>();
+    gateway_.robots[0].online = true;
+    gateway_.robots[0].state = DataState::fresh;
     proximity_ = std::make_shared<ProximityState>();
     proximity_->names = std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"A", "B", "C"});
     proximity_->pairs = 3;
@@ -44,25 +31,10 @@ class AlarmConditionsTest : public testing::Test {
   }
 
   std::vector<AlarmCondition> look(const std::vector<ProximityEvent>& events = {}) {
-    picture_.cell = std::make_shared<const CompiledCell>(small_.cell);
-    picture_.display = std::make_shared<const DisplayState>(small_.display);
-    const LiveSources sources{.instance = "default",
-                              .cell = "small",
-                              .uptime_s = 12.5,
-                              .rate_hz = 1000,
-                              .now = now_,
-                              .loop = loop_,
-                              .cell_state = picture_,
-                              .tick = tick_,
-                              .robots = robots_,
-                              .poses = small_.poses,
-                              .picture_updates = 0,
-                              .proximity = proximity_,
-                              .ranges = nullptr,
-                              .forces = nullptr,
-                              .queues = {},
-                              .problems = problems_,
-                              .tissue = tissue_};
+    LiveSources sources = gateway_.sources(now_);
+    sources.proximity = proximity_;
+    sources.problems = problems_;
+    sources.tissue = tissue_;
     return sut_.look(sources, faults_, events);
   }
   static TouchingPair touching(std::uint32_t a, std::uint32_t b) {
@@ -85,12 +57,7 @@ class AlarmConditionsTest : public testing::Test {
     return out;
   }
 
-  scene::SmallCell small_;
-  Idle idle_;
-  CyclicThread loop_{idle_, {}};
-  CellState picture_;
-  engine::TickState tick_{8};
-  std::vector<RobotState> robots_;
+  SmallGateway gateway_;
   std::shared_ptr<ProximityState> proximity_;
   std::vector<Problem> problems_;
   std::shared_ptr<TissueReport> tissue_;
@@ -131,7 +98,7 @@ TEST_F(AlarmConditionsTest, KnowsNothingOfPairsThatAreNotTested) {
   proximity_->touching = {touching(0, 1)};
   collision::Settings off;
   off.active = false;
-  picture_.collision = std::make_shared<const collision::Settings>(off);
+  gateway_.picture.collision = std::make_shared<const collision::Settings>(off);
   EXPECT_THAT(look(), IsEmpty());
 }
 
@@ -139,25 +106,25 @@ TEST_F(AlarmConditionsTest, HasAnAlarmForEachStreamThatIsNotFresh) {
   for (const auto& [state, priority] :
        {std::pair(DataState::lost, AlarmPriority::high), std::pair(DataState::implausible, AlarmPriority::high),
         std::pair(DataState::conflict, AlarmPriority::high)}) {
-    robots_[0].state = state;
+    gateway_.robots[0].state = state;
     const auto found = look();
     ASSERT_THAT(words(found), ElementsAre("stream: ARM"));
     EXPECT_EQ(found[0].priority, priority);
   }
-  robots_[0].online = false;
+  gateway_.robots[0].online = false;
   EXPECT_THAT(look(), IsEmpty()) << "taken offline on purpose";
 }
 
 TEST_F(AlarmConditionsTest, HasNoneForDataThatAreLateForAMoment) {
   for (int i = 0; i < 3; ++i) {
-    robots_[0].state = DataState::stale;
+    gateway_.robots[0].state = DataState::stale;
     EXPECT_THAT(look(), IsEmpty());
     now_.ns += 400'000'000;
     EXPECT_THAT(look(), IsEmpty());
-    robots_[0].state = DataState::fresh;
+    gateway_.robots[0].state = DataState::fresh;
     EXPECT_THAT(look(), IsEmpty());
   }
-  robots_[0].state = DataState::stale;
+  gateway_.robots[0].state = DataState::stale;
   EXPECT_THAT(look(), IsEmpty());
   now_.ns += 500'000'000;
   const auto found = look();

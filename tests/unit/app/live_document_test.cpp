@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "tests/unit/scene/small_cell.hpp"
+#include "tests/unit/app/live_sources.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -18,57 +18,28 @@ using testing::ElementsAre;
 
 constexpr Timestamp kNow{10'000'000'000};
 
-class Idle final : public Cycle {
- public:
-  void run(const CycleContext&) CELL_RT override {}
-};
-
 // The small cell, whose one robot is simulated, and nothing else known.
 class LiveDocument : public testing::Test {
  protected:
   LiveDocument() {
-    small_.cell.robots.front().min_range = {};
-    small_.cell.robots.front().max_range = {};
-    RobotSnapshot cell_state;
-    cell_state.id = "ARM";
-    picture_.robots = {cell_state};
-    RobotState state;
-    state.id = "ARM";
-    state.joints.resize(1);
-    state.joints[0].name = "J_1";
-    state.joints[0].position = 0.25;
-    robots_ = {state};
-    picture_.collision = std::make_shared<const collision::Settings>();
-    small_.display.cameras.emplace_back().name = "CAM";
+    gateway_.small.cell.robots.front().min_range = {};
+    gateway_.small.cell.robots.front().max_range = {};
+    gateway_.robots[0].joints[0].name = "J_1";
+    gateway_.robots[0].joints[0].position = 0.25;
+    gateway_.small.display.cameras.emplace_back().name = "CAM";
   }
 
   [[nodiscard]] json document() {
-    picture_.cell = std::make_shared<const CompiledCell>(small_.cell);
-    picture_.display = std::make_shared<const DisplayState>(small_.display);
-    const LiveSources sources{.instance = "default",
-                              .cell = "small",
-                              .uptime_s = 12.5,
-                              .rate_hz = 1000,
-                              .now = kNow,
-                              .loop = loop_,
-                              .cell_state = picture_,
-                              .tick = tick_,
-                              .robots = robots_,
-                              .poses = small_.poses,
-                              .picture_updates = 100,
-                              .proximity = proximity_,
-                              .ranges = ranges_,
-                              .forces = forces_,
-                              .queues = queues_};
+    LiveSources sources = gateway_.sources(kNow);
+    sources.picture_updates = 100;
+    sources.proximity = proximity_;
+    sources.ranges = ranges_;
+    sources.forces = forces_;
+    sources.queues = queues_;
     return json::parse(live_document(sources, window_, 7));
   }
 
-  scene::SmallCell small_;
-  Idle idle_;
-  CyclicThread loop_{idle_, {}};
-  CellState picture_;
-  engine::TickState tick_{8};
-  std::vector<RobotState> robots_;
+  SmallGateway gateway_;
   std::shared_ptr<ProximityState> proximity_;
   std::shared_ptr<RangeReadings> ranges_;
   std::shared_ptr<ForceState> forces_;
@@ -95,8 +66,8 @@ TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
 }
 
 TEST_F(LiveDocument, ASimulatedRobotHasNoAge) {
-  picture_.active_robot = "ARM";
-  tick_.robots[0].motion.moving = true;
+  gateway_.picture.active_robot = "ARM";
+  gateway_.tick.robots[0].motion.moving = true;
   const json sut = document()["robots"][0];
   EXPECT_EQ(sut["id"], "ARM");
   EXPECT_EQ(sut["mode"], "simulated");
@@ -109,22 +80,22 @@ TEST_F(LiveDocument, ASimulatedRobotHasNoAge) {
 }
 
 TEST_F(LiveDocument, AMirroredRobotTellsItsStateAndAge) {
-  robots_[0].online = true;
-  robots_[0].state = DataState::stale;
-  tick_.robots[0].receive_time = kNow - Nanoseconds(1'500'000'000);
+  gateway_.robots[0].online = true;
+  gateway_.robots[0].state = DataState::stale;
+  gateway_.tick.robots[0].receive_time = kNow - Nanoseconds(1'500'000'000);
   json sut = document()["robots"][0];
   EXPECT_EQ(sut["mode"], "mirrored");
   EXPECT_EQ(sut["state"], "stale");
   EXPECT_DOUBLE_EQ(sut["age_s"], 1.5);
-  tick_.robots[0].receive_time = {};  // online, but nothing has come yet
+  gateway_.tick.robots[0].receive_time = {};  // online, but nothing has come yet
   sut = document()["robots"][0];
   EXPECT_TRUE(sut["age_s"].is_null());
 }
 
 TEST_F(LiveDocument, AnImplausibleRobotTellsWhichJointWhyAndByWhichBound) {
-  robots_[0].online = true;
-  robots_[0].state = robots_[0].joints[0].state = DataState::implausible;
-  engine::RobotTickState& tick = tick_.robots[0];
+  gateway_.robots[0].online = true;
+  gateway_.robots[0].state = gateway_.robots[0].joints[0].state = DataState::implausible;
+  engine::RobotTickState& tick = gateway_.tick.robots[0];
   const auto condition = [&](Implausibility why, double value, double bound) {
     tick.newest_implausible = {.why = why, .joint = 0, .value = value, .bound = bound, .receive_time = kNow};
     return document()["robots"][0]["condition"];
@@ -135,12 +106,12 @@ TEST_F(LiveDocument, AnImplausibleRobotTellsWhichJointWhyAndByWhichBound) {
             "implausible: J_1 accelerates by 40 rad/s2, beyond 30 rad/s2");
   EXPECT_EQ(condition(Implausibility::frozen, 2.5, 2.0), "implausible: J_1 is the same to the last bit for 2.5 s");
   EXPECT_EQ(document()["robots"][0]["state"], "implausible");
-  robots_[0].joints[0].state = DataState::fresh;
+  gateway_.robots[0].joints[0].state = DataState::fresh;
   EXPECT_EQ(document()["robots"][0]["condition"], "");
 }
 
 TEST_F(LiveDocument, AJointHasLimitsWhereItsRangeIsOne) {
-  CompiledRobot& robot = small_.cell.robots.front();
+  CompiledRobot& robot = gateway_.small.cell.robots.front();
   json sut = document()["robots"][0]["joints"][0];
   EXPECT_TRUE(sut["lower"].is_null());
   robot.min_range[0] = -1;
@@ -148,17 +119,17 @@ TEST_F(LiveDocument, AJointHasLimitsWhereItsRangeIsOne) {
   sut = document()["robots"][0]["joints"][0];
   EXPECT_EQ(sut["lower"], -1.0);
   EXPECT_EQ(sut["upper"], 2.0);
-  robots_[0].joints[0].kind = JointKind::continuous;
+  gateway_.robots[0].joints[0].kind = JointKind::continuous;
   EXPECT_TRUE(document()["robots"][0]["joints"][0]["lower"].is_null());
-  robots_[0].joints[0].kind = JointKind::prismatic;
+  gateway_.robots[0].joints[0].kind = JointKind::prismatic;
   EXPECT_EQ(document()["robots"][0]["joints"][0]["unit"], "m");
 }
 
 TEST_F(LiveDocument, WhatJsonCannotHoldIsNullOrReplaced) {
-  robots_[0].joints[0].position = std::numeric_limits<double>::quiet_NaN();
-  robots_[0].joints[0].velocity = -std::numeric_limits<double>::infinity();
-  robots_[0].joints[0].name = "a\"\\\n\x01\xFF";
-  small_.display.messages.push_back({"\xC3\x28 </script>", kNow - Nanoseconds(2'000'000'000), 3, true});
+  gateway_.robots[0].joints[0].position = std::numeric_limits<double>::quiet_NaN();
+  gateway_.robots[0].joints[0].velocity = -std::numeric_limits<double>::infinity();
+  gateway_.robots[0].joints[0].name = "a\"\\\n\x01\xFF";
+  gateway_.small.display.messages.push_back({"\xC3\x28 </script>", kNow - Nanoseconds(2'000'000'000), 3, true});
   const json sut = document();
   EXPECT_TRUE(sut["robots"][0]["joints"][0]["position"].is_null());
   EXPECT_TRUE(sut["robots"][0]["joints"][0]["velocity"].is_null());
@@ -211,14 +182,14 @@ TEST_F(LiveDocument, NobodyKnowsWhatTouchesWhereNothingIsTested) {
   collision::Settings off;
   off.active = false;
   off.warning_distance_m = 0.25;
-  picture_.collision = std::make_shared<const collision::Settings>(off);
+  gateway_.picture.collision = std::make_shared<const collision::Settings>(off);
   sut = document();
   EXPECT_TRUE(sut["touching"].is_null());
   EXPECT_TRUE(sut["collision_age_s"].is_null());
   EXPECT_EQ(sut["near"], json::array());
   EXPECT_EQ(sut["near_count"], 0);
   EXPECT_EQ(sut["warning_distance_m"], 0.25);
-  picture_.collision = std::make_shared<const collision::Settings>();
+  gateway_.picture.collision = std::make_shared<const collision::Settings>();
   proximity_->pairs = 0;
   EXPECT_TRUE(document()["touching"].is_null());
 }
@@ -260,8 +231,8 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
 }
 
 TEST_F(LiveDocument, ProgramsAreBounded) {
-  picture_.programs.programs.resize(60);
-  program::ProgramStatus& status = picture_.programs.programs.front();
+  gateway_.picture.programs.programs.resize(60);
+  program::ProgramStatus& status = gateway_.picture.programs.programs.front();
   status.robot = "ARM";
   status.name = "weld";
   status.direction = program::Direction::backward;
@@ -276,7 +247,7 @@ TEST_F(LiveDocument, ProgramsAreBounded) {
 }
 
 TEST_F(LiveDocument, ViewsAreWhereTheyAreNowUnderTheNamesOfTheLayout) {
-  DisplayView& shown = small_.display.views[2];
+  DisplayView& shown = gateway_.small.display.views[2];
   ViewSequence sequence;
   sequence.from.viewpoint = {0, 0, 0};
   sequence.to.viewpoint = {8, 0, 0};
@@ -284,9 +255,9 @@ TEST_F(LiveDocument, ViewsAreWhereTheyAreNowUnderTheNamesOfTheLayout) {
   sequence.steps = 100;
   shown.view = sequence.to;
   shown.sequence = sequence;
-  small_.display.layout.views[2].name = "gate";
-  small_.display.layout.displays[3] = {"yard", {{.view = 5}, {.view = 2}}};
-  small_.display.display = 4;
+  gateway_.small.display.layout.views[2].name = "gate";
+  gateway_.small.display.layout.displays[3] = {"yard", {{.view = 5}, {.view = 2}}};
+  gateway_.small.display.display = 4;
   const json sut = document()["display"];
   EXPECT_EQ(sut["display"], 4);
   EXPECT_EQ(sut["views"].size(), kViews);
@@ -301,8 +272,8 @@ TEST_F(LiveDocument, ViewsAreWhereTheyAreNowUnderTheNamesOfTheLayout) {
 }
 
 TEST_F(LiveDocument, CamerasAreNamedAsTheDisplayNamesThem) {
-  small_.display.cameras[0].name = "Left.CAM";
-  small_.display.cameras.emplace_back().name = "Right.CAM";
+  gateway_.small.display.cameras[0].name = "Left.CAM";
+  gateway_.small.display.cameras.emplace_back().name = "Right.CAM";
   EXPECT_THAT(document()["cameras"], ElementsAre("Left.CAM", "Right.CAM"));
 }
 
@@ -313,12 +284,12 @@ TEST_F(LiveDocument, QueuesTellTheirDrops) {
 }
 
 TEST_F(LiveDocument, TheLoopsFiguresAreThoseSinceTheDocumentBefore) {
-  for (int i = 0; i < 50; ++i) loop_.wakeup_latency().record(Nanoseconds(2'000'000));
+  for (int i = 0; i < 50; ++i) gateway_.loop.wakeup_latency().record(Nanoseconds(2'000'000));
   json sut = document()["loop"];
   EXPECT_EQ(sut["rate_hz"], 1000.0);
   EXPECT_NEAR(sut["latency_p99_us"], 2000, 200);
   EXPECT_EQ(sut["compute_p99_us"], 0.0);
-  for (int i = 0; i < 50; ++i) loop_.wakeup_latency().record(Nanoseconds(20'000));
+  for (int i = 0; i < 50; ++i) gateway_.loop.wakeup_latency().record(Nanoseconds(20'000));
   EXPECT_NEAR(document()["loop"]["latency_p99_us"], 20, 2);
   EXPECT_EQ(document()["loop"]["latency_p99_us"], 0.0);
 }

@@ -2,11 +2,16 @@
 #include "app/workers/tissue_worker.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
 #include <thread>
 
+#include "rt_core/rt/scheduling.hpp"
 #include "rt_core/rt/watchdog.hpp"
 #include "tests/support/tissue/bodies.hpp"
 #include "tests/unit/cell/cell_from_text.hpp"
@@ -15,6 +20,17 @@ namespace cellmirror::app {
 namespace {
 
 using namespace std::chrono_literals;
+
+// Of the thread of this process that has the name; -1: there is none.
+int policy_of(const std::string& name) {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream file(task.path() / "comm");
+    std::string comm;
+    std::getline(file, comm);
+    if (comm == name) return sched_getscheduler(std::stoi(task.path().filename()));
+  }
+  return -1;
+}
 
 TEST(TissueWorkerView, TheFirstOneAfterAWhileIsFresh) {
   Diagnostics diagnostics;
@@ -36,13 +52,16 @@ TEST(TissueWorkerView, TheFirstOneAfterAWhileIsFresh) {
   auto state = std::make_shared<CellState>();
   state->cell = cell->compile();
   board.publish(std::move(state));
-  sut.start();
+  constexpr int kPriority = 5;
+  sut.start(RealTimePolicy::prefer, kPriority);
   std::shared_ptr<const TissueView> first;
   for (int i = 0; i < 2000 && !first; ++i) {
     std::this_thread::sleep_for(5ms);
     first = sut.view();
   }
   ASSERT_TRUE(first);
+  const bool allowed = probe_real_time_scheduling(kPriority).ok;
+  EXPECT_EQ(policy_of("tissue"), allowed ? SCHED_FIFO : SCHED_OTHER) << "before what takes longer";
   std::this_thread::sleep_for(1500ms);  // longer than shapes are made without being asked for
   const std::shared_ptr<const TissueReport> report = sut.reports().latest();
   ASSERT_TRUE(report);

@@ -109,6 +109,7 @@ mesh = "cube.obj"
 scale = [2, 2, 2]
 [volume]
 element_size_m = 0.02
+most_substeps = 2
 [material]
 youngs_modulus_pa = 3000
 poissons_ratio = 0.4
@@ -156,6 +157,7 @@ rgba = [0, 0, 1, 0.5]
   EXPECT_NEAR(enclosed(sut->surface), 0.008, 1e-8);
   EXPECT_EQ(sut->rgba, (std::array<float, 4>{0.1F, 0.2F, 0.3F, 0.4F}));
   EXPECT_EQ(sut->element_size_m, 0.02);
+  EXPECT_EQ(sut->most_substeps, 2);
   EXPECT_EQ(sut->material.youngs_modulus_pa, 3000);
   EXPECT_EQ(sut->material.poissons_ratio, 0.4);
   EXPECT_EQ(sut->material.density_kg_m3, 1060);

@@ -1,4 +1,4 @@
-// Commands as tests give them.
+// Commands as tests give them, and the cycles of the loop that take them.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +17,26 @@ inline RobotSetup robot_of(std::uint8_t joints, double lower, double upper, cons
   robot.limits.lower.fill(lower);
   robot.limits.upper.fill(upper);
   return robot;
+}
+
+inline constexpr Nanoseconds kPeriod{1'000'000};
+
+// The next cycle of the loop, at `now`; `missed` periods were passed over before it.
+inline void run_cycle(Engine& engine, Timestamp now, std::uint64_t& cycle, std::uint64_t missed = 0) {
+  CycleContext context;
+  context.now = context.scheduled = now;
+  context.cycle = cycle++;
+  context.period = kPeriod;
+  context.missed = missed;
+  engine.run(context);
+}
+
+// So many cycles, a period apart, from a period after `now` on, which becomes the time of the last one.
+inline void run_cycles(Engine& engine, Timestamp& now, std::uint64_t& cycle, int times) {
+  for (int i = 0; i < times; ++i) {
+    now = now + kPeriod;
+    run_cycle(engine, now, cycle);
+  }
 }
 
 inline std::uint64_t send_robot(Engine& engine, std::size_t slot, const RobotSetup& robot) {

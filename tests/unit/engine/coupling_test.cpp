@@ -12,7 +12,6 @@
 namespace cellmirror::engine {
 namespace {
 
-constexpr Nanoseconds kPeriod{1'000'000};
 constexpr std::uint8_t kMaster = 5;  // behind the slaves, so that the order of the slots is not that of dependence
 constexpr std::uint8_t kSlave = 1;
 constexpr std::uint8_t kSecond = 0;
@@ -51,17 +50,7 @@ class CouplingTest : public testing::Test {
     return accepts(Couple{sut_->lend(std::make_shared<const Coupling>(coupling))});
   }
 
-  void tick(int count = 1) {
-    for (int i = 0; i < count; ++i) {
-      now_ = now_ + kPeriod;
-      CycleContext context;
-      context.now = now_;
-      context.scheduled = now_;
-      context.cycle = cycle_++;
-      context.period = kPeriod;
-      sut_->run(context);
-    }
-  }
+  void tick(int times = 1) { run_cycles(*sut_, now_, cycle_, times); }
 
   const RobotTickState& robot(std::uint8_t slot) { return ticks_.newest().robots[slot]; }
   double position(std::uint8_t slot, std::size_t joint) { return robot(slot).joints[joint].position; }

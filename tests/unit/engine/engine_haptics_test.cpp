@@ -13,7 +13,6 @@
 namespace cellmirror::engine {
 namespace {
 
-constexpr Nanoseconds kPeriod{1'000'000};
 constexpr std::uint8_t kSlot = 5;
 constexpr std::uint8_t kChannel = 2;
 
@@ -73,17 +72,7 @@ class EngineHapticsTest : public testing::Test {
     tick();
   }
 
-  void tick(int times = 1) {
-    for (int i = 0; i < times; ++i) {
-      now_ = now_ + kPeriod;
-      CycleContext context;
-      context.now = now_;
-      context.scheduled = now_;
-      context.cycle = cycle_++;
-      context.period = kPeriod;
-      sut_->run(context);
-    }
-  }
+  void tick(int times = 1) { run_cycles(*sut_, now_, cycle_, times); }
 
   // The newest surroundings: a wall whose surface is at x = `wall`, free below it.
   void give_model(double wall) {

@@ -16,7 +16,6 @@
 namespace cellmirror::engine {
 namespace {
 
-constexpr Nanoseconds kPeriod{1'000'000};
 constexpr std::uint8_t kSlot = 3;
 constexpr std::uint8_t kJoints = 2;
 
@@ -29,13 +28,7 @@ class EngineMotionTest : public testing::Test {
 
   void tick(std::uint64_t missed = 0) {
     now_ = now_ + kPeriod * static_cast<std::int64_t>(1 + missed);
-    CycleContext context;
-    context.now = now_;
-    context.scheduled = now_;
-    context.cycle = cycle_++;
-    context.period = kPeriod;
-    context.missed = missed;
-    sut_->run(context);
+    run_cycle(*sut_, now_, cycle_, missed);
   }
 
   // Cruises at 0.5, a quarter of a second to get there.

@@ -12,8 +12,6 @@
 namespace cellmirror::engine {
 namespace {
 
-constexpr Nanoseconds kPeriod{1'000'000};
-
 class EngineTest : public testing::Test {
  protected:
   void make(const EngineCapacity& capacity) {
@@ -23,12 +21,7 @@ class EngineTest : public testing::Test {
 
   void tick(Nanoseconds after = kPeriod) {
     now_ = now_ + after;
-    CycleContext context;
-    context.now = now_;
-    context.scheduled = now_;
-    context.cycle = cycle_++;
-    context.period = kPeriod;
-    sut_->run(context);
+    run_cycle(*sut_, now_, cycle_);
   }
 
   std::uint64_t add_robot(std::size_t slot = 3, std::uint8_t joints = 2) {

@@ -349,12 +349,8 @@ class HostileCell {
 
   void tick() {
     give_surroundings();
-    now_ = now_ + Nanoseconds(1'000'000);
-    CycleContext context;
-    context.now = context.scheduled = now_;
-    context.cycle = cycle_++;
-    context.period = Nanoseconds(1'000'000);
-    engine_.run(context);
+    now_ = now_ + kPeriod;
+    run_cycle(engine_, now_, cycle_);
   }
 
   void tick_and_check() {

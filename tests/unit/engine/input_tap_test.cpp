@@ -14,8 +14,6 @@
 namespace cellmirror::engine {
 namespace {
 
-constexpr Nanoseconds kPeriod{1'000'000};
-
 // Counts records of a stream as InputTap::drain() gives it.
 std::map<InputRecord, int> kinds_of(const std::vector<std::byte>& records) {
   std::map<InputRecord, int> out;
@@ -33,17 +31,7 @@ std::map<InputRecord, int> kinds_of(const std::vector<std::byte>& records) {
 
 class InputTapTest : public testing::Test {
  protected:
-  void tick(int times = 1) {
-    for (int i = 0; i < times; ++i) {
-      now_ = now_ + kPeriod;
-      CycleContext context;
-      context.now = now_;
-      context.scheduled = now_;
-      context.cycle = cycle_++;
-      context.period = kPeriod;
-      sut_->run(context);
-    }
-  }
+  void tick(int times = 1) { run_cycles(*sut_, now_, cycle_, times); }
   void move(std::size_t slot, std::uint32_t id, double target) {
     motion::Move one;
     one.id = id;

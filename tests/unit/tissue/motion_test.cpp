@@ -91,6 +91,33 @@ TEST(TissueMotion, EnergyDoesNotGrowWithoutInput) {
   }
 }
 
+// What a scene gives up for time: it swings more slowly, and hangs where it did.
+TEST(TissueMotion, FewerSubstepsTakeMassAndChangeNoRest) {
+  std::vector<Eigen::Vector3d> rest;
+  for (const int most : {4, 2}) {
+    ObjectDescription d = ball(0.02, 0.005);
+    d.material.youngs_modulus_pa = 8000;
+    d.material.drag_1_s = 20;
+    d.fixed.push_back({.low = Eigen::Vector3d(-1, -1, 0.01), .high = Eigen::Vector3d(1, 1, 1)});
+    d.most_substeps = most;
+    Body sut = made(d);
+    const TissueObjectState state = state_of(sut);
+    EXPECT_EQ(state.substeps > 2U, most == 4);
+    EXPECT_EQ(state.added_mass_share > 0.5, most == 2) << state.added_mass_share;
+    const double dt = step_of(sut);
+    for (int i = 0; i < static_cast<int>(3.0 / dt); ++i) {
+      sut.begin_step(dt, Eigen::Vector3d(0, 0, -9.81));
+      sut.end_step(dt);
+    }
+    EXPECT_LT(sut.largest_speed(), 1e-4);
+    if (rest.empty()) {
+      rest.assign(sut.positions().begin(), sut.positions().end());
+      continue;
+    }
+    for (std::size_t n = 0; n < rest.size(); ++n) EXPECT_LT((sut.positions()[n] - rest[n]).norm(), 1e-5);
+  }
+}
+
 TEST(TissueMotion, TwoInstructionSetsAgreeAndOneRepeatsToTheBit) {
   const auto run = [](const std::string& target) {
     EXPECT_TRUE(force_simd_target(target));
