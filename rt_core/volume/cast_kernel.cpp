@@ -131,14 +131,20 @@ struct BrickPlace {
 CELLMIRROR_LARGE_INLINE BrickPlace brick_at(const KernelJob& job, const Point& p) {
   const DI di;
   BrickPlace b;
-  b.x = hn::ShiftRight<kBrickShift>(hn::ConvertTo(di, kept_within(p.x, job.fine.largest[0])));
-  b.y = hn::ShiftRight<kBrickShift>(hn::ConvertTo(di, kept_within(p.y, job.fine.largest[1])));
-  b.z = hn::ShiftRight<kBrickShift>(hn::ConvertTo(di, kept_within(p.z, job.fine.largest[2])));
+  const VI i = hn::ConvertTo(di, kept_within(p.x, job.fine.largest[0]));
+  const VI j = hn::ConvertTo(di, kept_within(p.y, job.fine.largest[1]));
+  const VI k = hn::ConvertTo(di, kept_within(p.z, job.fine.largest[2]));
+  b.x = hn::ShiftRight<kBrickShift>(i);
+  b.y = hn::ShiftRight<kBrickShift>(j);
+  b.z = hn::ShiftRight<kBrickShift>(k);
   const VI offset =
       hn::Add(b.x, hn::Add(hn::Mul(b.y, hn::Set(di, job.leap_row)), hn::Mul(b.z, hn::Set(di, job.leap_layer))));
-  const VI code = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(job.leap), offset);
+  const VI code = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(job.leap), offset);
   b.leap = hn::And(code, hn::Set(di, 0xF));
-  b.stride = hn::And(hn::ShiftRight<4>(code), hn::Set(di, 0xF));
+  // Of the 4 x 4 x 4 cells around, two bits.
+  const VI block = hn::Or(hn::And(hn::ShiftRight<2>(i), hn::Set(di, 1)),
+                          hn::Or(hn::And(hn::ShiftRight<1>(j), hn::Set(di, 2)), hn::And(k, hn::Set(di, 4))));
+  b.stride = hn::And(hn::Shr(code, hn::Add(hn::Add(block, block), hn::Set(di, kStrideShift))), hn::Set(di, 3));
   return b;
 }
 
@@ -222,12 +228,12 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
     // Before the end only as many steps at once as are left there.
     const V left = hn::Sub(whole, step);
     const V wanted = power_of_two(brick.stride);
-    const VI stride_log = hn::IfThenElseZero(hn::RebindMask(di, hn::Le(wanted, left)), brick.stride);
+    const VI stride_log = hn::IfThenElseZero(hn::RebindMask(di, hn::And(sampling, hn::Le(wanted, left))), brick.stride);
     const V stride = power_of_two(stride_log);
-    // From anywhere in a brick, 8 steps lead at most into the next one.
-    const bool longest = !hn::AllFalse(d, hn::Gt(stride, set(4.0F)));
+    // Of long steps one between looks at the blocks: they end within its neighbours.
     const bool some_long = !hn::AllFalse(d, hn::Gt(stride, set(2.0F)));
-    const int samples = longest ? 1 : some_long ? 2 : kChecked;
+    const bool some_double = !hn::AllFalse(d, hn::Gt(stride, set(1.0F)));
+    const int samples = some_long ? 1 : some_double ? kChecked / 2 : kChecked;
     const bool coarse =
         job.has_coarse && (job.all_coarse || hn::AllTrue(d, hn::Or(hn::Not(sampling), hn::Gt(stride, set(2.0F)))));
     // All values before all colours: the loads of several samples overlap.

@@ -46,7 +46,7 @@ struct KernelJob {
   std::array<float, 3> size{};       // voxels
   std::array<float, 3> per_metre{};  // index units a metre
   // Bricks and the table over the stored values: place = value * scale + offset.
-  const std::uint8_t* leap = nullptr;
+  const std::uint32_t* leap = nullptr;
   std::int32_t leap_row = 0;
   std::int32_t leap_layer = 0;
   const float* alpha = nullptr;           // of a whole step

@@ -52,23 +52,6 @@ HWY_INLINE Point at(const Rays& rays, V t) {
           hn::MulAdd(t, rays.direction.z, rays.origin.z)};
 }
 
-// Between two voxels of 16 bits side by side along x, the first in the lower half of a lane.
-template <Stored kStored>
-HWY_INLINE V along_x(VI both, V fraction) {
-  const DI di;
-  const D d;
-  V low;
-  V high;
-  if constexpr (kStored == Stored::i16) {
-    low = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(both)));
-    high = hn::ConvertTo(d, hn::ShiftRight<16>(both));
-  } else {
-    low = hn::ConvertTo(d, hn::And(both, hn::Set(di, 0xFFFF)));
-    high = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(DU(), both))));
-  }
-  return hn::MulAdd(fraction, hn::Sub(high, low), low);
-}
-
 // Between two voxels of 8 bits, from a load of 4 bytes that does not reach beyond the volume.
 HWY_INLINE V bytes_along_x(const KernelVoxels& voxels, VI offset, V fraction) {
   const DI di;
@@ -88,40 +71,51 @@ struct CellEdges {
 };
 
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-// Single loads instead of gathers: on AMD's Zen 4 four gathers of 16 lanes take 20 ns, these 14 ns, and so few
-// operations that the loads of several samples overlap.
-HWY_INLINE __m128i edges_of_cell(const std::byte* at, std::ptrdiff_t row, std::ptrdiff_t slice) {
-  std::int32_t pair[4];
-  std::memcpy(&pair[0], at, sizeof(pair[0]));
-  std::memcpy(&pair[1], at + row, sizeof(pair[1]));
-  std::memcpy(&pair[2], at + slice, sizeof(pair[2]));
-  std::memcpy(&pair[3], at + slice + row, sizeof(pair[3]));
-  const __m128i two = _mm_insert_epi32(_mm_cvtsi32_si128(pair[0]), pair[1], 1);
-  return _mm_insert_epi32(_mm_insert_epi32(two, pair[2], 2), pair[3], 3);
+// Single loads instead of gathers, each broadcast into its lane: on AMD's Zen 4 four gathers of 16 lanes take longer,
+// and their many operations keep the loads of several samples from overlapping. Insertions and shuffles in place of
+// masked broadcasts would compete with arithmetic for execution units.
+HWY_INLINE __m128i pair_at(const std::byte* at) {
+  std::int32_t pair = 0;
+  std::memcpy(&pair, at, sizeof(pair));
+  return _mm_cvtsi32_si128(pair);
+}
+
+HWY_INLINE VI pairs_at(const std::byte* base, const std::int32_t* offsets) {
+  const auto four = [&](int k) {
+    __m128i pairs = _mm_broadcastd_epi32(pair_at(base + offsets[k]));
+    pairs = _mm_mask_broadcastd_epi32(pairs, 2, pair_at(base + offsets[k + 1]));
+    pairs = _mm_mask_broadcastd_epi32(pairs, 4, pair_at(base + offsets[k + 2]));
+    return _mm_mask_broadcastd_epi32(pairs, 8, pair_at(base + offsets[k + 3]));
+  };
+  const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(four(0)), four(4), 1);
+  const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(four(8)), four(12), 1);
+  return VI{_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1)};
 }
 
 HWY_INLINE CellEdges edges_at(const KernelVoxels& voxels, VI offset) {
   HWY_ALIGN std::int32_t offsets[kLanes];
   hn::Store(offset, DI(), offsets);
-  const auto edges = [&](int lane) {
-    return edges_of_cell(voxels.middle_slice + offsets[lane], voxels.row_bytes, voxels.slice_bytes);
-  };
-  // Lanes k, k + 4, k + 8 and k + 12, then turned so that each vector has one edge of all lanes.
-  const auto four = [&](int k) {
-    const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(edges(k)), edges(k + 4), 1);
-    const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(edges(k + 8)), edges(k + 12), 1);
-    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
-  };
-  const __m512i zero = four(0);
-  const __m512i one = four(1);
-  const __m512i two = four(2);
-  const __m512i three = four(3);
-  const __m512i low_01 = _mm512_unpacklo_epi32(zero, one);
-  const __m512i high_01 = _mm512_unpackhi_epi32(zero, one);
-  const __m512i low_23 = _mm512_unpacklo_epi32(two, three);
-  const __m512i high_23 = _mm512_unpackhi_epi32(two, three);
-  return {VI{_mm512_unpacklo_epi64(low_01, low_23)}, VI{_mm512_unpackhi_epi64(low_01, low_23)},
-          VI{_mm512_unpacklo_epi64(high_01, high_23)}, VI{_mm512_unpackhi_epi64(high_01, high_23)}};
+  const std::byte* const slice = voxels.middle_slice + static_cast<std::ptrdiff_t>(voxels.slice_bytes);
+  const std::ptrdiff_t row = voxels.row_bytes;
+  return {pairs_at(voxels.middle_slice, offsets), pairs_at(voxels.middle_slice + row, offsets),
+          pairs_at(slice, offsets), pairs_at(slice + row, offsets)};
+}
+
+// Of two voxels of 16 bits side by side along x, the first in the lower half of a lane, by one multiplication of pairs:
+// the second's share in parts of 2^14. Values with a sign; what has none is moved below 0 by half its range.
+constexpr float kPairUnit = 1.0F / 16384;
+template <Stored kStored>
+constexpr float kPairOffset = kStored == Stored::u16 ? 32768.0F : 0.0F;
+
+HWY_INLINE VI pair_weights(V fraction) {
+  const VI second = hn::NearestInt(hn::Mul(fraction, set(1 / kPairUnit)));
+  return hn::Add(hn::Sub(hn::ShiftLeft<16>(second), second), hn::Set(DI(), 16384));
+}
+
+template <Stored kStored>
+HWY_INLINE V along_x(VI both, VI weights) {
+  if constexpr (kStored == Stored::u16) both = hn::Xor(both, hn::Set(DI(), static_cast<std::int32_t>(0x8000'8000U)));
+  return hn::ConvertTo(D(), VI{_mm512_madd_epi16(both.raw, weights.raw)});
 }
 #else
 HWY_INLINE CellEdges edges_at(const KernelVoxels& voxels, VI offset) {
@@ -131,6 +125,29 @@ HWY_INLINE CellEdges edges_at(const KernelVoxels& voxels, VI offset) {
   const std::ptrdiff_t row = voxels.row_bytes;
   const std::ptrdiff_t slice = voxels.slice_bytes;
   return {pairs(0), pairs(row), pairs(slice), pairs(slice + row)};
+}
+
+constexpr float kPairUnit = 1;
+template <Stored kStored>
+constexpr float kPairOffset = 0;
+
+HWY_INLINE V pair_weights(V fraction) { return fraction; }
+
+// Between two voxels of 16 bits side by side along x, the first in the lower half of a lane.
+template <Stored kStored>
+HWY_INLINE V along_x(VI both, V fraction) {
+  const DI di;
+  const D d;
+  V low;
+  V high;
+  if constexpr (kStored == Stored::i16) {
+    low = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(both)));
+    high = hn::ConvertTo(d, hn::ShiftRight<16>(both));
+  } else {
+    low = hn::ConvertTo(d, hn::And(both, hn::Set(di, 0xFFFF)));
+    high = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(DU(), both))));
+  }
+  return hn::MulAdd(fraction, hn::Sub(high, low), low);
 }
 #endif
 
@@ -163,14 +180,19 @@ CELLMIRROR_LARGE_INLINE V value_in(const KernelVoxels& voxels, const Point& p) {
     e = bytes_along_x(voxels, hn::Add(next_row, slice), fx);
   } else {
     const CellEdges edges = edges_at(voxels, offset);
-    a = along_x<kStored>(edges.here, fx);
-    b = along_x<kStored>(edges.row, fx);
-    c = along_x<kStored>(edges.slice, fx);
-    e = along_x<kStored>(edges.next, fx);
+    const auto weights = pair_weights(fx);
+    a = along_x<kStored>(edges.here, weights);
+    b = along_x<kStored>(edges.row, weights);
+    c = along_x<kStored>(edges.slice, weights);
+    e = along_x<kStored>(edges.next, weights);
   }
   const V front = hn::MulAdd(fy, hn::Sub(b, a), a);
   const V back = hn::MulAdd(fy, hn::Sub(e, c), c);
-  return hn::MulAdd(fz, hn::Sub(back, front), front);
+  const V value = hn::MulAdd(fz, hn::Sub(back, front), front);
+  if constexpr (kStored == Stored::u8)
+    return value;
+  else
+    return hn::MulAdd(value, set(kPairUnit), set(kPairOffset<kStored>));
 }
 
 template <Stored kStored>

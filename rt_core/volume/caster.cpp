@@ -232,7 +232,7 @@ void Caster::Prepared::cast_as(const CastQuality& wanted) {
   std::array<double, kLongestStrideLog> limits{};
   for (std::size_t i = 0; i < limits.size(); ++i)
     limits[i] = -std::log1p(-std::clamp(wanted.long_steps[i], 0.0, 0.5)) / (std::exp2(i + 1) * step_m);
-  leaps = leaps_by_table(bricks, bricks.all, transfer.entries, limits);
+  leaps = leaps_by_table(bricks, bricks.all, transfer.entries, limits, step_m / grid->spacing_m.minCoeff());
 }
 
 Result<Caster::Prepared*> Caster::Impl::prepare(const std::shared_ptr<const VoxelGrid>& grid) {

@@ -1,6 +1,7 @@
 // Pictures a second of a volume of 512^3 at 1280 x 720 with each table, at full quality and while it moves; beside
 // VTK's vtkFixedPointVolumeRayCastMapper at the same step and its mean error against a picture of fine steps; the time
-// over the size of the volume (--size: of one alone). Writes a table (CSV) and a figure (PNG).
+// over the size of the volume. Writes a table (CSV) and a figure of it (PNG). --size measures one size alone and keeps
+// the rows of others that are in the table already: a size at a time takes less than a minute and less memory.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,18 +109,24 @@ std::vector<Shown> all_shown() {
   return shown;
 }
 
+// Until its picture is there, while it moves; `prepared`: before the rays.
 void measure_change_of_table(volume::Caster& caster, const std::shared_ptr<const VoxelGrid>& grid) {
   volume::VolumePicture picture;
-  std::vector<double> ms;
-  for (int i = 0; i < 10; ++i) {
-    volume::CastRequest request = request_of(grid, {}, true, 0);
-    request.settings.medical.tissue = 0.2 + 0.02 * i;
-    request.width = request.height = 1;
-    const double begun = now_s(CLOCK_MONOTONIC);
-    static_cast<void>(caster.cast(request, picture));
-    ms.push_back(1e3 * (now_s(CLOCK_MONOTONIC) - begun));
-  }
-  fmt::print("a change of table before the rays: {:.1f} ms\n", median(ms));
+  const auto measured = [&](bool one_pixel, double tissue) {
+    std::vector<double> ms;
+    for (int i = 0; i < 10; ++i) {
+      volume::CastRequest request = request_of(grid, {}, true, 0);
+      request.settings.medical.tissue = tissue + 0.01 * i;
+      if (one_pixel) request.width = request.height = 1;
+      const double begun = now_s(CLOCK_MONOTONIC);
+      static_cast<void>(caster.cast(request, picture));
+      ms.push_back(1e3 * (now_s(CLOCK_MONOTONIC) - begun));
+    }
+    return median(ms);
+  };
+  const double prepared = measured(true, 0.2);
+  fmt::print("a change of table before the rays: {:.1f} ms; with a picture while moving: {:.1f} ms\n", prepared,
+             measured(false, 0.305));
 }
 
 // Mean difference of two pictures on black where either shows something.
@@ -180,8 +187,71 @@ void compare_with_vtk(volume::Caster& caster, const std::shared_ptr<const VoxelG
       own.wall_ms, own.cpu_ms, mean_error(fine, picture.rgba, 4), mean_error(fine, vtk.rgb, 3), vtk.times);
 }
 
+// Of the table that is written.
+struct Row {
+  std::uint32_t size = 0;
+  std::string table;
+  Times full;
+  Times moving;
+  double prepare_ms = 0;
+};
+
+constexpr const char* kHead = "size,table,full_ms,full_cpu_ms,moving_ms,moving_cpu_ms,prepare_ms\n";
+
+// None where there is no such file.
+std::vector<Row> read_rows(const std::string& path) {
+  std::vector<Row> rows;
+  std::FILE* const file = std::fopen(path.c_str(), "r");
+  if (file == nullptr) return rows;
+  std::array<char, 256> line{};
+  while (std::fgets(line.data(), static_cast<int>(line.size()), file) != nullptr) {
+    Row row;
+    std::array<char, 32> table{};
+    if (std::sscanf(line.data(), "%u,%31[^,],%lf,%lf,%lf,%lf,%lf", &row.size, table.data(), &row.full.wall_ms,
+                    &row.full.cpu_ms, &row.moving.wall_ms, &row.moving.cpu_ms, &row.prepare_ms) != 7)
+      continue;
+    row.table = table.data();
+    rows.push_back(row);
+  }
+  std::fclose(file);
+  return rows;
+}
+
+bool write_rows(const std::vector<Row>& rows, const std::string& path) {
+  std::string text = kHead;
+  for (const Row& row : rows)
+    text += fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f}\n", row.size, row.table, row.full.wall_ms,
+                        row.full.cpu_ms, row.moving.wall_ms, row.moving.cpu_ms, row.prepare_ms);
+  std::FILE* const file = std::fopen(path.c_str(), "w");
+  return file != nullptr && std::fputs(text.c_str(), file) >= 0 && std::fclose(file) == 0;
+}
+
+plot::Figure figure_of(const std::vector<Row>& rows) {
+  plot::Line full{.label = "full quality", .x = {}, .y = {}};
+  plot::Line moving{.label = "moving", .x = {}, .y = {}};
+  for (const Row& row : rows) {
+    if (row.table != kVolumeTableWords[0]) continue;
+    full.x.push_back(row.size);
+    full.y.push_back(row.full.cpu_ms);
+    moving.x.push_back(row.size);
+    moving.y.push_back(row.moving.cpu_ms);
+  }
+  plot::Panel panel;
+  panel.x = {.label = "voxels along an edge", .logarithmic = true};
+  panel.y = {.label = "processor time of a picture [ms]", .logarithmic = true};
+  panel.lines = {full, moving};
+  plot::Figure figure;
+  figure.title = "Processor time of a picture of a volume over its size";
+  figure.subtitle = fmt::format("{} x {} pixels, MEDICAL_LUT, {}, {} threads", kWidth, kHeight,
+                                volume::caster_simd_target(), 1 + kThreads);
+  figure.panels.push_back(panel);
+  figure.columns = 1;
+  return figure;
+}
+
 struct Options {
   bool vtk = false;
+  bool others = false;  // rows of other sizes are kept
   std::vector<std::uint32_t> sizes{kSizes.begin(), kSizes.end()};
   std::string table;
   std::string picture;
@@ -198,6 +268,7 @@ std::optional<Options> options_of(std::span<char* const> arguments) {
       const unsigned long size = std::strtoul(arguments[++i], nullptr, 10);
       if (size < kLeastSize || size > kSizes.back()) return std::nullopt;
       options.sizes = {static_cast<std::uint32_t>(size)};
+      options.others = true;
     } else {
       files.push_back(word);
     }
@@ -218,9 +289,8 @@ int main(int count, char** arguments) {
   }
   fmt::print("instruction set {}, {} threads\n", volume::caster_simd_target(), 1 + kThreads);
   volume::Caster caster(kThreads);
-  std::string table = "size,table,full_ms,full_cpu_ms,moving_ms,moving_cpu_ms,prepare_ms\n";
-  plot::Line full_line{.label = "full quality", .x = {}, .y = {}};
-  plot::Line moving_line{.label = "moving", .x = {}, .y = {}};
+  std::vector<Row> rows = options->others ? read_rows(options->table) : std::vector<Row>();
+  std::erase_if(rows, [&](const Row& row) { return row.size == options->sizes.front(); });
   for (const std::uint32_t size : options->sizes) {
     const std::shared_ptr<const VoxelGrid> grid = phantoms::trunk_grid(size, 0.40, 1 + kThreads);
     caster.keep_only({});
@@ -240,34 +310,17 @@ int main(int count, char** arguments) {
           "{:.1f} ms processor), prepared in {:.0f} ms\n",
           size, shown.name, full.wall_ms, 1e3 / full.wall_ms, full.cpu_ms, moving.wall_ms, 1e3 / moving.wall_ms,
           moving.cpu_ms, prepare_ms);
-      table += fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f}\n", size, shown.name, full.wall_ms, full.cpu_ms,
-                           moving.wall_ms, moving.cpu_ms, prepare_ms);
-      if (shown.settings.table != VolumeTable::medical || shown.settings.isosurface) continue;
-      full_line.x.push_back(size);
-      full_line.y.push_back(full.cpu_ms);
-      moving_line.x.push_back(size);
-      moving_line.y.push_back(moving.cpu_ms);
+      rows.insert(std::ranges::upper_bound(rows, size, {}, &Row::size), {size, shown.name, full, moving, prepare_ms});
     }
     if (size == 512) measure_change_of_table(caster, grid);
     const char* const source = std::getenv("CELLMIRROR_SOURCE_DIR");
     if (size == 512 && options->vtk) compare_with_vtk(caster, grid, source != nullptr ? source : ".");
   }
-  plot::Panel panel;
-  panel.x = {.label = "voxels along an edge", .logarithmic = true};
-  panel.y = {.label = "processor time of a picture [ms]", .logarithmic = true};
-  panel.lines = {full_line, moving_line};
-  plot::Figure figure;
-  figure.title = "Processor time of a picture of a volume over its size";
-  figure.subtitle = fmt::format("{} x {} pixels, MEDICAL_LUT, {}, {} threads", kWidth, kHeight,
-                                volume::caster_simd_target(), 1 + kThreads);
-  figure.panels.push_back(panel);
-  figure.columns = 1;
-  std::FILE* file = std::fopen(options->table.c_str(), "w");
-  if (file == nullptr || std::fputs(table.c_str(), file) < 0 || std::fclose(file) != 0) {
+  if (!write_rows(rows, options->table)) {
     fmt::print(stderr, "{} cannot be written\n", options->table);
     return 1;
   }
-  if (auto written = plot::write_png(figure, options->picture); !written) {
+  if (auto written = plot::write_png(figure_of(rows), options->picture); !written) {
     fmt::print(stderr, "{}\n", written.error().text());
     return 1;
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 
 #include "rt_core/volume/coarse_grid.hpp"
 #include "tests/support/volume/phantoms.hpp"
@@ -51,6 +52,32 @@ void expect_bounds_of_all_cells(std::array<std::uint32_t, 3> size) {
     }
   }
   EXPECT_EQ(bricks.ranges, expected);
+  // A block's range is that of the voxels up to 4 cells beyond it.
+  const std::array<std::uint32_t, 3> blocks = {2 * bricks.count[0], 2 * bricks.count[1], 2 * bricks.count[2]};
+  std::size_t block = 0;
+  for (std::uint32_t z = 0; z < blocks[2]; ++z) {
+    for (std::uint32_t y = 0; y < blocks[1]; ++y) {
+      for (std::uint32_t x = 0; x < blocks[0]; ++x, ++block) {
+        const auto within = [](std::uint32_t at, std::uint32_t of_block) {
+          return at + kBlockCells >= of_block * kBlockCells && at <= (of_block + 2) * kBlockCells;
+        };
+        StoredRange near{1 << 20, -(1 << 20)};
+        for (std::uint32_t k = 0; k < size[2]; ++k) {
+          for (std::uint32_t j = 0; j < size[1]; ++j) {
+            for (std::uint32_t i = 0; i < size[0]; ++i) {
+              if (!within(i, x) || !within(j, y) || !within(k, z)) continue;
+              const int v = values[i + std::size_t{size[0]} * (j + std::size_t{size[1]} * k)];
+              near = {std::min(near.low, v), std::max(near.high, v)};
+            }
+          }
+        }
+        EXPECT_EQ((StoredRange{bricks.blocks.low[block] + bricks.blocks.bias,
+                               bricks.blocks.high[block] + bricks.blocks.bias}),
+                  near)
+            << x << ' ' << y << ' ' << z;
+      }
+    }
+  }
 }
 
 TEST(Bricks, RangesAreThoseOfTheirCells) {
@@ -73,7 +100,7 @@ TEST(Bricks, LeapsAreTheDistanceToTheNextOccupiedBrick) {
   bricks.ranges.resize(20 * 11 * 7);
   const std::array<std::array<int, 3>, 3> occupied = {{{3, 4, 2}, {0, 0, 6}, {19, 10, 0}}};
   for (const auto& [x, y, z] : occupied) bricks.ranges[static_cast<std::size_t>(x + 20 * (y + 11 * z))].high = 1;
-  const LeapMap map = leaps_by_table(bricks, {0, 1}, table_of_ones(), {});
+  const LeapMap map = leaps_by_table(bricks, {0, 1}, table_of_ones(), {}, 1);
   EXPECT_EQ(map.occupied, 3U);
   for (int z = 0; z < 7; ++z) {
     for (int y = 0; y < 11; ++y) {
@@ -95,8 +122,32 @@ TEST(Bricks, StridesAreLongOnlyWhereABrickAndItsNeighboursAreThin) {
   bricks.ranges[4] = {1, 3};
   std::vector<Appearance> table(4);
   for (std::size_t i = 1; i < 4; ++i) table[i].extinction = static_cast<float>(i);
-  const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5});
-  for (int x = 0; x < 9; ++x) EXPECT_EQ(map.leap[static_cast<std::size_t>(x)] >> 4, std::abs(x - 4) <= 1 ? 0 : 2) << x;
+  const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5}, 1);
+  // The same for all blocks of a brick, whose own ranges are not known here.
+  for (int x = 0; x < 9; ++x) {
+    EXPECT_EQ(map.leap[static_cast<std::size_t>(x)] >> kStrideShift, std::abs(x - 4) <= 1 ? 0x0000U : 0xAAAAU) << x;
+  }
+}
+
+TEST(Bricks, StridesUpToABlockAreLongWhereABlockAndItsNeighboursAreThin) {
+  VoxelGrid grid;
+  grid.size = {49, 9, 9};
+  std::vector<std::uint8_t> values(grid.count(), 1);
+  values[21 + std::size_t{49} * (3 + 9 * 3)] = 3;  // in block 5 of a row
+  grid.values = std::move(values);
+  const Bricks bricks = make_bricks(grid);
+  std::vector<Appearance> table(4);
+  for (std::size_t i = 1; i < 4; ++i) table[i].extinction = static_cast<float>(i);
+  const auto first_row = [&](double step_voxels) {
+    const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5}, step_voxels);
+    std::string strides;
+    for (std::size_t block = 0; block < 12; ++block)
+      strides += static_cast<char>('0' + (map.leap[block / 2] >> (kStrideShift + 2 * (block % 2)) & 3U));
+    return strides;
+  };
+  EXPECT_EQ(first_row(1), "222200022222");  // 2 and 4 steps are within a block
+  EXPECT_EQ(first_row(2), "221100012222");  // 2 steps alone: for 4, bricks 1 to 3 are near
+  EXPECT_EQ(first_row(3), "220000002222");  // no more than a step
 }
 
 TEST(Bricks, AValueBetweenTwoSeenOnesIsFoundByTheRangeAlone) {
@@ -105,7 +156,7 @@ TEST(Bricks, AValueBetweenTwoSeenOnesIsFoundByTheRangeAlone) {
   bricks.ranges = {{0, 100}, {0, 40}};
   std::vector<Appearance> table(101);
   table[50].extinction = 1;
-  const LeapMap map = leaps_by_table(bricks, {0, 100}, table, {});
+  const LeapMap map = leaps_by_table(bricks, {0, 100}, table, {}, 1);
   EXPECT_EQ(map.leap[0], 0);
   EXPECT_EQ(map.leap[1], 1);
 }
