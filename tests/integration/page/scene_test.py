@@ -30,9 +30,6 @@ class Scene(unittest.TestCase):
     def test_without_webgl_the_pictures_stay(self):
         self.run_scenario("scene_without_webgl", standin=("--robots", "2"))
 
-    def test_axe_finds_nothing(self):
-        self.run_scenario("scene_axe", standin=("--robots", "3"))
-
     def test_alarms_are_acknowledged_by_name(self):
         self.run_scenario("alarms", standin=("--robots", "7"))
 
