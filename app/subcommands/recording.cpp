@@ -104,7 +104,7 @@ int recording_recover(const RecordingOptions& options) {
   return printed(out + "\n");
 }
 
-// Log times `from_s` and `to_s` behind the first.
+// Log times `from_s` and `to_s` after the first.
 mcap::Filter filter_of(const RecordingOptions& options, const mcap::Reader& reader) {
   const auto at = [&](double s) {
     const double ns = std::min(1e9 * s, 9e18);

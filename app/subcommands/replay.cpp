@@ -35,7 +35,7 @@ struct ReplayOptions {
   ReplayGateway gateway;  // but for what is above
 };
 
-// Log times `from_s` and `to_s` behind the first.
+// Log times `from_s` and `to_s` after the first.
 mcap::Filter filter_of(const ReplayOptions& options, const mcap::Reader& reader) {
   const auto at = [&](double s) {
     return reader.statistics().start_time + static_cast<std::uint64_t>(std::llround(std::min(1e9 * s, 9e18)));
