@@ -38,7 +38,7 @@ JointStreamStatus HapticStream::status() const {
   out.condition = is_open_ ? "see haptics" : "closed";
   if (!meter_) return out;
   out.received = meter_->samples.load(std::memory_order_relaxed);
-  if (is_open_) out.rate_hz = meter_->samples_per_second.load(std::memory_order_relaxed);
+  if (is_open_) out.rate_hz = static_cast<double>(meter_->samples_per_second.load(std::memory_order_relaxed));
   return out;
 }
 

@@ -34,7 +34,7 @@ class MeteredDevice final : public HapticDevicePort {
       // Only the tick writes it.
       meter_->samples.store(meter_->samples.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     }
-    meter_->samples_per_second.store(rate_.per_second(now), std::memory_order_relaxed);
+    meter_->samples_per_second.store(static_cast<std::uint64_t>(rate_.per_second(now)), std::memory_order_relaxed);
     return outcome;
   }
 

@@ -13,7 +13,7 @@ struct HapticMeter {
   LatencyHistogram latency;  // device's time of a sample to its force in the memory
   // Relaxed: numbers for people.
   std::atomic<std::uint64_t> samples{0};
-  std::atomic<double> samples_per_second{0};
+  std::atomic<std::uint64_t> samples_per_second{0};
 };
 
 }  // namespace cellmirror::app
