@@ -17,13 +17,14 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kLeavesPerSeed = 1;  // visited in one look-up; more hardly improve the seeds
 
-// `value` moved by whole turns into the limits, nearest to `present`; the nearest limit where none lies within.
+// `value` moved by whole turns into the limits, nearest to `present`; the nearest limit where none lies within. A sum
+// of turns is rounded, so that it may be beyond a limit by the last bits.
 double turned_into(double lower, double upper, double value, double present) {
   value += kTurn * std::round((present - value) / kTurn);
   if (value > upper) value -= kTurn * std::ceil((value - upper) / kTurn);
-  if (value >= lower) return value;
+  if (value >= lower) return std::min(value, upper);
   const double above = value + kTurn * std::ceil((lower - value) / kTurn);
-  if (above <= upper) return above;
+  if (above <= upper) return std::max(above, lower);
   return lower - value < above - kTurn - upper ? lower : (above - upper < lower - (above - kTurn) ? upper : lower);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kArm = R"(format = 1
+constexpr const char* kTwoJoints = R"(format = 1
 [[node]]
 name = "J_1"
 joint = { type = "revolute", axis = [0, 0, 1], range_rad = [-1, 1], velocity_rad_s = 1 }
@@ -29,7 +29,7 @@ flange = "J_2"
 )";
 
 struct CellFile : testing::Test {
-  CellFile() { home.write("envlib/arm.mpc", kArm); }
+  CellFile() { home.write("envlib/arm.mpc", kTwoJoints); }
   std::optional<LoadedCell> load(const std::string& text) {
     diagnostics = {};
     return load_cell(home.write("cell.toml", "format = 1\nname = \"c\"\n" + text), diagnostics);
