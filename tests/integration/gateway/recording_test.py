@@ -178,7 +178,7 @@ class FullDisk(RecordingCase):
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", str(small)], stderr=subprocess.DEVNULL).returncode != 0:
             self.skipTest("skipped: a file system cannot be mounted here")
         self.addCleanup(subprocess.run, ["umount", str(small)])
-        recorder = self.begin("small/a.mcap", "--compression", "none", "--rate", "500")
+        recorder = self.begin("small/a.mcap", "--compression", "none", "--rate", "500", "--attach-mb", "0")
         self.assertTrue(g.eventually(lambda: self.recordings()[0]["dropped"] > 0, timeout=20), self.recordings())
         # What still finds room takes the problem back for a moment.
         self.assertTrue(g.eventually(lambda: any(one["kind"] == "recording" for one in self.scratch.status()["problems"]), timeout=20))
