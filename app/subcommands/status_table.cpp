@@ -36,7 +36,12 @@ class TableWriter {
     write_head(status);
     write_problems(status);
     write_alarms(status);
-    write_loop(status.at("loop"));
+    const auto replay = status.find("replay");
+    if (replay != status.end() && replay->is_object()) {
+      write_replay(*replay);
+    } else {
+      write_loop(status.at("loop"));
+    }
     for (const json& robot : status.at("robots")) write_robot(robot);
     out_ += couplings_table(status);
     out_ += programs_table(status);
@@ -122,6 +127,14 @@ class TableWriter {
     const json& newest = alarms->at("open").at(0);
     line("alarms    {} active, {} unacknowledged; newest: {} (ALARM_ACK acknowledges)", active, waiting,
          newest.at("text").get<std::string>());
+  }
+
+  // In place of the loop, which does not run.
+  void write_replay(const json& replay) {
+    line("replay    {}: {} at {}, {:.1f} of {:.1f} s, speed {:g}", replay.at("file").get<std::string>(),
+         replay.at("state").get<std::string>(), replay.at("now").get<std::string>(),
+         replay.at("position_s").get<double>(), replay.at("length_s").get<double>(), replay.at("speed").get<double>());
+    if (const auto note = replay.at("note").get<std::string>(); !note.empty()) line("  note: {}", note);
   }
 
   void write_loop(const json& loop) {

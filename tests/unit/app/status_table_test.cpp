@@ -46,6 +46,17 @@ TEST(StatusTable, ShowsWhatIsStaleLateRefusedAndDropped) {
   EXPECT_THAT(*table, HasSubstr("sensor 4"));
 }
 
+TEST(StatusTable, TellsWhereARecordingIsInPlaceOfTheLoop) {
+  std::string text(kDocument);
+  text.insert(
+      1, R"("replay":{"file":"day.mcap","state":"paused","now":"2026-11-24 13:01:08.384","position_s":9.5,"length_s":10,
+                              "speed":0.5,"note":"a gap of 2 s"},)");
+  const std::string table = *status_table(text, false);
+  EXPECT_THAT(table, HasSubstr("replay    day.mcap: paused at 2026-11-24 13:01:08.384, 9.5 of 10.0 s, speed 0.5"));
+  EXPECT_THAT(table, HasSubstr("a gap of 2 s"));
+  EXPECT_THAT(table, Not(HasSubstr("loop 1000 Hz")));
+}
+
 TEST(StatusTable, AQueueThatNobodyReadsHasLostNothing) {
   std::string text(kDocument);
   const std::string_view queue = R"({"name":"sensor","dropped":4})";
