@@ -21,7 +21,7 @@ namespace {
 constexpr Nanoseconds kLease{10'000'000'000};
 constexpr double kLongest_s = 1e7;
 constexpr std::size_t kMostTopics = 256;
-constexpr double kMostAttached_mb = 1024;
+constexpr double kMostAttachedMegabytes = 1024;
 
 Result<double> number_of_argument(const ControlRequest& request, std::string_view name, double usual, double least,
                                   double most) {
@@ -130,7 +130,7 @@ Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) c
   if (!length) return std::unexpected(length.error());
   options.length = Nanoseconds(static_cast<std::int64_t>(1e9 * *length));
   const auto attached =
-      number_of_argument(request, "attach_mb", 1e-6 * static_cast<double>(kMostAttached), 0.0, kMostAttached_mb);
+      number_of_argument(request, "attach_mb", 1e-6 * static_cast<double>(kMostAttached), 0.0, kMostAttachedMegabytes);
   if (!attached) return std::unexpected(attached.error());
   options.most_attached = static_cast<std::uint64_t>(1e6 * *attached);
   for (const std::string& text : divided(request.argument("pictures").value_or(""))) {
