@@ -35,7 +35,7 @@ void read_pictures(TableReader& table, RecordSettings& settings) {
   for (const std::string& text : *texts) {
     auto picture = recorded_picture(text);
     if (!picture) {
-      table.error("pictures", fmt::format("\"{}\" is no view with a rate", printable(text)),
+      table.error("pictures", fmt::format("\"{}\" is not a view with a rate", printable(text)),
                   "write a view (0 to 6) or a camera, @ and 0.01 to 10 Hz, as \"1@0.5\"");
     } else if (std::ranges::find(settings.pictures, picture->view, &RecordedPicture::view) != settings.pictures.end()) {
       table.error("pictures", fmt::format("the view {} occurs twice", printable(picture->view)));

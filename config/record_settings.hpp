@@ -28,7 +28,7 @@ struct RecordSettings {
   double file_s = 60;                     // of one file of the ring
   std::uint64_t most_mb = 1024;           // 10^6 bytes, of all files of the ring
   std::uint64_t attach_mb = 64;           // 10^6 bytes of the cell's files in each file, and at most a quarter of it
-  double keep_after_s = 5;                // so long behind what it is kept for
+  double keep_after_s = 5;                // how much is kept after the cause
   double rate_hz = 100;                   // robot states
   std::string compression = "zstd";       // zstd, lz4, none
   std::vector<std::string> topics;        // none: all

@@ -28,7 +28,7 @@ void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
                        "known: status, snapshot, queues, record, playback"}));
 }
 
-// {"request":"playback", "play":true, "speed":2, "seek_s":1.5}: seconds behind the begin of the range.
+// {"request":"playback", "play":true, "speed":2, "seek_s":1.5}: seconds after the beginning of the range.
 void Gateway::Parts::answer_playback(const ControlRequest& request, ControlReply reply) {
   if (playback == nullptr) return reply(control_error({"this gateway plays no recording", "cellmirror replay does"}));
   const auto wanted = playback_request(request, playback->control().state());

@@ -20,7 +20,7 @@ Result<PlaybackRequest> playback_request(const ControlRequest& request, const Pl
     const auto number = parse_number(text);
     if (name != "speed" && name != "seek_s")
       return fail(fmt::format("the member {} is not known", printable(name)), "known: play, speed, seek_s");
-    if (!number || !std::isfinite(*number)) return fail(fmt::format("{} is no number", name));
+    if (!number || !std::isfinite(*number)) return fail(fmt::format("{} is not a number", name));
     if (name == "speed") {
       out.speed = *number;
     } else {

@@ -7,7 +7,7 @@
 
 namespace cellmirror::app {
 
-// play: a boolean; speed; seek_s: seconds behind the begin of what is played. `now` has where that begins.
+// play: a boolean; speed; seek_s: seconds after the beginning of what is played, which `now` has.
 [[nodiscard]] Result<PlaybackRequest> playback_request(const ControlRequest& request, const PlaybackState& now);
 
 }  // namespace cellmirror::app

@@ -136,7 +136,7 @@ Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) c
   for (const std::string& text : divided(request.argument("pictures").value_or(""))) {
     const auto picture = recorded_picture(text);
     if (!picture)
-      return fail(fmt::format("{} is no view with a rate", printable(text)), "write VIEW@HZ, with 0.01 to 10 Hz");
+      return fail(fmt::format("{} is not a view with a rate", printable(text)), "write VIEW@HZ, with 0.01 to 10 Hz");
     options.pictures.push_back({picture->view, picture->rate_hz});
   }
   if (options.pictures.size() > kMostRecordedPictures)

@@ -60,11 +60,13 @@ void PayloadTap::drain(const Take& take, const Missed& missed) {
   std::vector<std::shared_ptr<Line>> lines;
   {
     const std::scoped_lock lock(mutex_);
-    // A stream that is gone has given all that it had.
-    for (const std::shared_ptr<Line>& line : lines_)
-      if (line.use_count() == 1) line->drain(record_, take, missed);
-    std::erase_if(lines_, [](const std::shared_ptr<Line>& line) { return line.use_count() == 1; });
-    lines = lines_;
+    lines.reserve(lines_.size());
+    // A stream that is gone gives nothing more: it is drained once more, below.
+    std::erase_if(lines_, [&](const std::shared_ptr<Line>& line) {
+      const bool gone = line.use_count() == 1;
+      lines.push_back(line);
+      return gone;
+    });
   }
   for (const std::shared_ptr<Line>& line : lines) line->drain(record_, take, missed);
 }

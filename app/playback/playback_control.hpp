@@ -38,7 +38,7 @@ class PlaybackControl final : public PlaybackPort {
   [[nodiscard]] std::optional<Timestamp> take_seek();
   // The time that is due at `wall`; the clock shows it from now on.
   [[nodiscard]] Timestamp due(Timestamp wall);
-  // The first state behind a start or a seek: `recorded` is its time, later than was wanted where nothing was recorded.
+  // The first state after a start or a seek: `recorded` is its time, later than was wanted where nothing was recorded.
   void arrived(Timestamp recorded, Timestamp wall);
   // Nothing was recorded until `recorded`: the time goes on from there.
   void jumped(Timestamp recorded, Timestamp wall, std::string why);

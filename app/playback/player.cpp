@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kRest{50};  // while nothing is due; changes
 
 Result<void> Player::start() {
   bool published = false;
-  auto read = run_.read(control_.range().from, [&](Timestamp /*time*/, bool /*behind_gap*/) {
+  auto read = run_.read(control_.range().from, [&](Timestamp /*time*/, bool /*after_gap*/) {
     publish();
     published = true;
     return false;
@@ -71,7 +71,7 @@ void Player::play(Timestamp from, const std::stop_token& stop) {
   bool arrived = false;
   bool over = false;
   Timestamp last;
-  const auto read = run_.read(from, [&](Timestamp time, bool behind_gap) {
+  const auto read = run_.read(from, [&](Timestamp time, bool after_gap) {
     if (time > end) {
       over = true;
       return false;
@@ -85,7 +85,7 @@ void Player::play(Timestamp from, const std::stop_token& stop) {
       control_.arrived(time, wall_.now());
       return true;
     }
-    if (behind_gap) {
+    if (after_gap) {
       control_.jumped(time, wall_.now(),
                       fmt::format("nothing was recorded for {:.3f} s; they were jumped over", seconds(time - last)));
       log_warning("replay.gap", "nothing was recorded for {:.3f} s; they are jumped over", seconds(time - last));

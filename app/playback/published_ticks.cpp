@@ -12,7 +12,7 @@ std::optional<Timestamp> time_of_tick(ByteSpan record) {
   std::uint64_t cycle = 0;
   Timestamp time;
   in(cycle, time);
-  return in.ok() && time.ns > 0 ? std::optional(time) : std::nullopt;
+  return in.ok() && time.ns > 0 && time < kLatestInstant ? std::optional(time) : std::nullopt;
 }
 
 Result<bool> PublishedTicks::take(ByteSpan message, const Take& take) {
@@ -38,29 +38,36 @@ Result<bool> PublishedTicks::take(ByteSpan message, const Take& take) {
   return more;
 }
 
-// While ticks follow each other, what is known of them is right already.
+// While ticks follow each other, what is known of them is right already. The next tick shows whether they do.
 Result<void> PublishedTicks::begin(ByteSpan start) {
-  if (robots_) return {};
   const auto capacity = engine::Engine::capacity_of(start);
   if (!capacity) return std::unexpected(capacity.error());
-  robots_.emplace(capacity->robots);
-  last_tick_.reset();
-  state_ = engine::TickState(capacity->robots);
+  next_capacity_ = capacity->robots;
+  if (!robots_) begin_with(capacity->robots);
   return {};
 }
 
+void PublishedTicks::begin_with(std::size_t robots) {
+  robots_.emplace(robots);
+  last_tick_.reset();
+  state_ = engine::TickState(robots);
+}
+
 Result<bool> PublishedTicks::tick(ByteSpan record, const Take& take) {
+  const std::optional<std::size_t> capacity = std::exchange(next_capacity_, std::nullopt);
+  std::uint64_t number = 0;
+  StateReader head(record);
+  head(number);
+  if (robots_ && last_tick_ && number != *last_tick_ + 1) {
+    gap();
+    if (capacity) begin_with(*capacity);
+  }
   if (!robots_) return true;
   const auto inputs = read_tick(record, *robots_);
   if (!inputs) return std::unexpected(inputs.error());
-  const std::uint64_t tick = inputs->context.cycle;
   const bool first = !last_tick_.has_value();
-  if (!first && tick != *last_tick_ + 1) {
-    gap();
-    return true;
-  }
-  last_tick_ = tick;
-  state_.tick = tick;
+  last_tick_ = inputs->context.cycle;
+  state_.tick = inputs->context.cycle;
   state_.time = inputs->context.now;
   state_.missed_periods += inputs->context.missed;
   state_.commands_done = inputs->commands_done;

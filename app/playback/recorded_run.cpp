@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/recording/recorded_cell.hpp"
 #include "app/recording_layout/recording_names.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -14,17 +15,10 @@ namespace cellmirror::app {
 namespace {
 
 constexpr std::uint64_t kSecond_ns = 1'000'000'000;
-// A start state comes every 10 s, and its message some time behind its ticks.
+// A start state comes every 10 s, and its message some time after its ticks.
 constexpr std::uint64_t kBetweenStarts_ns = 11 * kSecond_ns;
 constexpr std::int64_t kSameOffset_ns = 5'000'000;
 constexpr int kMessagesForOffset = 20;
-
-std::string value_of(const mcap::Reader& reader, std::string_view key) {
-  const auto about = reader.metadata(kGatewayName);
-  if (!about) return {};
-  const auto found = about->values.find(key);
-  return found == about->values.end() ? std::string() : found->second;
-}
 
 }  // namespace
 
@@ -44,12 +38,12 @@ Result<std::unique_ptr<RecordedRun>> RecordedRun::open(const std::filesystem::pa
                 "record it without --topics, or with this one among them");
   if (auto found = out->find_range(); !found)
     return fail(file.string() + ": " + found.error().what, found.error().remedy);
-  if (const auto rate = parse_number(value_of(*out->reader_, "loop_rate_hz")); rate && *rate >= 1 && *rate <= 1e5)
+  if (const auto rate = parse_number(gateway_value(*out->reader_, "loop_rate_hz")); rate && *rate >= 1 && *rate <= 1e5)
     out->rate_hz_ = *rate;
   return out;
 }
 
-std::optional<Timestamp> RecordedRun::last_tick_behind(std::uint64_t from) {
+std::optional<Timestamp> RecordedRun::last_tick_from(std::uint64_t from) {
   std::optional<Timestamp> last;
   const mcap::Filter filter{.topics = {std::string(kInputsTopic)}, .from = from};
   static_cast<void>(reader_->read(filter, [&](const mcap::Message& message, const mcap::Channel& channel) {
@@ -66,19 +60,19 @@ std::optional<Timestamp> RecordedRun::last_tick_behind(std::uint64_t from) {
 
 Result<void> RecordedRun::find_range() {
   std::optional<Timestamp> first;
-  auto read = read_from(0, [&](Timestamp time, bool /*behind_gap*/) {
+  auto read = read_from(0, [&](Timestamp time, bool /*after_gap*/) {
     first = time;
     return false;
   });
   if (!read && !first) return read;
   const std::uint64_t end = reader_->statistics().end_time;
-  std::optional<Timestamp> last = last_tick_behind(end - std::min(end, 2 * kSecond_ns));
-  if (!last || (first && *last < *first)) last = last_tick_behind(0);
+  std::optional<Timestamp> last = last_tick_from(end - std::min(end, 2 * kSecond_ns));
+  if (!last || (first && *last < *first)) last = last_tick_from(0);
   if (!first || !last || *last < *first)
     return fail("no tick of the recording can be played: it has no start state",
                 "a recording has one within its first half second; record longer");
   range_ = {.from = *first, .to = *last, .utc = {}};
-  return find_utc(value_of(*reader_, kUtcKey));
+  return find_utc(gateway_value(*reader_, kUtcKey));
 }
 
 // The recording says it; older ones do not, and the clock of a machine may have been set since a black box began: then
@@ -88,7 +82,8 @@ Result<void> RecordedRun::find_utc(const std::string& recorded) {
   int messages = 0;
   const mcap::Filter filter{.topics = {std::string(kInputsTopic)}};
   auto read = reader_->read(filter, [&](const mcap::Message& message, const mcap::Channel& channel) {
-    if (channel.encoding != kInputsEncoding || message.log_time >> 62U != 0) return true;
+    if (channel.encoding != kInputsEncoding || message.log_time >= static_cast<std::uint64_t>(kLatestInstant.ns))
+      return true;
     std::optional<Timestamp> newest;
     static_cast<void>(for_each_record(message.data, [&](engine::InputRecord kind, ByteSpan content) {
       if (kind == engine::InputRecord::tick) newest = time_of_tick(content);
@@ -101,7 +96,7 @@ Result<void> RecordedRun::find_utc(const std::string& recorded) {
   });
   if (!estimate) return read ? fail("the recording has no ticks") : read;
   const auto said = parse_integer(recorded);
-  const bool near = said && std::abs(*said - *estimate) < kSameOffset_ns;
+  const bool near = said && *said > *estimate - kSameOffset_ns && *said < *estimate + kSameOffset_ns;
   range_.utc = Nanoseconds(near ? *said : *estimate);
   return {};
 }
@@ -129,12 +124,12 @@ Result<void> RecordedRun::read(Timestamp time, const PublishedTicks::Take& take)
     const bool from_begin = from <= reader_->statistics().start_time;
     bool first = true;
     bool too_late = false;
-    auto read = read_from(from_begin ? 0 : from, [&](Timestamp of_tick, bool behind_gap) {
+    auto read = read_from(from_begin ? 0 : from, [&](Timestamp of_tick, bool after_gap) {
       too_late = first && !from_begin && of_tick > time;
       first = false;
-      return !too_late && take(of_tick, behind_gap);
+      return !too_late && take(of_tick, after_gap);
     });
-    // Without a start state, or one behind the time only: it may be further back.
+    // Without a start state, or one after the time only: it may be further back.
     const bool none = first && !from_begin;
     if (!too_late && !none) return read;
   }

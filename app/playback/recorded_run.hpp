@@ -2,6 +2,7 @@
 // at a time; not for the tick.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -23,7 +24,9 @@ class RecordedRun {
   // All that can be played.
   [[nodiscard]] const PlaybackControl::Range& range() const { return range_; }
   // Log times of the file begin here, UTC.
-  [[nodiscard]] std::int64_t start_ns() const { return static_cast<std::int64_t>(reader_->statistics().start_time); }
+  [[nodiscard]] std::int64_t start_ns() const {
+    return static_cast<std::int64_t>(std::min<std::uint64_t>(reader_->statistics().start_time, kLatestInstant.ns));
+  }
   [[nodiscard]] const mcap::Reader& reader() const { return *reader_; }
   // Of the tick that read() hands in, within that call.
   [[nodiscard]] const engine::TickState& state() { return ticks_.state(); }
@@ -31,7 +34,7 @@ class RecordedRun {
   [[nodiscard]] std::uint64_t names_revision() const { return ticks_.names_revision(); }
   [[nodiscard]] double rate_hz() const { return rate_hz_; }
 
-  // Ticks from the last start state before `time` on, or from the first behind it where there is none; `take` ends it.
+  // Ticks from the last start state before `time` on, or from the first after it where there is none; `take` ends it.
   // Fails where the file cannot be read on, or is not sound.
   Result<void> read(Timestamp time, const PublishedTicks::Take& take);
 
@@ -39,9 +42,9 @@ class RecordedRun {
   RecordedRun() = default;
   Result<void> find_range();
   Result<void> find_utc(const std::string& recorded);
-  // Ticks behind the log time `from`, UTC.
+  // Ticks from the log time `from` on, UTC.
   Result<void> read_from(std::uint64_t from, const PublishedTicks::Take& take);
-  [[nodiscard]] std::optional<Timestamp> last_tick_behind(std::uint64_t from);
+  [[nodiscard]] std::optional<Timestamp> last_tick_from(std::uint64_t from);
 
   std::unique_ptr<mcap::FileSource> source_;
   std::optional<mcap::Reader> reader_;

@@ -14,7 +14,7 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr Nanoseconds kBetweenWishes{200'000'000};
+constexpr Nanoseconds kBetweenUpdates{200'000'000};
 
 bool is_number(std::string_view view) { return view.size() == 1 && view.front() >= '0' && view.front() <= '6'; }
 
@@ -39,14 +39,14 @@ std::string pictures_topic_name(std::string_view view) {
 
 void PictureRecorder::look(Timestamp now) {
   if (!open_) return;
-  if (!last_wishes_.known() || now - last_wishes_ >= kBetweenWishes) {
-    last_wishes_ = now;
-    take_wishes();
+  if (!last_update_.known() || now - last_update_ >= kBetweenUpdates) {
+    last_update_ = now;
+    update_views();
   }
   for (auto& [name, view] : views_) take_picture(name, view);
 }
 
-void PictureRecorder::take_wishes() {
+void PictureRecorder::update_views() {
   const std::vector<WantedPicture> wanted = hub_.pictures();
   std::erase_if(views_, [&](const auto& known) {
     return std::ranges::find(wanted, known.first, &WantedPicture::view) == wanted.end();

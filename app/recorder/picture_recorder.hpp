@@ -41,14 +41,14 @@ class PictureRecorder {
     std::string problem;                    // that was logged
   };
 
-  void take_wishes();
+  void update_views();
   void open(const std::string& name, View& view);
   void take_picture(const std::string& name, View& view);
 
   Open open_;
   RecordingHub& hub_;
   std::map<std::string, View> views_;
-  Timestamp last_wishes_;
+  Timestamp last_update_;
   std::vector<std::byte> bytes_;
 };
 

@@ -33,7 +33,7 @@ struct RecordingRing {
   Nanoseconds length{600'000'000'000};                // of all files of the ring together, about
   std::uint64_t most_bytes = std::uint64_t{1} << 30;  // of all files of the ring
   std::size_t most_kept = 50;                         // files; more are not kept
-  Nanoseconds keep_after{5'000'000'000};              // so long behind a request it is kept
+  Nanoseconds keep_after{5'000'000'000};              // how much is kept after a request
 };
 
 inline constexpr std::uint64_t kMostAttached = 64'000'000;

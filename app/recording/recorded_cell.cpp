@@ -112,12 +112,14 @@ RecordedCell cell_without_list(const mcap::Reader& reader) {
 
 bool is_below_a_folder(std::string_view place) { return parts_of(place).has_value(); }
 
-fs::path recorded_cell_path(const mcap::Reader& reader) {
+std::string gateway_value(const mcap::Reader& reader, std::string_view key) {
   const auto about = reader.metadata(kGatewayName);
   if (!about) return {};
-  const auto file = about->values.find(kCellFileKey);
-  return file == about->values.end() ? fs::path() : fs::path(file->second);
+  const auto found = about->values.find(key);
+  return found == about->values.end() ? std::string() : found->second;
 }
+
+fs::path recorded_cell_path(const mcap::Reader& reader) { return gateway_value(reader, kCellFileKey); }
 
 RecordedCell recorded_cell(const mcap::Reader& reader) {
   const auto list = reader.metadata(kCellFilesName);

@@ -27,6 +27,8 @@ struct RecordedCell {
 
 // Whether the name of a file stays below a folder that it is written to or read from: relative, printable, no "..".
 [[nodiscard]] bool is_below_a_folder(std::string_view place);
+// What the recording says about its gateway (kGatewayName); empty: nothing.
+[[nodiscard]] std::string gateway_value(const mcap::Reader& reader, std::string_view key);
 // Where the cell file was when it was recorded; empty: the recording does not say.
 [[nodiscard]] std::filesystem::path recorded_cell_path(const mcap::Reader& reader);
 

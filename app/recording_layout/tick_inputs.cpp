@@ -51,8 +51,9 @@ TakenHaptic read_haptic(StateReader& in) {
 }
 
 bool is_sound(const CycleContext& context) {
-  return context.now.known() && context.now.ns > 0 && context.scheduled.ns >= 0 && context.missed < kMostMissed &&
-         context.period.count() > 0 && context.period <= kLongestPeriod && context.last_compute.count() >= 0;
+  return context.now.known() && context.now.ns > 0 && context.now < kLatestInstant && context.scheduled.ns >= 0 &&
+         context.missed < kMostMissed && context.period.count() > 0 && context.period <= kLongestPeriod &&
+         context.last_compute.count() >= 0;
 }
 
 }  // namespace

@@ -73,6 +73,9 @@ class PublishedRobots {
   std::vector<Robot> robots_;
 };
 
+// Instants of recordings are before it, and UTC is less than this from each, so that sums of both do not overflow.
+inline constexpr Timestamp kLatestInstant{std::int64_t{1} << 62};
+
 // The record of a tick; changes of robots go into `robots`.
 [[nodiscard]] Result<TickInputs> read_tick(ByteSpan record, PublishedRobots& robots);
 

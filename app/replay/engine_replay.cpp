@@ -221,7 +221,7 @@ Result<void> EngineReplay::give(const TickInputs& inputs) {
   return {};
 }
 
-void EngineReplay::begin_again_behind_a_gap(ByteSpan record) {
+void EngineReplay::begin_again_after_a_gap(ByteSpan record) {
   std::uint64_t tick = 0;
   StateReader in(record);
   in(tick);
@@ -233,7 +233,7 @@ void EngineReplay::begin_again_behind_a_gap(ByteSpan record) {
 }
 
 void EngineReplay::run(ByteSpan record) {
-  begin_again_behind_a_gap(record);
+  begin_again_after_a_gap(record);
   if (!session_) {
     ++counts_.skipped;
     return;

@@ -31,7 +31,7 @@ struct ReplayDifference {
 
 struct ReplayCounts {
   std::uint64_t ticks = 0;      // that were run and compared
-  std::uint64_t skipped = 0;    // that are there, and could not be run: before a start state, or behind a gap
+  std::uint64_t skipped = 0;    // that are there, and could not be run: before a start state, or after a gap
   std::uint64_t starts = 0;     // start states that were taken
   std::uint64_t gaps = 0;       // places where ticks or commands are missing
   std::uint64_t not_sound = 0;  // records that could not be understood
@@ -46,7 +46,7 @@ class EngineReplay {
   EngineReplay(const EngineReplay&) = delete;
   EngineReplay& operator=(const EngineReplay&) = delete;
 
-  // Called behind each tick that was run, with the engine's state.
+  // Called after each tick that was run, with the engine's state.
   void on_tick(std::function<void(const engine::TickState& state)> function) { on_tick_ = std::move(function); }
   // A message of kInputsTopic; in the order of the file. Returns at the first difference.
   void take(ByteSpan message);
@@ -66,7 +66,7 @@ class EngineReplay {
   void take_record(engine::InputRecord kind, ByteSpan content);
   void take_chain(ByteSpan content);
   void begin(ByteSpan start);
-  void begin_again_behind_a_gap(ByteSpan record);
+  void begin_again_after_a_gap(ByteSpan record);
   void run(ByteSpan record);
   Result<void> send_commands(std::uint64_t up_to);
   Result<void> give(const TickInputs& inputs);

@@ -93,7 +93,7 @@ std::string verification_text(const Verification& verification) {
                        verification.took_s > 0 ? counts.recorded_s / verification.took_s : 0.0);
   }
   if (counts.skipped > 0)
-    out += fmt::format("{} ticks could not be run: before the first start state, or behind a gap\n", counts.skipped);
+    out += fmt::format("{} ticks could not be run: before the first start state, or after a gap\n", counts.skipped);
   if (counts.gaps > 0) out += fmt::format("{} gaps; the first: {}\n", counts.gaps, counts.first_problem);
   if (counts.not_sound > 0)
     out += fmt::format("{} records could not be understood; the first: {}\n", counts.not_sound, counts.first_problem);

@@ -164,13 +164,13 @@ Read read_playback_control(std::string_view bytes) {
   PlaybackControl out;
   out.play = command == 0;
   out.speed = static_cast<double>(std::bit_cast<float>(little_endian(bytes.substr(2))));
-  if (!std::isfinite(out.speed)) return refused("the playback speed is no number");
+  if (!std::isfinite(out.speed)) return refused("the playback speed is not a number");
   if (bytes[6] != 0) out.seek_ns = little_endian<std::uint64_t>(bytes.substr(7));
   const std::size_t length = little_endian(bytes.substr(15));
   if (length > kLongestName || length > bytes.size() - kHead)
     return refused("the playback control request has an id that is longer than the message or 1024 bytes");
   out.request = bytes.substr(kHead, length);
-  if (!is_utf8(out.request)) return refused("the id of the playback control request is no UTF-8");
+  if (!is_utf8(out.request)) return refused("the id of the playback control request is not UTF-8");
   return out;
 }
 

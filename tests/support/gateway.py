@@ -111,7 +111,20 @@ class Process:
         pathlib.Path(self.log.name).unlink(missing_ok=True)
 
 
-class Gateway(Process):
+class OrderlyProcess(Process):
+    """Ended by SIGTERM, so that its queues and folders go with it: only a killed one leaves them for its next start."""
+
+    def close(self):
+        if self.running():
+            self.child.terminate()
+            try:
+                self.child.wait(10)
+            except subprocess.TimeoutExpired:
+                pass
+        super().close()
+
+
+class Gateway(OrderlyProcess):
     """A running gateway on a scratch cell, ready to be asked when the constructor returns."""
 
     def __init__(self, scratch, *arguments, instance=None, wait=True, pictures=False, page=False):
@@ -123,16 +136,6 @@ class Gateway(Process):
              "--instance", self.instance, *arguments], scratch.environment)
         if wait:
             self.wait_ready()
-
-    def close(self):
-        """In order, so that its queues go with it: only a killed gateway leaves them behind for its next start."""
-        if self.running():
-            self.child.terminate()
-            try:
-                self.child.wait(10)
-            except subprocess.TimeoutExpired:
-                pass
-        super().close()
 
     def wait_ready(self, timeout=15):
         def ready():

@@ -67,17 +67,7 @@ class Sample {
   }
 
   void begin() { engine_.inputs().request_start(); }
-  void tick(int times) {
-    for (int i = 0; i < times; ++i) {
-      now_ = now_ + kPeriod;
-      CycleContext context;
-      context.now = now_;
-      context.scheduled = now_;
-      context.cycle = cycle_++;
-      context.period = kPeriod;
-      engine_.run(context);
-    }
-  }
+  void tick(int times) { engine::run_cycles(engine_, now_, cycle_, times, kPeriod); }
   void move(motion::MoveKind kind, double to) {
     motion::Move one;
     one.kind = kind;

@@ -20,7 +20,7 @@ print unpack("H*", substr($buffer, 8)), "\n";
 '''
 
 
-class Replay(g.Process):
+class Replay(g.OrderlyProcess):
     """`cellmirror replay`, paused and with the page, ready when the constructor returns."""
 
     def __init__(self, scratch, file, *arguments):
@@ -29,16 +29,6 @@ class Replay(g.Process):
         super().__init__([g.BIN / "cellmirror", "replay", file, "--headless", "--instance", self.instance, *arguments], scratch.environment)
         if not g.eventually(lambda: "Ctrl-C ends it" in self.output() or not self.running(), 20) or not self.running():
             raise AssertionError(f"the replay did not start:\n{self.output()}")
-
-    def close(self):
-        """In order, so that its private folder goes with it."""
-        if self.running():
-            self.child.terminate()
-            try:
-                self.child.wait(10)
-            except subprocess.TimeoutExpired:
-                pass
-        super().close()
 
     def status(self):
         return self.scratch.status(instance=self.instance)

@@ -57,18 +57,9 @@ class PlayerTest : public testing::Test {
   void tick(int times) {
     for (int i = 0; i < times; ++i) {
       now_ = now_ + kPeriod;
-      CycleContext context;
-      context.now = now_;
-      context.scheduled = now_;
-      context.cycle = cycle_++;
-      context.period = kPeriod;
-      JointSample sample;
-      sample.receive_time = now_;
-      sample.sequence = cycle_;
-      sample.present = 7;
-      for (std::size_t j = 0; j < 3; ++j) sample.position[j] = std::sin(0.01 * static_cast<double>(cycle_ + j));
+      const JointSample sample = engine::sample_of_curve(now_, cycle_ + 1);
       engine_->inlet(0).push(sample);
-      engine_->run(context);
+      engine::run_cycle(*engine_, now_, cycle_, 0, kPeriod);
       published_[now_] = sample.position[0];
     }
   }

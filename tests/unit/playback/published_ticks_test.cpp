@@ -27,18 +27,9 @@ class PublishedTicksTest : public testing::Test {
   void tick(int times) {
     for (int i = 0; i < times; ++i) {
       now_ = now_ + kPeriod;
-      CycleContext context;
-      context.now = now_;
-      context.scheduled = now_;
-      context.cycle = cycle_++;
-      context.period = kPeriod;
-      JointSample sample;
-      sample.receive_time = now_ - Nanoseconds(100'000);
-      sample.sequence = cycle_;
-      sample.present = 7;
-      for (std::size_t j = 0; j < 3; ++j) sample.position[j] = std::sin(0.01 * static_cast<double>(cycle_ + j));
-      if (cycle_ % 3 != 0) engine_->inlet(1).push(sample);
-      engine_->run(context);
+      const JointSample sample = engine::sample_of_curve(now_ - Nanoseconds(100'000), cycle_ + 1);
+      if (sample.sequence % 3 != 0) engine_->inlet(1).push(sample);
+      engine::run_cycle(*engine_, now_, cycle_, 0, kPeriod);
       for (std::size_t j = 0; j < 3; ++j) published_[now_][j] = ticks_.newest().robots[1].joints[j].position;
     }
   }
@@ -52,8 +43,8 @@ class PublishedTicksTest : public testing::Test {
   // How many ticks are given; each with the positions that it had published, to the bit.
   int play(PublishedTicks& ticks, ByteSpan bytes) {
     int count = 0;
-    const auto more = ticks.take(bytes, [&](Timestamp time, bool behind_gap) {
-      behind_gap_ = behind_gap_ || behind_gap;
+    const auto more = ticks.take(bytes, [&](Timestamp time, bool after_gap) {
+      after_gap_ = after_gap_ || after_gap;
       const engine::TickState& state = ticks.state();
       EXPECT_EQ(state.time, time);
       EXPECT_EQ(state.robots[1].mode, engine::RobotMode::mirrored);
@@ -75,7 +66,7 @@ class PublishedTicksTest : public testing::Test {
   Timestamp now_{1'000'000'000};
   std::uint64_t cycle_ = 0;
   std::map<Timestamp, std::array<double, 3>> published_;
-  bool behind_gap_ = false;
+  bool after_gap_ = false;
   PublishedTicks sut_;
 };
 
@@ -86,10 +77,10 @@ TEST_F(PublishedTicksTest, EachIsAsItWas) {
   tick(200);
   const auto second = message();
   EXPECT_EQ(play(sut_, first), 300);
-  EXPECT_TRUE(behind_gap_) << "the first one";
-  behind_gap_ = false;
+  EXPECT_TRUE(after_gap_) << "the first one";
+  after_gap_ = false;
   EXPECT_EQ(play(sut_, second), 200);
-  EXPECT_FALSE(behind_gap_);
+  EXPECT_FALSE(after_gap_);
 }
 
 TEST_F(PublishedTicksTest, BeginsAtAStartStateAndNotBefore) {
@@ -105,7 +96,7 @@ TEST_F(PublishedTicksTest, BeginsAtAStartStateAndNotBefore) {
   EXPECT_EQ(play(sut_, with), 50);
 }
 
-TEST_F(PublishedTicksTest, BehindAGapItWaitsForTheNextStartState) {
+TEST_F(PublishedTicksTest, AfterAGapItWaitsForTheNextStartState) {
   engine_->inputs().request_start();
   tick(50);
   const auto before = message();
@@ -117,10 +108,26 @@ TEST_F(PublishedTicksTest, BehindAGapItWaitsForTheNextStartState) {
   tick(20);
   const auto begun = message();
   EXPECT_EQ(play(sut_, before), 50);
-  behind_gap_ = false;
+  after_gap_ = false;
   EXPECT_EQ(play(sut_, behind), 0);
   EXPECT_EQ(play(sut_, begun), 20);
-  EXPECT_TRUE(behind_gap_);
+  EXPECT_TRUE(after_gap_);
+}
+
+// As it is where the tick itself found no room for a record.
+TEST_F(PublishedTicksTest, AStartStateRightAfterAGapIsTaken) {
+  engine_->inputs().request_start();
+  tick(50);
+  const auto before = message();
+  tick(20);
+  static_cast<void>(message());  // lost
+  engine_->inputs().request_start();
+  tick(20);
+  const auto begun = message();
+  EXPECT_EQ(play(sut_, before), 50);
+  after_gap_ = false;
+  EXPECT_EQ(play(sut_, begun), 20);
+  EXPECT_TRUE(after_gap_);
 }
 
 TEST_F(PublishedTicksTest, TheReaderEndsItWhereItLikes) {

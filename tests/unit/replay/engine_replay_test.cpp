@@ -77,11 +77,7 @@ class EngineReplayTest : public testing::Test {
       context.cycle = cycle_++;
       context.period = kPeriod;
       context.missed = cycle_ % 50 == 0 ? 1 : 0;
-      JointSample sample;
-      sample.receive_time = now_ - Nanoseconds(100'000);
-      sample.sequence = cycle_;
-      sample.present = 7;
-      for (std::size_t j = 0; j < 3; ++j) sample.position[j] = std::sin(0.01 * static_cast<double>(cycle_ + j));
+      const JointSample sample = engine::sample_of_curve(now_ - Nanoseconds(100'000), cycle_);
       if (cycle_ % 3 != 0) engine_->inlet(kMirrored).push(sample);
       engine_->run(context);
     }
@@ -257,7 +253,7 @@ TEST_F(EngineReplayTest, APlantedBitIsFoundWithTickRobotAndJoint) {
   EXPECT_NE(sut_.difference()->recorded, sut_.difference()->computed);
 }
 
-TEST_F(EngineReplayTest, BehindAGapItGoesOnAtTheNextStartState) {
+TEST_F(EngineReplayTest, AfterAGapItGoesOnAtTheNextStartState) {
   engine_->inputs().request_start();
   tick(20);
   sut_.take(message());
@@ -275,7 +271,7 @@ TEST_F(EngineReplayTest, BehindAGapItGoesOnAtTheNextStartState) {
 }
 
 // As it is where the tick itself found no room for a record.
-TEST_F(EngineReplayTest, AStartStateRightBehindAGapIsTaken) {
+TEST_F(EngineReplayTest, AStartStateRightAfterAGapIsTaken) {
   engine_->inputs().request_start();
   tick(20);
   sut_.take(message());
