@@ -149,7 +149,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   return owner->prepare(script, is_path);
 }
 
-// Nothing else lets it pass: what the owner gives its robots is done when it waits for it, and nobody sees it.
+// A tick of the owner's own engine, so that the owner sees its commands done. What it publishes has no reader.
 void Gateway::Parts::let_own_tick_pass() {
   own_tick.period = Nanoseconds(std::llround(1e9 / loop_settings.rate_hz));
   own_tick.now = machine_clock.now();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "rt_core/base/text.hpp"
@@ -24,7 +23,7 @@ Result<PlaybackRequest> playback_request(const ControlRequest& request, const Pl
     if (name == "speed") {
       out.speed = *number;
     } else {
-      out.seek_ns = now.from_ns + std::llround(1e9 * std::clamp(*number, -1e9, 1e9));
+      out.seek_ns = playback_time_ns(now, *number);
     }
   }
   return out;

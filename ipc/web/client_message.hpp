@@ -47,7 +47,7 @@ struct PickMessage {
 struct PlaybackMessage {
   std::optional<bool> play;
   std::optional<double> speed;
-  std::optional<double> seek_s;  // behind the begin of what is played
+  std::optional<double> seek_s;  // after the beginning of what is played
 };
 using ClientMessage = std::variant<HelloMessage, PictureMessage, NoPictureMessage, ShownMessage, SceneMessage,
                                    NoSceneMessage, PosedMessage, CommandMessage, PickMessage, PlaybackMessage>;

@@ -140,7 +140,7 @@ void LiveSession::handle(const PlaybackMessage& message, Outgoing& out) {
   if (context_.options.read_only) return send_text(out, refused_message(0, "this gateway was started read-only"));
   PlaybackRequest request{.play = message.play, .speed = message.speed, .seek_ns = {}};
   if (message.seek_s && std::isfinite(*message.seek_s))
-    request.seek_ns = playback->state().from_ns + std::llround(1e9 * std::clamp(*message.seek_s, -1e9, 1e9));
+    request.seek_ns = playback_time_ns(playback->state(), *message.seek_s);
   if (const auto done = playback->apply(request); !done) send_text(out, refused_message(0, done.error().text()));
 }
 

@@ -1,6 +1,8 @@
 // The playing of a recording, as its controls see it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -32,6 +34,11 @@ struct PlaybackState {
   std::string file;
   std::string note;  // the newest gap, or why nothing goes on; empty: none
 };
+
+// UTC, ns, so many finite seconds after the beginning of what is played.
+[[nodiscard]] inline std::int64_t playback_time_ns(const PlaybackState& state, double after_begin_s) {
+  return state.from_ns + std::llround(1e9 * std::clamp(after_begin_s, -1e9, 1e9));
+}
 
 // What is not given stays as it is.
 struct PlaybackRequest {

@@ -106,7 +106,7 @@ class PlayerTest : public testing::Test {
     return eventually([this] { return recording_->control().state().status != PlaybackStatus::seeking; });
   }
   void apply(const PlaybackRequest& request) { ASSERT_TRUE(recording_->control().apply(request)); }
-  // Seconds behind the begin.
+  // Seconds after the beginning.
   void seek(double to) {
     apply({.play = {}, .speed = {}, .seek_ns = recording_->control().state().from_ns + std::llround(1e9 * to)});
     ASSERT_TRUE(arrived());

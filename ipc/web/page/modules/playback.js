@@ -53,7 +53,7 @@ export class Playback {
     setText(byId("replay-note"), replay.note);
     const slider = byId("replay-slider");
     setAttribute(slider, "max", replay.length_s);
-    setAttribute(slider, "aria-valuetext", `${utc_time(replay.now, replay.from)} UTC, ${duration(replay.position_s)} behind the begin`);
+    setAttribute(slider, "aria-valuetext", `${utc_time(replay.now, replay.from)} UTC, ${duration(replay.position_s)} after the beginning`);
     if (this.now_() - this.touched_ > kSettled_ms) slider.value = String(replay.position_s);
     this.show_speed_(replay.speed);
   }
