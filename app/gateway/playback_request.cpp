@@ -21,7 +21,7 @@ Result<PlaybackRequest> playback_request(const ControlRequest& request, const Pl
       return fail(fmt::format("the member {} is not known", printable(name)), "known: play, speed, seek_s");
     if (!number || !std::isfinite(*number)) return fail(fmt::format("{} is not a number", name));
     if (name == "speed") {
-      out.speed = *number;
+      out.speed = number;
     } else {
       out.seek_ns = playback_time_ns(now, *number);
     }

@@ -21,7 +21,7 @@ const browser = await chromium.launch({
 });
 const problems = [];
 
-// `wire`: what comes from the gateway goes through wire.live(message); null is dropped. wire.end() ends the connection.
+// `wire`: what comes from the gateway goes through wire.live(message); null is dropped. wire.end() ends the connection, and every further one until wire.ended is false.
 async function opened(options = {}, to = address, wire = null) {
   const context = await browser.newContext({viewport: {width: 1440, height: 900}, ...options});
   const page = await context.newPage();
@@ -43,8 +43,15 @@ async function opened(options = {}, to = address, wire = null) {
 }
 
 function tap(socket, wire) {
+  if (wire.ended) {
+    socket.close();
+    return;
+  }
   const gateway = socket.connectToServer();
-  wire.end = () => Promise.all([socket.close(), gateway.close()]);
+  wire.end = () => {
+    wire.ended = true;
+    return Promise.all([socket.close(), gateway.close()]);
+  };
   gateway.onMessage((message) => {
     if (typeof message === "string" && message.startsWith('{"is": "live"')) {
       const changed = wire.live(JSON.parse(message));

@@ -177,7 +177,8 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       await wire.end();
       await page.locator("#gone").waitFor();
       await page.waitForFunction(() => document.getElementById("view-area").classList.contains("stale"));
-      assert.match(await text_of(page, "#view-note"), /gateway is gone.*old/);
+      await page.waitForFunction(() => /gateway is gone.*old/.test(document.getElementById("view-note").innerText));
+      wire.ended = false;
       await page.waitForFunction(() => !document.getElementById("view-area").classList.contains("stale"), null, {timeout: 30000});
     },
 

@@ -320,7 +320,8 @@ TEST_F(HostileClients, ThatVanishLeaveNothingBehind) {
     client.say(R"({"do": "command", "id": 1, "text": "LATER"})");
     client.read_until("CMP1");
   }
-  for (int i = 0; i < 100 && sut->status().clients > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const auto left = [&] { return sut->status().clients > 0 || backend.open_streams > 0 || backend.open_scenes > 0; };
+  for (int i = 0; i < 100 && left(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(sut->status().clients, 0u);
   EXPECT_EQ(backend.open_streams, 0);
   EXPECT_EQ(backend.open_scenes, 0);
