@@ -12,7 +12,7 @@ namespace cellmirror {
 namespace {
 
 // A continuous joint has no limits; a number this large never acts as one.
-constexpr double kUnlimited = 1e6;  // rad
+constexpr double kNoLimit = 1e6;  // rad
 
 // The keys carry the unit of the joint's type.
 struct Keys {
@@ -43,8 +43,8 @@ void read_range(TableReader& reader, const Keys& keys, JointDefinition& joint) {
   const auto range = reader.numbers(key, 2);
   if (joint.kind == JointKind::continuous) {
     if (range) reader.error(key, "a continuous joint has no range", "make its type revolute");
-    joint.min_position = -kUnlimited;
-    joint.max_position = kUnlimited;
+    joint.min_position = -kNoLimit;
+    joint.max_position = kNoLimit;
     return;
   }
   reader.require(key);

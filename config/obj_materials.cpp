@@ -13,9 +13,9 @@ namespace cellmirror {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kSpaces = " \t\r";
 constexpr std::size_t kMostFiles = 16;
-constexpr std::size_t kMostMaterials = 10'000;
+constexpr std::size_t kMostObjMaterials = 10'000;
 constexpr std::size_t kLongestName = 1024;
 
 // Calls use(number, line) for each line, without blanks around it.
@@ -25,17 +25,17 @@ void for_each_line(std::string_view text, Use use) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-    line = line.substr(0, line.find_last_not_of(kBlanks) + 1);
+    line.remove_prefix(std::min(line.find_first_not_of(kSpaces), line.size()));
+    line = line.substr(0, line.find_last_not_of(kSpaces) + 1);
     use(number, line);
   }
 }
 
 std::string_view take_word(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find_first_of(kBlanks), rest.size());
+  const std::size_t end = std::min(rest.find_first_of(kSpaces), rest.size());
   const std::string_view word = rest.substr(0, end);
   rest.remove_prefix(end);
-  rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+  rest.remove_prefix(std::min(rest.find_first_not_of(kSpaces), rest.size()));
   return word;
 }
 
@@ -90,7 +90,7 @@ void read_obj_materials(std::string_view text, const std::string& file, ObjMater
   ObjMaterial* current = nullptr;
   for_each_line(text, [&](int number, std::string_view line) {
     if (const auto name = after(line, "newmtl")) {
-      const bool room = materials.size() < kMostMaterials;
+      const bool room = materials.size() < kMostObjMaterials;
       const auto [at, is_new] = room ? materials.try_emplace(std::string(*name)) : std::pair(materials.end(), false);
       current = is_new ? &at->second : nullptr;
     }

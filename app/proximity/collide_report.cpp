@@ -14,7 +14,7 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr std::uint64_t kListed = 12;       // frames that are shown one by one
+constexpr std::uint64_t kPairsListed = 12;  // frames that are shown one by one
 constexpr std::uint64_t kMostChanges = 40;  // lines about frames in which something changes
 constexpr std::size_t kMostPairs = 30;      // of the summary: those that touch in most frames
 constexpr std::size_t kMostDoubt = 400;     // characters of a sentence
@@ -143,7 +143,7 @@ CollideText::CollideText(const CollideHeading& heading, const collision::PairTab
 std::string CollideText::pair_text(std::uint32_t a, std::uint32_t b) const { return names_[a] + " - " + names_[b]; }
 
 void CollideText::frame(std::uint64_t number, const ProximityState& state) {
-  if (heading_.frames <= kListed) return whole_frame(number, state);
+  if (heading_.frames <= kPairsListed) return whole_frame(number, state);
   changes(number, state);
 }
 

@@ -13,10 +13,10 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr std::uint64_t kListed = 12;  // frames that are shown one by one
+constexpr std::uint64_t kRangesListed = 12;  // frames that are shown one by one
 constexpr std::size_t kMostNames = 200;
 
-double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
+double microseconds(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
 
 void add(JsonWriter& out, const RangeReading& reading) {
   const bool seen = reading.distance_m.has_value();
@@ -75,10 +75,10 @@ void RangeJson::end(const RangeTotals& totals) {
   }
   const HistogramSnapshot& times = totals.times;
   json_.end_array()
-      .member("time_mean_us", us(times.mean()))
-      .member("time_p50_us", us(times.percentile(50)))
-      .member("time_p99_us", us(times.percentile(99)))
-      .member("time_max_us", us(times.max()))
+      .member("time_mean_us", microseconds(times.mean()))
+      .member("time_p50_us", microseconds(times.percentile(50)))
+      .member("time_p99_us", microseconds(times.percentile(99)))
+      .member("time_max_us", microseconds(times.max()))
       .end_object()
       .end_object();
   hand_out("\n");
@@ -91,14 +91,14 @@ RangeText::RangeText(const RangeHeading& heading, const CompiledCell& cell, std:
 }
 
 void RangeText::frame(std::uint64_t number, std::span<const RangeReading> readings) {
-  if (heading_.frames > kListed) return;
+  if (heading_.frames > kRangesListed) return;
   put(out_, "frame {}\n", number);
   for (const RangeReading& reading : readings) std::fputs(reading_text(reading).c_str(), out_);
 }
 
 void RangeText::end(const RangeTotals& totals) {
   put(out_, "\n{} {}\n", totals.frames, totals.frames == 1 ? "frame" : "frames");
-  for (std::size_t i = 0; totals.frames > kListed && i < totals.sensors.size(); ++i) {
+  for (std::size_t i = 0; totals.frames > kRangesListed && i < totals.sensors.size(); ++i) {
     const SensorTotals& sensor = totals.sensors[i];
     const std::string id = printable(cell_.sensors[i].name, kMostNames);
     if (sensor.seen == 0) {
@@ -112,8 +112,8 @@ void RangeText::end(const RangeTotals& totals) {
     put(out_, "\n");
   }
   const HistogramSnapshot& times = totals.times;
-  put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", us(times.mean()),
-      us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+  put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", microseconds(times.mean()),
+      microseconds(times.percentile(50)), microseconds(times.percentile(99)), microseconds(times.max()));
 }
 
 plot::Figure figure(const RangeHeading& heading, const CompiledCell& cell, const RangeTotals& totals) {

@@ -19,7 +19,7 @@ namespace {
 constexpr std::chrono::milliseconds kGather{50};  // one round of the writer
 constexpr std::size_t kWorthAWrite = std::size_t{1} << 20;
 constexpr Nanoseconds kLongestChunk{500'000'000};       // what a killed process loses at most, and the round
-constexpr Nanoseconds kBetweenLooks{1'000'000'000};     // at the file's name and the bounds of a ring
+constexpr Nanoseconds kBetweenChecks{1'000'000'000};    // at the file's name and the bounds of a ring
 constexpr Nanoseconds kLongestFailure{10'000'000'000};  // then the recording ends
 constexpr std::size_t kMostTopics = 4096;
 
@@ -329,7 +329,7 @@ void Recording::note_failure(const Error& error, Timestamp now) {
   if (!options_.ring) {
     if (now - failing_since_ >= kLongestFailure) end_with(error.text());
   } else if (now >= retry_at_) {
-    retry_at_ = now + kBetweenLooks;
+    retry_at_ = now + kBetweenChecks;
     remove_oldest();
   }
 }
@@ -343,7 +343,7 @@ void Recording::end_with(std::string why) {
 }
 
 void Recording::look_after_file(Timestamp now) {
-  if (file_ && now - file_->looked >= kBetweenLooks) {
+  if (file_ && now - file_->looked >= kBetweenChecks) {
     file_->looked = now;
     if (!file_->sink->still_there()) {
       const std::string why = file_->sink->file().string() + " was removed";

@@ -86,7 +86,7 @@ void add_loop(JsonWriter& out, const LiveSources& sources, const LoopWindow::Fig
       .end_object();
 }
 
-std::string_view name(const ProximityState& state, std::uint32_t body) {
+std::string_view body_name(const ProximityState& state, std::uint32_t body) {
   return state.names && body < state.names->size() ? std::string_view((*state.names)[body]) : std::string_view();
 }
 
@@ -97,8 +97,8 @@ JsonWriter& begin_pair(JsonWriter& out, const ProximityState& found, const Pair&
     return found.names && body < found.names->size() ? std::string_view(found.short_name(body)) : std::string_view();
   };
   return out.begin_object()
-      .member("a", name(found, pair.a))
-      .member("b", name(found, pair.b))
+      .member("a", body_name(found, pair.a))
+      .member("b", body_name(found, pair.b))
       .member("a_short", in_short(pair.a))
       .member("b_short", in_short(pair.b));
 }

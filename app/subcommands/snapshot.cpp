@@ -24,7 +24,7 @@ namespace cellmirror::app {
 
 namespace {
 
-constexpr std::chrono::seconds kObserverTimeout{20};
+constexpr std::chrono::seconds kSnapshotTimeout{20};
 
 struct SnapshotOptions {
   SnapshotRequest wanted;
@@ -62,7 +62,7 @@ std::string wrong_size(const std::string& text) {
 volatile std::sig_atomic_t film_is_over = 0;
 
 Result<SnapshotAnswer> ask(const SnapshotOptions& options) {
-  const auto text = control_request(options.instance, control_request_line(question(options.wanted)), kObserverTimeout);
+  const auto text = control_request(options.instance, control_request_line(question(options.wanted)), kSnapshotTimeout);
   if (!text) return std::unexpected(text.error());
   return snapshot_answer(*text);
 }

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string age(const json& age_s) {
+std::string age_in_ms(const json& age_s) {
   return age_s.is_number() ? fmt::format("{:.1f} ms", age_s.get<double>() * 1e3) : std::string("-");
 }
 
@@ -46,12 +46,12 @@ std::string device_lines(const json& haptic) {
   if (haptic.at("contact_model").at("awaited").get<bool>()) out += "  waits for the surroundings of its instrument\n";
   out += fmt::format("  device: process {}, sample {} of age {}; {} skipped, {} torn; force {:.2f} N, {} contacts\n",
                      device.at("process").get<std::uint64_t>(), device.at("sequence").get<std::uint64_t>(),
-                     age(device.at("age_s")), device.at("skipped").get<std::uint64_t>(),
+                     age_in_ms(device.at("age_s")), device.at("skipped").get<std::uint64_t>(),
                      device.at("torn").get<std::uint64_t>(), norm(force.at("world_n")),
                      force.at("contacts").get<std::uint64_t>());
   out += fmt::format("  pose to force p50 {:.0f} p99 {:.0f} max {:.0f} us; contact model of age {}; {} faults\n",
                      latency.at("p50").get<double>(), latency.at("p99").get<double>(), latency.at("max").get<double>(),
-                     age(haptic.at("contact_model").at("age_s")), haptic.at("faults").get<std::uint64_t>());
+                     age_in_ms(haptic.at("contact_model").at("age_s")), haptic.at("faults").get<std::uint64_t>());
   return out;
 }
 

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kPairsShown = 10;
-constexpr std::size_t kEventsShown = 5;
+constexpr std::size_t kSensorEventsShown = 5;
 
 std::string mm(const json& metres) { return fmt::format("{:.1f} mm", mm_from_m(metres.get<double>())); }
 
@@ -62,7 +62,7 @@ std::string findings(const json& collisions) {
     out += "  nearest:" + near_line(collisions.at("nearest")).substr(1);
   for (const json& sentence : collisions.at("doubts")) out += fmt::format("  doubt: {}\n", text(sentence));
   const json& events = collisions.at("events");
-  const std::size_t first = events.size() > kEventsShown ? events.size() - kEventsShown : 0;
+  const std::size_t first = events.size() > kSensorEventsShown ? events.size() - kSensorEventsShown : 0;
   for (std::size_t i = first; i < events.size(); ++i) {
     const json& event = events[i];
     out += fmt::format("  {} ago {}: {} - {}\n", age(event.at("age_s")), text(event.at("change")), body(event, "a"),

@@ -16,9 +16,9 @@ namespace {
 constexpr CountingWriter::Options kNewest{.depth = 2, .counts_overwritten = true, .large = true};
 constexpr std::size_t kMostBytes = kMaxPayloadBytes - 1024;  // beside the header
 
-class Output final : public ImageOutput {
+class PictureOutput final : public ImageOutput {
  public:
-  Output(const DdsOutputConfig& config, std::unique_ptr<CountingWriter> writer)
+  PictureOutput(const DdsOutputConfig& config, std::unique_ptr<CountingWriter> writer)
       : name_(fmt::format("dds pictures {}", config.pictures.topic)), writer_(std::move(writer)) {
     message_.header.frame_id = config.pictures.camera;
     if (config.pictures.camera.empty())
@@ -62,7 +62,7 @@ Result<std::unique_ptr<ImageOutput>> make_image_output(const DdsOutputConfig& co
   if (!participant) return std::unexpected(participant.error());
   auto writer = CountingWriter::make(*participant, config.pictures.topic, kCompressedImageType, kNewest);
   if (!writer) return std::unexpected(writer.error());
-  return std::make_unique<Output>(config, std::move(*writer));
+  return std::make_unique<PictureOutput>(config, std::move(*writer));
 }
 
 }  // namespace cellmirror::dds

@@ -19,7 +19,7 @@ constexpr double kHeadDiameter = 0.005;   // m
 constexpr double kGrowth = 1.3;           // of the grid's cells, until few enough triangles are left
 constexpr int kMostGrowths = 40;          // far more than a cell needs to swallow a body
 
-MarkerPoint point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+MarkerPoint marker_point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 bool usable(const TissueSurface& surface) {
   if (!surface.topology) return false;
@@ -105,7 +105,7 @@ void ReducedSurface::place(const TissueSurface& surface) {
   centres_.assign(groups_, MarkerPoint{});
   sizes_.assign(groups_, 0);
   for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
-    const MarkerPoint at = point(surface.vertices[i].cast<double>());
+    const MarkerPoint at = marker_point(surface.vertices[i].cast<double>());
     for (std::size_t axis = 0; axis < 3; ++axis) centres_[group_of_[i]].at(axis) += at.at(axis);
     ++sizes_[group_of_[i]];
   }
@@ -172,7 +172,7 @@ void TissueMarkers::add_arrows(RosTime stamp, std::span<const TissueForceArrow> 
     const double length = std::min(size * kTissueArrowMPerN, kTissueLongestArrow);
     Marker arrow = marker(stamp, "tissue_forces", i, MarkerType::arrow, kYellow);
     arrow.scale = {kShaftDiameter, kHeadDiameter, 0};
-    arrow.points = {point(force.at), point(force.at + length / size * force.force_W)};
+    arrow.points = {marker_point(force.at), marker_point(force.at + length / size * force.force_W)};
     message.markers.push_back(std::move(arrow));
   }
 }

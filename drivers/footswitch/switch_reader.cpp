@@ -13,7 +13,7 @@ namespace cellmirror::footswitch {
 
 namespace {
 
-constexpr std::size_t kBits = 8;
+constexpr std::size_t kSwitchBits = 8;
 
 std::span<const std::byte> looked_at(std::span<const std::byte> memory) {
   return memory.first(std::min(memory.size(), kMostSwitchBytes));
@@ -62,7 +62,7 @@ SwitchReader::SwitchReader(std::span<const std::byte> memory, const Clock& clock
       options_(std::move(options)),
       edges_(memory_.size(), options_.debounce),
       copy_(memory_.size()) {
-  found_.reserve(2 * kBits * memory_.size());
+  found_.reserve(2 * kSwitchBits * memory_.size());
   // The first state is that of this moment, whenever the thread gets its first turn.
   look(clock_.now());
   thread_ = std::make_unique<Thread>(*this);
@@ -99,8 +99,8 @@ std::vector<std::uint32_t> SwitchReader::inputs_on(std::size_t most) {
   const Inputs& reported = reported_.read().value;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     const std::uint8_t byte = reported[i];
-    for (std::size_t bit = 0; bit < kBits && inputs.size() < most; ++bit) {
-      if (((byte >> bit) & 1U) != 0) inputs.push_back(static_cast<std::uint32_t>(i * kBits + bit + 1));
+    for (std::size_t bit = 0; bit < kSwitchBits && inputs.size() < most; ++bit) {
+      if (((byte >> bit) & 1U) != 0) inputs.push_back(static_cast<std::uint32_t>(i * kSwitchBits + bit + 1));
     }
   }
   return inputs;

@@ -8,7 +8,7 @@ namespace cellmirror::collision {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 // A pair that was measured is worth a bound that lasts for about so many frames of its present motion.
 constexpr double kFramesAhead = 24.0;
 // Limit (m) of the search beyond the requested distance: postures that jump have no next frame to save for.
@@ -75,20 +75,20 @@ const std::vector<Found>& ProximitySearch::find(const CellPoses& poses, double w
                                                 const std::vector<std::uint8_t>& watched) {
   move(poses);
   found_.clear();
-  least_ = kInfinity;
+  least_ = kNoBound;
   // What was nearest still is, or nearly so: a good limit for all others.
   const bool begun = nearest_known_ && usable(tracker_.pairs()[nearest_]);
   const std::uint32_t first = nearest_;
   nearest_known_ = false;
-  if (begun) measure(first, kInfinity);
+  if (begun) measure(first, kNoBound);
   gather(std::max(warning, least_), watched);
   for (const Candidate& candidate : candidates_) {
     if (begun && candidate.pair == first) continue;
     const double limit = std::max(warning, least_);
     const bool wanted = watched[candidate.pair] != 0;
     if (candidate.bound > limit && !wanted) continue;
-    const bool unlimited = wanted || least_ == kInfinity;
-    measure(candidate.pair, unlimited ? kInfinity : limit + margin(tracker_.pairs()[candidate.pair]));
+    const bool unlimited = wanted || least_ == kNoBound;
+    measure(candidate.pair, unlimited ? kNoBound : limit + margin(tracker_.pairs()[candidate.pair]));
   }
   std::erase_if(found_, [&](const Found& found) {
     if (!found.usable || watched[found.pair] != 0 || (nearest_known_ && found.pair == nearest_)) return false;

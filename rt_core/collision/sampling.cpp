@@ -11,7 +11,7 @@ namespace cellmirror::collision {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // Not std::uniform_real_distribution, whose numbers differ from one standard library to another.
 class RandomSource {
@@ -70,7 +70,7 @@ class Sampler {
   }
 
   void try_posture() {
-    const double up_to = std::isfinite(least_) ? std::max(least_, kNeverMargin) : kInfinity;
+    const double up_to = std::isfinite(least_) ? std::max(least_, kNeverMargin) : kNoLimit;
     const double distance = proximity_.distance(motion_.X_AB(values_), up_to);
     if (distance > geometry::kTouchDistance) apart_once_ = true;
     if (distance >= least_) return;
@@ -83,7 +83,7 @@ class Sampler {
   RandomSource random_;
   std::vector<double> values_;
   std::vector<double> nearest_;
-  double least_ = kInfinity;
+  double least_ = kNoLimit;
   bool apart_once_ = false;
 };
 

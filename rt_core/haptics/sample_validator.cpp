@@ -7,7 +7,7 @@ namespace cellmirror::haptics {
 
 namespace {
 
-constexpr double kFarthest = 100.0;        // m or rad: beyond it a number is no place and no angle
+constexpr double kFarthestPose = 100.0;    // m or rad: beyond it a number is no place and no angle
 constexpr double kLeastQuaternion = 0.25;  // squared norm: less is no rotation
 constexpr double kLargestQuaternion = 4.0;
 constexpr double kJumpSlack = 0.5e-3;         // m: an encoder's steps and the jitter of stamps
@@ -29,7 +29,7 @@ bool plausible(const HapticSample& sample) CELL_RT {
   if (!sample.valid || sample.axis_count > kMaxHapticAxes) return false;
   double largest = std::max(sample.p_DH.cwiseAbs().maxCoeff(), std::abs(sample.gripper));
   for (std::size_t i = 0; i < sample.axis_count; ++i) largest = std::max(largest, std::abs(sample.axes[i]));
-  return largest <= kFarthest;
+  return largest <= kFarthestPose;
 }
 
 Nanoseconds distance(Timestamp a, Timestamp b) CELL_RT { return a < b ? b - a : a - b; }

@@ -15,10 +15,10 @@ namespace cellmirror::inverse_kinematics {
 
 namespace {
 
-constexpr std::size_t kMostStarts = 200;   // bounds a search whose time limit does not
-constexpr std::size_t kBarrenStarts = 25;  // without a new solution: there will be no more
-constexpr double kNearTarget = 1.0;        // squared task error below which the equations can be met from here
-constexpr int kNearIterations = 12;        // for that
+constexpr std::size_t kMostIpoptStarts = 200;  // bounds a search whose time limit does not
+constexpr std::size_t kBarrenStarts = 25;      // without a new solution: there will be no more
+constexpr double kNearTarget = 1.0;            // squared task error below which the equations can be met from here
+constexpr int kNearIterations = 12;            // for that
 // Kept back for the nearest pose, if there is no solution: this much, or this part of the time if that is less.
 constexpr Nanoseconds kLastRun = std::chrono::milliseconds(2);
 constexpr double kLastRunShare = 0.2;
@@ -114,7 +114,7 @@ Run IpoptSolver::run(Work& work, IpoptProgram& program, const Problem& problem) 
 
 void IpoptSolver::search(Work& work, std::size_t max_solutions) {
   std::size_t barren = 0;
-  for (std::size_t start = 0; start < kMostStarts && barren < kBarrenStarts; ++start) {
+  for (std::size_t start = 0; start < kMostIpoptStarts && barren < kBarrenStarts; ++start) {
     if (start > 0) work.problem.start = promising_start(spread_, start - 1, model_, work.problem);
     const std::size_t known = work.search.found();
     const Run found = descend(work, start == 0);

@@ -14,18 +14,19 @@ namespace cellmirror::inverse_kinematics {
 
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kLeavesPerSeed = 1;  // visited in one look-up; more hardly improve the seeds
 
 // `value` moved by whole turns into the limits, nearest to `present`; the nearest limit where none lies within. A sum
 // of turns is rounded, so that it may be beyond a limit by the last bits.
 double turned_into(double lower, double upper, double value, double present) {
-  value += kTurn * std::round((present - value) / kTurn);
-  if (value > upper) value -= kTurn * std::ceil((value - upper) / kTurn);
+  value += kFullTurn * std::round((present - value) / kFullTurn);
+  if (value > upper) value -= kFullTurn * std::ceil((value - upper) / kFullTurn);
   if (value >= lower) return std::min(value, upper);
-  const double above = value + kTurn * std::ceil((lower - value) / kTurn);
+  const double above = value + kFullTurn * std::ceil((lower - value) / kFullTurn);
   if (above <= upper) return std::max(above, lower);
-  return lower - value < above - kTurn - upper ? lower : (above - upper < lower - (above - kTurn) ? upper : lower);
+  return lower - value < above - kFullTurn - upper ? lower
+                                                   : (above - upper < lower - (above - kFullTurn) ? upper : lower);
 }
 
 }  // namespace
@@ -178,7 +179,7 @@ void SeedTable::visit(std::size_t node, const Feature& wanted, Feature& offsets,
 double SeedTable::miss_of(std::size_t variable, double wanted, double got) const {
   const double off = wanted - got;
   if (off == 0) return 0;
-  const double miss = chain_.rotates(variable) ? 0.5 * (off - kTurn * std::round(off / kTurn)) : off / length_;
+  const double miss = chain_.rotates(variable) ? 0.5 * (off - kFullTurn * std::round(off / kFullTurn)) : off / length_;
   return miss * miss;
 }
 

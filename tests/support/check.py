@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import clang_tidy
@@ -86,8 +87,8 @@ class Check:
         self.total.add(report, name)
         return not report.failed
 
-    def build(self, preset: str, folder: str, *targets: str, configure_arguments: str = "") -> bool:
-        command = f"configure {preset} {folder} {configure_arguments} && build {folder} {' '.join(targets)}"
+    def build(self, preset: str, folder: str, *targets: str, settings: Sequence[str] = ()) -> bool:
+        command = f"configure {preset} {folder} {' '.join(settings)} && build {folder} {' '.join(targets)}"
 
         def action() -> Report:
             report = Report()
@@ -125,7 +126,10 @@ class Check:
             targets = ["all", "benches"]
         elif self.options.quick or self.options.label in ("unit", "golden", "fuzz"):
             targets = ["all", "tests_sanitized"]
-        if not self.build("release", "build", *targets, configure_arguments="-DCELLMIRROR_TESTS=ON" if without_tests else ""):
+        settings = ["-DCELLMIRROR_TESTS=ON"] if without_tests else []
+        if self.options.once:
+            settings.append("-DCELLMIRROR_ONCE=ON")
+        if not self.build("release", "build", *targets, settings=settings):
             self.packages.wait()
             return
         self.stage("packages", self.packages.wait)
@@ -175,6 +179,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./check", description="Installs missing packages, builds, and runs every test.")
     parser.add_argument("--quick", action="store_true", help="release build only: lint and tests without timing")
     parser.add_argument("--full", action="store_true", help="also clang-tidy over every source, without a time limit, and benchmarks")
+    parser.add_argument("--once", action="store_true",
+                        help="for a folder that is not built again, as in CI: compiles large batches, which makes the first build shorter and later ones longer")
     parser.add_argument("--label", help="only the release tests with this label: unit, integration, golden, fuzz, stress, lint, docs, bench")
     parser.add_argument("--peers", action="store_true",
                         help="installs the programs in cmake/packages-peers.txt, and runs only the comparisons with them; a skip fails")

@@ -18,7 +18,7 @@
 namespace cellmirror::can {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 16U << 20U;
+constexpr std::uintmax_t kMaxEdsBytes = 16U << 20U;
 constexpr std::uint64_t kArray = 8;
 constexpr std::uint64_t kRecord = 9;
 constexpr std::size_t kMaxText = 256;
@@ -317,8 +317,8 @@ std::optional<DeviceDescription> read_eds(const std::string& file, std::uint8_t 
     diagnostics.error({file, 0, 0}, "cannot read the EDS or DCF file", "check the path and its permissions");
     return {};
   }
-  if (size > kMaxFileBytes) {
-    diagnostics.error({file, 0, 0}, fmt::format("the file has {} bytes, at most {} are read", size, kMaxFileBytes));
+  if (size > kMaxEdsBytes) {
+    diagnostics.error({file, 0, 0}, fmt::format("the file has {} bytes, at most {} are read", size, kMaxEdsBytes));
     return {};
   }
   std::ifstream in(file, std::ios::binary);

@@ -22,7 +22,7 @@
 namespace cellmirror::can {
 namespace {
 
-constexpr int kReceiveBuffer = 16'000'000;  // bytes: some 20,000 datagrams with the kernel's book-keeping
+constexpr int kUdpReceiveBuffer = 16'000'000;  // bytes: some 20,000 datagrams with the kernel's book-keeping
 
 // An IPv4 or IPv6 address with port.
 struct Address {
@@ -142,7 +142,7 @@ Result<Descriptor> UdpChannel::open_receiver() const {
   setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   setsockopt(fd.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   setsockopt(fd.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-  set_receive_buffer(fd.get(), kReceiveBuffer);
+  set_receive_buffer(fd.get(), kUdpReceiveBuffer);
   // Bound to the group, not to any address: other groups on the same port stay out.
   const Address address = Address::of(endpoint_, index_);
   if (bind(fd.get(), address.get(), address.size) != 0) return socket_failure("cannot bind to the group");

@@ -16,7 +16,7 @@
 namespace cellmirror::can {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 16U << 20U;
+constexpr std::uintmax_t kMaxDbcBytes = 16U << 20U;
 constexpr std::uint32_t kExtendedFlag = 0x8000'0000;
 // VECTOR__INDEPENDENT_SIG_MSG: a parking place for signals of no message.
 constexpr std::uint32_t kNoMessageId = 0xC000'0000;
@@ -371,8 +371,8 @@ std::optional<Dbc> read_dbc(const std::string& file, Diagnostics& diagnostics) {
     diagnostics.error({file, 0, 0}, "cannot read the DBC file", "check the path and its permissions");
     return {};
   }
-  if (size > kMaxFileBytes) {
-    diagnostics.error({file, 0, 0}, fmt::format("the DBC file has {} bytes, at most {} are read", size, kMaxFileBytes));
+  if (size > kMaxDbcBytes) {
+    diagnostics.error({file, 0, 0}, fmt::format("the DBC file has {} bytes, at most {} are read", size, kMaxDbcBytes));
     return {};
   }
   std::ifstream in(file, std::ios::binary);

@@ -17,9 +17,9 @@ namespace {
 
 constexpr Nanoseconds kToldAgainAfter = std::chrono::seconds(10);
 
-class Planner {
+class SignalPlanner {
  public:
-  Planner(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics) : diagnostics_(&diagnostics) {
+  SignalPlanner(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics) : diagnostics_(&diagnostics) {
     plan_.config = config;
     plan_.dbc = std::move(dbc);
   }
@@ -120,7 +120,7 @@ class Planner {
 }  // namespace
 
 std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics) {
-  return Planner(config, std::move(dbc), diagnostics).plan();
+  return SignalPlanner(config, std::move(dbc), diagnostics).plan();
 }
 
 std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Diagnostics& diagnostics) {

@@ -12,7 +12,7 @@ namespace cellmirror::program {
 
 namespace {
 
-constexpr double kLeastShare = 1e-4;  // what the reader takes: 0.01 percent
+constexpr double kLeastSpeedShare = 1e-4;  // what the reader takes: 0.01 percent
 
 // Without zeros at the end, and never "-0".
 std::string number_text(double value) {
@@ -70,8 +70,8 @@ Result<void> TeachWriter::add(const CheckPoint& point) {
     return fail(fmt::format("{} is not a valid name of a check point", printable(point.name)));
   if (knows(point.name)) return fail(fmt::format("there is a check point {} already", point.name));
   if (points() == kMostPoints) return fail(fmt::format("a teach file is written with at most {} points", kMostPoints));
-  if (point.speed && !(*point.speed >= kLeastShare && *point.speed <= 1))
-    return fail(fmt::format("the speed {} is not within {} .. 1", *point.speed, kLeastShare));
+  if (point.speed && !(*point.speed >= kLeastSpeedShare && *point.speed <= 1))
+    return fail(fmt::format("the speed {} is not within {} .. 1", *point.speed, kLeastSpeedShare));
   if (point.tolerance && !is_tolerance(*point.tolerance))
     return fail(fmt::format("the tolerance {} is too great or negative", point.tolerance->parameter));
   std::vector<std::string> values;

@@ -15,7 +15,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr Timestamp kNow{10'000'000'000};
+constexpr Timestamp kMeasuredAt{10'000'000'000};
 constexpr Timestamp kPosture{9'998'000'000};
 
 CollisionReport report() {
@@ -62,7 +62,7 @@ CollisionReport report() {
 }
 
 TEST(StatusOfCollisions, TellsWhatIsTestedAndWhyTheOthersAreNot) {
-  const json sut = collisions_json(report(), kNow);
+  const json sut = collisions_json(report(), kMeasuredAt);
   EXPECT_EQ(sut["bodies"], 3);
   EXPECT_EQ(sut["triangles"], 1234);
   EXPECT_EQ(sut["pairs"]["tested"], 2);
@@ -71,7 +71,7 @@ TEST(StatusOfCollisions, TellsWhatIsTestedAndWhyTheOthersAreNot) {
 }
 
 TEST(StatusOfCollisions, TellsFindingsWithTheAgeOfTheirPosture) {
-  const json sut = collisions_json(report(), kNow);
+  const json sut = collisions_json(report(), kMeasuredAt);
   EXPECT_DOUBLE_EQ(sut["age_s"].get<double>(), 0.002);
   ASSERT_EQ(sut["touching"].size(), 1U);
   EXPECT_EQ(sut["touching"][0]["a"], "Arm.J1");
@@ -91,8 +91,8 @@ TEST(StatusOfCollisions, TellsFindingsWithTheAgeOfTheirPosture) {
 TEST(StatusOfCollisions, HasEveryKeyBeforeAnythingWasComputed) {
   CollisionReport nothing;
   nothing.note = "pairs are being derived";
-  const json full = collisions_json(report(), kNow);
-  const json sut = collisions_json(nothing, kNow);
+  const json full = collisions_json(report(), kMeasuredAt);
+  const json sut = collisions_json(nothing, kMeasuredAt);
   for (const auto& [key, value] : full.items()) EXPECT_TRUE(sut.contains(key)) << key;
   EXPECT_TRUE(sut["age_s"].is_null());
   EXPECT_TRUE(sut["nearest"].is_null());
@@ -106,7 +106,7 @@ TEST(StatusOfCollisions, StaysBoundedWhereVeryManyPairsTouch) {
   state->touching.resize(5000);
   state->near.resize(5000);
   many.state = state;
-  const json sut = collisions_json(many, kNow);
+  const json sut = collisions_json(many, kMeasuredAt);
   EXPECT_LT(sut["touching"].size(), 1000U);
   EXPECT_EQ(sut["touching_count"], 5000);
   EXPECT_EQ(sut["near_count"], 5000);
@@ -140,7 +140,7 @@ struct StatusOfRanges : testing::Test {
 };
 
 TEST_F(StatusOfRanges, TellsTheReadingsOfActiveSensorsByPath) {
-  const json sut = ranges_json(ranges, cell_state, kNow);
+  const json sut = ranges_json(ranges, cell_state, kMeasuredAt);
   EXPECT_EQ(sut["sendmode"], 1);
   ASSERT_EQ(sut["sensors"].size(), 2U);
   EXPECT_EQ(sut["sensors"][0]["path"], "Arm.USS");
@@ -153,8 +153,8 @@ TEST_F(StatusOfRanges, TellsTheReadingsOfActiveSensorsByPath) {
 }
 
 TEST_F(StatusOfRanges, TableShowsTouchesNearPairsAndReadings) {
-  const json status = {{"collisions", collisions_json(report(), kNow)},
-                       {"ranges", ranges_json(ranges, cell_state, kNow)}};
+  const json status = {{"collisions", collisions_json(report(), kMeasuredAt)},
+                       {"ranges", ranges_json(ranges, cell_state, kMeasuredAt)}};
   const std::string sut = sensing_table(status);
   EXPECT_THAT(sut, HasSubstr("on of 3 bodies, 2 pairs tested"));
   EXPECT_THAT(sut, HasSubstr("TOUCH Arm.J1 - Box: 12.5 mm deep"));

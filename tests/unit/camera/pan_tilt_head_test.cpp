@@ -9,8 +9,8 @@
 namespace cellmirror::sim {
 namespace {
 
-constexpr Timestamp kStart{1'000'000'000};
-constexpr Nanoseconds kMs{1'000'000};
+constexpr Timestamp kBegin{1'000'000'000};
+constexpr Nanoseconds kMillisecond{1'000'000};
 
 CameraRecord record(double pan, double tilt, bool tracking = true, bool mirrored = true) {
   CameraRecord made;
@@ -26,12 +26,12 @@ CameraRecord record(double pan, double tilt, bool tracking = true, bool mirrored
 class PanTiltHeadTest : public ::testing::Test {
  protected:
   PanTiltHeadTest() {
-    sut.start(kStart);
-    now = kStart;
+    sut.start(kBegin);
+    now = kBegin;
   }
   void run_ms(int ms) {
     for (int i = 0; i < ms; ++i) {
-      now = now + kMs;
+      now = now + kMillisecond;
       sut.advance(now);
     }
   }

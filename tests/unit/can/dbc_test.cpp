@@ -188,7 +188,7 @@ TEST(Dbc, ReadsFilesOfOthers) {
   EXPECT_EQ(diagnostics.text(), "");
 }
 
-struct Recorder : DbcSessionOutput {
+struct SignalRecorder : DbcSessionOutput {
   std::vector<JointSample> samples;
   std::vector<std::string> reasons;
   void sample(const JointSample& s) override { samples.push_back(s); }
@@ -217,7 +217,7 @@ struct DbcSessionTest : testing::Test {
     EXPECT_EQ(diagnostics.errors(), 0U);
     sut = std::make_unique<DbcSession>(std::move(*plan), recorder);
   }
-  Recorder recorder;
+  SignalRecorder recorder;
   std::unique_ptr<DbcSession> sut;
 };
 

@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct Parsed {
+struct ParsedRobot {
   std::optional<Component> component;
   Diagnostics diagnostics;
 };
 
-Parsed parse(const std::string& inside) {
-  Parsed parsed;
+ParsedRobot parse(const std::string& inside) {
+  ParsedRobot parsed;
   parsed.component =
       parse_urdf("<robot name=\"r\">\n" + inside + "</robot>", "r.urdf", "/r.urdf", AnyFile(), parsed.diagnostics);
   return parsed;
@@ -40,12 +40,12 @@ std::string joint(const std::string& name, const std::string& parent, const std:
   return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
          "\"/>" + more + "</joint>\n";
 }
-const std::string kLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"5\"/>";
+const std::string kJointLimit = "<limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"5\"/>";
 
 TEST(Urdf, becomesNodesAndARobot) {
-  const Parsed sut = parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" +
-                           joint("ab", "a", "b", "revolute", "<axis xyz=\"0 0 2\"/>" + kLimit) +
-                           joint("bc", "b", "c", "fixed", "<origin xyz=\"1 2 3\"/>"));
+  const ParsedRobot sut = parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" +
+                                joint("ab", "a", "b", "revolute", "<axis xyz=\"0 0 2\"/>" + kJointLimit) +
+                                joint("bc", "b", "c", "fixed", "<origin xyz=\"1 2 3\"/>"));
   ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
   ASSERT_EQ(sut.component->nodes.size(), 4U);
   EXPECT_EQ(sut.component->nodes[1].name, "ab");
@@ -59,9 +59,9 @@ TEST(Urdf, becomesNodesAndARobot) {
 }
 
 TEST(Urdf, mimicJointsFollowAndAreNotCommanded) {
-  const Parsed sut =
-      parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("ab", "a", "b", "revolute", kLimit) +
-            joint("bc", "b", "c", "prismatic", kLimit + "<mimic joint=\"ab\" multiplier=\"0.5\" offset=\"0.1\"/>"));
+  const ParsedRobot sut = parse(
+      "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("ab", "a", "b", "revolute", kJointLimit) +
+      joint("bc", "b", "c", "prismatic", kJointLimit + "<mimic joint=\"ab\" multiplier=\"0.5\" offset=\"0.1\"/>"));
   ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
   EXPECT_EQ(sut.component->robot->joints.size(), 1U);
   EXPECT_EQ(sut.component->nodes[3].joint->mimic->multiplier, 0.5);
@@ -75,7 +75,7 @@ struct Fault {
 struct FaultyUrdf : testing::TestWithParam<Fault> {};
 
 TEST_P(FaultyUrdf, isRefusedWithAPlace) {
-  const Parsed sut = parse(GetParam().text);
+  const ParsedRobot sut = parse(GetParam().text);
   EXPECT_FALSE(sut.diagnostics.ok());
   EXPECT_THAT(sut.diagnostics.text(), HasSubstr(GetParam().message));
   EXPECT_THAT(sut.diagnostics.text(), HasSubstr("r.urdf"));
@@ -109,15 +109,15 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"twoNumbers",
               "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin xyz=\"0 0\"/>"),
               "must have 3 numbers"},
-        Fault{
-            "noAxis",
-            "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute", "<axis xyz=\"0 0 0\"/>" + kLimit),
-            "has length zero"},
+        Fault{"noAxis",
+              "<link name=\"a\"/><link name=\"b\"/>" +
+                  joint("x", "a", "b", "revolute", "<axis xyz=\"0 0 0\"/>" + kJointLimit),
+              "has length zero"},
         Fault{"type", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "floating"), "cannot be used"},
-        Fault{
-            "mimicOfNothing",
-            "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "revolute", kLimit + "<mimic joint=\"y\"/>"),
-            "does not exist"},
+        Fault{"mimicOfNothing",
+              "<link name=\"a\"/><link name=\"b\"/>" +
+                  joint("x", "a", "b", "revolute", kJointLimit + "<mimic joint=\"y\"/>"),
+              "does not exist"},
         Fault{"name", "<link name=\"a.b\"/>", "not a valid name"},
         Fault{"shape", "<link name=\"a\"><visual><geometry><cone/></geometry></visual></link>", "not a shape"},
         Fault{"size", "<link name=\"a\"><collision><geometry><sphere radius=\"-1\"/></geometry></collision></link>",
@@ -148,7 +148,7 @@ TEST(Urdf, longChainsDoNotExhaustTheStack) {
     text += "<link name=\"l" + std::to_string(i) + "\"/>";
     text += joint("j" + std::to_string(i), "l" + std::to_string(i - 1), "l" + std::to_string(i));
   }
-  const Parsed sut = parse(text);
+  const ParsedRobot sut = parse(text);
   ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
   EXPECT_EQ(sut.component->nodes.size(), 9'000U);
 }

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kG = 9.80665;
+constexpr double kGravity = 9.80665;
 
 // A lift (z) that carries a turning arm (about y), with the hand TIP 1 m beyond in x.
 constexpr const char* kCrane = R"(
@@ -96,8 +96,8 @@ TEST(RobotMechanism, holdsWhatItsJointsMove) {
   EXPECT_EQ(sut.mechanism->drive(0).max_effort, 400.0);
   EXPECT_EQ(sut.mechanism->drive(0).viscous_friction, 3.0);
   const auto effort = holding(sut);
-  EXPECT_NEAR(effort[0], 14.0 * kG, 1e-12);
-  EXPECT_NEAR(effort[1], -4.0 * 0.6 * kG, 1e-12);  // about y, from x towards -z
+  EXPECT_NEAR(effort[0], 14.0 * kGravity, 1e-12);
+  EXPECT_NEAR(effort[1], -4.0 * 0.6 * kGravity, 1e-12);  // about y, from x towards -z
 }
 
 TEST(RobotMechanism, bearsWhatIsConnected) {
@@ -108,7 +108,7 @@ TEST(RobotMechanism, bearsWhatIsConnected) {
   const RobotMechanism sut = mechanism_of(cell);
   EXPECT_EQ(sut.model_kg, 14.0);
   EXPECT_EQ(sut.payload_kg, 7.0);
-  EXPECT_NEAR(holding(sut)[1], -(4.0 * 0.6 + 7.0 * 1.0) * kG, 1e-12);
+  EXPECT_NEAR(holding(sut)[1], -(4.0 * 0.6 + 7.0 * 1.0) * kGravity, 1e-12);
   // Hidden: not there. Shown again: there.
   ASSERT_TRUE(cell.deactivate("Weight"));
   EXPECT_EQ(mechanism_of(cell).payload_kg, 0.0);
@@ -172,10 +172,10 @@ robot_id = "UPPER"
   ASSERT_EQ(upper.variables.size(), 4U);
   EXPECT_NE(upper.variables[0].slot, upper.variables[2].slot);
   // The upper robot's own lift is its first variable; the lower's lift accelerates it as well.
-  EXPECT_NEAR(holding(upper)[0], 14.0 * kG, 1e-9);
-  EXPECT_NEAR(holding(upper, {0, 0, 2.0})[0], 14.0 * (kG + 2.0), 1e-9);
-  EXPECT_NEAR(holding(lower)[0], 528.0 * kG, 1e-9);
-  EXPECT_NEAR(holding(lower, {0, 0, 2.0})[0], 528.0 * kG + 2.0 * 14.0, 1e-9);
+  EXPECT_NEAR(holding(upper)[0], 14.0 * kGravity, 1e-9);
+  EXPECT_NEAR(holding(upper, {0, 0, 2.0})[0], 14.0 * (kGravity + 2.0), 1e-9);
+  EXPECT_NEAR(holding(lower)[0], 528.0 * kGravity, 1e-9);
+  EXPECT_NEAR(holding(lower, {0, 0, 2.0})[0], 528.0 * kGravity + 2.0 * 14.0, 1e-9);
 }
 
 }  // namespace

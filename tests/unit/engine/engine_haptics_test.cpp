@@ -13,7 +13,7 @@
 namespace cellmirror::engine {
 namespace {
 
-constexpr std::uint8_t kSlot = 5;
+constexpr std::uint8_t kHapticSlot = 5;
 constexpr std::uint8_t kChannel = 2;
 
 // Three slides along x, y, z: the tip stands where the joints say.
@@ -67,8 +67,8 @@ class EngineHapticsTest : public testing::Test {
     instrument_.lower.fill(-1.0);
     instrument_.upper.fill(1.0);
     for (std::uint8_t i = 0; i < 3; ++i) instrument_.variable_joint[i] = i;
-    send_robot(*sut_, kSlot, robot_of(3, -1.0, 1.0));
-    sut_->send(SetMode{.slot = kSlot, .mode = RobotMode::mirrored});
+    send_robot(*sut_, kHapticSlot, robot_of(3, -1.0, 1.0));
+    sut_->send(SetMode{.slot = kHapticSlot, .mode = RobotMode::mirrored});
     tick();
   }
 
@@ -80,7 +80,7 @@ class EngineHapticsTest : public testing::Test {
     model = haptics::ContactModel();
     model.sequence = ++model_sequence_;
     model.posture_time = now_;
-    model.slot = kSlot;
+    model.slot = kHapticSlot;
     model.reach = 1.0;
     model.x_ref = {0, 0, 0};
     model.count = 1;
@@ -91,7 +91,7 @@ class EngineHapticsTest : public testing::Test {
   }
 
   // The newest force of soft tissue on an instrument that touches it.
-  void give_tissue(const Eigen::Vector3d& force, std::uint8_t slot = kSlot) {
+  void give_tissue(const Eigen::Vector3d& force, std::uint8_t slot = kHapticSlot) {
     haptics::TissueForce& tissue = sut_->tissue_inlet(kChannel).writable();
     tissue = haptics::TissueForce();
     tissue.sequence = ++tissue_sequence_;
@@ -123,7 +123,7 @@ class EngineHapticsTest : public testing::Test {
   }
 
   const HapticState& haptic() { return ticks_.newest().haptics[kChannel]; }
-  const RobotTickState& robot() { return ticks_.newest().robots[kSlot]; }
+  const RobotTickState& robot() { return ticks_.newest().robots[kHapticSlot]; }
 
   Watchdog watchdog_{std::chrono::milliseconds(100), {}};
   std::unique_ptr<Engine> sut_ = std::make_unique<Engine>(watchdog_);
@@ -133,7 +133,7 @@ class EngineHapticsTest : public testing::Test {
   std::uint64_t cycle_ = 0;
   std::uint64_t model_sequence_ = 0;
   std::uint64_t tissue_sequence_ = 0;
-  haptics::Instrument instrument_{kSlot, 3, slides(), {}, Pose::Identity(), {}, {}, {}};
+  haptics::Instrument instrument_{kHapticSlot, 3, slides(), {}, Pose::Identity(), {}, {}, {}};
   std::shared_ptr<TestDevice> shared_device_ = std::make_shared<TestDevice>();
   TestDevice& device_ = *shared_device_;
 };
@@ -146,7 +146,7 @@ TEST_F(EngineHapticsTest, InstrumentFollowsTheHandAsAMirroredRobot) {
   EXPECT_EQ(robot().state, DataState::fresh);
   EXPECT_NEAR((haptic().x_device - Eigen::Vector3d(0.01, -0.02, 0.03)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((haptic().x_proxy - haptic().x_device).norm(), 0.0, 1e-6);
-  EXPECT_EQ(haptic().slot, kSlot);
+  EXPECT_EQ(haptic().slot, kHapticSlot);
   EXPECT_EQ(haptic().device_writer, 4711U);
   EXPECT_EQ(second_.newest().haptics[kChannel].samples, haptic().samples);
 }
@@ -269,7 +269,8 @@ TEST_F(EngineHapticsTest, CommandsThatNameNothingAreRefused) {
 }
 
 TEST_F(EngineHapticsTest, InstrumentOfASlotBeyondTheRobotsIsRefused) {
-  sut_ = std::make_unique<Engine>(watchdog_, EngineCapacity{.robots = kSlot, .haptic_devices = kMaxHapticDevices});
+  sut_ =
+      std::make_unique<Engine>(watchdog_, EngineCapacity{.robots = kHapticSlot, .haptic_devices = kMaxHapticDevices});
   TickReader& reader = sut_->subscribe("beyond");
   sut_->send(open(kChannel, shared_device_));  // its slot is the first that is not there
   tick(3);
@@ -321,7 +322,7 @@ TEST_F(EngineHapticsTest, ForceOfTissueOnWhatHadTheChannelBeforeIsNotUsed) {
   run(200);
   EXPECT_FALSE(haptic().tissue_time.known());
   for (int i = 0; i < 150; ++i) {
-    give_tissue({0, 0, 1}, kSlot + 1);
+    give_tissue({0, 0, 1}, kHapticSlot + 1);
     run(1);
   }
   EXPECT_FALSE(haptic().tissue_time.known());

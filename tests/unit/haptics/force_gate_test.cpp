@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPeriod_s = 1e-3;
 constexpr ForceLimits kLimits{.largest = 8.0, .largest_rate = 4000.0};
 
@@ -34,7 +34,7 @@ TEST_F(ForceGateTest, LimitsLengthAndRate) {
   EXPECT_TRUE(sut.limit({20, 0, 0}, kLimits, kPeriod_s).isApprox(Vector3d(7, 0, 0))) << "4 N a period";
   EXPECT_TRUE(sut.cut());
   EXPECT_TRUE(sut.limit({20, 0, 0}, kLimits, kPeriod_s).isApprox(Vector3d(8, 0, 0)));
-  EXPECT_TRUE(sut.limit({kNaN, 0, 0}, kLimits, kPeriod_s).isApprox(Vector3d(4, 0, 0))) << "towards zero";
+  EXPECT_TRUE(sut.limit({kNotANumber, 0, 0}, kLimits, kPeriod_s).isApprox(Vector3d(4, 0, 0))) << "towards zero";
   sut.restart();
   EXPECT_TRUE(sut.limit({0, 8, 0}, kLimits, kPeriod_s).isApprox(Vector3d(0, 4, 0)));
 }
@@ -66,10 +66,10 @@ TEST_F(ForceGateTest, OneValueThatIsNoNumberTakesAllForcesAndTorques) {
   good.joint_torques.fill(0.5);
   for (int which = 0; which < 5; ++which) {
     HapticOutput output = good;
-    if (which == 0) output.force_D.y() = kNaN;
-    if (which == 1) output.force_E.z() = kNaN;
+    if (which == 0) output.force_D.y() = kNotANumber;
+    if (which == 1) output.force_E.z() = kNotANumber;
     if (which == 2) output.torque_D.x() = std::numeric_limits<double>::infinity();
-    if (which == 3) output.gripper_torque = kNaN;
+    if (which == 3) output.gripper_torque = kNotANumber;
     if (which == 4) output.joint_torques.back() = -std::numeric_limits<double>::infinity();
     EXPECT_FALSE(sut.admits(output, kLimits, kPeriod_s));
     EXPECT_FALSE(sut.write(output, kLimits, kPeriod_s));

@@ -21,7 +21,7 @@ using test_rig::stiffness_of_tissue;
 using test_rig::TissueParameters;
 
 // J: the allowance, what is forgiven of it in 2.5 s, and as much again for what the look ahead of two periods misses.
-constexpr double kBound = 1.5e-3;
+constexpr double kEnergyBound = 1.5e-3;
 
 struct Worker {
   const char* name;
@@ -66,7 +66,7 @@ void expect_passive(const TissueParameters& tissue, const std::string& what) {
       const HandRun sut = run(settings, tissue, {.mass = mass, .damping = damping});
       const std::string where =
           what + ", " + std::to_string(tissue.stiffness) + " N/m, hand of " + std::to_string(mass) + " kg";
-      EXPECT_GT(sut.least_energy, -kBound) << where;
+      EXPECT_GT(sut.least_energy, -kEnergyBound) << where;
       EXPECT_FALSE(sut.faulted) << where;
       EXPECT_LE(sut.largest_force, settings.max_force + 1e-9) << where;
       EXPECT_LE(sut.largest_step, settings.max_slew * 1e-3 + 1e-9) << where;
@@ -119,7 +119,7 @@ TEST(TissueEnergy, WouldBeGeneratedByALateWorkerWithoutTheController) {
   settings.passivity_control = false;
   TissueParameters tissue = tissue_of(50e3, kLate[1]);
   tissue.local_stiffness = false;
-  EXPECT_LT(run(settings, tissue, {.mass = 0.2, .damping = 0.5}).least_energy, -20 * kBound)
+  EXPECT_LT(run(settings, tissue, {.mass = 0.2, .damping = 0.5}).least_energy, -20 * kEnergyBound)
       << "else the tests above prove nothing";
 }
 
@@ -129,9 +129,9 @@ TEST(TissueEnergy, LocalStiffnessBridgesTheDelay) {
   TissueParameters tissue = tissue_of(50e3, kOnTime[1]);
   tissue.damping = 0;
   const HandParameters hand{.mass = 0.1, .damping = 2.0};
-  EXPECT_GT(run(settings, tissue, hand).least_energy, -kBound);
+  EXPECT_GT(run(settings, tissue, hand).least_energy, -kEnergyBound);
   tissue.local_stiffness = false;
-  EXPECT_LT(run(settings, tissue, hand).least_energy, -3 * kBound);
+  EXPECT_LT(run(settings, tissue, hand).least_energy, -3 * kEnergyBound);
 }
 
 TEST(TissueEnergy, SmoothedForcesNeedPlacesThatAreSmoothedToo) {
@@ -140,9 +140,9 @@ TEST(TissueEnergy, SmoothedForcesNeedPlacesThatAreSmoothedToo) {
   TissueParameters tissue = tissue_of(50e3, kOnTime[0]);
   tissue.smoothing = 0.2;
   const HandParameters hand{.mass = 0.1, .damping = 0.5};
-  EXPECT_GT(run(settings, tissue, hand).least_energy, -kBound);
+  EXPECT_GT(run(settings, tissue, hand).least_energy, -kEnergyBound);
   tissue.smooths_place = false;
-  EXPECT_LT(run(settings, tissue, hand).least_energy, -10 * kBound);
+  EXPECT_LT(run(settings, tissue, hand).least_energy, -10 * kEnergyBound);
 }
 
 // Tissue that becomes stiffer the deeper it is pressed has stored more than a spring of its local stiffness; what a

@@ -11,11 +11,11 @@ namespace {
 
 constexpr Timestamp kFrom{1'000'000'000};
 constexpr Timestamp kTo{11'000'000'000};
-constexpr Nanoseconds kUtc{1'700'000'000'000'000'000};
+constexpr Nanoseconds kBeginUtc{1'700'000'000'000'000'000};
 constexpr Timestamp kWall{5'000'000'000'000};
 
 Nanoseconds s(double seconds) { return Nanoseconds(std::llround(1e9 * seconds)); }
-std::int64_t utc(double behind_begin_s) { return (kFrom + kUtc + s(behind_begin_s)).ns; }
+std::int64_t utc(double behind_begin_s) { return (kFrom + kBeginUtc + s(behind_begin_s)).ns; }
 
 class PlaybackControlTest : public testing::Test {
  protected:
@@ -24,7 +24,7 @@ class PlaybackControlTest : public testing::Test {
   double at(double wall_s) { return seconds(sut_.due(kWall + s(wall_s)) - kFrom); }
   [[nodiscard]] PlaybackStatus status() const { return sut_.state().status; }
 
-  PlaybackControl sut_{{.from = kFrom, .to = kTo, .utc = kUtc}, "a.mcap", 1, true};
+  PlaybackControl sut_{{.from = kFrom, .to = kTo, .utc = kBeginUtc}, "a.mcap", 1, true};
 };
 
 TEST_F(PlaybackControlTest, TimePassesAsOnTheWallOnceTheFirstStateIsThere) {

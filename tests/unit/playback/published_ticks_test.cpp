@@ -14,7 +14,7 @@
 namespace cellmirror::app {
 namespace {
 
-constexpr Nanoseconds kPeriod{2'000'000};
+constexpr Nanoseconds kTickPeriod{2'000'000};
 
 class PublishedTicksTest : public testing::Test {
  protected:
@@ -26,10 +26,10 @@ class PublishedTicksTest : public testing::Test {
 
   void tick(int times) {
     for (int i = 0; i < times; ++i) {
-      now_ = now_ + kPeriod;
+      now_ = now_ + kTickPeriod;
       const JointSample sample = engine::sample_of_curve(now_ - Nanoseconds(100'000), cycle_ + 1);
       if (sample.sequence % 3 != 0) engine_->inlet(1).push(sample);
-      engine::run_cycle(*engine_, now_, cycle_, 0, kPeriod);
+      engine::run_cycle(*engine_, now_, cycle_, 0, kTickPeriod);
       for (std::size_t j = 0; j < 3; ++j) published_[now_][j] = ticks_.newest().robots[1].joints[j].position;
     }
   }

@@ -12,7 +12,7 @@
 namespace cellmirror::program {
 namespace {
 
-constexpr std::array kJoints{JointKind::revolute, JointKind::prismatic, JointKind::continuous};
+constexpr std::array kJointCount{JointKind::revolute, JointKind::prismatic, JointKind::continuous};
 
 CheckPoint point(std::string name, double degrees, double mm, double more_degrees) {
   CheckPoint point;
@@ -24,7 +24,7 @@ CheckPoint point(std::string name, double degrees, double mm, double more_degree
 }
 
 TEST(TeachWriter, WritesAValueForEveryJointOfABoom) {
-  auto sut = TeachWriter::begin(TeachDialect::boom, "task", kJoints).value();
+  auto sut = TeachWriter::begin(TeachDialect::boom, "task", kJointCount).value();
   sut.comment("of MANTEC_R3,\nrecorded");
   ASSERT_TRUE(sut.add(point("P1", 45, -12.5, 0)));
   CheckPoint second = point("P2", -0.0000001, 1000, 30.123456);
@@ -37,7 +37,7 @@ TEST(TeachWriter, WritesAValueForEveryJointOfABoom) {
 }
 
 TEST(TeachWriter, WritesWhatMovesOfAMast) {
-  auto sut = TeachWriter::begin(TeachDialect::tarm, "mast", kJoints).value();
+  auto sut = TeachWriter::begin(TeachDialect::tarm, "mast", kJointCount).value();
   ASSERT_TRUE(sut.add(point("P1", 0, 0, 0)));
   ASSERT_TRUE(sut.add(point("P2", 0, 800, 0)));
   ASSERT_TRUE(sut.add(point("P3", 0, 800, 1e-9)));
@@ -46,7 +46,7 @@ TEST(TeachWriter, WritesWhatMovesOfAMast) {
 
 TEST(TeachWriter, WritesWhatTheReaderTakes) {
   for (const TeachDialect dialect : {TeachDialect::boom, TeachDialect::tarm}) {
-    auto sut = TeachWriter::begin(dialect, "task", kJoints).value();
+    auto sut = TeachWriter::begin(dialect, "task", kJointCount).value();
     int number = 0;
     for (const FlyType type : {FlyType::speed_fraction, FlyType::distance, FlyType::angle}) {
       CheckPoint next = point("P" + std::to_string(number), 10.0 * number, 3.25 * number, -1);
@@ -61,7 +61,7 @@ TEST(TeachWriter, WritesWhatTheReaderTakes) {
 }
 
 TEST(TeachWriter, RefusesWhatTheReaderWouldNotTake) {
-  auto sut = TeachWriter::begin(TeachDialect::boom, "task", kJoints).value();
+  auto sut = TeachWriter::begin(TeachDialect::boom, "task", kJointCount).value();
   ASSERT_TRUE(sut.add(point("P1", 0, 0, 0)));
   const std::string before = sut.text();
   EXPECT_FALSE(sut.add(point("P1", 1, 1, 1)));   // the name is known
@@ -79,7 +79,7 @@ TEST(TeachWriter, RefusesWhatTheReaderWouldNotTake) {
 }
 
 TEST(TeachWriter, NeedsANameAndJoints) {
-  EXPECT_FALSE(TeachWriter::begin(TeachDialect::boom, "no name", kJoints));
+  EXPECT_FALSE(TeachWriter::begin(TeachDialect::boom, "no name", kJointCount));
   EXPECT_FALSE(TeachWriter::begin(TeachDialect::boom, "task", {}));
   EXPECT_FALSE(TeachWriter::begin(TeachDialect::boom, "task", std::vector(17, JointKind::revolute)));
 }

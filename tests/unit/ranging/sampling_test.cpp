@@ -18,7 +18,7 @@ namespace {
 using ranging::Cone;
 using ranging::ConeHit;
 
-constexpr double kFar = 1e3;
+constexpr double kFarAway = 1e3;
 
 struct Case {
   Cone cone;
@@ -107,7 +107,7 @@ void expect_primitives_read(bool limited, int rounds, std::uint64_t seed) {
     int seen = 0;
     for (int i = 0; i < rounds; ++i) {
       const Case c{random_cone(random, limited), aimed(random, 1.5)};
-      const auto hit = nearest_in_cone(primitive.solid, c.X_SG, c.cone, kFar);
+      const auto hit = nearest_in_cone(primitive.solid, c.X_SG, c.cone, kFarAway);
       const auto project = [&](const Vector3d& p) { return onto_surface(primitive.solid, p); };
       const double nearest = nearest_sample(c, hit, primitive.solid.half.maxCoeff(), project, 400, random);
       expect_read(c, hit, nearest, primitive.what, i);
@@ -138,7 +138,7 @@ TEST(Triangle, is_read_at_its_nearest_point_in_the_cone) {
   for (int i = 0; i < 3000; ++i) {
     const Case c{random_cone(random, i % 2 == 1), aimed(random, 1.5)};
     const geometry::Triangle triangle = random_triangle(random);
-    const auto hit = nearest_in_cone(mesh_of({triangle}), c.X_SG, c.cone, kFar);
+    const auto hit = nearest_in_cone(mesh_of({triangle}), c.X_SG, c.cone, kFarAway);
     const auto project = [&](const Vector3d& p) { return onto_triangle(p, triangle); };
     expect_read(c, hit, nearest_sample(c, hit, 1.0, project, 300, random), "triangle", i);
     if (!hit) continue;
@@ -180,8 +180,8 @@ TEST(Mesh, far_from_its_origin_loses_no_more_than_its_numbers_do) {
     const Pose X_SG = aimed(random, 1.5);
     Pose X_SF = X_SG;
     X_SF.translation() -= X_SG.linear() * far;
-    const auto a = nearest_in_cone(mesh_of({near_by}), X_SG, cone, kFar);
-    const auto b = nearest_in_cone(mesh_of({moved}), X_SF, cone, kFar);
+    const auto a = nearest_in_cone(mesh_of({near_by}), X_SG, cone, kFarAway);
+    const auto b = nearest_in_cone(mesh_of({moved}), X_SF, cone, kFarAway);
     if (a && b) {
       EXPECT_NEAR(a->distance, b->distance, 1e-6);
     }

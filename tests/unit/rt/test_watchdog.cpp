@@ -8,15 +8,15 @@
 namespace cellmirror {
 namespace {
 
-constexpr Nanoseconds kMs{1'000'000};
+constexpr Nanoseconds kMillisecond{1'000'000};
 
 class WatchdogTest : public testing::Test {
  protected:
   // Checks every 2 ms for `duration`, with a beat before each check if `beating`. The last answer.
   bool run(Nanoseconds duration, bool beating) {
     bool well = true;
-    for (Nanoseconds t{0}; t < duration; t += 2 * kMs) {
-      clock_.advance(2 * kMs);
+    for (Nanoseconds t{0}; t < duration; t += 2 * kMillisecond) {
+      clock_.advance(2 * kMillisecond);
       if (beating) {
         sut_.beat();
       }
@@ -27,36 +27,36 @@ class WatchdogTest : public testing::Test {
 
   ManualClock clock_;
   std::vector<WatchdogFault> told_;
-  Watchdog sut_{10 * kMs, [this](const WatchdogFault& fault) { told_.push_back(fault); }};
+  Watchdog sut_{10 * kMillisecond, [this](const WatchdogFault& fault) { told_.push_back(fault); }};
 };
 
 TEST_F(WatchdogTest, UnarmedItWatchesNothing) {
-  EXPECT_TRUE(run(100 * kMs, false));
+  EXPECT_TRUE(run(100 * kMillisecond, false));
   EXPECT_FALSE(sut_.faulted());
 }
 
 TEST_F(WatchdogTest, BeatsKeepItQuiet) {
   sut_.arm(clock_.now());
-  EXPECT_TRUE(run(100 * kMs, true));
+  EXPECT_TRUE(run(100 * kMillisecond, true));
   EXPECT_EQ(sut_.beats(), 50U);
   EXPECT_TRUE(told_.empty());
 }
 
 TEST_F(WatchdogTest, SilenceIsAFaultToldOnceWithItsLength) {
   sut_.arm(clock_.now());
-  run(20 * kMs, true);
-  EXPECT_TRUE(run(10 * kMs, false)) << "not yet longer than the timeout";
-  EXPECT_FALSE(run(50 * kMs, false));
+  run(20 * kMillisecond, true);
+  EXPECT_TRUE(run(10 * kMillisecond, false)) << "not yet longer than the timeout";
+  EXPECT_FALSE(run(50 * kMillisecond, false));
   ASSERT_EQ(told_.size(), 1U);
-  EXPECT_EQ(told_[0].silence, 12 * kMs);
+  EXPECT_EQ(told_[0].silence, 12 * kMillisecond);
   EXPECT_EQ(told_[0].beats, 10U);
   EXPECT_EQ(sut_.faults(), 1U);
 }
 
 TEST_F(WatchdogTest, AFaultStaysAlthoughTheBeatsComeBack) {
   sut_.arm(clock_.now());
-  run(20 * kMs, false);
-  EXPECT_FALSE(run(20 * kMs, true));
+  run(20 * kMillisecond, false);
+  EXPECT_FALSE(run(20 * kMillisecond, true));
   EXPECT_TRUE(sut_.faulted());
   ASSERT_TRUE(sut_.fault());
   EXPECT_EQ(told_.size(), 1U);
@@ -64,31 +64,31 @@ TEST_F(WatchdogTest, AFaultStaysAlthoughTheBeatsComeBack) {
 
 TEST_F(WatchdogTest, AfterAResetItWatchesAnew) {
   sut_.arm(clock_.now());
-  run(20 * kMs, false);
+  run(20 * kMillisecond, false);
   sut_.reset(clock_.now());
   EXPECT_FALSE(sut_.faulted());
   EXPECT_FALSE(sut_.fault());
-  EXPECT_TRUE(run(20 * kMs, true));
-  EXPECT_FALSE(run(20 * kMs, false));
+  EXPECT_TRUE(run(20 * kMillisecond, true));
+  EXPECT_FALSE(run(20 * kMillisecond, false));
   EXPECT_EQ(told_.size(), 2U);
   EXPECT_EQ(sut_.faults(), 2U);
 }
 
 TEST_F(WatchdogTest, AStandstillOfTheWholeMachineIsNoFault) {
   sut_.arm(clock_.now());
-  run(20 * kMs, true);
-  clock_.advance(500 * kMs);  // neither beats nor checks
+  run(20 * kMillisecond, true);
+  clock_.advance(500 * kMillisecond);  // neither beats nor checks
   EXPECT_TRUE(sut_.check(clock_.now()));
-  EXPECT_FALSE(run(20 * kMs, false)) << "but silence after it is";
+  EXPECT_FALSE(run(20 * kMillisecond, false)) << "but silence after it is";
 }
 
 TEST_F(WatchdogTest, TheCallbackMayReset) {
   Watchdog* self = nullptr;
-  Watchdog sut(10 * kMs, [&](const WatchdogFault& fault) { self->reset(fault.noticed); });
+  Watchdog sut(10 * kMillisecond, [&](const WatchdogFault& fault) { self->reset(fault.noticed); });
   self = &sut;
   sut.arm(clock_.now());
   for (int i = 0; i < 7; ++i) {
-    clock_.advance(2 * kMs);
+    clock_.advance(2 * kMillisecond);
     static_cast<void>(sut.check(clock_.now()));
   }
   EXPECT_FALSE(sut.faulted());
