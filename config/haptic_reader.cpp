@@ -84,10 +84,10 @@ void read_guards(TableReader& reader, HapticSettings& settings) {
 
 void read_memory(TableReader& reader, RobotHaptic& haptic) {
   constexpr long long kLeastBytes = 12;  // three float32: the force alone, as in 1999
-  constexpr long long kMostBytes = 1 << 20;
+  constexpr long long kMostBlockBytes = 1 << 20;
   if (const auto key = reader.integer("shm_key", 1, 0x7FFF'FFFF)) haptic.key = static_cast<std::int32_t>(*key);
   haptic.bytes = static_cast<std::size_t>(
-      reader.integer("shm_bytes", kLeastBytes, kMostBytes).value_or(static_cast<long long>(haptic.bytes)));
+      reader.integer("shm_bytes", kLeastBytes, kMostBlockBytes).value_or(static_cast<long long>(haptic.bytes)));
   if (const auto mode = reader.text("shm_mode")) {
     if (const auto bits = octal(*mode)) {
       haptic.mode = *bits;

@@ -64,13 +64,13 @@ Result<MeshLibrary::Pieces> MeshLibrary::pieces(Entry& entry, const TriangleMesh
 Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, const Eigen::Vector3d& scale,
                                const Beside& beside, const Place& place, Diagnostics& diagnostics, CollisionMesh& out) {
   about_to_read(file);
-  constexpr std::size_t kLargestText = 4UL << 20U;
+  constexpr std::size_t kLargestFile = 4UL << 20U;
   pictures_->begin_mesh();
   AppearanceRequest looks;
   looks.text = [&](const std::string& name) -> Result<std::string> {
     const auto at = beside(name);
     if (!at) return std::unexpected(at.error());
-    return read_text_file(*at, kLargestText);
+    return read_text_file(*at, kLargestFile);
   };
   looks.picture = [&](const std::string& name) -> Result<Picture> {
     const auto at = beside(name);

@@ -26,26 +26,26 @@ struct RangeOptions {
 
 int print(const RangeOptions& options, const ProximityCell& cell, Postures& postures) {
   const RangeHeading heading{cell.loaded.name, postures.count()};
-  std::optional<RangeJson> json;
-  std::optional<RangeText> text;
+  std::optional<RangeJson> json_report;
+  std::optional<RangeText> text_report;
   if (options.json) {
-    json.emplace(heading, *cell.compiled, stdout);
+    json_report.emplace(heading, *cell.compiled, stdout);
   } else {
-    text.emplace(heading, *cell.compiled, stdout);
+    text_report.emplace(heading, *cell.compiled, stdout);
   }
   Result<RangeTotals> totals;
   {
     ProgressLine line("frames");
     totals = run_range(cell.compiled, std::make_shared<geometry::SolidLibrary>(), postures,
                        [&](std::uint64_t frame, std::span<const RangeReading> readings) {
-                         if (json) json->frame(readings);
-                         if (text) text->frame(frame, readings);
+                         if (json_report) json_report->frame(readings);
+                         if (text_report) text_report->frame(frame, readings);
                          line.update(frame, heading.frames);
                        });
   }
   if (!totals) return refuse(totals.error().text());
-  if (json) json->end(*totals);
-  if (text) text->end(*totals);
+  if (json_report) json_report->end(*totals);
+  if (text_report) text_report->end(*totals);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     return refuse(std::string("standard output cannot be written: ") + std::strerror(errno));
   if (options.plot.empty()) return kExitDone;

@@ -15,16 +15,16 @@ class FastSolver final : public Solver {
   FastSolver(const kinematics::Chain& chain, const Clock& clock) : chain_(chain), clock_(clock), spread_(chain_) {}
 
   [[nodiscard]] Result<Answer> solve(const Request& asked) override {
-    constexpr std::size_t kMostStarts = 1000;
-    constexpr std::size_t kStartsWithoutNews = 80;
+    constexpr std::size_t kMostFastStarts = 1000;
+    constexpr std::size_t kFastStartsWithoutNews = 80;
     constexpr int kIterations = 40;
     const Result<Request> good = checked(asked, chain_);
     if (!good) return std::unexpected(good.error());
     Search search(chain_, *good, clock_);
     (void)search.descend(good->present, kIterations, FoundBy::fast);
     std::size_t without_news = 0;
-    for (std::size_t start = 0; start < kMostStarts && search.found() < good->max_solutions; ++start) {
-      if (search.out_of_time() || (search.found() > 0 && without_news >= kStartsWithoutNews)) break;
+    for (std::size_t start = 0; start < kMostFastStarts && search.found() < good->max_solutions; ++start) {
+      if (search.out_of_time() || (search.found() > 0 && without_news >= kFastStartsWithoutNews)) break;
       const std::size_t before = search.found();
       (void)search.descend(spread_.at(start), kIterations, FoundBy::fast);
       without_news = search.found() > before ? 0 : without_news + 1;

@@ -149,8 +149,8 @@ TEST(ClosedFormNearlySo, PosturesOfACalibratedArmNeedAFewStepsOfPolishing) {
     EXPECT_GT(sut->deviation(), 0);
     EXPECT_LT(sut->deviation(), 0.01);
     int found_again = 0;
-    constexpr int kTargets = 500;
-    for (int i = 0; i < kTargets; ++i) {
+    constexpr int kSingularTargets = 500;
+    for (int i = 0; i < kSingularTargets; ++i) {
       JointValues q = random_posture(chain, random);
       while (dexterity(chain, q) < 0.05) q = random_posture(chain, random);
       const Pose X_BG = kinematics::forward(chain, q);
@@ -165,7 +165,7 @@ TEST(ClosedFormNearlySo, PosturesOfACalibratedArmNeedAFewStepsOfPolishing) {
         }
       }
     }
-    EXPECT_GE(found_again, kTargets * 99 / 100);
+    EXPECT_GE(found_again, kSingularTargets * 99 / 100);
   }
 }
 
