@@ -12,7 +12,7 @@ def setUpModule():
 
 class Scene(unittest.TestCase):
     def run_scenario(self, name, *arguments, standin=()):
-        with StandIn(*standin) as server:
+        with StandIn(*standin, "--poses-hz", "5") as server:  # each is a picture that the processor draws
             return browser.Scenario(name, server.address, *arguments).run()
 
     def test_the_cell_is_drawn_in_three_dimensions(self):
