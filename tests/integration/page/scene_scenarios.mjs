@@ -304,11 +304,12 @@ export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, 
       await live(page);
       await page.waitForFunction(() => window.measured.filter(({name}) => name === "cellmirror.record").length > 35);
       const plot = page.locator(".chart .plot", {has: page.locator("canvas")}).nth(1);
-      const box = await plot.boundingBox();
+      let box = await plot.boundingBox();
       // Values under the cursor.
       await page.mouse.move(box.x + box.width - 20, box.y + box.height / 2);
       await page.waitForFunction(() => [...document.querySelectorAll(".chart figcaption")].some(({textContent}) => /at \d\d:\d\d:\d\d/.test(textContent)));
       // A part of the time, then all again.
+      box = await plot.boundingBox();  // captions may have moved it
       await page.mouse.move(box.x + 0.7 * box.width, box.y + 30);
       await page.mouse.down();
       await page.mouse.move(box.x + 0.97 * box.width, box.y + 32, {steps: 6});
