@@ -145,10 +145,13 @@ void PairTracker::measure(const Tracked& pair, Memory& memory, double up_to) {
 const PairDistance& PairTracker::distance(std::size_t index, double up_to) {
   Tracked& pair = pairs_[index];
   Memory& memory = memory_of(index);
-  if (memory.frame != 0 && moved_frame(pair) <= memory.frame && (!memory.last.beyond || memory.last.distance >= up_to))
-    return memory.last;
+  // What lies beyond the limit has a bound that may be a little below it: the limit tells whether another query could
+  // find more. Else equally near pairs, e.g. of equal arms, were measured in each frame though nothing moves.
+  const bool enough = !memory.last.beyond || std::max(memory.last.distance, memory.up_to) >= up_to;
+  if (memory.frame != 0 && moved_frame(pair) <= memory.frame && enough) return memory.last;
   gather(pair, memory, up_to);
   measure(pair, memory, up_to);
+  memory.up_to = up_to;
   memory.frame = motion_->frame();
   relative(pair, memory.R_then, memory.p_then);
   memory.distance_then = memory.last.distance;

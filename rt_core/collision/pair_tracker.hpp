@@ -73,6 +73,7 @@ class PairTracker {
     Eigen::Vector3d p_then = Eigen::Vector3d::Zero();
     double distance_then = -1;  // m, a lower bound; below 0: there was no query
     PairDistance last;
+    double up_to = 0;         // m, how far the query of `last` looked
     std::uint64_t frame = 0;  // of `last`, 0: none
     geometry::Contact contact;
     std::uint64_t contact_frame = 0;  // of `contact`, 0: none

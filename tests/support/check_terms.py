@@ -34,6 +34,10 @@ class Retired:
     term: str
     prose: bool
 
+    def rare_part(self) -> str:
+        """Is in every text that the pattern matches: to look for it is faster by far. Of prose, in small letters."""
+        return max(self.word.casefold().split(), key=len) if self.prose else self.word.strip("*")
+
 
 def cells(row: str) -> list[str]:
     return [cell.strip() for cell in row.strip().strip("|").split("|")]
@@ -90,7 +94,10 @@ def main() -> int:
     for path in files:
         text = (ROOT / path).read_text(errors="replace")
         texts = texts_of(path, text)
+        small = texts.casefold()
         for retired in words:
+            if retired.rare_part() not in (small if retired.prose else text):
+                continue
             for match in retired.pattern.finditer(texts if retired.prose else text):
                 line = text.count("\n", 0, match.start()) + 1
                 errors.append(f"{path}:{line}: '{retired.word}' is retired; see '{retired.term}' in {GLOSSARY}")

@@ -317,7 +317,7 @@ class Client:
                 header = struct.pack("<4sIHHIdd", b"CMP1", self.sequence, self.wish["width"], self.wish["height"], 0, 0.012, 0)
                 self.frame(2, header + jpeg)
                 await self.writer.drain()
-            await asyncio.sleep(1 / 15)
+            await asyncio.sleep(1 / self.options.pictures_hz)
 
 
     async def send_scene(self):
@@ -335,7 +335,7 @@ class Client:
                         self.frame(2, self.cell.scene.tissue_shape())
                     self.frame(2, self.cell.scene.tissue_motion())
                 await self.writer.drain()
-            await asyncio.sleep(1 / 20)
+            await asyncio.sleep(1 / self.options.poses_hz)
 
 
 class Server:
@@ -409,6 +409,8 @@ async def main():
     parser.add_argument("--triangles", type=int, default=0, help="of these spheres together")
     parser.add_argument("--tissue", action="store_true", help="a sheet of tissue, which is cut and heals")
     parser.add_argument("--volumes", type=int, default=0, help="voxel volumes that 3D is told of")
+    parser.add_argument("--pictures-hz", type=float, default=15)
+    parser.add_argument("--poses-hz", type=float, default=20, help="how often 3D is told where everything is")
     parser.add_argument("--still", action="store_true", help="no joint moves")
     parser.add_argument("--read-only", action="store_true")
     parser.add_argument("--problem", action="append", default=[], help="text of a problem to report; repeatable")

@@ -1,7 +1,10 @@
 """Reads PNG files and compares pictures, with the standard library alone."""
 
 import struct
+import sys
 import zlib
+from array import array
+from itertools import accumulate
 
 
 class Picture:
@@ -36,6 +39,8 @@ class Picture:
 
 def difference_mask(a, b, threshold=12):
     assert (a.width, a.height) == (b.width, b.height)
+    if a.pixels == b.pixels:
+        return [False] * len(a.pixels)
     return [p is not q and p != q and max(abs(p[0] - q[0]), abs(p[1] - q[1]), abs(p[2] - q[2])) > threshold
             for p, q in zip(a.pixels, b.pixels)]
 
@@ -68,8 +73,10 @@ def _unfiltered(raw, height, stride, step):
         kind, line = raw[at], bytearray(raw[at + 1 : at + 1 + stride])
         at += 1 + stride
         if kind == 1:
-            for i in range(step, stride):
-                line[i] = (line[i] + line[i - step]) & 255
+            for i in range(step):  # the lowest bytes of the running sums
+                sums = array("I", accumulate(line[i::step]))
+                lowest = 0 if sys.byteorder == "little" else sums.itemsize - 1
+                line[i::step] = sums.tobytes()[lowest :: sums.itemsize]
         elif kind == 2:
             line = bytearray((x + y) & 255 for x, y in zip(line, before))
         elif kind == 3:
@@ -113,5 +120,5 @@ def read_png(path):
         raise ValueError(f"PNG of {bits} bits, colour type {colour}")
     step = 3 if colour == 2 else 4
     rows = _unfiltered(zlib.decompress(packed), height, width * step, step)
-    pixels = [tuple(row[i : i + 3]) for row in rows for i in range(0, width * step, step)]
+    pixels = [pixel for row in rows for pixel in zip(row[0::step], row[1::step], row[2::step])]
     return Picture(width, height, pixels)

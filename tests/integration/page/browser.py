@@ -1,5 +1,7 @@
 """Finds what a browser test needs, Chromium, node and playwright-core, and runs the scenarios of scenarios.mjs."""
 
+import atexit
+import json
 import os
 import pathlib
 import shutil
@@ -49,33 +51,74 @@ def playwright_core():
     return found
 
 
+def drawing(scenario):
+    """What its browser draws with."""
+    return "without-webgl" if "without_webgl" in scenario else "3d" if scenario.startswith("scene") else "2d"
+
+
+class Browser:
+    """Chromium and the scenarios in it, as child processes; they end with standard input."""
+
+    running = {}  # by what they draw with: the next scenario of that kind goes on with it
+
+    def __init__(self, kind):
+        ARTEFACTS.mkdir(parents=True, exist_ok=True)
+        environment = dict(os.environ, CHROMIUM=chromium(), PLAYWRIGHT_CORE=str(playwright_core()),
+                           AXE_CORE=str(playwright_core().parent / "axe-core"), ARTEFACTS=str(ARTEFACTS))
+        self.child = subprocess.Popen([node(), str(HERE / "scenarios.mjs"), kind], env=environment, text=True, stdin=subprocess.PIPE,
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.running[kind] = self
+
+    def say(self, line):
+        self.child.stdin.write(line + "\n")
+        self.child.stdin.flush()
+
+    def close(self):
+        try:
+            self.child.stdin.close()
+            self.child.wait(20)
+        except (OSError, subprocess.TimeoutExpired):
+            pass
+        self.child.kill()
+        self.child.wait()
+        self.child.stdout.close()
+
+    @classmethod
+    def of(cls, kind):
+        return cls.running.get(kind) or cls(kind)
+
+
+@atexit.register
+def close_browsers():
+    for browser in Browser.running.values():
+        browser.close()
+
+
 class Scenario:
-    """A scenario in a browser of its own. It asks for what happens outside the page by printing `> WORD`; `answer`
-    makes it happen and gives a line back, or none."""
+    """Scenarios, NAME[,NAME...], in pages of their own. They ask for what happens outside the page by printing `> WORD`;
+    `answer` makes it happen and gives a line back, or none."""
 
     def __init__(self, name, address, *arguments):
-        ARTEFACTS.mkdir(parents=True, exist_ok=True)
-        self.command = [node(), HERE / "scenarios.mjs", name, address, *arguments]
-        self.environment = dict(os.environ, CHROMIUM=chromium(), PLAYWRIGHT_CORE=str(playwright_core()),
-                                AXE_CORE=str(playwright_core().parent / "axe-core"), ARTEFACTS=str(ARTEFACTS))
+        self.kind = drawing(name)
+        self.request = json.dumps({"scenarios": name, "address": address, "arguments": arguments})
 
-    def run(self, answer=None, timeout=100):
-        child = subprocess.Popen([str(part) for part in self.command], env=self.environment, text=True, stdin=subprocess.PIPE,
-                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        output = []
+    def run(self, answer=None):
+        """What they print."""
+        browser, output = Browser.of(self.kind), []
+        passed = False
         try:
-            for line in child.stdout:
+            browser.say(self.request)
+            for line in browser.child.stdout:
+                if line.startswith("= "):
+                    passed = line == "= passed\n"
+                    break
                 output.append(line)
                 if line.startswith("> "):
-                    child.stdin.write((answer(line[2:].strip()) or "") + "\n")
-                    child.stdin.flush()
-            status = child.wait(timeout)
+                    browser.say(answer(line[2:].strip()) or "")
         finally:
-            child.kill()
-            child.wait()
-            child.stdin.close()
-            child.stdout.close()
+            if not passed:  # the next one gets another
+                Browser.running.pop(self.kind).close()
         text = "".join(output)
-        if status != 0:
+        if not passed:
             raise AssertionError(text)
         return text

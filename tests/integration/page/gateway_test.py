@@ -18,6 +18,14 @@ def setUpModule():
     browser.chromium(), browser.node(), browser.playwright_core()
 
 
+def cell_with_few_pictures():
+    """Each is drawn by the processor, and more show nothing else."""
+    scratch = g.Scratch()
+    with open(scratch.cell_file, "a", encoding="utf-8") as cell:
+        cell.write("\n[display]\nrate_hz = 5\n")
+    return scratch
+
+
 def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -39,7 +47,7 @@ class Scene(unittest.TestCase):
     """The 3D view; nothing moves but what is commanded."""
 
     def test_the_view_moves_with_a_joint_and_names_what_is_clicked(self):
-        scratch = g.Scratch()
+        scratch = cell_with_few_pictures()
         self.addCleanup(scratch.remove)
         gateway = PageGateway(scratch, free_port())
         self.addCleanup(gateway.close)
@@ -52,7 +60,7 @@ class Scene(unittest.TestCase):
 
 class Page(unittest.TestCase):
     def setUp(self):
-        self.scratch = g.Scratch()
+        self.scratch = cell_with_few_pictures()
         self.port = free_port()
         self.robot = g.sim_robot("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100",
                                  "--motion", "sine:amplitude=0.5,period=3")

@@ -10,7 +10,7 @@ const kSizes = [
   ["phone-dark", {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true, colorScheme: "dark"}],
 ];
 
-export function scene_scenarios({opened, live, picture, shot, text_of, run, drag, address}) {
+export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, run, drag, address}) {
   const with_hash = (more) => `${address}&${more}`;
   const drawn = (page, least = 1) => page.waitForFunction((n) => Number(document.getElementById("scene-canvas").dataset.sequence) >= n, least);
   // The bodies are there: poses come before the file.
@@ -71,7 +71,7 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
 
   return {
     async scene() {
-      const page = await opened({}, with_hash("mode=3d"));
+      const page = await opened(kCoarse, with_hash("mode=3d"));
       await live(page);
       await drawn(page, 3);
       assert.equal(await page.getAttribute("#mode-scene", "aria-pressed"), "true");
@@ -111,7 +111,7 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
 
     // Nothing moves: what is drawn changes by the tools alone.
     async scene_tools() {
-      const page = await opened({}, with_hash("mode=3d"));
+      const page = await opened(kCoarse, with_hash("mode=3d"));
       await live(page);
       await drawn(page, 3);
       await page.click("#scene-fit");
@@ -145,7 +145,7 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
 
     // A sheet of tissue moves and is cut; the gateway's picture of volumes is in the corner.
     async scene_tissue() {
-      const page = await opened({}, with_hash("mode=3d"));
+      const page = await opened(kCoarse, with_hash("mode=3d"));
       await live(page);
       await page.waitForFunction(() => Number(document.getElementById("scene-canvas").dataset.tissue) > 500);
       await triangles(page, 1000);
@@ -165,13 +165,13 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       await page.waitForFunction((n) => Number(document.getElementById("view-canvas").dataset.sequence) > n, before);
       await page.click("#mode-picture");
       await page.waitForFunction(() => !document.getElementById("view-area").classList.contains("with-inset"));
-      await page.waitForFunction(() => document.getElementById("view-canvas").width > 500);
+      await page.waitForFunction(() => document.getElementById("view-canvas").width > 500 * window.devicePixelRatio);
     },
 
     // What is old does not look new, and a connection that is back goes on.
     async scene_old() {
       const wire = {live: (message) => message};
-      const page = await opened({}, with_hash("mode=3d"), wire);
+      const page = await opened(kCoarse, with_hash("mode=3d"), wire);
       await live(page);
       await drawn(page, 3);
       await wire.end();
@@ -304,11 +304,12 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
       await live(page);
       await page.waitForFunction(() => window.measured.filter(({name}) => name === "cellmirror.record").length > 35);
       const plot = page.locator(".chart .plot", {has: page.locator("canvas")}).nth(1);
-      const box = await plot.boundingBox();
+      let box = await plot.boundingBox();
       // Values under the cursor.
       await page.mouse.move(box.x + box.width - 20, box.y + box.height / 2);
       await page.waitForFunction(() => [...document.querySelectorAll(".chart figcaption")].some(({textContent}) => /at \d\d:\d\d:\d\d/.test(textContent)));
       // A part of the time, then all again.
+      box = await plot.boundingBox();  // captions may have moved it
       await page.mouse.move(box.x + 0.7 * box.width, box.y + 30);
       await page.mouse.down();
       await page.mouse.move(box.x + 0.97 * box.width, box.y + 32, {steps: 6});
@@ -445,7 +446,7 @@ export function scene_scenarios({opened, live, picture, shot, text_of, run, drag
 
     // A running gateway: what is drawn changes when a joint moves, and the body that is clicked is the gateway's.
     async scene_gateway() {
-      const page = await opened({}, with_hash("mode=3d"));
+      const page = await opened(kCoarse, with_hash("mode=3d"));
       await live(page);
       await triangles(page, 1000);
       const still = await rests(page, "nothing moves, and the view does");

@@ -3,7 +3,7 @@
 import unittest
 
 import browser
-from standin_test import StandIn
+from standin_test import FEW_PICTURES, StandIn
 
 
 def setUpModule():
@@ -12,7 +12,7 @@ def setUpModule():
 
 class Scene(unittest.TestCase):
     def run_scenario(self, name, *arguments, standin=()):
-        with StandIn(*standin) as server:
+        with StandIn(*standin, *FEW_PICTURES, "--poses-hz", "5") as server:
             return browser.Scenario(name, server.address, *arguments).run()
 
     def test_the_cell_is_drawn_in_three_dimensions(self):

@@ -9,6 +9,7 @@ import unittest
 import browser
 
 SUPPORT = browser.SOURCE / "tests" / "support"
+FEW_PICTURES = ("--pictures-hz", "5")  # the processor draws each
 
 
 class StandIn:
@@ -40,7 +41,7 @@ def setUpModule():
 
 
 class Page(unittest.TestCase):
-    def run_scenario(self, name, *arguments, standin=()):
+    def run_scenario(self, name, *arguments, standin=FEW_PICTURES):
         with StandIn(*standin) as server:
             return browser.Scenario(name, server.address, *arguments).run()
 
@@ -69,13 +70,13 @@ class Page(unittest.TestCase):
         self.run_scenario("touch")
 
     def test_problems_and_commands_are_shown(self):
-        self.run_scenario("surroundings", standin=("--problem", "the SCRIPT input queue 0x92f (2351) was taken"))
+        self.run_scenario("surroundings", standin=(*FEW_PICTURES, "--problem", "the SCRIPT input queue 0x92f (2351) was taken"))
 
     def test_who_has_no_token_may_look(self):
         self.run_scenario("looking")
 
     def test_a_read_only_gateway_says_so(self):
-        self.run_scenario("looking", standin=("--read-only",))
+        self.run_scenario("looking", standin=(*FEW_PICTURES, "--read-only"))
 
 
 if __name__ == "__main__":

@@ -94,10 +94,10 @@ class Refused(unittest.TestCase):
         meta = whole[132:144 + length]
         packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
         size = 3 << 30
-        bomb = packer.compress(b"\x09\x00\x10\x00OB\0\0" + size.to_bytes(4, "little"))
-        for _ in range(size >> 24):
-            bomb += packer.compress(bytes(1 << 24))
-        bomb += packer.flush()
+        bomb = packer.compress(b"\x09\x00\x10\x00OB\0\0" + size.to_bytes(4, "little")) + packer.flush(zlib.Z_FULL_FLUSH)
+        # After a full flush the same bytes are packed as the same bytes again: packed once, and repeated.
+        zeros = packer.compress(bytes(1 << 24)) + packer.flush(zlib.Z_FULL_FLUSH)
+        bomb += zeros * (size >> 24) + packer.flush()
         (self.folder / "im0").write_bytes(head + meta + bomb)
         before = os.times()
         done = s.run("info", self.folder)

@@ -157,6 +157,36 @@ TEST_F(SearchTest, StandsStillForNothing) {
   EXPECT_EQ(sut.counters().pairs_computed, before);
 }
 
+// In equal arms that stand alike, the nearest pairs of each are equally near but for rounding.
+TEST_F(SearchTest, StandsStillForNothingWhereEqualArmsStandAlike) {
+  build(R"(
+[[node]]
+name = "A"
+abstract = "arm.mpc"
+robot_id = "A"
+xyz_m = [0.3, 0.0, 0.0]
+[[node]]
+name = "B"
+abstract = "arm.mpc"
+robot_id = "B"
+xyz_m = [5.1, 0.0, 0.0]
+[[node]]
+name = "C"
+abstract = "arm.mpc"
+robot_id = "C"
+xyz_m = [9.7, 0.0, 0.0]
+)");
+  adopt();
+  for (const char* arm : {"A", "B", "C"}) {
+    for (std::size_t i = 0; i < 4; ++i) joint(arm, i) = 0.3;
+  }
+  check();
+  check();  // the limit of this one is the distance that the first one found
+  const auto before = sut.counters().pairs_computed;
+  for (int i = 0; i < 10; ++i) ASSERT_NO_FATAL_FAILURE(expect_naive(check()));
+  EXPECT_EQ(sut.counters().pairs_computed, before);
+}
+
 TEST_F(SearchTest, ComputesFewPairsAFrame) {
   set_smooth(0.0);
   check();

@@ -20,7 +20,10 @@ AIR, LUNG, FAT, TISSUE, LIVER, LESION, BLOOD, MARROW, BONE = -1000, -850, -100, 
 
 
 def inside(p, middle, radii):
-    return sum(((a - b) / r) ** 2 for a, b, r in zip(p, middle, radii)) <= 1.0
+    x, y, z = p
+    a, b, c = middle
+    d, e, f = radii
+    return ((x - a) / d) ** 2 + ((y - b) / e) ** 2 + ((z - c) / f) ** 2 <= 1.0
 
 
 def torso(p, less=0.0):
@@ -93,11 +96,11 @@ def centre(index):
 
 def sample(index):
     """The mean of 8 points."""
-    middle = centre(index)
-    quarter = [0.25 * d for d in SPACING_MM]
-    corners = [value([m + s * q for m, s, q in zip(middle, (sx, sy, sz), quarter)])
-               for sz in (-1, 1) for sy in (-1, 1) for sx in (-1, 1)]
-    return sum(corners) / 8
+    x, y, z = centre(index)
+    a, b, c = (0.25 * d for d in SPACING_MM)
+    if abs(y) < 95.0 and not torso((abs(x) - a, abs(y) - b, abs(z) - c)):
+        return AIR  # the nearest of them is outside, and the table is farther back
+    return sum(value((x + d, y + e, z + f)) for f in (-c, c) for e in (-b, b) for d in (-a, a)) / 8
 
 
 def blurred(values, size, step):
