@@ -102,7 +102,12 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     if (!written) return std::unexpected(written.error());
     return {};
   };
-  const auto traced = [this](script::CommandTrace&& trace) { log_command(command_record_of(std::move(trace))); };
+  // By the owner's thread, which sends to the loop.
+  const auto traced = [this](script::CommandTrace&& trace) {
+    CommandRecord record = command_record_of(std::move(trace));
+    record.loop_command = playback == nullptr ? engine->newest_sent() : 0;
+    log_command(std::move(record));
+  };
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
@@ -117,6 +122,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .tissue = std::move(of_tissue),
                        .foot_switches = loaded.foot_switches,
                        .engine = *engine,
+                       .switch_changed = [this](const FootSwitchChange& change) { recordings.switch_changed(change); },
                        .board = board,
                        .clock = clock,
                        .stream_priority = stream_priority,

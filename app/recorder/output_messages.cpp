@@ -47,8 +47,12 @@ constexpr std::string_view kSwitchesSchema = R"({
 "edges":{"type":"integer"},"on":{"type":"array","items":{"type":"integer"}}}})";
 
 constexpr std::string_view kCommandSchema = R"({
+constexpr std::string_view kSwitchChangeSchema = R"({
+"type":"object","title":"a change of a foot switch or of another binary input","properties":{
+"time_ns":{"type":"integer"},"input":{"type":"integer"},"on":{"type":"boolean"}}})";
+
 "type":"object","title":"a SCRIPT command and its acknowledgement","properties":{
-"time":{"type":"string"},"took_s":{"type":"number"},"tick":{"type":"integer"},"source":{"type":"string"},"process":{"type":"integer"},
+"time":{"type":"string"},"took_s":{"type":"number"},"tick":{"type":"integer"},"loop_command":{"type":"integer"},"source":{"type":"string"},"process":{"type":"integer"},
 "user":{"type":"integer"},"session":{"type":"integer"},"peer":{"type":"string"},"place":{"type":"string"},
 "run":{"type":"integer"},"command":{"type":"string"},"outcome":{"type":"string"},"answer":{"type":"string"}}})";
 
@@ -138,6 +142,10 @@ TopicPtr OutputTopics::wrench(std::string_view robot) {
 }
 TopicPtr OutputTopics::can_frames(std::string_view robot) {
   return json_topic(dds::topic_of("robot", "/inputs/can", robot), "cellmirror.CanFrame", kCanSchema, Importance::event);
+}
+TopicPtr OutputTopics::foot_switch_changes() {
+  return json_topic("/inputs/foot_switch_changes", "cellmirror.FootSwitchChange", kSwitchChangeSchema,
+                    Importance::event);
 }
 TopicPtr OutputTopics::dds_samples(std::string_view robot) {
   return ros2_topic(dds::topic_of("robot", "/inputs/dds", robot), "sensor_msgs/msg/JointState", ros2::joint_state(),
@@ -233,6 +241,12 @@ std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool 
       .member("sent", sent)
       .member("id", frame.id)
       .member("frame", std::string_view(line).substr(std::min(from, line.size())))
+std::string foot_switch_change_message(const FootSwitchChange& change, std::int64_t wall_ns) {
+  JsonWriter out;
+  out.begin_object().member("time_ns", wall_ns).member("input", change.input).member("on", change.on).end_object();
+  return out.take();
+}
+
       .end_object();
   return out.take();
 }

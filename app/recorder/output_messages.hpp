@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/recorder/topic.hpp"
+#include "app/snapshot/foot_switch_snapshot.hpp"
 #include "drivers/dds/ros2_messages.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/ports/can_channel.hpp"
@@ -27,6 +28,7 @@ struct OutputTopics {
   static TopicPtr status();
   static TopicPtr foot_switches();
   // "/cellmirror/range/ID", "/cellmirror/tcp_wrench/ID".
+  static TopicPtr foot_switch_changes();
   static TopicPtr range(std::string_view sensor);
   static TopicPtr wrench(std::string_view robot);
   // "/inputs/can/ROBOT": the frames of its stream, as they came.
@@ -46,6 +48,7 @@ struct OutputTopics {
 // `edges`: changes since the start; `on`: the inputs that are on, the first of them.
 [[nodiscard]] std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint32_t> on);
 // `wall_ns`: when it was received, or given to the channel.
+[[nodiscard]] std::string foot_switch_change_message(const FootSwitchChange& change, std::int64_t wall_ns);
 [[nodiscard]] std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool sent);
 // rcl_interfaces/msg/Log; `out` is overwritten.
 void encode_log(dds::RosTime stamp, LogLevel level, std::string_view kind, std::string_view text,

@@ -264,3 +264,10 @@ void RecordedTexts::command(const CommandRecord& record) {
 }
 
 }  // namespace cellmirror::app
+void RecordedTexts::switch_changed(const FootSwitchChange& change) {
+  if (!hub_.wants(*switch_changes_)) return;
+  const std::int64_t wall_ns = to_wall_clock_ns(change.time);
+  const std::string text = foot_switch_change_message(change, wall_ns);
+  hub_.put(switch_changes_, wall_ns, mcap::view_of(text));
+}
+

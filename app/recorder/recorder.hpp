@@ -117,7 +117,8 @@ class Recorder {
   std::jthread thread_;                    // last: it uses everything above
 };
 
-// Gives lines of the log, and commands with their acknowledgements, to the recordings. Any thread but the tick's.
+// Gives lines of the log, commands with their acknowledgements, and changes of foot switches to the recordings. Any
+// thread but the tick's.
 class RecordedTexts {
  public:
   RecordedTexts(RecordingHub& hub, const Clock& clock) : hub_(hub), clock_(clock) {}
@@ -126,9 +127,11 @@ class RecordedTexts {
 
  private:
   RecordingHub& hub_;
+  void switch_changed(const FootSwitchChange& change);
   const Clock& clock_;
   TopicPtr log_ = OutputTopics::log();
   TopicPtr commands_ = OutputTopics::commands();
 };
 
 }  // namespace cellmirror::app
+  TopicPtr switch_changes_ = OutputTopics::foot_switch_changes();

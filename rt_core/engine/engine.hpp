@@ -95,6 +95,8 @@ class Engine final : public Cycle {
   // full: try again after the next tick.
   std::uint64_t send(Command& command);
   std::uint64_t send(Command&& command) { return send(command); }
+  // The owner's: the id of the newest command that was sent; 0: none.
+  [[nodiscard]] std::uint64_t newest_sent() const { return next_command_ - 1; }
   // For a command. The tick uses the object until it gives it back; it is freed with a later call of send() or
   // free_returned(), or with the engine. Only the owner's thread frees.
   template <class T>
