@@ -15,6 +15,7 @@
 #include "app/gateway/gateway_parts.hpp"
 #include "app/gateway/loaded_cell.hpp"
 #include "app/gateway/picture_outputs.hpp"
+#include "app/gateway/recorded_events.hpp"
 #include "app/io/flight_file.hpp"
 #include "app/io/outputs.hpp"
 #include "app/io/record_file.hpp"
@@ -121,8 +122,8 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .collision = std::move(loaded.collision),
                        .tissue = std::move(of_tissue),
                        .foot_switches = loaded.foot_switches,
-                       .engine = *engine,
                        .switch_changed = [this](const FootSwitchChange& change) { recordings.switch_changed(change); },
+                       .engine = *engine,
                        .board = board,
                        .clock = clock,
                        .stream_priority = stream_priority,
@@ -175,6 +176,9 @@ void Gateway::Parts::subscribe(std::size_t robots) {
 void Gateway::Parts::open_alarms() {
   alarms = playback == nullptr ? open_alarm_log(*home, instance->info().name, clock)
                                : std::make_unique<AlarmLog>(AlarmLog::Options(), clock);
+  if (playback == nullptr) return;
+  read_alarms(playback->run(), recorded_alarms);
+  playback->control().set_marks(read_marks(playback->run(), recorded_alarms));
 }
 
 Result<void> Gateway::Parts::start_loop() {
@@ -255,7 +259,8 @@ void Gateway::Parts::start_recorder(const RecordSettings& settings) {
   recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
                     loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs(),
-                    [this](const PictureRequest& request) { return renderer->open_pictures(request); }});
+                    [this](const PictureRequest& request) { return renderer->open_pictures(request); },
+                    alarm_lines(*alarms)});
 }
 
 void Gateway::Parts::start_fault_monitor() {
@@ -306,7 +311,7 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.status = [this] { return status(); };
   parts.health = [this] { return health(); };
   parts.command_log = [this] { return command_log(); };
-  parts.alarms = [this] { return alarms->report(); };
+  parts.alarms = [this] { return alarm_report(); };
   parts.refused = [this](std::string_view command, const script::CommandSource& source, const std::string& why) {
     note_refused(source, command, why);
   };

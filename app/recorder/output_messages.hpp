@@ -25,10 +25,11 @@ struct OutputTopics {
   static TopicPtr collision_events();
   static TopicPtr forces();
   static TopicPtr commands();
+  static TopicPtr alarms();
   static TopicPtr status();
   static TopicPtr foot_switches();
-  // "/cellmirror/range/ID", "/cellmirror/tcp_wrench/ID".
   static TopicPtr foot_switch_changes();
+  // "/cellmirror/range/ID", "/cellmirror/tcp_wrench/ID".
   static TopicPtr range(std::string_view sensor);
   static TopicPtr wrench(std::string_view robot);
   // "/inputs/can/ROBOT": the frames of its stream, as they came.
@@ -47,8 +48,8 @@ struct OutputTopics {
 [[nodiscard]] std::string forces_message(const ForceState& state);
 // `edges`: changes since the start; `on`: the inputs that are on, the first of them.
 [[nodiscard]] std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint32_t> on);
-// `wall_ns`: when it was received, or given to the channel.
 [[nodiscard]] std::string foot_switch_change_message(const FootSwitchChange& change, std::int64_t wall_ns);
+// `wall_ns`: when it was received, or given to the channel.
 [[nodiscard]] std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool sent);
 // rcl_interfaces/msg/Log; `out` is overwritten.
 void encode_log(dds::RosTime stamp, LogLevel level, std::string_view kind, std::string_view text,

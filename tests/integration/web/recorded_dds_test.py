@@ -1,5 +1,5 @@
-"""A robot that is mirrored over DDS, recorded with pictures and played: what a foreign reader (Cyclone DDS) got then and gets now,
-what the robot's own messages were, and the pictures."""
+"""A robot that is mirrored over DDS, strikes a wall and falls silent, recorded with pictures and played: what a foreign reader (Cyclone
+DDS) got then and gets now, what the robot's own messages were, the pictures, the alarms, and where the strike was."""
 
 import bisect
 import json
@@ -15,7 +15,15 @@ from playback_test import Replay
 JOINTS = ["turn", "shoulder", "elbow", "roll", "bend", "flange_turn"]
 DOMAIN = "86"  # of this test alone
 PICTURES = "/cellmirror/pictures/view_1"
+STRIKES = "/cellmirror/collision_events"
 TICK_NS = 1_000_000
+# In the way of the flange once in two seconds.
+WALL = """
+[[node]]
+name = "Wall"
+xyz_m = [0.33, 0.0, 1.25]
+geometry = [{ box_m = [0.1, 0.6, 0.3] }]
+"""
 
 
 def setUpModule():
@@ -46,7 +54,7 @@ class RecordedDds(unittest.TestCase):
         cls.scratch = scratch = g.Scratch("ros2_cell")
         cls.addClassCleanup(scratch.remove)
         text = scratch.cell_file.read_text().replace("domain = 0 ", f"domain = {DOMAIN} ")
-        scratch.cell_file.write_text(text.replace("[dds_output]\nrate_hz = 50", f"[dds_output]\ndomain = {DOMAIN}\nrate_hz = 200"))
+        scratch.cell_file.write_text(text.replace("[dds_output]\nrate_hz = 50", f"[dds_output]\ndomain = {DOMAIN}\nrate_hz = 200") + WALL)
         (scratch.home / "scripts" / "startup.spt").write_text("ROBOT demo_arm online;\nROBOT demo_arm send_on;\n")
         cls.file = scratch.root / "a.mcap"
         cls.reader = Reader()
@@ -62,19 +70,27 @@ class RecordedDds(unittest.TestCase):
                                   "--pictures", "1@2", "--instance", scratch.instance], scratch.environment)
             cls.addClassCleanup(recorder.close)
             cls.pictures = scratch.status()["pictures"]
-            wanted = {"/inputs/dds/demo_arm": 200, **({PICTURES: 2} if cls.pictures["on"] else {})}
+            wanted = {"/inputs/dds/demo_arm": 200, STRIKES: 1, **({PICTURES: 2} if cls.pictures["on"] else {})}
 
-            def enough():
-                counts = {topic["topic"]: topic["messages"] for one in scratch.status()["recordings"] for topic in one["topics"]}
-                return all(counts.get(topic, 0) >= count for topic, count in wanted.items())
+            def counts():
+                return {topic["topic"]: topic["messages"] for one in scratch.status()["recordings"] for topic in one["topics"]}
 
-            assert g.eventually(enough, 60), scratch.status()["recordings"]
+            assert g.eventually(lambda: all(counts().get(topic, 0) >= count for topic, count in wanted.items()), 60), counts()
+            robot.kill()
+            assert g.eventually(lambda: cls.lost(scratch.status()), 20), scratch.status()["alarms"]
+            now = counts()["/cellmirror/status"]
+            assert g.eventually(lambda: counts()["/cellmirror/status"] > now, 20), counts()
             assert recorder.stop() == 0, recorder.output()
             cls.then = cls.reader.states()[before:]
         finally:
             gateway.close()
             robot.close()
         cls.recording = mcap_structure.Recording(cls.file.read_bytes())
+
+    @staticmethod
+    def lost(status):
+        """The alarm of the robot that is silent."""
+        return next((alarm for alarm in status["alarms"]["open"] if (alarm["kind"], alarm["priority"]) == ("stream", "high")), None)
 
     def messages(self, topic, schema):
         """(publish time in ns, data) of each."""
@@ -112,11 +128,32 @@ class RecordedDds(unittest.TestCase):
         before = len(self.reader.states())
         replay.ask(request="playback", play=True)
         self.assertTrue(g.eventually(lambda: replay.status()["replay"]["state"] == "ended", 30), replay.status()["replay"])
+        self.check_events(replay)
         states = self.reader.states()[before:]
         now = self.in_the_recording(states)
         self.assertEqual(set(states[-1][1]), set(JOINTS))
         # A busy machine leaves some out, then and now other ones.
         self.assertGreater(len(now & then), 0.5 * len(then))
+
+    def check_events(self, replay):
+        """Of the replay that has ended: alarms as they were, and marks where something began."""
+        struck = [json.loads(data) for topic, *_, data in self.recording.messages if topic == STRIKES]
+        struck = [one for one in struck if one["change"] == "touched"]
+        alarms = [json.loads(data) for topic, *_, data in self.recording.messages if topic == "/cellmirror/alarms"]
+        lost = next(one for one in alarms if (one["kind"], one["priority"]) == ("stream", "high"))
+        status = replay.status()
+        marks = status["replay"]["marks"]
+        self.assertEqual(status["replay"]["mark_count"], len(marks))
+        self.assertEqual([mark["text"] for mark in marks if mark["kind"] == "collision"], [f'{one["a"]}, {one["b"]}' for one in struck])
+        self.assertEqual([mark["text"] for mark in marks if mark["kind"] == "fault"], [lost["text"]])
+        self.assertEqual([mark["position_s"] for mark in marks], sorted(mark["position_s"] for mark in marks))
+        # The strike is where the mark says, and was not there before; so is the alarm.
+        at = next(mark["position_s"] for mark in marks if mark["kind"] == "collision")
+        replay.seek(at + 0.01)
+        self.assertTrue(g.eventually(lambda: replay.status()["collisions"]["touching_count"] > 0, 10), "nothing touches at the mark")
+        fault = next(mark["position_s"] for mark in marks if mark["kind"] == "fault")
+        self.assertIsNone(self.lost(replay.seek(fault - 0.3)))
+        self.assertEqual(self.lost(replay.seek(fault + 0.3))["id"], lost["id"])
 
     def test_messages_of_the_robot_are_recorded_as_it_sent_them(self):
         samples = self.messages("/inputs/dds/demo_arm", "sensor_msgs/msg/JointState")
