@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMostEventBytes = 4096;
 constexpr std::size_t kMostNameBytes = 200;
-constexpr std::int64_t kNsOfMs = 1'000'000;
+constexpr std::int64_t kNsOfMs = 1'000'000;  // times of alarms fit (alarm_line.cpp)
 
 std::string_view text_of(const mcap::Message& message) {
   return {reinterpret_cast<const char*>(message.data.data()), message.data.size()};

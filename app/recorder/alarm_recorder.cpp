@@ -8,20 +8,13 @@ namespace {
 
 constexpr Nanoseconds kBetweenAlarmLooks{100'000'000};
 
-// Files that were begun; live clients come and go without one.
-std::uint64_t files_of(const RecordingHub& hub) {
-  std::uint64_t sum = 0;
-  for (const RecordingReport& report : hub.reports()) sum += report.files;
-  return sum;
-}
-
 }  // namespace
 
 void AlarmRecorder::look(Timestamp now) {
   if (!alarms_.revision || !hub_.wants(*topic_)) return;
   if (last_look_.known() && now >= last_look_ && now - last_look_ < kBetweenAlarmLooks) return;
   last_look_ = now;
-  const std::uint64_t files = files_of(hub_);
+  const std::uint64_t files = hub_.files_begun();
   if (std::exchange(files_, files) != files) {
     known_.clear();
     revision_ = 0;

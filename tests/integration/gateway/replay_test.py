@@ -107,6 +107,14 @@ class Verify(ReplayCase):
             self.assertTrue(report["equal"], report)
             self.assertGreater(report["recorded_s"], 0.4)
 
+    def test_recordings_beside_a_black_box_begin_with_a_start_state_each(self):
+        self.scratch.cell_file.write_text(self.scratch.cell_file.read_text() + "\n[record]\nfile_s = 60\n")
+        self.start()
+        for name in ("a.mcap", "b.mcap"):
+            self.record(name, "--attach-mb", "0", seconds="0.8")
+            report = self.verify(self.scratch.root / name)
+            self.assertGreater(report["recorded_s"], 0.1, report)
+
     def test_without_inputs_there_is_nothing_to_verify(self):
         self.start()
         self.record("a.mcap", "--topics", "/joint_states", seconds="0.5")

@@ -74,6 +74,7 @@ TEST_F(AlarmHistoryTest, EachRaiseIsToldOnce) {
 TEST(AlarmHistoryLines, ThatAreWrongAreLeftOut) {
   AlarmHistory sut;
   for (const char* line : {"", "{", "[]", "null", R"({"id":1})", R"({"id":-1,"kind":"x"})"}) sut.add(kMs, line);
+  sut.add(kMs, alarm_line_of(alarm(1, std::int64_t{1} << 44)));  // a time that nanoseconds do not have
   EXPECT_TRUE(sut.at(2 * kMs).open.empty());
   sut.add(5 * kMs, alarm_line_of(alarm(1, 5)));
   sut.add(4 * kMs, alarm_line_of(alarm(2, 4)));  // back: as if it came with the one before
