@@ -26,7 +26,7 @@ Alarm alarm(std::uint64_t id, std::int64_t raised_ms, AlarmPriority priority = A
 class AlarmHistoryTest : public testing::Test {
  protected:
   AlarmHistoryTest() {
-    const auto add = [&](std::int64_t ms, const Alarm& one) { sut.add(ms * kMs, alarm_line_of(one)); };
+    const auto add = [&](std::int64_t ms, const Alarm& one) { sut_.add(ms * kMs, alarm_line_of(one)); };
     add(500, alarm(7, 100, AlarmPriority::low));
     Alarm one = alarm(8, 1000);
     add(1000, one);
@@ -37,20 +37,20 @@ class AlarmHistoryTest : public testing::Test {
     add(3000, one);
     add(4000, alarm(9, 4000));
   }
-  AlarmHistory sut;
+  AlarmHistory sut_;
 };
 
 TEST_F(AlarmHistoryTest, IsAsItWasAtAnyTime) {
-  EXPECT_TRUE(sut.at(0).open.empty());
-  EXPECT_EQ(sut.at(600 * kMs).open.size(), 1U);
-  EXPECT_EQ(sut.at(600 * kMs).counts.highest, AlarmPriority::low);
-  const AlarmReport raised = sut.at(1999 * kMs);
+  EXPECT_TRUE(sut_.at(0).open.empty());
+  EXPECT_EQ(sut_.at(600 * kMs).open.size(), 1U);
+  EXPECT_EQ(sut_.at(600 * kMs).counts.highest, AlarmPriority::low);
+  const AlarmReport raised = sut_.at(1999 * kMs);
   ASSERT_EQ(raised.open.size(), 2U);
   EXPECT_EQ(raised.open.front().id, 8U) << "newest first";
   EXPECT_EQ(raised.counts.active(), 2U);
   EXPECT_EQ(raised.counts.highest, AlarmPriority::high);
-  EXPECT_EQ(sut.at(2500 * kMs).open.front().state(), AlarmState::cleared_unacknowledged);
-  const AlarmReport over = sut.at(3500 * kMs);
+  EXPECT_EQ(sut_.at(2500 * kMs).open.front().state(), AlarmState::cleared_unacknowledged);
+  const AlarmReport over = sut_.at(3500 * kMs);
   ASSERT_EQ(over.history.size(), 1U);
   EXPECT_EQ(over.history.front().acknowledged_by, "Ada");
   EXPECT_EQ(over.open.size(), 1U);
@@ -58,14 +58,14 @@ TEST_F(AlarmHistoryTest, IsAsItWasAtAnyTime) {
 
 // As after a seek.
 TEST_F(AlarmHistoryTest, TimeMayGoBack) {
-  const std::uint64_t late = sut.at(9000 * kMs).counts.revision;
-  EXPECT_EQ(sut.at(1500 * kMs).open.size(), 2U);
-  EXPECT_NE(sut.at(1500 * kMs).counts.revision, late);
-  EXPECT_EQ(sut.at(9000 * kMs).counts.revision, late);
+  const std::uint64_t late = sut_.at(9000 * kMs).counts.revision;
+  EXPECT_EQ(sut_.at(1500 * kMs).open.size(), 2U);
+  EXPECT_NE(sut_.at(1500 * kMs).counts.revision, late);
+  EXPECT_EQ(sut_.at(9000 * kMs).counts.revision, late);
 }
 
 TEST_F(AlarmHistoryTest, EachRaiseIsToldOnce) {
-  const auto raised = sut.raised();
+  const auto raised = sut_.raised();
   ASSERT_EQ(raised.size(), 3U);
   EXPECT_EQ(raised[1].time_ms, 1000);
   EXPECT_EQ(raised[1].alarm.subject, "ARM 8");
