@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint64_t kLatestMs = 253'402'300'799'999;  // the end of the year 9999
+constexpr std::uint64_t kLatestMs = 9'223'372'036'854;  // in the year 2262: as nanoseconds it has 63 bits
 constexpr std::size_t kMostKindBytes = 32;
 
 JsonWriter& add_time(JsonWriter& out, std::string_view name, const std::optional<std::int64_t>& time_ms) {

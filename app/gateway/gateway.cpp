@@ -15,6 +15,7 @@
 #include "app/gateway/gateway_parts.hpp"
 #include "app/gateway/loaded_cell.hpp"
 #include "app/gateway/picture_outputs.hpp"
+#include "app/gateway/recorded_events.hpp"
 #include "app/io/flight_file.hpp"
 #include "app/io/outputs.hpp"
 #include "app/io/record_file.hpp"
@@ -102,7 +103,12 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     if (!written) return std::unexpected(written.error());
     return {};
   };
-  const auto traced = [this](script::CommandTrace&& trace) { log_command(command_record_of(std::move(trace))); };
+  // By the owner's thread, which sends to the loop.
+  const auto traced = [this](script::CommandTrace&& trace) {
+    CommandRecord record = command_record_of(std::move(trace));
+    record.loop_command = playback == nullptr ? engine->newest_sent() : 0;
+    log_command(std::move(record));
+  };
   // Below the loop, so that a flood of frames cannot hold it up.
   const int below_loop = std::max(1, loop_settings.priority - 10);
   const int stream_priority = loop_settings.real_time == RealTimePolicy::off ? 0 : below_loop;
@@ -116,6 +122,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .collision = std::move(loaded.collision),
                        .tissue = std::move(of_tissue),
                        .foot_switches = loaded.foot_switches,
+                       .switch_changed = [this](const FootSwitchChange& change) { recordings.switch_changed(change); },
                        .engine = *engine,
                        .board = board,
                        .clock = clock,
@@ -169,6 +176,9 @@ void Gateway::Parts::subscribe(std::size_t robots) {
 void Gateway::Parts::open_alarms() {
   alarms = playback == nullptr ? open_alarm_log(*home, instance->info().name, clock)
                                : std::make_unique<AlarmLog>(AlarmLog::Options(), clock);
+  if (playback == nullptr) return;
+  read_alarms(playback->run(), recorded_alarms);
+  playback->control().set_marks(read_marks(playback->run(), recorded_alarms));
 }
 
 Result<void> Gateway::Parts::start_loop() {
@@ -249,7 +259,8 @@ void Gateway::Parts::start_recorder(const RecordSettings& settings) {
   recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
                     loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs(),
-                    [this](const PictureRequest& request) { return renderer->open_pictures(request); }});
+                    [this](const PictureRequest& request) { return renderer->open_pictures(request); },
+                    alarm_lines(*alarms)});
 }
 
 void Gateway::Parts::start_fault_monitor() {
@@ -300,7 +311,7 @@ void Gateway::Parts::make_page(const GatewayOptions& options, const WebSettings&
   parts.status = [this] { return status(); };
   parts.health = [this] { return health(); };
   parts.command_log = [this] { return command_log(); };
-  parts.alarms = [this] { return alarms->report(); };
+  parts.alarms = [this] { return alarm_report(); };
   parts.refused = [this](std::string_view command, const script::CommandSource& source, const std::string& why) {
     note_refused(source, command, why);
   };

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/alarms/alarm_log.hpp"
+#include "app/recorder/alarm_recorder.hpp"
 #include "app/report/live_document.hpp"
 #include "app/snapshot/proximity_board.hpp"
 #include "app/workers/fault_monitor.hpp"
@@ -25,5 +26,7 @@ struct AlarmSources {
   std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
 };
 void watch_for_alarms(AlarmLog& alarms, AlarmSources sources);
+// For recordings; `alarms` outlives what comes back.
+[[nodiscard]] AlarmLines alarm_lines(const AlarmLog& alarms);
 
 }  // namespace cellmirror::app

@@ -96,7 +96,7 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
         commands_logged,
         tissue_sources().newest_report(),
         renderer->counters(),
-        alarms->counts(),
+        playback != nullptr ? alarm_report().counts : alarms->counts(),
         playback_state()});
 }
 
@@ -171,7 +171,7 @@ std::string Gateway::Parts::status() {
                           command_log(),
                           tissue_sources().newest_report(),
                           recordings.hub().reports(),
-                          alarms->report(),
+                          alarm_report(),
                           playback_state()});
 }
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/alarms/alarm_history.hpp"
 #include "app/alarms/alarm_log.hpp"
 #include "app/gateway/gateway.hpp"
 #include "app/gateway/monitor_page.hpp"
@@ -81,6 +82,7 @@ struct Gateway::Parts {
   std::unique_ptr<CommandLog> commands;  // null: the cell folder has no place for it
   std::string commands_problem;          // then
   std::unique_ptr<AlarmLog> alarms;      // once the instance is known
+  AlarmHistory recorded_alarms;          // of a recording that is played
   Recordings recordings{clock};
   std::unique_ptr<ScriptMessageReceiver> messages;
   std::unique_ptr<TissueWorker> tissue;  // null: the cell has no deformable object
@@ -164,6 +166,9 @@ struct Gateway::Parts {
   [[nodiscard]] CommandLogReport command_log() const { return commands ? commands->report() : CommandLogReport{}; }
   [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;
   void look_at(const std::function<void(const LiveSources&)>& look);
+  [[nodiscard]] AlarmReport alarm_report() const {
+    return playback != nullptr ? recorded_alarms.at(to_wall_clock_ns(clock.now())) : alarms->report();
+  }
   // None: real robots.
   [[nodiscard]] std::optional<PlaybackState> playback_state() const {
     return playback != nullptr ? std::optional(playback->control().state()) : std::nullopt;

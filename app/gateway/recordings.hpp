@@ -51,6 +51,7 @@ class Recordings {
   // One JSON document for {"request":"record", ...}: docs/recording.md.
   [[nodiscard]] std::string answer(const ControlRequest& request);
   void command(const CommandRecord& record) { texts_.command(record); }
+  void switch_changed(const FootSwitchChange& change) { texts_.switch_changed(change); }
   [[nodiscard]] RecordingHub& hub() { return hub_; }
   // What clients watch; lives as long as this.
   [[nodiscard]] LiveTopics& live() { return *live_; }

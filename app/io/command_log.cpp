@@ -54,6 +54,7 @@ std::string command_line_of(const CommandRecord& record) {
   JsonWriter out;
   out.begin_object().member("time", utc_text_ms(record.wall_ns)).fixed_member("took_s", record.took_s, 6);
   if (record.tick != 0) out.member("tick", record.tick);
+  if (record.loop_command != 0) out.member("loop_command", record.loop_command);
   out.member("source", record.source);
   if (record.process != 0) out.member("process", record.process);
   if (record.user) out.member("user", *record.user);

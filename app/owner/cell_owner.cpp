@@ -98,7 +98,8 @@ CellOwner::CellOwner(Parts parts)
                                    .withheld = std::move(parts.withheld),
                                    .traced = std::move(parts.traced)});
   switches_ = std::make_unique<FootSwitchService>(
-      FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); }},
+      FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); },
+                                 std::move(parts.switch_changed)},
       *runner_, home_, clock_);
 }
 

@@ -53,6 +53,7 @@ class CellOwner {
     collision::Settings collision;
     TissueParts tissue = {};
     FootSwitchSettings foot_switches;
+    std::function<void(const FootSwitchChange& change)> switch_changed = {};  // by the owner's thread
     engine::Engine& engine;
     Board<CellState>& board;
     const Clock& clock;

@@ -90,8 +90,7 @@ void FootSwitchService::stop_watching() {
   // First of all: the last change may be the one that switches something off.
   reader_->stop();
   footswitch::SwitchEdge edge;
-  for (std::size_t taken = 0; taken < footswitch::kEdgeQueue && reader_->next(edge); ++taken)
-    scripts_.add({edge.input, edge.on, edge.not_told});
+  for (std::size_t taken = 0; taken < footswitch::kEdgeQueue && reader_->next(edge); ++taken) take(edge);
   const footswitch::SwitchReader::Counters last = reader_->counters();
   earlier_.looks += last.looks;
   earlier_.edges += last.edges;
@@ -102,8 +101,12 @@ void FootSwitchService::stop_watching() {
 
 void FootSwitchService::take_edges() {
   footswitch::SwitchEdge edge;
-  for (int taken = 0; taken < kEdgesInATurn && reader_ && reader_->next(edge); ++taken)
-    scripts_.add({edge.input, edge.on, edge.not_told});
+  for (int taken = 0; taken < kEdgesInATurn && reader_ && reader_->next(edge); ++taken) take(edge);
+}
+
+void FootSwitchService::take(const footswitch::SwitchEdge& edge) {
+  scripts_.add({edge.input, edge.on, edge.not_told});
+  if (options_.changed) options_.changed({.input = edge.input, .on = edge.on, .time = edge.time});
 }
 
 bool FootSwitchService::follow() {

@@ -23,8 +23,9 @@ class FootSwitchService {
   struct Options {
     FootSwitchSettings settings;
     std::string instance;
-    int priority = 0;            // SCHED_FIFO of the watching thread; 0: none
-    std::function<void()> wake;  // wakes the owner's thread
+    int priority = 0;                                                  // SCHED_FIFO of the watching thread; 0: none
+    std::function<void()> wake;                                        // wakes the owner's thread
+    std::function<void(const FootSwitchChange& change)> changed = {};  // with each change that is taken
   };
 
   // Runner, home and clock outlive the service.
@@ -52,6 +53,7 @@ class FootSwitchService {
 
  private:
   void take_edges();
+  void take(const footswitch::SwitchEdge& edge);
   void start_watching();
   void stop_watching();
   void check_memory();

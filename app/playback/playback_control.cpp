@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace cellmirror::app {
@@ -33,7 +34,17 @@ PlaybackState PlaybackControl::state() const {
   out.gaps = gaps_;
   out.file = file_;
   out.note = note_;
+  out.marks = marks_;
   return out;
+}
+
+void PlaybackControl::set_marks(PlaybackMarks marks) {
+  std::erase_if(marks, [&](const PlaybackMark& mark) {
+    return mark.time_ns < (range_.from + range_.utc).ns || mark.time_ns > (range_.to + range_.utc).ns;
+  });
+  std::ranges::sort(marks, {}, [](const PlaybackMark& mark) { return std::tie(mark.time_ns, mark.kind, mark.text); });
+  if (marks.size() > kMostMarks) marks.resize(kMostMarks);
+  marks_ = std::make_shared<const PlaybackMarks>(std::move(marks));
 }
 
 Result<void> PlaybackControl::apply(const PlaybackRequest& request) {

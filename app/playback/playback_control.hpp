@@ -1,7 +1,9 @@
 // Where the playing of a recording is, and how it goes on: play, pause, speed, seek. Knows neither files nor threads.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -32,6 +34,10 @@ class PlaybackControl final : public PlaybackPort {
   [[nodiscard]] const Clock& clock() const { return clock_; }
   [[nodiscard]] const Range& range() const { return range_; }
 
+  // In any order; those out of the range are left out, and the first kMostMarks count. Before any other thread uses it.
+  static constexpr std::size_t kMostMarks = 500;
+  void set_marks(PlaybackMarks marks);
+
   // Of the player's thread. `wall`: of the machine's clock.
 
   // A seek that was asked for since the last call: its target; the time stands there until arrived().
@@ -56,6 +62,7 @@ class PlaybackControl final : public PlaybackPort {
 
   const Range range_;
   const std::string file_;
+  std::shared_ptr<const PlaybackMarks> marks_;
   PlaybackClock clock_;
   WakeSignal changed_;
   mutable std::mutex mutex_;  // of what follows

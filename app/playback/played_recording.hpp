@@ -31,6 +31,8 @@ class PlayedRecording {
   ~PlayedRecording() = default;
 
   [[nodiscard]] const RecordedRun& run() const { return *run_; }
+  // Before start(): then its thread reads.
+  [[nodiscard]] RecordedRun& run() { return *run_; }
   [[nodiscard]] PlaybackControl& control() { return *control_; }
   [[nodiscard]] const PlaybackControl& control() const { return *control_; }
   // The recorded time.

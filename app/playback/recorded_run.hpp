@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "app/playback/playback_control.hpp"
 #include "app/playback/published_ticks.hpp"
@@ -37,6 +38,10 @@ class RecordedRun {
   // Ticks from the last start state before `time` on, or from the first after it where there is none; `take` ends it.
   // Fails where the file cannot be read on, or is not sound.
   Result<void> read(Timestamp time, const PublishedTicks::Take& take);
+  // All messages of another topic, in the order of the file; `take` ends it.
+  Result<void> read_topic(std::string_view topic, const mcap::Reader::Take& take) {
+    return reader_->read({.topics = {std::string(topic)}}, take);
+  }
 
  private:
   RecordedRun() = default;

@@ -53,14 +53,17 @@ void InputRecorder::look(Timestamp now, const CellState* cell_state) {
   if (!tap_.on()) {
     tap_.drain(message_);  // what was left of the time before
     message_.resize(1);
-    known_files_ = files_and_drops();
+    known_files_ = hub_.files_begun();
+    known_drops_ = drops();
     ask_for_start(now);
   }
   if (now - last_look_ >= kBetweenLooks) {
     last_look_ = now;
-    // A new file of a ring, or a message that was left out.
-    const std::uint64_t files = files_and_drops();
-    if (std::exchange(known_files_, files) != files || now - last_start_ >= kBetweenStarts) ask_for_start(now);
+    const std::uint64_t files = hub_.files_begun();
+    const std::uint64_t left_out = drops();
+    const bool begun = std::exchange(known_files_, files) != files;
+    const bool lost_some = std::exchange(known_drops_, left_out) != left_out;
+    if (begun || lost_some || now - last_start_ >= kBetweenStarts) ask_for_start(now);
     const std::uint64_t lost = tap_.lost_ticks();
     if (lost > known_lost_) hub_.count_missed(topic_, lost - known_lost_);
     known_lost_ = lost;
@@ -96,12 +99,11 @@ void InputRecorder::put(Timestamp now) {
   message_.resize(1);
 }
 
-std::uint64_t InputRecorder::files_and_drops() const {
+std::uint64_t InputRecorder::drops() const {
   std::uint64_t sum = 0;
   for (const RecordingReport& report : hub_.reports()) {
-    sum += report.files;
     for (const TopicReport& topic : report.topics)
-      if (topic.topic == kInputsTopic) sum += topic.dropped << 32U;
+      if (topic.topic == kInputsTopic) sum += topic.dropped;
   }
   return sum;
 }

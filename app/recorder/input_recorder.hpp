@@ -30,7 +30,7 @@ class InputRecorder {
   void ask_for_start(Timestamp now);
   void take_names(const CellState& cell_state);
   void put(Timestamp now);
-  [[nodiscard]] std::uint64_t files_and_drops() const;
+  [[nodiscard]] std::uint64_t drops() const;
 
   engine::InputTap& tap_;
   RecordingHub& hub_;
@@ -40,6 +40,7 @@ class InputRecorder {
   std::shared_ptr<const CompiledCell> named_cell_;
   bool names_due_ = false;
   std::uint64_t known_files_ = 0;
+  std::uint64_t known_drops_ = 0;
   std::uint64_t known_lost_ = 0;
   Timestamp last_put_;
   Timestamp last_look_;

@@ -6,6 +6,7 @@
 
 #include "app/recorder/picture_recorder.hpp"
 #include "app/recorder/ros2_definitions.hpp"
+#include "app/recording_layout/recording_names.hpp"
 #include "app/snapshot/proximity_words.hpp"
 #include "drivers/can/channel/candump_line.hpp"
 #include "drivers/dds/cdr.hpp"
@@ -46,11 +47,22 @@ constexpr std::string_view kSwitchesSchema = R"({
 "type":"object","title":"foot switches and other binary inputs","properties":{
 "edges":{"type":"integer"},"on":{"type":"array","items":{"type":"integer"}}}})";
 
+constexpr std::string_view kSwitchChangeSchema = R"({
+"type":"object","title":"a change of a foot switch or of another binary input","properties":{
+"time_ns":{"type":"integer"},"input":{"type":"integer"},"on":{"type":"boolean"}}})";
+
 constexpr std::string_view kCommandSchema = R"({
 "type":"object","title":"a SCRIPT command and its acknowledgement","properties":{
-"time":{"type":"string"},"took_s":{"type":"number"},"tick":{"type":"integer"},"source":{"type":"string"},"process":{"type":"integer"},
+"time":{"type":"string"},"took_s":{"type":"number"},"tick":{"type":"integer"},"loop_command":{"type":"integer"},"source":{"type":"string"},"process":{"type":"integer"},
 "user":{"type":"integer"},"session":{"type":"integer"},"peer":{"type":"string"},"place":{"type":"string"},
 "run":{"type":"integer"},"command":{"type":"string"},"outcome":{"type":"string"},"answer":{"type":"string"}}})";
+
+constexpr std::string_view kAlarmSchema = R"({
+"type":"object","title":"an alarm, when it has changed; times in ms since 1970, UTC","properties":{
+"id":{"type":"integer"},"kind":{"type":"string"},"subject":{"type":"string"},"text":{"type":"string"},
+"priority":{"type":"string"},"occurrences":{"type":"integer"},"first_ms":{"type":"integer"},
+"raised_ms":{"type":"integer"},"cleared_ms":{"type":"integer"},"acknowledged_ms":{"type":"integer"},
+"acknowledged_by":{"type":"string"}}})";
 
 constexpr std::string_view kCanSchema = R"({
 "type":"object","title":"a CAN frame that a stream received or sent","properties":{
@@ -114,7 +126,7 @@ TopicPtr OutputTopics::collisions() {
   return json_topic("/cellmirror/collisions", "cellmirror.Collisions", kCollisionsSchema, Importance::state);
 }
 TopicPtr OutputTopics::collision_events() {
-  return json_topic("/cellmirror/collision_events", "cellmirror.CollisionEvent", kEventSchema, Importance::event);
+  return json_topic(std::string(kCollisionEventsTopic), "cellmirror.CollisionEvent", kEventSchema, Importance::event);
 }
 TopicPtr OutputTopics::forces() {
   return json_topic("/cellmirror/forces", "cellmirror.Forces", kForcesSchema, Importance::bulk);
@@ -122,11 +134,18 @@ TopicPtr OutputTopics::forces() {
 TopicPtr OutputTopics::commands() {
   return json_topic("/cellmirror/commands", "cellmirror.Command", kCommandSchema, Importance::event);
 }
+TopicPtr OutputTopics::alarms() {
+  return json_topic(std::string(kAlarmsTopic), "cellmirror.Alarm", kAlarmSchema, Importance::event);
+}
 TopicPtr OutputTopics::status() {
   return json_topic("/cellmirror/status", "cellmirror.Status", kStatusSchema, Importance::bulk);
 }
 TopicPtr OutputTopics::foot_switches() {
   return json_topic("/inputs/foot_switches", "cellmirror.FootSwitches", kSwitchesSchema, Importance::event);
+}
+TopicPtr OutputTopics::foot_switch_changes() {
+  return json_topic("/inputs/foot_switch_changes", "cellmirror.FootSwitchChange", kSwitchChangeSchema,
+                    Importance::event);
 }
 TopicPtr OutputTopics::range(std::string_view sensor) {
   return ros2_topic(dds::range_topic("/cellmirror/range", sensor), "sensor_msgs/msg/Range", ros2::range(),
@@ -219,6 +238,12 @@ std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint
   out.begin_object().member("edges", edges).key("on").begin_array();
   for (const std::uint32_t input : on) out.value(input);
   out.end_array().end_object();
+  return out.take();
+}
+
+std::string foot_switch_change_message(const FootSwitchChange& change, std::int64_t wall_ns) {
+  JsonWriter out;
+  out.begin_object().member("time_ns", wall_ns).member("input", change.input).member("on", change.on).end_object();
   return out.take();
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/recorder/topic.hpp"
+#include "app/snapshot/foot_switch_snapshot.hpp"
 #include "drivers/dds/ros2_messages.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/ports/can_channel.hpp"
@@ -24,8 +25,10 @@ struct OutputTopics {
   static TopicPtr collision_events();
   static TopicPtr forces();
   static TopicPtr commands();
+  static TopicPtr alarms();
   static TopicPtr status();
   static TopicPtr foot_switches();
+  static TopicPtr foot_switch_changes();
   // "/cellmirror/range/ID", "/cellmirror/tcp_wrench/ID".
   static TopicPtr range(std::string_view sensor);
   static TopicPtr wrench(std::string_view robot);
@@ -45,6 +48,7 @@ struct OutputTopics {
 [[nodiscard]] std::string forces_message(const ForceState& state);
 // `edges`: changes since the start; `on`: the inputs that are on, the first of them.
 [[nodiscard]] std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint32_t> on);
+[[nodiscard]] std::string foot_switch_change_message(const FootSwitchChange& change, std::int64_t wall_ns);
 // `wall_ns`: when it was received, or given to the channel.
 [[nodiscard]] std::string can_frame_message(const CanFrame& frame, std::int64_t wall_ns, bool sent);
 // rcl_interfaces/msg/Log; `out` is overwritten.

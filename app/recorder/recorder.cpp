@@ -43,6 +43,7 @@ Recorder::Recorder(Sources sources, RecordingHub& hub)
     : sources_(std::move(sources)),
       hub_(hub),
       pictures_(sources_.open_pictures, hub),
+      alarms_(sources_.alarms, hub),
       inputs_(sources_.engine_inputs != nullptr ? std::make_unique<InputRecorder>(*sources_.engine_inputs, hub)
                                                 : nullptr),
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
@@ -69,6 +70,7 @@ void Recorder::loop(const std::stop_token& stop) {
       last_tick_ = 0;
       newest_event_ = 0;
       newest_edge_.reset();
+      alarms_.forget();
       wait_for(kIdle);
       continue;
     }
@@ -77,6 +79,7 @@ void Recorder::loop(const std::stop_token& stop) {
     record_inputs();
     record_status(now);
     pictures_.look(now);
+    alarms_.look(now);
     // The tick that is due next, and a little later.
     const auto period = std::max(sources_.tick_period, Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)));
     const std::int64_t ticks = std::max<std::int64_t>(1, (period + sources_.tick_period / 2) / sources_.tick_period);
@@ -261,6 +264,13 @@ void RecordedTexts::command(const CommandRecord& record) {
   if (!hub_.wants(*commands_)) return;
   const std::string text = command_line_of(record);
   hub_.put(commands_, record.wall_ns, mcap::view_of(text));
+}
+
+void RecordedTexts::switch_changed(const FootSwitchChange& change) {
+  if (!hub_.wants(*switch_changes_)) return;
+  const std::int64_t wall_ns = to_wall_clock_ns(change.time);
+  const std::string text = foot_switch_change_message(change, wall_ns);
+  hub_.put(switch_changes_, wall_ns, mcap::view_of(text));
 }
 
 }  // namespace cellmirror::app

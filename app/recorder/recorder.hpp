@@ -14,6 +14,7 @@
 
 #include "app/io/can_tap.hpp"
 #include "app/io/payload_tap.hpp"
+#include "app/recorder/alarm_recorder.hpp"
 #include "app/recorder/input_recorder.hpp"
 #include "app/recorder/output_messages.hpp"
 #include "app/recorder/picture_recorder.hpp"
@@ -49,6 +50,7 @@ class Recorder {
     PayloadTap* payload_tap = nullptr;          // null: what DDS and RTDE streams receive is not recorded
     engine::InputTap* engine_inputs = nullptr;  // null: the inputs of the tick are not recorded
     PictureRecorder::Open open_pictures = {};   // empty: no pictures are recorded
+    AlarmLines alarms = {};                     // empty: no alarms are recorded
     bool keeps_collisions = false;              // the ring is kept where bodies touch
   };
 
@@ -113,22 +115,26 @@ class Recorder {
   Timestamp last_findings_;
   Timestamp last_status_;
   PictureRecorder pictures_;
+  AlarmRecorder alarms_;
   std::unique_ptr<InputRecorder> inputs_;  // null: none are recorded
   std::jthread thread_;                    // last: it uses everything above
 };
 
-// Gives lines of the log, and commands with their acknowledgements, to the recordings. Any thread but the tick's.
+// Gives lines of the log, commands with their acknowledgements, and changes of foot switches to the recordings. Any
+// thread but the tick's.
 class RecordedTexts {
  public:
   RecordedTexts(RecordingHub& hub, const Clock& clock) : hub_(hub), clock_(clock) {}
   void log(LogLevel level, std::string_view kind, std::string_view text);
   void command(const CommandRecord& record);
+  void switch_changed(const FootSwitchChange& change);
 
  private:
   RecordingHub& hub_;
   const Clock& clock_;
   TopicPtr log_ = OutputTopics::log();
   TopicPtr commands_ = OutputTopics::commands();
+  TopicPtr switch_changes_ = OutputTopics::foot_switch_changes();
 };
 
 }  // namespace cellmirror::app

@@ -22,6 +22,7 @@ Result<void> RecordingHub::start_file(RecordingOptions options) {
   Shared old = *std::move(made);
   const std::scoped_lock lock(mutex_);
   std::swap(file_, old);  // the old one has ended; it is released after the lock
+  ++starts_;
   return {};
 }
 
@@ -32,6 +33,7 @@ Result<void> RecordingHub::start_ring(RecordingOptions options) {
   {
     const std::scoped_lock lock(mutex_);
     std::swap(ring_, old);
+    ++starts_;
   }
   return {};
 }
@@ -130,6 +132,14 @@ std::vector<RecordingReport> RecordingHub::reports() const {
   if (file) out.push_back(file->report());
   if (ring) out.push_back(ring->report());
   return out;
+}
+
+std::uint64_t RecordingHub::files_begun() const {
+  std::uint64_t sum = 0;
+  for (const RecordingReport& report : reports()) sum += report.files;
+  const std::scoped_lock lock(mutex_);
+  // One that ended and the one after it may have as many files.
+  return sum + (starts_ << 32U);
 }
 
 std::optional<RecordingReport> RecordingHub::file_report() const {

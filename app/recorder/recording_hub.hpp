@@ -46,6 +46,8 @@ class RecordingHub {
   // The newest of each kind, also one that has ended.
   [[nodiscard]] std::vector<RecordingReport> reports() const;
   [[nodiscard]] std::optional<RecordingReport> file_report() const;
+  // Another number where a file was begun since: of a recording, or the next one of a ring.
+  [[nodiscard]] std::uint64_t files_begun() const;
   // Why a recording that should go on does not, or loses messages; empty: nothing is wrong.
   [[nodiscard]] std::string problem() const;
   // Ends all; waits until they are written.
@@ -62,6 +64,7 @@ class RecordingHub {
   Shared file_;
   Shared ring_;
   std::optional<RecordingOptions> ring_options_;
+  std::uint64_t starts_ = 0;         // of recordings
   std::shared_ptr<TopicSink> live_;  // null: nobody can watch
 };
 

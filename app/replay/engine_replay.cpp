@@ -9,6 +9,7 @@
 #include "app/replay/recorded_device.hpp"
 #include "app/replay/state_text.hpp"
 #include "rt_core/base/state_bytes.hpp"
+#include "rt_core/engine/instrument_bytes.hpp"
 #include "rt_core/engine/state_transfer.hpp"
 #include "rt_core/rt/watchdog.hpp"
 
@@ -35,7 +36,7 @@ struct EngineReplay::Session {
   std::optional<std::uint64_t> last_tick;
   std::uint64_t commands_done = 0;
   std::array<std::uint64_t, kMaxHapticDevices> devices{};  // ids of devices
-  std::array<bool, kMaxHapticDevices> taken_over{};        // opened before the start state
+  std::array<bool, kMaxHapticDevices> taken_over{};        // open at the start state, which does not have its state
   bool counts_refused = true;                              // whether refused commands can be compared
   std::array<std::shared_ptr<RecordedDevice>, kMaxHapticDevices> recorded_devices{};
 };
@@ -116,15 +117,20 @@ void EngineReplay::begin(ByteSpan start) {
   const auto capacity = engine::Engine::capacity_of(start);
   if (!capacity) return note(capacity.error());
   auto session = std::make_unique<Session>(*capacity);
-  const auto restored = session->engine.restore(start, [this](std::uint64_t object_id) -> ChainPtr {
-    const auto known = chains_.find(object_id);
-    return known == chains_.end() ? ChainPtr() : known->second.chain;
-  });
+  const auto restored = session->engine.restore(
+      start, {.chain = [this](std::uint64_t object_id) -> ChainPtr {
+                const auto known = chains_.find(object_id);
+                return known == chains_.end() ? ChainPtr() : known->second.chain;
+              },
+              .device = [&](std::size_t channel, std::uint64_t /*id*/) -> std::shared_ptr<HapticDevicePort> {
+                session->recorded_devices[channel] = std::make_shared<RecordedDevice>();
+                return session->recorded_devices[channel];
+              }});
   if (!restored) return note(restored.error());
   session->commands_done = restored->commands_done;
   session->devices = restored->open_devices;
   for (std::size_t i = 0; i < kMaxHapticDevices; ++i) {
-    session->taken_over[i] = session->devices[i] != 0;
+    session->taken_over[i] = session->devices[i] != 0 && !restored->restored[i];
     if (!session->taken_over[i]) continue;
     session->counts_refused = false;
     if (std::ranges::find(taken_over_, i) == taken_over_.end()) taken_over_.push_back(static_cast<std::uint8_t>(i));

@@ -56,7 +56,8 @@ class EngineReplay {
   [[nodiscard]] const std::optional<ReplayDifference>& difference() const { return difference_; }
   [[nodiscard]] const ReplayCounts& counts() const { return counts_; }
   [[nodiscard]] const NamesBySlot& names() const { return names_; }
-  // Channels of haptic devices whose state was not compared, since they were open before the recording began.
+  // Channels of haptic devices whose state was not compared: open before the recording began, which is of a version
+  // whose start states do not have it.
   [[nodiscard]] const std::vector<std::uint8_t>& channels_taken_over() const { return taken_over_; }
 
  private:

@@ -98,7 +98,10 @@ std::string verification_text(const Verification& verification) {
   if (counts.not_sound > 0)
     out += fmt::format("{} records could not be understood; the first: {}\n", counts.not_sound, counts.first_problem);
   for (const std::string& one : verification.not_compared)
-    out += fmt::format("{}: open before the recording began, so its forces were not compared; its robot was\n", one);
+    out += fmt::format(
+        "{}: open before the recording began, which does not have its state: its forces were not compared; its robot "
+        "was\n",
+        one);
   return out;
 }
 

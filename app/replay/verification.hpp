@@ -15,7 +15,7 @@ namespace cellmirror::app {
 struct Verification {
   std::optional<ReplayDifference> difference;
   ReplayCounts counts;
-  std::vector<std::string> not_compared;  // robots of haptic devices that were open before the recording began
+  std::vector<std::string> not_compared;  // haptic devices that were open before a recording of an older version began
   double took_s = 0;
   std::string other_build;          // why a difference may not mean anything; empty: the same program and processor
   std::uint64_t lost_messages = 0;  // by their numbers

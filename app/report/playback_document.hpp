@@ -8,8 +8,9 @@
 
 namespace cellmirror::app {
 
-// One object (docs/recording.md).
+// One object (docs/recording.md), without the marks: several times a second.
 void add_playback(JsonWriter& out, const PlaybackState& state);
+// With them.
 [[nodiscard]] std::string playback_document(const PlaybackState& state);
 
 }  // namespace cellmirror::app

@@ -12,6 +12,7 @@ struct CommandRecord {
   std::int64_t wall_ns = 0;  // since 1970 (UTC): when it began
   double took_s = 0;
   std::uint64_t tick = 0;                  // the newest one when its outcome was known; 0: none yet
+  std::uint64_t loop_command = 0;          // the newest command to the loop by then; 0: none, or unknown
   std::string source = {};                 // message, page, file, program
   std::int32_t process = 0;                // of a message; 0: unknown
   std::optional<std::uint32_t> user = {};  // of that process

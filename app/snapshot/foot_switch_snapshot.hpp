@@ -6,10 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "rt_core/base/time.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 #include "scripts/runner/input_scripts.hpp"
 
 namespace cellmirror::app {
+
+// One change of an input, from 1. `time`: when it was seen first.
+struct FootSwitchChange {
+  std::uint32_t input = 0;
+  bool on = false;
+  Timestamp time;
+};
 
 struct FootSwitchSnapshot {
   std::int32_t key = 0;  // 0: no memory was named

@@ -53,10 +53,17 @@ struct EngineCapacity {
 // For a cell that begins with so many robots: kSpareRobots more, at most kMaxRobots.
 [[nodiscard]] EngineCapacity capacity_for(std::size_t robots);
 
-// What a recorded start state does not have, since it is in the devices' channels: those that were open.
+// What who replays has to know of a recorded start state.
 struct EngineStart {
   std::uint64_t commands_done = 0;
   std::array<std::uint64_t, kMaxHapticDevices> open_devices{};  // by channel, the id of the device; 0: closed
+  std::array<bool, kMaxHapticDevices> restored{};  // open channels whose state was there: of older recordings none
+};
+// Who stands for what cannot be in a file, by the id that it had.
+struct StartParts {
+  std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t id)> chain;
+  // Not null.
+  std::function<std::shared_ptr<HapticDevicePort>(std::size_t channel, std::uint64_t id)> device;
 };
 
 struct QueueStatus {
@@ -88,6 +95,8 @@ class Engine final : public Cycle {
   // full: try again after the next tick.
   std::uint64_t send(Command& command);
   std::uint64_t send(Command&& command) { return send(command); }
+  // The owner's: the id of the newest command that was sent; 0: none.
+  [[nodiscard]] std::uint64_t newest_sent() const { return next_command_ - 1; }
   // For a command. The tick uses the object until it gives it back; it is freed with a later call of send() or
   // free_returned(), or with the engine. Only the owner's thread frees.
   template <class T>
@@ -109,10 +118,9 @@ class Engine final : public Cycle {
   // What the tick takes, for the one thread that records it.
   [[nodiscard]] InputTap& inputs() { return inputs_; }
   // Before the first tick and the first command: the state that another engine wrote into a recording
-  // (InputRecord::start), with the same capacity or more. `chain` gives a chain for the id that it had. What does
-  // not fit is an error, and the engine is not to be used then.
-  Result<EngineStart> restore(std::span<const std::byte> start,
-                              const std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t)>& chain);
+  // (InputRecord::start), with the same capacity or more. What does not fit is an error, and the engine is not to be
+  // used then.
+  Result<EngineStart> restore(std::span<const std::byte> start, const StartParts& parts);
   // Of a recorded start state, without its content: what an engine for it needs.
   [[nodiscard]] static Result<EngineCapacity> capacity_of(std::span<const std::byte> start);
   // What a recording has of a slot's state: transfer_part() (state_transfer.hpp).
@@ -137,6 +145,7 @@ class Engine final : public Cycle {
   };
 
   void write_start(StateWriter& out) CELL_RT;
+  Result<void> restore_haptics(StateReader& in, const StartParts& parts, EngineStart& out);
   void record_published() CELL_RT;
   int take_commands(Timestamp now) CELL_RT;
   // False where the command was refused.

@@ -1,11 +1,14 @@
 // The state of the engine between two ticks as bytes, and back. Beginning of a recording of its inputs.
 //
 // A start state: robots and channels of the engine's capacity; periods missed, commands done and refused; the ids
-// of the devices of open haptic channels; used slots with their state; couplings. The state of a haptic channel is not
-// in it: a replay takes what such a channel gave until it is opened again.
+// of the devices of open haptic channels; used slots with their state; couplings; open haptic channels, to the end of
+// the record: number, state. Recordings of versions before that end behind the couplings: of those a replay takes what
+// such a channel gave until it is opened again.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/state_transfer.hpp"
@@ -50,6 +53,12 @@ void Engine::write_start(StateWriter& out) CELL_RT {
   for (Coupling& coupling : couplings_.all()) {
     if (coupling.count > 0) out(coupling);
   }
+  for (std::size_t channel = 0; channel < haptics_.size(); ++channel) {
+    if (!haptics_.used(channel)) continue;
+    std::size_t number = channel;
+    out.bounded(number, kMaxHapticDevices);
+    haptics_.write(channel, out);
+  }
 }
 
 void Engine::record_published() CELL_RT {
@@ -70,12 +79,27 @@ Result<EngineCapacity> Engine::capacity_of(std::span<const std::byte> start) {
   return capacity;
 }
 
-Result<EngineStart> Engine::restore(
-    std::span<const std::byte> start,
-    const std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t)>& chain) {
+Result<void> Engine::restore_haptics(StateReader& in, const StartParts& parts, EngineStart& out) {
+  const auto lend_instrument = [this](haptics::Instrument&& instrument) {
+    return lend(std::make_shared<const haptics::Instrument>(std::move(instrument)));
+  };
+  while (!in.at_end()) {
+    std::size_t channel = 0;
+    in.bounded(channel, kMaxHapticDevices);
+    if (!in.ok() || channel >= haptics_.size() || out.open_devices[channel] == 0 || out.restored[channel])
+      return std::unexpected(not_sound("the number of a haptic channel"));
+    if (!haptics_.restore(channel, in, lend(parts.device(channel, out.open_devices[channel])), lend_instrument,
+                          slots_.size()))
+      return std::unexpected(not_sound(fmt::format("haptic channel {}", channel)));
+    out.restored[channel] = true;
+  }
+  return {};
+}
+
+Result<EngineStart> Engine::restore(std::span<const std::byte> start, const StartParts& parts) {
   std::vector<std::shared_ptr<const kinematics::Chain>> found;
   StateReader in(start, [&](std::uint64_t id) -> const void* {
-    const auto one = chain(id);
+    const auto one = parts.chain(id);
     if (one && std::ranges::find(found, one) == found.end()) found.push_back(one);
     return one.get();
   });
@@ -106,7 +130,8 @@ Result<EngineStart> Engine::restore(
     in(coupling);
     if (!in.ok() || !couplings_.restore(coupling, slots_)) return std::unexpected(not_sound("a coupling"));
   }
-  if (!in.ok() || !in.at_end()) return std::unexpected(not_sound("its length"));
+  if (!in.ok()) return std::unexpected(not_sound("its length"));
+  if (auto haptics = restore_haptics(in, parts, out); !haptics) return std::unexpected(haptics.error());
   next_command_ = head_.commands_done + 1;
   out.commands_done = head_.commands_done;
   return out;

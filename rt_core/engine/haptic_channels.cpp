@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "rt_core/engine/instrument_bytes.hpp"
+#include "rt_core/engine/state_transfer.hpp"
+
 namespace cellmirror::engine {
 
 HapticRead WatchedDevice::read(HapticSample& sample) CELL_RT {
@@ -56,6 +59,7 @@ bool HapticChannels::step(std::size_t channel, const CycleContext& context, cons
   for (std::size_t i = 0; i < robot.joint_count; ++i) q[i] = robot.joints[i].position;
   const auto model = entry.inlet.read();
   const haptics::ContactModel& newest = model.value;
+  entry.newest_model = &newest;
   haptics::TickInput input;
   input.now = context.now;
   input.period = context.period;
@@ -66,6 +70,7 @@ bool HapticChannels::step(std::size_t channel, const CycleContext& context, cons
   input.model = fits ? &newest : nullptr;
   const auto response = entry.tissue_inlet.read();
   const haptics::TissueForce& tissue = response.value;
+  entry.newest_tissue = &tissue;
   input.tissue = tissue.sequence != 0 && tissue.posture_time >= entry.opened ? &tissue : nullptr;
   input.q = std::span<const double>(q).first(robot.joint_count);
   input.device_gone = entry.device_gone;
@@ -82,6 +87,42 @@ void HapticChannels::publish(std::span<HapticState, kMaxHapticDevices> out) cons
     // Each buffer holds an older state, so closed channels are cleared in each of them.
     out[i] = used(i) ? channels_[i].channel.state() : HapticState{};
   }
+}
+
+void HapticChannels::write(std::size_t channel, StateWriter& out) CELL_RT {
+  Entry& entry = channels_[channel];
+  write_instrument(out, *entry.instrument);
+  out(entry.opened, entry.device_gone, entry.channel);
+  haptics::ContactModel model = entry.newest_model != nullptr ? *entry.newest_model : haptics::ContactModel();
+  haptics::TissueForce tissue = entry.newest_tissue != nullptr ? *entry.newest_tissue : haptics::TissueForce();
+  out(model, tissue);
+}
+
+bool HapticChannels::restore(
+    std::size_t channel, StateReader& in, Lease<HapticDevicePort> device,
+    const std::function<Lease<const haptics::Instrument>(haptics::Instrument&&)>& lend_instrument, std::size_t slots) {
+  Entry& entry = channels_[channel];
+  auto instrument = read_instrument(in);
+  if (!instrument || instrument->slot >= slots || !device || entry.channel.used()) return false;
+  entry.instrument = lend_instrument(*std::move(instrument));
+  entry.device = std::move(device);
+  entry.watched.watch(*entry.device);
+  in(entry.opened, entry.device_gone);
+  if (!entry.channel.restore(in, *entry.instrument, entry.watched)) return false;
+  haptics::ContactModel model;
+  haptics::TissueForce tissue;
+  in(model, tissue);
+  if (!in.ok()) return false;
+  // As the next step would find them: a sequence of 0 is none.
+  if (model.sequence != 0) {
+    entry.inlet.writable() = model;
+    entry.inlet.publish();
+  }
+  if (tissue.sequence != 0) {
+    entry.tissue_inlet.writable() = tissue;
+    entry.tissue_inlet.publish();
+  }
+  return true;
 }
 
 }  // namespace cellmirror::engine

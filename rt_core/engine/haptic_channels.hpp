@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "rt_core/base/contract.hpp"
 #include "rt_core/base/real_time.hpp"
+#include "rt_core/base/state_bytes.hpp"
 #include "rt_core/engine/command.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/haptics/contact_model.hpp"
@@ -73,6 +75,14 @@ class HapticChannels {
     return channels_[channel].device.get();
   }
 
+  // An open channel for the beginning of a recording: with its instrument, but without its device.
+  void write(std::size_t channel, StateWriter& out) CELL_RT;
+  // Not for the tick. `device` stands for the one of then, `lend_instrument` lends what was read. False where the bytes
+  // are no state of a channel whose instrument's robot is in one of `slots` slots.
+  bool restore(std::size_t channel, StateReader& in, Lease<HapticDevicePort> device,
+               const std::function<Lease<const haptics::Instrument>(haptics::Instrument&&)>& lend_instrument,
+               std::size_t slots);
+
   // For one worker thread.
   [[nodiscard]] Latest<haptics::ContactModel>& inlet(std::size_t channel) {
     CELLMIRROR_EXPECTS(channel < channels_.size());
@@ -93,6 +103,9 @@ class HapticChannels {
     bool device_gone = false;
     WatchedDevice watched;
     HapticTaken taken;
+    // What the inlets gave in the last step; null: there was none. Valid until the next one.
+    const haptics::ContactModel* newest_model = nullptr;
+    const haptics::TissueForce* newest_tissue = nullptr;
     Latest<haptics::ContactModel> inlet;
     Latest<haptics::TissueForce> tissue_inlet;
   };

@@ -1,12 +1,10 @@
 #include "rt_core/engine/input_commands.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/engine/instrument_bytes.hpp"
 #include "rt_core/engine/state_transfer.hpp"
 
 namespace cellmirror {
@@ -17,19 +15,12 @@ void transfer(Archive& archive, engine::RobotSetup& value) {
   archive(value.positions, value.limits);
 }
 
-template <class Archive>
-void transfer(Archive& archive, kinematics::ChainJoint& value) {
-  archive.choice(value.kind, JointKind::prismatic);
-  archive(value.X_PJ, value.variable, value.multiplier, value.offset);
-}
-
 }  // namespace cellmirror
 
 namespace cellmirror::engine {
 
 namespace {
 
-using haptics::HapticSettings;
 using haptics::Instrument;
 
 // One list of members for both directions; what is lent is copied, or made and lent.
@@ -103,30 +94,6 @@ struct Members {
 };
 
 template <class Archive>
-void transfer_instrument(Archive& archive, Instrument& value) {
-  archive.bounded(value.joint_count, kMaxJointsPerRobot);
-  archive(value.slot, value.variable_joint, value.X_WB, value.lower, value.upper, value.settings);
-}
-
-bool all_finite(const HapticSettings& s) {
-  const double values[] = {
-      s.workspace_scale, s.force_scale,      s.gripper_scale,        s.gripper_offset,   s.stiffness,
-      s.damping,         s.max_force,        s.static_friction,      s.dynamic_friction, s.max_slew,
-      s.max_speed,       s.energy_allowance, s.max_passivity_damping};
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value) && std::abs(value) < 1e12; });
-}
-
-bool is_sound(const Instrument& instrument) {
-  const HapticSettings& s = instrument.settings;
-  if (!kinematics::is_pose(instrument.X_WB) || !kinematics::is_pose(s.X_WD) || !all_finite(s)) return false;
-  if (s.workspace_scale <= 0 || s.stiffness < 0 || s.max_force < 0 || s.max_slew < 0 || s.damping < 0) return false;
-  if (s.gripper_joint < -1 || s.gripper_joint >= instrument.joint_count) return false;
-  for (std::size_t i = 0; i < instrument.chain.variable_count(); ++i)
-    if (instrument.variable_joint[i] >= instrument.joint_count) return false;
-  return true;
-}
-
-template <class Archive>
 void Members<Archive>::operator()(OpenHaptic& one) const {
   bool there = one.instrument && one.device;
   archive(one.channel, there);
@@ -134,20 +101,14 @@ void Members<Archive>::operator()(OpenHaptic& one) const {
   if constexpr (Archive::kReads) {
     std::uint64_t id = 0;
     archive(id);
-    auto chain = read_chain(archive);
-    if (!chain) return;
-    auto instrument = std::make_shared<Instrument>(Instrument{.chain = *std::move(chain), .settings = {}});
-    transfer_instrument(archive, *instrument);
-    if (archive.ok() && !is_sound(*instrument)) archive.fail();
-    if (!archive.ok()) return;
+    auto instrument = read_instrument(archive);
+    if (!instrument) return;
     one.device = parts->engine.lend(parts->device(one.channel, id));
-    one.instrument = parts->engine.lend(std::shared_ptr<const Instrument>(std::move(instrument)));
+    one.instrument = parts->engine.lend(std::make_shared<const Instrument>(*std::move(instrument)));
   } else {
     const HapticDevicePort* device = one.device.get();
     archive.reference(device);
-    write_chain(archive, one.instrument->chain);
-    Instrument copy = *one.instrument;
-    transfer_instrument(archive, copy);
+    write_instrument(archive, *one.instrument);
   }
 }
 
@@ -163,46 +124,6 @@ bool choose(Variant& variant, std::size_t index) {
 }
 
 }  // namespace
-
-void write_chain(StateWriter& out, const kinematics::Chain& chain) {
-  std::size_t variables = chain.variables().size();
-  std::size_t joints = chain.joints().size();
-  out.bounded(variables, kinematics::kMaxVariables);
-  for (kinematics::Variable variable : chain.variables()) {
-    out.text(variable.name);
-    out.choice(variable.kind, JointKind::prismatic);
-    out(variable.lower, variable.upper);
-  }
-  out.bounded(joints, kinematics::kMaxChainJoints);
-  for (kinematics::ChainJoint joint : chain.joints()) out(joint);
-  Pose X_LT = chain.X_LT();
-  out(X_LT);
-}
-
-std::optional<kinematics::Chain> read_chain(StateReader& in) {
-  std::size_t count = 0;
-  in.bounded(count, kinematics::kMaxVariables);
-  if (!in.ok()) return std::nullopt;
-  std::vector<kinematics::Variable> variables(count);
-  for (kinematics::Variable& variable : variables) {
-    in.text(variable.name);
-    in.choice(variable.kind, JointKind::prismatic);
-    in(variable.lower, variable.upper);
-  }
-  in.bounded(count, kinematics::kMaxChainJoints);
-  if (!in.ok()) return std::nullopt;
-  std::vector<kinematics::ChainJoint> joints(count);
-  for (kinematics::ChainJoint& joint : joints) in(joint);
-  Pose X_LT = Pose::Identity();
-  in(X_LT);
-  if (!in.ok()) return std::nullopt;
-  auto chain = kinematics::Chain::make(std::move(variables), joints, X_LT);
-  if (!chain) {
-    in.fail();
-    return std::nullopt;
-  }
-  return *std::move(chain);
-}
 
 void write_command(StateWriter& out, Command& command) {
   auto group = static_cast<std::uint8_t>(command.index());

@@ -14,10 +14,6 @@ namespace cellmirror::engine {
 
 class Engine;
 
-void write_chain(StateWriter& out, const kinematics::Chain& chain);
-// None, and `in` fails, where it is no chain that Chain::make() makes.
-[[nodiscard]] std::optional<kinematics::Chain> read_chain(StateReader& in);
-
 void write_command(StateWriter& out, Command& command);
 
 // Who stands for what cannot be in a file.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "rt_core/engine/input_commands.hpp"
+#include "rt_core/engine/instrument_bytes.hpp"
 #include "rt_core/engine/state_transfer.hpp"
 
 namespace cellmirror::engine {
@@ -14,6 +15,8 @@ namespace {
 constexpr std::size_t kMostMoveBytes = 1200;
 constexpr std::size_t kMostRobotBytes = 12'000 + motion::kMoveQueue * kMostMoveBytes;
 constexpr std::size_t kMostOtherBytes = std::size_t{64} << 10;
+// An open haptic channel: its instrument with a chain whose variables have long names, two contact models, its state.
+constexpr std::size_t kMostHapticBytes = std::size_t{24} << 10;
 constexpr std::size_t kLeastRing = std::size_t{4} << 20;
 constexpr std::size_t kMostCommandBytes = std::size_t{64} << 10;
 
@@ -25,12 +28,17 @@ void append(std::vector<std::byte>& out, InputRecord kind, std::span<const std::
   out.insert(out.end(), content.begin(), content.end());
 }
 
+// Of a record of the tick.
+constexpr std::size_t most_bytes(std::size_t robots, std::size_t haptic_devices) {
+  return robots * kMostRobotBytes + haptic_devices * kMostHapticBytes + kMostOtherBytes;
+}
+
 }  // namespace
 
 // A robot's parts are written once more than they are in the state itself, in each tick.
 InputTap::TickMemory::TickMemory(std::size_t robots, std::size_t haptic_devices)
-    : ring(std::max(kLeastRing, 2 * (robots * kMostRobotBytes + kMostOtherBytes))),
-      scratch(robots * kMostRobotBytes + kMostOtherBytes),
+    : ring(std::max(kLeastRing, 2 * most_bytes(robots, haptic_devices))),
+      scratch(most_bytes(robots, haptic_devices)),
       published(robots * kRobotStateParts),
       published_haptic(haptic_devices) {}
 

@@ -11,7 +11,9 @@
 #include "rt_core/engine/limiter.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/haptics/contact_model.hpp"
+#include "rt_core/haptics/instrument_map.hpp"
 #include "rt_core/haptics/settings.hpp"
+#include "rt_core/haptics/tissue_coupling.hpp"
 #include "rt_core/haptics/tissue_force.hpp"
 #include "rt_core/kinematics/task.hpp"
 #include "rt_core/motion/executor.hpp"
@@ -143,6 +145,27 @@ void transfer(Archive& archive, haptics::HapticSettings& value) CELL_RT {
           value.dynamic_friction, value.max_force, value.max_slew, value.max_speed, value.engage_time,
           value.stale_after, value.model_stale_after, value.allowed_missed_periods, value.re_engage,
           value.passivity_control, value.energy_allowance, value.max_passivity_damping);
+}
+
+template <class Archive>
+void transfer(Archive& archive, haptics::TipTarget& value) CELL_RT {
+  archive(value.x_WE, value.R_WE, value.q, value.p_handle);
+}
+
+template <class Archive>
+void transfer(Archive& archive, haptics::Posture& value) CELL_RT {
+  archive(value.q, value.X_WE);
+}
+
+template <class Archive>
+void transfer(Archive& archive, haptics::TissueReaction& value) CELL_RT {
+  archive(value.force_W, value.axis_torque, value.stored);
+}
+
+template <class Archive>
+void transfer(Archive& archive, HapticOutput& value) CELL_RT {
+  archive(value.sequence, value.time, value.period, value.answers, value.phase, value.fault, value.force_E,
+          value.force_D, value.torque_D, value.gripper_torque, value.joint_count, value.joint_torques, value.max_force);
 }
 
 // Of the first `joints` joints.

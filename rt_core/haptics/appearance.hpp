@@ -31,6 +31,11 @@ class AppearanceWatch {
   // have moved since; then it restarts. Depth that shows bit by bit, model after model, adds up. Bounded time: two
   // searches of nearest_point().
   bool appeared(const ContactModel& before, const ContactModel& now, const Eigen::Vector3d& x) CELL_RT;
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(ahead_, changed_);
+  }
 
  private:
   double ahead_ = 0;  // m, that the surfaces have come beyond what their greatest speed explains

@@ -34,6 +34,12 @@ class ForceGate {
   // What is not admitted reaches the device with zero forces and torques. False then.
   bool write(const HapticOutput& output, const ForceLimits& limits, double period) CELL_RT;
 
+  // All that the next ticks depend on but the port, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(limited_, written_, cut_);
+  }
+
  private:
   HapticDevicePort* port_ = nullptr;
   Eigen::Vector3d limited_ = Eigen::Vector3d::Zero();  // N, by the last limit()

@@ -57,6 +57,27 @@ class HapticChannel {
   // within its limits; sequence and times of the device's sample): in phases other than closed, waiting and faulted.
   bool step(const TickInput& input, JointSample& sample) CELL_RT;
 
+  // All that the next ticks depend on but instrument and port, for a recording of the tick
+  // (rt_core/base/state_bytes.hpp). Of an open channel.
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(state_, gate_, validator_, models_, map_, proxy_, coupling_, tissue_, passivity_, re_engagement_, target_,
+            posture_);
+    transfer_tip(archive);
+    archive(held_force_, stored_energy_, reaction_, coupling_force_, passed_, was_engaged_, output_, last_tick_,
+            last_bad_);
+  }
+  // Not for the tick: as it was written. `instrument` and `port` as in open(). False, and it is closed, where it is
+  // no state of an open channel.
+  template <class Archive>
+  [[nodiscard]] bool restore(Archive& in, const Instrument& instrument, HapticDevicePort& port) {
+    open(instrument, port);
+    transfer(in);
+    if (in.ok() && used()) return true;
+    close();
+    return false;
+  }
+
   [[nodiscard]] bool used() const CELL_RT { return state_.phase != HapticPhase::closed; }
   [[nodiscard]] const HapticState& state() const CELL_RT { return state_; }
 
@@ -79,6 +100,20 @@ class HapticChannel {
   void write(Timestamp now, Nanoseconds period) CELL_RT;
   void write_forces() CELL_RT;
   void fill(JointSample& sample) const CELL_RT;
+
+  // A column of the Jacobian for each variable of the chain, whether the channel was engaged yet or not.
+  template <class Archive>
+  void transfer_tip(Archive& archive) CELL_RT {
+    archive(tip_.X_BE, tip_.error, tip_.met);
+    const auto variables = static_cast<Eigen::Index>(instrument_->chain.variable_count());
+    if constexpr (Archive::kReads) tip_.J.resize(6, variables);
+    for (Eigen::Index i = 0; i < variables; ++i) {
+      Eigen::Matrix<double, 6, 1> column = Eigen::Matrix<double, 6, 1>::Zero();
+      if (i < tip_.J.cols()) column = tip_.J.col(i);
+      archive(column);
+      if constexpr (Archive::kReads) tip_.J.col(i) = column;
+    }
+  }
 
   HapticState state_;
   const Instrument* instrument_ = nullptr;

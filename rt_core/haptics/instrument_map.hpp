@@ -38,6 +38,12 @@ class InstrumentMap {
   // The same for the orientation alone; the place stays that of the cell file.
   void anchor_orientation(const Instrument& instrument, const HapticSample& sample, const Posture& posture) CELL_RT;
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(offset_W_, R_HE_, joint_offset_);
+  }
+
  private:
   Eigen::Vector3d offset_W_ = Eigen::Vector3d::Zero();  // m
   Eigen::Matrix3d R_HE_ = Eigen::Matrix3d::Identity();  // orientation of the tool in the hand

@@ -24,6 +24,12 @@ class ModelWatch {
   [[nodiscard]] const ContactModel* model() const CELL_RT { return known_ ? &model_ : nullptr; }
   [[nodiscard]] bool stale(Timestamp now, Nanoseconds stale_after) const CELL_RT;
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(known_, appeared_, appearance_, model_);
+  }
+
  private:
   bool known_ = false;
   bool appeared_ = false;

@@ -37,6 +37,12 @@ class Passivity {
   // Far more was generated than could be taken.
   [[nodiscard]] bool lost(const PassivitySettings& settings) const CELL_RT;
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(p_, step_, change_, applied_, energy_, damping_, share_);
+  }
+
  private:
   Eigen::Vector3d p_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d step_ = Eigen::Vector3d::Zero();     // m, in the last period

@@ -9,9 +9,9 @@ namespace cellmirror::haptics {
 
 namespace {
 
-constexpr double kSame = 1e-9;    // m
-constexpr double kPlaced = 1e-4;  // m: deeper inside, a tip that begins is not where it belongs
-constexpr int kModelsAgree = 2;   // the first of them may be of the posture before
+constexpr double kSame = 1e-9;        // m
+constexpr double kPlaced = 1e-4;      // m: deeper inside, a tip that begins is not where it belongs
+constexpr unsigned kModelsAgree = 2;  // the first of them may be of the posture before
 
 // Moves `target` back towards `from` until it is within `longest` of it.
 bool shorten(const Eigen::Vector3d& from, double longest, Eigen::Vector3d& target) CELL_RT {
@@ -35,7 +35,7 @@ void Proxy::start(const Eigen::Vector3d& x) CELL_RT {
 void Proxy::settle(const ContactModel& model) CELL_RT {
   if (model.sequence == looked_at_) return;
   looked_at_ = model.sequence;
-  settled_ = tip_depth(model, x_) <= kPlaced ? std::min(settled_ + 1, kModelsAgree) : 0;
+  settled_ = tip_depth(model, x_) <= kPlaced ? std::min(settled_ + 1, kModelsAgree) : 0U;
 }
 
 // The share of a depth that is felt: what is beyond the depth at which the engagement began.

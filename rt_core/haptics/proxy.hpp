@@ -43,6 +43,12 @@ class Proxy {
   [[nodiscard]] bool sticking() const CELL_RT { return sticking_; }
   [[nodiscard]] bool approaching() const CELL_RT { return approaching_; }
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(x_, sticking_, approaching_, settled_, looked_at_, forgiven_depth_);
+  }
+
  private:
   ProxyContact press(const ContactModel& model, const Eigen::Vector3d& hand, const Friction& friction,
                      Eigen::Vector3d& target) CELL_RT;
@@ -55,7 +61,7 @@ class Proxy {
   Eigen::Vector3d x_ = Eigen::Vector3d::Zero();
   bool sticking_ = false;
   bool approaching_ = true;
-  int settled_ = 0;              // successive models that did not move it
+  unsigned settled_ = 0;         // successive models that did not move it
   std::uint64_t looked_at_ = 0;  // sequence of the last of them
   double forgiven_depth_ = 0;    // m
 };

@@ -38,6 +38,12 @@ class ReEngagement {
   // Each tick while it is latched. `nothing`: the device may engage again now.
   HapticAwaited awaits(const FaultedTick& tick) CELL_RT;
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(place_, since_);
+  }
+
  private:
   bool rests(Timestamp now, const Eigen::Vector3d& hand) CELL_RT;
 

@@ -43,6 +43,13 @@ class SampleValidator {
   [[nodiscard]] std::uint64_t skipped() const CELL_RT { return skipped_; }
   [[nodiscard]] std::uint64_t torn() const CELL_RT { return torn_; }
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(seen_, place_known_, tearing_, last_, place_, place_time_, received_, count_, writes_, writer_,
+            writer_known_, samples_, skipped_, torn_);
+  }
+
  private:
   Verdict validate_new(const HapticSample& sample, Timestamp now, const SampleLimits& settings) CELL_RT;
   [[nodiscard]] bool has_other_writer(const HapticSample& sample) const CELL_RT;

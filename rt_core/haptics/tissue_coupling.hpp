@@ -65,6 +65,13 @@ class TissueCoupling {
   [[nodiscard]] std::uint64_t late() const CELL_RT { return late_; }
   [[nodiscard]] std::uint64_t refused() const CELL_RT { return refused_; }
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(known_, fresh_, counted_late_, force_, steepness_, smoothing_, taken_, seen_, seen_time_, share_, lag_,
+            correction_, last_, last_torque_, late_, refused_);
+  }
+
  private:
   void accept(const TissueForce& response, Timestamp now) CELL_RT;
   [[nodiscard]] double softening(double stiffest) const CELL_RT;

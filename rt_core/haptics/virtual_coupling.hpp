@@ -24,6 +24,12 @@ class VirtualCoupling {
   void fade(double engage_time, double period) CELL_RT;
   [[nodiscard]] double faded_in() const CELL_RT { return share_; }  // 0 to 1
 
+  // All that the next ticks depend on, for a recording of the tick (rt_core/base/state_bytes.hpp).
+  template <class Archive>
+  void transfer(Archive& archive) CELL_RT {
+    archive(share_, last_, rate_);
+  }
+
  private:
   double share_ = 0;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero();  // m

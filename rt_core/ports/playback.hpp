@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rt_core/base/result.hpp"
 
@@ -21,6 +23,15 @@ enum class PlaybackStatus : std::uint8_t {
   ended,    // paused at the end
 };
 
+// Where something began that people look for first.
+enum class PlaybackMarkKind : std::uint8_t { collision, fault };
+struct PlaybackMark {
+  std::int64_t time_ns = 0;  // since 1970, UTC
+  PlaybackMarkKind kind = PlaybackMarkKind::collision;
+  std::string text;  // which bodies, which fault
+};
+using PlaybackMarks = std::vector<PlaybackMark>;
+
 // Times in nanoseconds since 1970, UTC, as they were recorded.
 struct PlaybackState {
   std::int64_t from_ns = 0;
@@ -32,7 +43,8 @@ struct PlaybackState {
   std::uint64_t seeks = 0;    // that were asked for
   std::uint64_t gaps = 0;     // that were jumped over
   std::string file;
-  std::string note;  // the newest gap, or why nothing goes on; empty: none
+  std::string note;                            // the newest gap, or why nothing goes on; empty: none
+  std::shared_ptr<const PlaybackMarks> marks;  // within the range, by time; null: none
 };
 
 // UTC, ns, so many finite seconds after the beginning of what is played.
@@ -55,6 +67,10 @@ class PlaybackPort {
   // All of it, or nothing and why.
   virtual Result<void> apply(const PlaybackRequest& request) = 0;
 };
+
+[[nodiscard]] constexpr const char* word(PlaybackMarkKind kind) {
+  return kind == PlaybackMarkKind::collision ? "collision" : "fault";
+}
 
 [[nodiscard]] constexpr const char* word(PlaybackStatus status) {
   switch (status) {

@@ -22,6 +22,7 @@ import traceback
 
 import standin_alarms
 import standin_jpeg
+import standin_playback
 import standin_scene
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -65,6 +66,7 @@ class Cell:
         self.problems = []
         self.alarms = standin_alarms.Alarms()
         self.still = False  # joints stand where they are after a second
+        self.playback = None  # a standin_playback.Playback: of a recording
 
     def command_log(self):
         """Made up, one of each source; the last one is the newest."""
@@ -127,7 +129,7 @@ class Cell:
                         "object": "Cell.Table_1.top", "object_short": "Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
             "forces": forces,
             "problems": [{"kind": "script_queue", "text": text} for text in self.problems], "commands_logged": 3,
-            "alarms": self.alarms.counts(),
+            "alarms": self.alarms.counts(), **({"replay": self.playback.state()} if self.playback else {}),
             "queues": [{"name": name, "dropped": dropped, "high_water": 12, "capacity": 1024} for name, dropped in
                        (("messages (2351)", 0), ("sensor queue (1990)", int(3 * now)), ("ticks to the studio", 0))],
             "messages": [{"number": number, "text": text, "age_s": now - at} for number, at, text in self.messages[-20:]],
@@ -135,6 +137,11 @@ class Cell:
                         "displays": self.displays, "modes": self.modes},
             "cameras": ["CAMERA_5", "UMG_Kamera_1"], "bell": self.modes["BEEP"],
         }
+
+    def status(self):
+        """As far as the page asks for it."""
+        live = self.live()
+        return {**live, "replay": {**live["replay"], "marks": self.playback.marks}} if self.playback else live
 
     def tree(self):
         nodes = [{"path": "Cell", "name": "Cell", "parent": None, "kind": "frame", "shown": True, "has_detail": False}]
@@ -297,6 +304,8 @@ class Client:
         elif do == "command":
             why = self.cell.execute(message["text"]) if self.may_command else "this client may not command"
             self.send({"is": "reply", "id": message["id"], "done": why is None, "text": why or ""})
+        elif do == "playback" and self.cell.playback:
+            self.cell.playback.follow(message)
         elif do == "pick":
             width = self.wish["width"] if self.wish else 0
             robot = self.cell.ids[0] if self.cell.ids and 0 < width / 2 < message["x"] else ""
@@ -344,6 +353,7 @@ class Server:
         self.cell = Cell(options.robots, options.joints)
         self.cell.problems = options.problem
         self.cell.still = options.still
+        self.cell.playback = standin_playback.Playback() if options.replay else None
         self.cell.scene = standin_scene.Scene(self.cell, options.parts, options.triangles, options.tissue, options.volumes)
         self.commands = commands()
 
@@ -373,7 +383,7 @@ class Server:
 
     def file(self, path, writer):
         documents = {"/api/tree": self.cell.tree, "/api/names": self.cell.names, "/api/commands": lambda: self.commands,
-                     "/api/status": self.cell.live, "/api/command-log": self.cell.command_log,
+                     "/api/status": self.cell.status, "/api/command-log": self.cell.command_log,
                      "/api/alarms": self.cell.alarms.document}
         if path in documents:
             kind, body = "application/json", json.dumps(documents[path]()).encode()
@@ -412,6 +422,7 @@ async def main():
     parser.add_argument("--pictures-hz", type=float, default=15)
     parser.add_argument("--poses-hz", type=float, default=20, help="how often 3D is told where everything is")
     parser.add_argument("--still", action="store_true", help="no joint moves")
+    parser.add_argument("--replay", action="store_true", help="a recording is played")
     parser.add_argument("--read-only", action="store_true")
     parser.add_argument("--problem", action="append", default=[], help="text of a problem to report; repeatable")
     server = Server(parser.parse_args())

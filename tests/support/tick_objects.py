@@ -10,7 +10,8 @@ LIBRARIES = ("rt_core/base", "rt_core/rt", "rt_core/kinematics", "rt_core/motion
 
 SYMBOL = re.compile(r"^([0-9a-f]{16}) ([lgu! ])\S* .*?F (\S+)\s+[0-9a-f]{16} (?:\.hidden )?(\S+)$")
 FUNCTION = re.compile(r"^[0-9a-f]{16} <(.+)>:$")
-BRANCH = re.compile(r"^\s*[0-9a-f]+:\t(?:\S+ )*?(?:call|j[a-z]+)\s+(?:[0-9a-f]+ <([^>+]+)|\*)")
+SECTION = re.compile(r"^Disassembly of section (\S+):$")
+BRANCH = re.compile(r"^\s*[0-9a-f]+:\t(?:\S+ )*?(?:call|j[a-z]+)\s+(?:([0-9a-f]+) <([^>+]+)|\*)")
 RELOCATION = re.compile(r"^\s+[0-9a-f]+: R_X86_64_\w+\s+(.+?)([+-]0x[0-9a-f]+)?$")
 
 Graph = dict[str, set[str]]
@@ -35,17 +36,25 @@ def read_member(lines: list[str], member: str, graph: Graph) -> None:
         offset = int(addend or "0", 16) + 4  # relative to the end of a field of four bytes
         return name_of(at[symbol][max(place for place in at[symbol] if place <= offset)][0])
 
-    current, shown = "", None  # what objdump shows as a branch's target holds where no relocation follows
+    def within(section: str, address: int, shown: str) -> str:
+        """Of a branch without a relocation, whose name may be that of a constant at this address of another section."""
+        before = [place for place in at.get(section, {}) if place <= address]
+        return name_of(at[section][max(before)][0]) if before else name_of(shown)
+
+    current, section, branch = "", "", None  # what objdump shows as a branch's target holds where no relocation follows
     for line in [*lines, "-"]:
-        if shown is not None:
+        if branch is not None:
             relocation = RELOCATION.match(line)
-            graph[current].add(target_of(relocation[1], relocation[2]) if relocation else name_of(shown))
-            shown = None
-        if match := FUNCTION.match(line):
+            graph[current].add(target_of(relocation[1], relocation[2]) if relocation else
+                               within(section, int(branch[1], 16), branch[2]))
+            branch = None
+        if match := SECTION.match(line):
+            section = match[1]
+        elif match := FUNCTION.match(line):
             current = name_of(match[1])
             graph.setdefault(current, set())
         elif (match := BRANCH.match(line)) and match[1]:
-            shown = match[1]
+            branch = match
     for functions in at.values():
         for same in functions.values():
             calls = set().union(*(graph.get(name_of(name), set()) for name in same))

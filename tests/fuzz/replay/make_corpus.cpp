@@ -197,6 +197,18 @@ std::vector<std::byte> haptic() {
   return sample.message();
 }
 
+// Open before the recording begins: its state is in the start state.
+std::vector<std::byte> open_haptic() {
+  Sample sample(1);
+  sample.open_hand();
+  for (int i = 0; i < 6; ++i) {
+    if (i == 4) sample.begin();
+    sample.give_model();
+    sample.tick(1);
+  }
+  return sample.message();
+}
+
 // Ticks that are missing, and another start state.
 std::vector<std::byte> gap() {
   Sample sample(1);
@@ -220,9 +232,9 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::filesystem::path folder = arguments[1];
-  const std::pair<const char*, std::vector<std::byte> (*)()> seeds[] = {{"still", still},       {"moving", moving},
-                                                                        {"mirrored", mirrored}, {"commands", commands},
-                                                                        {"haptic", haptic},     {"gap", gap}};
+  const std::pair<const char*, std::vector<std::byte> (*)()> seeds[] = {
+      {"still", still},   {"moving", moving}, {"mirrored", mirrored},      {"commands", commands},
+      {"haptic", haptic}, {"gap", gap},       {"open_haptic", open_haptic}};
   for (const auto& [name, make] : seeds) {
     const std::vector<std::byte> bytes = make();
     app::EngineReplay replay;

@@ -1,6 +1,8 @@
 // A Cyclone DDS peer in a process of its own, to be stopped and killed by tests.
 //   dds_cyclone_peer write DOMAIN TOPIC PERIOD_MS   publishes {"a": n} for n = 1, 2, ... until it is ended
 //   dds_cyclone_peer read DOMAIN TOPIC              a reliable reader; prints a line for each message
+//   dds_cyclone_peer states DOMAIN TOPIC            likewise, with what is in them, as JSON: {"writers": n} when their
+//   number has changed, {"stamp_ns": t, "position": {name: value}} for each message
 //   dds_cyclone_peer description DOMAIN TOPIC       prints the text that is there for readers that come later; 1 after
 //   20 s
 #include <chrono>
@@ -34,6 +36,23 @@ int read(CyclonePeer& peer, const std::string& topic) {
   }
 }
 
+int states(CyclonePeer& peer, const std::string& topic) {
+  const dds_entity_t reader = peer.joint_state_reader(topic, true);
+  for (int writers = -1;;) {
+    const int matched = CyclonePeer::matched_writers(reader);
+    if (matched != writers) std::printf("{\"writers\": %d}\n", writers = matched);
+    for (const auto& message : CyclonePeer::take_joint_states(reader)) {
+      std::printf("{\"stamp_ns\": %lld, \"position\": {",
+                  1'000'000'000LL * message.sec + static_cast<long long>(message.nanosec));
+      for (std::size_t i = 0; i < message.name.size() && i < message.position.size(); ++i)
+        std::printf("%s\"%s\": %.17g", i == 0 ? "" : ", ", message.name[i].c_str(), message.position[i]);
+      std::puts("}}");
+    }
+    std::fflush(stdout);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
 int description(CyclonePeer& peer, const std::string& topic) {
   const dds_entity_t reader = peer.description_reader(topic);
   for (int i = 0; i < 2000; ++i) {
@@ -51,6 +70,7 @@ int main(int argc, char** argv) {
   CyclonePeer peer(std::atoi(argv[2]));
   if (std::string(argv[1]) == "write" && argc == 5) return write(peer, argv[3], std::atoi(argv[4]));
   if (std::string(argv[1]) == "read") return read(peer, argv[3]);
+  if (std::string(argv[1]) == "states") return states(peer, argv[3]);
   if (std::string(argv[1]) == "description") return description(peer, argv[3]);
   return 2;
 }

@@ -112,6 +112,38 @@ class FootSwitches(unittest.TestCase):
             self.until(lambda s: s["scripts"]["started"] == 12 and not s["last_script"]["running"])
         self.assertEqual(self.places(), [place(n, True) for n in range(1, 9)] + [place(n, False) for n in (2, 4, 6, 8)])
 
+    def test_a_recording_has_each_change_and_what_came_of_it_runs_again(self):
+        self.start()
+        file = str(self.scratch.root / "a.mcap")
+        recorder = g.Process([g.BIN / "cellmirror", "record", "-o", file, "--instance", self.scratch.instance], self.scratch.environment)
+        self.addCleanup(recorder.close)
+        self.assertTrue(g.eventually(lambda: any(one["messages"] for one in self.scratch.status()["recordings"])), recorder.output())
+        with shared_memory.Segment(self.key) as memory:
+            for n in range(6):
+                memory.byte().value = 0b10 if n % 2 == 0 else 0
+                self.until(lambda s: s["edges"] == n + 1)
+            memory.byte().value = 0b1100  # together
+            self.until(lambda s: s["scripts"]["started"] == 8 and not s["last_script"]["running"])
+        self.assertEqual(recorder.stop(), 0, recorder.output())
+
+        def exported(topic):
+            done = self.scratch.cellmirror("recording", "export", file, "--topic", topic, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return [message["values"] for message in json.loads(done.stdout)["messages"]]
+
+        changes = exported("/inputs/foot_switch_changes")
+        self.assertEqual([(one["input"], one["on"]) for one in changes], [(2, True), (2, False)] * 3 + [(3, True), (4, True)])
+        times = [one["time_ns"] for one in changes]
+        self.assertEqual(times, sorted(times))
+        moves = [one for one in exported("/cellmirror/commands") if one["command"].startswith("POS_ROB")]
+        self.assertEqual([one["place"].split("/")[-1].split(":")[0] for one in moves],
+                         ["BININP2_ON.spt", "BININP2_OFF.spt"] * 3 + ["BININP3_ON.spt", "BININP4_ON.spt"])
+        sent = [one["loop_command"] for one in moves]
+        self.assertEqual(sent, sorted(set(sent)), "each has sent something to the loop")
+        done = self.scratch.cellmirror("replay", file, "--verify", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue(json.loads(done.stdout)["equal"])
+
     def test_bounces_are_no_changes(self):
         self.start(debounce_s=0.2)
         with shared_memory.Segment(self.key) as memory:

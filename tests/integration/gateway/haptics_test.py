@@ -2,6 +2,7 @@
 goes wrong takes the force away until it is reset."""
 
 import ctypes
+import json
 import math
 import pathlib
 import struct
@@ -114,6 +115,18 @@ class Moving(Trainer):
         self.assertTrue(g.eventually(lambda: abs(jaw() - 0.3) < 1e-6, 5), jaw())
         self.device.gripper = 0.0
 
+    def verified_from_here(self):
+        """What is recorded now runs again to the bit, with the forces of the devices that are open already."""
+        file = self.scratch.root / "a.mcap"
+        done = self.scratch.cellmirror("record", "-o", str(file), "--for", "0.7", "--attach-mb", "0", "--topics", "/inputs/ticks",
+                                       "--instance", self.scratch.instance)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.scratch.cellmirror("replay", str(file), "--verify", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual((report["not_compared"], report["not_sound"]), ([], 0), report)
+        self.assertGreater(report["ticks"], 100)
+
     def test_what_it_touches_pushes_back(self):
         self.assertLess(h.norm(self.device.force()["force_device"]), 0.3)
         appeared = self.haptic()["contact_model"]["appeared"]
@@ -128,6 +141,7 @@ class Moving(Trainer):
         depth = h.norm([a - b for a, b in zip(state["device_position_m"], state["proxy_position_m"])])
         self.assertGreater(depth, 0.001)
         self.assertEqual(self.scratch.status()["collisions"]["touching_count"], 0)  # the tip stays outside
+        self.verified_from_here()
         self.device.go((0, 0, 0))
         self.assertTrue(g.eventually(lambda: h.norm(self.device.force()["force_device"]) < 0.05, 5))
         self.assertEqual(self.haptic()["contact_model"]["appeared"], appeared)  # what stands still is always felt

@@ -1,10 +1,26 @@
 """`replay` on recordings of the running gateway: each tick again to the bit, killed gateways, other builds, other cells."""
 
 import json
+import struct
 import unittest
 
 import gateway as g
+import mcap_structure
 from recording_test import RecordingCase
+
+
+def ticks_of(recording):
+    """(tick, commands done) of each, out of /inputs/ticks by docs/recording.md."""
+    out = []
+    for topic, *_, data in recording.messages:
+        at = 1
+        while topic == "/inputs/ticks" and at < len(data):
+            kind, length = struct.unpack_from("<BI", data, at)
+            at += 5 + length
+            if kind == 5:
+                # cycle, times of waking and of the slot, missed, period, last computing; then commands
+                out.append((struct.unpack_from("<Q", data, at - length)[0], struct.unpack_from("<Q", data, at - length + 48)[0]))
+    return out
 
 
 class ReplayCase(RecordingCase):
@@ -30,7 +46,7 @@ class Verify(ReplayCase):
     def test_a_run_with_streams_and_moves_is_equal_to_the_bit(self):
         self.start()
         self.simulator()
-        recorder = self.begin("a.mcap", "--for", "3")
+        recorder = self.begin("a.mcap", "--for", "3", "--compression", "none")
         self.move()
         self.assertEqual(recorder.child.wait(20), 0, recorder.output())
         file = self.scratch.root / "a.mcap"
@@ -41,6 +57,14 @@ class Verify(ReplayCase):
         self.assertEqual(self.info("a.mcap")["gateway"]["cell_file"], str(self.scratch.cell_file))
         commands = json.loads(self.recording("export", str(file), "--topic", "/cellmirror/commands", "--json").stdout)["messages"]
         self.assertTrue(all(one["values"]["tick"] > 0 for one in commands), commands)
+        # Each move was carried out by a tick of the recording, before the one in which its end was known.
+        ticks = ticks_of(mcap_structure.Recording(file.read_bytes()))
+        self.assertEqual([tick for tick, _ in ticks], sorted({tick for tick, _ in ticks}))
+        moves = [one["values"] for one in commands if one["values"]["command"].startswith("POS_ROB")]
+        self.assertEqual(len(moves), 2)
+        for move in moves:
+            carried_out = next(tick for tick, done in ticks if done >= move["loop_command"])
+            self.assertLess(carried_out, move["tick"])
         # Another instruction set is refused, unless that is asked for. Metadata are outside of chunks, without a CRC.
         data = file.read_bytes()
         other = self.scratch.root / "other.mcap"
@@ -82,6 +106,14 @@ class Verify(ReplayCase):
             report = self.verify(file)
             self.assertTrue(report["equal"], report)
             self.assertGreater(report["recorded_s"], 0.4)
+
+    def test_recordings_beside_a_black_box_begin_with_a_start_state_each(self):
+        self.scratch.cell_file.write_text(self.scratch.cell_file.read_text() + "\n[record]\nfile_s = 60\n")
+        self.start()
+        for name in ("a.mcap", "b.mcap"):
+            self.record(name, "--attach-mb", "0", seconds="0.8")
+            report = self.verify(self.scratch.root / name)
+            self.assertGreater(report["recorded_s"], 0.1, report)
 
     def test_without_inputs_there_is_nothing_to_verify(self):
         self.start()

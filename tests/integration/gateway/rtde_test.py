@@ -7,6 +7,7 @@ import time
 import unittest
 
 import gateway as g
+import mcap_structure
 
 JOINTS = 6
 VARIABLES = b"timestamp,actual_q,actual_qd,robot_mode,safety_mode"
@@ -29,7 +30,7 @@ class Controller(threading.Thread):
     def __init__(self, port, types=TYPES, rate=125.0):
         super().__init__(daemon=True)
         self.types, self.rate, self.q0 = types, rate, 0.0
-        self.requests, self.stop = [], threading.Event()
+        self.requests, self.sent, self.stop = [], [], threading.Event()
         self.listener = socket.create_server(("127.0.0.1", port))
         self.listener.settimeout(0.2)
 
@@ -72,7 +73,8 @@ class Controller(threading.Thread):
         start = time.monotonic()
         while not self.stop.wait(1 / self.rate):
             q = [self.q0, 0.2, 0.3, 0.4, 0.5, 0.6]
-            client.sendall(package(85, b"\x07" + struct.pack(">d6d6dii", 100 + time.monotonic() - start, *q, *[0.0] * 6, 7, 1)))
+            self.sent.append(b"\x07" + struct.pack(">d6d6dii", 100 + time.monotonic() - start, *q, *[0.0] * 6, 7, 1))
+            client.sendall(package(85, self.sent[-1]))
 
     def close(self):
         self.stop.set()
@@ -108,6 +110,20 @@ class Rtde(unittest.TestCase):
     def position(self):
         return self.scratch.robot("demo_arm")["joints"][0]["position"]
 
+    def record(self, seconds, *arguments):
+        """The structure of a recording of so many seconds."""
+        file = self.scratch.root / "a.mcap"
+        done = self.scratch.cellmirror("record", "-o", str(file), "--for", str(seconds), "--compression", "none", "--attach-mb", "0",
+                                       "--instance", self.scratch.instance, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return mcap_structure.Recording(file.read_bytes())
+
+    def packages(self, recording):
+        """(receive time in ns, package) of each."""
+        channel, = [one for one in recording.channels.values() if one[2] == "/inputs/rtde/demo_arm"]
+        self.assertEqual((channel[3], recording.schemas[channel[1]][1]), ("cellmirror.rtde", "cellmirror.RtdeData"))
+        return [(published, data) for topic, _, _, published, data in recording.messages if topic == channel[2]]
+
     def test_the_simulated_controller_is_mirrored_and_comes_back(self):
         self.assertEqual(self.stream()["state"], "none")
         sim = g.sim_robot("rtde", "--port", str(self.port), "--rate", "125", "--motion", "sine:amplitude=0.3,period=2",
@@ -116,6 +132,16 @@ class Rtde(unittest.TestCase):
         self.assertIn("running", self.stream()["condition"])
         first = self.position()
         self.assertTrue(g.eventually(lambda: abs(self.position() - first) > 0.02, 5))
+        packages = self.packages(self.record(1, "--topics", "/inputs/rtde/*"))
+        self.assertGreater(len(packages), 60)
+        decoded = [struct.unpack(">Bd6d6dii", data) for _, data in packages]
+        for before, after in zip(decoded, decoded[1:]):
+            self.assertGreater(after[1], before[1], "the controller's time")
+            self.assertLess(max(abs(a - b) for a, b in zip(before[2:8], after[2:8])), 0.3, "actual_q, rad")
+        self.assertGreater(max(one[2] for one in decoded) - min(one[2] for one in decoded), 0.05)
+        received = [time for time, _ in packages]
+        self.assertLess(abs(received[0] - time.time_ns()), 60e9)
+        self.assertLess(abs((received[-1] - received[0]) * 1e-9 - (decoded[-1][1] - decoded[0][1])), 0.3)
         self.assertTrue(g.eventually(lambda: self.stream()["state"] == "lost", 15), self.stream())
         sim.close()
         again = g.sim_robot("rtde", "--port", str(self.port), "--rate", "125")
@@ -138,6 +164,10 @@ class Rtde(unittest.TestCase):
             self.assertEqual([kind for kind, _ in controller.requests[:3]], [86, 79, 83])
             self.assertEqual(controller.requests[0][1], b"\x00\x02")
             self.assertEqual(controller.requests[1][1], struct.pack(">d", 125.0) + VARIABLES)
+            recorded = [data for _, data in self.packages(self.record(0.5, "--topics", "/inputs/rtde/*"))]
+            self.assertGreater(len(recorded), 20)
+            begin = controller.sent.index(recorded[0])
+            self.assertEqual(recorded, controller.sent[begin:begin + len(recorded)], "each package, byte by byte")
         finally:
             controller.close()
 

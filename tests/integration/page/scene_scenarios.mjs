@@ -231,6 +231,32 @@ export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, 
       assert.notEqual(light, dark, "the tools have the same colour in dark mode");
     },
 
+    // A recording that is played: where collisions and faults began, and the way there by keys alone.
+    async playback() {
+      const page = await opened();
+      await page.waitForFunction(() => document.getElementById("line-text").textContent === "replay");
+      await page.locator("#replay-bar").waitFor();
+      await page.locator("#replay-marks i").nth(2).waitFor({state: "attached"});
+      const drawn = await page.locator("#replay-marks i").evaluateAll((marks) => marks.map((mark) => [mark.dataset.kind, mark.style.left]));
+      assert.deepEqual(drawn.map(([kind]) => kind), ["fault", "fault", "collision"], "two that are too near to be told apart are one");
+      assert.equal(drawn[1][1], "50%");
+      const [mark, slider] = await Promise.all(["#replay-marks i >> nth=1", "#replay-slider"].map((name) => page.locator(name).boundingBox()));
+      assert.ok(Math.abs(mark.x + mark.width / 2 - (slider.x + slider.width / 2)) < 4, "a mark is not above its time");
+      const texts = await page.locator("#replay-events option").allInnerTexts();
+      assert.equal(texts.length, 5);
+      assert.equal(texts[0], "4 events");
+      assert.match(texts[1], /:\d\d\.500 collision: ROBOT_1\.link, <b>table<\/b>$/);
+      await page.locator("#replay-events").focus();
+      await page.keyboard.press("ArrowDown");
+      await page.keyboard.press("ArrowDown");
+      await page.waitForFunction(() => document.getElementById("replay-slider").value === "12.6" || document.getElementById("replay-slider").value === "12.5");
+      await page.selectOption("#replay-events", {label: texts[4]});
+      await page.waitForFunction(() => document.getElementById("replay-slider").value === "48.25");
+      await axe(page, "a recording that is played");
+      await shot(page, "playback");
+      await page.context().close();
+    },
+
     // Alarms: how many wait, who has acknowledged what; two people see the same.
     async alarms() {
       const page = await opened();

@@ -30,6 +30,9 @@ class Scene(unittest.TestCase):
     def test_without_webgl_the_pictures_stay(self):
         self.run_scenario("scene_without_webgl", standin=("--robots", "2"))
 
+    def test_a_recording_that_is_played_shows_where_something_happened(self):
+        self.run_scenario("playback", standin=("--robots", "2", "--replay"))
+
     def test_alarms_are_acknowledged_by_name(self):
         self.run_scenario("alarms", standin=("--robots", "7"))
 

@@ -29,7 +29,7 @@ class Running:
     def __enter__(self):
         self.loop = asyncio.new_event_loop()
         self.server = page_standin.Server(argparse.Namespace(robots=3, joints=6, token="standin", read_only=False, problem=[], parts=0, triangles=0,
-                                                                  still=False, tissue=False, volumes=0, poses_hz=20, pictures_hz=15))
+                                                                  still=False, replay=False, tissue=False, volumes=0, poses_hz=20, pictures_hz=15))
         self.listener = self.loop.run_until_complete(asyncio.start_server(self.server.answer, "127.0.0.1", 0))
         port = self.listener.sockets[0].getsockname()[1]
         self.thread = threading.Thread(target=self.loop.run_forever)

@@ -154,5 +154,20 @@ TEST_F(PlaybackControlTest, WhatCannotBeReadEndsWithTheReason) {
   EXPECT_EQ(sut_.failure(), "") << "elsewhere it may go on";
 }
 
+TEST_F(PlaybackControlTest, MarksWithinTheRangeAreInTheOrderOfTheirTimes) {
+  EXPECT_EQ(sut_.state().marks, nullptr);
+  sut_.set_marks({{utc(7), PlaybackMarkKind::fault, "lost"},
+                  {utc(-0.1), PlaybackMarkKind::collision, "before"},
+                  {utc(2), PlaybackMarkKind::collision, "a, b"},
+                  {utc(10.1), PlaybackMarkKind::collision, "after"}});
+  ASSERT_NE(sut_.state().marks, nullptr);
+  const PlaybackMarks& marks = *sut_.state().marks;
+  ASSERT_EQ(marks.size(), 2U);
+  EXPECT_EQ(marks[0].text, "a, b");
+  EXPECT_EQ(marks[1].text, "lost");
+  sut_.set_marks(PlaybackMarks(2000, {utc(3), PlaybackMarkKind::fault, ""}));
+  EXPECT_EQ(sut_.state().marks->size(), PlaybackControl::kMostMarks);
+}
+
 }  // namespace
 }  // namespace cellmirror::app

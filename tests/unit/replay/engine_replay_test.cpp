@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -34,10 +35,12 @@ class Hand final : public HapticDevicePort {
     out.valid = true;
     out.writer = 1;
     out.p_DH.x() = 0.02 * std::sin(0.01 * static_cast<double>(sequence_));
+    out.buttons = buttons;
     return HapticRead::fresh;
   }
   void write(const HapticOutput& /*output*/) CELL_RT override {}
   const Timestamp* now = nullptr;
+  std::uint32_t buttons = 0;
 
  private:
   std::uint64_t sequence_ = 0;
@@ -51,6 +54,14 @@ kinematics::Chain slides() {
   std::vector<kinematics::ChainJoint> joints(3);
   for (std::uint8_t i = 0; i < 3; ++i) joints[i] = {.X_PJ = turn, .kind = JointKind::prismatic, .variable = i};
   return *kinematics::Chain::make(variables, joints, Pose::Identity());
+}
+
+void append(std::vector<std::byte>& out, InputRecord kind, ByteSpan content) {
+  const auto length = static_cast<std::uint32_t>(content.size());
+  const auto length_bytes = std::as_bytes(std::span(&length, 1));
+  out.push_back(static_cast<std::byte>(kind));
+  out.insert(out.end(), length_bytes.begin(), length_bytes.end());
+  out.insert(out.end(), content.begin(), content.end());
 }
 
 class EngineReplayTest : public testing::Test {
@@ -100,17 +111,17 @@ class EngineReplayTest : public testing::Test {
   }
 
   void open_hand() {
-    auto hand = std::make_shared<Hand>();
-    hand->now = &now_;
+    hand_->now = &now_;
     haptics::Instrument instrument{.slot = kSimulated, .joint_count = 3, .chain = slides(), .settings = {}};
     for (std::uint8_t i = 0; i < 3; ++i) instrument.variable_joint[i] = i;
     instrument.lower.fill(-1);
     instrument.upper.fill(1);
+    instrument.settings.clutch_button = 0;
     engine_->send(engine::SetMode{.slot = kSimulated, .mode = engine::RobotMode::mirrored});
     engine_->send(engine::OpenHaptic{
         .channel = 1,
         .instrument = engine_->lend(std::make_shared<const haptics::Instrument>(std::move(instrument))),
-        .device = engine_->lend<HapticDevicePort>(std::move(hand))});
+        .device = engine_->lend<HapticDevicePort>(hand_)});
   }
   void give_model() {
     haptics::ContactModel& model = engine_->contact_inlet(1).writable();
@@ -123,6 +134,27 @@ class EngineReplayTest : public testing::Test {
     model.constraints[0].a = model.constraints[0].normal = -Eigen::Vector3d::UnitX();
     model.constraints[0].gap = 0.01;
     engine_->contact_inlet(1).publish();
+  }
+
+  void give_tissue() {
+    haptics::TissueForce tissue;
+    tissue.sequence = ++tissues_;
+    tissue.posture_time = now_;
+    tissue.slot = kSimulated;
+    tissue.x_ref = ticks_.newest().haptics[1].x_proxy;
+    tissue.force_W = Eigen::Vector3d(0, 0.5, 0);
+    tissue.stiffness = Eigen::Matrix3d::Identity() * 50;
+    tissue.contacts = 1;
+    engine_->tissue_inlet(1).writable() = tissue;
+    engine_->tissue_inlet(1).publish();
+  }
+  // A hand meets a wall and tissue, uses the clutch, is faulted and reset.
+  void hand_at_work(int i) {
+    if (i < 600 || i > 900) give_model();
+    if (i > 300 && i % 3 == 0) give_tissue();
+    hand_->buttons = i > 400 && i < 480 ? 1 : 0;
+    if (i == 950) engine_->send(engine::ResetHaptic{.channel = 1});
+    tick(1);
   }
 
   std::vector<std::byte> message() {
@@ -139,6 +171,8 @@ class EngineReplayTest : public testing::Test {
   std::uint64_t cycle_ = 0;
   std::uint32_t move_id_ = 0;
   std::uint64_t models_ = 0;
+  std::uint64_t tissues_ = 0;
+  std::shared_ptr<Hand> hand_ = std::make_shared<Hand>();
   EngineReplay sut_;
 };
 
@@ -205,16 +239,91 @@ TEST_F(EngineReplayTest, AHapticDeviceThatWasOpenedWhileRecordingIsComparedToo) 
   EXPECT_TRUE(sut_.channels_taken_over().empty());
 }
 
-TEST_F(EngineReplayTest, OfOneThatWasOpenBeforeTheRobotIsComparedAlone) {
+// In any phase, in contact and not.
+TEST_F(EngineReplayTest, OneThatWasOpenBeforeIsComparedToo) {
   open_hand();
-  give_model();
-  tick(100);
+  tick(1);
+  std::set<HapticPhase> phases;
+  int felt = 0;
+  for (int i = 0; i < 1200; i += 40) {
+    const HapticState& before = ticks_.newest().haptics[1];
+    phases.insert(before.phase);
+    felt += before.force_W.isZero(0) ? 0 : 1;
+    engine_->inputs().request_start();
+    for (int k = 0; k < 40; ++k) hand_at_work(i + k);
+    EngineReplay replay;
+    replay.take(message());
+    engine_->inputs().end();
+    ASSERT_FALSE(replay.difference()) << i << ' ' << replay.difference()->what << "\n"
+                                      << replay.difference()->recorded << "\n"
+                                      << replay.difference()->computed;
+    ASSERT_EQ(replay.counts().ticks, 40U) << i << replay.counts().first_problem;
+    ASSERT_TRUE(replay.channels_taken_over().empty());
+  }
+  phases.insert(HapticPhase::closed);
+  EXPECT_EQ(phases.size(), 6U) << "not all phases were met";
+  EXPECT_GT(felt, 3);
+}
+
+TEST_F(EngineReplayTest, ItMayBeOpenedAgainWithAnotherInstrument) {
+  open_hand();
+  for (int i = 0; i < 100; ++i) hand_at_work(i);
   engine_->inputs().request_start();
-  for (int i = 0; i < 300; ++i) {
-    give_model();
-    tick(1);
+  for (int i = 0; i < 100; ++i) {
+    if (i == 50) open_hand();
+    hand_at_work(i);
   }
   sut_.take(message());
+  EXPECT_FALSE(sut_.difference()) << sut_.difference()->what << sut_.difference()->computed;
+  EXPECT_EQ(sut_.counts().ticks, 100U) << sut_.counts().first_problem;
+}
+
+TEST_F(EngineReplayTest, APlantedBitOfItsModelsIsFound) {
+  open_hand();
+  for (int i = 0; i < 100; ++i) hand_at_work(i);
+  engine_->inputs().request_start();
+  for (int i = 100; i < 300; ++i) hand_at_work(i);
+  std::vector<std::byte> bytes = message();
+  const double gap = 0.01;  // of the wall
+  const auto wanted = std::as_bytes(std::span(&gap, 1));
+  for (std::span<std::byte> rest = bytes; !rest.empty();) {
+    const auto found = std::ranges::search(rest, wanted);
+    if (found.empty()) break;
+    found.front() ^= std::byte{1};
+    rest = std::span(found.end(), rest.end());
+  }
+  sut_.take(bytes);
+  ASSERT_TRUE(sut_.difference());
+}
+
+// Their start states end behind the couplings.
+TEST_F(EngineReplayTest, OfAnOlderRecordingTheRobotIsComparedAlone) {
+  const auto size_of_start = [](ByteSpan bytes) {
+    std::size_t size = 0;
+    EXPECT_TRUE(for_each_record(bytes, [&](InputRecord kind, ByteSpan content) {
+      size = kind == InputRecord::start ? content.size() : size;
+      return true;
+    }));
+    return size;
+  };
+  open_hand();
+  for (int i = 0; i < 100; ++i) hand_at_work(i);
+  engine_->inputs().request_start();
+  for (int i = 100; i < 400; ++i) hand_at_work(i);
+  const std::vector<std::byte> bytes = message();
+  engine_->inputs().end();
+  engine_->send(engine::CloseHaptic{.channel = 1});
+  tick(1);
+  engine_->inputs().request_start();
+  tick(1);
+  const std::size_t without = size_of_start(message());
+  ASSERT_LT(without, size_of_start(bytes));
+  std::vector<std::byte> older{std::byte{engine::kInputsVersion}};
+  ASSERT_TRUE(for_each_record(bytes, [&](InputRecord kind, ByteSpan content) {
+    append(older, kind, kind == InputRecord::start ? content.first(without) : content);
+    return true;
+  }));
+  sut_.take(older);
   EXPECT_FALSE(sut_.difference()) << sut_.difference()->what << sut_.difference()->computed;
   EXPECT_EQ(sut_.counts().ticks, 300U) << sut_.counts().first_problem;
   EXPECT_EQ(sut_.channels_taken_over(), std::vector<std::uint8_t>{1});
@@ -225,12 +334,7 @@ TEST_F(EngineReplayTest, APlantedBitIsFoundWithTickRobotAndJoint) {
   engine_->inputs().request_start();
   tick(20);
   std::vector<std::byte> bytes{std::byte{engine::kInputsVersion}};
-  const auto names = names_record({{kMirrored, {"ARM", {"J1", "J2", "J3"}}}});
-  bytes.push_back(static_cast<std::byte>(InputRecord::robots));
-  const auto length = static_cast<std::uint32_t>(names.size());
-  const auto length_bytes = std::as_bytes(std::span(&length, 1));
-  bytes.insert(bytes.end(), length_bytes.begin(), length_bytes.end());
-  bytes.insert(bytes.end(), names.begin(), names.end());
+  append(bytes, InputRecord::robots, names_record({{kMirrored, {"ARM", {"J1", "J2", "J3"}}}}));
   engine_->inputs().drain(bytes);
   // In the last tick that has a sample, the second joint of that sample. Head of a tick: 8 numbers of 8 bytes.
   std::size_t at = 0;
@@ -290,9 +394,10 @@ TEST_F(EngineReplayTest, AStartStateRightAfterAGapIsTaken) {
 TEST_F(EngineReplayTest, AStartStateThatWasChangedIsRefusedOrDiffersAndNeverCrashes) {
   move(motion::MoveKind::linear, 0.4);
   move(motion::MoveKind::linear, -0.4);
-  tick(50);
+  open_hand();
+  for (int i = 0; i < 100; ++i) hand_at_work(i);
   engine_->inputs().request_start();
-  tick(3);
+  for (int i = 100; i < 103; ++i) hand_at_work(i);
   const std::vector<std::byte> whole = message();
   for (std::size_t at = 1; at < whole.size(); at += 41) {
     std::vector<std::byte> bytes = whole;

@@ -64,7 +64,7 @@ const programs = new Programs({command});
 const tissue = new Tissue({command, left: () => tabs.current === "tab-tissue" && tabs.open("tab-near")});
 const volume = new Volume({command, left: () => tabs.current === "tab-volume" && tabs.open("tab-near")});
 const system = new System();
-const playback = new Playback(connection);
+const playback = new Playback(connection, fetched);
 const problems = new Problems();
 const command_log = new CommandLog({fetched});
 const alarms = new Alarms({command, fetched, name: new UserName(), open: () => {

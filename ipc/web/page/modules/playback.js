@@ -1,24 +1,20 @@
 // The bar below the page where the gateway plays a recording: play, pause, speed, and the time as a slider.
 import {byId, setText, setAttribute} from "./dom.js";
 import {duration, number} from "./format.js";
+import {PlaybackMarks} from "./playback_marks.js";
+import {utc_time} from "./playback_time.js";
 
 const kSendEvery_ms = 100;  // while the slider is dragged
 const kSettled_ms = 700;    // after that the slider shows what the gateway says again
-
-// "2026-11-24T10:00:00.123Z" as people read it, without the day where `like` is of the same.
-export function utc_time(text, like = "") {
-  const [day, time = ""] = String(text ?? "").split("T");
-  const shown = time.replace("Z", "");
-  return day === String(like).split("T")[0] ? shown : `${day} ${shown}`;
-}
 
 export function speed_text(speed) {
   return `${Number(number(speed, 2).replace("\u2212", "-"))}×`;
 }
 
 export class Playback {
-  constructor(connection, {now = () => performance.now()} = {}) {
+  constructor(connection, fetched, {now = () => performance.now()} = {}) {
     this.connection_ = connection;
+    this.marks_ = new PlaybackMarks((seek_s) => this.send_({seek_s}), fetched);
     this.now_ = now;
     this.touched_ = -Infinity;
     this.sent_ = -Infinity;
@@ -56,6 +52,7 @@ export class Playback {
     setAttribute(slider, "aria-valuetext", `${utc_time(replay.now, replay.from)} UTC, ${duration(replay.position_s)} after the beginning`);
     if (this.now_() - this.touched_ > kSettled_ms) slider.value = String(replay.position_s);
     this.show_speed_(replay.speed);
+    this.marks_.update(replay);
   }
 
   // The speed may be one that the list does not have: another client or the command line has set it.
