@@ -190,12 +190,22 @@ class Controls(PlaybackCase):
         client.say_bytes(b"\x03\x01" + struct.pack("<fBQI", 0.5, 1, wanted["publish_time_ns"], 4) + b"seek")
         answer = client.until(lambda m: isinstance(m, bytes) and m[0] == 5 and m.endswith(b"seek"))
         self.assertEqual(struct.unpack_from("<fB", answer, 10), (0.5, 1))
-        time_ns, data = client.data(7)
+        state = answer[1]  # the newest, which may come before the data
+
+        def next_data():
+            nonlocal state
+            while True:
+                message = client.until(lambda m: isinstance(m, bytes) and m[0] in (client.DATA, 5))
+                if message[0] == client.DATA:
+                    self.assertEqual(struct.unpack_from("<I", message, 1)[0], 7)
+                    return struct.unpack_from("<Q", message, 5)[0], message[13:]
+                state = message[1]
+        time_ns, data = next_data()
         while time_ns + 2_000_000 < wanted["publish_time_ns"]:
-            time_ns, data = client.data(7)
+            time_ns, data = next_data()
         self.assertLess(abs(time_ns - wanted["publish_time_ns"]), 2_000_000)
         self.assertEqual(sorted(joint_state(data)[1].values()), sorted(self.recorded(wanted).values()))
-        if answer[1] != 1:
+        if state != 1:
             client.until(lambda m: isinstance(m, bytes) and m[0] == 5 and m[1] == 1)
         client.say_bytes(b"\x03\x00" + struct.pack("<fBQI", 10, 0, 0, 4) + b"play")
         client.until(lambda m: isinstance(m, bytes) and m[0] == 5 and m[1] == 3)
