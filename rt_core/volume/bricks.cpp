@@ -138,42 +138,43 @@ std::vector<std::uint8_t> spread_all(const std::vector<std::uint8_t>& from, cons
   return spread_all(from, count, [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
 }
 
-// What bricks show: 0 differs within them, 1 nothing, others: the same all over them.
-using Looks = std::vector<std::uint8_t>;
-constexpr std::uint8_t kMixed = 0;
-constexpr std::uint8_t kNothing = 1;
-
-// How far from each brick that is not mixed all look like it.
-LeapMap leap_map(std::array<std::uint32_t, 3> count, const Looks& looks) {
+// From bytes that are 1 where a brick is occupied.
+LeapMap leap_map(std::array<std::uint32_t, 3> count, std::vector<std::uint8_t> occupied) {
   LeapMap map;
   map.count = count;
-  map.occupied = looks.size() - static_cast<std::size_t>(std::ranges::count(looks, kNothing));
-  std::vector<std::uint8_t> leap(looks.size());
-  std::ranges::transform(looks, leap.begin(), [](std::uint8_t look) { return look == kMixed ? 0 : kFarthestLeap; });
-  Looks least = looks;
-  Looks most = looks;
+  map.occupied = static_cast<std::size_t>(std::ranges::count(occupied, 1));
+  std::vector<std::uint8_t> leap(occupied.size());
+  for (std::size_t i = 0; i < occupied.size(); ++i) leap[i] = occupied[i] != 0 ? 0 : kFarthestLeap;
   for (std::uint8_t distance = 1; distance < kFarthestLeap && map.occupied > 0; ++distance) {
-    least = spread_all(least, count, [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
-    most = spread_all(most, count, [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
-    for (std::size_t i = 0; i < leap.size(); ++i) leap[i] = least[i] != most[i] ? std::min(leap[i], distance) : leap[i];
+    std::vector<std::uint8_t> wider = spread_all(occupied, count);
+    for (std::size_t i = 0; i < wider.size(); ++i) leap[i] = wider[i] > occupied[i] ? distance : leap[i];
+    occupied.swap(wider);
   }
   map.leap.assign(leap.begin(), leap.end());
   return map;
 }
 
-// From stored values to places in a table over a range of them.
-class TablePlaces {
+// Whether a range of stored values has one of more than such an extinction: by the first entry from each entry on that
+// has it.
+class DenserThan {
  public:
-  TablePlaces(std::size_t entries, StoredRange range)
+  DenserThan(std::span<const Appearance> table, StoredRange range, double extinction)
       : low_(range.low),
-        last_(static_cast<double>(entries - 1)),
-        scale_(last_ / std::max(1.0, static_cast<double>(range.high) - range.low)) {}
+        last_(static_cast<double>(table.size() - 1)),
+        scale_(last_ / std::max(1.0, static_cast<double>(range.high) - range.low)),
+        next_(table.size()) {
+    auto next = static_cast<std::uint32_t>(table.size());
+    for (std::size_t i = table.size(); i-- > 0;) {
+      if (static_cast<double>(table[i].extinction) > extinction) next = static_cast<std::uint32_t>(i);
+      next_[i] = next;
+    }
+  }
 
-  [[nodiscard]] std::uint32_t before(std::int32_t value) const { return static_cast<std::uint32_t>(place(value)); }
-  [[nodiscard]] std::uint32_t after(std::int32_t value) const {
-    const double at = place(value);
-    const auto whole = static_cast<std::uint32_t>(at);
-    return whole + (static_cast<double>(whole) < at ? 1U : 0U);
+  [[nodiscard]] bool operator()(std::int32_t low, std::int32_t high) const {
+    const double from = place(low);
+    const double to = place(high);
+    const auto whole = static_cast<std::uint32_t>(to);
+    return next_[static_cast<std::uint32_t>(from)] <= whole + (static_cast<double>(whole) < to ? 1U : 0U);
   }
 
  private:
@@ -184,69 +185,7 @@ class TablePlaces {
   double low_;
   double last_;
   double scale_;
-};
-
-// Whether a range of stored values has one of more than such an extinction: by the first entry from each entry on that
-// has it.
-class DenserThan {
- public:
-  DenserThan(std::span<const Appearance> table, StoredRange range, double extinction)
-      : places_(table.size(), range), next_(table.size()) {
-    auto next = static_cast<std::uint32_t>(table.size());
-    for (std::size_t i = table.size(); i-- > 0;) {
-      if (static_cast<double>(table[i].extinction) > extinction) next = static_cast<std::uint32_t>(i);
-      next_[i] = next;
-    }
-  }
-
-  [[nodiscard]] bool operator()(std::int32_t low, std::int32_t high) const {
-    return next_[places_.before(low)] <= places_.after(high);
-  }
-
- private:
-  TablePlaces places_;
   std::vector<std::uint32_t> next_;
-};
-
-// Parts of a table that look the same, by number.
-class AlikeEntries {
- public:
-  AlikeEntries(std::span<const Appearance> table, StoredRange range, bool over_alike)
-      : places_(table.size(), range), look_(table.size(), kMixed), end_(table.size()) {
-    for (std::size_t begin = 0, end = 0; begin < table.size(); begin = end) {
-      for (end = begin + 1; end < table.size() && alike(table[begin], table[end]);) ++end;
-      const bool nothing = !(table[begin].extinction > 0);
-      const bool known = over_alike && end - begin >= kLeastEntries && !(table[begin].lit > 0) && first_.size() < kMost;
-      if (!nothing && known) first_.push_back(static_cast<std::uint32_t>(begin));
-      const auto look = nothing ? kNothing : known ? static_cast<std::uint8_t>(kNothing + first_.size()) : kMixed;
-      std::fill(look_.begin() + static_cast<std::ptrdiff_t>(begin), look_.begin() + static_cast<std::ptrdiff_t>(end),
-                look);
-      std::fill(end_.begin() + static_cast<std::ptrdiff_t>(begin), end_.begin() + static_cast<std::ptrdiff_t>(end),
-                static_cast<std::uint32_t>(end));
-    }
-  }
-
-  [[nodiscard]] std::uint8_t operator()(const StoredRange& values) const {
-    const std::uint32_t from = places_.before(values.low);
-    return places_.after(values.high) < end_[from] ? look_[from] : kMixed;
-  }
-  // 0 for nothing, else 1 + an entry.
-  [[nodiscard]] std::uint32_t entry_after(std::uint8_t look) const {
-    return look > kNothing ? 1 + first_[look - kNothing - 1U] : 0;
-  }
-
- private:
-  static constexpr std::size_t kLeastEntries = 4;  // shorter ones are parts of ramps
-  static constexpr std::size_t kMost = 254;
-  static bool alike(const Appearance& a, const Appearance& b) {
-    if (!(a.extinction > 0)) return !(b.extinction > 0);
-    return std::abs(a.extinction - b.extinction) <= 1e-4F * a.extinction && a.lit == b.lit && a.rgb == b.rgb;
-  }
-
-  TablePlaces places_;
-  std::vector<std::uint8_t> look_;
-  std::vector<std::uint32_t> end_;  // of an entry's part
-  std::vector<std::uint32_t> first_;
 };
 
 std::vector<std::uint8_t> bricks_that(const Bricks& bricks, const DenserThan& denser) {
@@ -325,12 +264,8 @@ ValueRange value_range(const VoxelGrid& grid, const Bricks& bricks) {
 }
 
 LeapMap leaps_by_table(const Bricks& bricks, StoredRange range, std::span<const Appearance> table,
-                       const std::array<double, kLongestStrideLog>& stride_limits, double step_voxels,
-                       bool over_alike) {
-  const AlikeEntries alike(table, range, over_alike);
-  Looks looks(bricks.ranges.size());
-  std::ranges::transform(bricks.ranges, looks.begin(), alike);
-  LeapMap map = leap_map(bricks.count, looks);
+                       const std::array<double, kLongestStrideLog>& stride_limits, double step_voxels) {
+  LeapMap map = leap_map(bricks.count, bricks_that(bricks, DenserThan(table, range, 0)));
   // What steps pass beyond a block is in its neighbours if they are no longer than a block; else, with steps of a
   // voxel, in those of its brick.
   std::vector<std::uint8_t> of_bricks(bricks.ranges.size());
@@ -352,10 +287,7 @@ LeapMap leaps_by_table(const Bricks& bricks, StoredRange range, std::span<const 
   for (std::size_t z = 0; z < bricks.count[2]; ++z) {
     for (std::size_t y = 0; y < bricks.count[1]; ++y) {
       for (std::size_t x = 0; x < bricks.count[0]; ++x, ++i) {
-        if (map.leap[i] != 0) {
-          map.leap[i] |= alike.entry_after(looks[i]) << kStrideShift;
-          continue;
-        }
+        if (map.leap[i] != 0) continue;
         const std::uint32_t strides = of_blocks.empty() ? kEachBlock * of_bricks[i]
                                                         : strides_of_blocks(bricks.blocks, first_block(bricks, x, y, z),
                                                                             places, of_blocks, of_bricks[i]);
@@ -367,11 +299,12 @@ LeapMap leaps_by_table(const Bricks& bricks, StoredRange range, std::span<const 
 }
 
 LeapMap leaps_by_threshold(const Bricks& bricks, double threshold, bool falling) {
-  Looks looks(bricks.ranges.size());
-  std::ranges::transform(bricks.ranges, looks.begin(), [&](const StoredRange& range) {
-    return (falling ? range.low <= threshold : range.high >= threshold) ? kMixed : kNothing;
-  });
-  return leap_map(bricks.count, looks);
+  std::vector<std::uint8_t> occupied(bricks.ranges.size());
+  for (std::size_t i = 0; i < occupied.size(); ++i) {
+    const StoredRange& range = bricks.ranges[i];
+    occupied[i] = (falling ? range.low <= threshold : range.high >= threshold) ? 1 : 0;
+  }
+  return leap_map(bricks.count, std::move(occupied));
 }
 
 }  // namespace cellmirror::volume

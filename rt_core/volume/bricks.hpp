@@ -47,26 +47,23 @@ void finish(Bricks& bricks);  // `all` and the blocks' neighbours, after the lay
 [[nodiscard]] Bricks make_bricks(const VoxelGrid& grid);
 [[nodiscard]] ValueRange value_range(const VoxelGrid& grid, const Bricks& bricks);
 
-// What rays do in each brick. Low 4 bits, n: 0 where what is seen in the brick differs from place to place; else it and
-// all bricks at most n - 1 bricks away (along each axis) show nothing, or all show the same. From bit 4 on: where n >
-// 0, 0 for nothing, else 1 + the entry of the table that they look like. Where n = 0, two bits for each of the brick's
+// What rays do in each brick. Low 4 bits, n: 0 where something in the brick may be seen; else neither it nor any brick
+// at most n - 1 bricks away (along each axis) shows anything. Where n = 0, from bit 4 on two bits for each of its
 // blocks (x + 2 * (y + 2 * z)): the binary logarithm of how many steps may be taken at once from anywhere in the block,
 // since little is seen in what they pass.
 struct LeapMap {
   std::array<std::uint32_t, 3> count{};
   std::vector<std::uint32_t> leap;
-  std::size_t occupied = 0;  // bricks in which something may be seen
+  std::size_t occupied = 0;  // bricks with n = 0
 };
 inline constexpr std::uint8_t kLongestStrideLog = 3;
 inline constexpr int kStrideShift = 4;  // of the first block's bits
 
 // By a table of extinctions over the stored values from `range.low` to `range.high`, of which a value takes the
 // nearest. `stride_limits`: of 2, 4 and 8 steps at once, the extinction (per metre) up to which they are taken; 0:
-// never. `step_voxels`: the length of a step, in the smallest spacing of the volume. `over_alike`: rays also leap over
-// what looks the same and takes no light.
+// never. `step_voxels`: the length of a step, in the smallest spacing of the volume.
 [[nodiscard]] LeapMap leaps_by_table(const Bricks& bricks, StoredRange range, std::span<const Appearance> table,
-                                     const std::array<double, kLongestStrideLog>& stride_limits, double step_voxels,
-                                     bool over_alike);
+                                     const std::array<double, kLongestStrideLog>& stride_limits, double step_voxels);
 // Bricks with a value of at least `threshold` (at most, where `falling`), as stored, are not empty.
 [[nodiscard]] LeapMap leaps_by_threshold(const Bricks& bricks, double threshold, bool falling);
 

@@ -124,9 +124,8 @@ HWY_INLINE V exit_along(V direction, V origin, V inverse, VI brick, VI reach) {
 
 struct BrickPlace {
   VI x, y, z;
-  VI leap;    // bricks; 0: what is seen differs
-  VI alike;   // where a ray leaps: 1 + the place in the table of what is seen all the way; 0: nothing
-  VI stride;  // where it does not: binary logarithm of the steps at once
+  VI leap;    // bricks; 0: something may be seen
+  VI stride;  // binary logarithm of the steps at once
 };
 
 CELLMIRROR_LARGE_INLINE BrickPlace brick_at(const KernelJob& job, const Point& p) {
@@ -142,7 +141,6 @@ CELLMIRROR_LARGE_INLINE BrickPlace brick_at(const KernelJob& job, const Point& p
       hn::Add(b.x, hn::Add(hn::Mul(b.y, hn::Set(di, job.leap_row)), hn::Mul(b.z, hn::Set(di, job.leap_layer))));
   const VI code = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(job.leap), offset);
   b.leap = hn::And(code, hn::Set(di, 0xF));
-  b.alike = hn::IfThenElseZero(hn::Gt(b.leap, hn::Zero(di)), hn::ShiftRight<kStrideShift>(code));
   // Of the 4 x 4 x 4 cells around, two bits.
   const VI block = hn::Or(hn::And(hn::ShiftRight<2>(i), hn::Set(di, 1)),
                           hn::Or(hn::And(hn::ShiftRight<1>(j), hn::Set(di, 2)), hn::And(k, hn::Set(di, 4))));
@@ -190,75 +188,17 @@ HWY_INLINE V power_of_two(VI exponent) {
   return hn::BitCast(D(), hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
 }
 
-// Adds the steps from `step` up to `to` that all look like a place in the table, `alike` - 1, where that is not 0.
-template <Stored kStored>
-CELLMIRROR_LARGE_INLINE void add_alike(const KernelJob& job, const Rays& rays, V step, V to, VI alike, Sum& sum) {
-  const D d;
-  const DI di;
-  const V one = set(1.0F);
-  const M seen = hn::RebindMask(d, hn::Gt(alike, hn::Zero(di)));
-  const VI place = hn::Max(hn::Sub(alike, hn::Set(di, 1)), hn::Zero(di));
-  const V depth = hn::IfThenElseZero(seen, hn::GatherIndex(d, job.depth, place));  // of a step
-  const V alpha = hn::Sub(one, hn::Exp(d, hn::Neg(hn::Mul(depth, hn::Sub(to, step)))));
-  // A ray may become half opaque anywhere in a long leap.
-  V steps = hn::Zero(d);
-  const V through = hn::Sub(one, sum.alpha);
-  const V twice = hn::Max(hn::Add(through, through), one);
-  if (!hn::AllFalse(d, hn::Gt(hn::Mul(alpha, through), hn::Sub(set(0.49F), sum.alpha))))
-    steps = hn::Min(hn::Div(hn::Log(d, twice), hn::Max(depth, set(1e-9F))), hn::Sub(to, step));
-  const V t = hn::MulAdd(hn::Add(step, steps), set(job.step_m), rays.begin);
-  add_sample<kStored>(job, rays, at(rays, t), t, place, alpha, sum);
-}
-
-// Samples between two looks at the bricks: their values, before colours.
-struct Group {
-  V t[kChecked];      // m
-  V value[kChecked];  // as stored
-  M counted[kChecked];
-  VI stride_log;
-  int samples = 0;
+struct Sample {
+  V t;       // m
+  VI place;  // in the table
+  V alpha;   // of one step
 };
 
 template <Stored kStored>
-CELLMIRROR_LARGE_INLINE void add_group(const KernelJob& job, const Rays& rays, const Group& group, Sum& sum) {
-  const D d;
-  const M open = hn::Lt(sum.alpha, set(job.opaque));
-  for (int i = 0; i < group.samples; ++i) {
-    const VI place = table_place(job, group.value[i]);
-    const V of_step = hn::GatherIndex(d, job.alpha, place);
-    const V alpha = hn::IfThenElseZero(hn::And(open, group.counted[i]), of_step);
-    if (hn::AllFalse(d, hn::Gt(alpha, hn::Zero(d)))) continue;
-    add_sample<kStored>(job, rays, at(rays, group.t[i]), group.t[i], place, opacity_of_steps(alpha, group.stride_log),
-                        sum);
-  }
-}
-
-// Reads the samples of lanes that are `sampling`, and moves `step` on.
-template <Stored kStored>
-CELLMIRROR_LARGE_INLINE void read_group(const KernelJob& job, const Rays& rays, VI stride_wanted, M sampling, V whole,
-                                        V& step, Group& group) {
-  const D d;
-  const DI di;
-  // Before the end only as many steps at once as are left there.
-  const V left = hn::Sub(whole, step);
-  const V wanted = power_of_two(stride_wanted);
-  group.stride_log = hn::IfThenElseZero(hn::RebindMask(di, hn::And(sampling, hn::Le(wanted, left))), stride_wanted);
-  const V stride = power_of_two(group.stride_log);
-  // Of long steps one between looks at the blocks: they end within its neighbours.
-  const bool some_long = !hn::AllFalse(d, hn::Gt(stride, set(2.0F)));
-  const bool some_double = !hn::AllFalse(d, hn::Gt(stride, set(1.0F)));
-  group.samples = some_long ? 1 : some_double ? kChecked / 2 : kChecked;
-  const bool coarse =
-      job.has_coarse && (job.all_coarse || hn::AllTrue(d, hn::Or(hn::Not(sampling), hn::Gt(stride, set(2.0F)))));
-  for (int i = 0; i < group.samples; ++i) {
-    const V t = middle_of_steps(job, rays, step, stride);
-    const Point p = at(rays, t);
-    const M counted = hn::And(sampling, hn::Le(hn::Add(step, stride), whole));
-    group.t[i] = t;
-    group.value[i] = coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p);
-    group.counted[i] = counted;
-    step = hn::IfThenElse(counted, hn::Add(step, stride), step);
-  }
+HWY_INLINE Sample sample_at(const KernelJob& job, const Rays& rays, V t, bool coarse) {
+  const Point p = at(rays, t);
+  const VI place = table_place(job, coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p));
+  return {t, place, hn::GatherIndex(D(), job.alpha, place)};
 }
 
 template <Stored kStored>
@@ -271,40 +211,48 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
   const V one = set(1.0F);
   V step = hn::Zero(d);
   M active = hn::Lt(step, whole);
-  // The loads of a group, the look at the bricks after it and the colours of the group before do not wait for each
-  // other: the processor overlaps them.
-  Group groups[2];
-  int turn = 0;
-  const auto look = [&] { return brick_at(job, at(rays, middle_of_steps(job, rays, step, one))); };
-  BrickPlace brick = look();
   while (!hn::AllFalse(d, active)) {
-    const M even = hn::RebindMask(d, hn::Gt(brick.leap, hn::Zero(di)));
+    const BrickPlace brick = brick_at(job, at(rays, middle_of_steps(job, rays, step, one)));
+    const M empty = hn::RebindMask(d, hn::Gt(brick.leap, hn::Zero(di)));
     ++counts.leaps;
-    // Lanes in bricks where nothing or the same is seen leap; if others do not, they sample meanwhile.
-    if (!hn::AllFalse(d, hn::And(even, active))) {
+    // Lanes in empty bricks leap; if others are not, they sample meanwhile.
+    if (!hn::AllFalse(d, hn::And(empty, active))) {
       const V leapt = hn::Max(hn::Add(step, one), step_at(job, rays, leap_end(rays, brick)));
-      const VI alike = hn::IfThenElseZero(hn::RebindMask(di, active), brick.alike);
-      if (!hn::AllFalse(di, hn::Gt(alike, hn::Zero(di)))) {
-        add_group<kStored>(job, rays, groups[1 - turn], sum);
-        groups[1 - turn].samples = 0;
-        add_alike<kStored>(job, rays, step, hn::Min(leapt, whole), alike, sum);
-      }
-      step = hn::IfThenElse(even, leapt, step);
-      if (hn::AllTrue(d, hn::Or(even, hn::Not(active)))) {
-        active = hn::And(active, hn::And(hn::Lt(step, whole), hn::Lt(sum.alpha, opaque)));
-        brick = look();
+      step = hn::IfThenElse(empty, leapt, step);
+      if (hn::AllTrue(d, hn::Or(empty, hn::Not(active)))) {
+        active = hn::And(active, hn::Lt(step, whole));
         continue;
       }
     }
-    read_group<kStored>(job, rays, brick.stride, hn::AndNot(even, active), whole, step, groups[turn]);
-    counts.samples += static_cast<std::uint64_t>(groups[turn].samples) * kLanes;
-    brick = look();
-    turn = 1 - turn;
-    add_group<kStored>(job, rays, groups[turn], sum);
-    groups[turn].samples = 0;
+    const M sampling = hn::AndNot(empty, active);
+    // Before the end only as many steps at once as are left there.
+    const V left = hn::Sub(whole, step);
+    const V wanted = power_of_two(brick.stride);
+    const VI stride_log = hn::IfThenElseZero(hn::RebindMask(di, hn::And(sampling, hn::Le(wanted, left))), brick.stride);
+    const V stride = power_of_two(stride_log);
+    // Of long steps one between looks at the blocks: they end within its neighbours.
+    const bool some_long = !hn::AllFalse(d, hn::Gt(stride, set(2.0F)));
+    const bool some_double = !hn::AllFalse(d, hn::Gt(stride, set(1.0F)));
+    const int samples = some_long ? 1 : some_double ? kChecked / 2 : kChecked;
+    const bool coarse =
+        job.has_coarse && (job.all_coarse || hn::AllTrue(d, hn::Or(hn::Not(sampling), hn::Gt(stride, set(2.0F)))));
+    // All values before all colours: the loads of several samples overlap.
+    Sample group[kChecked];
+    for (int i = 0; i < samples; ++i) {
+      const M counted = hn::And(sampling, hn::Le(hn::Add(step, stride), whole));
+      group[i] = sample_at<kStored>(job, rays, middle_of_steps(job, rays, step, stride), coarse);
+      group[i].alpha = hn::IfThenElseZero(counted, group[i].alpha);
+      step = hn::IfThenElse(counted, hn::Add(step, stride), step);
+    }
+    counts.samples += static_cast<std::uint64_t>(samples) * kLanes;
+    for (int i = 0; i < samples; ++i) {
+      const Sample& sample = group[i];
+      if (hn::AllFalse(d, hn::Gt(sample.alpha, hn::Zero(d)))) continue;
+      const V alpha = opacity_of_steps(sample.alpha, stride_log);
+      add_sample<kStored>(job, rays, at(rays, sample.t), sample.t, sample.place, alpha, sum);
+    }
     active = hn::And(active, hn::And(hn::Lt(step, whole), hn::Lt(sum.alpha, opaque)));
   }
-  add_group<kStored>(job, rays, groups[1 - turn], sum);
   // What is left of a step at the end.
   const V rest = hn::Sub(length, whole);
   const M left = hn::And(hn::Gt(rest, set(1e-3F)), hn::Lt(sum.alpha, opaque));

@@ -10,7 +10,6 @@
 #include "rt_core/volume/bricks.hpp"
 #include "rt_core/volume/cast_kernel.hpp"
 #include "rt_core/volume/coarse_grid.hpp"
-#include "rt_core/volume/huge_pages.hpp"
 #include "rt_core/volume/idle_workers.hpp"
 #include "rt_core/volume/planes.hpp"
 
@@ -157,11 +156,6 @@ PixelTile covered(const CastRequest& request) {
   return {x, y, bound(high.x() + 2, request.width) - x, bound(high.y() + 2, request.height) - y};
 }
 
-void use_huge_pages_of(const VoxelGrid& grid) {
-  const auto bytes = std::visit([](const auto& all) { return std::as_bytes(std::span(all)); }, grid.values);
-  use_huge_pages(bytes.data(), bytes.size());
-}
-
 bool same_look(const VolumeSettings& a, const VolumeSettings& b) {
   return a.table == b.table && a.medical == b.medical && a.parameters == b.parameters && a.isosurface == b.isosurface &&
          a.iso_value == b.iso_value;
@@ -238,8 +232,7 @@ void Caster::Prepared::cast_as(const CastQuality& wanted) {
   std::array<double, kLongestStrideLog> limits{};
   for (std::size_t i = 0; i < limits.size(); ++i)
     limits[i] = -std::log1p(-std::clamp(wanted.long_steps[i], 0.0, 0.5)) / (std::exp2(i + 1) * step_m);
-  leaps = leaps_by_table(bricks, bricks.all, transfer.entries, limits, step_m / grid->spacing_m.minCoeff(),
-                         wanted.over_alike);
+  leaps = leaps_by_table(bricks, bricks.all, transfer.entries, limits, step_m / grid->spacing_m.minCoeff());
 }
 
 Result<Caster::Prepared*> Caster::Impl::prepare(const std::shared_ptr<const VoxelGrid>& grid) {
@@ -252,14 +245,12 @@ Result<Caster::Prepared*> Caster::Impl::prepare(const std::shared_ptr<const Voxe
   auto made = std::make_unique<Prepared>();
   made->grid = grid;
   made->bricks = empty_bricks(*grid);
-  use_huge_pages_of(*grid);
   workers->run(made->bricks.count[2], [&](std::size_t layer) {
     const auto begin = static_cast<std::uint32_t>(layer);
     measure_layers(*grid, begin, begin + 1, made->bricks);
   });
   finish(made->bricks);
   made->coarse = coarse_grid_of(*grid);
-  use_huge_pages_of(made->coarse);
   workers->run((made->coarse.size[2] + kSlicesAtOnce - 1) / kSlicesAtOnce, [&](std::size_t part) {
     const auto begin = static_cast<std::uint32_t>(part) * kSlicesAtOnce;
     fill_coarse_slices(*grid, begin, std::min(begin + kSlicesAtOnce, made->coarse.size[2]), made->coarse);

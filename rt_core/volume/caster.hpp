@@ -25,14 +25,13 @@ struct CastQuality {
   double opaque = 0.997;   // a ray ends when it is as opaque
   bool light = true;
   // Where a volume is so thin that 2, 4 or 8 steps together are at most as opaque, they are taken at once; 0: never.
-  std::array<double, 3> long_steps = {0.04, 0.03, 0.055};
+  std::array<double, 3> long_steps = {0.04, 0.03, 0.02};
   CoarseVoxels coarse = CoarseVoxels::in_long_steps;  // with 4 and 8 steps at once
-  bool over_alike = true;  // where all looks the same and takes no light, rays go on at once, as through what is empty
   bool operator==(const CastQuality&) const = default;
 };
 inline constexpr CastQuality kFullQuality{};
-inline constexpr CastQuality kEvenQuality{
-    .long_steps = {0, 0, 0}, .coarse = CoarseVoxels::never, .over_alike = false};  // every step is sampled
+inline constexpr CastQuality kEvenQuality{.long_steps = {0, 0, 0},
+                                          .coarse = CoarseVoxels::never};  // every step is sampled
 // While something moves. Where the pixels are as large as the voxels of the coarse copy, it suffices.
 inline constexpr CastQuality kHastyQuality{.step_voxels = 1.5, .opaque = 0.97, .long_steps = {0.08, 0.06, 0.04}};
 

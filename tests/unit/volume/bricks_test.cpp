@@ -100,7 +100,7 @@ TEST(Bricks, LeapsAreTheDistanceToTheNextOccupiedBrick) {
   bricks.ranges.resize(20 * 11 * 7);
   const std::array<std::array<int, 3>, 3> occupied = {{{3, 4, 2}, {0, 0, 6}, {19, 10, 0}}};
   for (const auto& [x, y, z] : occupied) bricks.ranges[static_cast<std::size_t>(x + 20 * (y + 11 * z))].high = 1;
-  const LeapMap map = leaps_by_table(bricks, {0, 1}, table_of_ones(), {}, 1, true);
+  const LeapMap map = leaps_by_table(bricks, {0, 1}, table_of_ones(), {}, 1);
   EXPECT_EQ(map.occupied, 3U);
   for (int z = 0; z < 7; ++z) {
     for (int y = 0; y < 11; ++y) {
@@ -122,7 +122,7 @@ TEST(Bricks, StridesAreLongOnlyWhereABrickAndItsNeighboursAreThin) {
   bricks.ranges[4] = {1, 3};
   std::vector<Appearance> table(4);
   for (std::size_t i = 1; i < 4; ++i) table[i].extinction = static_cast<float>(i);
-  const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5}, 1, true);
+  const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5}, 1);
   // The same for all blocks of a brick, whose own ranges are not known here.
   for (int x = 0; x < 9; ++x) {
     EXPECT_EQ(map.leap[static_cast<std::size_t>(x)] >> kStrideShift, std::abs(x - 4) <= 1 ? 0x0000U : 0xAAAAU) << x;
@@ -139,7 +139,7 @@ TEST(Bricks, StridesUpToABlockAreLongWhereABlockAndItsNeighboursAreThin) {
   std::vector<Appearance> table(4);
   for (std::size_t i = 1; i < 4; ++i) table[i].extinction = static_cast<float>(i);
   const auto first_row = [&](double step_voxels) {
-    const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5}, step_voxels, true);
+    const LeapMap map = leaps_by_table(bricks, {0, 3}, table, {2.5, 1.5, 0.5}, step_voxels);
     std::string strides;
     for (std::size_t block = 0; block < 12; ++block)
       strides += static_cast<char>('0' + (map.leap[block / 2] >> (kStrideShift + 2 * (block % 2)) & 3U));
@@ -156,32 +156,9 @@ TEST(Bricks, AValueBetweenTwoSeenOnesIsFoundByTheRangeAlone) {
   bricks.ranges = {{0, 100}, {0, 40}};
   std::vector<Appearance> table(101);
   table[50].extinction = 1;
-  const LeapMap map = leaps_by_table(bricks, {0, 100}, table, {}, 1, true);
+  const LeapMap map = leaps_by_table(bricks, {0, 100}, table, {}, 1);
   EXPECT_EQ(map.leap[0], 0);
   EXPECT_EQ(map.leap[1], 1);
-}
-
-TEST(Bricks, LeapsOverWhatLooksTheSameEndWhereItDiffers) {
-  Bricks bricks;
-  bricks.count = {9, 1, 1};
-  bricks.ranges.assign(9, {0, 0});  // nothing, in bricks 0 to 2
-  for (std::size_t x = 3; x < 8; ++x) bricks.ranges[x] = {3, 6};
-  bricks.ranges[8] = {3, 7};
-  std::vector<Appearance> table(8);
-  for (std::size_t i = 2; i < 8; ++i) table[i] = {.rgb = {1, 0, 0}, .extinction = i == 7 ? 2.0F : 1.0F};
-  const auto leaps = [&](bool over_alike) {
-    const LeapMap map = leaps_by_table(bricks, {0, 7}, table, {}, 1, over_alike);
-    EXPECT_EQ(map.occupied, 6U);
-    std::string text;
-    for (const std::uint32_t leap : map.leap)
-      text += std::to_string(leap & 0xF) + ':' + std::to_string(leap >> kStrideShift) + ' ';
-    return text;
-  };
-  EXPECT_EQ(leaps(false), "3:0 2:0 1:0 0:0 0:0 0:0 0:0 0:0 0:0 ");
-  // The entry, 2, and one.
-  EXPECT_EQ(leaps(true), "3:0 2:0 1:0 1:3 2:3 3:3 2:3 1:3 0:0 ");
-  for (Appearance& look : table) look.lit = 0.5F;
-  EXPECT_EQ(leaps(true), leaps(false));  // light goes by the place
 }
 
 TEST(CoarseGrid, VoxelsAreMeansOfEight) {

@@ -186,30 +186,6 @@ TEST(Steps, OfAnyLengthGiveTheSameOpacity) {
   }
 }
 
-TEST(Steps, AtOnceThroughWhatLooksTheSameGiveTheSamePicture) {
-  // A block of two kinds, each of which looks the same all over, with a plane through it.
-  const auto grid = phantoms::grid_of<std::uint8_t>({90, 80, 70}, Eigen::Vector3d::Constant(0.001),
-                                                    [](const Eigen::Vector3d& p) { return p.x() < 0.01 ? 50 : 200; });
-  CastRequest request = request_of(grid, kPerspective, 120, 120);
-  make_even(request, 5);
-  VolumeUserTable rows;
-  rows.rows = {{0, {1, 0, 0}, 0.2F}, {120, {1, 0, 0}, 0.2F}, {121, {0, 1, 0}, 1}, {255, {0, 1, 0}, 1}};
-  request.user[0] = std::make_shared<const VolumeUserTable>(rows);
-  request.settings.planes[0] = {.side = VolumePlaneSide::beyond, .azimuth_rad = 0.4, .distance_m = 0.03};
-  request.quality = kEvenQuality;
-  const VolumePicture even = cast(request);
-  request.quality.over_alike = true;
-  const VolumePicture sut = cast(request);
-  EXPECT_LT(sut.samples, even.samples / 2);
-  int greatest = 0;
-  for (std::size_t i = 0; i < even.rgba.size(); ++i) {
-    EXPECT_NEAR(sut.rgba[i], even.rgba[i], 1) << i;
-    greatest = std::max(greatest, int{even.rgba[i]});
-  }
-  EXPECT_GT(greatest, 100);
-  for (std::size_t i = 0; i < even.depth.size(); ++i) EXPECT_NEAR(sut.depth[i], even.depth[i], 2e-3) << i;
-}
-
 TEST(Bricks, SkippingChangesNothing) {
   // Small balls in much air, which most rays leap over; the same with a trace of opacity everywhere.
   const auto value = [](const Eigen::Vector3d& p) {
