@@ -188,17 +188,27 @@ HWY_INLINE V power_of_two(VI exponent) {
   return hn::BitCast(D(), hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
 }
 
-struct Sample {
-  V t;       // m
-  VI place;  // in the table
-  V alpha;   // of one step
+// Samples between two looks at the bricks: values before what they look like.
+struct Group {
+  V t[kChecked];      // m
+  V value[kChecked];  // as stored
+  M counted[kChecked];
+  VI stride_log;
+  int samples = 0;
 };
 
 template <Stored kStored>
-HWY_INLINE Sample sample_at(const KernelJob& job, const Rays& rays, V t, bool coarse) {
-  const Point p = at(rays, t);
-  const VI place = table_place(job, coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p));
-  return {t, place, hn::GatherIndex(D(), job.alpha, place)};
+CELLMIRROR_LARGE_INLINE void add_group(const KernelJob& job, const Rays& rays, const Group& group, Sum& sum) {
+  const D d;
+  const M open = hn::Lt(sum.alpha, set(job.opaque));
+  for (int i = 0; i < group.samples; ++i) {
+    const VI place = table_place(job, group.value[i]);
+    const V of_step = hn::GatherIndex(d, job.alpha, place);
+    const V alpha = hn::IfThenElseZero(hn::And(open, group.counted[i]), of_step);
+    if (hn::AllFalse(d, hn::Gt(alpha, hn::Zero(d)))) continue;
+    add_sample<kStored>(job, rays, at(rays, group.t[i]), group.t[i], place, opacity_of_steps(alpha, group.stride_log),
+                        sum);
+  }
 }
 
 template <Stored kStored>
@@ -211,8 +221,13 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
   const V one = set(1.0F);
   V step = hn::Zero(d);
   M active = hn::Lt(step, whole);
+  // The loads of a group, the look at the bricks after it and the colours of the group before do not wait for each
+  // other: the processor overlaps them.
+  Group groups[2];
+  int turn = 0;
+  const auto look = [&] { return brick_at(job, at(rays, middle_of_steps(job, rays, step, one))); };
+  BrickPlace brick = look();
   while (!hn::AllFalse(d, active)) {
-    const BrickPlace brick = brick_at(job, at(rays, middle_of_steps(job, rays, step, one)));
     const M empty = hn::RebindMask(d, hn::Gt(brick.leap, hn::Zero(di)));
     ++counts.leaps;
     // Lanes in empty bricks leap; if others are not, they sample meanwhile.
@@ -221,6 +236,7 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
       step = hn::IfThenElse(empty, leapt, step);
       if (hn::AllTrue(d, hn::Or(empty, hn::Not(active)))) {
         active = hn::And(active, hn::Lt(step, whole));
+        brick = look();
         continue;
       }
     }
@@ -233,26 +249,27 @@ CELLMIRROR_LARGE_INLINE void march(const KernelJob& job, const Rays& rays, Sum& 
     // Of long steps one between looks at the blocks: they end within its neighbours.
     const bool some_long = !hn::AllFalse(d, hn::Gt(stride, set(2.0F)));
     const bool some_double = !hn::AllFalse(d, hn::Gt(stride, set(1.0F)));
-    const int samples = some_long ? 1 : some_double ? kChecked / 2 : kChecked;
     const bool coarse =
         job.has_coarse && (job.all_coarse || hn::AllTrue(d, hn::Or(hn::Not(sampling), hn::Gt(stride, set(2.0F)))));
-    // All values before all colours: the loads of several samples overlap.
-    Sample group[kChecked];
-    for (int i = 0; i < samples; ++i) {
+    Group& group = groups[turn];
+    turn = 1 - turn;
+    group.samples = some_long ? 1 : some_double ? kChecked / 2 : kChecked;
+    group.stride_log = stride_log;
+    for (int i = 0; i < group.samples; ++i) {
+      const V t = middle_of_steps(job, rays, step, stride);
+      const Point p = at(rays, t);
       const M counted = hn::And(sampling, hn::Le(hn::Add(step, stride), whole));
-      group[i] = sample_at<kStored>(job, rays, middle_of_steps(job, rays, step, stride), coarse);
-      group[i].alpha = hn::IfThenElseZero(counted, group[i].alpha);
+      group.t[i] = t;
+      group.value[i] = coarse ? coarse_value_at<kStored>(job, p) : value_at<kStored>(job, p);
+      group.counted[i] = counted;
       step = hn::IfThenElse(counted, hn::Add(step, stride), step);
     }
-    counts.samples += static_cast<std::uint64_t>(samples) * kLanes;
-    for (int i = 0; i < samples; ++i) {
-      const Sample& sample = group[i];
-      if (hn::AllFalse(d, hn::Gt(sample.alpha, hn::Zero(d)))) continue;
-      const V alpha = opacity_of_steps(sample.alpha, stride_log);
-      add_sample<kStored>(job, rays, at(rays, sample.t), sample.t, sample.place, alpha, sum);
-    }
+    counts.samples += static_cast<std::uint64_t>(group.samples) * kLanes;
+    brick = look();
+    add_group<kStored>(job, rays, groups[turn], sum);
     active = hn::And(active, hn::And(hn::Lt(step, whole), hn::Lt(sum.alpha, opaque)));
   }
+  add_group<kStored>(job, rays, groups[1 - turn], sum);
   // What is left of a step at the end.
   const V rest = hn::Sub(length, whole);
   const M left = hn::And(hn::Gt(rest, set(1e-3F)), hn::Lt(sum.alpha, opaque));

@@ -25,7 +25,7 @@ struct CastQuality {
   double opaque = 0.997;   // a ray ends when it is as opaque
   bool light = true;
   // Where a volume is so thin that 2, 4 or 8 steps together are at most as opaque, they are taken at once; 0: never.
-  std::array<double, 3> long_steps = {0.04, 0.03, 0.02};
+  std::array<double, 3> long_steps = {0.04, 0.03, 0.055};
   CoarseVoxels coarse = CoarseVoxels::in_long_steps;  // with 4 and 8 steps at once
   bool operator==(const CastQuality&) const = default;
 };
