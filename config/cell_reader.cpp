@@ -82,6 +82,7 @@ bool CellReader::read(std::string_view text) {
   foot_switches = read_foot_switches(top);
   constexpr std::size_t kMostStreams = kMaxRobots;
   stream_tables_ = top.tables("stream", kMostStreams);
+  device_tables_ = top.tables("device", kMostStreams);
   haptic_tables_ = top.tables("haptic", kMaxHapticDevices);
   top.belongs_to("[loop]", {"rate_hz", "real_time", "priority"});
   top.belongs_to("[[stream]]", {"robot", "kind", "channel", "topic", "dbc", "address"});
@@ -91,14 +92,20 @@ bool CellReader::read(std::string_view text) {
 }
 
 void CellReader::read_streams(const RobotDirectory& robots, bool complete) {
+  const auto add = [this](const TableReader& table, RobotStream stream, const char* others) {
+    const bool twice = std::ranges::any_of(
+        streams, [&](const RobotStream& other) { return !other.robot.empty() && other.robot == stream.robot; });
+    if (twice) table.error("robot", fmt::format("there is another {} of {}", others, printable(stream.robot)));
+    streams.push_back(std::move(stream));
+  };
   for (TableReader& table : stream_tables_) {
     auto stream = read_stream(table, robots, complete, files_);
     if (!stream) continue;
     if (auto* of_dds = std::get_if<DdsStreamConfig>(&stream->config)) of_dds->security = dds.security;
-    const bool twice = std::ranges::any_of(
-        streams, [&](const RobotStream& other) { return !other.robot.empty() && other.robot == stream->robot; });
-    if (twice) table.error("robot", fmt::format("there is another stream of {}", printable(stream->robot)));
-    streams.push_back(std::move(*stream));
+    add(table, std::move(*stream), "stream");
+  }
+  for (TableReader& table : device_tables_) {
+    if (auto device = read_device(table, robots, complete, files_)) add(table, std::move(*device), "stream or device");
   }
 }
 

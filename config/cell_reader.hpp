@@ -59,6 +59,7 @@ class CellReader {
   const FileFinder& files_;
   std::optional<toml::table> table_;
   std::vector<TableReader> stream_tables_;
+  std::vector<TableReader> device_tables_;
   std::vector<TableReader> haptic_tables_;
 };
 

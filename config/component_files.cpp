@@ -110,7 +110,9 @@ void ComponentFiles::note_robot(const Component& component, const AbstractRefere
     const ComponentNode& node = component.nodes[static_cast<std::size_t>(joint)];
     facts.joint_names.push_back(node.name);
     facts.joint_kinds.push_back(node.joint->kind);
+    facts.joint_starts.push_back(node.joint->start_position);
   }
+  facts.joint_limits = component.robot->limits;
   robots_.emplace(reference.robot_id.empty() ? component.robot->id : reference.robot_id, std::move(facts));
 }
 

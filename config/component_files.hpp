@@ -20,6 +20,8 @@ namespace cellmirror {
 struct RobotFacts {
   std::vector<std::string> joint_names;
   std::vector<JointKind> joint_kinds;
+  std::vector<KnownLimits> joint_limits;
+  std::vector<double> joint_starts;  // rad or m
 };
 // Robots by id.
 using RobotDirectory = std::map<std::string, RobotFacts, std::less<>>;

@@ -1,4 +1,4 @@
-// Reads [[stream]] tables. Private to this folder.
+// Reads [[stream]] and [[device]] tables. Private to this folder.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,10 @@ namespace cellmirror {
 
 // `complete`: all robots of the cell are in `robots`, so that an unknown one is an error.
 [[nodiscard]] std::optional<RobotStream> read_stream(TableReader& reader, const RobotDirectory& robots, bool complete,
+                                                     const FileFinder& files);
+
+// The same for [[device]].
+[[nodiscard]] std::optional<RobotStream> read_device(TableReader& reader, const RobotDirectory& robots, bool complete,
                                                      const FileFinder& files);
 
 // The robot that a table names with the key "robot"; null where it is not known, with an error where `complete`.
@@ -32,6 +36,8 @@ struct JointReference {
 [[nodiscard]] DbcStreamConfig read_dbc(TableReader& reader, const RobotFacts* robot, const FileFinder& files);
 [[nodiscard]] DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot);
 [[nodiscard]] RtdeStreamConfig read_rtde(TableReader& reader, const RobotFacts* robot);
+[[nodiscard]] Cia402DeviceConfig read_cia402_device(TableReader& reader, const RobotFacts* robot,
+                                                    const FileFinder& files);
 // The [[stream.e2e]] tables.
 [[nodiscard]] std::vector<E2eConfig> read_protections(TableReader& stream);
 [[nodiscard]] CanChannelConfig read_channel(TableReader& reader, const FileFinder& files);

@@ -30,6 +30,10 @@ struct StreamMaker {
     return can::make_dbc_stream(config, clock,
                                 {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
   }
+  Result<std::unique_ptr<JointStream>> operator()(const Cia402DeviceConfig& config) const {
+    return can::make_cia402_device(config, clock,
+                                   {.thread_name = "device", .fifo_priority = fifo_priority, .open_channel = open_can});
+  }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
     return dds::make_dds_stream(config, clock, payloads);
   }
@@ -44,6 +48,7 @@ struct TableOfAJoint {
   const char* operator()(const RtdeStreamConfig&) const { return "joint"; }
   const char* operator()(const Cia402StreamConfig&) const { return "node"; }
   const char* operator()(const DbcStreamConfig&) const { return "signal"; }
+  const char* operator()(const Cia402DeviceConfig&) const { return "node"; }
 };
 
 struct StreamChecker {
@@ -52,6 +57,7 @@ struct StreamChecker {
   void operator()(const std::monostate&) const {}
   void operator()(const DdsStreamConfig&) const {}
   void operator()(const RtdeStreamConfig&) const {}
+  void operator()(const Cia402DeviceConfig&) const {}
   void operator()(const Cia402StreamConfig& config) const { can::check_stream(config, found); }
   void operator()(const DbcStreamConfig& config) const { can::check_stream(config, found); }
 };
@@ -60,16 +66,17 @@ struct StreamChecker {
 
 void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
   Diagnostics found;
+  const char* table = std::holds_alternative<Cia402DeviceConfig>(stream.config) ? "device" : "stream";
   if (const auto& joints = stream.joints_without_position; !joints.empty()) {
     const bool one = joints.size() == 1;
     found.warning(stream.place,
                   fmt::format("nothing gives the position of {}; {}", fmt::join(joints, ", "),
                               one ? "it stays at its start position" : "they stay at their start positions"),
-                  fmt::format("add a [[stream.{}]]", std::visit(TableOfAJoint{}, stream.config)));
+                  fmt::format("add a [[{}.{}]]", table, std::visit(TableOfAJoint{}, stream.config)));
   }
   std::visit(StreamChecker{found}, stream.config);
   for (Diagnostic diagnostic : found.all()) {
-    diagnostic.message = fmt::format("stream of {}: {}", stream.robot, diagnostic.message);
+    diagnostic.message = fmt::format("{} of {}: {}", table, stream.robot, diagnostic.message);
     diagnostics.add(std::move(diagnostic));
   }
 }

@@ -11,6 +11,7 @@
 
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/ports/device_config.hpp"
 #include "rt_core/ports/e2e_config.hpp"
 #include "rt_core/ports/plausibility.hpp"
 
@@ -157,8 +158,19 @@ struct RtdeStreamConfig {
   std::vector<RtdeJointConfig> joints;
 };
 
-using StreamConfig =
-    std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig, RtdeStreamConfig>;
+// [[device]]: the gateway answers as the drives of the robot, which moves as they move.
+struct Cia402DeviceConfig {
+  CanChannelConfig channel;
+  StreamAges ages;
+  PlausibilityConfig plausibility;
+  Nanoseconds period{1'000'000};   // of the drives' motion and of the samples
+  std::uint16_t heartbeat_ms = 0;  // object 0x1017 of each node at power-on
+  std::vector<DriveConfig> nodes;
+  Place place = {};  // of the device's table
+};
+
+using StreamConfig = std::variant<std::monostate, Cia402StreamConfig, DbcStreamConfig, DdsStreamConfig,
+                                  RtdeStreamConfig, Cia402DeviceConfig>;
 
 // The robot's joints (bits) whose position comes with the stream; 0 without a stream.
 [[nodiscard]] inline std::uint32_t joints_given_by(const StreamConfig& config) {
@@ -167,6 +179,7 @@ using StreamConfig =
     for (const auto& item : items) joints |= 1U << item.joint;
   };
   if (const auto* drives = std::get_if<Cia402StreamConfig>(&config)) add(drives->nodes);
+  if (const auto* device = std::get_if<Cia402DeviceConfig>(&config)) add(device->nodes);
   if (const auto* messages = std::get_if<DdsStreamConfig>(&config)) add(messages->joints);
   if (const auto* robot = std::get_if<RtdeStreamConfig>(&config)) add(robot->joints);
   if (const auto* dbc = std::get_if<DbcStreamConfig>(&config)) {

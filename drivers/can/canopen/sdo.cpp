@@ -12,6 +12,12 @@ std::string_view words(SdoAbort abort) {
       return "SDO protocol timed out";
     case SdoAbort::unknown_command:
       return "command specifier not valid or unknown";
+    case SdoAbort::block_size:
+      return "invalid block size";
+    case SdoAbort::sequence_number:
+      return "invalid sequence number";
+    case SdoAbort::crc_error:
+      return "CRC error";
     case SdoAbort::out_of_memory:
       return "out of memory";
     case SdoAbort::unsupported_access:

@@ -23,7 +23,16 @@ enum class Request : std::uint8_t {
 constexpr unsigned kDownloadStarted = 3;
 constexpr unsigned kUploadStarted = 2;
 constexpr unsigned kDownloadSegmentTaken = 1;
-constexpr std::size_t kSegment = 7;
+constexpr unsigned kBlockUploadAnswer = 6;
+constexpr unsigned kBlockDownloadAnswer = 5;
+// Subcommands in bits 1..0 of the client's block commands.
+enum class BlockStep : std::uint8_t { initiate = 0, end = 1, acknowledge = 2, start = 3 };
+// A sub-block is sent in bursts: 127 frames at once are more than the queue of a CAN interface holds.
+constexpr int kBurst = 8;
+constexpr Nanoseconds kBurstPause{1'000'000};
+constexpr std::size_t kSegment = kSdoSegment;
+
+BlockStep block_step(const CanFrame& frame) { return static_cast<BlockStep>(frame.data[0] & 3U); }
 
 SdoAbort missing(const ObjectDictionary& objects, ObjectAddress address) {
   return objects.has_index(address.index) ? SdoAbort::no_such_subindex : SdoAbort::no_such_object;
@@ -68,8 +77,18 @@ SdoServer::SdoServer(std::uint8_t node, SdoObjects& objects) : node_(node), obje
   CELLMIRROR_EXPECTS(node >= 1 && node <= kMaxNodeId);
 }
 
-std::optional<CanFrame> SdoServer::receive(const CanFrame& frame) {
+std::optional<CanFrame> SdoServer::receive(const CanFrame& frame, Timestamp now) {
   if (!is_service_frame(frame) || frame.id != kSdoRequestBase + node_ || frame.length != 8) return {};
+  deadline_ = now + kTimeout;
+  burst_due_ = now;
+  burst_ = 0;
+  if (transfer_ == Transfer::block_download && SdoBlockDownload::is_segment(frame.data[0])) {
+    return block_download_segment(frame);
+  }
+  return answer_request(frame);
+}
+
+std::optional<CanFrame> SdoServer::answer_request(const CanFrame& frame) {
   switch (static_cast<Request>(frame.data[0] >> 5)) {
     case Request::start_download:
       return start_download(frame);
@@ -83,11 +102,32 @@ std::optional<CanFrame> SdoServer::receive(const CanFrame& frame) {
       transfer_ = Transfer::none;
       return {};
     case Request::block_upload:
+      return block_upload(frame);
     case Request::block_download:
+      return (frame.data[0] & 1U) == 0 ? start_block_download(frame) : end_block_download(frame);
     case Request::unused:
       break;
   }
   return refuse(sdo_address(frame), SdoAbort::unknown_command);
+}
+
+std::optional<CanFrame> SdoServer::advance(Timestamp now) {
+  if (transfer_ == Transfer::none) return {};
+  if (now >= deadline_) return refuse(address_, SdoAbort::timed_out);
+  if (transfer_ != Transfer::block_upload || now < burst_due_) return {};
+  const auto segment = block_upload_.next();
+  if (!segment) return {};
+  if (++burst_ == kBurst) {
+    burst_ = 0;
+    burst_due_ = now + kBurstPause;
+  }
+  return make_frame(kSdoResponseBase + node_, *segment);
+}
+
+Timestamp SdoServer::next_due() const {
+  if (transfer_ == Transfer::none) return {};
+  const bool sends = transfer_ == Transfer::block_upload && !block_upload_.sub_block_sent();
+  return sends ? std::min(burst_due_, deadline_) : deadline_;
 }
 
 CanFrame SdoServer::start_download(const CanFrame& frame) {
@@ -166,6 +206,83 @@ CanFrame SdoServer::upload_segment(const CanFrame& frame) {
   sent_ += take;
   toggle_ = !toggle_;
   if (last) transfer_ = Transfer::none;
+  return given;
+}
+
+CanFrame SdoServer::start_block_download(const CanFrame& frame) {
+  const ObjectAddress address = sdo_address(frame);
+  const std::size_t announced = (frame.data[0] & 2U) != 0 ? get_le32(std::span(frame.data).subspan(4)) : 0;
+  if (announced > kMaxSdoValue) return refuse(address, SdoAbort::out_of_memory);
+  const bool with_crc = (frame.data[0] & 4U) != 0;
+  transfer_ = Transfer::block_download;
+  address_ = address;
+  block_download_.start(announced, with_crc);
+  CanFrame given = answer(kBlockDownloadAnswer << 5 | 4U, address);  // bit 2: this server knows the CRC
+  given.data[4] = SdoBlockDownload::kBlockSize;
+  return given;
+}
+
+std::optional<CanFrame> SdoServer::block_download_segment(const CanFrame& frame) {
+  const auto taken = block_download_.take(std::span<const std::uint8_t, 8>(frame.data.data(), 8));
+  if (!taken) return refuse(address_, taken.error());
+  if (!taken->sub_block_ends) return {};
+  if (block_download_.complete()) transfer_ = Transfer::block_download_end;
+  return make_frame(kSdoResponseBase + node_,
+                    {kBlockDownloadAnswer << 5 | 2U, taken->in_order, SdoBlockDownload::kBlockSize, 0, 0, 0, 0, 0});
+}
+
+CanFrame SdoServer::end_block_download(const CanFrame& frame) {
+  if (transfer_ != Transfer::block_download_end) return refuse(address_, SdoAbort::unknown_command);
+  const auto value = block_download_.finish(frame.data[0] >> 2 & 7U, get_le16(std::span(frame.data).subspan(1)));
+  if (!value) return refuse(address_, value.error());
+  if (const auto abort = objects_->write(address_, *value)) return refuse(address_, *abort);
+  transfer_ = Transfer::none;
+  return make_frame(kSdoResponseBase + node_, {kBlockDownloadAnswer << 5 | 1U, 0, 0, 0, 0, 0, 0, 0});
+}
+
+std::optional<CanFrame> SdoServer::block_upload(const CanFrame& frame) {
+  switch (block_step(frame)) {
+    case BlockStep::initiate:
+      return start_block_upload(frame);
+    case BlockStep::start:
+      if (transfer_ != Transfer::block_upload_start) break;
+      transfer_ = Transfer::block_upload;
+      return {};
+    case BlockStep::acknowledge:
+      if (transfer_ != Transfer::block_upload) break;
+      return block_upload_acknowledged(frame);
+    case BlockStep::end:
+      if (transfer_ != Transfer::block_upload_end) break;
+      transfer_ = Transfer::none;
+      return {};
+  }
+  return refuse(address_, SdoAbort::unknown_command);
+}
+
+CanFrame SdoServer::start_block_upload(const CanFrame& frame) {
+  const ObjectAddress address = sdo_address(frame);
+  const std::uint8_t block_size = frame.data[4];
+  if (block_size < 1 || block_size > 127) return refuse(address, SdoAbort::block_size);
+  auto value = objects_->read(address);
+  if (!value) return refuse(address, value.error());
+  if (value->empty()) return refuse(address, SdoAbort::no_data);
+  CanFrame given = answer(kBlockUploadAnswer << 5 | 4U | 2U, address);
+  put_le(std::span(given.data).subspan(4), value->size(), 4);
+  transfer_ = Transfer::block_upload_start;
+  address_ = address;
+  block_upload_.start(std::move(*value), block_size);
+  return given;
+}
+
+std::optional<CanFrame> SdoServer::block_upload_acknowledged(const CanFrame& frame) {
+  const std::uint8_t block_size = frame.data[2];
+  if (block_size < 1 || block_size > 127) return refuse(address_, SdoAbort::block_size);
+  if (!block_upload_.acknowledge(frame.data[1], block_size)) return refuse(address_, SdoAbort::sequence_number);
+  if (!block_upload_.complete()) return {};
+  transfer_ = Transfer::block_upload_end;
+  const auto command = static_cast<std::uint8_t>(kBlockUploadAnswer << 5 | block_upload_.unused_of_last() << 2 | 1U);
+  CanFrame given = make_frame(kSdoResponseBase + node_, {command, 0, 0, 0, 0, 0, 0, 0});
+  put_le(std::span(given.data).subspan(1), block_upload_.crc(), 2);
   return given;
 }
 

@@ -110,4 +110,26 @@ std::string_view words(Cia402State state) {
   return "unknown";
 }
 
+std::string_view words(DriveMode mode) {
+  switch (mode) {
+    case DriveMode::none:
+      return "no mode";
+    case DriveMode::profile_position:
+      return "profile position";
+    case DriveMode::profile_velocity:
+      return "profile velocity";
+    case DriveMode::homing:
+      return "homing";
+    case DriveMode::interpolated_position:
+      return "interpolated position";
+    case DriveMode::cyclic_sync_position:
+      return "cyclic synchronous position";
+    case DriveMode::cyclic_sync_velocity:
+      return "cyclic synchronous velocity";
+    case DriveMode::cyclic_sync_torque:
+      return "cyclic synchronous torque";
+  }
+  return "unknown mode";
+}
+
 }  // namespace cellmirror::can

@@ -26,6 +26,7 @@ inline constexpr std::uint16_t kStatuswordRemote = 1U << 9;
 inline constexpr std::uint16_t kStatuswordTargetReached = 1U << 10;
 inline constexpr std::uint16_t kStatuswordInternalLimit = 1U << 11;
 inline constexpr std::uint16_t kStatuswordModeBit12 = 1U << 12;  // PP: set-point taken; CSP: drive follows the target
+inline constexpr std::uint16_t kStatuswordModeBit13 = 1U << 13;  // PP, CSP: following error; homing: error
 
 // Object 0x6040.
 inline constexpr std::uint16_t kControlwordShutdown = 0x0006;
@@ -35,10 +36,22 @@ inline constexpr std::uint16_t kControlwordQuickStop = 0x0002;
 inline constexpr std::uint16_t kControlwordDisableVoltage = 0x0000;
 inline constexpr std::uint16_t kControlwordFaultReset = 0x0080;
 inline constexpr std::uint16_t kControlwordNewSetPoint = 0x0010;  // PP
+inline constexpr std::uint16_t kControlwordModeStart = 0x0010;    // homing: start; IP: interpolate
+inline constexpr std::uint16_t kControlwordImmediately = 0x0020;  // PP: the set-point replaces the one under way
 inline constexpr std::uint16_t kControlwordRelative = 0x0040;     // PP
+inline constexpr std::uint16_t kControlwordHalt = 0x0100;
 
 // Object 0x6060.
-enum class DriveMode : std::int8_t { none = 0, profile_position = 1, homing = 6, cyclic_sync_position = 8 };
+enum class DriveMode : std::int8_t {
+  none = 0,
+  profile_position = 1,
+  profile_velocity = 3,
+  homing = 6,
+  interpolated_position = 7,
+  cyclic_sync_position = 8,
+  cyclic_sync_velocity = 9,
+  cyclic_sync_torque = 10,
+};
 
 [[nodiscard]] Cia402State decode_statusword(std::uint16_t statusword);
 // The bits 0..6 that say the state, voltage enabled included.
@@ -50,5 +63,7 @@ enum class DriveMode : std::int8_t { none = 0, profile_position = 1, homing = 6,
 
 // "operation enabled".
 [[nodiscard]] std::string_view words(Cia402State state);
+// "profile position".
+[[nodiscard]] std::string_view words(DriveMode mode);
 
 }  // namespace cellmirror::can

@@ -31,6 +31,12 @@ struct CanStreamOptions {
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& config, const Clock& clock,
                                                                    CanStreamOptions options = {});
 
+// The gateway answers as the drives of the robot; the samples are where the drives have moved it. SYNC is answered by
+// the thread that received it, before the drives move on. `config` is as the reader of the cell file leaves it.
+[[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig& config,
+                                                                      const Clock& clock,
+                                                                      CanStreamOptions options = {});
+
 // Everything that would keep such a stream from being made, and what makes its values doubtful, at its place in the
 // cell file or in the EDS, DCF or DBC file. What the reader of the cell file refused (empty names, no node, twice the
 // same) is left out: it was reported.

@@ -1,0 +1,303 @@
+#include "drivers/can/canopen/slave.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "drivers/can/canopen/bytes.hpp"
+#include "drivers/can/canopen/cob_id.hpp"
+#include "drivers/can/canopen/earlier_due.hpp"
+#include "drivers/can/canopen/emcy.hpp"
+#include "rt_core/base/contract.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+constexpr auto kServedRw = ObjectAccess::read_write;
+constexpr auto kServedRo = ObjectAccess::read_only;
+
+constexpr ObjectAddress kErrorRegister{0x1001, 0};
+constexpr std::uint16_t kErrorField = 0x1003;
+constexpr std::uint8_t kErrorsKept = 8;
+constexpr ObjectAddress kHeartbeatConsumer{0x1016, 1};
+constexpr std::uint16_t kHeartbeatProducer = 0x1017;
+constexpr std::uint16_t kEmcyPdoLength = 0x8210;
+constexpr std::uint16_t kEmcyMasterLost = 0x8130;
+constexpr std::uint8_t kErrorGeneric = 0x01;
+constexpr std::uint8_t kErrorCommunication = 0x10;
+
+}  // namespace
+
+void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, const SlaveIdentity& identity) {
+  objects.set_integer({0x1000, 0}, DataType::unsigned32, kServedRo, identity.device_type, "device type");
+  objects.set_integer(kErrorRegister, DataType::unsigned8, kServedRo, 0, "error register", true);
+  objects.set_integer({kErrorField, 0}, DataType::unsigned8, kServedRw, 0, "errors");
+  for (std::uint8_t i = 1; i <= kErrorsKept; ++i) {
+    objects.set_integer({kErrorField, i}, DataType::unsigned32, kServedRo, 0, "error");
+  }
+  objects.set_integer({0x1005, 0}, DataType::unsigned32, kServedRw, kSyncCobId, "COB-ID SYNC");
+  ObjectEntry name;
+  name.name = "manufacturer device name";
+  name.type = DataType::visible_string;
+  name.access = ObjectAccess::constant;
+  name.value.assign(identity.name.begin(), identity.name.end());
+  objects.set({0x1008, 0}, name);
+  objects.set_integer({0x100C, 0}, DataType::unsigned16, kServedRw, 0, "guard time");
+  objects.set_integer({0x100D, 0}, DataType::unsigned8, kServedRw, 0, "life time factor");
+  objects.set_integer({0x1014, 0}, DataType::unsigned32, kServedRo, kEmcyBase + node, "COB-ID EMCY");
+  objects.set_integer({kHeartbeatConsumer.index, 0}, DataType::unsigned8, kServedRo, 1, "heartbeats that are watched");
+  objects.set_integer(kHeartbeatConsumer, DataType::unsigned32, kServedRw, 0, "node and time of a watched heartbeat");
+  objects.set_integer({kHeartbeatProducer, 0}, DataType::unsigned16, kServedRw, identity.heartbeat_ms,
+                      "producer heartbeat time");
+  objects.set_integer({0x1018, 0}, DataType::unsigned8, kServedRo, 4, "identity");
+  constexpr const char* kIdentity[] = {"vendor", "product code", "revision number", "serial number"};
+  for (std::uint8_t i = 1; i <= 4; ++i) {
+    objects.set_integer({0x1018, i}, DataType::unsigned32, kServedRo, i == 4 ? node : 0, kIdentity[i - 1]);
+  }
+  objects.set_integer({0x1019, 0}, DataType::unsigned8, kServedRw, 0, "synchronous counter overflow value");
+  objects.set_integer({0x1029, 0}, DataType::unsigned8, kServedRo, 1, "error behaviour");
+  objects.set_integer({0x1029, 1}, DataType::unsigned8, kServedRw, 0, "communication error");
+}
+
+CanopenSlave::CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectAddress event,
+                           SlaveApplication& application, FrameOutput& output)
+    : node_(node),
+      application_(&application),
+      output_(&output),
+      defaults_(std::move(defaults)),
+      objects_(defaults_),
+      server_(node, *this),
+      pdos_(objects_, event, output) {
+  CELLMIRROR_EXPECTS(node >= 1 && node <= kMaxNodeId);
+}
+
+void CanopenSlave::power_on(NmtState first, Timestamp now) {
+  now_ = now;
+  powered_ = true;
+  first_ = first;
+  reset(now);
+}
+
+void CanopenSlave::power_off() {
+  powered_ = false;
+  nmt_ = NmtState::boot_up;
+}
+
+void CanopenSlave::reset(Timestamp now) {
+  objects_ = defaults_;
+  server_.reset();
+  pdos_.load(now);
+  master_due_ = {};
+  guard_due_ = {};
+  guard_toggle_ = false;
+  length_error_ = false;
+  nmt_ = NmtState::boot_up;
+  application_->on_reset(now);
+  output_->send(encode_heartbeat({node_, NmtState::boot_up}));
+  restart_heartbeat(now);
+  enter(first_, now);
+}
+
+void CanopenSlave::enter(NmtState state, Timestamp now) {
+  if (std::exchange(nmt_, state) == state) return;
+  if (state == NmtState::operational) pdos_.start(now);
+  if (state == NmtState::stopped) {
+    server_.reset();
+    application_->communication_lost(now);
+  }
+}
+
+void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
+  if (!powered_ || frame.error) return;
+  now_ = now;
+  if (frame.remote) {
+    if (!frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
+    return;
+  }
+  if (const auto message = decode_nmt(frame)) {
+    if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
+    return;
+  }
+  if (is_sync(frame)) {
+    on_sync(frame, now);
+    return;
+  }
+  if (const auto heartbeat = decode_heartbeat(frame)) {
+    on_heartbeat(*heartbeat, now);
+    return;
+  }
+  if (nmt_ == NmtState::operational) on_rpdo(frame, now);
+  if (nmt_ == NmtState::stopped) return;
+  if (const auto answer = server_.receive(frame, now)) output_->send(*answer);
+  drain_server(now);
+}
+
+void CanopenSlave::on_nmt(NmtCommand command, Timestamp now) {
+  switch (command) {
+    case NmtCommand::start:
+      enter(NmtState::operational, now);
+      return;
+    case NmtCommand::stop:
+      enter(NmtState::stopped, now);
+      return;
+    case NmtCommand::enter_pre_operational:
+      enter(NmtState::pre_operational, now);
+      return;
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication:
+      reset(now);
+      return;
+  }
+}
+
+void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {
+  if (nmt_ != NmtState::operational) return;
+  pdos_.send_on_sync(frame.length == 1 ? std::optional(frame.data[0]) : std::nullopt, now);
+  written_.clear();
+  pdos_.apply_on_sync(written_);
+  if (!written_.empty()) after_write(written_, now);
+  application_->synced(now);
+}
+
+void CanopenSlave::on_rpdo(const CanFrame& frame, Timestamp now) {
+  written_.clear();
+  const SlavePdos::Received received = pdos_.receive(frame, written_);
+  // Once, until one has the right length again: a flood is not answered by a flood.
+  if (received == SlavePdos::Received::too_short && !std::exchange(length_error_, true)) {
+    emergency(kEmcyPdoLength, kErrorGeneric | kErrorCommunication);
+  }
+  if (received == SlavePdos::Received::taken) length_error_ = false;
+  if (!written_.empty()) after_write(written_, now);
+}
+
+// CiA 301, 7.2.8.3.2.1: the answer alternates bit 7, from 0.
+void CanopenSlave::on_guarding(Timestamp now) {
+  const auto state = static_cast<std::uint8_t>(static_cast<unsigned>(nmt_) | (guard_toggle_ ? 0x80U : 0U));
+  guard_toggle_ = !guard_toggle_;
+  output_->send(make_frame(kHeartbeatBase + node_, {state}));
+  const Nanoseconds life = std::chrono::milliseconds(object(0x100C) * object(0x100D));
+  guard_due_ = life.count() > 0 ? now + life : Timestamp{};
+}
+
+void CanopenSlave::on_heartbeat(const Heartbeat& heartbeat, Timestamp now) {
+  const auto watched = static_cast<std::uint32_t>(object(kHeartbeatConsumer.index, kHeartbeatConsumer.subindex));
+  const Nanoseconds time = std::chrono::milliseconds(watched & 0xFFFFU);
+  if ((watched >> 16U & 0xFFU) != heartbeat.node || time.count() == 0) return;
+  master_due_ = now + time;
+}
+
+void CanopenSlave::master_lost(Timestamp now) {
+  emergency(kEmcyMasterLost, kErrorGeneric | kErrorCommunication);
+  application_->communication_lost(now);
+  // Object 0x1029: 0 pre-operational, 1 no change, 2 stopped.
+  const std::int64_t behaviour = object(0x1029, 1);
+  if (behaviour == 0 && nmt_ == NmtState::operational) enter(NmtState::pre_operational, now);
+  if (behaviour == 2) enter(NmtState::stopped, now);
+}
+
+void CanopenSlave::restart_heartbeat(Timestamp now) {
+  const std::int64_t heartbeat_ms = object(kHeartbeatProducer);
+  heartbeat_due_ = heartbeat_ms > 0 ? now + std::chrono::milliseconds(heartbeat_ms) : Timestamp{};
+}
+
+void CanopenSlave::after_write(std::span<const ObjectAddress> addresses, Timestamp now) {
+  const auto has = [&](std::uint16_t index) {
+    return std::ranges::any_of(addresses, [index](ObjectAddress address) { return address.index == index; });
+  };
+  if (std::ranges::any_of(addresses, SlavePdos::is_parameter)) pdos_.load(now);
+  if (has(kHeartbeatProducer)) restart_heartbeat(now);
+  if (has(kHeartbeatConsumer.index)) master_due_ = {};
+  if (has(kErrorField)) {
+    for (std::uint8_t i = 1; i <= kErrorsKept; ++i) objects_.write_integer({kErrorField, i}, 0);
+  }
+  application_->written(addresses, now);
+}
+
+std::expected<std::vector<std::uint8_t>, SdoAbort> CanopenSlave::read(ObjectAddress address) {
+  const bool is_error = address.index == kErrorField && address.subindex > object(kErrorField);
+  if (is_error && address.subindex <= kErrorsKept) return std::unexpected(SdoAbort::no_data);
+  return read_object(objects_, address);
+}
+
+std::optional<SdoAbort> CanopenSlave::write(ObjectAddress address, std::span<const std::uint8_t> value) {
+  if (const auto abort = check_write(objects_, address, value)) return abort;
+  const ObjectEntry& entry = *objects_.find(address);
+  if (is_integer_type(entry.type)) {
+    const std::uint64_t raw = get_le(value, value.size());
+    const auto number =
+        is_signed_type(entry.type) ? sign_extended(raw, 8 * value.size()) : static_cast<std::int64_t>(raw);
+    if (const auto abort = refuse(address, number)) return abort;
+  }
+  if (const auto abort = write_object(objects_, address, value)) return abort;
+  after_write(std::span(&address, 1), now_);
+  return {};
+}
+
+std::optional<SdoAbort> CanopenSlave::refuse(ObjectAddress address, std::int64_t value) {
+  if (SlavePdos::is_parameter(address)) return pdos_.check(address, static_cast<std::uint64_t>(value));
+  if (address == ObjectAddress{kErrorField, 0} && value != 0) return SdoAbort::invalid_value;
+  // Other identifiers of SYNC are not supported, nor does a drive produce it.
+  if (address.index == 0x1005 && value != static_cast<std::int64_t>(kSyncCobId)) return SdoAbort::invalid_value;
+  if (address.index == 0x1019 && (value == 1 || value > 240)) return SdoAbort::invalid_value;
+  if (address == kHeartbeatConsumer && (value >> 16 & 0xFF) > kMaxNodeId) return SdoAbort::invalid_value;
+  if (address.index == 0x1029 && value > 2) return SdoAbort::invalid_value;
+  return application_->check(address, value);
+}
+
+void CanopenSlave::drain_server(Timestamp now) {
+  while (const auto frame = server_.advance(now)) output_->send(*frame);
+}
+
+void CanopenSlave::advance(Timestamp now) {
+  if (!powered_) return;
+  now_ = now;
+  drain_server(now);
+  if (heartbeat_due_.known() && now >= heartbeat_due_) {
+    output_->send(encode_heartbeat({node_, nmt_}));
+    const Nanoseconds period = std::chrono::milliseconds(object(kHeartbeatProducer));
+    heartbeat_due_ = heartbeat_due_ + period;
+    if (heartbeat_due_ <= now) heartbeat_due_ = now + period;
+  }
+  for (Timestamp* due : {&master_due_, &guard_due_}) {
+    if (!due->known() || now < *due) continue;
+    *due = {};
+    master_lost(now);
+  }
+  if (nmt_ == NmtState::operational) pdos_.advance(now);
+}
+
+Timestamp CanopenSlave::next_due() const {
+  if (!powered_) return {};
+  Timestamp due = earlier_due(heartbeat_due_, earlier_due(master_due_, guard_due_));
+  due = earlier_due(due, server_.next_due());
+  return nmt_ == NmtState::operational ? earlier_due(due, pdos_.next_due()) : due;
+}
+
+void CanopenSlave::changed(Timestamp now) {
+  if (powered_ && nmt_ == NmtState::operational) pdos_.changed(now);
+}
+
+void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
+  objects_.write_integer(kErrorRegister, error_register);
+  if (code != 0) {
+    const std::int64_t kept = std::min<std::int64_t>(object(kErrorField), kErrorsKept - 1);
+    for (std::int64_t i = kept; i >= 1; --i) {
+      objects_.write_integer({kErrorField, static_cast<std::uint8_t>(i + 1)},
+                             object(kErrorField, static_cast<std::uint8_t>(i)));
+    }
+    objects_.write_integer({kErrorField, 1}, code);
+    objects_.write_integer({kErrorField, 0}, kept + 1);
+  }
+  if (!powered_ || nmt_ == NmtState::stopped || nmt_ == NmtState::boot_up) return;
+  Emcy emcy;
+  emcy.node = node_;
+  emcy.code = code;
+  emcy.error_register = error_register;
+  output_->send(encode_emcy(emcy));
+}
+
+std::int64_t CanopenSlave::object(std::uint16_t index, std::uint8_t subindex) const {
+  return objects_.integer({index, subindex}).value_or(0);
+}
+
+}  // namespace cellmirror::can

@@ -1,0 +1,108 @@
+// A CANopen device as it answers on the bus (CiA 301): NMT, boot-up, heartbeat, node guarding, SDO server, PDOs, SYNC,
+// EMCY, and the heartbeat of its master. Its application has the objects' meaning. No I/O, no clock.
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/can/canopen/frame_output.hpp"
+#include "drivers/can/canopen/nmt.hpp"
+#include "drivers/can/canopen/object_dictionary.hpp"
+#include "drivers/can/canopen/sdo_server.hpp"
+#include "drivers/can/canopen/slave_pdos.hpp"
+#include "rt_core/base/time.hpp"
+
+namespace cellmirror::can {
+
+// What a slave tells its application, and asks it.
+class SlaveApplication {
+ public:
+  virtual ~SlaveApplication() = default;
+  // Why a write by SDO that fits type, access and limits is refused all the same; none: it is not.
+  [[nodiscard]] virtual std::optional<SdoAbort> check(ObjectAddress address, std::int64_t value) = 0;
+  // Objects that one SDO or one PDO has just written, in the order of the PDO.
+  virtual void written(std::span<const ObjectAddress> addresses, Timestamp now) = 0;
+  // NMT reset or power-on: all objects have their values of power-on again.
+  virtual void on_reset(Timestamp now) = 0;
+  // A SYNC: its TPDOs are sent, its RPDOs are written.
+  virtual void synced(Timestamp now) = 0;
+  // The master's heartbeat or guarding ended, or it stopped this node.
+  virtual void communication_lost(Timestamp now) = 0;
+};
+
+// Objects 0x1000 to 0x1029 that the slave serves itself, beside the PDOs' (slave_pdos.hpp).
+struct SlaveIdentity {
+  std::uint32_t device_type = 0;   // object 0x1000
+  std::string name;                // object 0x1008
+  std::uint16_t heartbeat_ms = 0;  // object 0x1017 at power-on; 0: none until it is written
+};
+void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, const SlaveIdentity& identity);
+
+class CanopenSlave final : private SdoObjects {
+ public:
+  // `node` 1..127. `defaults`: the objects at power-on, with those of add_communication_objects() and
+  // add_pdo_objects(). `event`: slave_pdos.hpp. The references outlive the slave. Off until power_on().
+  CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectAddress event, SlaveApplication& application,
+               FrameOutput& output);
+
+  // Boot-up message, then `first`: pre-operational, or operational without being told.
+  void power_on(NmtState first, Timestamp now);
+  void power_off();  // silent and deaf
+
+  void receive(const CanFrame& frame, Timestamp now);
+  void advance(Timestamp now);               // timers; call at next_due() or more often
+  [[nodiscard]] Timestamp next_due() const;  // "never" while nothing is timed
+  // The application has changed values of objects.
+  void changed(Timestamp now);
+  // EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: the error is reset.
+  void emergency(std::uint16_t code, std::uint8_t error_register);
+
+  [[nodiscard]] std::uint8_t node() const { return node_; }
+  [[nodiscard]] bool is_powered() const { return powered_; }
+  [[nodiscard]] NmtState state() const { return nmt_; }
+  [[nodiscard]] ObjectDictionary& objects() { return objects_; }
+  [[nodiscard]] const ObjectDictionary& objects() const { return objects_; }
+
+ private:
+  // SdoObjects
+  [[nodiscard]] std::expected<std::vector<std::uint8_t>, SdoAbort> read(ObjectAddress address) override;
+  [[nodiscard]] std::optional<SdoAbort> write(ObjectAddress address, std::span<const std::uint8_t> value) override;
+  [[nodiscard]] std::optional<SdoAbort> refuse(ObjectAddress address, std::int64_t value);
+
+  void reset(Timestamp now);
+  void on_nmt(NmtCommand command, Timestamp now);
+  void enter(NmtState state, Timestamp now);
+  void on_sync(const CanFrame& frame, Timestamp now);
+  void on_guarding(Timestamp now);
+  void on_heartbeat(const Heartbeat& heartbeat, Timestamp now);
+  void on_rpdo(const CanFrame& frame, Timestamp now);
+  void after_write(std::span<const ObjectAddress> addresses, Timestamp now);
+  void restart_heartbeat(Timestamp now);
+  void master_lost(Timestamp now);
+  void drain_server(Timestamp now);
+  [[nodiscard]] std::int64_t object(std::uint16_t index, std::uint8_t subindex = 0) const;
+
+  std::uint8_t node_;
+  SlaveApplication* application_;
+  FrameOutput* output_;
+  ObjectDictionary defaults_;
+  ObjectDictionary objects_;
+  SdoServer server_;
+  SlavePdos pdos_;
+  bool powered_ = false;
+  NmtState nmt_ = NmtState::boot_up;
+  NmtState first_ = NmtState::pre_operational;
+  bool guard_toggle_ = false;
+  bool length_error_ = false;           // the newest RPDO was too short
+  Timestamp now_;                       // of the call under way, for writes that come through the SDO server
+  Timestamp heartbeat_due_;             // of our own
+  Timestamp master_due_;                // of the master's, once it was heard; never: it is not watched
+  Timestamp guard_due_;                 // the same for node guarding
+  std::vector<ObjectAddress> written_;  // by the PDO under way
+};
+
+}  // namespace cellmirror::can

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "drivers/can/canopen/cob_id.hpp"
+#include "drivers/can/canopen/earlier_due.hpp"
+#include "drivers/can/canopen/emcy.hpp"
+#include "drivers/can/cia402/device/servo_drive.hpp"
+#include "drivers/can/stream/can_stream.hpp"
+#include "rt_core/base/contract.hpp"
+#include "rt_core/rt/latest.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+// The drives of one robot on one channel.
+class Cia402DeviceProtocol final : public CanProtocol {
+ public:
+  // `nodes` keeps where the joints are for the next time that the stream is opened.
+  Cia402DeviceProtocol(const Cia402DeviceConfig& config, std::shared_ptr<std::vector<DriveConfig>> nodes,
+                       CanProtocolHost& host)
+      : period_(config.period), nodes_(std::move(nodes)), host_(&host), output_(host) {
+    for (const DriveConfig& node : *nodes_)
+      drives_.push_back(std::make_unique<ServoDrive>(node, config.heartbeat_ms, output_));
+    errors_.resize(drives_.size());
+  }
+
+  void start(Timestamp now) override {
+    due_ = now + period_;
+    for (const auto& drive : drives_) drive->power_on(now);
+  }
+
+  void receive(const CanFrame& frame, Timestamp now) override {
+    const bool request = frame.id > kSdoRequestBase && frame.id <= kSdoRequestBase + kMaxNodeId;
+    for (const auto& drive : drives_) {
+      if (request && !frame.extended && frame.id != kSdoRequestBase + drive->node_id()) continue;
+      drive->receive(frame, now);
+    }
+  }
+
+  void advance(Timestamp now) override {
+    for (const auto& drive : drives_) drive->advance(now);
+    note_errors();
+    if (now < due_) return;
+    due_ = due_ + period_;
+    if (due_ <= now) due_ = now + period_;
+    push_sample(now);
+  }
+
+  [[nodiscard]] Timestamp next_due() const override {
+    Timestamp due = due_;
+    for (const auto& drive : drives_) due = earlier_due(due, drive->next_timer());
+    return due;
+  }
+
+  void publish() override {
+    Report& report = published_.writable();
+    report.samples = sequence_;
+    report.send_refused = output_.refused;
+    report.drives.clear();
+    for (const auto& drive : drives_)
+      report.drives.push_back({drive->nmt_state(), drive->state(), drive->mode(), drive->error_code()});
+    published_.publish();
+  }
+
+  void describe(JointStreamStatus& status, Timestamp /*now*/) override {
+    const Report& report = published_.read().value;
+    status.received = report.samples;
+    std::size_t operational = 0;
+    std::size_t enabled = 0;
+    for (std::size_t i = 0; i < report.drives.size(); ++i) {
+      const DriveReport& drive = report.drives[i];
+      const DriveConfig& node = (*nodes_)[i];
+      operational += drive.nmt == NmtState::operational ? 1U : 0U;
+      enabled += drive.state == Cia402State::operation_enabled ? 1U : 0U;
+      std::string text = fmt::format("{}, {}, {}", words(drive.nmt), words(drive.state), words(drive.mode));
+      if (drive.error != 0) text += fmt::format(", 0x{:04X} {}", drive.error, emcy_words(drive.error));
+      status.details.emplace_back(fmt::format("node {} ({})", node.node_id, node.joint_name), std::move(text));
+    }
+    status.condition = fmt::format("answers as {} {}: {} operational, {} enabled", report.drives.size(),
+                                   report.drives.size() == 1 ? "drive" : "drives", operational, enabled);
+    if (report.send_refused > 0)
+      status.details.emplace_back("frames that the channel refused", fmt::format("{}", report.send_refused));
+  }
+
+ private:
+  struct Output final : FrameOutput {
+    explicit Output(CanProtocolHost& its_host) : host(&its_host) {}
+    void send(const CanFrame& frame) override {
+      if (!host->send(frame)) ++refused;
+    }
+    CanProtocolHost* host;
+    std::uint64_t refused = 0;
+  };
+  struct DriveReport {
+    NmtState nmt = NmtState::boot_up;
+    Cia402State state = Cia402State::unknown;
+    DriveMode mode = DriveMode::none;
+    std::uint16_t error = 0;
+  };
+  struct Report {
+    std::uint64_t samples = 0;
+    std::uint64_t send_refused = 0;
+    std::vector<DriveReport> drives;
+  };
+
+  void note_errors() {
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      const std::uint16_t code = drives_[i]->error_code();
+      if (std::exchange(errors_[i], code) == code || code == 0) continue;
+      const DriveConfig& node = (*nodes_)[i];
+      host_->note(Severity::warning, "device fault",
+                  fmt::format("drive {} ({}): 0x{:04X} {}", node.node_id, node.joint_name, code, emcy_words(code)));
+    }
+  }
+
+  void push_sample(Timestamp now) {
+    JointSample sample;
+    sample.receive_time = now;
+    sample.source_time = now;
+    sample.sequence = ++sequence_;
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      const ServoDrive& drive = *drives_[i];
+      DriveConfig& node = (*nodes_)[i];
+      sample.present |= 1U << node.joint;
+      sample.position.at(node.joint) = drive.joint_position();
+      sample.velocity.at(node.joint) = drive.joint_velocity();
+      sample.effort.at(node.joint) = drive.joint_torque();
+      node.start = drive.joint_position();
+    }
+    host_->push(sample);
+  }
+
+  Nanoseconds period_;
+  std::shared_ptr<std::vector<DriveConfig>> nodes_;
+  CanProtocolHost* host_;
+  Output output_;
+  std::vector<std::unique_ptr<ServoDrive>> drives_;
+  std::vector<std::uint16_t> errors_;  // that were noted
+  Timestamp due_;                      // of the next sample
+  std::uint64_t sequence_ = 0;
+  Latest<Report> published_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig& config, const Clock& clock,
+                                                        CanStreamOptions options) {
+  if (config.nodes.empty()) return fail("the device has no drives", "add [[device.node]] with id and joint");
+  for (const DriveConfig& node : config.nodes) {
+    CELLMIRROR_EXPECTS(node.node_id >= 1 && node.node_id <= kMaxNodeId && node.joint < kMaxJointsPerRobot);
+    CELLMIRROR_EXPECTS(node.increments_per_unit() > 0 && node.inertia > 0 && node.rated_torque > 0);
+  }
+  auto nodes = std::make_shared<std::vector<DriveConfig>>(config.nodes);
+  return std::make_unique<CanStream>("cia402-device", config.channel, clock, std::move(options),
+                                     [config, nodes](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
+                                       return std::make_unique<Cia402DeviceProtocol>(config, nodes, host);
+                                     });
+}
+
+}  // namespace cellmirror::can

@@ -1,0 +1,37 @@
+// Any frames in any order to a drive that the gateway answers for, with its motor.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+#include "drivers/can/cia402/device/servo_drive.hpp"
+#include "tests/fuzz/can/frame_source.hpp"
+
+namespace {
+
+struct Output : cellmirror::can::FrameOutput {
+  void send(const cellmirror::CanFrame& frame) override {
+    if (frame.length > 8 || frame.id > 0x7FF) std::abort();
+  }
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace cellmirror;
+  Output output;
+  DriveConfig config;
+  config.node_id = 1;
+  config.stops = JointInterval{-3, 3};
+  config.limit_switches = JointInterval{-2.5, 2.5};
+  config.home_switch = JointInterval{0.5, 0.6};
+  can::ServoDrive drive(config, 50, output);
+  Timestamp now{1'000'000'000};
+  drive.power_on(now);
+  FrameSource source(data, size);
+  while (const auto frame = source.next(now)) {
+    drive.receive(*frame, now);
+    drive.advance(now);
+    if (!std::isfinite(drive.joint_position()) || std::abs(drive.joint_position()) > 3) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,172 @@
+"""A robot of the cell as CiA 402 drives ([[device]]), commanded by a master on the bus."""
+
+import math
+import random
+import struct
+import time
+import unittest
+
+import gateway as g
+
+try:
+    import can
+    import drive_master
+except ImportError:
+    can = None
+
+NODES = {11: "J_1", 12: "J_2", 13: "J_3", 14: "J_4"}
+TURN = 65536 / (2 * math.pi)  # increments a rad of J_1
+
+
+def device(channel):
+    return f"""[[device]]
+robot = "SCARA_1"
+protocol = "cia402"
+channel = "{channel}"
+[[device.node]]
+id = 11
+joint = "J_1"
+encoder_increments = 65536
+home_switch_rad = [-0.5, -0.4]
+[[device.node]]
+id = 12
+joint = "J_2"
+encoder_increments = 65536
+sign = -1
+offset_rad = 0.25
+[[device.node]]
+id = 13
+joint = "J_3"
+encoder_increments = 32768
+feed_m = 0.02
+[[device.node]]
+id = 14
+joint = "J_4"
+encoder_increments = 4096
+gear_motor_turns = 16
+"""
+
+
+def setUpModule():
+    if can is None:
+        raise unittest.SkipTest("skipped: python3-can is not installed")
+
+
+class Device(unittest.TestCase):
+    def setUp(self):
+        lot = random.SystemRandom()
+        group, port = f"239.75.{lot.randrange(1, 255)}.{lot.randrange(1, 255)}", lot.randrange(20000, 60000)
+        self.scratch = g.Scratch("can_cell")
+        text = self.scratch.cell_file.read_text()
+        # In place of the stream of the arm; the table, on an interface that is not there, stays closed.
+        start, end = text.index("[[stream]]"), text.index("[[stream]]", text.index("[[stream]]") + 1)
+        self.scratch.cell_file.write_text(text[:start] + device(f"udp:{group}:{port}") + text[end:])
+        self.master = drive_master.Master(group, port)
+        self.gateway = None
+
+    def tearDown(self):
+        if self.gateway:
+            self.gateway.close()
+        self.master.close()
+        self.scratch.remove()
+
+    def start(self):
+        self.gateway = g.Gateway(self.scratch)
+        self.go_online()
+
+    def go_online(self):
+        done = self.scratch.send("ROBOT SCARA_1 online;")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        boots = self.master.hear_all({drive_master.HEARTBEAT + node for node in NODES})
+        self.assertEqual(set(boots.values()), {b"\0"}, boots)
+
+    def joint(self, number):
+        return self.scratch.robot("SCARA_1")["joints"][number]
+
+    def test_check_knows_the_table_and_tells_its_errors(self):
+        done = self.scratch.cellmirror("check", str(self.scratch.cell_file))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        text = self.scratch.cell_file.read_text()
+        self.scratch.cell_file.write_text(text.replace("feed_m = 0.02", "feed = 0.02").replace("id = 14", "id = 13"))
+        done = self.scratch.cellmirror("check", str(self.scratch.cell_file))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("two nodes have the id 13", done.stdout + done.stderr)
+        self.assertIn("feed_m", done.stdout + done.stderr)
+
+    def test_a_master_boots_moves_and_stops_the_robot(self):
+        self.start()
+        master = self.master
+        self.assertEqual(master.read(11, 0x1000) & 0xFFFF, 402)
+        with self.assertRaisesRegex(drive_master.Abort, "0x06010002"):
+            master.write(11, 0x6041, 0, 2)
+
+        with self.subTest("profile position moves the robot of the cell"):
+            master.nmt(1)
+            master.write(11, 0x6060, 1, 1)
+            self.assertEqual(master.enable(11), "enabled")
+            master.write(11, 0x6081, round(3 * TURN), 4)
+            master.write(11, 0x607A, round(0.5 * TURN), 4)
+            master.write(11, 0x6040, 0x1F, 2)
+            self.assertTrue(master.wait_bit(11, 12), "the set-point is acknowledged")
+            master.write(11, 0x6040, 0x0F, 2)
+            self.assertTrue(master.wait_bit(11, 10), "the target is reached")
+            self.assertTrue(g.eventually(lambda: abs(self.joint(0)["position"] - 0.5) < 0.002), self.joint(0))
+            self.assertEqual(self.joint(0)["state"], "fresh")
+
+        with self.subTest("homing at a switch of the cell file"):
+            master.write(11, 0x6098, 24, 1)
+            master.write(11, 0x6099, round(2 * TURN), 4, 1)
+            master.write(11, 0x6099, round(0.2 * TURN), 4, 2)
+            master.write(11, 0x6060, 6, 1)
+            master.write(11, 0x6040, 0x1F, 2)
+            # Method 24 looks upwards first, and turns at a limit switch, which this drive has not: it stands at the stop.
+            self.assertTrue(master.wait_bit(11, 3, 10), "a fault: following error")
+            self.assertEqual(master.read(11, 0x603F), 0x8611)
+            master.write(11, 0x6040, 0x80, 2)
+            master.write(11, 0x6040, 0x00, 2)
+            master.write(11, 0x6098, 27, 1)  # downwards first
+            self.assertEqual(master.enable(11), "enabled")
+            master.write(11, 0x6040, 0x1F, 2)
+            self.assertTrue(master.wait_bit(11, 12, 20), "homing attained")
+            self.assertTrue(master.wait_bit(11, 10))
+            here = master.read(11, 0x6064, signed=True) / TURN
+            self.assertAlmostEqual(g.eventually(lambda: self.joint(0)["position"] - here), -0.4, delta=0.002)
+            master.write(11, 0x6040, 0x0F, 2)
+
+        with self.subTest("cyclic synchronous position of all drives, with SYNC"):
+            for node in NODES:
+                master.write(node, 0x60C2, 4, 1, 1)  # 4 ms
+                master.write(node, 0x6065, 0xFFFFFFFF, 4)  # no fault where this machine is late
+                master.write(node, 0x6060, 8, 1)
+                self.assertEqual(master.enable(node), "enabled")
+            starts = {node: master.read(node, 0x6064, signed=True) for node in NODES}
+            for i in range(1, 101):
+                for node in NODES:
+                    master.send(0x300 + node, struct.pack("<Hi", 0x0F, starts[node] + 20 * i))
+                master.send(drive_master.SYNC)
+                answers = master.hear_all({0x280 + node for node in NODES}, 2)
+                self.assertEqual(len(answers), len(NODES), f"SYNC {i}: {answers}")
+                time.sleep(0.004)  # not faster than the drives interpolate; slower makes no difference
+            for node in NODES:
+                left = lambda node=node: master.read(node, 0x6064, signed=True) - starts[node] - 2000
+                self.assertTrue(g.eventually(lambda left=left: abs(left()) <= 2), f"node {node}: {left()} from its target")
+
+        with self.subTest("quick stop, and the state in status"):
+            master.write(12, 0x6040, 0x02, 2)
+            self.assertTrue(g.eventually(lambda: master.state(12) == "switch on disabled"))
+            stream = self.scratch.robot("SCARA_1")["stream"]
+            self.assertEqual(stream["kind"], "cia402-device")
+            self.assertIn("4 operational, 3 enabled", stream["condition"])
+            self.assertIn("node 11 (J_1)", str(stream))
+
+        with self.subTest("offline is silence; online again it is where it was"):
+            before = self.joint(0)["position"]
+            self.assertEqual(self.scratch.send("ROBOT SCARA_1 offline;").returncode, 0)
+            master.send(drive_master.SDO_REQUEST + 11, struct.pack("<BHBxxxx", 0x40, 0x1000, 0))
+            self.assertIsNone(master.hear(lambda identifier, data: identifier == drive_master.SDO_ANSWER + 11, 0.3))
+            self.go_online()
+            self.assertTrue(g.eventually(lambda: abs(self.joint(0)["position"] - before) < 0.001))
+
+
+if __name__ == "__main__":
+    g.main()

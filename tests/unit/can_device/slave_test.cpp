@@ -1,0 +1,152 @@
+// What a master may do to the PDOs and the communication objects of a drive, with the abort codes of CiA 301, table 22.
+#include "drivers/can/canopen/slave.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/can_device/master.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+struct Slave : testing::Test {
+  DriveMaster master;
+  std::uint32_t write(std::uint16_t index, std::uint8_t subindex, std::int64_t value, std::size_t bytes) {
+    return master.write(index, subindex, value, bytes);
+  }
+};
+
+constexpr std::uint32_t kInvalidTpdo4 = 0x8000'0485;
+
+TEST_F(Slave, BootsAndShowsItsIdentity) {
+  ASSERT_FALSE(master.frames.empty());
+  EXPECT_EQ(master.frames.front(), frame(0x705, {0x00}));
+  EXPECT_EQ(master.object(0x1000) & 0xFFFF, 402);
+  EXPECT_EQ(master.object(0x1018, 4), 5);
+}
+
+TEST_F(Slave, AMasterMapsATpdo) {
+  EXPECT_EQ(write(0x1803, 1, kInvalidTpdo4, 4), 0U);
+  EXPECT_EQ(write(0x1803, 2, 1, 1), 0U);
+  EXPECT_EQ(write(0x1A03, 0, 0, 1), 0U);
+  EXPECT_EQ(write(0x1A03, 1, 0x60FD'0020, 4), 0U);
+  EXPECT_EQ(write(0x1A03, 2, 0x6061'0008, 4), 0U);
+  EXPECT_EQ(write(0x1A03, 0, 2, 1), 0U);
+  EXPECT_EQ(write(0x1803, 1, 0x0000'0485, 4), 0U);
+  EXPECT_EQ(write(0x6060, 0, 8, 1), 0U);
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.take();
+  master.receive(frame(0x080, {}));
+  const auto sent = master.take();
+  EXPECT_NE(std::ranges::find(sent, frame(0x485, {0, 0, 0, 0, 8})), sent.end());
+}
+
+TEST_F(Slave, RefusesRubbishInMappings) {
+  EXPECT_EQ(write(0x1A00, 0, 0, 1), 0x0800'0022U) << "the PDO exists";
+  EXPECT_EQ(write(0x1800, 1, 0x8000'0185, 4), 0U);
+  EXPECT_EQ(write(0x1A00, 1, 0x6041'0010, 4), 0x0601'0000U) << "subindex 0 is not 0";
+  EXPECT_EQ(write(0x1A00, 0, 0, 1), 0U);
+  EXPECT_EQ(write(0x1A00, 1, 0x5FFF'0010, 4), 0x0602'0000U) << "no such object";
+  EXPECT_EQ(write(0x1A00, 1, 0x607D'0520, 4), 0x0609'0011U) << "no such subindex";
+  EXPECT_EQ(write(0x1A00, 1, 0x6041'0020, 4), 0x0604'0041U) << "wrong length";
+  EXPECT_EQ(write(0x1A00, 1, 0x1008'0020, 4), 0x0604'0041U) << "not to be mapped";
+  EXPECT_EQ(write(0x1A00, 0, 9, 1), 0x0609'0031U);
+  for (std::uint8_t i = 1; i <= 3; ++i) EXPECT_EQ(write(0x1A00, i, 0x6064'0020, 4), 0U);
+  EXPECT_EQ(write(0x1A00, 0, 3, 1), 0x0604'0042U) << "96 bits";
+  EXPECT_EQ(write(0x1A00, 0, 4, 1), 0x0609'0030U) << "entry 4 is empty";
+  EXPECT_EQ(write(0x1A00, 0, 2, 1), 0U);
+  EXPECT_EQ(write(0x1400, 1, 0x8000'0205, 4), 0U);
+  EXPECT_EQ(write(0x1600, 0, 0, 1), 0U);
+  EXPECT_EQ(write(0x1600, 1, 0x6041'0010, 4), 0x0604'0041U) << "a master cannot write the statusword";
+}
+
+TEST_F(Slave, RefusesIdentifiersAndTypesThatAPdoCannotHave) {
+  EXPECT_EQ(write(0x1800, 1, 0x0000'0285, 4), 0x0800'0022U) << "another identifier while it exists";
+  EXPECT_EQ(write(0x1803, 1, 0x0000'0585, 4), 0x0609'0030U) << "an SDO's";
+  EXPECT_EQ(write(0x1803, 1, 0x0000'0000, 4), 0x0609'0030U) << "NMT's";
+  EXPECT_EQ(write(0x1803, 1, 0x2000'0485, 4), 0x0609'0030U) << "29 bits";
+  EXPECT_EQ(write(0x1803, 2, 245, 1), 0x0609'0030U);
+  EXPECT_EQ(write(0x1803, 2, 252, 1), 0x0609'0030U) << "on request only";
+  EXPECT_EQ(write(0x1803, 9, 0, 1), 0x0609'0011U);
+  EXPECT_EQ(write(0x1404, 1, 0, 4), 0x0602'0000U);
+}
+
+TEST_F(Slave, RefusesWritesThatDoNotFit) {
+  EXPECT_EQ(write(0x6040, 0, 0, 4), 0x0607'0012U);
+  EXPECT_EQ(write(0x6081, 0, 0, 2), 0x0607'0013U);
+  EXPECT_EQ(write(0x6041, 0, 0, 2), 0x0601'0002U);
+  EXPECT_EQ(write(0x1005, 0, 0x81, 4), 0x0609'0030U);
+  EXPECT_EQ(write(0x1016, 1, 0x00FF'0064, 4), 0x0609'0030U) << "node 255";
+  EXPECT_EQ(master.read_abort(0x5000, 0), 0x0602'0000U);
+  EXPECT_EQ(master.read_abort(0x6040, 1), 0x0609'0011U);
+}
+
+TEST_F(Slave, CountsSyncsFromTheStartValue) {
+  EXPECT_EQ(write(0x1801, 1, 0x8000'0285, 4), 0U);
+  EXPECT_EQ(write(0x1801, 2, 2, 1), 0U);
+  EXPECT_EQ(write(0x1801, 6, 3, 1), 0U);
+  EXPECT_EQ(write(0x1801, 1, 0x0000'0285, 4), 0U);
+  master.receive(frame(0x000, {0x01, 0x05}));
+  std::vector<int> answered;
+  for (int counter = 1; counter <= 8; ++counter) {
+    master.take();
+    master.receive(frame(0x080, {counter}));
+    for (const CanFrame& sent : master.frames) {
+      if (sent.id == 0x285) answered.push_back(counter);
+    }
+  }
+  EXPECT_EQ(answered, (std::vector<int>{3, 5, 7}));
+}
+
+TEST_F(Slave, ShortPdosAreToldOnce) {
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.take();
+  for (int i = 0; i < 100; ++i) master.receive(frame(0x205, {0x06}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8210}));
+  master.receive(frame(0x205, {0x06, 0x00}));
+  master.receive(frame(0x205, {0x06}));
+  EXPECT_EQ(master.emergencies().size(), 2U);
+  EXPECT_EQ(master.object(0x1003, 0), 2);
+}
+
+TEST_F(Slave, ListsErrorsAndForgetsThemWhenAsked) {
+  EXPECT_EQ(master.read_abort(0x1003, 1), 0x0800'0024U) << "no data yet";
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.receive(frame(0x205, {0x06}));
+  EXPECT_EQ(master.read_abort(0x1003, 1), 0U);
+  EXPECT_EQ(write(0x1003, 0, 1, 1), 0x0609'0030U);
+  EXPECT_EQ(write(0x1003, 0, 0, 1), 0U);
+  EXPECT_EQ(master.object(0x1003, 1), 0);
+}
+
+TEST_F(Slave, AnswersNodeGuardingWithATogglingBit) {
+  CanFrame request = frame(0x705, {});
+  request.remote = true;
+  master.take();
+  for (const int state : {0x7F, 0xFF, 0x7F}) {
+    master.receive(request);
+    EXPECT_EQ(master.take(), (Frames{frame(0x705, {state})}));
+  }
+}
+
+TEST_F(Slave, LifeGuardingEndsWhereTheMasterIsSilent) {
+  EXPECT_EQ(write(0x100C, 0, 50, 2), 0U);
+  EXPECT_EQ(write(0x100D, 0, 2, 1), 0U);
+  CanFrame request = frame(0x705, {});
+  request.remote = true;
+  master.receive(request);
+  master.take();
+  master.run(90ms);
+  EXPECT_TRUE(master.emergencies().empty());
+  master.run(20ms);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8130}));
+}
+
+TEST_F(Slave, KeepsItsHeartbeatPeriod) {
+  EXPECT_EQ(write(0x1017, 0, 20, 2), 0U);
+  master.take();
+  master.run(100ms);
+  EXPECT_EQ(std::ranges::count(master.frames, frame(0x705, {0x7F})), 5);
+}
+
+}  // namespace
+}  // namespace cellmirror::can
