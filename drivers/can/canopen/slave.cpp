@@ -18,7 +18,7 @@ constexpr auto kServedRo = ObjectAccess::read_only;
 
 constexpr ObjectAddress kErrorRegister{0x1001, 0};
 constexpr std::uint16_t kErrorField = 0x1003;
-constexpr std::uint8_t kErrorsKept = 8;
+constexpr std::uint8_t kErrorHistory = 8;
 constexpr ObjectAddress kHeartbeatConsumer{0x1016, 1};
 constexpr std::uint16_t kHeartbeatProducer = 0x1017;
 constexpr std::uint16_t kEmcyPdoLength = 0x8210;
@@ -32,7 +32,7 @@ void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, con
   objects.set_integer({0x1000, 0}, DataType::unsigned32, kServedRo, identity.device_type, "device type");
   objects.set_integer(kErrorRegister, DataType::unsigned8, kServedRo, 0, "error register", true);
   objects.set_integer({kErrorField, 0}, DataType::unsigned8, kServedRw, 0, "errors");
-  for (std::uint8_t i = 1; i <= kErrorsKept; ++i) {
+  for (std::uint8_t i = 1; i <= kErrorHistory; ++i) {
     objects.set_integer({kErrorField, i}, DataType::unsigned32, kServedRo, 0, "error");
   }
   objects.set_integer({0x1005, 0}, DataType::unsigned32, kServedRw, kSyncCobId, "COB-ID SYNC");
@@ -208,14 +208,14 @@ void CanopenSlave::after_write(std::span<const ObjectAddress> addresses, Timesta
   if (has(kHeartbeatProducer)) restart_heartbeat(now);
   if (has(kHeartbeatConsumer.index)) master_due_ = {};
   if (has(kErrorField)) {
-    for (std::uint8_t i = 1; i <= kErrorsKept; ++i) objects_.write_integer({kErrorField, i}, 0);
+    for (std::uint8_t i = 1; i <= kErrorHistory; ++i) objects_.write_integer({kErrorField, i}, 0);
   }
   application_->written(addresses, now);
 }
 
 std::expected<std::vector<std::uint8_t>, SdoAbort> CanopenSlave::read(ObjectAddress address) {
   const bool is_error = address.index == kErrorField && address.subindex > object(kErrorField);
-  if (is_error && address.subindex <= kErrorsKept) return std::unexpected(SdoAbort::no_data);
+  if (is_error && address.subindex <= kErrorHistory) return std::unexpected(SdoAbort::no_data);
   return read_object(objects_, address);
 }
 
@@ -280,7 +280,7 @@ void CanopenSlave::changed(Timestamp now) {
 void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
   objects_.write_integer(kErrorRegister, error_register);
   if (code != 0) {
-    const std::int64_t kept = std::min<std::int64_t>(object(kErrorField), kErrorsKept - 1);
+    const std::int64_t kept = std::min<std::int64_t>(object(kErrorField), kErrorHistory - 1);
     for (std::int64_t i = kept; i >= 1; --i) {
       objects_.write_integer({kErrorField, static_cast<std::uint8_t>(i + 1)},
                              object(kErrorField, static_cast<std::uint8_t>(i)));
