@@ -39,7 +39,7 @@ PAGE = {name: "tests/support/page_figure.py" for name in ("monitor_page.png", "m
 MEASURED = {
     "engine_tick.png": "build/bin/engine_tick SCRATCH/t.csv FILE",
     "tissue_steps.png": "build/bin/tissue_steps SCRATCH/t.csv FILE",
-    "volume_sizes.png": "for size in 128 192 256 384 512 768; do build/bin/volume_pictures --size $size SCRATCH/t.csv FILE; done",
+    "volume_sizes.png": "for size in 128 192 256 384 512 768 1024; do build/bin/volume_pictures --size $size SCRATCH/t.csv FILE; done",
     "haptic_stiffness.png": "build/bin/haptics_stiffness SCRATCH/t.csv FILE",
     "recorded_joints.png": "/usr/bin/python3 -B tests/support/recording_figure.py FILE",
     "trainer.webp": "/usr/bin/python3 -B tests/bench/gateway/trainer_bench.py 38 --film SCRATCH/t.mp4 && ffmpeg -y -loglevel error -i SCRATCH/t.mp4 "
