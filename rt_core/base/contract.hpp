@@ -6,7 +6,7 @@
 
 namespace cellmirror {
 
-[[noreturn]] inline void contract_broken(const char* condition, const char* file, int line) {
+[[noreturn, gnu::cold, gnu::noinline]] inline void contract_broken(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "cellmirror: contract broken: %s at %s:%d; this is a bug, please report it\n", condition, file,
                line);
   std::abort();

@@ -25,6 +25,8 @@ SANITIZER_OPTIONS = {
 # One clang build serves the address and undefined-behaviour sanitizers, the fuzzers and clang-tidy.
 SANITIZED_TARGETS = ("tests_unit", "tests_golden", "tests_fuzz", "programs")
 SANITIZED_BUILD = f"configure fuzz build-fuzz && build build-fuzz {' '.join(SANITIZED_TARGETS)}"
+THREAD_TARGETS = ("tests_stress", "tests_concurrency")
+THREAD_BUILD = f"configure tsan build-tsan && build build-tsan {' '.join(THREAD_TARGETS)}"
 
 
 def shell(command: str) -> bool:
@@ -140,7 +142,7 @@ class Check:
         elif self.options.quick:
             self.tests("tests", "build", "-LE", "^(integration|stress|bench)$")
         else:
-            early = EarlyBuild(SANITIZED_BUILD)
+            early = EarlyBuild(f"{SANITIZED_BUILD}; {THREAD_BUILD}")
             try:
                 self.tests("tests", "build", "-LE", "^sanitized$" if self.options.full else "^(sanitized|bench)$")
             finally:
@@ -154,7 +156,7 @@ class Check:
             seed = os.environ.get("FUZZ_SEED", time.strftime("%Y%m%d", time.gmtime()))
             self.tests(f"fuzzing, {seconds} s each, FUZZ_SEED={seed}", "build-fuzz", "-L", "^libfuzzer$", FUZZ_SECONDS=seconds,
                        FUZZ_SEED=seed, **SANITIZER_OPTIONS)
-        if self.build("tsan", "build-tsan", "tests_stress", "tests_concurrency"):
+        if self.build("tsan", "build-tsan", *THREAD_TARGETS):
             self.tests("threads", "build-tsan", "-L", "^(stress|concurrency)$", **SANITIZER_OPTIONS)
 
     def tidy(self) -> None:
