@@ -83,7 +83,7 @@ void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
 
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
                                                        int fifo_priority, const can::ChannelOpener& open_can,
-                                                       std::shared_ptr<PayloadSink> payloads) {
+                                                       const std::shared_ptr<PayloadSink>& payloads) {
   return std::visit(StreamMaker{clock, fifo_priority, open_can, payloads}, config);
 }
 

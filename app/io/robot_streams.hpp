@@ -20,7 +20,7 @@ namespace cellmirror::app {
 // given what DDS and RTDE streams receive.
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
                                                        int fifo_priority, const can::ChannelOpener& open_can = {},
-                                                       std::shared_ptr<PayloadSink> payloads = {});
+                                                       const std::shared_ptr<PayloadSink>& payloads = {});
 
 // Reads the EDS, DCF or DBC files of the stream and tells what is wrong with them and with what the cell file takes
 // from them, each at its place; warns of joints without a source. What the reader of the cell file told is not told
