@@ -93,9 +93,9 @@ void add_replay(cli::Command program, Action& action) {
   const auto of_playing = [&](cli::Option option) { option.excludes(verifies).excludes(other_cell); };
   sub.option("--from", options->from_s, "seconds after the start of the recording").between(0.0, 1e9);
   sub.option("--to", options->to_s, "seconds after the start of the recording").between(0.0, 1e9);
-  auto page = sub.flag("--page", gateway.page, "with the monitor page; waits at the end for Ctrl-C");
-  of_playing(page);
-  of_playing(sub.option("--port", gateway.port, "of the page; otherwise a free one").between(0, 65535).needs(page));
+  of_playing(sub.flag("--page", gateway.page, "with the monitor page; waits at the end for Ctrl-C"));
+  of_playing(sub.option("--port", gateway.port, "with the monitor page at this port; otherwise at a free one")
+                 .between(0, 65535));
   of_playing(sub.option("--speed", gateway.speed, "times as fast as it was recorded")
                  .between(kSlowestPlayback, kFastestPlayback)
                  .show_default());

@@ -107,7 +107,7 @@ int play_recording(const ReplayGateway& options) {
   gateway_options.state = state;
   gateway_options.instance = options.instance;
   gateway_options.headless = options.headless;
-  gateway_options.web = options.page;
+  gateway_options.web = options.with_page();
   gateway_options.port = options.port;
   gateway_options.playback = recording->get();
   gateway_options.publish = options.publish;
@@ -118,7 +118,7 @@ int play_recording(const ReplayGateway& options) {
   if (!gateway) return refuse(gateway.error().text());
   std::printf("%s\n", (*gateway)->greeting().c_str());
   std::fflush(stdout);
-  const int signal = serve(signals, **recording, options.page || options.wait);
+  const int signal = serve(signals, **recording, options.with_page() || options.wait);
   const std::string failure = (*recording)->control().failure();
   gateway->reset();
   if (signal == 0 && !failure.empty()) return refuse(fmt::format("{}: {}", options.file, failure));

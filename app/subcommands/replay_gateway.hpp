@@ -19,6 +19,8 @@ struct ReplayGateway {
   bool publish = false;
   bool headless = false;
   std::optional<int> port;
+
+  [[nodiscard]] bool with_page() const { return page || port; }
 };
 
 // Its exit status. Until the end of the recording, or a signal.

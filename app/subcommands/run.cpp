@@ -105,7 +105,7 @@ int run(const RunOptions& options) {
 void add_run(cli::Command program, Action& action) {
   auto options = std::make_shared<RunOptions>();
   cli::Command sub = program.subcommand("run", "Start the gateway of a cell; Ctrl-C ends it");
-  sub.option("cell", options->cell, "the cell file or its folder, e.g. config/cells/transfer_cell").required();
+  sub.option("cell,--cell", options->cell, "the cell file or its folder, e.g. config/cells/transfer_cell").required();
   sub.option("--script", options->script,
              "startup SCRIPT, instead of the cell file's own: any path, or a name in the scripts/ of the cell");
   sub.option("--for", options->seconds, "end after this many seconds").positive();

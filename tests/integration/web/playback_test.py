@@ -82,7 +82,7 @@ def setUpModule():
         gateway.close()
     exported = scratch.cellmirror("recording", "export", str(case.file), "--topic", "/joint_states", "--json")
     case.states = json.loads(exported.stdout)["messages"]
-    case.shared = Replay(scratch, case.file, "--paused", "--page")
+    case.shared = Replay(scratch, case.file, "--paused", "--port", "0")  # with the page, as --port says
 
 
 def tearDownModule():
