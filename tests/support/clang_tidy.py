@@ -1,7 +1,7 @@
 """clang-tidy over every source of ours that the clang build compiles, on all cores.
 
-What was clean is remembered by the content of the source and of all headers of ours that it includes, so that a second run
-checks only what changed. The sources that the change touches (since CHECK_BASE, by default the newest commit that is twelve hours
+Sources that are compiled together are checked together. What was clean is remembered by the content of the sources and of all
+headers of ours that they include, so that a second run checks only what changed. The sources that the change touches (since CHECK_BASE, by default the newest commit that is twelve hours
 older than HEAD) come first and have TIDY_CHANGE_SECONDS; the others, what was committed last first, have TIDY_SECONDS together.
 Within ./check both end when CHECK_SECONDS have passed since it began. `./check --full` has no bound. Sources that were not
 reached count as skipped."""
@@ -14,6 +14,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 from test_report import Report
@@ -59,51 +60,71 @@ def touched() -> set[str]:
     return set(git("diff", "--name-only", base).splitlines()) if base else set()
 
 
-def each_source(commands: list[dict[str, str]]) -> list[dict[str, str]]:
-    """The compile commands of a build with a source each: several are compiled together there (cmake/Library.cmake)."""
-    alone = []
-    for entry in commands:
-        file = Path(entry["file"])
-        together = re.findall(r'^#include "(/.+)"$', file.read_text(), re.MULTILINE) if file.parent.name == "Unity" else [str(file)]
-        alone += [{**entry, "command": entry["command"].replace(str(file), source), "file": source} for source in together]
-    return alone
+def together(file: Path) -> list[Path]:
+    """The sources that this file of the build compiles: several in one (cmake/Library.cmake), or the file itself."""
+    if file.parent.name != "Unity":
+        return [file]
+    return [Path(name) for name in re.findall(r'^#include "(/.+)"$', file.read_text(), re.MULTILINE)]
 
 
-def sources(build: Path) -> dict[Path, str]:
-    """The translation units of the product, each with its compile command: no tests, no examples in the pages. Leaves the
-    commands in build/clang-tidy, for clang-tidy and for editors."""
-    commands = each_source(json.loads((build / "compile_commands.json").read_text()))
+def write_for_editors(build: Path, commands: list[dict[str, str]]) -> None:
+    """The commands with a source each, in build/clang-tidy: for editors, and for clang-tidy by hand."""
+    alone = [{**entry, "command": entry["command"].replace(entry["file"], str(source)), "file": str(source)}
+             for entry in commands for source in together(Path(entry["file"]))]
     (build / "clang-tidy").mkdir(exist_ok=True)
-    (build / "clang-tidy/compile_commands.json").write_text(json.dumps(commands, indent=1))
-    units = {Path(entry["file"]): entry["command"] for entry in commands}
-    tops = {unit: unit.relative_to(ROOT).parts[0] for unit in units if unit.is_relative_to(ROOT)}
+    (build / "clang-tidy/compile_commands.json").write_text(json.dumps(alone, indent=1))
+
+
+def is_product(source: Path) -> bool:
+    top = source.relative_to(ROOT).parts[0] if source.is_relative_to(ROOT) else "build"
+    return top not in ("tests", "docs") and not top.startswith("build")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """What one run of clang-tidy reads. Most of its time goes into the headers: sources that are compiled together take
+    an eighth of what they take one by one."""
+
+    file: Path
+    command: str
+    sources: tuple[Path, ...]
+
+    def names(self) -> list[str]:
+        return [str(source.relative_to(ROOT)) for source in self.sources]
+
+
+def units(build: Path) -> list[Unit]:
+    """Of the product, no tests, no examples in the pages; what was committed last comes first."""
+    commands = json.loads((build / "compile_commands.json").read_text())
+    write_for_editors(build, commands)
     order = newest_first()
-    ours = [unit for unit, top in sorted(tops.items()) if top not in ("tests", "docs") and not top.startswith("build")]
-    return {unit: units[unit] for unit in sorted(ours, key=lambda unit: order.get(str(unit.relative_to(ROOT)), -1))}
+    found = [Unit(Path(entry["file"]), entry["command"], tuple(together(Path(entry["file"])))) for entry in commands]
+    found = [unit for unit in found if all(is_product(source) for source in unit.sources)]
+    return sorted(found, key=lambda unit: min(order.get(name, -1) for name in unit.names()))
 
 
-def fingerprint(unit: Path, command: str) -> str:
+def fingerprint(unit: Unit) -> str:
     """Of all that decides the findings, as far as it is ours."""
-    closure, waiting = {}, [unit]
+    closure, waiting = {}, list(unit.sources)
     while waiting:
         path = waiting.pop()
         if path not in closure and path.exists():
             closure[path] = path.read_text(errors="replace")
             waiting += [ROOT / name for name in INCLUDE.findall(closure[path])]
-    digest = hashlib.sha256(command.replace(str(ROOT), "").encode() + (ROOT / ".clang-tidy").read_bytes())
+    digest = hashlib.sha256(unit.command.replace(str(ROOT), "").encode() + (ROOT / ".clang-tidy").read_bytes())
     for path in sorted(closure):
         digest.update(f"{path.relative_to(ROOT)}\0{closure[path]}\0".encode())
     return digest.hexdigest()
 
 
-def check(build: Path, unit: Path, command: str, end: float) -> str | None:
+def check(build: Path, unit: Unit, end: float) -> str | None:
     """What clang-tidy found; nothing where it is clean; None where the time is over."""
-    clean = CLEAN / fingerprint(unit, command)
+    clean = CLEAN / fingerprint(unit)
     if clean.exists():
         return ""
     if time.monotonic() > end:
         return None
-    result = subprocess.run([TIDY, "-p", str(build / "clang-tidy"), "--quiet", str(unit)], cwd=ROOT, capture_output=True, text=True)
+    result = subprocess.run([TIDY, "-p", str(build), "--quiet", str(unit.file)], cwd=ROOT, capture_output=True, text=True)
     if result.returncode == 0:
         clean.touch()
         return ""
@@ -124,26 +145,33 @@ def run(build: Path, full: bool = False) -> Report:
         report.fail("compile_commands.json", f"{build} is not configured")
         return report
     CLEAN.mkdir(parents=True, exist_ok=True)
-    units = sources(build)
     changed = touched()
-    first = [unit for unit in units if str(unit.relative_to(ROOT)) in changed]
-    check_all(report, build, {unit: units[unit] for unit in first}, None if full else within_check(CHANGE_SECONDS, 20.0))
-    check_all(report, build, {unit: command for unit, command in units.items() if unit not in set(first)}, None if full else within_check(SECONDS, 0.0))
+    every = units(build)
+    first = [unit for unit in every if changed.intersection(unit.names())]
+    check_all(report, build, first, None if full else within_check(CHANGE_SECONDS, 20.0))
+    check_all(report, build, [unit for unit in every if unit not in first], None if full else within_check(SECONDS, 0.0))
     return report
 
 
-def check_all(report: Report, build: Path, units: dict[Path, str], bound: float | None) -> None:
+def check_all(report: Report, build: Path, wanted: list[Unit], bound: float | None) -> None:
     end = time.monotonic() + (bound if bound is not None else float("inf"))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = pool.map(lambda unit: check(build, unit, units[unit], end), units)
-        for unit, findings in zip(units, results):
-            name = str(unit.relative_to(ROOT))
+        results = pool.map(lambda unit: check(build, unit, end), wanted)
+        for unit, findings in zip(wanted, results):
             if findings is None:
-                report.skip(name, f"not reached by clang-tidy within {bound:g} s; ./check --full reaches all")
+                for name in unit.names():
+                    report.skip(name, f"not reached by clang-tidy within {bound:g} s; ./check --full reaches all")
             elif findings:
-                report.fail(name, findings)
+                report.fail(place_of(findings, unit), findings)
             else:
-                report.passed += 1
+                report.passed += len(unit.sources)
+
+
+def place_of(findings: str, unit: Unit) -> str:
+    """The source of the first finding; of a text without one, all sources of the unit."""
+    found = re.search(r"^(/[^:\n]+):\d+:\d+: (?:error|warning)", findings, re.MULTILINE)
+    path = Path(found[1]) if found else None
+    return str(path.relative_to(ROOT)) if path and path.is_relative_to(ROOT) else ", ".join(unit.names())
 
 
 if __name__ == "__main__":
