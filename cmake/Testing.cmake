@@ -1,6 +1,7 @@
 # Each test carries its kind (tests/<kind>/<subject>) as a label; LABELS adds others, e.g. concurrency: runs under
 # ThreadSanitizer as well, as every stress test does. Integration and stress tests run alone, since they watch
-# the clock or share ports. LABELS peers: compares with a program of others; ./check --peers installs all of these.
+# the clock or share ports, unless their CMakeLists.txt says otherwise (RESOURCE_LOCK gateway: one gateway at a time).
+# LABELS peers: compares with a program of others; ./check --peers installs all of these.
 #
 # cellmirror_test(name SOURCES ... USES ... [LINK ...] [LABELS ...] [RELEASE_ONLY | RELEASE_TOO] [PRECOMPILED none])  a GoogleTest program, one ctest entry.
 #   PRECOMPILED none: with sources in C (cmake/PrecompiledHeaders.cmake).

@@ -27,6 +27,7 @@ constexpr Range kSpeed{0.0, 100.0, true};
 constexpr Range kEnergy{0.0, 10.0};
 constexpr double kLongestEngaging = 60.0;
 constexpr double kLongestStale = 10.0;
+constexpr std::int64_t kMostMissed = 10'000;  // as long at 1 kHz
 
 void read_mapping(TableReader& reader, const RobotFacts* robot, HapticSettings& settings) {
   settings.drive =
@@ -75,7 +76,7 @@ void read_guards(TableReader& reader, HapticSettings& settings) {
   settings.model_stale_after =
       read_seconds(reader, "model_stale_after_s", kLongestStale, false).value_or(settings.model_stale_after);
   settings.allowed_missed_periods = static_cast<std::uint32_t>(
-      reader.integer("allowed_missed_periods", 0, 1000).value_or(settings.allowed_missed_periods));
+      reader.integer("allowed_missed_periods", 0, kMostMissed).value_or(settings.allowed_missed_periods));
   settings.passivity_control = reader.boolean("passivity_control").value_or(settings.passivity_control);
   settings.energy_allowance = reader.number("energy_allowance_j", kEnergy).value_or(settings.energy_allowance);
   settings.max_passivity_damping =

@@ -8,6 +8,7 @@
 #include "app/console/display_names.hpp"
 #include "app/console/put.hpp"
 #include "rt_core/base/counted.hpp"
+#include "rt_core/base/microseconds.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -56,8 +57,6 @@ void add(JsonWriter& out, const collision::PairTable& pairs, const TouchingPair&
   if (pair.doubtful) out.member("doubtful", true);
   out.end_object();
 }
-
-double us(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
 
 }  // namespace
 
@@ -122,10 +121,10 @@ void CollideJson::end(const CollideTotals& totals) {
     json_.null();
   }
   const HistogramSnapshot& times = totals.times;
-  json_.member("time_mean_us", us(times.mean()))
-      .member("time_p50_us", us(times.percentile(50)))
-      .member("time_p99_us", us(times.percentile(99)))
-      .member("time_max_us", us(times.max()))
+  json_.member("time_mean_us", microseconds(times.mean()))
+      .member("time_p50_us", microseconds(times.percentile(50)))
+      .member("time_p99_us", microseconds(times.percentile(99)))
+      .member("time_max_us", microseconds(times.max()))
       .end_object()
       .end_object();
   hand_out("\n");
@@ -198,8 +197,8 @@ void CollideText::end(const CollideTotals& totals) {
     put(out_, "smallest distance {:.4f} m in frame {}: {}\n", totals.nearest->distance_m, totals.nearest_frame,
         pair_text(totals.nearest->a, totals.nearest->b));
   const HistogramSnapshot& times = totals.times;
-  put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", us(times.mean()),
-      us(times.percentile(50)), us(times.percentile(99)), us(times.max()));
+  put(out_, "time a frame: mean {:.0f}, median {:.0f}, p99 {:.0f}, max {:.0f} us\n", microseconds(times.mean()),
+      microseconds(times.percentile(50)), microseconds(times.percentile(99)), microseconds(times.max()));
 }
 
 void CollideText::touching_summary(const CollideTotals& totals) {

@@ -7,6 +7,7 @@
 #include "app/console/display_names.hpp"
 #include "app/console/put.hpp"
 #include "rt_core/base/counted.hpp"
+#include "rt_core/base/microseconds.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::app {
@@ -15,8 +16,6 @@ namespace {
 
 constexpr std::uint64_t kRangesListed = 12;  // frames that are shown one by one
 constexpr std::size_t kMostNames = 200;
-
-double microseconds(Nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
 
 void add(JsonWriter& out, const RangeReading& reading) {
   const bool seen = reading.distance_m.has_value();

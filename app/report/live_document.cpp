@@ -10,6 +10,7 @@
 #include "app/report/playback_document.hpp"
 #include "app/snapshot/haptic_names.hpp"
 #include "rt_core/base/json_writer.hpp"
+#include "rt_core/base/microseconds.hpp"
 #include "rt_core/ports/words.hpp"
 #include "rt_core/scene/panes.hpp"
 
@@ -327,7 +328,7 @@ double recent_p99_us(const HistogramSnapshot& before, const HistogramSnapshot& a
       low = middle + 1;
     }
   }
-  return static_cast<double>(LatencyBuckets::upper_bound(low).count()) * 1e-3;
+  return microseconds(LatencyBuckets::upper_bound(low));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/snapshot/tissue_names.hpp"
+#include "rt_core/base/microseconds.hpp"
 
 namespace cellmirror::app {
 
@@ -13,8 +14,6 @@ namespace {
 // Keep the document small.
 constexpr std::size_t kMostRows = 50;
 constexpr std::size_t kMostEvents = 12;
-
-double microseconds(Nanoseconds time) { return static_cast<double>(time.count()) * 1e-3; }
 
 void add_objects(JsonWriter& out, const TissueState& state) {
   out.key("objects").begin_array();

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include "rt_core/base/microseconds.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
@@ -18,11 +19,10 @@ inline nlohmann::json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y
 
 // us: p50, p99, p999 and max.
 inline nlohmann::json percentiles_us(const HistogramSnapshot& snapshot) {
-  const auto us = [](Nanoseconds d) { return static_cast<double>(d.count()) * 1e-3; };
-  return {{"p50", us(snapshot.percentile(50))},
-          {"p99", us(snapshot.percentile(99))},
-          {"p999", us(snapshot.percentile(99.9))},
-          {"max", us(snapshot.max())}};
+  return {{"p50", microseconds(snapshot.percentile(50))},
+          {"p99", microseconds(snapshot.percentile(99))},
+          {"p999", microseconds(snapshot.percentile(99.9))},
+          {"max", microseconds(snapshot.max())}};
 }
 
 }  // namespace cellmirror::app

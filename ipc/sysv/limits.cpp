@@ -9,6 +9,7 @@
 #include <optional>
 #include <system_error>
 
+#include "ipc/sysv/system_file.hpp"
 #include "ipc/wire/record.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -16,13 +17,6 @@ namespace cellmirror {
 namespace {
 
 constexpr std::size_t kMostLines = 10'000;  // of a system file; more are not read
-
-std::uint64_t number_in(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::uint64_t number = 0;
-  in >> number;
-  return in ? number : 0;
-}
 
 std::uint64_t lines_in(const std::filesystem::path& file) {
   std::ifstream in(file);

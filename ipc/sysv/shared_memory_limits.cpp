@@ -12,6 +12,7 @@
 #include "ipc/sysv/key_lock.hpp"
 #include "ipc/sysv/process_watch.hpp"
 #include "ipc/sysv/shared_segment.hpp"
+#include "ipc/sysv/system_file.hpp"
 
 namespace cellmirror {
 namespace {
@@ -20,13 +21,6 @@ constexpr std::size_t kMostLines = 100'000;  // of a system file; more are not r
 constexpr std::size_t kMostLeft = 64;
 // Four haptic devices, the TCP force and the foot switches.
 constexpr std::uint64_t kSegmentsOfAGateway = 6;
-
-std::uint64_t number_in(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::uint64_t number = 0;
-  in >> number;
-  return in ? number : 0;
-}
 
 // The columns of /proc/sysvipc/shm, proc(5), as far as they are needed.
 struct Segment {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt_core/haptics/bounds.hpp"
 #include "rt_core/haptics/instrument_map.hpp"
 #include "rt_core/kinematics/forward.hpp"
 
@@ -10,18 +11,16 @@ namespace cellmirror::haptics {
 
 namespace {
 
-constexpr double kFarthest = 1e4;  // m: no place of a cell is farther away
 constexpr double kSameTip = 1e-4;  // m: what a base that creeps may come between an instrument and a model
-
-bool bounded(const Eigen::Vector3d& v, double most) CELL_RT { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
 
 bool sensible(const ContactModel& model) CELL_RT {
   constexpr double kLongestNormal = 1e3;
-  if (model.count > kMaxConstraints || !bounded(model.x_ref, kFarthest) || !std::isfinite(model.reach)) return false;
+  if (model.count > kMaxConstraints || !is_bounded(model.x_ref, kFarthestPlace) || !std::isfinite(model.reach))
+    return false;
   for (std::size_t i = 0; i < model.count; ++i) {
     const ContactConstraint& constraint = model.constraints[i];
-    if (!bounded(constraint.a, kLongestNormal) || !(std::abs(constraint.gap) <= kFarthest) ||
-        !bounded(constraint.normal, kLongestNormal) || !bounded(constraint.point, kFarthest)) {
+    if (!is_bounded(constraint.a, kLongestNormal) || !(std::abs(constraint.gap) <= kFarthestPlace) ||
+        !is_bounded(constraint.normal, kLongestNormal) || !is_bounded(constraint.point, kFarthestPlace)) {
       return false;
     }
   }

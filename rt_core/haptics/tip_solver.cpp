@@ -11,13 +11,12 @@ namespace cellmirror::haptics {
 namespace {
 
 constexpr int kMaxIterations = 8;
-constexpr double kMet = 1e-6;            // m
-constexpr double kEnough = 1e-9;         // m
-constexpr double kEnoughTurn = 1e-5;     // rad: a change of roll that is worth another step
-constexpr double kPlaceDamping = 1e-10;  // m2: far below what a lever of a millimetre gives
-constexpr double kTurnDamping = 1e-3;    // rad2: what no motion can take off must not be blown up
-constexpr double kLongestStep = 0.3;     // rad or m, of one variable in one iteration
-constexpr double kLargestTurn = 0.1;     // rad, likewise, for the orientation
+constexpr double kMet = 1e-6;          // m
+constexpr double kEnough = 1e-9;       // m
+constexpr double kEnoughTurn = 1e-5;   // rad: a change of roll that is worth another step
+constexpr double kTurnDamping = 1e-3;  // rad2: what no motion can take off must not be blown up
+constexpr double kLongestStep = 0.3;   // rad or m, of one variable in one iteration
+constexpr double kLargestTurn = 0.1;   // rad, likewise, for the orientation
 
 using Columns =
     Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(kinematics::kMaxVariables)>;

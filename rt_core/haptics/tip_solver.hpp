@@ -13,6 +13,9 @@
 
 namespace cellmirror::haptics {
 
+// m2: of inverses of J_v J_v^T, far below what a lever of a millimetre gives.
+inline constexpr double kPlaceDamping = 1e-10;
+
 struct TipGoal {
   Eigen::Vector3d p_BE = Eigen::Vector3d::Zero();      // m, in the base
   Eigen::Matrix3d R_BE = Eigen::Matrix3d::Identity();  // attempted

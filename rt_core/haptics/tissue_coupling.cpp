@@ -5,17 +5,17 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "rt_core/haptics/bounds.hpp"
+
 namespace cellmirror::haptics {
 
 namespace {
 
-constexpr double kFarthestPlane = 1e4;      // m: no place of a cell is farther away
 constexpr double kLargestForce = 1e3;       // N: tears any tissue, and any instrument from the hand
 constexpr double kLargestTorque = 100.0;    // Nm
 constexpr double kStiffest = 1e6;           // N/m
 constexpr double kRounding = 1e-6;          // share of the largest stiffness
 constexpr double kNoForce = 1e-6;           // N
-constexpr double kTissueDamping = 1e-10;    // m2: as tip_solver
 constexpr Eigen::Index kPlacedByThree = 4;  // variables: three that place the tip, and the roll
 // N/m, 2 E r / (1 - v^2) of a flat tip with r = 2 mm in tissue of E = 1 kPa. What resists less counts as if it resisted
 // so much: without a bound all work of friction and of lifting would count as stored.
@@ -24,10 +24,6 @@ constexpr double kSoftest = 5.0;
 constexpr double kSmoothUpTo = 20e-3;
 constexpr double kSmoothKept = 0.9;  // from one response to the next: what comes after a pause arrives smoothly too
 constexpr double kLagHeld = 0.5;     // s, of the decay of the largest age
-
-bool is_bounded(const Eigen::Vector3d& v, double most) CELL_RT {
-  return v.allFinite() && v.cwiseAbs().maxCoeff() <= most;
-}
 
 // An upper bound of the largest eigenvalue of a symmetric matrix, exact for one plane and for equal eigenvalues.
 double steepness_of(const Eigen::Matrix3d& K) CELL_RT {
@@ -50,7 +46,7 @@ bool is_stiffness(const Eigen::Matrix3d& K) CELL_RT {
 }
 
 bool sensible(const TissueForce& response) CELL_RT {
-  return response.posture_time.known() && is_bounded(response.x_ref, kFarthestPlane) &&
+  return response.posture_time.known() && is_bounded(response.x_ref, kFarthestPlace) &&
          is_bounded(response.force_W, kLargestForce) && is_bounded(response.torque_W, kLargestTorque) &&
          is_stiffness(response.stiffness);
 }
@@ -87,7 +83,7 @@ TissueTip tissue_tip(const TipPosture& tip, const Pose& X_WB) CELL_RT {
     across += v * v.transpose();
     turned += w * v.transpose();
   }
-  across.diagonal().array() += kTissueDamping;
+  across.diagonal().array() += kPlaceDamping;
   const Eigen::Matrix3d turning_B = turned * across.inverse();
   out.turning = R_WB * turning_B * R_WB.transpose();
   return out;

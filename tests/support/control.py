@@ -27,7 +27,7 @@ class NoAnswer(Exception):
     """The command was sent, or waited in vain to be."""
 
 
-def ask(folder, timeout=30, **request):
+def ask(folder, timeout=60, **request):
     """The gateway's answer to one request of the control socket, a document."""
     answer = b""
     try:
@@ -60,7 +60,7 @@ def repeated(call, expected, until):
         pause_s = min(2 * pause_s, 0.005)
 
 
-def send(folder, command, timeout=30):
+def send(folder, command, timeout=60):
     """Whether the command was done, and the text of the answer."""
     queues = ask(folder, timeout, request="queues")
     if queues["script_problem"] or queues["reply_problem"]:

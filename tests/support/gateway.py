@@ -6,8 +6,10 @@ A test module is a unittest module that runs as `python3 module.py`; programs ar
 import json
 import os
 import pathlib
+import random
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -20,16 +22,31 @@ SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", pathlib.Path(__fil
 BIN = pathlib.Path(os.environ.get("CELLMIRROR_BIN_DIR", SOURCE / "build" / "bin"))
 CELLS = SOURCE / "config" / "cells"
 STEP_S = 0.02  # between two steps of a test: nobody who starts the program for each is faster
+# For what comes, however busy the machine is: it may be five times slower, and stand still for a second or two.
+PATIENCE_S = 60
 
 
-def eventually(condition, timeout=10.0, every=0.05):
-    """The first true value of condition(), or its last value after the timeout."""
+def eventually(condition, timeout=PATIENCE_S, every=0.05):
+    """The first true value of condition(), or its last value after the timeout. What is expected not to come needs a short timeout."""
     end = time.monotonic() + timeout
     while True:
         value = condition()
         if value or time.monotonic() > end:
             return value
         time.sleep(every)
+
+
+def free_port():
+    """A TCP port on the loopback interface that nobody uses, below those that the kernel gives to clients (ip(7),
+    ip_local_port_range): it stays free until somebody takes it by its number."""
+    while True:
+        port = random.SystemRandom().randrange(15000, 32000)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+        return port
 
 
 class Scratch:
@@ -54,7 +71,7 @@ class Scratch:
     def remove(self):
         shutil.rmtree(self.root, ignore_errors=True)
 
-    def cellmirror(self, *arguments, timeout=30, instance=None):
+    def cellmirror(self, *arguments, timeout=120, instance=None):
         """Runs the program to its end; the completed process."""
         command = [str(BIN / "cellmirror"), *arguments]
         if instance is not False and arguments and arguments[0] in ("send", "status"):
@@ -64,7 +81,7 @@ class Scratch:
     # Each start of the program costs 25 ms of processor time, and tests send and ask thousands of times: these two do what it
     # does without it. What they cannot do, and tests of the command line, start it.
 
-    def send(self, command, timeout=30, instance=None):
+    def send(self, command, timeout=PATIENCE_S, instance=None):
         """As `cellmirror send COMMAND`; the completed process."""
         time.sleep(STEP_S)
         try:
@@ -77,7 +94,7 @@ class Scratch:
             return subprocess.CompletedProcess(["send", command], 0, f"done {text}\n" if text else "done\n", "")
         return subprocess.CompletedProcess(["send", command], 1, "", f"cellmirror: refused: {text}\n")
 
-    def status(self, timeout=30, instance=None):
+    def status(self, timeout=PATIENCE_S, instance=None):
         """The document of `cellmirror status --json`."""
         time.sleep(STEP_S)
         try:
@@ -110,6 +127,11 @@ class Process:
         with open(self.log.name, "rb") as file:
             return file.read().decode(errors="replace")
 
+    def tell(self, line):
+        """A line on the standard input of one that was made with `stdin`."""
+        self.child.stdin.write(line.encode() + b"\n")
+        self.child.stdin.flush()
+
     def running(self):
         return self.child.poll() is None
 
@@ -118,7 +140,7 @@ class Process:
             self.child.kill()
         self.child.wait()
 
-    def stop(self, timeout=10):
+    def stop(self, timeout=PATIENCE_S):
         """Ends it as Ctrl-C would; its exit status."""
         if self.running():
             self.child.send_signal(signal.SIGINT)
@@ -143,7 +165,7 @@ class OrderlyProcess(Process):
         if self.running():
             self.child.terminate()
             try:
-                self.child.wait(10)
+                self.child.wait(PATIENCE_S)
             except subprocess.TimeoutExpired:
                 pass
         super().close()
@@ -162,7 +184,7 @@ class Gateway(OrderlyProcess):
         if wait:
             self.wait_ready()
 
-    def wait_ready(self, timeout=15):
+    def wait_ready(self, timeout=PATIENCE_S):
         def ready():
             if not self.running():
                 raise AssertionError(f"the gateway ended with {self.child.returncode}:\n{self.output()}")

@@ -24,6 +24,14 @@ model_stale_after_s = 10.0
 allowed_missed_periods = 500
 """
 
+# Where nothing is to go wrong: the machine may stand still for a second or two.
+UNDISTURBED = """
+profile = "strict"
+stale_after_s = 5.0
+model_stale_after_s = 10.0
+allowed_missed_periods = 5000
+"""
+
 
 def _table(text, drive, key, more):
     """A table [[haptic]] of the cell with another drive and key; `more` takes the place of what it says of the same."""
@@ -65,7 +73,7 @@ class Sim:
         self.child = subprocess.Popen([str(g.BIN / program), *map(str, arguments), "--json", "-q"], stdout=subprocess.PIPE,
                                       stderr=subprocess.PIPE, text=True)
 
-    def finish(self, timeout=60, killed=False):
+    def finish(self, timeout=120, killed=False):
         """The summary; nothing where it was to be killed."""
         out, err = self.child.communicate(timeout=timeout)
         if killed:

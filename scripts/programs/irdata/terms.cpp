@@ -127,10 +127,7 @@ std::optional<Value> Terms::constant(const Term& term) const {
 std::optional<double> Terms::constant_number(const Term& term) const {
   if (!term.known || !term.is_number()) return std::nullopt;
   if (term.literal) return term.number();
-  const Value* value = builder_.constant_value(term.id);
-  if (value == nullptr) return std::nullopt;
-  if (const auto* integer = std::get_if<std::int64_t>(value)) return static_cast<double>(*integer);
-  return std::get<double>(*value);
+  return builder_.constant_number(term.id);
 }
 
 }  // namespace cellmirror::program::irdata

@@ -7,17 +7,6 @@
 #include "scripts/programs/program/program_check.hpp"
 
 namespace cellmirror::program {
-namespace {
-
-std::optional<double> number_if_constant(const Program& program, ExpressionId id) {
-  const Value* value = constant_value(program, id);
-  if (value == nullptr) return std::nullopt;
-  if (const auto* integer = std::get_if<std::int64_t>(value)) return static_cast<double>(*integer);
-  const auto* real = std::get_if<double>(value);
-  return real == nullptr ? std::nullopt : std::optional(*real);
-}
-
-}  // namespace
 
 // With the settings that are in force on the way to each.
 void Machine::find_check_points() {
@@ -28,7 +17,7 @@ void Machine::find_check_points() {
     const Statement& statement = program_->statements[id];
     if (const auto* set = std::get_if<SetStatement>(&statement)) {
       // Checked by check_program(), since the value is constant.
-      [[maybe_unused]] const auto done = apply_setting(set->setting, number_if_constant(*program_, set->value));
+      [[maybe_unused]] const auto done = apply_setting(set->setting, constant_number(*program_, set->value));
     }
     if (std::holds_alternative<MoveStatement>(statement)) check_points_.push_back({id, settings_});
   }
@@ -41,7 +30,7 @@ void Machine::find_settings() {
   for (StatementId id = 0; id < position_ && id < program_->statements.size(); ++id) {
     const auto* set = std::get_if<SetStatement>(&program_->statements[id]);
     if (set == nullptr) continue;
-    [[maybe_unused]] const auto done = apply_setting(set->setting, number_if_constant(*program_, set->value));
+    [[maybe_unused]] const auto done = apply_setting(set->setting, constant_number(*program_, set->value));
   }
 }
 

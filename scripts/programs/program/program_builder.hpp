@@ -46,6 +46,9 @@ class ProgramBuilder {
   [[nodiscard]] ValueType type(ExpressionId id) const { return types_[id]; }
   // Null where it is not constant. Valid until the next call.
   [[nodiscard]] const Value* constant_value(ExpressionId id) const { return program::constant_value(*program_, id); }
+  [[nodiscard]] std::optional<double> constant_number(ExpressionId id) const {
+    return program::constant_number(*program_, id);
+  }
 
   // ---- Variables; names as the language compares them (fold the case before). Refused: declared twice; more list
   // elements than kMostListElements in all; an initial value of another type.

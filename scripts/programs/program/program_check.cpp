@@ -14,14 +14,6 @@ namespace {
 
 bool is_number(ValueType type) { return type == ValueType::integer || type == ValueType::real; }
 
-std::optional<double> constant_number(const Program& program, ExpressionId id) {
-  const Value* value = constant_value(program, id);
-  if (value == nullptr) return std::nullopt;
-  if (const auto* real = std::get_if<double>(value)) return *real;
-  if (const auto* integer = std::get_if<std::int64_t>(value)) return static_cast<double>(*integer);
-  return std::nullopt;
-}
-
 struct Checker {
   const Program& program;
   std::span<const ValueType> types;
@@ -160,6 +152,14 @@ const Value* constant_value(const Program& program, ExpressionId id) {
   if (id >= program.expressions.size()) return nullptr;
   const ExpressionNode& node = program.expressions[id];
   return node.which == Operator::constant ? &program.constants[node.payload] : nullptr;
+}
+
+std::optional<double> constant_number(const Program& program, ExpressionId id) {
+  const Value* value = constant_value(program, id);
+  if (value == nullptr) return std::nullopt;
+  if (const auto* real = std::get_if<double>(value)) return *real;
+  if (const auto* integer = std::get_if<std::int64_t>(value)) return static_cast<double>(*integer);
+  return std::nullopt;
 }
 
 Result<void> check_statement(const Program& program, std::span<const ValueType> types, const Statement& statement) {

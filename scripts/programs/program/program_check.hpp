@@ -2,6 +2,7 @@
 // parser that fills Program itself calls check_program() at its end.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -25,7 +26,9 @@ void check_program(const Program& program, Diagnostics& diagnostics);
 // What a setting takes: shares within (0, 1], velocities and accelerations above 0, fly-by 0 and above; finite.
 [[nodiscard]] Result<void> check_setting(Setting setting, double value);
 [[nodiscard]] std::string_view name_of(Setting setting);
-// The number of a constant expression; none where it is not one.
+// The value of a constant expression; null where it is not one.
 [[nodiscard]] const Value* constant_value(const Program& program, ExpressionId id);
+// Its number; none where it has none.
+[[nodiscard]] std::optional<double> constant_number(const Program& program, ExpressionId id);
 
 }  // namespace cellmirror::program

@@ -57,7 +57,7 @@ void send_from(const std::string& source, std::uint32_t id) {
 
 std::uint32_t next_id(CanChannel& channel) {
   ReceivedCanFrame got;
-  return channel.receive(got, 5s) == CanReceive::frame ? got.frame.id : 0;
+  return channel.receive(got, 60s) == CanReceive::frame ? got.frame.id : 0;
 }
 
 TEST(UdpSources, TakesAllWithoutAList) {

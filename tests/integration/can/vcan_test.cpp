@@ -62,7 +62,7 @@ class Background {
 
 template <class Condition>
 bool becomes_true(Condition condition) {
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 12'000; ++i) {
     if (condition()) return true;
     std::this_thread::sleep_for(5ms);
   }

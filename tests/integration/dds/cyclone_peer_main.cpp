@@ -4,7 +4,7 @@
 //   dds_cyclone_peer states DOMAIN TOPIC            likewise, with what is in them, as JSON: {"writers": n} when their
 //   number has changed, {"stamp_ns": t, "position": {name: value}} for each message
 //   dds_cyclone_peer description DOMAIN TOPIC       prints the text that is there for readers that come later; 1 after
-//   20 s
+//   a minute
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -55,7 +55,7 @@ int states(CyclonePeer& peer, const std::string& topic) {
 
 int description(CyclonePeer& peer, const std::string& topic) {
   const dds_entity_t reader = peer.description_reader(topic);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 6000; ++i) {
     const auto texts = CyclonePeer::take_texts(reader);
     if (!texts.empty()) return std::fputs(texts.back().c_str(), stdout) < 0 ? 1 : 0;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -11,7 +11,7 @@
 
 namespace cellmirror::dds::test {
 
-inline constexpr std::chrono::seconds kObserverTimeout{20};
+inline constexpr std::chrono::seconds kObserverTimeout{60};
 
 // Asks every few milliseconds until `done()` holds; false where patience ended first.
 template <class Done>

@@ -9,7 +9,7 @@ import gateway as g
 
 ROBOT = "MANTEC_R3"  # CiA 402 over udp multicast in the transfer cell
 CHANNEL = "udp:239.74.163.9:43127"  # of this test alone: another simulated robot would keep the stream alive
-PATIENCE_S = 30
+PATIENCE_S = g.PATIENCE_S
 
 
 class Alarms(unittest.TestCase):
@@ -65,9 +65,9 @@ class Alarms(unittest.TestCase):
 
         # The page and monitoring see the same.
         address = self.scratch.status()["page"]["address"].rstrip("/")
-        page = json.load(urllib.request.urlopen(address + "/api/alarms", timeout=20))
+        page = json.load(urllib.request.urlopen(address + "/api/alarms", timeout=60))
         self.assertEqual([alarm["acknowledged_by"] for alarm in page["open"] if alarm["id"] == lost["id"]], ["Ada"])
-        metrics = urllib.request.urlopen(address + "/metrics", timeout=20).read().decode()
+        metrics = urllib.request.urlopen(address + "/metrics", timeout=60).read().decode()
         self.assertRegex(metrics, r'cellmirror_alarms\{state="active_acknowledged"\} [1-9]')
         self.assertRegex(metrics, r'cellmirror_alarms_raised_total\{priority="high"\} [1-9]')
 

@@ -126,7 +126,7 @@ class BadInput(unittest.TestCase):
         before = self.scratch.status()["script"]["done"]
         self.assertEqual(self.scratch.send("EXEC_SCRIPT large.spt").returncode, 0)
         self.assertEqual(self.scratch.send("hot_message still here").returncode, 0)
-        done = g.eventually(lambda: self.scratch.status()["script"]["done"] - before >= 2 * count, 90, 0.5)
+        done = g.eventually(lambda: self.scratch.status()["script"]["done"] - before >= 2 * count, 200, 0.5)
         self.assertTrue(done, self.scratch.status()["script"])
 
     def test_other_messages_are_executed_while_a_script_waits_for_its_turn(self):

@@ -76,6 +76,13 @@ class Cameras(unittest.TestCase):
                 time.sleep(0.005)
         return taken
 
+    def camera_records(self, count=1):
+        """The first `count` camera records or more that are newer than this call."""
+        taken = []
+        self.assertTrue(g.eventually(lambda: taken.extend(r for r in self.records(0.3) if r.kind == 4) or len(taken) >= count),
+                        f"{len(taken)} camera records came")
+        return taken
+
     def head(self, *more):
         process = g.Process([g.BIN / "sim_camera_head", "--camera", CAMERA, "--key", self.key, "--channel", CHANNEL,
                              "--nodes", "21,22", "--pan-range", "-1.6,1.6", "--tilt-range", "-1.4,0.45",
@@ -87,7 +94,7 @@ class Cameras(unittest.TestCase):
     def tell(self, line):
         import socket
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as client:
-            client.settimeout(5)
+            client.settimeout(60)
             client.connect(str(self.scratch.root / "head.sock"))
             client.sendall(line.encode() + b"\n")
             answer = b""
@@ -103,9 +110,8 @@ class Cameras(unittest.TestCase):
 
     def wanted(self):
         """Pan and tilt of the newest record; the head only looks, so that this may take them."""
-        records = [record for record in self.records(0.3) if record.kind == 4]
-        self.assertTrue(records, "no camera record came")
-        return records[-1].pan, records[-1].tilt
+        newest = self.camera_records()[-1]
+        return newest.pan, newest.tilt
 
     def looks_at_target(self, within=0.01):
         wanted, joints = self.wanted(), self.joints()
@@ -114,44 +120,45 @@ class Cameras(unittest.TestCase):
     def test_only_cameras_that_are_online_are_told_at_the_rate_of_the_channel(self):
         self.assertEqual([r for r in self.records(0.3) if r.kind == 4], [])
         self.command(f"SET_CAMPAR {CAMERA} 4.85 15.71", f"CAM_ONLINE {CAMERA} on")
-        records = [record for record in self.records(1.0) if record.kind == 4]
-        self.assertTrue(25 <= len(records) <= 60, len(records))  # 50 Hz
+        records = self.camera_records(30)
         for record in records:
             self.assertEqual((record.id, record.tracks, record.flags), (CAMERA, "", 0))
             self.assertAlmostEqual(record.distance, 4.85)
             self.assertAlmostEqual(record.fovy, math.radians(15.71))
             self.assertAlmostEqual(record.pan, 0, 9)
             self.assertAlmostEqual(record.tilt, -0.6292036732051034, 9)
-        self.assertLess(sum(b.time_ns - a.time_ns for a, b in zip(records, records[1:])) / len(records), 45e6)
+        # 50 Hz: never more often; the median, since a busy machine is late now and then.
+        between = sorted(b.time_ns - a.time_ns for a, b in zip(records, records[1:]))
+        self.assertGreater(sum(between) / len(between), 15e6)
+        self.assertLess(between[len(between) // 2], 100e6)
         self.command(f"CAM_ONLINE {CAMERA} off")
         self.assertTrue(g.eventually(lambda: not [r for r in self.records(0.3) if r.kind == 4]))
 
     def test_a_tracking_camera_is_told_to_look_at_its_frame_as_that_moves(self):
         self.command(f"CAM_TRACKING {CAMERA} on {TARGET}", f"CAM_ONLINE {CAMERA} on")
-        before = [record for record in self.records() if record.kind == 4][-1]
+        before = self.camera_records()[-1]
         self.assertTrue(before.tracks.startswith("Gantry.") and before.tracks.endswith(".Hand"), before.tracks)
         self.assertEqual(before.flags, TRACKING)
         tcp = self.scratch.robot("TRAEGERSYSTEM")["tcp"]["position_m"]
         ahead = [p + before.distance * d for p, d in zip(before.position, before.looks_along())]
-        hand = [record for record in self.records() if record.kind == 4]
-        self.assertTrue(hand)
         self.command("ROBACT TRAEGERSYSTEM", "POS_ROB TRAEGERSYSTEM JOINT_INC 800.0 0.0 0.0")
         g.eventually(lambda: self.scratch.robot("TRAEGERSYSTEM")["tcp"]["position_m"][0] != tcp[0])
-        after = [record for record in self.records() if record.kind == 4][-1]
+        after = self.camera_records()[-1]
         then = [p + after.distance * d for p, d in zip(after.position, after.looks_along())]
         self.assertEqual(before.position, after.position)
         moved = math.dist(ahead, then)
         self.assertGreater(moved, 0.5, "what it looks at has moved with the gantry")
         self.command(f"CAM_TRACKING {CAMERA} off")
-        free = [record for record in self.records() if record.kind == 4][-1]
-        self.assertEqual((free.tracks, free.flags), ("", 0))
+        self.assertTrue(g.eventually(lambda: (lambda r: (r.tracks, r.flags) == ("", 0))(self.camera_records()[-1])), "it tracks on")
 
     def test_a_full_queue_loses_the_oldest_and_counts_them(self):
         self.command(f"CAM_ONLINE {CAMERA} on", "CAM_ONLINE CAMERA_5 on")
         counters = lambda: next(q for q in self.scratch.status()["queues"] if "sensor" in q["name"])
-        self.assertTrue(g.eventually(lambda: counters()["dropped"] > 5, 20))
+        self.assertTrue(g.eventually(lambda: counters()["dropped"] > 5))
         self.assertGreater(counters()["cameras_sent"], 40)
         self.assertEqual(counters()["cameras_refused"], 0)
+        # What is in the queue now: nothing more comes that would take the place of another one while it is read.
+        self.command(f"CAM_ONLINE {CAMERA} off", "CAM_ONLINE CAMERA_5 off")
         queue, sequences = Queue(self.key), []
         for _ in range(10):
             sequences.append(Record(queue.receive(5, IPC_NOWAIT)).sequence)
@@ -161,21 +168,26 @@ class Cameras(unittest.TestCase):
     def test_the_real_head_follows_and_the_model_shows_where_it_looks(self):
         self.head()
         self.command(f"ROBOT {HEAD} online", f"CAM_TRACKING {CAMERA} on {TARGET}", f"CAM_ONLINE {CAMERA} on")
-        self.assertTrue(g.eventually(self.looks_at_target, 20), (self.wanted(), self.joints()))
-        record = [r for r in self.records() if r.kind == 4][-1]
-        self.assertEqual(record.flags, TRACKING | MIRRORED)
+        self.assertTrue(g.eventually(self.looks_at_target), (self.wanted(), self.joints()))
+        self.assertEqual(self.camera_records()[-1].flags, TRACKING | MIRRORED)
         at_first = self.joints()
         self.command("ROBACT TRAEGERSYSTEM", "POS_ROB TRAEGERSYSTEM JOINT_INC 800.0 0.0 0.0")
-        self.assertTrue(g.eventually(lambda: abs(self.joints()[0] - at_first[0]) > 0.05, 20), "it turns after the gantry")
-        self.assertTrue(g.eventually(self.looks_at_target, 20), (self.wanted(), self.joints()))
+        self.assertTrue(g.eventually(lambda: abs(self.joints()[0] - at_first[0]) > 0.05), "it turns after the gantry")
+        self.assertTrue(g.eventually(self.looks_at_target), (self.wanted(), self.joints()))
         # Told nothing any more it stays, and is not driven by the echo of its own posture.
         self.command(f"CAM_TRACKING {CAMERA} off")
-        there = self.joints()
-        time.sleep(0.5)
-        self.assertTrue(all(abs(a - b) < 1e-4 for a, b in zip(there, self.joints())))
-        report = json.loads(self.tell("status"))["channels"][0]
-        self.assertGreater(report["echoes"], 5)
-        self.assertEqual(report["ignored"], 0)
+        told_last, there = self.joints(), []
+
+        def rests():
+            there[:] = [self.joints()]
+            time.sleep(0.5)
+            return all(abs(a - b) < 1e-4 for a, b in zip(there[0], self.joints()))
+
+        self.assertTrue(g.eventually(rests), "it does not stay")
+        self.assertTrue(all(abs(a - b) < 0.03 for a, b in zip(there[0], told_last)), (there, told_last))
+        report = lambda: json.loads(self.tell("status"))["channels"][0]
+        self.assertTrue(g.eventually(lambda: report()["echoes"] > 5), report())
+        self.assertEqual(report()["ignored"], 0)
 
     def test_a_head_that_sticks_is_seen_where_it_is_not_where_it_should_be(self):
         self.head()
@@ -183,26 +195,26 @@ class Cameras(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: self.scratch.robot(HEAD)["stream"]["state"] == "fresh"))
         self.assertIn("ok: fault 1001", self.tell("fault stuck:joint=1"))
         self.command(f"CAM_TRACKING {CAMERA} on {TARGET}")
-        self.assertTrue(g.eventually(lambda: abs(self.wanted()[1] - self.joints()[1]) < 0.01, 20), "tilt gets there")
+        self.assertTrue(g.eventually(lambda: abs(self.wanted()[1] - self.joints()[1]) < 0.01), "tilt gets there")
         self.assertGreater(abs(self.wanted()[0] - self.joints()[0]), 0.1, "pan does not")
         self.assertIn("ok: 1 ended", self.tell("clear stuck"))
-        self.assertTrue(g.eventually(self.looks_at_target, 20))
+        self.assertTrue(g.eventually(self.looks_at_target))
         # Its drives have the faults of sim_robot.
         self.assertIn("ok: fault 1", self.tell("die"))
         self.assertTrue(g.eventually(lambda: self.scratch.robot(HEAD)["stream"]["state"] in ("stale", "lost")))
         self.assertIn("ok", self.tell("return"))
-        self.assertTrue(g.eventually(lambda: self.scratch.robot(HEAD)["stream"]["state"] == "fresh", 20))
+        self.assertTrue(g.eventually(lambda: self.scratch.robot(HEAD)["stream"]["state"] == "fresh"))
 
     def test_a_head_that_takes_the_records_leaves_the_queue_empty(self):
         process = self.head("--take")
         self.command(f"CAM_ONLINE {CAMERA} on")
         followed = lambda: json.loads(self.tell("status"))["channels"][0]["followed"]
         self.assertTrue(g.eventually(lambda: process.running() and followed() > 20))
-        waiting = next(q for q in self.scratch.status()["queues"] if "sensor" in q["name"])["waiting"]
-        self.assertLess(waiting, 5)
+        waiting = lambda: next(q for q in self.scratch.status()["queues"] if "sensor" in q["name"])["waiting"]
+        self.assertTrue(g.eventually(lambda: waiting() < 5), "it does not take them")
 
     def test_words_that_are_wrong_are_explained(self):
-        sut = lambda *words: subprocess.run([g.BIN / "sim_camera_head", *words], capture_output=True, text=True, timeout=20)
+        sut = lambda *words: subprocess.run([g.BIN / "sim_camera_head", *words], capture_output=True, text=True, timeout=60)
         for words, what in ((("--nodes", "21,22"), "--camera is needed"), (("--camera", "C", "--nodes", "1-3"), "two"),
                             (("--camera", "C", "--fault", "stuk"), "no fault 'stuk'"),
                             (("--camera", "C", "--speed", "1"), "--speed needs PAN,TILT"),

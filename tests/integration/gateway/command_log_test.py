@@ -39,7 +39,7 @@ class CommandLog(unittest.TestCase):
         self.start()
         sender = subprocess.Popen([str(g.BIN / "cellmirror"), "send", "ROBACT PUMA_762", "--instance", self.scratch.instance],
                                   env=self.scratch.environment, stdout=subprocess.DEVNULL)
-        self.assertEqual(sender.wait(30), 0)
+        self.assertEqual(sender.wait(60), 0)
         entry = self.entry("ROBACT PUMA_762")
         self.assertEqual(entry["source"], "message")
         self.assertEqual(entry["process"], sender.pid)
@@ -67,7 +67,7 @@ class CommandLog(unittest.TestCase):
                 self.assertTrue(entry, self.entries())
                 self.assertEqual(entry["outcome"], "refused")
             self.assertEqual(entry["process"], sender.pid)
-            sender.communicate("\n", timeout=10)
+            sender.communicate("\n", timeout=60)
 
     def test_files(self):
         (self.scratch.home / "scripts" / "two.spt").write_text("# first a comment\nROBACT PUMA_762;\nROBACT nobody;\n")
@@ -87,7 +87,7 @@ class CommandLog(unittest.TestCase):
 
         def post(command):
             request = urllib.request.Request(address + "/api/command", command.encode(), {"Authorization": f"Bearer {token}"})
-            return json.load(urllib.request.urlopen(request, timeout=20))
+            return json.load(urllib.request.urlopen(request, timeout=60))
 
         self.assertTrue(post("ROBACT PUMA_762")["done"])
         entry = self.entry("ROBACT PUMA_762")
@@ -96,7 +96,7 @@ class CommandLog(unittest.TestCase):
         self.assertEqual(entry["peer"], f"uid {os.geteuid()}")
         self.assertFalse(post("@3 DRAW_SCENE")["done"])
         self.assertEqual(self.entry("@3 DRAW_SCENE")["outcome"], "refused")
-        log = json.load(urllib.request.urlopen(address + "/api/command-log", timeout=20))
+        log = json.load(urllib.request.urlopen(address + "/api/command-log", timeout=60))
         self.assertEqual([e["command"] for e in log["last"]], ["ROBACT PUMA_762", "@3 DRAW_SCENE"])
         self.assertNotIn(token, self.file.read_text())
 

@@ -58,7 +58,7 @@ class Crash(unittest.TestCase):
     def test_second_gateway_of_the_same_name_is_refused_and_another_name_runs_beside_it(self):
         first = g.Gateway(self.scratch)
         second = g.Gateway(self.scratch, wait=False)
-        self.assertEqual(second.child.wait(10), 1)
+        self.assertEqual(second.child.wait(60), 1)
         self.assertIn(str(first.child.pid), second.output())
         other = g.Gateway(self.scratch, instance=self.scratch.instance + "b")
         self.assertEqual(self.scratch.send("ROBACT PUMA_762").returncode, 0)
@@ -87,7 +87,7 @@ class Crash(unittest.TestCase):
             for arguments in simulators:  # the next start works
                 self.simulators = getattr(self, "simulators", []) + [g.sim_robot(*arguments)]
             for robot in ("PUMA_762", "MANTEC_R3"):
-                fresh = g.eventually(lambda: self.scratch.robot(robot)["stream"]["state"] == "fresh", 20)
+                fresh = g.eventually(lambda: self.scratch.robot(robot)["stream"]["state"] == "fresh")
                 self.assertTrue(fresh, self.scratch.robot(robot)["stream"])
         finally:
             for simulator in getattr(self, "simulators", []):

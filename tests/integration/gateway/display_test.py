@@ -4,6 +4,7 @@ import math
 import os
 import pty
 import subprocess
+import time
 import unittest
 
 import gateway as g
@@ -69,9 +70,9 @@ class Display(unittest.TestCase):
         self.script("back.spt", ";\n".join(f"SET_MODE {mode} {'on' if before[mode] else 'off'}" for mode in others))
         self.done("EXEC_SCRIPT turn")
         turned = {mode: on if mode in ("FLDR", "SHAD") else not on for mode, on in before.items()}
-        self.assertTrue(g.eventually(lambda: self.display()["modes"] == turned, 5))
+        self.assertTrue(g.eventually(lambda: self.display()["modes"] == turned))
         self.done("EXEC_SCRIPT back")
-        self.assertTrue(g.eventually(lambda: self.display()["modes"] == before, 5))
+        self.assertTrue(g.eventually(lambda: self.display()["modes"] == before))
         self.done("SHAD off", "FLDR off")
         self.refused("SHAD on", "floor", "FLDR on")
         self.refused("SET_MODE SHAD on", "floor")
@@ -85,9 +86,10 @@ class Display(unittest.TestCase):
     def test_wait_waits_for_views_on_their_way(self):
         self.script("way.spt", "STVW 0 VP 5000 -9000 3000 LP 5000 0 1000;\nSTVW 0 VP 9000 -9000 3000 TIME 1.0;\n"
                                "STVW 6 TW 30 STEPS 20;\nWAIT;\nhot_message arrived;\n")
+        begin = time.monotonic()
         self.done("EXEC_SCRIPT way")
-        self.assertTrue(g.eventually(lambda: self.view(0)["sequence"], 5))
-        self.assertTrue(g.eventually(lambda: [m for m in self.scratch.status()["messages"] if m["text"] == "arrived"], 10))
+        self.assertTrue(g.eventually(lambda: [m for m in self.scratch.status()["messages"] if m["text"] == "arrived"]))
+        self.assertGreater(time.monotonic() - begin, 1.0, "it did not wait")
         view = self.view(0)
         self.assertIsNone(view["sequence"])
         self.assertIsNone(self.view(6)["sequence"])
@@ -148,7 +150,7 @@ class Bell(unittest.TestCase):
             [g.BIN / "cellmirror", "run", scratch.cell_file, "--no-web", "--headless", "--instance", scratch.instance],
             env=scratch.environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=theirs)
         try:
-            self.assertTrue(g.eventually(lambda: scratch.cellmirror("status").returncode == 0, 15))
+            self.assertTrue(g.eventually(lambda: scratch.cellmirror("status").returncode == 0))
             self.assertEqual(scratch.send("hot_message quiet").returncode, 0)
             self.assertEqual(scratch.send("SET_MODE BEEP on").returncode, 0)
             self.assertEqual(scratch.send("hot_message loud").returncode, 0)
@@ -158,7 +160,7 @@ class Bell(unittest.TestCase):
             self.assertEqual(heard.count(b"\a"), 1)
         finally:
             gateway.terminate()
-            gateway.wait(10)
+            gateway.wait(60)
             os.close(ours)
             os.close(theirs)
             scratch.remove()

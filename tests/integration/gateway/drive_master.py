@@ -33,7 +33,7 @@ class Master:
     def send(self, identifier, data=b""):
         self.bus.send(can.Message(arbitration_id=identifier, data=data, is_extended_id=False))
 
-    def hear(self, wanted, timeout=10.0):
+    def hear(self, wanted, timeout=60.0):
         """The data of the next message for which wanted(identifier, data) holds; None after the timeout."""
         end = time.monotonic() + timeout
         while time.monotonic() < end:
@@ -42,7 +42,7 @@ class Master:
                 return bytes(message.data)
         return None
 
-    def hear_all(self, identifiers, timeout=10.0):
+    def hear_all(self, identifiers, timeout=60.0):
         """One message of each identifier, in whatever order: {identifier: data}."""
         found = {}
 
@@ -83,7 +83,7 @@ class Master:
             self.write(node, 0x6040, word, 2)
         return self.state(node)
 
-    def wait_bit(self, node, bit, timeout=10.0):
+    def wait_bit(self, node, bit, timeout=60.0):
         end = time.monotonic() + timeout
         while time.monotonic() < end:
             if self.read(node, 0x6041) >> bit & 1:

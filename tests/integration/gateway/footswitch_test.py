@@ -64,7 +64,7 @@ class FootSwitches(unittest.TestCase):
     def switches(self):
         return self.scratch.status()["foot_switches"]
 
-    def until(self, condition, timeout=20):
+    def until(self, condition, timeout=g.PATIENCE_S):
         """The switches' status as soon as it meets the condition."""
         seen = []
 
@@ -95,7 +95,7 @@ class FootSwitches(unittest.TestCase):
             self.assertEqual(status["inputs_on"], [3])
             self.assertIn("3 ON", [message["text"] for message in self.scratch.status()["messages"]])
             memory.byte().value = 0
-            status = self.until(lambda s: s["scripts"]["started"] == 2)
+            status = self.until(lambda s: s["scripts"]["started"] == 2 and not s["last_script"]["running"])
             self.assertEqual((status["edges"], status["scripts"]["missing"], status["inputs_on"]), (2, 0, []))
             self.assertEqual(self.until(lambda s: s["attached"] == 1)["trouble"], "")
             self.assertGreater(status["first_command_ms"]["max"], 0.0)
@@ -172,6 +172,7 @@ class FootSwitches(unittest.TestCase):
         self.assertEqual((scripts["missing"], scripts["refused"], scripts["with_errors"]), (3, 3, 3), status)
         self.assertEqual(scripts["started"], 24 - 3 - 3)
         self.assertEqual(status["missing_files"], ["BININP1_ON.spt"])
+        self.assertTrue(g.eventually(lambda: "BININP1_ON.spt" in self.gateway.output()), self.gateway.output())
         self.assertEqual(self.gateway.output().count("BININP1_ON.spt"), 1, self.gateway.output())
 
     def test_order_is_kept_under_load(self):

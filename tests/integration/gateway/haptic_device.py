@@ -27,7 +27,7 @@ def trainer(replace=(), guards=True):
     first = 0x43500000 + int(uuid.uuid4().hex[:4], 16) * 4
     scratch.keys = {"LAP_LEFT": first, "LAP_RIGHT": first + 1}
     for robot, key in scratch.keys.items():
-        wide = "\nprofile = \"strict\"\nstale_after_s = 0.5\nmodel_stale_after_s = 5.0\nallowed_missed_periods = 1000" if guards else ""
+        wide = "\nprofile = \"strict\"\nstale_after_s = 2.5\nmodel_stale_after_s = 10.0\nallowed_missed_periods = 5000" if guards else ""
         text, count = re.subn(rf'(robot = "{robot}"\n)shm_key = \w+', rf"\g<1>shm_key = {key}{wide}", text)
         assert count == 1, f"{robot} has no shm_key in the phantom trainer cell"
     text = re.sub(r"(\[foot_switches\]\nkey = )\w+", rf"\g<1>{first + 3}", text)
@@ -45,7 +45,7 @@ def attach(key, size=memory_of.HAPTIC_BYTES):
         except OSError:
             return None
 
-    memory = g.eventually(found, 10)
+    memory = g.eventually(found)
     assert memory is not None, f"nobody made the memory {key:#x}"
     return memory
 
@@ -91,14 +91,14 @@ class Device(threading.Thread):
                                gripper=self.gripper, buttons=self.buttons, good=self.good)
 
     def force(self):
-        return g.eventually(lambda: memory_of.read_force(self.memory), 5)
+        return g.eventually(lambda: memory_of.read_force(self.memory))
 
     def arrived(self):
         return all(abs(t - p) < 1e-9 for t, p in zip(self.target, self.position))
 
     def go(self, target):
         self.target = tuple(target)
-        assert g.eventually(self.arrived, 20), f"the hand did not arrive: {self.position}"
+        assert g.eventually(self.arrived), f"the hand did not arrive: {self.position}"
 
     def close(self):
         self._ended.set()

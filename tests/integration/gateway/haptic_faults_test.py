@@ -31,12 +31,12 @@ FAULT_NAMES = ("none", "stale", "vanished", "not_finite", "invalid", "jump", "tw
 
 
 def detectable_ns(how, seen, summary):
-    """CLOCK_MONOTONIC from which on the gateway could know: what was read by a third process tells it."""
+    """CLOCK_MONOTONIC from which on the gateway could know: what was read by a third process tells it. None where that came too
+    late to see it."""
     if how == "value":
-        return summary["faults"][0]["time_ns"]
+        return summary["faults"][0]["time_ns"] if summary["faults"] else None
     if how == "writer":
-        own = seen[0]["writer"]
-        return next(row["sample_time_ns"] for row in seen if row["writer"] not in (0, own))
+        return next((row["sample_time_ns"] for row in seen if row["writer"] not in (0, seen[0]["writer"])), None)
     # The longest pause between samples that were seen begins with the last good one.
     times = sorted({row["sample_time_ns"] for row in seen if row["sample_time_ns"]})
     times.append(seen[-1]["force_time_ns"])
@@ -44,11 +44,16 @@ def detectable_ns(how, seen, summary):
     return times[begin] + STALE_NS
 
 
+ATTEMPTS = 8  # to get a force without a fault of a busy machine, which is latched too
+
+
 class Haptic(unittest.TestCase):
+    settings = t.UNDISTURBED
+
     @classmethod
     def setUpClass(cls):
         cls.scratch = g.Scratch("phantom_trainer")
-        cls.keys = t.with_own_memories(cls.scratch, drives=("pose", "joints"))
+        cls.keys = t.with_own_memories(cls.scratch, drives=("pose", "joints"), more=cls.settings)
         cls.gateway = g.Gateway(cls.scratch)
 
     @classmethod
@@ -82,27 +87,37 @@ class Haptic(unittest.TestCase):
             if state["phase"] == "faulted":
                 self.scratch.send(f"RESET_HAPTIC {robot}")
             return state["phase"] == "active"
-        self.assertTrue(g.eventually(engaged, 20), t.haptic(self.scratch, robot))
+        self.assertTrue(g.eventually(engaged), t.haptic(self.scratch, robot))
 
     def press(self, device, motion=TOUCH, robot="LAP_LEFT"):
         """Until a force is felt."""
-        device.say(motion)
+        for _ in range(ATTEMPTS):
+            device.say(motion)
+            state = {}
 
-        def felt():
-            return sum(part * part for part in t.haptic(self.scratch, robot)["force"]["world_n"]) > 0.16
-        self.assertTrue(g.eventually(felt, 20), t.haptic(self.scratch, robot))
+            def felt_or_faulted():
+                state.update(t.haptic(self.scratch, robot))
+                return sum(part * part for part in state["force"]["world_n"]) > 0.16 or state["phase"] == "faulted"
+            self.assertTrue(g.eventually(felt_or_faulted), state)
+            if state["phase"] != "faulted":
+                return
+            device.say("motion back speed=0.3")
+            self.engage(device, robot)
+        self.fail(f"{ATTEMPTS} touches ended in a fault: {t.haptic(self.scratch, robot)}")
 
     def end(self, device):
         device.say("quit")
         return device.finish()
 
+
+class Feeling(Haptic):
     def test_a_hand_feels_the_organ_against_its_motion(self):
         device = self.hand("--axes", 7, "--log", self.log)
         self.press(device)
         time.sleep(0.5)
         device.say("motion letgo; back; hold 60s")
-        time.sleep(2.0)
-        self.assertEqual(t.haptic(self.scratch, "LAP_LEFT")["force"]["world_n"], [0, 0, 0])
+        force = lambda: t.haptic(self.scratch, "LAP_LEFT")["force"]["world_n"]
+        self.assertTrue(g.eventually(lambda: force() == [0, 0, 0]), force())
         summary = self.end(device)
         self.assertEqual(summary["fault"], "none", summary)
         self.assertGreater(summary["max_force_n"], 0.5)
@@ -129,36 +144,56 @@ class Haptic(unittest.TestCase):
             joints = self.scratch.robot("LAP_LEFT")["joints"]
             jaw = joints[-1].get("position_rad", joints[-1].get("position"))
             return abs(tip[0] - t.LEFT["tip"][0] - 0.01) < 1e-3 and abs(jaw - 0.3) < 0.02
-        self.assertTrue(g.eventually(there, 10), (t.haptic(self.scratch, "LAP_LEFT")["proxy_position_m"], self.scratch.robot("LAP_LEFT")))
+        self.assertTrue(g.eventually(there), (t.haptic(self.scratch, "LAP_LEFT")["proxy_position_m"], self.scratch.robot("LAP_LEFT")))
         self.end(device)
 
+    def test_without_a_device_nothing_is_felt_and_reset_tells_so(self):
+        done = self.scratch.send("RESET_HAPTIC LAP_RIGHT")
+        self.assertNotEqual(done.returncode, 0, "there was nothing to reset")
+        self.assertNotEqual(self.scratch.send("RESET_HAPTIC NOBODY").returncode, 0)
+
+
+class Faults(Haptic):
+    settings = t.PATIENT
+
     def check_fault(self, fault, words, killed, how):
+        for _ in range(ATTEMPTS):
+            seen, summary = self.strike(fault, killed)
+            begin = detectable_ns(how, seen, summary) if seen else None
+            if begin is None:
+                continue
+            before = [row for row in seen if begin - 200_000_000 < row["force_time_ns"] < begin - STALE_NS]
+            after = [row for row in seen if row["force_time_ns"] >= begin]
+            # Two ticks: the instant of a silence is known to one.
+            gone = any(row["phase"] == 5 for row in seen if row["force_time_ns"] < begin - 2_000_000)
+            if before and after and not gone:
+                return self.check_record(before, after, fault, words)
+        return self.fail(f"{ATTEMPTS} times the force was gone before the fault, or nobody looked")
+
+    def strike(self, fault, killed):
+        """What a third process read meanwhile, and the report of the device."""
         device = self.hand("--axes", 7)
         self.press(device)
-        watcher = self.sim("--axes", 7, "--watch", "--for", 2.5, "--log", self.log)
-        time.sleep(0.8)
+        watcher = self.sim("--axes", 7, "--watch", "--for", 2, "--log", self.log)
+        time.sleep(0.5)
         device.say("\n".join("fault " + part for part in fault.split()))
         watcher.finish()
         if killed:
             device.finish(killed=True)
         else:
             device.say("motion back speed=0.3")
-        state = t.haptic(self.scratch, "LAP_LEFT")
-        self.assertEqual(state["phase"], "faulted")
-        self.assertTrue(state["remedy"])
+        state = lambda: t.haptic(self.scratch, "LAP_LEFT")
+        self.assertTrue(g.eventually(lambda: state()["phase"] == "faulted"), state())
+        self.assertTrue(state()["remedy"])
         # It is well again: reset works, and the force comes back.
         again = self.hand("--axes", 7) if killed else device
         self.engage(again)
         self.press(again)
-        summary = self.end(again)
-        self.check_record(t.rows(self.log), fault, words, how, summary)
+        return t.rows(self.log), self.end(again)
 
-    def check_record(self, seen, fault, words, how, summary):
-        self.assertGreater(len(seen), 1000)
-        begin = detectable_ns(how, seen, summary)
-        before = [row for row in seen if begin - 200_000_000 < row["force_time_ns"] < begin - STALE_NS]
-        self.assertGreater(max((row["force_n"] for row in before), default=0), 0.3, f"nothing was felt before the fault; before: {before[:1]}")
-        after = [row for row in seen if row["force_time_ns"] >= begin]
+    def check_record(self, before, after, fault, words):
+        """Rows of the record before the gateway could know of the fault, and after that."""
+        self.assertGreater(max(row["force_n"] for row in before), 0.3, f"nothing was felt before the fault; before: {before[:1]}")
         first = after[0]["force_sequence"]
         zero_from = next((row["force_sequence"] for row in after if row["force_n"] == 0 and row["torque_nm"] == 0), None)
         self.assertIsNotNone(zero_from, "the force never vanished")
@@ -171,20 +206,22 @@ class Haptic(unittest.TestCase):
 
     def test_two_writers_by_turns_are_found(self):
         device = self.hand("--axes", 7)
-        device.say("fault twice@0..3")
-        self.assertTrue(g.eventually(lambda: t.haptic(self.scratch, "LAP_LEFT")["fault"] == "two_writers", 10), t.haptic(self.scratch, "LAP_LEFT"))
-        self.end(device)
+        device.say("fault twice@0..10")
 
-    def test_without_a_device_nothing_is_felt_and_reset_tells_so(self):
-        done = self.scratch.send("RESET_HAPTIC LAP_RIGHT")
-        self.assertNotEqual(done.returncode, 0, "there was nothing to reset")
-        self.assertNotEqual(self.scratch.send("RESET_HAPTIC NOBODY").returncode, 0)
+        def found():
+            state = t.haptic(self.scratch, "LAP_LEFT")
+            if state["phase"] == "faulted" and state["fault"] != "two_writers":  # the machine was late
+                self.scratch.send("RESET_HAPTIC LAP_LEFT")
+            return state["fault"] == "two_writers"
+
+        self.assertTrue(g.eventually(found), t.haptic(self.scratch, "LAP_LEFT"))
+        self.end(device)
 
 
 def add_fault_test(fault, words, killed, how):
     def test(self):
         self.check_fault(fault, words, killed, how)
-    setattr(Haptic, f"test_fault_{fault.split('@')[0].split(':')[0]}", test)
+    setattr(Faults, f"test_fault_{fault.split('@')[0].split(':')[0]}", test)
 
 
 for row in FAULTS:

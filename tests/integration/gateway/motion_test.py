@@ -45,7 +45,7 @@ class Background(threading.Thread):
         self.done = self.scratch.send(self.command)
 
     def answer(self):
-        self.join(40)
+        self.join(120)
         return self.done
 
 
@@ -163,7 +163,7 @@ class Motion(unittest.TestCase):
 
     def test_other_messages_are_executed_while_one_waits(self):
         self.slow()
-        waiting = Background(self.scratch, f"POS_ROB {ARM} JOINT_INC 120")  # 7 s
+        waiting = Background(self.scratch, f"POS_ROB {ARM} JOINT_INC 80")  # 5 s
         self.assertTrue(g.eventually(lambda: self.motion()["moving"], every=0.01))
         self.done("hot_message meanwhile")
         self.assertTrue(self.motion()["moving"])
@@ -175,7 +175,7 @@ class Motion(unittest.TestCase):
             "POS_ROB ZELLENKRAN JOINT_INC 400;\nhot_message gripped;\n")
         before = self.tcp("mantec_R3")[0]
         self.done("EXEC_SCRIPT grip.spt")
-        self.assertTrue(g.eventually(lambda: "gripped" in str(self.scratch.status()["messages"]), 15))
+        self.assertTrue(g.eventually(lambda: "gripped" in str(self.scratch.status()["messages"])))
         self.at([0.9, math.pi / 4, 0], self.joints("ZELLENKRAN"), 1e-9)
         # It hung on the hook from where the crane stood at 500 mm, so it went 400 mm along.
         self.at((before[0] + 0.4, before[1], before[2]), self.tcp("mantec_R3")[0], 1e-6)
@@ -187,7 +187,7 @@ class Motion(unittest.TestCase):
             "DRAW_SCENE;\nhot_message jumped;\n")
         before = self.tcp("PUMA_762")[0]
         self.done("EXEC_SCRIPT jump.spt")
-        self.assertTrue(g.eventually(lambda: "jumped" in str(self.scratch.status()["messages"]), 15))
+        self.assertTrue(g.eventually(lambda: "jumped" in str(self.scratch.status()["messages"])))
         self.at((before[0] + 0.4, before[1], before[2]), self.tcp("PUMA_762")[0], 1e-6)
         self.done("CONNECT Puma TO HTL_UMGEBUNG")
 
@@ -209,7 +209,7 @@ class Motion(unittest.TestCase):
             f"MOVE_ROB {ARM} PTP JOINT_INC 20;\nMOVE_ROB {ARM} LIN FRAME_INC Z 30;\nMOVE_ROB {ARM} PTP JOINT_INC -20;\n"
             "WAIT;\nhot_message waited;\n")
         self.done("EXEC_SCRIPT wait.spt")
-        self.assertTrue(g.eventually(lambda: "waited" in str(self.scratch.status()["messages"]), 15))
+        self.assertTrue(g.eventually(lambda: "waited" in str(self.scratch.status()["messages"])))
         motion = self.motion()
         self.assertFalse(motion["moving"])
         self.assertEqual(motion["outcome"], "arrived")
@@ -260,7 +260,8 @@ class Motion(unittest.TestCase):
     def test_full_queue_is_refused_and_what_was_accepted_is_done(self):
         (self.scripts / "many.spt").write_text(f"MOVE_ROB {ARM} PTP JOINT_INC 0.1;\n" * 60)
         before = self.scratch.status()["script"]["refused"]
-        self.done(f"MOVE_ROB {ARM} PTP JOINT_INC 30")
+        self.slow()
+        self.done(f"MOVE_ROB {ARM} PTP JOINT_INC 150")  # still on its way when the file has been read, however slow that is
         self.done("EXEC_SCRIPT many.spt")
         self.assertTrue(g.eventually(lambda: self.scratch.status()["script"]["refused"] > before))
         self.assertIn("32 moves", str(self.scratch.status()["script"]["last_errors"]))
@@ -307,6 +308,7 @@ class Motion(unittest.TestCase):
         self.assertAlmostEqual(self.joints(robot)[0], stands[0] + math.radians(1), delta=1e-9)
 
     def test_robot_that_is_deleted_while_it_moves_is_told_to_who_waits(self):
+        self.slow("mantec_R3a")
         waiting = Background(self.scratch, "POS_ROB mantec_R3a JOINT_INC 120")
         self.assertTrue(g.eventually(lambda: self.motion("mantec_R3a")["moving"], every=0.01))
         self.done("DELETE_NODE Mantec_4")
@@ -318,23 +320,28 @@ class Motion(unittest.TestCase):
     # --- parameters
 
     def test_jump_is_at_once_in_every_mode(self):
-        self.done("rob_positioning jump")
+        self.slow()  # 7 s, if it did not jump
+        for command in (f"ROBACT {ARM}", "rob_positioning jump"):
+            self.done(command)
         start = time.monotonic()
         self.done(f"POS_ROB {ARM} JOINT_INC 120")
         self.done(f"POS_ROB {ARM} FRAME_ABS 600 300 900 180 0 0")
         self.done(f"POS_ROB {ARM} FRAME_INC X 100")
-        self.assertLess(time.monotonic() - start, 1.0)
+        self.assertLess(time.monotonic() - start, 6.0)
         self.done("DRAW_SCENE")
         self.at((BASE[0] + 0.7, BASE[1] + 0.3, 0.9), self.tcp()[0])
 
     def test_speeds_stay_below_their_maxima_and_scales_slow_down(self):
-        for robot, command in ((ARM, "JOINT_INC 120 -30 40 90 20 90"), (ARM, "FRAME_INC Z 250")):
-            waiting = Background(self.scratch, f"POS_ROB {robot} {command}")
+        for there, back in (("JOINT_INC 120 -30 40 90 20 90", "JOINT_INC -120 30 -40 -90 -20 -90"), ("FRAME_INC Z 250", "FRAME_INC Z -250")):
             fastest = [0.0] * 6
-            while waiting.is_alive():
-                state = self.scratch.robot(robot)
-                fastest = [max(f, abs(j["velocity"])) for f, j in zip(fastest, state["joints"])]
-            self.assertEqual(waiting.answer().returncode, 0, waiting.answer().stderr)
+            for i in range(20):  # until it was looked at while it moved
+                waiting = Background(self.scratch, f"POS_ROB {ARM} {back if i % 2 else there}")
+                while waiting.is_alive():
+                    state = self.scratch.robot(ARM)
+                    fastest = [max(f, abs(j["velocity"])) for f, j in zip(fastest, state["joints"])]
+                self.assertEqual(waiting.answer().returncode, 0, waiting.answer().stderr)
+                if max(fastest) > 0.1:
+                    break
             for speed, most in zip(fastest, state["parameters"]["max_velocity"]):
                 self.assertLessEqual(speed, most * (1 + 1e-9))
             self.assertGreater(max(fastest), 0.1)
@@ -345,6 +352,7 @@ class Motion(unittest.TestCase):
         self.done("rob_cart_lin_vel 1200")
 
     def test_timeout_of_send_tells_that_the_robot_may_still_move(self):
+        self.slow()
         done = self.scratch.cellmirror("send", "--timeout", "0.2", f"POS_ROB {ARM} JOINT_INC 150")
         self.assertEqual(done.returncode, 1)
         self.assertIn("still be on its way", done.stderr)

@@ -68,7 +68,7 @@ class Outputs(unittest.TestCase):
     def test_sensor_channel_carries_a_robot_only_while_it_sends(self):
         self.assertEqual(self.scratch.send("ROBOT MANTEC_R3 send_on").returncode, 0)
         read = subprocess.run(["perl", "-e", READER, str(self.keys()["sensor_key"]), "3"], capture_output=True, text=True,
-                              timeout=20, check=True)
+                              timeout=60, check=True)
         records = [bytes.fromhex(line) for line in read.stdout.split()]
         self.assertEqual(len(records), 3)
         for record in records:
@@ -78,7 +78,7 @@ class Outputs(unittest.TestCase):
     def test_full_sensor_queue_is_counted_and_holds_up_nothing(self):
         self.assertEqual(self.scratch.send("ROBOT MANTEC_R3 send_on").returncode, 0)
         dropped = lambda: sum(q["dropped"] for q in self.scratch.status()["queues"] if "sensor" in q["name"])
-        self.assertTrue(g.eventually(lambda: dropped() > 0, 30))
+        self.assertTrue(g.eventually(lambda: dropped() > 0))
         self.assertEqual(self.scratch.status()["loop"]["allocations"] or 0, 0)
         self.assertEqual(self.scratch.send("ROBOT MANTEC_R3 send_off").returncode, 0)
 
@@ -135,7 +135,7 @@ class LoopFaults(unittest.TestCase):
         self.assertTrue(loop, "no fault was reported")
         self.assertEqual(loop["faults"], 1)
         self.assertTrue(loop["fault_latched"])
-        self.assertGreater(loop["missed"], 200)
+        self.assertTrue(g.eventually(lambda: scratch.status()["loop"]["missed"] > 200), loop)
         records = list((scratch.home / "records").glob("fault-*.jsonl.gz"))
         self.assertEqual(len(records), 1, loop["last_fault"])
         with gzip.open(records[0], "rt") as file:

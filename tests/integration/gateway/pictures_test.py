@@ -37,7 +37,7 @@ def jpeg_size(data):
 
 def require_renderer(scratch):
     done = scratch.cellmirror("snapshot", "--cell", str(scratch.cell_file), "--size", "16x16", "-o",
-                              str(scratch.root / "probe.png"), timeout=60)
+                              str(scratch.root / "probe.png"))
     if done.returncode != 0 and "renderer" in done.stderr.lower():
         raise unittest.SkipTest(f"skipped: {done.stderr.strip()}")
     if done.returncode != 0:
@@ -59,7 +59,7 @@ class WithGateway(unittest.TestCase):
         assert status == 0, f"the gateway ended with {status}"
 
     def snapshot(self, *arguments, expect=0):
-        done = self.scratch.cellmirror("snapshot", "--instance", self.scratch.instance, *map(str, arguments), timeout=60)
+        done = self.scratch.cellmirror("snapshot", "--instance", self.scratch.instance, *map(str, arguments))
         self.assertEqual(done.returncode, expect, done.stderr)
         return done
 
@@ -79,7 +79,7 @@ class Pictures(WithGateway):
         self.assertEqual(jpeg_size(self.path("a.jpg").read_bytes()), (200, 320))
         told = json.loads(self.snapshot("--json", "-o", self.path("b.jpeg")).stdout)
         self.assertEqual((told["width"], told["height"], told["format"]), (640, 480, "jpeg"))
-        self.assertLess(told["posture_age_s"], 5)
+        self.assertLess(told["posture_age_s"], 10)
         self.assertEqual(told["bytes"], self.path("b.jpeg").stat().st_size)
 
     def test_camera_sees_something_else_than_the_display(self):
@@ -90,8 +90,10 @@ class Pictures(WithGateway):
     def test_robot_that_moves_is_seen_at_its_new_place(self):
         self.send("ROBACT MANTEC_R3")
         self.send("rob_positioning jump")
+        self.send("DRAW_SCENE")
         self.snapshot("--view", 0, "-o", self.path("before.png"))
         self.send("POS_ROB MANTEC_R3 JOINT_INC 40 20 10")
+        self.send("DRAW_SCENE")  # done when the renderer has it
         self.snapshot("--view", 0, "-o", self.path("after.png"))
         self.assertNotEqual(self.path("before.png").read_bytes(), self.path("after.png").read_bytes())
 
@@ -180,7 +182,7 @@ class Pictures(WithGateway):
         done = subprocess.run([g.BIN / "cellmirror", "snapshot", "--instance", self.scratch.instance, "--film", film,
                                "--seconds", "1", "--rate", "5", "--size", "161x121"],
                               env=dict(self.scratch.environment, PATH=str(self.scratch.root)), capture_output=True,
-                              text=True, timeout=60)
+                              text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("apt-get install ffmpeg", done.stderr)
         self.assertEqual(len(list(self.path("none.mp4.frames").glob("*.jpg"))), 5)
@@ -201,7 +203,7 @@ class Films(WithGateway):
         """Codec, edges, rate and duration as the file says, and the frames that can be read from it."""
         done = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-of", "json", "-show_entries",
                                "stream=codec_name,pix_fmt,width,height,avg_frame_rate,duration,nb_read_frames", film],
-                              capture_output=True, text=True, timeout=60)
+                              capture_output=True, text=True, timeout=120)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         (stream,) = json.loads(done.stdout)["streams"]
         return stream
@@ -209,7 +211,7 @@ class Films(WithGateway):
     def rgb(self, file):
         """Of all its frames, 64 x 48 pixels each: whatever cannot be played is told on stderr."""
         done = subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-i", file, "-vf", "scale=64:48:flags=area", "-pix_fmt", "rgb24",
-                               "-f", "rawvideo", "-"], capture_output=True, timeout=60)
+                               "-f", "rawvideo", "-"], capture_output=True, timeout=120)
         self.assertEqual((done.returncode, done.stderr), (0, b""))
         size = 64 * 48 * 3
         return [done.stdout[at:at + size] for at in range(0, len(done.stdout), size)]
@@ -254,7 +256,7 @@ class Films(WithGateway):
             there = self.on_demand()
             self.assertTrue(g.eventually(lambda: self.on_demand() >= there + 3))
             os.killpg(taking.pid, signal.SIGINT)  # as a terminal does: everybody in the group gets it
-            out, problem = taking.communicate(timeout=60)
+            out, problem = taking.communicate(timeout=120)
         finally:
             taking.kill()
             taking.wait()
@@ -311,7 +313,7 @@ class OfCellFiles(unittest.TestCase):
             require_renderer(scratch)
             picture = scratch.root / "cell.png"
             done = scratch.cellmirror("snapshot", "--cell", str(scratch.cell_file), "--view", "0", "--size", "400x300",
-                                      "-o", str(picture), "--json", timeout=60)
+                                      "-o", str(picture), "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(png_size(picture), (400, 300))
             self.assertGreater(picture.stat().st_size, 5_000, "a picture of nothing")

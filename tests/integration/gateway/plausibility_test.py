@@ -77,7 +77,7 @@ class StreamTest(unittest.TestCase):
         done = self.scratch.send(f"ROBOT {robot} online")
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def wait_state(self, robot, state, timeout=20):
+    def wait_state(self, robot, state, timeout=g.PATIENCE_S):
         seen = g.eventually(lambda: self.scratch.robot(robot)["stream"]["state"] == state, timeout)
         self.assertTrue(seen, f"{robot} never became {state}: {self.scratch.robot(robot)['stream']}")
 
@@ -92,9 +92,10 @@ class Implausible(StreamTest):
 
     def test_a_jump_beyond_all_limits_moves_nothing_and_is_named(self):
         self.run_gateway(page=True)
-        simulator = self.dds("--motion", "hold:position=0.1", "--fault", "jump:by=51471,joint=2@3..5")
+        simulator = self.dds("--motion", "hold:position=0.1")
         self.online(DDS_ROBOT)
         self.wait_state(DDS_ROBOT, "fresh")
+        simulator.tell("fault jump:by=51471,joint=2")
         self.wait_state(DDS_ROBOT, "implausible")
         robot = self.scratch.robot(DDS_ROBOT)
         self.assertTrue(all(abs(joint["position"] - 0.1) < 1e-9 for joint in robot["joints"]), robot["joints"])
@@ -106,10 +107,11 @@ class Implausible(StreamTest):
         self.assertIn("implausible: J_2 is at 51471.1 rad, beyond", robot["stream"]["condition"])
         self.assertIn("(implausible)", self.scratch.cellmirror("status").stdout)
         address = self.scratch.status()["page"]["address"]
-        with urllib.request.urlopen(address.split("?")[0].rstrip("/") + "/metrics", timeout=10) as answer:
+        with urllib.request.urlopen(address.split("?")[0].rstrip("/") + "/metrics", timeout=60) as answer:
             metrics = answer.read().decode()
         self.assertRegex(metrics, f'cellmirror_robot_implausible_total{{robot="{DDS_ROBOT}"}} [1-9]')
         self.assertIn(f'cellmirror_robot_conflicting_total{{robot="{DDS_ROBOT}"}} 0', metrics)
+        simulator.tell("clear")
         self.wait_state(DDS_ROBOT, "fresh")
         simulator.kill()
 
@@ -123,10 +125,17 @@ class Implausible(StreamTest):
         robot = self.scratch.robot(DDS_ROBOT)
         guid = r"([0-9a-f]{2}\.){11}[0-9a-f]{2}\|([0-9a-f]{2}\.){3}[0-9a-f]{2}"
         self.assertRegex(robot["stream"]["condition"], f"two publishers name puma_762_joint_[1-6]: {guid} and {guid}")
-        held = [joint["position"] for joint in robot["joints"]]  # the second one's first value, which may be a restart
-        many = robot["plausibility"]["conflicting_values"] + 500
-        self.assertTrue(g.eventually(lambda: self.scratch.robot(DDS_ROBOT)["plausibility"]["conflicting_values"] > many))
-        self.assertEqual([joint["position"] for joint in self.scratch.robot(DDS_ROBOT)["joints"]], held)
+        # Held at the second one's first value, which may be a restart; after a pause of the machine perhaps at the other one's.
+        many, seen = robot["plausibility"]["conflicting_values"] + 500, []
+
+        def conflicted():
+            robot = self.scratch.robot(DDS_ROBOT)
+            seen.append([joint["position"] for joint in robot["joints"]])
+            return robot["plausibility"]["conflicting_values"] > many and len(seen) > 20
+
+        self.assertTrue(g.eventually(conflicted))
+        changes = sum(a != b for a, b in zip(seen, seen[1:]))
+        self.assertLessEqual(changes, len(seen) // 10, "it goes to and fro between the two")
         second.kill()
         self.wait_state(DDS_ROBOT, "fresh")
 
@@ -184,11 +193,13 @@ class Protected(StreamTest):
         self.assertEqual(self.stream()["condition"], "wrong CRC in ControlStatus")
 
     def test_a_robot_that_does_not_change_by_a_bit_is_frozen_where_the_cell_file_asks(self):
-        self.arm("--fault", "frozen@2..5")
+        arm = self.arm()
         self.online("ARM")
         self.wait_state("ARM", "fresh")
+        arm.tell("fault frozen")
         self.wait_state("ARM", "implausible")
-        self.assertEqual(self.scratch.robot("ARM")["joints"][0]["implausible"], "frozen")
+        self.assertTrue(g.eventually(lambda: self.scratch.robot("ARM")["joints"][0]["implausible"] == "frozen"), self.scratch.robot("ARM"))
+        arm.tell("clear")
         self.wait_state("ARM", "fresh")
 
 

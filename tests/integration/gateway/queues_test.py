@@ -77,7 +77,7 @@ class Queues(unittest.TestCase):
 
     def metrics(self):
         address = self.scratch.status()["page"]["address"]
-        return urllib.request.urlopen(address + "metrics", timeout=10).read().decode()
+        return urllib.request.urlopen(address + "metrics", timeout=60).read().decode()
 
 
 class Stolen(Queues):
@@ -92,14 +92,14 @@ class Stolen(Queues):
         self.assertIn("PROBLEM  the SCRIPT input queue", self.scratch.cellmirror("status").stdout)
         self.assertIn('cellmirror_problem{kind="script_queue"} 1\n', self.metrics())
 
-        done = self.scratch.send("DRAW_SCENE", timeout=20)  # not the 30 s for an answer
+        done = self.scratch.send("DRAW_SCENE")  # at once: an answer is not waited for
         self.assertEqual(done.returncode, 1)
         self.assertIn("was not sent", done.stderr)
         self.assertIn(f"ipcrm -q {number_of(self.script)}", done.stderr)
         self.assertEqual(messages_in(self.script), 0)
 
         since = self.scratch.status()["uptime_s"]
-        self.assertTrue(g.eventually(lambda: self.scratch.status()["uptime_s"] > since + 3, 20))
+        self.assertTrue(g.eventually(lambda: self.scratch.status()["uptime_s"] > since + 3))
         self.assertEqual(gateway.output().count("SCRIPT input queue"), 1, gateway.output())
 
         remove(self.script)
@@ -110,7 +110,7 @@ class Stolen(Queues):
         gateway = self.start()
         self.steal(gateway, self.reply)
         self.assertIn(f"({self.reply})", g.eventually(lambda: self.problem("reply_queue")))
-        done = self.scratch.send("DRAW_SCENE", timeout=20)
+        done = self.scratch.send("DRAW_SCENE")
         self.assertEqual(done.returncode, 1)
         self.assertIn("was not sent", done.stderr)
         remove(self.reply)
@@ -127,7 +127,7 @@ class Stolen(Queues):
     def test_one_of_the_same_user_and_mode_is_taken_for_a_leftover(self):
         gateway = self.start()
         self.steal(gateway, self.script, mode=0o600)
-        self.assertTrue(g.eventually(lambda: self.scratch.send("DRAW_SCENE", timeout=40).returncode == 0))
+        self.assertTrue(g.eventually(lambda: self.scratch.send("DRAW_SCENE").returncode == 0))
         self.assertEqual(self.scratch.status()["problems"], [])
 
     def test_another_user_is_named(self):
@@ -173,7 +173,7 @@ class Blocked(Queues):
     def refused(self, *words):
         gateway = g.Gateway(self.scratch, wait=False)
         self.addCleanup(gateway.close)
-        self.assertEqual(gateway.child.wait(20), 1)
+        self.assertEqual(gateway.child.wait(60), 1)
         for word in words:
             self.assertIn(word, gateway.output())
 

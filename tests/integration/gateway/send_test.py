@@ -22,7 +22,7 @@ class Send(unittest.TestCase):
 
     def send(self, *arguments, status, text=None):
         done = subprocess.run([str(g.BIN / "cellmirror"), "send", *arguments, "--instance", self.scratch.instance],
-                              env=self.scratch.environment, input=text, capture_output=True, text=True, timeout=30)
+                              env=self.scratch.environment, input=text, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done
 
@@ -91,7 +91,7 @@ class Send(unittest.TestCase):
                 sender.stdin.flush()
                 self.assertEqual(sender.stdout.readline(), "done\n")
             sender.stdin.close()
-            self.assertEqual(sender.wait(10), 0)
+            self.assertEqual(sender.wait(60), 0)
         finally:
             sender.kill()
             sender.wait()

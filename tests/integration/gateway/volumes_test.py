@@ -23,7 +23,7 @@ TABLE = """# value red green blue opacity
 
 def require_renderer(scratch):
     done = scratch.cellmirror("snapshot", "--cell", str(scratch.cell_file), "--size", "16x16", "-o",
-                              str(scratch.root / "probe.png"), timeout=60)
+                              str(scratch.root / "probe.png"))
     if done.returncode != 0 and "renderer" in done.stderr.lower():
         raise unittest.SkipTest(f"skipped: {done.stderr.strip()}")
     if done.returncode != 0:
@@ -68,7 +68,7 @@ class Volumes(unittest.TestCase):
         type(self).count += 1
         path = self.scratch.root / f"{self.count}.png"
         done = self.scratch.cellmirror("snapshot", "--instance", self.scratch.instance, "--camera", "SCAN_VIEW", "--size",
-                                       "320x240", "-o", str(path), timeout=60)
+                                       "320x240", "-o", str(path))
         self.assertEqual(done.returncode, 0, done.stderr)
         return p.read_png(path)
 
@@ -203,7 +203,7 @@ class Volumes(unittest.TestCase):
     def test_metrics_and_the_tree(self):
         self.picture()
         address = self.scratch.status()["page"]["address"]
-        metrics = urllib.request.urlopen(address + "metrics", timeout=10).read().decode()
+        metrics = urllib.request.urlopen(address + "metrics", timeout=60).read().decode()
         self.assertIn(f'cellmirror_volume_voxels{{volume="{NAME}"}} {112 * 88 * 96}\n', metrics)
         self.assertIn(f'cellmirror_volume_shown{{volume="{NAME}"}} 1\n', metrics)
         value = {name: float(text) for name, text in re.findall(r"^(cellmirror_volume_\w+) (\S+)$", metrics, re.M)}
@@ -211,7 +211,7 @@ class Volumes(unittest.TestCase):
         self.assertGreater(value["cellmirror_volume_bricks_drawn"], 0)
         self.assertLess(value["cellmirror_volume_bricks_drawn"], value["cellmirror_volume_bricks"])
         self.assertGreater(value["cellmirror_volume_picture_seconds"], 0)
-        tree = json.loads(urllib.request.urlopen(address + "api/tree", timeout=10).read())
+        tree = json.loads(urllib.request.urlopen(address + "api/tree", timeout=60).read())
         content = tree["volumes"][0]
         self.assertEqual((content["name"], content["voxels"], content["unit"]), (NAME, [112, 88, 96], "HU"))
         self.assertEqual(sum(content["histogram"]["counts"]), 112 * 88 * 96)

@@ -34,7 +34,7 @@ ChildProcess::~ChildProcess() {
   if (pid_ > 0) {
     ::kill(pid_, SIGTERM);
     bool ended = false;
-    for (int i = 0; i < 5000 && !ended; ++i) {
+    for (int i = 0; i < 60'000 && !ended; ++i) {
       ended = ::waitpid(pid_, nullptr, WNOHANG) != 0;
       if (!ended) ::usleep(1000);
     }

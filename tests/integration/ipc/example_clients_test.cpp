@@ -55,7 +55,7 @@ class ExampleClients : public ::testing::TestWithParam<Language> {
     return {program("ipc_test_gateway"), std::to_string(queues_.script_key), std::to_string(queues_.sensor_key),
             std::to_string(queues_.reply_key), rate_hz};
   }
-  std::vector<std::string> send(const std::string& command, const std::string& timeout = "10") {
+  std::vector<std::string> send(const std::string& command, const std::string& timeout = "60") {
     return joined(GetParam().sender, {"--script-key", std::to_string(queues_.script_key), "--reply-key",
                                       std::to_string(queues_.reply_key), "--timeout", timeout, command});
   }
@@ -103,7 +103,7 @@ TEST_P(ExampleClients, TellsThatThereIsNoGateway) {
 TEST_P(ExampleClients, ReadsRecords) {
   ChildProcess gateway(gateway_command("200"));
   ASSERT_EQ(gateway.line(), "ready");
-  ChildProcess sut(read("5", "10"));
+  ChildProcess sut(read("5", "60"));
   EXPECT_EQ(sut.wait(), 0) << sut.errors();
   // The gateway's step is the record's number, and the position 0.25 times that, modulo 8.
   int lines = 0;
@@ -123,7 +123,7 @@ TEST_P(ExampleClients, ReadsRecords) {
 TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsCamerasAndTissueTell) {
   ChildProcess gateway(gateway_command("findings"));
   ASSERT_EQ(gateway.line(), "ready");
-  ChildProcess sut(read("11", "10"));
+  ChildProcess sut(read("11", "60"));
   EXPECT_EQ(sut.wait(), 0) << sut.errors();
   EXPECT_EQ(sut.output(),
             "1 range USS_1 0.250000 cell.box\n"
@@ -176,7 +176,7 @@ TEST(GatewayProcess, KilledAtAnyMomentTheNextStartWorks) {
       ASSERT_EQ(gateway.line(), "ready");
     }
     if (i % 4 == 0) {
-      ASSERT_TRUE(send_command(queues, "echo x", Nanoseconds{10'000'000'000}));
+      ASSERT_TRUE(send_command(queues, "echo x", Nanoseconds{60'000'000'000}));
     }
     // Otherwise somewhere in its start.
     if (i % 2 == 1) ::usleep(static_cast<useconds_t>(i * 50));
@@ -199,7 +199,7 @@ TEST(GatewayProcess, SecondOneOnTheSameKeysIsRefused) {
   EXPECT_EQ(second.wait(), 1);
   EXPECT_NE(second.errors().find("in use by process " + std::to_string(first.pid())), std::string::npos)
       << second.errors();
-  EXPECT_EQ(send_command(queues, "echo still here", Nanoseconds{10'000'000'000})->text, "still here");
+  EXPECT_EQ(send_command(queues, "echo still here", Nanoseconds{60'000'000'000})->text, "still here");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class Mirrored(unittest.TestCase):
             return all(robot["mode"] == "mirrored" and robot["stream"]["state"] == "fresh" and
                        all(joint["state"] == "fresh" for joint in robot["joints"])
                        for robot in self.scratch.status()["robots"])
-        self.assertTrue(g.eventually(fresh, 20), self.scratch.status()["robots"])
+        self.assertTrue(g.eventually(fresh), self.scratch.status()["robots"])
         for robot in self.scratch.status()["robots"]:
             self.assertEqual(robot["plausibility"]["implausible_values"], 0, robot)
 
@@ -67,7 +67,7 @@ class Mirrored(unittest.TestCase):
     def test_a_sensor_queue_without_a_reader_is_nothing_wrong(self):
         def unread():
             return next(q for q in self.scratch.status()["queues"] if "sensor" in q["name"])["unread"]
-        self.assertTrue(g.eventually(lambda: unread() > 0, 30))
+        self.assertTrue(g.eventually(lambda: unread() > 0))
         table = self.scratch.cellmirror("status").stdout
         self.assertIn("nothing dropped; nobody reads sensor queue", table)
 

@@ -294,7 +294,7 @@ class OnATerminal(Base):
             os.execve(g.BIN / "cellmirror", ["cellmirror", "new", *map(str, arguments)], self.environment)
         self.addCleanup(os.close, terminal)
         shown, waiting = "", list(answers)
-        end = time.monotonic() + 30
+        end = time.monotonic() + 100
         while time.monotonic() < end:
             ready, _, _ = select.select([terminal], [], [], 0.5)
             if ready:

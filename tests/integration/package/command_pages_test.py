@@ -14,7 +14,7 @@ PROGRAMS = ("cellmirror", "sim_robot", "sim_haptic", "sim_footswitch", "sim_came
 
 
 def help_of(program, *sub):
-    done = subprocess.run([g.BIN / program, *sub, "--help"], capture_output=True, text=True, timeout=30, check=True)
+    done = subprocess.run([g.BIN / program, *sub, "--help"], capture_output=True, text=True, timeout=60, check=True)
     return done.stdout
 
 
@@ -72,7 +72,7 @@ class Pages(unittest.TestCase):
         words = line.split(" ")
         script = (f'source "{self.root}/bash/{words[0]}"; COMP_WORDS=({" ".join(repr(word) for word in words)}); COMP_CWORD={len(words) - 1}; '
                   f'_{words[0]} 2>/dev/null; printf "%s\\n" "${{COMPREPLY[@]}}"')
-        done = subprocess.run(["bash", "--norc", "-c", script], capture_output=True, text=True, timeout=30)
+        done = subprocess.run(["bash", "--norc", "-c", script], capture_output=True, text=True, timeout=60)
         return done.stdout.split()
 
     def test_completion_offers_what_may_stand_there(self):

@@ -3,7 +3,6 @@ explained, loses the gateway and gets it back."""
 
 import json
 import re
-import socket
 import unittest
 import urllib.request
 
@@ -26,12 +25,6 @@ def cell_with_few_pictures():
     return scratch
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class PageGateway(g.Gateway):
     """With its page and pictures, at a port that stays the same when it is started again."""
 
@@ -40,7 +33,7 @@ class PageGateway(g.Gateway):
         self.instance = scratch.instance
         g.Process.__init__(self, [g.BIN / "cellmirror", "run", scratch.cell_file, "--port", str(port), "--instance", scratch.instance],
                            scratch.environment)
-        self.wait_ready(60)
+        self.wait_ready()
 
 
 class Scene(unittest.TestCase):
@@ -49,19 +42,19 @@ class Scene(unittest.TestCase):
     def test_the_view_moves_with_a_joint_and_names_what_is_clicked(self):
         scratch = cell_with_few_pictures()
         self.addCleanup(scratch.remove)
-        gateway = PageGateway(scratch, free_port())
+        gateway = PageGateway(scratch, g.free_port())
         self.addCleanup(gateway.close)
         address = json.loads(scratch.cellmirror("page", "--json", "--instance", scratch.instance).stdout)
         output = browser.Scenario("scene_gateway", f"{address['address']}#token={address['token']}").run()
         path = re.search(r"^picked: (.+)$", output, re.M)[1]
-        shown = urllib.request.urlopen(f"{address['address']}api/tree", timeout=20).read()
+        shown = urllib.request.urlopen(f"{address['address']}api/tree", timeout=60).read()
         self.assertIn(path, [node["path"] for node in json.loads(shown)["nodes"]])
 
 
 class Page(unittest.TestCase):
     def setUp(self):
         self.scratch = cell_with_few_pictures()
-        self.port = free_port()
+        self.port = g.free_port()
         self.robot = g.sim_robot("cia402", "--channel", "udp:239.74.163.2:43113", "--nodes", "1-6", "--rate", "100",
                                  "--motion", "sine:amplitude=0.5,period=3")
         self.start()

@@ -11,7 +11,7 @@ import {scene_scenarios} from "./scene_scenarios.mjs";
 const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT_CORE, "index.mjs")));
 const [drawing] = process.argv.slice(2);
 let [scenario, address, rest] = ["", "", []];  // what is asked for
-const kPatience_ms = 20000;
+const kPatience_ms = 60000;
 // A quarter of the pixels where what they show is drawn by the processor; the page is laid out as ever.
 const kCoarse = {deviceScaleFactor: 0.5};
 
@@ -83,7 +83,7 @@ const difference = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - 
 // Until pictures differ so much from an earlier print: the machine may be busy.
 async function differs(page, before, least, why) {
   let found = 0;
-  for (let i = 0; i < 80; ++i) {
+  for (let i = 0; i < 240; ++i) {
     found = difference(before, await print_of(page));
     if (found > least) return;
     await page.waitForTimeout(250);
@@ -159,7 +159,7 @@ const scenarios = {
     await page.locator("#view-note", {hasText: "old"}).waitFor();
     await shot(page, "gateway-gone");
     await outside("back");
-    await page.locator("#gone").waitFor({state: "hidden", timeout: 40000});
+    await page.locator("#gone").waitFor({state: "hidden"});
     await live(page);
     await newer_picture(page, 2).catch(() => picture(page));
     await page.locator("#message-list li", {hasText: "The gateway is new"}).waitFor({state: "attached"});

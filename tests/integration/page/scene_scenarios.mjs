@@ -27,7 +27,7 @@ export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, 
   }
   // Within some seconds: the machine may be busy.
   async function changes(page, before, why) {
-    for (let i = 0; i < 40; ++i) {
+    for (let i = 0; i < 240; ++i) {
       if (!before.equals(await seen(page))) return;
       await page.waitForTimeout(250);
     }
@@ -35,7 +35,7 @@ export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, 
   }
   // What is drawn when nothing has changed for a second and a half: on a busy machine bodies and readings come late.
   async function rests(page, why) {
-    for (let i = 0; i < 12; ++i) {
+    for (let i = 0; i < 30; ++i) {
       const before = await seen(page);
       await page.waitForTimeout(1500);
       const after = await seen(page);
@@ -179,7 +179,7 @@ export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, 
       await page.waitForFunction(() => document.getElementById("view-area").classList.contains("stale"));
       await page.waitForFunction(() => /gateway is gone.*old/.test(document.getElementById("view-note").innerText));
       wire.ended = false;
-      await page.waitForFunction(() => !document.getElementById("view-area").classList.contains("stale"), null, {timeout: 30000});
+      await page.waitForFunction(() => !document.getElementById("view-area").classList.contains("stale"));
     },
 
     async scene_without_webgl() {

@@ -31,7 +31,7 @@ static int read_all(const void* memory, size_t bytes, uint64_t last, unsigned lo
   unsigned long long whole = 0, retried = 0, inconsistent = 0, unchanged = 0;
   uint64_t newest = 0;
   struct cellmirror_haptic_force force;
-  const time_t end = time(NULL) + 60;
+  const time_t end = time(NULL) + 300;
   memset(&force, 0, sizeof force);
   puts("ready");
   fflush(stdout);

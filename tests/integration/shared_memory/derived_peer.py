@@ -21,7 +21,7 @@ def is_derived(values):
 
 def read_all(memory, last, many):
     whole = retried = inconsistent = sequence = 0
-    end = time.monotonic() + 60
+    end = time.monotonic() + 300
     print("ready", flush=True)
     while sequence < last and time.monotonic() < end:
         copy, tries = memory.read(0, cellmirror.FORCE.size, cellmirror.FORCE_LOCK)

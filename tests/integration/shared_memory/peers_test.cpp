@@ -106,7 +106,7 @@ Seen seen_by(ChildProcess& reader) {
 
 // Writes at about 300,000 a second, 300 times the rate of a gateway: at full speed a reader that needs microseconds for
 // a copy would hardly ever find a moment. Goes on beyond a million until both readers have met enough different blocks,
-// which takes longer where other programs take the processors; the readers give up after a minute.
+// which takes longer where other programs take the processors; the readers give up after five minutes.
 TEST_F(SharedMemoryPeers, ReadersInCAndPythonSeeConsistentBlocksUnderAMillionUpdates) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr std::uint64_t kUpdates = 100'000;  // a sanitizer's writes take most of the time from the readers
@@ -114,8 +114,8 @@ TEST_F(SharedMemoryPeers, ReadersInCAndPythonSeeConsistentBlocksUnderAMillionUpd
   constexpr std::uint64_t kUpdates = 1'000'000;
 #endif
   constexpr std::uint64_t kLast = 1'000'000'000;  // written at the end
-  constexpr std::uint64_t kManyInC = kUpdates / 50;
-  constexpr std::uint64_t kManyInPython = kUpdates / 100;
+  constexpr std::uint64_t kManyInC = kUpdates / 100;
+  constexpr std::uint64_t kManyInPython = kUpdates / 400;
   prepare_haptic_block(segment_->memory(), 16, 1);
   ChildProcess in_c(c_peer("read", {kLast, kManyInC}));
   ChildProcess in_python(python_peer("read", {kLast, kManyInPython}));
@@ -165,6 +165,7 @@ class Ticking {
   Ticking(const Ticking&) = delete;
   Ticking& operator=(const Ticking&) = delete;
 
+  [[nodiscard]] std::uint64_t cycles() const { return cycles_; }
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
   [[nodiscard]] bool last_valid() const { return last_valid_; }
 
@@ -185,11 +186,13 @@ class Ticking {
       ++output.sequence;
       output.time = SystemClock().now();
       device_.write(output);
+      ++cycles_;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
   haptic::SharedMemoryDevice device_;
   std::atomic<bool> over_{false};
+  std::atomic<std::uint64_t> cycles_{0};
   std::atomic<std::uint64_t> samples_{0};
   std::atomic<bool> last_valid_{false};
   std::thread thread_;
@@ -208,8 +211,8 @@ TEST_F(SharedMemoryPeers, ExampleDevicesWritePosesAndFeelForces) {
     ChildProcess sut(command);
     EXPECT_EQ(sut.wait(), 0) << sut.errors();
     EXPECT_NE(sut.output().find(" active none force 0.000 0.000 1.500 N age "), std::string::npos) << sut.output();
-    EXPECT_GT(tick.samples(), before + 20);
-    for (int i = 0; i < 1000 && tick.last_valid(); ++i) ::usleep(1000);
+    EXPECT_GT(tick.samples(), before + 5);
+    for (int i = 0; i < 60'000 && tick.last_valid(); ++i) ::usleep(1000);
     EXPECT_FALSE(tick.last_valid()) << "the last word of a device that ends";
   }
 }
@@ -225,8 +228,7 @@ TEST_F(SharedMemoryPeers, ExampleDeviceWithoutAGatewaySaysSo) {
 
 TEST_F(SharedMemoryPeers, ProgramsOf1999ReadTheFirstFloats) {
   const Ticking tick(segment_->memory());
-  for (int i = 0; i < 1000 && haptic_block_gateway(segment_->memory()) == 0; ++i) ::usleep(1000);
-  ::usleep(5000);
+  for (int i = 0; i < 60'000 && tick.cycles() < 2; ++i) ::usleep(1000);
   ChildProcess perl({"perl", examples() + "/force_reader_1999.pl", std::to_string(key_), "7"});
   EXPECT_EQ(perl.wait(), 0) << perl.errors();
   EXPECT_EQ(perl.output(), "1.000 2.000 3.000 0.250 0.000 0.000 0.000\n");
@@ -253,7 +255,7 @@ TEST_F(SharedMemoryPeers, ExampleReadersPrintTheForceAtTheTcp) {
   const std::string number = std::to_string(key);
   for (const std::string& name :
        {program("shared_memory_example_tcp_force_reader"), examples() + "/tcp_force_reader.py"}) {
-    ChildProcess sut({name, "--key", number, "--count", "1", "--timeout", "10"});
+    ChildProcess sut({name, "--key", number, "--count", "1", "--timeout", "60"});
     EXPECT_EQ(sut.wait(), 0) << sut.errors();
     EXPECT_EQ(sut.output(), "7 PUMA_762 force 1.000 -2.000 0.500 N torque 0.250 Nm valid test\n");
   }

@@ -18,7 +18,7 @@ def start(program, *arguments):
     return subprocess.Popen([str(BIN / program), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def finish(child, timeout=20):
+def finish(child, timeout=60):
     out, err = child.communicate(timeout=timeout)
     if child.returncode != 0:
         raise AssertionError(f"ended with {child.returncode}: {err}")
@@ -82,7 +82,7 @@ class SimHaptic(unittest.TestCase):
 
     def test_without_a_memory_it_gives_up_when_told(self):
         child = self.sim("--wait", 0.1)
-        _, err = child.communicate(timeout=10)
+        _, err = child.communicate(timeout=60)
         self.assertEqual(child.returncode, 1)
         self.assertIn("does not exist", err)
 
@@ -93,8 +93,8 @@ class SimHaptic(unittest.TestCase):
         # Hand of 300 N/m behind a wall of 800 N/m: 10 mm deeper are 2.2 N more.
         self.assertGreater(report["max_force_n"], 1.8)
         self.assertLess(report["max_force_n"], 4.5)
-        self.assertGreater(report["latency_us"]["count"], 100)
-        self.assertGreater(report["forces"], 100)
+        self.assertGreater(report["latency_us"]["count"], 20)
+        self.assertGreater(report["forces"], 20)
         self.assertEqual(report["phase"], "active")
 
     def test_a_watcher_sees_what_the_hand_feels_and_writes_nothing(self):
@@ -108,7 +108,9 @@ class SimHaptic(unittest.TestCase):
         finally:
             log.unlink(missing_ok=True)
         self.assertEqual(seen["device"], "haptic watcher")
-        self.assertAlmostEqual(seen["max_force_n"], report["max_force_n"], delta=0.3)
+        # It may look less often than the hand feels.
+        self.assertLess(seen["max_force_n"], report["max_force_n"] + 0.3)
+        self.assertGreater(seen["max_force_n"], 0.5 * report["max_force_n"])
         self.assertEqual(len(rows) - 1, seen["forces"])
         self.assertTrue(rows[0].startswith("time_ns,sequence,sample_time_ns,writer,x,y,z"))
 
@@ -120,14 +122,14 @@ class SimHaptic(unittest.TestCase):
         for fault, odd in (("dead@0.1", 0), ("torn@0.1", 1)):
             with self.subTest(fault), HapticBlock(self.key, create=True) as block:
                 child = self.faulty(fault)
-                out, _ = child.communicate(timeout=10)
+                out, _ = child.communicate(timeout=60)
                 self.assertEqual(child.returncode, -signal.SIGKILL)
                 self.assertEqual(out, "")
                 self.assertEqual(block.u64(320).value % 2, odd)
 
     def test_a_new_device_writes_on_where_one_died_while_writing(self):
         with HapticBlock(self.key, create=True) as block:
-            self.faulty("torn@0.05").communicate(timeout=10)
+            self.faulty("torn@0.05").communicate(timeout=60)
             self.assertIsNone(block.sample())
             child = self.sim("--for", 0.5)
             self.assertTrue(eventually(block.sample))
@@ -135,12 +137,17 @@ class SimHaptic(unittest.TestCase):
 
     def test_freeze_writes_nothing_and_lives(self):
         with HapticBlock(self.key, create=True) as block:
-            child = self.faulty("freeze@0.1")
-            time.sleep(0.4)
-            sequence = block.u64(328).value
-            time.sleep(0.2)
-            self.assertEqual(block.u64(328).value, sequence)
+            child = self.sim("--for", 0, "--fault", "freeze@0.1")
+
+            def frozen():
+                sequence = block.u64(328).value
+                time.sleep(0.3)
+                return block.u64(328).value == sequence and sequence
+
+            sequence = eventually(frozen)
+            self.assertTrue(sequence, "it goes on writing")
             self.assertIsNone(child.poll())
+            child.send_signal(signal.SIGINT)
             report = finish(child)
         self.assertEqual(report["samples"], sequence)
         self.assertEqual(report["faults"][0]["fault"], "freeze@0.1")
@@ -150,8 +157,7 @@ class SimHaptic(unittest.TestCase):
         with HapticBlock(self.key, create=True) as block:
             child = self.faulty("twice@0.1..0.5")
             writers = set()
-            end = time.monotonic() + 0.9
-            while time.monotonic() < end:
+            while child.poll() is None:
                 writers.add(block.u32(344).value)
             finish(child)
         writers.discard(0)
@@ -171,8 +177,9 @@ class SimHaptic(unittest.TestCase):
         }
         for fault, is_struck in struck.items():
             with self.subTest(fault), HapticBlock(self.key, create=True) as block:
-                child = self.sim("--for", 0.4, "--fault", fault)
+                child = self.sim("--for", 0, "--fault", fault)
                 self.assertTrue(eventually(lambda: (s := block.sample()) and is_struck(s), every=0.005))
+                child.send_signal(signal.SIGINT)
                 finish(child)
 
 
@@ -215,7 +222,7 @@ class SimFootSwitch(unittest.TestCase):
     def test_wrong_words_end_with_two(self):
         for words in (["--press", "0"], ["--sequence", "1*"], ["--bounce", "3", "--press", "1"], []):
             child = start("sim_footswitch", "--key", self.key, *words)
-            _, err = child.communicate(timeout=10)
+            _, err = child.communicate(timeout=60)
             self.assertEqual(child.returncode, 2, err)
             self.assertTrue(err)
 

@@ -13,7 +13,7 @@ SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", pathlib.Path(__fil
 BIN = pathlib.Path(os.environ.get("CELLMIRROR_BIN_DIR", SOURCE / "build" / "bin"))
 
 
-def eventually(condition, timeout=20.0, every=0.01):
+def eventually(condition, timeout=60.0, every=0.01):
     """The first true value of condition(), or its last value after the timeout."""
     end = time.monotonic() + timeout
     while True:
@@ -42,7 +42,7 @@ class SimRobot:
         """The next line on standard error."""
         return self.child.stderr.readline().strip()
 
-    def finish(self, how=signal.SIGINT, timeout=20):
+    def finish(self, how=signal.SIGINT, timeout=60):
         """Ends it; its exit status, report and standard error."""
         if how is not None and self.child.poll() is None:
             self.child.send_signal(how)
@@ -55,7 +55,7 @@ class SimRobot:
         self.child.communicate()
 
 
-def run(*arguments, stdin=subprocess.DEVNULL, timeout=20):
+def run(*arguments, stdin=subprocess.DEVNULL, timeout=60):
     return subprocess.run([str(BIN / "sim_robot"), *map(str, arguments)], stdin=stdin, capture_output=True, text=True,
                           timeout=timeout)
 
@@ -63,7 +63,7 @@ def run(*arguments, stdin=subprocess.DEVNULL, timeout=20):
 class ControlSocket:
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX)
-        self.socket.settimeout(20)
+        self.socket.settimeout(60)
 
         def connected():
             try:

@@ -87,7 +87,7 @@ class GatewayPage(unittest.TestCase):
         self.assertEqual(f'"{poses["geometry"]:016x}"', headers["ETag"])
         self.assertEqual(len(poses["bodies"]), len(glb.bodies))
         self.assertEqual(len(poses["cameras"]), len(marks["cameras"]))
-        self.assertLess(poses["age_s"], 2)
+        self.assertLess(poses["age_s"], 10)
         for pose, node in zip(poses["bodies"], glb.bodies):
             self.assertAlmostEqual(sum(value * value for value in pose[3:7]), 1, places=4)
         live.say(do="posed", sequence=poses["sequence"])
@@ -175,7 +175,7 @@ class GatewayPage(unittest.TestCase):
             command = [g.BIN / "cellmirror", "run", other.cell_file, "--headless", "--instance", other.instance, "--port", str(port)]
             gateway = g.Process(command, other.environment)
             self.addCleanup(gateway.close)
-            self.assertTrue(g.eventually(lambda: "Ctrl-C ends it" in gateway.output(), 20), gateway.output())
+            self.assertTrue(g.eventually(lambda: "Ctrl-C ends it" in gateway.output()), gateway.output())
             self.assertIn("--port", gateway.output())
             self.assertIn("port", other.status()["page"]["problem"])
             self.assertEqual(other.cellmirror("page", "--instance", other.instance).returncode, 1)

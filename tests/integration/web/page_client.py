@@ -20,7 +20,7 @@ class Page:
 
     def ask(self, path, method="GET", body=None, headers=()):
         """(status, headers, body)"""
-        connection = http.client.HTTPConnection(self.host, self.port, timeout=30)
+        connection = http.client.HTTPConnection(self.host, self.port, timeout=60)
         try:
             connection.request(method, path, body, dict(headers))
             answer = connection.getresponse()
@@ -35,7 +35,7 @@ class Page:
 
     def command(self, text, token=None):
         """Waits for its turn where too many commands came."""
-        for _ in range(100):
+        for _ in range(1000):
             status, _, body = self.ask("/api/command", "POST", text, {"Authorization": f"Bearer {token or self.token}"})
             if status != 429:
                 break
@@ -50,7 +50,7 @@ class Live:
         self.socket = socket.socket()
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-        self.socket.settimeout(10)
+        self.socket.settimeout(60)
         self.socket.connect((page.host, page.port))
         key = base64.b64encode(os.urandom(16)).decode()
         more = "".join(f"{name}: {value}\r\n" for name, value in headers)
@@ -106,7 +106,7 @@ class Live:
             elif opcode == 1:
                 return json.loads(payload)
 
-    def until(self, wanted, timeout=10):
+    def until(self, wanted, timeout=60):
         """The first message for which wanted() is true."""
         end = time.monotonic() + timeout
         while time.monotonic() < end:

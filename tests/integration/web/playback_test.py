@@ -27,7 +27,7 @@ class Replay(g.OrderlyProcess):
         self.scratch = scratch
         self.instance = "p" + os.urandom(6).hex()
         super().__init__([g.BIN / "cellmirror", "replay", file, "--headless", "--instance", self.instance, *arguments], scratch.environment)
-        if not g.eventually(lambda: "Ctrl-C ends it" in self.output() or not self.running(), 20) or not self.running():
+        if not g.eventually(lambda: "Ctrl-C ends it" in self.output() or not self.running()) or not self.running():
             raise AssertionError(f"the replay did not start:\n{self.output()}")
 
     def status(self):
@@ -37,7 +37,7 @@ class Replay(g.OrderlyProcess):
         """One request of the control socket."""
         path = next(self.scratch.runtime.glob(f"**/{self.instance}/control.sock"))
         with socket.socket(socket.AF_UNIX) as client:
-            client.settimeout(10)
+            client.settimeout(60)
             client.connect(str(path))
             client.sendall(json.dumps(members).encode() + b"\n")
             answer = b""
@@ -74,9 +74,10 @@ def setUpModule():
     gateway = g.Gateway(scratch)
     try:
         recorder = g.Process([g.BIN / "cellmirror", "record", "-o", case.file, "--for", "2.5", "--instance", scratch.instance], scratch.environment)
+        assert g.eventually(lambda: any(one["messages"] for one in scratch.status()["recordings"])), recorder.output()
         for command in ("ROBACT PUMA_762", "POS_ROB PUMA_762 JOINT_INC 20", "POS_ROB PUMA_762 JOINT_INC -20"):
             assert scratch.send(command).returncode == 0
-        assert recorder.child.wait(20) == 0, recorder.output()
+        assert recorder.child.wait(60) == 0, recorder.output()
         recorder.close()
     finally:
         gateway.close()
@@ -131,14 +132,14 @@ class States(PlaybackCase):
 
     def test_it_plays_to_the_end_and_ends(self):
         done = subprocess.run([g.BIN / "cellmirror", "replay", self.file, "--headless", "--speed", "10", "--instance", "p" + os.urandom(6).hex()],
-                              env=self.scratch.environment, capture_output=True, text=True, timeout=30)
+                              env=self.scratch.environment, capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("is played from", done.stdout)
 
     def test_a_part_with_sensor_records_and_then_it_waits(self):
         replay = self.replay("--from", "1", "--to", "1.4", "--wait", "--publish")
         info = json.loads(next(self.scratch.runtime.glob(f"**/{replay.instance}/instance.json")).read_text())
-        read = subprocess.run(["perl", "-e", READER, str(info.get("queues", info)["sensor_key"])], capture_output=True, text=True, timeout=20,
+        read = subprocess.run(["perl", "-e", READER, str(info.get("queues", info)["sensor_key"])], capture_output=True, text=True, timeout=60,
                               check=True)
         self.assertIn(b"PUMA_762", bytes.fromhex(read.stdout.strip()))
         self.assertTrue(g.eventually(lambda: replay.status()["replay"]["state"] == "ended"))

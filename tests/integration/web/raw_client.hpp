@@ -50,7 +50,7 @@ class RawClient {
   }
 
   // Everything up to the end of the connection; none where it did not end in time.
-  std::optional<std::string> read_to_end(double seconds_at_most = 10) {
+  std::optional<std::string> read_to_end(double seconds_at_most = 60) {
     const Timestamp end = SystemClock().now() + Nanoseconds(static_cast<std::int64_t>(seconds_at_most * 1e9));
     while (SystemClock().now() < end) {
       if (!read_some(end)) return std::exchange(received_, {});
@@ -59,7 +59,7 @@ class RawClient {
   }
 
   // Up to `mark` and with it; empty where it did not come.
-  std::string read_until(std::string_view mark, double seconds_at_most = 10) {
+  std::string read_until(std::string_view mark, double seconds_at_most = 60) {
     const Timestamp end = SystemClock().now() + Nanoseconds(static_cast<std::int64_t>(seconds_at_most * 1e9));
     for (;;) {
       const std::size_t at = received_.find(mark);
@@ -91,7 +91,7 @@ class RawClient {
 
   // The next message of the server, which sends no parts of messages; pings are answered. `pause` before each read.
   ServerMessage next_message(std::chrono::milliseconds pause = {}) {
-    const Timestamp end = SystemClock().now() + Nanoseconds(20'000'000'000);
+    const Timestamp end = SystemClock().now() + Nanoseconds(60'000'000'000);
     const auto have = [&](std::size_t bytes) {
       while (received_.size() < bytes) {
         std::this_thread::sleep_for(pause);
