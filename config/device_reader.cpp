@@ -83,6 +83,8 @@ void read_motor(TableReader& reader, const JointUnit& unit, DriveConfig& drive) 
   drive.peak_torque = reader.number("peak_factor", {0.01, kMostPeak}).value_or(drive.peak_torque);
   drive.coulomb_friction = reader.number(key("friction"), kNotNegative).value_or(0.0);
   drive.viscous_friction = reader.number(fmt::format("viscous_friction_{}", unit.viscous), kNotNegative).value_or(0.0);
+  constexpr double kLongestBlock = 10.0;  // s
+  drive.blocked_after = reader.number("blocked_after_s", {0.0, kLongestBlock}).value_or(drive.blocked_after);
   drive.position_gain = reader.number("position_gain_1_s", {0.1, kMostGain}).value_or(drive.position_gain);
   drive.velocity_gain = reader.number("velocity_gain_1_s", {0.1, kMostGain}).value_or(drive.velocity_gain);
 }

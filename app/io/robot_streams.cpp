@@ -18,6 +18,7 @@ struct StreamMaker {
   int fifo_priority;
   const can::ChannelOpener& open_can;
   const std::shared_ptr<PayloadSink>& payloads;
+  const std::shared_ptr<ContactInlet>& contacts;
 
   Result<std::unique_ptr<JointStream>> operator()(const std::monostate&) const {
     return fail("the cell file names no stream");
@@ -31,8 +32,8 @@ struct StreamMaker {
                                 {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const Cia402DeviceConfig& config) const {
-    return can::make_cia402_device(config, clock,
-                                   {.thread_name = "device", .fifo_priority = fifo_priority, .open_channel = open_can});
+    return can::make_cia402_device(
+        config, clock, {.thread_name = "device", .fifo_priority = fifo_priority, .open_channel = open_can}, contacts);
   }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
     return dds::make_dds_stream(config, clock, payloads);
@@ -83,8 +84,9 @@ void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
 
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
                                                        int fifo_priority, const can::ChannelOpener& open_can,
-                                                       const std::shared_ptr<PayloadSink>& payloads) {
-  return std::visit(StreamMaker{clock, fifo_priority, open_can, payloads}, config);
+                                                       const std::shared_ptr<PayloadSink>& payloads,
+                                                       const std::shared_ptr<ContactInlet>& contacts) {
+  return std::visit(StreamMaker{clock, fifo_priority, open_can, payloads, contacts}, config);
 }
 
 }  // namespace cellmirror::app

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "app/snapshot/contact_inlet.hpp"
 #include "config/cell_file.hpp"
 #include "drivers/can/stream/streams.hpp"
 #include "rt_core/base/diagnostics.hpp"
@@ -17,10 +18,11 @@ namespace cellmirror::app {
 // Closed; `clock` outlives it. `fifo_priority`: of the threads of CAN streams, 0 for none; frames then reach the tick
 // also while the machine is busy with other things. Fails for what can never work, e.g. a DBC file without the signal
 // that the cell names. `open_can`: opens the channels of CAN streams; empty: as their endpoints say. `payloads`: is
-// given what DDS and RTDE streams receive.
+// given what DDS and RTDE streams receive. `contacts`: what the drives of a [[device]] feel; null: nothing.
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
                                                        int fifo_priority, const can::ChannelOpener& open_can = {},
-                                                       const std::shared_ptr<PayloadSink>& payloads = {});
+                                                       const std::shared_ptr<PayloadSink>& payloads = {},
+                                                       const std::shared_ptr<ContactInlet>& contacts = {});
 
 // Reads the EDS, DCF or DBC files of the stream and tells what is wrong with them and with what the cell file takes
 // from them, each at its place; warns of joints without a source. What the reader of the cell file told is not told

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/owner/motion/motion_port.hpp"
+#include "app/snapshot/contact_inlet.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/cell/cell.hpp"
@@ -33,9 +34,10 @@ struct FleetRobot {
   // rad or m: where a command to the tick puts it, and the id of that command.
   JointValues put_at{};
   std::uint64_t put_command = 0;
-  JointValues start{};                  // where it was put when it was added, rad or m
-  bool commanded = false;               // it has been moved, set to a position, or online since it was added
-  std::shared_ptr<JointStream> stream;  // null until the first `online`; status() is asked from other threads
+  JointValues start{};                          // where it was put when it was added, rad or m
+  bool commanded = false;                       // it has been moved, set to a position, or online since it was added
+  std::shared_ptr<JointStream> stream;          // null until the first `online`; status() is asked from other threads
+  std::shared_ptr<ContactInlet> contacts = {};  // of drives that answer a controller; null: the robot has none
 };
 
 // Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/snapshot/board.hpp"
+#include "app/snapshot/contact_inlet.hpp"
 #include "app/snapshot/coupling_snapshot.hpp"
 #include "app/snapshot/foot_switch_snapshot.hpp"
 #include "app/snapshot/force_settings.hpp"
@@ -35,6 +36,7 @@ struct RobotSnapshot {
   bool online = false;
   bool sending = false;
   std::shared_ptr<const JointStream> stream;  // null where it was never opened
+  std::shared_ptr<ContactInlet> contacts;     // null: nothing feels what it touches
   RobotParameters parameters;
   std::optional<JointValues> target;  // rad or m: where the newest commanded move ends
   Positioning positioning = Positioning::moving;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/workers/drive_contacts.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
@@ -45,6 +46,7 @@ bool CollisionWorker::wanted(const CellState& cell_state) {
   if (!wanted) {
     ages_.paused();
     show_nothing(cell_state);
+    release_drives(cell_state);
   }
   return wanted;
 }
@@ -89,12 +91,13 @@ void CollisionWorker::run(const CellState& cell_state, const engine::TickState& 
   // A component that was just loaded: its robots reach the tick a moment later. After a long derivation the posture is
   // old: the next tick is better.
   if (changed || !follower_.take_posture(tick)) return;
-  check(tick);
+  check(cell_state, tick);
 }
 
-void CollisionWorker::check(const engine::TickState& tick) {
+void CollisionWorker::check(const CellState& cell_state, const engine::TickState& tick) {
   const Timestamp start = clock_.now();
   const ProximityState& found = checker_.check(follower_.poses(), tick.time, follower_.later(tick, kAhead), kAhead);
+  tell_drives(cell_state, *follower_.cell(), follower_.poses(), *pairs_, found);
   const Timestamp finished = clock_.now();
   compute_.record(finished - start);
   std::shared_ptr<ProximityState> state = states_.take();

@@ -37,7 +37,7 @@ class CollisionWorker final : private TickJob {
   void show_nothing(const CellState& cell_state);
   // Derives the pairs again; up to a second for kinds of robots that were not seen before.
   void adopt(const CellState& cell_state);
-  void check(const engine::TickState& tick);
+  void check(const CellState& cell_state, const engine::TickState& tick);
 
   const Board<CellState>& cell_states_;
   const Clock& clock_;

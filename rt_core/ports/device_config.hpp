@@ -43,6 +43,7 @@ struct DriveConfig {
   double rated_torque = 100;                    // Nm (N)
   double peak_torque = 3;                       // times the rated torque: the current limit
   double following_error = 0.05;                // unit, object 0x6065 at power-on
+  double blocked_after = 0.001;                 // s, object 0x2000 at power-on; 0: not watched
   double position_gain = 40;                    // 1/s, of the position loop
   double velocity_gain = 250;                   // 1/s, of the velocity loop
   Place place = {};                             // of the node's table

@@ -8,6 +8,7 @@
 #include "drivers/can/canopen/cob_id.hpp"
 #include "drivers/can/canopen/earlier_due.hpp"
 #include "drivers/can/canopen/emcy.hpp"
+#include "drivers/can/cia402/device/contact_bounds.hpp"
 #include "drivers/can/cia402/device/servo_drive.hpp"
 #include "drivers/can/stream/can_stream.hpp"
 #include "rt_core/base/contract.hpp"
@@ -21,8 +22,8 @@ class Cia402DeviceProtocol final : public CanProtocol {
  public:
   // `nodes` keeps where the joints are for the next time that the stream is opened.
   Cia402DeviceProtocol(const Cia402DeviceConfig& config, std::shared_ptr<std::vector<DriveConfig>> nodes,
-                       CanProtocolHost& host)
-      : period_(config.period), nodes_(std::move(nodes)), host_(&host), output_(host) {
+                       std::shared_ptr<Latest<RobotContacts>> contacts, CanProtocolHost& host)
+      : period_(config.period), nodes_(std::move(nodes)), contacts_(std::move(contacts)), host_(&host), output_(host) {
     for (const DriveConfig& node : *nodes_)
       drives_.push_back(std::make_unique<ServoDrive>(node, config.heartbeat_ms, output_));
     errors_.resize(drives_.size());
@@ -34,6 +35,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
   void receive(const CanFrame& frame, Timestamp now) override {
+    feel_contacts();
     const bool request = frame.id > kSdoRequestBase && frame.id <= kSdoRequestBase + kMaxNodeId;
     for (const auto& drive : drives_) {
       if (request && !frame.extended && frame.id != kSdoRequestBase + drive->node_id()) continue;
@@ -42,8 +44,9 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
   void advance(Timestamp now) override {
+    feel_contacts();
     for (const auto& drive : drives_) drive->advance(now);
-    note_errors();
+    note_errors(now);
     if (now < due_) return;
     due_ = due_ + period_;
     if (due_ <= now) due_ = now + period_;
@@ -62,7 +65,8 @@ class Cia402DeviceProtocol final : public CanProtocol {
     report.send_refused = output_.refused;
     report.drives.clear();
     for (const auto& drive : drives_)
-      report.drives.push_back({drive->nmt_state(), drive->state(), drive->mode(), drive->error_code()});
+      report.drives.push_back(
+          {drive->nmt_state(), drive->state(), drive->mode(), drive->error_code(), drive->is_held_back()});
     published_.publish();
   }
 
@@ -77,6 +81,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
       operational += drive.nmt == NmtState::operational ? 1U : 0U;
       enabled += drive.state == Cia402State::operation_enabled ? 1U : 0U;
       std::string text = fmt::format("{}, {}, {}", words(drive.nmt), words(drive.state), words(drive.mode));
+      if (drive.held_back) text += ", blocked by what it touches";
       if (drive.error != 0) text += fmt::format(", 0x{:04X} {}", drive.error, emcy_words(drive.error));
       status.details.emplace_back(fmt::format("node {} ({})", node.node_id, node.joint_name), std::move(text));
     }
@@ -100,6 +105,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
     Cia402State state = Cia402State::unknown;
     DriveMode mode = DriveMode::none;
     std::uint16_t error = 0;
+    bool held_back = false;
   };
   struct Report {
     std::uint64_t samples = 0;
@@ -107,13 +113,26 @@ class Cia402DeviceProtocol final : public CanProtocol {
     std::vector<DriveReport> drives;
   };
 
-  void note_errors() {
+  void feel_contacts() {
+    if (!contacts_) return;
+    const RobotContacts& contacts = contacts_->read().value;
+    if (contacts.count == 0 && !touching_) return;
+    if (!std::exchange(touching_, contacts.count > 0)) touched_ = contacts.posture_time;
+    JointVelocities velocities{};
+    for (std::size_t i = 0; i < drives_.size(); ++i) velocities.at((*nodes_)[i].joint) = drives_[i]->joint_velocity();
+    const JointBounds bounds = contact_bounds(contacts, velocities);
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->set_bounds(bounds.at((*nodes_)[i].joint));
+  }
+
+  void note_errors(Timestamp now) {
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       const std::uint16_t code = drives_[i]->error_code();
       if (std::exchange(errors_[i], code) == code || code == 0) continue;
       const DriveConfig& node = (*nodes_)[i];
-      host_->note(Severity::warning, "device fault",
-                  fmt::format("drive {} ({}): 0x{:04X} {}", node.node_id, node.joint_name, code, emcy_words(code)));
+      std::string text =
+          fmt::format("drive {} ({}): 0x{:04X} {}", node.node_id, node.joint_name, code, emcy_words(code));
+      if (touching_) text += fmt::format(", {:.1f} ms after the robot touched", 1e3 * seconds(now - touched_));
+      host_->note(Severity::warning, "device fault", text);
     }
   }
 
@@ -136,6 +155,9 @@ class Cia402DeviceProtocol final : public CanProtocol {
 
   Nanoseconds period_;
   std::shared_ptr<std::vector<DriveConfig>> nodes_;
+  std::shared_ptr<Latest<RobotContacts>> contacts_;  // may be null
+  bool touching_ = false;                            // the drives have bounds
+  Timestamp touched_;                                // the first posture of the contact that they have them for
   CanProtocolHost* host_;
   Output output_;
   std::vector<std::unique_ptr<ServoDrive>> drives_;
@@ -148,17 +170,19 @@ class Cia402DeviceProtocol final : public CanProtocol {
 }  // namespace
 
 Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig& config, const Clock& clock,
-                                                        CanStreamOptions options) {
+                                                        CanStreamOptions options,
+                                                        std::shared_ptr<Latest<RobotContacts>> contacts) {
   if (config.nodes.empty()) return fail("the device has no drives", "add [[device.node]] with id and joint");
   for (const DriveConfig& node : config.nodes) {
     CELLMIRROR_EXPECTS(node.node_id >= 1 && node.node_id <= kMaxNodeId && node.joint < kMaxJointsPerRobot);
     CELLMIRROR_EXPECTS(node.increments_per_unit() > 0 && node.inertia > 0 && node.rated_torque > 0);
   }
   auto nodes = std::make_shared<std::vector<DriveConfig>>(config.nodes);
-  return std::make_unique<CanStream>("cia402-device", config.channel, clock, std::move(options),
-                                     [config, nodes](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
-                                       return std::make_unique<Cia402DeviceProtocol>(config, nodes, host);
-                                     });
+  return std::make_unique<CanStream>(
+      "cia402-device", config.channel, clock, std::move(options),
+      [config, nodes, contacts = std::move(contacts)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
+        return std::make_unique<Cia402DeviceProtocol>(config, nodes, contacts, host);
+      });
 }
 
 }  // namespace cellmirror::can

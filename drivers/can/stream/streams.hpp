@@ -10,7 +10,9 @@
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/can_channel.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/robot_contacts.hpp"
 #include "rt_core/ports/stream_config.hpp"
+#include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::can {
 
@@ -33,9 +35,10 @@ struct CanStreamOptions {
 
 // The gateway answers as the drives of the robot; the samples are where the drives have moved it. SYNC is answered by
 // the thread that received it, before the drives move on. `config` is as the reader of the cell file leaves it.
-[[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig& config,
-                                                                      const Clock& clock,
-                                                                      CanStreamOptions options = {});
+// `contacts`: what the robot touches, read by the stream's thread; null: nothing ever.
+[[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_device(
+    const Cia402DeviceConfig& config, const Clock& clock, CanStreamOptions options = {},
+    std::shared_ptr<Latest<RobotContacts>> contacts = {});
 
 // Everything that would keep such a stream from being made, and what makes its values doubtful, at its place in the
 // cell file or in the EDS, DCF or DBC file. What the reader of the cell file refused (empty names, no node, twice the

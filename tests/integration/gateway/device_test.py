@@ -46,6 +46,14 @@ encoder_increments = 4096
 gear_motor_turns = 16
 """
 
+# In the way of the second arm where J_1 turns upwards.
+POST = """
+[[node]]
+name = "Post"
+xyz_m = [0.41, 0.28, 0.78]
+geometry = [{ name = "post", box_m = [0.04, 0.04, 0.2] }]
+"""
+
 
 def setUpModule():
     if can is None:
@@ -120,8 +128,8 @@ class Device(unittest.TestCase):
             master.write(11, 0x6060, 6, 1)
             master.write(11, 0x6040, 0x1F, 2)
             # Method 24 looks upwards first, and turns at a limit switch, which this drive has not: it stands at the stop.
-            self.assertTrue(master.wait_bit(11, 3), "a fault: following error")
-            self.assertEqual(master.read(11, 0x603F), 0x8611)
+            self.assertTrue(g.eventually(lambda: master.state(11) == "fault"), "motor blocked")
+            self.assertEqual(master.read(11, 0x603F), 0x7121)
             master.write(11, 0x6040, 0x80, 2)
             master.write(11, 0x6040, 0x00, 2)
             master.write(11, 0x6098, 27, 1)  # downwards first
@@ -166,6 +174,39 @@ class Device(unittest.TestCase):
             self.assertIsNone(master.hear(lambda identifier, data: identifier == drive_master.SDO_ANSWER + 11, 0.3))
             self.go_online()
             self.assertTrue(g.eventually(lambda: abs(self.joint(0)["position"] - before) < 0.001))
+
+    def test_a_contact_blocks_the_drive_until_it_is_driven_out(self):
+        with self.scratch.cell_file.open("a") as cell:
+            cell.write(POST)
+        self.start()
+        master = self.master
+        master.nmt(1, 11)
+        master.write(11, 0x6060, 3, 1)
+        self.assertEqual(master.enable(11), "enabled")
+        master.write(11, 0x60FF, round(1.0 * TURN), 4)
+        emcy = master.hear(lambda identifier, data: identifier == 0x8B, 30)
+        self.assertIsNotNone(emcy, "EMCY")
+        self.assertEqual(struct.unpack_from("<HB", emcy), (0x7121, 0x21))
+        self.assertTrue(g.eventually(lambda: master.state(11) == "fault", 30))
+        blocked_at = master.read(11, 0x6064, signed=True) / TURN
+        self.assertLess(blocked_at, 0.9)
+
+        def touching():
+            return {name for pair in self.scratch.status()["collisions"]["touching"] for name in (pair["a"], pair["b"])}
+
+        self.assertTrue(g.eventually(lambda: "Post" in touching(), 30))
+        errors = self.scratch.robot("SCARA_1")["stream"]["last_errors"]
+        self.assertRegex(str(errors), r"drive 11 \(J_1\): 0x7121 motor blocked, [0-9.]+ ms after the robot touched")
+        print(errors[-1])
+
+        with self.subTest("the master drives out"):
+            master.write(11, 0x60FF, -round(1.0 * TURN) & 0xFFFFFFFF, 4)
+            master.write(11, 0x6040, 0x80, 2)
+            master.write(11, 0x6040, 0x00, 2)
+            self.assertEqual(master.enable(11), "enabled")
+            self.assertTrue(g.eventually(lambda: self.joint(0)["position"] < blocked_at - 0.3, 30), self.joint(0))
+            self.assertEqual(master.state(11), "enabled")
+            self.assertTrue(g.eventually(lambda: "Post" not in touching(), 30))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -64,6 +65,11 @@ struct FindingsWorkersTest : testing::Test {
     cell_state->cell = cell->compile();
     cell_state->collision = std::make_shared<const collision::Settings>(with);
     cell_state->haptics = devices;
+    RobotSnapshot robot;
+    robot.id = "SLEDGE";
+    robot.slot = cell->robot("SLEDGE")->slot();
+    robot.contacts = contacts;
+    cell_state->robots.push_back(robot);
     cell_states.publish(cell_state);
   }
 
@@ -90,6 +96,7 @@ struct FindingsWorkersTest : testing::Test {
   std::optional<Cell> cell;
   collision::Settings settings;
   std::vector<HapticSnapshot> devices;
+  std::shared_ptr<ContactInlet> contacts;  // of the sledge; null: it feels nothing
   Board<CellState> cell_states;
 };
 
@@ -104,6 +111,18 @@ struct CollisionWorkerTest : FindingsWorkersTest {
   }
   CollisionWorker sut{ticks, cell_states, clock, kTick, std::make_shared<geometry::SolidLibrary>()};
 };
+
+TEST_F(CollisionWorkerTest, TellsTheDrivesOfARobotWhatItTouches) {
+  contacts = std::make_shared<ContactInlet>();
+  publish(settings);
+  ASSERT_TRUE(comes([this] { return contacts->read().value.count == 1; }));
+  const RobotContacts& told = contacts->read().value;
+  EXPECT_NEAR(std::abs(told.rates[0][0]), 1, 1e-9) << "the ball leaves the post along the axis";
+  EXPECT_GT(told.posture_time, Timestamp{});
+  settings.active = false;
+  publish(settings);
+  EXPECT_TRUE(comes([this] { return contacts->read().value.count == 0; })) << "nothing is tested any more";
+}
 
 TEST_F(CollisionWorkerTest, ShowsNothingWhileTestsAreSwitchedOff) {
   ASSERT_TRUE(comes([this] { return touches(); }));

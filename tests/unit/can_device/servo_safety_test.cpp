@@ -76,6 +76,7 @@ TEST_F(Safety, WithoutPowerTheBrakeHolds) {
 TEST_F(Safety, FollowingErrorIsAFaultThatIsReset) {
   DriveConfig config = test_drive();
   config.stops = JointInterval{-1, 1};
+  config.blocked_after = 0;
   DriveMaster master(config);
   master.mode(1);
   master.enable();
@@ -102,6 +103,7 @@ TEST_F(Safety, FollowingErrorIsAFaultThatIsReset) {
 TEST_F(Safety, FollowingErrorIsNotWatchedWithTheLargestWindow) {
   DriveConfig config = test_drive();
   config.stops = JointInterval{-1, 1};
+  config.blocked_after = 0;
   DriveMaster master(config);
   EXPECT_EQ(master.write32(0x6065, 0xFFFFFFFF), 0U);
   master.mode(1);

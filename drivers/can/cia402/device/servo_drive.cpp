@@ -19,6 +19,7 @@ constexpr Nanoseconds kMostBehind = 100ms;  // of motion that is made up for
 constexpr ObjectAddress kServoStatusword{0x6041, 0};
 constexpr std::uint16_t kErrorMasterLost = 0x8130;
 constexpr std::uint16_t kErrorFollowing = 0x8611;
+constexpr std::uint16_t kErrorBlocked = 0x7121;
 constexpr std::uint8_t kRegisterGeneric = 0x01;
 constexpr std::uint8_t kRegisterProfile = 0x20;
 constexpr std::uint16_t kHomingAttained = kStatuswordModeBit12;
@@ -268,6 +269,7 @@ void ServoDrive::step() {
     motor_.start_control();
     demand_ = {actual(), 0, 0};
     beyond_for_ = 0;
+    blocked_for_ = 0;
     stop_ramp_.reset();
     target_reached_ = false;
     return watch_windows();
@@ -277,6 +279,7 @@ void ServoDrive::step() {
   } else {
     step_mode();
   }
+  watch_block();
   watch_following_error();
   watch_windows();
 }
@@ -302,7 +305,7 @@ void ServoDrive::step_mode() {
       return step_homing();
     case DriveMode::profile_velocity: {
       demand_ = profile_velocity_.step(kStep, actual(), parameters_.lower, parameters_.upper);
-      return motor_.follow_velocity(joint_of(demand_).velocity, torque_limit());
+      return motor_.follow_velocity(joint_of(demand_).velocity, torque_limits());
     }
     default:
       break;
@@ -317,12 +320,12 @@ void ServoDrive::step_mode() {
     const double fastest = std::sqrt(2 * parameters_.profile.deceleration * std::max(0.0, room));
     limited_ = std::abs(velocity_demand_) > fastest;
     demand_.velocity = std::clamp(velocity_demand_, -fastest, fastest);
-    return motor_.follow_velocity(joint_of(demand_).velocity, torque_limit());
+    return motor_.follow_velocity(joint_of(demand_).velocity, torque_limits());
   }
   // No torque towards a velocity that is too high.
   limited_ = std::abs(demand_.velocity) > parameters_.fastest;
   const bool drives_on = torque_demand_ * motor_.velocity() > 0;
-  motor_.apply_torque(limited_ && drives_on ? 0.0 : torque_demand_, torque_limit());
+  motor_.apply_torque(limited_ && drives_on ? 0.0 : torque_demand_, torque_limits());
 }
 
 void ServoDrive::step_homing() {
@@ -341,7 +344,27 @@ void ServoDrive::take_home() {
 
 void ServoDrive::follow(const MotionPoint& demand) {
   demand_ = demand;
-  motor_.follow_position(joint_of(demand), torque_limit());
+  motor_.follow_position(joint_of(demand), torque_limits());
+}
+
+// The motor presses against an obstacle or a mechanical stop with its rated torque, or with all that its limits leave.
+// A controller that commands torques may want just that.
+void ServoDrive::watch_block() {
+  const bool torque_mode = mode_ == DriveMode::cyclic_sync_torque && !power_.stopping();
+  const int held = motor_.held_back();
+  const TorqueLimits limits = torque_limits();
+  const double pressure = held * motor_.torque();
+  const double most = held > 0 ? limits.upper : -limits.lower;
+  const bool blocked = held != 0 && pressure > 0 && pressure >= std::min(config_.rated_torque, most);
+  if (!blocked || torque_mode || parameters_.blocked_time <= 0) {
+    blocked_for_ = 0;
+    return;
+  }
+  blocked_for_ += kStep;
+  if (blocked_for_ + kStep / 2 < parameters_.blocked_time) return;
+  // It does not follow the stop of a fault reaction either: it is left to the brake.
+  if (power_.state() == Cia402State::fault_reaction_active) return power_.stands(parameters_);
+  raise_fault(kErrorBlocked, kRegisterGeneric | kRegisterProfile);
 }
 
 void ServoDrive::watch_following_error() {
@@ -356,7 +379,7 @@ void ServoDrive::watch_following_error() {
   if (beyond_for_ <= parameters_.following_time) return;
   // The axis does not follow the stop of a fault reaction either: it is left to the brake.
   if (reacts) return power_.stands(parameters_);
-  raise_fault(kErrorFollowing, kRegisterGeneric | kRegisterProfile);
+  if (power_.state() != Cia402State::fault) raise_fault(kErrorFollowing, kRegisterGeneric | kRegisterProfile);
 }
 
 void ServoDrive::watch_windows() {
@@ -421,8 +444,12 @@ HomingInputs ServoDrive::homing_inputs() const {
   return inputs;
 }
 
-double ServoDrive::torque_limit() const {
-  return config_.rated_torque * std::min(parameters_.torque_limit, config_.peak_torque);
+// Objects 0x60E0 and 0x60E1 are in the drive's direction.
+TorqueLimits ServoDrive::torque_limits() const {
+  const double most = std::min(parameters_.torque_limit, config_.peak_torque);
+  const double positive = config_.rated_torque * std::min(parameters_.positive_torque_limit, most);
+  const double negative = config_.rated_torque * std::min(parameters_.negative_torque_limit, most);
+  return joint_sign_ > 0 ? TorqueLimits{-negative, positive} : TorqueLimits{-positive, negative};
 }
 
 double ServoDrive::halt_deceleration() const {

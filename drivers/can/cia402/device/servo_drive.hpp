@@ -33,11 +33,15 @@ class ServoDrive final : private SlaveApplication {
   // Motion and timers until `now`. At most 0.1 s of motion is made up for.
   void advance(Timestamp now);
   [[nodiscard]] Timestamp next_timer() const { return slave_.next_due(); }  // heartbeat and the like; not the motion
+  // What the robot touches leaves of the joint's velocity, from now on.
+  void set_bounds(const VelocityBounds& bounds) { motor_.set_bounds(bounds); }
 
   // Of the joint: rad or m, rad/s or m/s, Nm or N, in the joint's direction.
   [[nodiscard]] double joint_position() const { return motor_.position(); }
   [[nodiscard]] double joint_velocity() const { return motor_.velocity(); }
   [[nodiscard]] double joint_torque() const { return motor_.torque(); }
+  // An obstacle or a mechanical stop kept it from moving as its torque wanted.
+  [[nodiscard]] bool is_held_back() const { return motor_.held_back() != 0; }
 
   [[nodiscard]] std::uint8_t node_id() const { return slave_.node(); }
   [[nodiscard]] NmtState nmt_state() const { return slave_.state(); }
@@ -70,6 +74,7 @@ class ServoDrive final : private SlaveApplication {
   void step_homing();
   void take_home();
   void follow(const MotionPoint& demand);
+  void watch_block();
   void watch_following_error();
   void watch_windows();
   void release_acknowledgement();
@@ -88,7 +93,7 @@ class ServoDrive final : private SlaveApplication {
   [[nodiscard]] MotionPoint joint_of(const MotionPoint& demand) const;
   [[nodiscard]] HomingInputs homing_inputs() const;
   [[nodiscard]] double within_limits(double target);
-  [[nodiscard]] double torque_limit() const;  // Nm or N
+  [[nodiscard]] TorqueLimits torque_limits() const;
   [[nodiscard]] double halt_deceleration() const;
   [[nodiscard]] std::int64_t object(std::uint16_t index, std::uint8_t subindex = 0) const;
 
@@ -119,6 +124,7 @@ class ServoDrive final : private SlaveApplication {
   double reached_for_ = 0;       // s within the window
   double beyond_for_ = 0;        // s beyond the window of the following error
   double standing_for_ = 0;      // s below the velocity threshold
+  double blocked_for_ = 0;       // s that it has pressed against what blocks it
   Timestamp moved_;              // until when the motor has moved
 };
 

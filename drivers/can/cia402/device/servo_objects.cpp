@@ -155,6 +155,14 @@ void add_torque_objects(std::vector<Row>& rows, const DriveConfig& config) {
                                "motor rated torque"},
                               {{0x6077, 0}, integer16, kServoRo, true, 0, "torque actual value"},
                               {{0x60B2, 0}, integer16, kServoRw, true, 0, "torque offset"},
+                              {{0x60E0, 0}, unsigned16, kServoRw, true, peak, "positive torque limit value"},
+                              {{0x60E1, 0}, unsigned16, kServoRw, true, peak, "negative torque limit value"},
+                              {{0x2000, 0},
+                               unsigned16,
+                               kServoRw,
+                               false,
+                               whole<std::uint16_t>(1000 * config.blocked_after),
+                               "motor blocked time out"},
                           });
 }
 
@@ -299,6 +307,9 @@ ServoParameters read_servo_parameters(const ObjectDictionary& objects) {
   out.standstill = number(0x606F);
   out.standstill_time = kMilli * number(0x6070);
   out.torque_limit = kMilli * number(0x6072);
+  out.positive_torque_limit = kMilli * number(0x60E0);
+  out.negative_torque_limit = kMilli * number(0x60E1);
+  out.blocked_time = kMilli * number(0x2000);
   out.period = at_least_one(0x60C2, 1) * std::pow(10.0, number(0x60C2, 2));
   out.home_offset = number(0x607C);
   out.homing_fast = std::min(at_least_one(0x6099, 1), out.fastest);

@@ -1,0 +1,13 @@
+// Where the contacts of a robot go whose motors feel them: from the collision tests to the drives that answer a
+// controller.
+#pragma once
+
+#include "rt_core/ports/robot_contacts.hpp"
+#include "rt_core/rt/latest.hpp"
+
+namespace cellmirror::app {
+
+// Writer: the collision worker. Reader: the thread of the robot's stream.
+using ContactInlet = Latest<RobotContacts>;
+
+}  // namespace cellmirror::app
