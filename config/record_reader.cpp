@@ -73,6 +73,7 @@ RecordSettings read_record(TableReader& top) {
   settings.attach_mb = static_cast<std::uint64_t>(table->integer("attach_mb", 0, 1024).value_or(64));
   settings.keep_after_s = table->number("keep_after_s", {0.0, 600.0}).value_or(settings.keep_after_s);
   settings.rate_hz = table->number("rate_hz", {0.1, 4000.0}).value_or(settings.rate_hz);
+  settings.tissue_rate_hz = table->number("tissue_rate_hz", {0.0, 30.0}).value_or(settings.tissue_rate_hz);
   settings.compression = table->choice<std::string>("compression", {{"zstd", "zstd"}, {"lz4", "lz4"}, {"none", "none"}})
                              .value_or(settings.compression);
   settings.topics = table->texts("topics").value_or(settings.topics);

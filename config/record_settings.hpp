@@ -30,6 +30,7 @@ struct RecordSettings {
   std::uint64_t attach_mb = 64;           // 10^6 bytes of the cell's files in each file, and at most a quarter of it
   double keep_after_s = 5;                // how much is kept after the cause
   double rate_hz = 100;                   // robot states
+  double tissue_rate_hz = 10;             // deformable objects; 0: none
   std::string compression = "zstd";       // zstd, lz4, none
   std::vector<std::string> topics;        // none: all
   std::vector<RecordedPicture> pictures;  // each of another view; none: no pictures

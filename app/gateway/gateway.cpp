@@ -23,6 +23,7 @@
 #include "app/owner/command_records.hpp"
 #include "app/owner/played_commands.hpp"
 #include "app/owner/tissue/tissue_parts.hpp"
+#include "app/pictures/tissue_at_rest.hpp"
 #include "config/volume/voxel_memory.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
@@ -87,6 +88,13 @@ Result<void> Gateway::Parts::make_tissue(const TissueSetup& setup) {
   if (!made) return std::unexpected(made.error());
   tissue = *std::move(made);
   return {};
+}
+
+// What a recording that is played does not show is as the cell's files have it.
+void Gateway::Parts::rest_tissue(const TissueSetup& setup) {
+  auto rest = tissue_at_rest(setup);
+  if (!rest) return log_warning("replay.tissue", "deformable objects are not shown: {}", rest.error().text());
+  playback->run().tissue().set_rest(*std::move(rest));
 }
 
 Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions& options) {
@@ -254,13 +262,25 @@ Result<void> Gateway::Parts::start_renderer(const PictureSettings& settings, boo
 
 void Gateway::Parts::start_recorder(const RecordSettings& settings) {
   if (playback != nullptr)
-    return recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
-                             loop->options().period, [this] { return status(); }});
+    return recordings.watch({readers->recorder,
+                             board,
+                             collisions->board(),
+                             ranging->board(),
+                             forces->board(),
+                             clock,
+                             loop->options().period,
+                             [this] { return status(); },
+                             nullptr,
+                             nullptr,
+                             nullptr,
+                             {},
+                             {},
+                             tissue_sources()});
   recordings.begin_ring(settings, home->file_to_write("records", "blackbox.mcap"));
   recordings.watch({readers->recorder, board, collisions->board(), ranging->board(), forces->board(), clock,
                     loop->options().period, [this] { return status(); }, nullptr, nullptr, &engine->inputs(),
                     [this](const PictureRequest& request) { return renderer->open_pictures(request); },
-                    alarm_lines(*alarms)});
+                    alarm_lines(*alarms), tissue_sources()});
 }
 
 void Gateway::Parts::start_fault_monitor() {
@@ -351,6 +371,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step && live) parts->open_command_log();
   if (step) parts->open_alarms();
   if (step && live) step = parts->make_tissue(loaded->tissue);
+  if (step && !live) parts->rest_tissue(loaded->tissue);
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
   if (step) step = parts->start_loop();

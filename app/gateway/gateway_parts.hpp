@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/alarms/alarm_history.hpp"
@@ -138,8 +139,10 @@ struct Gateway::Parts {
   void log_command(CommandRecord record);
   void note_refused(const script::CommandSource& source, std::string_view command, const std::string& why);
   Result<void> make_tissue(const TissueSetup& setup);
-  // Empty in a cell without deformable objects.
+  void rest_tissue(const TissueSetup& setup);
+  // Empty in a cell without deformable objects; shapes alone where a recording is played.
   [[nodiscard]] TissueSources tissue_sources() const {
+    if (playback != nullptr) return {nullptr, [&run = std::as_const(*playback).run()] { return run.tissue().view(); }};
     if (!tissue) return {};
     return {&tissue->reports(), [worker = tissue.get()] { return worker->view(); }};
   }

@@ -78,6 +78,7 @@ void Recordings::begin_ring(const RecordSettings& settings, const Result<std::fi
   options.topics = settings.topics;
   options.compression = mcap::compression_of(settings.compression).value_or(mcap::Compression::zstd);
   options.rate_hz = settings.rate_hz;
+  options.tissue_rate_hz = settings.tissue_rate_hz;
   for (const RecordedPicture& one : settings.pictures) options.pictures.push_back({one.view, one.rate_hz});
   options.most_attached = settings.attach_mb * 1'000'000;
   fill_about(options);
@@ -126,6 +127,9 @@ Result<RecordingOptions> Recordings::options_of(const ControlRequest& request) c
   const auto rate = number_of_argument(request, "rate_hz", options.rate_hz, 0.1, 4000.0);
   if (!rate) return std::unexpected(rate.error());
   options.rate_hz = *rate;
+  const auto tissue_rate = number_of_argument(request, "tissue_rate_hz", options.tissue_rate_hz, 0.0, 30.0);
+  if (!tissue_rate) return std::unexpected(tissue_rate.error());
+  options.tissue_rate_hz = *tissue_rate;
   const auto length = number_of_argument(request, "for_s", 0.0, 0.0, kLongest_s);
   if (!length) return std::unexpected(length.error());
   options.length = Nanoseconds(static_cast<std::int64_t>(1e9 * *length));

@@ -148,10 +148,12 @@ void TissuePublisher::publish_events(std::size_t output, TissueEventOutput& to) 
 void TissuePublisher::publish_shapes(std::size_t output, Timestamp now, TissueShapeOutput& to) {
   const Nanoseconds period = to.tissue_period();
   Reader& reader = readers_.at(output);
-  if (!sources_.view || !report_ || period <= Nanoseconds(0) || now < reader.shapes_due) return;
+  const bool waits_for_report = sources_.report != nullptr && !report_;
+  if (!sources_.view || waits_for_report || period <= Nanoseconds(0) || now < reader.shapes_due) return;
   const std::shared_ptr<const TissueView> view = sources_.view();
   if (!view || view->step == reader.last_step) return;  // it is looked for again when the output is due next
-  to.publish_tissue_shapes(report_->state.time, *view, forces_);
+  // A recording that is played has shapes alone.
+  to.publish_tissue_shapes(report_ ? report_->state.time : now, *view, forces_);
   reader.last_step = view->step;
   reader.shapes_due = now + period;
 }

@@ -2,6 +2,7 @@
 
 #include "app/owner/display/display_service.hpp"
 #include "app/owner/volume/volume_service.hpp"
+#include "app/pictures/tissue_at_rest.hpp"
 #include "app/render/picture_request.hpp"
 #include "app/render/renderer_options.hpp"
 #include "app/render/scene_source.hpp"
@@ -10,23 +11,8 @@
 #include "drivers/display/renderer.hpp"
 #include "rt_core/cell/view.hpp"
 #include "rt_core/scene/scene_builder.hpp"
-#include "rt_core/tissue/world.hpp"
 
 namespace cellmirror::app {
-
-namespace {
-
-// The deformable objects as their files have them; null: the cell has none.
-Result<std::shared_ptr<const TissueView>> tissue_at_rest(const TissueSetup& setup) {
-  if (setup.objects.empty()) return nullptr;
-  const Result<tissue::World> world = tissue::World::make(setup.objects, setup.connections);
-  if (!world) return std::unexpected(world.error());
-  auto view = std::make_shared<TissueView>();
-  world->view(*view, false);
-  return view;
-}
-
-}  // namespace
 
 Result<CellPicture> cell_snapshot(const LoadedCell& loaded, const SnapshotRequest& wanted) {
   const PictureRequest request = picture_request_of(wanted, loaded.pictures.width, loaded.pictures.height);

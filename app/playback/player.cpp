@@ -58,6 +58,8 @@ bool Player::wait_for(Timestamp tick, const std::stop_token& stop) {
 }
 
 void Player::publish() {
+  // First: who sees the tick sees what belongs to it.
+  run_.tissue().publish();
   ticks_.publish(run_.state(), run_.names(), run_.names_revision());
   if (ticks_.missing().size() == told_missing_) return;
   told_missing_ = ticks_.missing().size();

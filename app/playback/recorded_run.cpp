@@ -36,6 +36,9 @@ Result<std::unique_ptr<RecordedRun>> RecordedRun::open(const std::filesystem::pa
   if (!has_inputs)
     return fail(fmt::format("{}: the recording has no topic {}, so it cannot be played", file.string(), kInputsTopic),
                 "record it without --topics, or with this one among them");
+  out->played_topics_.emplace_back(kInputsTopic);
+  for (const auto& [id, channel] : out->reader_->catalogue().channels)
+    if (is_of_tissue(channel)) out->played_topics_.push_back(channel.topic);
   if (auto found = out->find_range(); !found)
     return fail(file.string() + ": " + found.error().what, found.error().remedy);
   if (const auto rate = parse_number(gateway_value(*out->reader_, "loop_rate_hz")); rate && *rate >= 1 && *rate <= 1e5)
@@ -103,11 +106,13 @@ Result<void> RecordedRun::find_utc(const std::string& recorded) {
 
 Result<void> RecordedRun::read_from(std::uint64_t from, const PublishedTicks::Take& take) {
   ticks_.gap();
+  tissue_.begin();
   std::optional<std::uint32_t> last;
   Result<void> sound;
-  const mcap::Filter filter{.topics = {std::string(kInputsTopic)}, .from = from};
+  const mcap::Filter filter{.topics = played_topics_, .from = from};
   auto read = reader_->read(filter, [&](const mcap::Message& message, const mcap::Channel& channel) {
-    if (channel.encoding != kInputsEncoding) return true;
+    if (is_of_tissue(channel)) tissue_.take(channel, message.data);
+    if (channel.encoding != kInputsEncoding || channel.topic != kInputsTopic) return true;
     if (last && message.sequence != *last + 1) ticks_.gap();
     last = message.sequence;
     const auto more = ticks_.take(message.data, take);

@@ -9,8 +9,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/playback/playback_control.hpp"
+#include "app/playback/played_tissue.hpp"
 #include "app/playback/published_ticks.hpp"
 #include "ipc/record/reader.hpp"
 #include "rt_core/base/result.hpp"
@@ -38,6 +40,9 @@ class RecordedRun {
   // Ticks from the last start state before `time` on, or from the first after it where there is none; `take` ends it.
   // Fails where the file cannot be read on, or is not sound.
   Result<void> read(Timestamp time, const PublishedTicks::Take& take);
+  // As of the tick that read() hands in, once it is published.
+  [[nodiscard]] PlayedTissue& tissue() { return tissue_; }
+  [[nodiscard]] const PlayedTissue& tissue() const { return tissue_; }
   // All messages of another topic, in the order of the file; `take` ends it.
   Result<void> read_topic(std::string_view topic, const mcap::Reader::Take& take) {
     return reader_->read({.topics = {std::string(topic)}}, take);
@@ -56,6 +61,8 @@ class RecordedRun {
   PlaybackControl::Range range_;
   double rate_hz_ = 1000;
   PublishedTicks ticks_;
+  PlayedTissue tissue_;
+  std::vector<std::string> played_topics_;  // that read() needs
 };
 
 }  // namespace cellmirror::app

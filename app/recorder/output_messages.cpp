@@ -83,6 +83,17 @@ TopicPtr json_topic(std::string name, std::string_view type, std::string_view sc
       Topic{std::move(name), "json", std::string(type), "jsonschema", std::string(schema), importance});
 }
 
+TopicPtr tissue_topic(std::string name, std::string_view encoding, std::string_view type) {
+  return std::make_shared<const Topic>(
+      Topic{.name = std::move(name),
+            .encoding = std::string(encoding),
+            .schema_name = std::string(type),
+            .schema_encoding = std::string(encoding),
+            .schema = "Deformable objects, for cellmirror replay (docs/recording.md). Version 1.",
+            .importance = Importance::bulk,
+            .of_tissue = true});
+}
+
 void write_touching(const ProximityState& state, JsonWriter& out) {
   out.key("touching").begin_array();
   for (std::size_t i = 0; i < std::min(state.touching.size(), kMostPairsTold); ++i) {
@@ -176,6 +187,23 @@ TopicPtr OutputTopics::pictures(std::string_view view) {
                                              .schema = ros2::compressed_image(),
                                              .importance = Importance::picture,
                                              .view = std::string(view)});
+}
+TopicPtr OutputTopics::tissue(std::string_view object) {
+  constexpr std::string_view kExtension = ".mpo";
+  if (object.ends_with(kExtension)) object.remove_suffix(kExtension.size());
+  return tissue_topic(dds::topic_of("object", kTissueTopics, object), kTissueEncoding, "cellmirror.TissueSurface");
+}
+TopicPtr OutputTopics::tissue_effects() {
+  return tissue_topic(std::string(kTissueEffectsTopic), kTissueEffectsEncoding, "cellmirror.TissueEffects");
+}
+TopicPtr OutputTopics::tissue_markers() {
+  return std::make_shared<const Topic>(Topic{.name = "/cellmirror/tissue_markers",
+                                             .encoding = "cdr",
+                                             .schema_name = "visualization_msgs/msg/MarkerArray",
+                                             .schema_encoding = "ros2msg",
+                                             .schema = ros2::marker_array(),
+                                             .importance = Importance::bulk,
+                                             .of_tissue = true});
 }
 TopicPtr OutputTopics::joint_states(mcap::Texts joints) {
   return std::make_shared<const Topic>(Topic{"/joint_states", "cdr", "sensor_msgs/msg/JointState", "ros2msg",

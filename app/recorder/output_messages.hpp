@@ -39,6 +39,11 @@ struct OutputTopics {
   static TopicPtr rtde_packages(std::string_view robot);
   // "/cellmirror/pictures/VIEW": sensor_msgs/msg/CompressedImage.
   static TopicPtr pictures(std::string_view view);
+  // "/cellmirror/tissue/OBJECT": the surface of a deformable object; clips, drops, smoke and pool of all; and surfaces
+  // as visualization_msgs/msg/MarkerArray, for people's tools.
+  static TopicPtr tissue(std::string_view object);
+  static TopicPtr tissue_effects();
+  static TopicPtr tissue_markers();
   // With "joint:NAME" = "ROBOT.JOINT" for each joint.
   static TopicPtr joint_states(mcap::Texts joints);
 };

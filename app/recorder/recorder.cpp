@@ -44,6 +44,7 @@ Recorder::Recorder(Sources sources, RecordingHub& hub)
       hub_(hub),
       pictures_(sources_.open_pictures, hub),
       alarms_(sources_.alarms, hub),
+      tissue_(sources_.tissue, hub),
       inputs_(sources_.engine_inputs != nullptr ? std::make_unique<InputRecorder>(*sources_.engine_inputs, hub)
                                                 : nullptr),
       thread_([this](const std::stop_token& stop) { loop(stop); }) {}
@@ -71,6 +72,7 @@ void Recorder::loop(const std::stop_token& stop) {
       newest_event_ = 0;
       newest_edge_.reset();
       alarms_.forget();
+      tissue_.forget();
       wait_for(kIdle);
       continue;
     }
@@ -80,6 +82,7 @@ void Recorder::loop(const std::stop_token& stop) {
     record_status(now);
     pictures_.look(now);
     alarms_.look(now);
+    tissue_.look(now);
     // The tick that is due next, and a little later.
     const auto period = std::max(sources_.tick_period, Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)));
     const std::int64_t ticks = std::max<std::int64_t>(1, (period + sources_.tick_period / 2) / sources_.tick_period);

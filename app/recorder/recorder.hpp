@@ -19,6 +19,7 @@
 #include "app/recorder/output_messages.hpp"
 #include "app/recorder/picture_recorder.hpp"
 #include "app/recorder/recording_hub.hpp"
+#include "app/recorder/tissue_recorder.hpp"
 #include "app/snapshot/board.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/command_record.hpp"
@@ -51,6 +52,7 @@ class Recorder {
     engine::InputTap* engine_inputs = nullptr;  // null: the inputs of the tick are not recorded
     PictureRecorder::Open open_pictures = {};   // empty: no pictures are recorded
     AlarmLines alarms = {};                     // empty: no alarms are recorded
+    TissueSources tissue = {};                  // empty: the cell has no deformable objects
     bool keeps_collisions = false;              // the ring is kept where bodies touch
   };
 
@@ -116,6 +118,7 @@ class Recorder {
   Timestamp last_status_;
   PictureRecorder pictures_;
   AlarmRecorder alarms_;
+  TissueRecorder tissue_;
   std::unique_ptr<InputRecorder> inputs_;  // null: none are recorded
   std::jthread thread_;                    // last: it uses everything above
 };

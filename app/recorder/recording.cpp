@@ -141,6 +141,7 @@ void Recording::count_missed(const TopicPtr& topic, std::uint64_t messages) {
 }
 
 bool Recording::wants(const Topic& topic) const {
+  if (topic.of_tissue && !(options_.tissue_rate_hz > 0)) return false;
   if (topic.importance != Importance::picture) return fits(options_.topics, topic.name);
   return std::ranges::find(options_.pictures, topic.view, &WantedPicture::view) != options_.pictures.end();
 }

@@ -36,6 +36,7 @@ struct RecordingRing {
   Nanoseconds keep_after{5'000'000'000};              // how much is kept after a request
 };
 
+inline constexpr double kUsualTissueRate_hz = 10;
 inline constexpr std::uint64_t kMostAttached = 64'000'000;
 
 // A view that is recorded as pictures: 0 to 6, or a camera. Not more often than that.
@@ -50,9 +51,10 @@ struct RecordingOptions {
   std::vector<std::string> topics;           // none: all; "/tf", or "/cellmirror/*" for all that begin so
   std::vector<WantedPicture> pictures = {};  // beside the topics; none: no pictures
   mcap::Compression compression = mcap::Compression::zstd;
-  double rate_hz = 100;   // of robot states, at most
-  Nanoseconds length{0};  // ends after it; 0: no end
-  Nanoseconds lease{0};   // ends where nobody called renew() so long; 0: no lease
+  double rate_hz = 100;                         // of robot states, at most
+  double tissue_rate_hz = kUsualTissueRate_hz;  // of deformable objects, at most; 0: they are not recorded
+  Nanoseconds length{0};                        // ends after it; 0: no end
+  Nanoseconds lease{0};                         // ends where nobody called renew() so long; 0: no lease
   std::size_t buffer_bytes = std::size_t{16} << 20;
   mcap::Texts about = {};  // into the file: version, cell, ...
   CellFiles cell = {};     // attached
@@ -80,6 +82,7 @@ class Recording final : public TopicSink {
   bool keep();
   [[nodiscard]] RecordingReport report() const;
   [[nodiscard]] double rate_hz() const override { return options_.rate_hz; }
+  [[nodiscard]] double tissue_rate_hz() const { return options_.tissue_rate_hz; }
   [[nodiscard]] const std::vector<WantedPicture>& pictures() const { return options_.pictures; }
 
  private:

@@ -126,6 +126,12 @@ double RecordingHub::rate_hz() const {
       {goes_on(file) ? file->rate_hz() : 0.0, goes_on(ring) ? ring->rate_hz() : 0.0, live_ ? live_->rate_hz() : 0.0});
 }
 
+double RecordingHub::tissue_rate_hz() const {
+  const auto [file, ring] = both();
+  const double live = live_ && live_->rate_hz() > 0 ? kUsualTissueRate_hz : 0.0;
+  return std::max({goes_on(file) ? file->tissue_rate_hz() : 0.0, goes_on(ring) ? ring->tissue_rate_hz() : 0.0, live});
+}
+
 std::vector<RecordingReport> RecordingHub::reports() const {
   const auto [file, ring] = both();
   std::vector<RecordingReport> out;

@@ -43,6 +43,8 @@ class RecordingHub {
   [[nodiscard]] std::vector<WantedPicture> pictures() const;
   // The greatest rate of robot states that is wanted; 0: nothing is recorded.
   [[nodiscard]] double rate_hz() const;
+  // The greatest rate of deformable objects that is wanted; 0: none are.
+  [[nodiscard]] double tissue_rate_hz() const;
   // The newest of each kind, also one that has ended.
   [[nodiscard]] std::vector<RecordingReport> reports() const;
   [[nodiscard]] std::optional<RecordingReport> file_report() const;

@@ -28,6 +28,21 @@ inline constexpr std::string_view kRange =
     "float32 min_range\nfloat32 max_range\nfloat32 range\nfloat32 variance\n";
 inline constexpr std::string_view kWrenchStamped = "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n";
 inline constexpr std::string_view kCompressedImage = "std_msgs/Header header\nstring format\nuint8[] data\n";
+inline constexpr std::string_view kMarker =
+    "int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 LINE_LIST=5\n"
+    "int32 CUBE_LIST=6\nint32 SPHERE_LIST=7\nint32 POINTS=8\nint32 TEXT_VIEW_FACING=9\nint32 MESH_RESOURCE=10\n"
+    "int32 TRIANGLE_LIST=11\nint32 ADD=0\nint32 MODIFY=0\nint32 DELETE=2\nint32 DELETEALL=3\n"
+    "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\ngeometry_msgs/Pose pose\n"
+    "geometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\nbool frame_locked\n"
+    "geometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\nstring texture_resource\n"
+    "sensor_msgs/CompressedImage texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\nstring text\n"
+    "string mesh_resource\nvisualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n";
+inline constexpr std::string_view kMarkerArray = "visualization_msgs/Marker[] markers\n";
+inline constexpr std::string_view kPose = "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n";
+inline constexpr std::string_view kColour = "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n";
+inline constexpr std::string_view kDuration = "int32 sec\nuint32 nanosec\n";
+inline constexpr std::string_view kUvCoordinate = "float32 u\nfloat32 v\n";
+inline constexpr std::string_view kMeshFile = "string filename\nuint8[] data\n";
 inline constexpr std::string_view kLog =
     "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\nbuiltin_interfaces/Time stamp\n"
     "uint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n";
@@ -50,6 +65,15 @@ inline std::string tf_message() {
   return with_header(kTfMessage) + part("geometry_msgs/TransformStamped", kTransformStamped) +
          part("geometry_msgs/Transform", kTransform) + part("geometry_msgs/Vector3", kVector3) +
          part("geometry_msgs/Quaternion", kQuaternion);
+}
+
+inline std::string marker_array() {
+  return std::string(kMarkerArray) + part("visualization_msgs/Marker", kMarker) + part("std_msgs/Header", kHeader) +
+         part("builtin_interfaces/Time", kTime) + part("builtin_interfaces/Duration", kDuration) +
+         part("geometry_msgs/Pose", kPose) + part("geometry_msgs/Point", kVector3) +
+         part("geometry_msgs/Quaternion", kQuaternion) + part("geometry_msgs/Vector3", kVector3) +
+         part("std_msgs/ColorRGBA", kColour) + part("sensor_msgs/CompressedImage", kCompressedImage) +
+         part("visualization_msgs/UVCoordinate", kUvCoordinate) + part("visualization_msgs/MeshFile", kMeshFile);
 }
 
 }  // namespace ros2

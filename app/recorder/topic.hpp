@@ -25,7 +25,8 @@ struct Topic {
   std::string schema;
   Importance importance = Importance::state;
   mcap::Texts metadata = {};
-  std::string view = {};  // of pictures: what they show, as in WantedPicture
+  std::string view = {};   // of pictures: what they show, as in WantedPicture
+  bool of_tissue = false;  // not recorded where the rate of tissue is 0
 };
 
 // A topic is known by its address: two topics of one name are two channels.

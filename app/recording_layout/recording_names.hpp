@@ -30,6 +30,11 @@ inline constexpr std::string_view kCollisionEventsTopic = "/cellmirror/collision
 // The topic that has all that the tick took (docs/recording.md).
 inline constexpr std::string_view kInputsTopic = "/inputs/ticks";
 inline constexpr std::string_view kInputsEncoding = "cellmirror.inputs";
+// Surfaces of deformable objects, one topic each, and what is beside surfaces (tissue_messages.hpp).
+inline constexpr std::string_view kTissueTopics = "/cellmirror/tissue";
+inline constexpr std::string_view kTissueEncoding = "cellmirror.tissue";
+inline constexpr std::string_view kTissueEffectsTopic = "/cellmirror/tissue_effects";
+inline constexpr std::string_view kTissueEffectsEncoding = "cellmirror.tissue_effects";
 // Metadata of a channel: "joint:NAME" = "ROBOT.JOINT".
 inline constexpr std::string_view kJointKey = "joint:";
 

@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "app/render/message_bytes.hpp"
+#include "rt_core/ports/packed_vertex.hpp"
 
 namespace cellmirror::app {
 
@@ -86,25 +86,6 @@ void put_shape(MessageBytes& out, const TissueClip& clip) {
   }
 }
 
-std::uint16_t in_box(float value, float low, float edge) {
-  if (!(edge > 0.0F)) return 0;
-  return static_cast<std::uint16_t>(std::lround(65535.0F * std::clamp((value - low) / edge, 0.0F, 1.0F)));
-}
-
-// Octahedral: a unit vector as two numbers of -1 to 1 (Meyer et al., "On floating-point normal vectors", 2010).
-std::array<std::int8_t, 2> octahedral(const Eigen::Vector3f& normal) {
-  const float sum = normal.cwiseAbs().sum();
-  if (!std::isfinite(sum) || sum <= 0.0F) return {0, 0};
-  float x = normal.x() / sum;
-  float y = normal.y() / sum;
-  if (normal.z() < 0.0F) {
-    const float folded = (1.0F - std::abs(y)) * (x < 0.0F ? -1.0F : 1.0F);
-    y = (1.0F - std::abs(x)) * (y < 0.0F ? -1.0F : 1.0F);
-    x = folded;
-  }
-  return {static_cast<std::int8_t>(std::lround(127.0F * x)), static_cast<std::int8_t>(std::lround(127.0F * y))};
-}
-
 void put_motion(MessageBytes& out, const TissueSurface& surface) {
   constexpr std::uint32_t kShown = 1;
   constexpr std::uint32_t kWet = 2;
@@ -121,18 +102,15 @@ void put_motion(MessageBytes& out, const TissueSurface& surface) {
   out.put(edges);
   out.put((sound && surface.visible ? kShown : 0U) | (surface.wet ? kWet : 0U));
   for (const Eigen::Vector3f& vertex : surface.vertices) {
-    for (int i = 0; i < 3; ++i) out.put(in_box(vertex[i], low[i], edges[i]));
+    for (int i = 0; i < 3; ++i) out.put(packed_in_box(vertex[i], low[i], edges[i]));
   }
   out.align();
   for (const Eigen::Vector3f& normal : surface.normals) {
-    for (const std::int8_t value : octahedral(normal)) out.put(value);
+    for (const std::int8_t value : packed_normal(normal)) out.put(value);
   }
   out.align();
   const bool burnt = surface.burn.size() == surface.vertices.size();
-  for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
-    const float burn = burnt && std::isfinite(surface.burn[i]) ? std::clamp(surface.burn[i], 0.0F, 2.0F) : 0.0F;
-    out.put(static_cast<std::uint8_t>(std::lround(127.5F * burn)));
-  }
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i) out.put(packed_burn(burnt ? surface.burn[i] : 0.0F));
   out.align();
 }
 

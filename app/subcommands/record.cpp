@@ -34,6 +34,7 @@ struct RecordOptions {
   std::vector<std::string> pictures;
   double seconds = 0;
   double rate_hz = 100;
+  double tissue_rate_hz = 10;
   double attach_mb = 64;
   std::string compression = "zstd";
   std::string instance{kDefaultInstance};
@@ -66,6 +67,7 @@ ControlRequest start_request(const RecordOptions& options) {
            {"pictures", joined(options.pictures)},
            {"compression", options.compression},
            {"rate_hz", fmt::format("{}", options.rate_hz)},
+           {"tissue_rate_hz", fmt::format("{}", options.tissue_rate_hz)},
            {"attach_mb", fmt::format("{}", options.attach_mb)},
            {"for_s", fmt::format("{}", options.seconds)}}};
 }
@@ -125,6 +127,9 @@ void add_record(cli::Command program, Action& action) {
       .list_divided_by(',');
   sub.option("--rate", options->rate_hz, "robot states a second, at most as many as the loop has periods")
       .between(0.1, 4000.0)
+      .show_default();
+  sub.option("--tissue-rate", options->tissue_rate_hz, "surfaces of deformable objects a second at most; 0: none")
+      .between(0.0, 30.0)
       .show_default();
   sub.option("--attach-mb", options->attach_mb, "megabytes of the cell's files that are attached at most")
       .between(0.0, 1024.0)

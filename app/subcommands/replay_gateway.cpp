@@ -87,10 +87,11 @@ int play_recording(const ReplayGateway& options) {
   if (!recording) return refuse(recording.error().text());
   const mcap::Reader& reader = (*recording)->run().reader();
   if (!reader.indexed())
-    log_warning("replay.file",
-                "{} was not ended in order ({}): every seek reads it from its beginning; cellmirror "
-                "recording recover makes a whole one",
-                options.file, reader.why_not_indexed());
+    log_warning(
+        "replay.file",
+        "{} was not ended in order ({}): it was read as a whole to be opened; cellmirror recording recover makes "
+        "one that is opened at once",
+        options.file, reader.why_not_indexed());
   // Of the user alone, for the cell and for all that a gateway writes.
   auto folder = TemporaryFolder::make();
   if (!folder) return refuse(folder.error().text());

@@ -100,13 +100,14 @@ Result<Reader> Reader::open(const Source& source, const Limits& limits) {
   out.statistics_ = std::move(scanned->statistics);
   out.chunks_ = std::move(scanned->chunks);
   out.faults_ = std::move(scanned->faults);
+  out.chunks_have_all_ = scanned->chunks_have_all;
   out.attachments_ = std::move(indexer.attachments);
   out.metadata_ = std::move(indexer.metadata);
   return out;
 }
 
 Result<void> Reader::read(const Filter& filter, const Take& take) {
-  if (indexed_) return read_by_index(filter, take);
+  if (indexed_ || chunks_have_all_) return read_by_index(filter, take);
   Selection selection(filter, take);
   auto scanned = scan(*source_, limits_, selection);
   if (!scanned) return std::unexpected(scanned.error());

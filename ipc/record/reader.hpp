@@ -1,4 +1,5 @@
-// Reads messages of a recording by topic and time: by its summary where that is right, else by reading it as a whole.
+// Reads messages of a recording by topic and time: by its summary where that is right, else by reading it as a whole
+// once, when it is opened.
 // Takes any bytes. One thread; not for the tick.
 #pragma once
 
@@ -62,6 +63,7 @@ class Reader {
   std::vector<MetadataIndex> metadata_;
   Faults faults_;
   bool indexed_ = false;
+  bool chunks_have_all_ = false;  // of a scan: chunks_ are enough to read all messages
   std::string why_not_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "ipc/record/decode.hpp"
@@ -63,7 +64,10 @@ class Scanner {
   // Of the data section or a chunk; false: it is none of these kinds.
   bool take_inner(const RecordView& record, std::uint64_t offset);
   void look_at_end(std::uint64_t offset);
-  void fault(std::uint64_t offset, std::string what) { out_.faults.add(offset, std::move(what)); }
+  void fault(std::uint64_t offset, std::string what) {
+    if (in_chunk_) out_.chunks_have_all = false;
+    out_.faults.add(offset, std::move(what));
+  }
 
   const Source& source_;
   Limits limits_;
@@ -73,6 +77,7 @@ class Scanner {
   std::optional<std::vector<std::uint64_t>> known_chunks_;
   std::uint64_t last_time_ = 0;
   bool in_chunk_ = false;
+  std::set<std::uint16_t> chunk_channels_;
   bool has_header_ = false;
 };
 
@@ -82,7 +87,12 @@ void Scanner::take_message(const Message& message, std::uint64_t offset) {
     return fault(offset, fmt::format("a message of the channel {}, which is not described", message.channel));
   if (message.log_time < last_time_) ++out_.out_of_order;
   last_time_ = message.log_time;
-  if (!in_chunk_) ++out_.messages_outside;
+  if (in_chunk_) {
+    chunk_channels_.insert(message.channel);
+  } else {
+    ++out_.messages_outside;
+    out_.chunks_have_all = false;
+  }
   out_.statistics.count(message);
   visitor_.on_message(message, channel->second);
 }
@@ -131,15 +141,16 @@ void Scanner::take_chunk(const RecordView& record) {
     return fault(record.offset, content.error().what);
   }
   in_chunk_ = true;
+  chunk_channels_.clear();
   RecordList records(*content);
   while (const auto inner = records.next()) {
     if (!take_inner(*inner, record.offset))
       fault(record.offset,
             fmt::format("the chunk has a record of kind {:#04x} at its byte {}", inner->opcode, inner->offset));
   }
-  in_chunk_ = false;
   if (!records.ok())
     fault(record.offset, fmt::format("the chunk has a record at its byte {} that is cut off", records.offset()));
+  in_chunk_ = false;
   ChunkIndex index;
   index.start_time = chunk->start_time;
   index.end_time = chunk->end_time;
@@ -148,6 +159,7 @@ void Scanner::take_chunk(const RecordView& record) {
   index.compression = chunk->compression;
   index.compressed_size = chunk->records.size();
   index.uncompressed_size = chunk->uncompressed_size;
+  for (const std::uint16_t channel : chunk_channels_) index.message_index_offsets[channel] = 0;
   out_.chunks.push_back(std::move(index));
   ++out_.statistics.chunks;
 }

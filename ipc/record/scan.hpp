@@ -63,8 +63,9 @@ class Visitor {
 struct ScanReport {
   Header header;
   Catalogue catalogue;
-  Statistics statistics;               // of what was passed on
-  std::vector<ChunkIndex> chunks;      // whole ones; without where their message indexes are
+  Statistics statistics;           // of what was passed on
+  std::vector<ChunkIndex> chunks;  // whole ones, with the channels of their messages, but not where these are
+  bool chunks_have_all = true;     // every message that was passed on is in one of them, and nothing in these is wrong
   std::uint64_t messages_outside = 0;  // of no chunk
   std::uint64_t out_of_order = 0;      // messages with a log time before that of the message before
   std::uint64_t chunks_lost = 0;
