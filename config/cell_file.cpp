@@ -121,6 +121,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
   }
   collision::Settings collision;
   if (cell) collision = reader.collision.settings(*cell, reader.findings);
+  if (cell) reader.io.complete(*cell, reader.findings);
   TissueSetup tissue;
   if (cell) tissue = reader.tissue.setup(*cell, reader.findings);
   reader.findings.take(of_streams);
@@ -140,6 +141,8 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
                     reader.loop,
                     std::move(reader.streams),
                     std::move(reader.haptics),
+                    std::move(reader.io.nodes),
+                    std::move(reader.io.barriers),
                     reader.foot_switches,
                     reader.dds,
                     reader.queues,

@@ -24,6 +24,8 @@
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/haptics/settings.hpp"
 #include "rt_core/ports/display_layout.hpp"
+#include "rt_core/ports/io_config.hpp"
+#include "rt_core/ports/light_barrier.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
 
@@ -80,6 +82,8 @@ struct LoadedCell {
   LoopSettings loop;
   std::vector<RobotStream> streams;  // each of another robot
   std::vector<RobotHaptic> haptics;  // each of another robot, which has no stream
+  std::vector<IoNodeConfig> io_nodes;
+  std::vector<LightBarrier> barriers;
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
   QueueOverrides queues;

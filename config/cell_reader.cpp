@@ -83,6 +83,7 @@ bool CellReader::read(std::string_view text) {
   constexpr std::size_t kMostStreams = kMaxRobots;
   stream_tables_ = top.tables("stream", kMostStreams);
   device_tables_ = top.tables("device", kMostStreams);
+  io.read(top);
   haptic_tables_ = top.tables("haptic", kMaxHapticDevices);
   top.belongs_to("[loop]", {"rate_hz", "real_time", "priority"});
   top.belongs_to("[[stream]]", {"robot", "kind", "channel", "topic", "dbc", "address"});
@@ -107,6 +108,7 @@ void CellReader::read_streams(const RobotDirectory& robots, bool complete) {
   for (TableReader& table : device_tables_) {
     if (auto device = read_device(table, robots, complete, files_)) add(table, std::move(*device), "stream or device");
   }
+  io.read_nodes(robots, complete, files_);
 }
 
 void CellReader::read_haptics(const RobotDirectory& robots, bool complete) {

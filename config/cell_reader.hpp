@@ -10,6 +10,7 @@
 #include "config/cell_file.hpp"
 #include "config/collision_reader.hpp"
 #include "config/component_files.hpp"
+#include "config/io_reader.hpp"
 #include "config/table_reader.hpp"
 #include "config/tissue_reader.hpp"
 
@@ -35,6 +36,7 @@ class CellReader {
   LoopSettings loop;
   std::vector<RobotStream> streams;
   std::vector<RobotHaptic> haptics;
+  IoReader io;
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
   QueueOverrides queues;

@@ -104,6 +104,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   if (playback != nullptr) {
     streams.clear();
     loaded.haptics.clear();
+    loaded.io_nodes.clear();
     loaded.foot_switches = {};
   }
   const auto save = [this](std::string_view name) -> Result<void> {
@@ -125,6 +126,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .home = loaded.home,
                        .streams = std::move(streams),
                        .haptics = std::move(loaded.haptics),
+                       .io_nodes = std::move(loaded.io_nodes),
                        .views = std::move(loaded.views),
                        .layout = std::move(loaded.layout),
                        .collision = std::move(loaded.collision),
@@ -207,7 +209,8 @@ Result<void> Gateway::Parts::start_loop() {
 void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   const Nanoseconds period = loop->options().period;
   collisions = std::make_unique<CollisionWorker>(readers->collisions, board, clock, period, solids);
-  ranging = std::make_unique<RangingWorker>(readers->ranging, board, clock, period, solids);
+  ranging = std::make_unique<RangingWorker>(readers->ranging, board, clock, period, solids, std::move(barriers));
+  io = std::make_unique<IoWorker>(readers->io, board, ranging->board(), clock, period);
   contacts = std::make_unique<ContactWorker>(*engine, readers->contacts, board, clock, period, solids);
   forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W);
   tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period);
@@ -364,6 +367,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   const WebSettings web = loaded->web;
   const RecordSettings record = loaded->record;
   const Eigen::Vector3d gravity_W = loaded->gravity_m_s2;
+  parts->barriers = std::move(loaded->barriers);
   const bool live = options.playback == nullptr;
   Result<void> step = check_instance_name(options.instance);
   if (step && live) step = parts->prepare_machine();

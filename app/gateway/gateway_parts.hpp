@@ -35,6 +35,7 @@
 #include "app/workers/contact_worker.hpp"
 #include "app/workers/fault_monitor.hpp"
 #include "app/workers/force_worker.hpp"
+#include "app/workers/io_worker.hpp"
 #include "app/workers/ranging_worker.hpp"
 #include "app/workers/tcp_force_worker.hpp"
 #include "app/workers/tissue_worker.hpp"
@@ -91,7 +92,9 @@ struct Gateway::Parts {
   std::unique_ptr<CyclicThread> loop;
   std::atomic<bool> ticking{false};  // the loop runs, for threads that began before it
   std::unique_ptr<CollisionWorker> collisions;
+  std::vector<LightBarrier> barriers;  // until the ranging worker has them
   std::unique_ptr<RangingWorker> ranging;
+  std::unique_ptr<IoWorker> io;
   std::unique_ptr<ContactWorker> contacts;
   std::unique_ptr<ForceWorker> forces;
   std::unique_ptr<TcpForceWorker> tcp_force;
@@ -120,6 +123,7 @@ struct Gateway::Parts {
     tcp_force.reset();
     contacts.reset();
     if (tissue) tissue->stop();
+    io.reset();
     ranging.reset();
     collisions.reset();
     // The receiver's handler may wait for the owner to take a command, so it has to end first; an owner that never

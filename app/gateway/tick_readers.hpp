@@ -21,6 +21,7 @@ struct TickReaders {
         publisher(engine.subscribe("publisher")),
         pictures(engine.subscribe("pictures")),
         scene(engine.subscribe("scene")),
+        io(engine.subscribe("io")),
         recorder(engine.subscribe("recorder")) {}
 
   engine::TickReader& status;
@@ -34,6 +35,7 @@ struct TickReaders {
   engine::TickReader& publisher;
   engine::TickReader& pictures;
   engine::TickReader& scene;
+  engine::TickReader& io;
   engine::TickReader& recorder;
 };
 

@@ -89,4 +89,10 @@ Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& confi
   return std::visit(StreamMaker{clock, fifo_priority, open_can, payloads, contacts}, config);
 }
 
+std::unique_ptr<JointStream> make_io_node(const IoNodeConfig& config, can::IoLinks links, const Clock& clock,
+                                          int fifo_priority) {
+  return can::make_cia401_node(config, std::move(links), clock,
+                               {.thread_name = "io-node", .fifo_priority = fifo_priority, .open_channel = {}});
+}
+
 }  // namespace cellmirror::app

@@ -24,6 +24,10 @@ Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& confi
                                                        const std::shared_ptr<PayloadSink>& payloads = {},
                                                        const std::shared_ptr<ContactInlet>& contacts = {});
 
+// An I/O node of a [[io_node]], closed; it takes no samples: can::no_samples(). `clock` outlives it.
+[[nodiscard]] std::unique_ptr<JointStream> make_io_node(const IoNodeConfig& config, can::IoLinks links,
+                                                        const Clock& clock, int fifo_priority);
+
 // Reads the EDS, DCF or DBC files of the stream and tells what is wrong with them and with what the cell file takes
 // from them, each at its place; warns of joints without a source. What the reader of the cell file told is not told
 // again.

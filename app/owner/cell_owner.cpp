@@ -101,6 +101,9 @@ CellOwner::CellOwner(Parts parts)
       FootSwitchService::Options{parts.foot_switches, parts.instance, parts.stream_priority, [this] { wake_.wake(); },
                                  std::move(parts.switch_changed)},
       *runner_, home_, clock_);
+  if (parts.let_tick_pass) return;
+  io_ = std::make_unique<IoService>(IoService::Parts{cell_, *fleet_, guarded_motion_, motion_, *runner_, clock_},
+                                    std::move(parts.io_nodes), parts.stream_priority, [this] { wake_.wake(); });
 }
 
 CellOwner::~CellOwner() { stop(); }
@@ -113,6 +116,7 @@ Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
     if (const auto made = forces_.make_memory(); !made) log_warning("force.memory", "{}", made.error().text());
   }
   if (auto prepared = switches_->prepare(); !prepared) return prepared;
+  if (io_) io_->prepare();
   publish_state();
   if (script.empty()) return {};
   const auto path = is_path ? Result<std::filesystem::path>(script) : startup_file(home_, script);
@@ -178,6 +182,7 @@ bool CellOwner::turn() {
   changed_ = programs_.follow() || changed_;
   // Files first: what a foot switch begins does not wait behind a flood of messages.
   bool busy = execute_files();
+  busy = (io_ && io_->follow()) || busy;
   busy = execute_messages() || busy;
   changed_ = changed_ || busy;
   const bool due = clock_.now() - last_publication_ > kPublishPeriod;
@@ -238,6 +243,7 @@ void CellOwner::publish_state() {
   cell_state->couplings = couplings_.snapshots();
   cell_state->tissue = tissue_.settings();
   cell_state->volumes = volumes_.states();
+  if (io_) cell_state->io_nodes = io_->snapshots();
   display_.follow();
   cell_state->display = display_.state();
   board_.publish(std::move(cell_state));

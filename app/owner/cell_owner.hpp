@@ -20,6 +20,7 @@
 #include "app/owner/haptics/haptic_service.hpp"
 #include "app/owner/hosts.hpp"
 #include "app/owner/interaction.hpp"
+#include "app/owner/io_service.hpp"
 #include "app/owner/motion/coupling_service.hpp"
 #include "app/owner/motion/guarded_motion.hpp"
 #include "app/owner/motion/motion_service.hpp"
@@ -48,6 +49,7 @@ class CellOwner {
     KismetHome home;
     std::map<std::string, StreamConfig, std::less<>> streams;
     std::vector<RobotHaptic> haptics;
+    std::vector<IoNodeConfig> io_nodes = {};
     std::vector<ViewSetting> views;
     DisplayLayout layout = {};
     collision::Settings collision;
@@ -150,6 +152,7 @@ class CellOwner {
   NodeLevels levels_;
   WakeSignal wake_;
   std::unique_ptr<FootSwitchService> switches_;  // its thread wakes the owner's
+  std::unique_ptr<IoService> io_;                // likewise; null: off line
   WakeSignal room_;                              // wakes the receiver's thread when the queue has room again
   Timestamp last_publication_;
   bool changed_ = true;  // since the last publication

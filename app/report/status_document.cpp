@@ -18,6 +18,7 @@
 #include "app/report/status_display.hpp"
 #include "app/report/status_forces.hpp"
 #include "app/report/status_haptics.hpp"
+#include "app/report/status_io.hpp"
 #include "app/report/status_page.hpp"
 #include "app/report/status_pictures.hpp"
 #include "app/report/status_programs.hpp"
@@ -308,6 +309,7 @@ std::string status_document(const StatusSources& sources) {
       {"page", page_json(sources.page)},
       {"programs", programs_json(sources.cell_state.programs)},
       {"foot_switches", switches_json(sources.cell_state.switches, sources.now)},
+      {"io_nodes", io_nodes_json(sources.cell_state)},
       {"couplings", couplings_json(sources.cell_state.couplings, sources.tick)},
       {"tissue", tissue_json(sources.tissue, sources.cell_state, sources.now)},
       {"volumes", volumes_json(sources.cell_state)},

@@ -46,6 +46,18 @@ json sensor_json(const CompiledSensor& sensor, const std::string& path, const Ra
   return out;
 }
 
+json barriers_json(const std::vector<BarrierReading>& barriers, Timestamp now) {
+  json out = json::array();
+  for (const BarrierReading& barrier : barriers) {
+    out.push_back({{"name", barrier.name},
+                   {"interrupted", barrier.interrupted},
+                   {"object", barrier.object.empty() ? json(nullptr) : json(barrier.object)},
+                   {"doubtful", barrier.doubtful},
+                   {"age_s", seconds(now - barrier.posture_time)}});
+  }
+  return out;
+}
+
 }  // namespace
 
 json ranges_json(const RangeReport& report, const CellState& cell_state, Timestamp now) {
@@ -62,7 +74,8 @@ json ranges_json(const RangeReport& report, const CellState& cell_state, Timesta
           {"compute_us", percentiles_json(report.compute, Nanoseconds(1'000))},
           {"rate_hz", report.rate_hz},
           {"skipped", report.skipped},
-          {"sensors", std::move(sensors)}};
+          {"sensors", std::move(sensors)},
+          {"light_barriers", known ? barriers_json(report.readings->barriers, now) : json::array()}};
 }
 
 }  // namespace cellmirror::app

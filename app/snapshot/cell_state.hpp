@@ -14,6 +14,7 @@
 #include "app/snapshot/foot_switch_snapshot.hpp"
 #include "app/snapshot/force_settings.hpp"
 #include "app/snapshot/haptic_snapshot.hpp"
+#include "app/snapshot/io_snapshot.hpp"
 #include "app/snapshot/node_level.hpp"
 #include "app/snapshot/program_snapshot.hpp"
 #include "app/snapshot/robot_force_channel.hpp"
@@ -63,6 +64,7 @@ struct CellState {
   std::vector<CouplingSnapshot> couplings;
   std::shared_ptr<const TissueSettings> tissue;  // the same object as long as nothing changes
   std::shared_ptr<const VolumeStates> volumes;   // the same object as long as nothing changes
+  std::vector<IoNodeSnapshot> io_nodes;
 };
 
 }  // namespace cellmirror::app

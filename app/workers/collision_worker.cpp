@@ -97,7 +97,7 @@ void CollisionWorker::run(const CellState& cell_state, const engine::TickState& 
 void CollisionWorker::check(const CellState& cell_state, const engine::TickState& tick) {
   const Timestamp start = clock_.now();
   const ProximityState& found = checker_.check(follower_.poses(), tick.time, follower_.later(tick, kAhead), kAhead);
-  tell_drives(cell_state, *follower_.cell(), follower_.poses(), *pairs_, found);
+  report_contacts(cell_state, *follower_.cell(), follower_.poses(), *pairs_, found);
   const Timestamp finished = clock_.now();
   compute_.record(finished - start);
   std::shared_ptr<ProximityState> state = states_.take();

@@ -7,12 +7,17 @@
 namespace cellmirror::app {
 
 RangingWorker::RangingWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-                             Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids)
-    : clock_(clock), finder_(std::move(solids)), worker_(*this, ticks, cell_states, clock, tick_period) {}
+                             Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids,
+                             std::vector<LightBarrier> barriers)
+    : clock_(clock),
+      has_barriers_(!barriers.empty()),
+      finder_(std::move(solids), std::move(barriers)),
+      worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 bool RangingWorker::wanted(const CellState& cell_state) {
-  const bool wanted =
-      std::ranges::any_of(cell_state.cell->sensors, [](const CompiledSensor& sensor) { return sensor.sensor.active; });
+  const bool wanted = has_barriers_ || std::ranges::any_of(cell_state.cell->sensors, [](const CompiledSensor& sensor) {
+                        return sensor.sensor.active;
+                      });
   if (!wanted) {
     ages_.paused();
     show_nothing();
@@ -41,6 +46,8 @@ void RangingWorker::run(const CellState& cell_state, const engine::TickState& ti
   std::shared_ptr<RangeReadings> readings = recycled_.take();
   readings->sequence = ++sequence_;
   readings->posture_time = tick.time;
+  const std::span<const BarrierReading> barriers = finder_.read_barriers(follower_.poses(), tick.time);
+  readings->barriers.assign(barriers.begin(), barriers.end());
   readings->finished = clock_.now();
   readings->readings.assign(found.begin(), found.end());
   compute_.record(readings->finished - start);

@@ -1,10 +1,11 @@
-// Reads the ultrasonic sensors of the running cell that are switched on, in a thread of its own: every tick, or as
-// often as it can.
+// Reads the light barriers of the running cell and the ultrasonic sensors that are switched on, in a thread of its own:
+// every tick, or as often as it can.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/snapshot/cell_poser.hpp"
 #include "app/snapshot/object_pool.hpp"
@@ -15,6 +16,7 @@
 #include "app/workers/tick_worker.hpp"
 #include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/geometry/solid.hpp"
+#include "rt_core/ports/light_barrier.hpp"
 #include "rt_core/ranging/range_finder.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
@@ -24,7 +26,8 @@ class RangingWorker final : private TickJob {
  public:
   // All but `solids` are not owned and outlive the worker.
   RangingWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-                Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids);
+                Nanoseconds tick_period, std::shared_ptr<geometry::SolidLibrary> solids,
+                std::vector<LightBarrier> barriers = {});
 
   // Any thread.
   [[nodiscard]] RangeReport report() const;
@@ -36,6 +39,7 @@ class RangingWorker final : private TickJob {
   void show_nothing();
 
   const Clock& clock_;
+  const bool has_barriers_;
 
   // The worker's own.
   ranging::RangeFinder finder_;

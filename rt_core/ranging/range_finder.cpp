@@ -8,6 +8,7 @@
 
 #include "rt_core/base/contract.hpp"
 #include "rt_core/cell/short_names.hpp"
+#include "rt_core/ranging/beam_finder.hpp"
 #include "rt_core/ranging/cone_shape.hpp"
 #include "rt_core/ranging/noise.hpp"
 #include "rt_core/ranging/seen_parts.hpp"
@@ -46,6 +47,7 @@ struct RangeFinder::State {
   SeenParts parts;
   std::vector<std::string> short_names;  // by part
   std::vector<Sensor> sensors;
+  BeamFinder beams;
   std::vector<RangeReading> readings;
   std::vector<Candidate> candidates;
 
@@ -56,9 +58,11 @@ struct RangeFinder::State {
   void collect(const Sensor& sensor, const Pose& X_WS, double limit);
 };
 
-RangeFinder::RangeFinder(std::shared_ptr<geometry::SolidLibrary> solids) : state_(std::make_unique<State>()) {
+RangeFinder::RangeFinder(std::shared_ptr<geometry::SolidLibrary> solids, std::vector<LightBarrier> barriers)
+    : state_(std::make_unique<State>()) {
   CELLMIRROR_EXPECTS(solids != nullptr);
   state_->solids = std::move(solids);
+  state_->beams.set_barriers(std::move(barriers));
 }
 
 RangeFinder::~RangeFinder() = default;
@@ -69,6 +73,7 @@ void RangeFinder::adopt(std::shared_ptr<const CompiledCell> cell) {
   state_->cell = std::move(cell);
   state_->name_parts();
   state_->adopt_sensors();
+  state_->beams.adopt(*state_->cell, state_->parts);
 }
 
 void RangeFinder::State::name_parts() {
@@ -110,6 +115,12 @@ std::span<const RangeReading> RangeFinder::read(const CellPoses& poses, Timestam
     s.read(sensor, poses.X_WN[static_cast<std::size_t>(sensor.node)], reading);
   }
   return {s.readings.data(), count};
+}
+
+std::span<const BarrierReading> RangeFinder::read_barriers(const CellPoses& poses, Timestamp posture_time) {
+  State& s = *state_;
+  CELLMIRROR_EXPECTS(s.cell != nullptr && poses.X_WN.size() == s.cell->size());
+  return s.beams.read(*s.cell, poses, s.parts, posture_time);
 }
 
 // Strings are assigned to what is there: no heap memory once they have been as long.

@@ -50,6 +50,8 @@ class SdoServer {
   [[nodiscard]] Timestamp next_due() const;
   // Forgets a transfer under way (NMT reset, stop).
   void reset() { transfer_ = Transfer::none; }
+  // 1..127, from the next request on.
+  void set_node(std::uint8_t node) { node_ = node; }
 
  private:
   enum class Transfer : std::uint8_t {

@@ -62,12 +62,14 @@ void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, con
 CanopenSlave::CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectAddress event,
                            SlaveApplication& application, FrameOutput& output)
     : node_(node),
+      first_node_(node),
+      lss_(node),
       application_(&application),
       output_(&output),
       defaults_(std::move(defaults)),
       objects_(defaults_),
       server_(node, *this),
-      pdos_(objects_, event, output) {
+      pdos_(objects_, event, application, output) {
   CELLMIRROR_EXPECTS(node >= 1 && node <= kMaxNodeId);
 }
 
@@ -114,6 +116,10 @@ void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
     if (!frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
     return;
   }
+  if (!frame.extended && frame.id == kLssMasterCobId) {
+    if (const auto answer = lss_.receive(frame, identity(), node_)) output_->send(*answer);
+    return;
+  }
   if (const auto message = decode_nmt(frame)) {
     if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
     return;
@@ -144,10 +150,35 @@ void CanopenSlave::on_nmt(NmtCommand command, Timestamp now) {
       enter(NmtState::pre_operational, now);
       return;
     case NmtCommand::reset_node:
+      renumber(first_node_);
+      return reset(now);
     case NmtCommand::reset_communication:
-      reset(now);
-      return;
+      renumber(lss_.pending());
+      return reset(now);
   }
+}
+
+// The predefined identifiers are a base, whose lower 7 bits are 0, and the node's number.
+void CanopenSlave::renumber(std::uint8_t node) {
+  constexpr std::int64_t kNodeBits = 0x7F;
+  lss_.restart(node);
+  if (std::exchange(node_, node) == node) return;
+  server_.set_node(node);
+  std::vector<ObjectAddress> identifiers{{0x1014, 0}};
+  for (std::uint16_t i = 0; i < kSlavePdos; ++i) {
+    identifiers.push_back({static_cast<std::uint16_t>(0x1400 + i), 1});
+    identifiers.push_back({static_cast<std::uint16_t>(0x1800 + i), 1});
+  }
+  for (const ObjectAddress& address : identifiers) {
+    if (const auto value = defaults_.integer(address)) defaults_.write_integer(address, (*value & ~kNodeBits) | node);
+  }
+}
+
+LssSlave::Identity CanopenSlave::identity() const {
+  LssSlave::Identity numbers{};
+  for (std::uint8_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = static_cast<std::uint32_t>(object(0x1018, static_cast<std::uint8_t>(i + 1)));
+  return numbers;
 }
 
 void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {

@@ -1,5 +1,6 @@
 // A CANopen device as it answers on the bus (CiA 301): NMT, boot-up, heartbeat, node guarding, SDO server, PDOs, SYNC,
-// EMCY, and the heartbeat of its master. Its application has the objects' meaning. No I/O, no clock.
+// EMCY, layer setting services, and the heartbeat of its master. Its application has the objects' meaning. No I/O, no
+// clock.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "drivers/can/canopen/frame_output.hpp"
+#include "drivers/can/canopen/lss.hpp"
 #include "drivers/can/canopen/nmt.hpp"
 #include "drivers/can/canopen/object_dictionary.hpp"
 #include "drivers/can/canopen/sdo_server.hpp"
@@ -19,9 +21,8 @@
 namespace cellmirror::can {
 
 // What a slave tells its application, and asks it.
-class SlaveApplication {
+class SlaveApplication : public PdoEvents {
  public:
-  virtual ~SlaveApplication() = default;
   // Why a write by SDO that fits type, access and limits is refused all the same; none: it is not.
   [[nodiscard]] virtual std::optional<SdoAbort> check(ObjectAddress address, std::int64_t value) = 0;
   // Objects that one SDO or one PDO has just written, in the order of the PDO.
@@ -61,7 +62,7 @@ class CanopenSlave final : private SdoObjects {
   // EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: the error is reset.
   void emergency(std::uint16_t code, std::uint8_t error_register);
 
-  [[nodiscard]] std::uint8_t node() const { return node_; }
+  [[nodiscard]] std::uint8_t node() const { return node_; }  // a master may change it by LSS
   [[nodiscard]] bool is_powered() const { return powered_; }
   [[nodiscard]] NmtState state() const { return nmt_; }
   [[nodiscard]] ObjectDictionary& objects() { return objects_; }
@@ -74,6 +75,9 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] std::optional<SdoAbort> refuse(ObjectAddress address, std::int64_t value);
 
   void reset(Timestamp now);
+  // The node's number, and the identifiers at power-on that follow from it.
+  void renumber(std::uint8_t node);
+  [[nodiscard]] LssSlave::Identity identity() const;
   void on_nmt(NmtCommand command, Timestamp now);
   void enter(NmtState state, Timestamp now);
   void on_sync(const CanFrame& frame, Timestamp now);
@@ -87,6 +91,8 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] std::int64_t object(std::uint16_t index, std::uint8_t subindex = 0) const;
 
   std::uint8_t node_;
+  std::uint8_t first_node_;  // at power-on, and after NMT reset node
+  LssSlave lss_;
   SlaveApplication* application_;
   FrameOutput* output_;
   ObjectDictionary defaults_;

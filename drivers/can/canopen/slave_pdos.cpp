@@ -87,8 +87,8 @@ void add_pdo_objects(ObjectDictionary& objects, std::uint8_t node, std::span<con
   }
 }
 
-SlavePdos::SlavePdos(ObjectDictionary& objects, ObjectAddress event, FrameOutput& output)
-    : objects_(&objects), event_(event), output_(&output), tpdos_(kSlavePdos), rpdos_(kSlavePdos) {
+SlavePdos::SlavePdos(ObjectDictionary& objects, ObjectAddress event, const PdoEvents& events, FrameOutput& output)
+    : objects_(&objects), event_(event), events_(&events), output_(&output), tpdos_(kSlavePdos), rpdos_(kSlavePdos) {
   load({});
 }
 
@@ -263,7 +263,7 @@ void SlavePdos::changed(Timestamp now) {
   for (Tpdo& tpdo : tpdos_) {
     if (!tpdo.valid || !is_event_driven(tpdo.transmission_type)) continue;
     read_values(tpdo, values_);
-    if (values_ == tpdo.last) continue;
+    if (values_ == tpdo.last || !has_event(tpdo, values_)) continue;
     // With an event timer the measured values wait for it; only a new statusword is an event of its own.
     if (tpdo.event_timer.count() > 0 && !event_differs(tpdo, values_)) continue;
     if (!tpdo.sent.known() || now - tpdo.sent >= tpdo.inhibit) {
@@ -291,6 +291,18 @@ Timestamp SlavePdos::next_due() const {
     if (tpdo.pending) due = earlier_due(due, tpdo.sent + tpdo.inhibit);
   }
   return due;
+}
+
+bool SlavePdos::has_event(const Tpdo& tpdo, std::span<const std::uint64_t> values) const {
+  std::size_t next = 0;
+  for (const PdoEntryConfig& entry : tpdo.entries) {
+    if (entry.index == 0) continue;
+    if (next >= tpdo.last.size()) return true;
+    const std::uint64_t sent = tpdo.last[next];
+    if (sent != values[next] && events_->is_event({entry.index, entry.subindex}, sent, values[next])) return true;
+    ++next;
+  }
+  return false;
 }
 
 bool SlavePdos::event_differs(const Tpdo& tpdo, std::span<const std::uint64_t> values) const {

@@ -23,12 +23,22 @@ inline constexpr std::uint16_t kSlavePdos = 4;  // of each direction
 void add_pdo_objects(ObjectDictionary& objects, std::uint8_t node, std::span<const TpdoConfig> rpdos,
                      std::span<const TpdoConfig> tpdos);
 
+// What of a change of a mapped object is an event.
+class PdoEvents {
+ public:
+  virtual ~PdoEvents() = default;
+  // `sent`: the value that the TPDO had last, bit by bit; it differs from `now`.
+  [[nodiscard]] virtual bool is_event(ObjectAddress /*address*/, std::uint64_t /*sent*/, std::uint64_t /*now*/) const {
+    return true;
+  }
+};
+
 class SlavePdos {
  public:
   enum class Received : std::uint8_t { none, taken, too_short };
 
   // `event`: the object whose change is an event also where a TPDO has an event timer. The others outlive this.
-  SlavePdos(ObjectDictionary& objects, ObjectAddress event, FrameOutput& output);
+  SlavePdos(ObjectDictionary& objects, ObjectAddress event, const PdoEvents& events, FrameOutput& output);
 
   [[nodiscard]] static bool is_parameter(ObjectAddress address) {
     return address.index >= 0x1400 && address.index <= 0x1BFF;
@@ -82,6 +92,7 @@ class SlavePdos {
   [[nodiscard]] std::optional<SdoAbort> check_mapping_count(ObjectAddress address, std::uint64_t value) const;
   [[nodiscard]] std::optional<SdoAbort> check_mapped_object(bool received, std::uint32_t word) const;
   void apply(const Rpdo& rpdo, const CanFrame& frame, std::vector<ObjectAddress>& written);
+  [[nodiscard]] bool has_event(const Tpdo& tpdo, std::span<const std::uint64_t> values) const;
   [[nodiscard]] bool event_differs(const Tpdo& tpdo, std::span<const std::uint64_t> values) const;
   [[nodiscard]] bool counts(Tpdo& tpdo, std::optional<std::uint8_t> counter) const;
   void read_values(const Tpdo& tpdo, std::vector<std::uint64_t>& values) const;
@@ -89,6 +100,7 @@ class SlavePdos {
 
   ObjectDictionary* objects_;
   ObjectAddress event_;
+  const PdoEvents* events_;
   FrameOutput* output_;
   std::vector<Tpdo> tpdos_;
   std::vector<Rpdo> rpdos_;

@@ -118,6 +118,8 @@ std::string_view words(DriveMode mode) {
       return "profile position";
     case DriveMode::profile_velocity:
       return "profile velocity";
+    case DriveMode::profile_torque:
+      return "profile torque";
     case DriveMode::homing:
       return "homing";
     case DriveMode::interpolated_position:

@@ -40,12 +40,14 @@ inline constexpr std::uint16_t kControlwordModeStart = 0x0010;    // homing: sta
 inline constexpr std::uint16_t kControlwordImmediately = 0x0020;  // PP: the set-point replaces the one under way
 inline constexpr std::uint16_t kControlwordRelative = 0x0040;     // PP
 inline constexpr std::uint16_t kControlwordHalt = 0x0100;
+inline constexpr std::uint16_t kControlwordPass = 0x0200;  // PP: no stop at the target before the next set-point
 
 // Object 0x6060.
 enum class DriveMode : std::int8_t {
   none = 0,
   profile_position = 1,
   profile_velocity = 3,
+  profile_torque = 4,
   homing = 6,
   interpolated_position = 7,
   cyclic_sync_position = 8,

@@ -65,8 +65,8 @@ class Cia402DeviceProtocol final : public CanProtocol {
     report.send_refused = output_.refused;
     report.drives.clear();
     for (const auto& drive : drives_)
-      report.drives.push_back(
-          {drive->nmt_state(), drive->state(), drive->mode(), drive->error_code(), drive->is_held_back()});
+      report.drives.push_back({drive->node_id(), drive->nmt_state(), drive->state(), drive->mode(), drive->error_code(),
+                               drive->is_held_back()});
     published_.publish();
   }
 
@@ -83,7 +83,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
       std::string text = fmt::format("{}, {}, {}", words(drive.nmt), words(drive.state), words(drive.mode));
       if (drive.held_back) text += ", blocked by what it touches";
       if (drive.error != 0) text += fmt::format(", 0x{:04X} {}", drive.error, emcy_words(drive.error));
-      status.details.emplace_back(fmt::format("node {} ({})", node.node_id, node.joint_name), std::move(text));
+      status.details.emplace_back(fmt::format("node {} ({})", drive.node, node.joint_name), std::move(text));
     }
     status.condition = fmt::format("answers as {} {}: {} operational, {} enabled", report.drives.size(),
                                    report.drives.size() == 1 ? "drive" : "drives", operational, enabled);
@@ -101,6 +101,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
     std::uint64_t refused = 0;
   };
   struct DriveReport {
+    std::uint8_t node = 0;
     NmtState nmt = NmtState::boot_up;
     Cia402State state = Cia402State::unknown;
     DriveMode mode = DriveMode::none;
@@ -130,7 +131,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
       if (std::exchange(errors_[i], code) == code || code == 0) continue;
       const DriveConfig& node = (*nodes_)[i];
       std::string text =
-          fmt::format("drive {} ({}): 0x{:04X} {}", node.node_id, node.joint_name, code, emcy_words(code));
+          fmt::format("drive {} ({}): 0x{:04X} {}", drives_[i]->node_id(), node.joint_name, code, emcy_words(code));
       if (touching_) text += fmt::format(", {:.1f} ms after the robot touched", 1e3 * seconds(now - touched_));
       host_->note(Severity::warning, "device fault", text);
     }

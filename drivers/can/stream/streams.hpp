@@ -9,6 +9,8 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/can_channel.hpp"
+#include "rt_core/ports/io_config.hpp"
+#include "rt_core/ports/io_image.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/robot_contacts.hpp"
 #include "rt_core/ports/stream_config.hpp"
@@ -39,6 +41,18 @@ struct CanStreamOptions {
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_device(
     const Cia402DeviceConfig& config, const Clock& clock, CanStreamOptions options = {},
     std::shared_ptr<Latest<RobotContacts>> contacts = {});
+
+// Between the thread of an I/O node and the gateway.
+struct IoLinks {
+  std::shared_ptr<Latest<IoInputs>> inputs;    // the node reads
+  std::shared_ptr<Latest<IoOutputs>> outputs;  // the node writes, where they change
+  std::function<void()> outputs_changed;       // then, on the node's thread; must not wait
+};
+// The gateway answers as a CiA 401 I/O node, with a thread of its own on the channel. It gives no samples: open it with
+// no_samples().
+[[nodiscard]] std::unique_ptr<JointStream> make_cia401_node(const IoNodeConfig& config, IoLinks links,
+                                                            const Clock& clock, CanStreamOptions options = {});
+[[nodiscard]] JointSampleSink& no_samples();
 
 // Everything that would keep such a stream from being made, and what makes its values doubtful, at its place in the
 // cell file or in the EDS, DCF or DBC file. What the reader of the cell file refused (empty names, no node, twice the

@@ -1,4 +1,4 @@
-// Any frames in any order to a drive that the gateway answers for, with its motor.
+// Any frames in any order to a drive that the gateway answers for, with its motor, which touches something at times.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -30,6 +30,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FrameSource source(data, size);
   while (const auto frame = source.next(now)) {
     drive.receive(*frame, now);
+    drive.set_bounds(
+        {.lower = (frame->data[0] & 1U) != 0 ? 0.0 : -1e9, .upper = (frame->data[0] & 2U) != 0 ? 0.0 : 1e9});
     drive.advance(now);
     if (!std::isfinite(drive.joint_position()) || std::abs(drive.joint_position()) > 3) std::abort();
   }

@@ -65,11 +65,13 @@ struct FindingsWorkersTest : testing::Test {
     cell_state->cell = cell->compile();
     cell_state->collision = std::make_shared<const collision::Settings>(with);
     cell_state->haptics = devices;
-    RobotSnapshot robot;
-    robot.id = "SLEDGE";
-    robot.slot = cell->robot("SLEDGE")->slot();
-    robot.contacts = contacts;
-    cell_state->robots.push_back(robot);
+    if (contacts) {
+      RobotSnapshot robot;
+      robot.id = "SLEDGE";
+      robot.slot = cell->robot("SLEDGE")->slot();
+      robot.contacts = contacts;
+      cell_state->robots.push_back(robot);
+    }
     cell_states.publish(cell_state);
   }
 

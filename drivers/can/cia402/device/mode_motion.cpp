@@ -19,21 +19,32 @@ MotionPoint RunningPlan::step(double dt) {
 void ProfilePosition::enter(const MotionPoint& at, double deceleration) {
   waiting_.reset();
   halted_ = false;
+  passing_ = 0;
   const MotionPlan stop = MotionPlan::to_velocity(at, 0, {1, 1, deceleration});
   under_way_ = {stop.at(stop.duration()).position, {1, 1, deceleration}};
   plan_.start(stop);
 }
 
-bool ProfilePosition::set_point(const MotionPoint& at, double target, const MotionLimits& limits, bool immediately) {
+bool ProfilePosition::set_point(const MotionPoint& at, double target, const MotionLimits& limits, bool immediately,
+                                bool pass) {
   if (!immediately && !plan_.is_over()) {
     if (waiting_) return false;
     waiting_ = {target, limits};
+    passing_ = pass ? std::copysign(1.0, under_way_.target - at.position) : 0;
+    if (pass && !halted_) start_under_way(at);
     return true;
   }
   waiting_.reset();
+  passing_ = 0;
   under_way_ = {target, limits};
-  if (!halted_) plan_.start(MotionPlan::to_position(at, target, limits));
+  if (!halted_) start_under_way(at);
   return true;
+}
+
+void ProfilePosition::start_under_way(const MotionPoint& at) {
+  const MotionLimits& limits = under_way_.limits;
+  plan_.start(passing_ != 0 ? MotionPlan::to_velocity(at, passing_ * limits.velocity, limits)
+                            : MotionPlan::to_position(at, under_way_.target, limits));
 }
 
 void ProfilePosition::halt(const MotionPoint& at, double deceleration) {
@@ -43,15 +54,20 @@ void ProfilePosition::halt(const MotionPoint& at, double deceleration) {
 
 void ProfilePosition::resume(const MotionPoint& at) {
   halted_ = false;
-  plan_.start(MotionPlan::to_position(at, under_way_.target, under_way_.limits));
+  start_under_way(at);
+}
+
+void ProfilePosition::take_waiting(const MotionPoint& at) {
+  under_way_ = *std::exchange(waiting_, std::nullopt);
+  passing_ = 0;
+  start_under_way(at);
 }
 
 MotionPoint ProfilePosition::step(double dt) {
   const MotionPoint at = plan_.step(dt);
-  if (plan_.is_over() && waiting_ && !halted_) {
-    under_way_ = *std::exchange(waiting_, std::nullopt);
-    plan_.start(MotionPlan::to_position(at, under_way_.target, under_way_.limits));
-  }
+  if (!waiting_ || halted_) return at;
+  const bool there = passing_ != 0 ? passing_ * (at.position - under_way_.target) >= 0 : plan_.is_over();
+  if (there) take_waiting(at);
   return at;
 }
 

@@ -24,8 +24,9 @@ class RunningPlan {
 class ProfilePosition {
  public:
   void enter(const MotionPoint& at, double deceleration);
-  // False where no room is left. `immediately`: replaces the one under way.
-  bool set_point(const MotionPoint& at, double target, const MotionLimits& limits, bool immediately);
+  // False where no room is left. `immediately`: replaces the one under way. `pass`: else the axis does not stop at the
+  // target before it, but passes that with its velocity.
+  bool set_point(const MotionPoint& at, double target, const MotionLimits& limits, bool immediately, bool pass = false);
   [[nodiscard]] bool has_room() const { return !waiting_; }
   void halt(const MotionPoint& at, double deceleration);
   void resume(const MotionPoint& at);
@@ -43,10 +44,14 @@ class ProfilePosition {
     MotionLimits limits;
   };
 
+  void start_under_way(const MotionPoint& at);
+  void take_waiting(const MotionPoint& at);
+
   SetPoint under_way_;
   std::optional<SetPoint> waiting_;
   RunningPlan plan_;
   bool halted_ = false;
+  double passing_ = 0;  // the direction in which it passes its target; 0: it stops there
 };
 
 class ProfileVelocity {

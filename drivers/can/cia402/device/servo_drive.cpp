@@ -121,12 +121,13 @@ void ServoDrive::start_mode() {
   reached_for_ = 0;
   beyond_for_ = 0;
   torque_demand_ = 0;
+  torque_target_ = 0;
   velocity_demand_ = 0;
   profile_position_.enter(demand_, parameters_.profile.deceleration);
   profile_velocity_.aim(demand_, 0, parameters_.profile);
   cyclic_position_.enter(demand_);
   homing_.enter(demand_, parameters_.homing_acceleration);
-  if (mode_ == DriveMode::profile_velocity) take_targets();
+  if (mode_ == DriveMode::profile_velocity || mode_ == DriveMode::profile_torque) take_targets();
 }
 
 void ServoDrive::on_mode_bits(std::uint16_t before, std::uint16_t controlword) {
@@ -160,7 +161,8 @@ void ServoDrive::on_set_point(std::uint16_t controlword) {
   const auto wanted = static_cast<double>(object(0x607A));
   const double target = within_limits(relative ? profile_position_.newest_target() + wanted : wanted);
   const bool immediately = (controlword & kControlwordImmediately) != 0;
-  if (!profile_position_.set_point(demand_, target, parameters_.profile, immediately)) return;
+  const bool pass = (controlword & kControlwordPass) != 0;
+  if (!profile_position_.set_point(demand_, target, parameters_.profile, immediately, pass)) return;
   set_point_acknowledged_ = true;
   reached_for_ = 0;
   target_reached_ = false;
@@ -179,6 +181,8 @@ void ServoDrive::on_halt(bool halt) {
     case DriveMode::profile_velocity:
       if (!halt) return take_targets();
       return profile_velocity_.aim(demand_, 0, {parameters_.fastest, parameters_.profile.acceleration, deceleration});
+    case DriveMode::profile_torque:
+      return take_targets();
     default:
       if (halt) return stop_plan_.start(MotionPlan::to_velocity(demand_, 0, {1, 1, deceleration}));
       return cyclic_position_.enter(demand_);
@@ -200,6 +204,9 @@ void ServoDrive::take_targets() {
     }
     case DriveMode::cyclic_sync_velocity:
       velocity_demand_ = velocity();
+      return;
+    case DriveMode::profile_torque:
+      torque_target_ = halted ? 0 : joint_sign_ * 1e-3 * config_.rated_torque * static_cast<double>(object(0x6071));
       return;
     case DriveMode::cyclic_sync_torque:
       torque_demand_ = joint_sign_ * 1e-3 * config_.rated_torque * static_cast<double>(object(0x6071) + object(0x60B2));
@@ -257,9 +264,12 @@ void ServoDrive::move(Timestamp now) {
 
 bool ServoDrive::runs_mode() const { return power_.state() == Cia402State::operation_enabled && !power_.stopping(); }
 
+bool ServoDrive::is_torque_mode() const {
+  return mode_ == DriveMode::profile_torque || mode_ == DriveMode::cyclic_sync_torque;
+}
+
 bool ServoDrive::is_position_mode() const {
-  return mode_ != DriveMode::profile_velocity && mode_ != DriveMode::cyclic_sync_velocity &&
-         mode_ != DriveMode::cyclic_sync_torque;
+  return mode_ != DriveMode::profile_velocity && mode_ != DriveMode::cyclic_sync_velocity && !is_torque_mode();
 }
 
 void ServoDrive::step() {
@@ -310,7 +320,7 @@ void ServoDrive::step_mode() {
     default:
       break;
   }
-  if (halted) return follow(stop_plan_.step(kStep));
+  if (halted && mode_ != DriveMode::profile_torque) return follow(stop_plan_.step(kStep));
   if (is_position_mode()) return follow(cyclic_position_.step(kStep));
   demand_ = {actual(), actual_velocity(), 0};
   if (mode_ == DriveMode::cyclic_sync_velocity) {
@@ -321,6 +331,14 @@ void ServoDrive::step_mode() {
     limited_ = std::abs(velocity_demand_) > fastest;
     demand_.velocity = std::clamp(velocity_demand_, -fastest, fastest);
     return motor_.follow_velocity(joint_of(demand_).velocity, torque_limits());
+  }
+  step_torque();
+}
+
+void ServoDrive::step_torque() {
+  if (mode_ == DriveMode::profile_torque) {
+    const double most = kStep * parameters_.torque_slope * config_.rated_torque;
+    torque_demand_ += std::clamp(torque_target_ - torque_demand_, -most, most);
   }
   // No torque towards a velocity that is too high.
   limited_ = std::abs(demand_.velocity) > parameters_.fastest;
@@ -350,7 +368,7 @@ void ServoDrive::follow(const MotionPoint& demand) {
 // The motor presses against an obstacle or a mechanical stop with its rated torque, or with all that its limits leave.
 // A controller that commands torques may want just that.
 void ServoDrive::watch_block() {
-  const bool torque_mode = mode_ == DriveMode::cyclic_sync_torque && !power_.stopping();
+  const bool torque_mode = is_torque_mode() && !power_.stopping();
   const int held = motor_.held_back();
   const TorqueLimits limits = torque_limits();
   const double pressure = held * motor_.torque();
@@ -394,6 +412,8 @@ void ServoDrive::watch_windows() {
   } else if (mode_ == DriveMode::profile_velocity && !halted) {
     const double error = actual_velocity() - static_cast<double>(object(0x60FF));
     note_target_reached(std::abs(error) <= parameters_.velocity_window, parameters_.velocity_time);
+  } else if (mode_ == DriveMode::profile_torque) {
+    note_target_reached(halted ? stands : torque_demand_ == torque_target_, 0);
   } else if (mode_ == DriveMode::homing && homing_.state() != Homing::State::idle && !halted) {
     note_target_reached(homing_.state() == Homing::State::attained && homing_.is_over() && stands, 0);
   } else {
@@ -494,6 +514,7 @@ std::uint16_t ServoDrive::statusword() const {
     case DriveMode::cyclic_sync_torque:
       if (runs) word |= kStatuswordModeBit12;
       break;
+    case DriveMode::profile_torque:
     case DriveMode::none:
       break;
   }

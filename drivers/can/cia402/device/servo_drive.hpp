@@ -70,6 +70,7 @@ class ServoDrive final : private SlaveApplication {
   void move(Timestamp now);
   void step();
   void step_mode();
+  void step_torque();
   void step_stop();
   void step_homing();
   void take_home();
@@ -84,6 +85,7 @@ class ServoDrive final : private SlaveApplication {
   [[nodiscard]] std::uint16_t statusword() const;
   [[nodiscard]] bool runs_mode() const;
   [[nodiscard]] bool is_position_mode() const;
+  [[nodiscard]] bool is_torque_mode() const;
   [[nodiscard]] std::uint32_t digital_inputs() const;
 
   // Positions: `raw` increments are those of the encoder; a drive's own are shifted by homing.
@@ -113,7 +115,8 @@ class ServoDrive final : private SlaveApplication {
   std::optional<StopRamp> stop_ramp_;  // that stop_plan_ was made for
   MotionPoint demand_;                 // increments
   double shift_ = 0;                   // raw minus own increments
-  double torque_demand_ = 0;           // cyclic synchronous torque: Nm or N
+  double torque_demand_ = 0;           // torque modes: Nm or N
+  double torque_target_ = 0;           // profile torque: where the demand goes
   double velocity_demand_ = 0;         // cyclic synchronous velocity: increments/s
   std::uint16_t controlword_ = 0;
   std::uint16_t error_code_ = 0;

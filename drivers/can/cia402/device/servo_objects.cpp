@@ -22,6 +22,7 @@ constexpr std::uint32_t kNotWatched = 0xFFFF'FFFF;  // 0x6065: no following erro
 constexpr std::array kModes{DriveMode::none,
                             DriveMode::profile_position,
                             DriveMode::profile_velocity,
+                            DriveMode::profile_torque,
                             DriveMode::homing,
                             DriveMode::interpolated_position,
                             DriveMode::cyclic_sync_position,
@@ -154,6 +155,8 @@ void add_torque_objects(std::vector<Row>& rows, const DriveConfig& config) {
                                whole<std::uint32_t>(1000 * config.rated_torque),
                                "motor rated torque"},
                               {{0x6077, 0}, integer16, kServoRo, true, 0, "torque actual value"},
+                              {{0x6087, 0}, unsigned32, kServoRw, true, 10'000, "torque slope"},
+                              {{0x6088, 0}, integer16, kServoRw, true, 0, "torque profile type"},
                               {{0x60B2, 0}, integer16, kServoRw, true, 0, "torque offset"},
                               {{0x60E0, 0}, unsigned16, kServoRw, true, peak, "positive torque limit value"},
                               {{0x60E1, 0}, unsigned16, kServoRw, true, peak, "negative torque limit value"},
@@ -253,6 +256,7 @@ std::optional<SdoAbort> check_servo_object(ObjectAddress address, std::int64_t v
       return known ? std::nullopt : std::optional(SdoAbort::invalid_value);
     }
     case 0x6086:
+    case 0x6088:
     case 0x60C0:
       return among({0});
     case 0x6098:
@@ -306,6 +310,7 @@ ServoParameters read_servo_parameters(const ObjectDictionary& objects) {
   out.velocity_time = kMilli * number(0x606E);
   out.standstill = number(0x606F);
   out.standstill_time = kMilli * number(0x6070);
+  out.torque_slope = kMilli * at_least_one(0x6087);
   out.torque_limit = kMilli * number(0x6072);
   out.positive_torque_limit = kMilli * number(0x60E0);
   out.negative_torque_limit = kMilli * number(0x60E1);

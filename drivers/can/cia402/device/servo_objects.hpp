@@ -37,6 +37,7 @@ struct ServoParameters {
   double velocity_time = 0;          // 0x606E
   double standstill = 0;             // 0x606F
   double standstill_time = 0;        // 0x6070
+  double torque_slope = 1;           // 0x6087, share of the rated torque a second
   double torque_limit = 1;           // 0x6072, share of the rated torque
   double positive_torque_limit = 1;  // 0x60E0, the same
   double negative_torque_limit = 1;  // 0x60E1

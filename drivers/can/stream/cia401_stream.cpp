@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "drivers/can/canopen/cob_id.hpp"
+#include "drivers/can/canopen/earlier_due.hpp"
+#include "drivers/can/cia401/io_node.hpp"
+#include "drivers/can/stream/can_stream.hpp"
+#include "rt_core/base/contract.hpp"
+#include "rt_core/rt/latest.hpp"
+
+namespace cellmirror::can {
+namespace {
+
+class Cia401Protocol final : public CanProtocol {
+ public:
+  Cia401Protocol(const IoNodeConfig& config, IoLinks links, CanProtocolHost& host)
+      : period_(config.period),
+        links_(std::move(links)),
+        output_(host),
+        node_(config.node_id, config.heartbeat_ms, output_) {}
+
+  void start(Timestamp now) override {
+    due_ = now + period_;
+    node_.set_inputs(links_.inputs->read().value, now);
+    node_.power_on(now);
+    give_outputs();
+  }
+
+  void receive(const CanFrame& frame, Timestamp now) override {
+    node_.receive(frame, now);
+    give_outputs();
+  }
+
+  void advance(Timestamp now) override {
+    node_.set_inputs(links_.inputs->read().value, now);
+    node_.advance(now);
+    give_outputs();
+    if (now < due_) return;
+    due_ = due_ + period_;
+    if (due_ <= now) due_ = now + period_;
+  }
+
+  [[nodiscard]] Timestamp next_due() const override { return earlier_due(due_, node_.next_timer()); }
+
+  void publish() override {
+    published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs(), output_.refused});
+  }
+
+  void describe(JointStreamStatus& status, Timestamp /*now*/) override {
+    const Report& report = published_.read().value;
+    status.condition = fmt::format("answers as an I/O node: {}", words(report.nmt));
+    status.details.emplace_back("inputs", fmt::format("0x{:08X}", report.inputs.digital));
+    status.details.emplace_back("outputs", fmt::format("0x{:08X}", report.outputs.digital));
+    if (report.send_refused > 0)
+      status.details.emplace_back("frames that the channel refused", fmt::format("{}", report.send_refused));
+  }
+
+ private:
+  struct Output final : FrameOutput {
+    explicit Output(CanProtocolHost& its_host) : host(&its_host) {}
+    void send(const CanFrame& frame) override {
+      if (!host->send(frame)) ++refused;
+    }
+    CanProtocolHost* host;
+    std::uint64_t refused = 0;
+  };
+  struct Report {
+    NmtState nmt = NmtState::boot_up;
+    IoInputs inputs;
+    IoOutputs outputs;
+    std::uint64_t send_refused = 0;
+  };
+
+  void give_outputs() {
+    if (std::exchange(given_, node_.outputs().digital) == node_.outputs().digital) return;
+    links_.outputs->write(node_.outputs());
+    if (links_.outputs_changed) links_.outputs_changed();
+  }
+
+  Nanoseconds period_;
+  IoLinks links_;
+  Output output_;
+  IoNode node_;
+  Timestamp due_;
+  std::uint32_t given_ = 0;
+  Latest<Report> published_;
+};
+
+// An I/O node has no joints.
+class NoSamples final : public JointSampleSink {
+ public:
+  bool push(const JointSample& /*sample*/) noexcept override { return true; }
+};
+
+}  // namespace
+
+JointSampleSink& no_samples() {
+  static NoSamples none;
+  return none;
+}
+
+std::unique_ptr<JointStream> make_cia401_node(const IoNodeConfig& config, IoLinks links, const Clock& clock,
+                                              CanStreamOptions options) {
+  CELLMIRROR_EXPECTS(config.node_id >= 1 && config.node_id <= kMaxNodeId && links.inputs && links.outputs);
+  return std::make_unique<CanStream>(
+      "cia401-node", config.channel, clock, std::move(options),
+      [config, links = std::move(links)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
+        return std::make_unique<Cia401Protocol>(config, links, host);
+      });
+}
+
+}  // namespace cellmirror::can

@@ -1,0 +1,34 @@
+// Any frames in any order to an I/O node that the gateway answers for.
+#include <cstdint>
+#include <cstdlib>
+
+#include "drivers/can/cia401/io_node.hpp"
+#include "tests/fuzz/can/frame_source.hpp"
+
+namespace {
+
+struct Output : cellmirror::can::FrameOutput {
+  void send(const cellmirror::CanFrame& frame) override {
+    if (frame.length > 8 || frame.id > 0x7FF) std::abort();
+  }
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace cellmirror;
+  Output output;
+  can::IoNode node(1, 50, output);
+  Timestamp now{1'000'000'000};
+  node.power_on(now);
+  IoInputs inputs;
+  FrameSource source(data, size);
+  while (const auto frame = source.next(now)) {
+    node.receive(*frame, now);
+    inputs.digital = inputs.digital * 2 + 1;
+    inputs.analogue[0] = static_cast<std::int16_t>(inputs.analogue[0] + 9999);
+    node.set_inputs(inputs, now);
+    node.advance(now);
+  }
+  return 0;
+}
