@@ -51,15 +51,19 @@ void TissueRecorder::look(Timestamp now) {
   if (!sources_.view) return;
   const double rate_hz = hub_.tissue_rate_hz();
   if (!(rate_hz > 0)) return;
-  if (!is_due(now, last_look_, Nanoseconds(std::llround(1e9 / rate_hz)))) return;
-  last_look_ = now;
+  // A recording that is played has a view for each recorded one, and its time may stand still.
+  const bool played = sources_.report == nullptr;
+  if (!played && !is_due(now, last_look_, Nanoseconds(std::llround(1e9 / rate_hz)))) return;
   if (!wanted()) return;
   const std::shared_ptr<const TissueView> view = sources_.view();
   if (!view) return;
   const std::uint64_t files = hub_.files_begun();
   const bool begun = std::exchange(files_, files) != files;
   if (begun) forget();
-  if (std::exchange(last_step_, view->step) == view->step && !begun) return;
+  // Tissue that stands still has its shapes again from time to time, for seeks.
+  if (view->step == last_step_ && !begun && (played || !is_due(now, last_shapes_, kBetweenShapes))) return;
+  last_step_ = view->step;
+  last_look_ = now;
   const auto report = sources_.newest_report();
   TissueHead head;
   head.step = view->step;
@@ -67,7 +71,7 @@ void TissueRecorder::look(Timestamp now) {
   const std::int64_t wall_ns = to_wall_clock_ns(head.time);
   for (const TissueSurface& surface : view->surfaces) record_surface(surface, head, now, wall_ns);
   record_effects(*view, head, now, wall_ns);
-  record_markers(*view, now, wall_ns);
+  if (played || is_due(now, last_markers_, kBetweenMarkers)) record_markers(*view, now, wall_ns);
 }
 
 bool TissueRecorder::take_shape(Written& written, std::vector<std::shared_ptr<const void>> shape, Timestamp now) const {
@@ -97,7 +101,7 @@ void TissueRecorder::record_surface(const TissueSurface& surface, TissueHead hea
   if (due) {
     head.has_shape = true;
     if (!encode_surface(head, surface, bytes_)) return;
-    written.with_shape = now;
+    written.with_shape = last_shapes_ = now;
   }
   hub_.put(written.topic, wall_ns, bytes_);
 }
@@ -117,13 +121,13 @@ void TissueRecorder::record_effects(const TissueView& view, TissueHead head, Tim
   if (due) {
     head.has_shape = true;
     encode_tissue_effects(head, view, bytes_);
-    effects_.with_shape = now;
+    effects_.with_shape = last_shapes_ = now;
   }
   hub_.put(effects_.topic, wall_ns, bytes_);
 }
 
 void TissueRecorder::record_markers(const TissueView& view, Timestamp now, std::int64_t wall_ns) {
-  if (!hub_.wants(*markers_topic_) || !is_due(now, last_markers_, kBetweenMarkers)) return;
+  if (!hub_.wants(*markers_topic_)) return;
   last_markers_ = now;
   markers_.fill(dds::ros_time(wall_ns), view, {}, marker_message_);
   if (marker_message_.markers.empty()) return;

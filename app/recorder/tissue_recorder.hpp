@@ -55,6 +55,7 @@ class TissueRecorder {
   std::vector<std::byte> bytes_;
   Timestamp last_look_;
   Timestamp last_markers_;
+  Timestamp last_shapes_;  // of any object
   std::uint64_t last_step_ = 0;
   std::uint64_t files_ = 0;
 };

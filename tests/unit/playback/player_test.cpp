@@ -12,14 +12,17 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "app/playback/played_recording.hpp"
 #include "app/recording/recorded_cell.hpp"
 #include "app/recording_layout/recording_names.hpp"
+#include "app/recording_layout/tissue_messages.hpp"
 #include "ipc/record/byte_stream.hpp"
 #include "ipc/record/writer.hpp"
 #include "tests/unit/engine/commands.hpp"
+#include "tests/unit/recorder/tissue_parts.hpp"
 
 namespace cellmirror::app {
 namespace {
@@ -137,6 +140,11 @@ class PlayerTest : public testing::Test {
                                         .topic = std::string(kInputsTopic),
                                         .encoding = std::string(kInputsEncoding),
                                         .metadata = {}}));
+    EXPECT_TRUE(made->put(mcap::Channel{.id = 2,
+                                        .schema = 0,
+                                        .topic = "/cellmirror/tissue/liver",
+                                        .encoding = std::string(kTissueEncoding),
+                                        .metadata = {}}));
     return made;
   }();
 
@@ -154,6 +162,37 @@ TEST_F(PlayerTest, EachSeekGivesTheStateOfThatTimeToTheBit) {
     expect_as_recorded();
   }
   EXPECT_EQ(recording_->control().state().status, PlaybackStatus::paused);
+}
+
+TEST_F(PlayerTest, DeformableObjectsAreAsTheyWereAtEachSeek) {
+  engine_->inputs().request_start();
+  TissueSurface liver = test::square("liver.mpo", {0, 0, 0});
+  std::vector<std::byte> bytes;
+  constexpr float kRise = 0.01F;  // in a tenth of a second
+  for (int i = 0; i < 200; ++i) {
+    tick(100);
+    put();
+    const bool is_cut = i >= 100;
+    if (i == 100) test::cut(liver);
+    for (Eigen::Vector3f& vertex : liver.vertices) vertex.z() += kRise;
+    ASSERT_TRUE(encode_surface({.step = cycle_, .time = now_, .revision = is_cut ? 2U : 1U, .has_shape = i % 50 == 0},
+                               liver, bytes));
+    const auto utc = static_cast<std::uint64_t>(now_.ns + kUtc);
+    ASSERT_TRUE(writer_->put(
+        mcap::Message{.channel = 2, .sequence = sequence_, .log_time = utc, .publish_time = utc, .data = bytes}));
+  }
+  open();
+  const PlayedTissue& tissue = std::as_const(*recording_).run().tissue();
+  for (const double to : {19.45, 0.45, 12.25, 4.05, 19.45}) {
+    seek(to);
+    const auto view = tissue.view();
+    ASSERT_TRUE(view && view->surfaces.size() == 1) << to;
+    const TissueSurface& shown = view->surfaces[0];
+    EXPECT_EQ(shown.topology->triangles.size(), to > 10.05 ? 1U : 2U) << to;
+    // It was written behind the ticks of each tenth of a second.
+    EXPECT_NEAR(static_cast<double>(shown.vertices[0].z()), 0.1 * to, 0.0061) << to;
+  }
+  EXPECT_EQ(tissue.refused(), 0U);
 }
 
 TEST_F(PlayerTest, PlaysAsTheWallClockGoesAndEnds) {

@@ -44,6 +44,45 @@ TEST(HostileRecording, CutAtAnyByteGivesWhatIsWholeBefore) {
   EXPECT_EQ(before, 100U);
 }
 
+// Counts what is read of it.
+class CountingSource final : public Source {
+ public:
+  explicit CountingSource(View bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::uint64_t size() const override { return bytes_.size(); }
+  Result<void> read(std::uint64_t offset, std::span<std::byte> into) const override {
+    read_bytes += into.size();
+    return bytes_.read(offset, into);
+  }
+  mutable std::uint64_t read_bytes = 0;
+
+ private:
+  MemorySource bytes_;
+};
+
+TEST(HostileRecording, WithoutASummaryItIsReadAsAWholeOnceAndThenByItsChunks) {
+  const Bytes whole = small_recording(Compression::none);
+  const auto report = [&] {
+    Collector all;
+    return scanned(whole, all);
+  }();
+  const std::uint64_t end = report.chunks.back().offset + report.chunks.back().length;
+  const CountingSource source(View(whole).first(end));
+  auto reader = Reader::open(source);
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->indexed());
+  source.read_bytes = 0;
+  std::vector<std::uint64_t> times;
+  const Filter late{.topics = {"/b"}, .from = report.chunks.back().start_time};
+  ASSERT_TRUE(reader->read(late, [&](const Message& message, const Channel& channel) {
+    EXPECT_EQ(channel.topic, "/b");
+    times.push_back(message.log_time);
+    return true;
+  }));
+  EXPECT_FALSE(times.empty());
+  EXPECT_GE(times.front(), report.chunks.back().start_time);
+  EXPECT_LE(source.read_bytes, report.chunks.back().length) << "only the chunk that has them";
+}
+
 TEST(HostileRecording, AFlippedBitInAChunkIsFoundByItsCrcAndTheOthersAreRead) {
   Bytes file = small_recording(Compression::none);
   const auto summary = read_summary(MemorySource(file), {});
