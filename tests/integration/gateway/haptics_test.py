@@ -19,6 +19,17 @@ INTO = (math.sin(2.4) * math.cos(0.56), math.sin(2.4) * math.sin(0.56), math.cos
 DEEP = 0.09  # m along it: the organ begins after some 75 mm
 
 
+def reset(test, scratch):
+    """Once the device writes sound samples again."""
+    last = []
+
+    def done():
+        last[:] = [scratch.send("RESET_HAPTIC LAP_LEFT")]
+        return last[0].returncode == 0
+
+    test.assertTrue(g.eventually(done), last)
+
+
 class Trainer(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -38,7 +49,7 @@ class Trainer(unittest.TestCase):
         self.device.good, self.device.silent, self.device.corrupt, self.device.buttons = True, False, None, 0
         self.device.go((0, 0, 0))
         if self.haptic()["phase"] == "faulted":
-            self.done("RESET_HAPTIC LAP_LEFT")
+            reset(self, self.scratch)
         self.active()
 
     def done(self, command):
@@ -78,7 +89,7 @@ class Trainer(unittest.TestCase):
     def recovers(self):
         time.sleep(0.05)
         self.assertEqual(self.haptic()["phase"], "faulted")  # latched, though the cause is gone
-        self.done("RESET_HAPTIC LAP_LEFT")
+        reset(self, self.scratch)
         self.active()
 
 
@@ -117,13 +128,17 @@ class Moving(Trainer):
 
     def verified_from_here(self):
         """What is recorded now runs again to the bit, with the forces of the devices that are open already."""
-        file = self.scratch.root / "a.mcap"
-        done = self.scratch.cellmirror("record", "-o", str(file), "--for", "0.7", "--attach-mb", "0", "--topics", "/inputs/ticks",
-                                       "--instance", self.scratch.instance)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.scratch.cellmirror("replay", str(file), "--verify", "--json")
+        # A machine that stands still meanwhile leaves no time for a start state; it does not each time.
+        for attempt in range(8):
+            file = self.scratch.root / f"{attempt}.mcap"
+            done = self.scratch.cellmirror("record", "-o", str(file), "--for", "0.7", "--attach-mb", "0", "--topics", "/inputs/ticks",
+                                           "--instance", self.scratch.instance)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.scratch.cellmirror("replay", str(file), "--verify", "--json")
+            report = json.loads(done.stdout)
+            if report["starts"]:
+                break
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        report = json.loads(done.stdout)
         self.assertEqual((report["not_compared"], report["not_sound"]), ([], 0), report)
         self.assertGreater(report["ticks"], 10)
 
@@ -271,8 +286,7 @@ class Processes(unittest.TestCase):
         self.assertEqual(refused.returncode, 1, refused.stdout)
         self.start_device()
         self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"]), self.haptic())
-        done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        reset(self, self.scratch)
         self.wait_for("active")
 
     def test_a_gateway_that_is_killed_and_one_that_ends(self):
@@ -303,8 +317,7 @@ class Processes(unittest.TestCase):
         first.close()
         second = h.Device(self.scratch.keys["LAP_LEFT"])
         self.assertTrue(g.eventually(lambda: not self.haptic()["device"]["gone"]), self.haptic())
-        done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        reset(self, self.scratch)
         self.wait_for("active")
         second.close()
 
@@ -350,8 +363,7 @@ class Processes(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
         time.sleep(0.2)
         self.assertEqual((self.haptic()["phase"], self.haptic()["fault"]), ("faulted", "stale"))
-        done = self.scratch.send("RESET_HAPTIC LAP_LEFT")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        reset(self, self.scratch)
         self.wait_for("active")
         self.assertEqual(self.haptic()["resets"], 1)
         device.close()

@@ -107,8 +107,17 @@ class Service(unittest.TestCase):
         def healthy():
             return page.ask("/healthz")[::2] == (200, b"ok\n")
 
-        # A machine that is short of time at the start may have had a fault, which lasts for ten seconds.
-        self.assertTrue(g.eventually(healthy), page.ask("/healthz"))
+        def becomes_healthy():
+            if g.eventually(healthy):
+                return
+            # A fault lasts until the loop has been on time for ten seconds.
+            missed = lambda: self.scratch.status()["loop"]["missed"]
+            before = missed()
+            if g.eventually(lambda: missed() > before + 20, 15):
+                self.skipTest("skipped: this machine stands still every few seconds")
+            self.fail(page.ask("/healthz"))
+
+        becomes_healthy()  # a machine that is short of time at the start may have had a fault
         self.gateway.child.send_signal(signal.SIGSTOP)
         self.assertTrue(g.eventually(lambda: self.state() == "T"))
         g.time.sleep(2)
@@ -117,7 +126,7 @@ class Service(unittest.TestCase):
         status, _, body = g.eventually(lambda: (answer := page.ask("/healthz"))[0] == 503 and answer) or page.ask("/healthz")
         self.assertEqual(status, 503)
         self.assertRegex(body.decode(), "^the loop .*\n$")
-        self.assertTrue(g.eventually(healthy), "it is on time again")
+        becomes_healthy()
 
     def test_the_port_of_the_cell_holds_for_a_named_gateway(self):
         port = g.free_port()

@@ -131,8 +131,9 @@ class SimHaptic(unittest.TestCase):
         with HapticBlock(self.key, create=True) as block:
             self.faulty("torn@0.05").communicate(timeout=60)
             self.assertIsNone(block.sample())
-            child = self.sim("--for", 0.5)
-            self.assertTrue(eventually(block.sample))
+            child = self.sim("--for", 0)
+            self.assertTrue(eventually(lambda: (s := block.sample()) and s["process"] == child.pid and s["sequence"] > 400))
+            child.send_signal(signal.SIGINT)
             self.assertGreater(finish(child)["samples"], 100)
 
     def test_freeze_writes_nothing_and_lives(self):
@@ -190,7 +191,7 @@ class SimFootSwitch(unittest.TestCase):
     def test_presses_and_leaves_other_bits(self):
         with Segment(self.key, 2, create=True) as memory:
             memory.byte(0).value = 0x80
-            child = start("sim_footswitch", "--key", self.key, "--press", "1,10", "--for", 0.3, "--json", "-q")
+            child = start("sim_footswitch", "--key", self.key, "--press", "1,10", "--for", 2.5, "--json", "-q")
             self.assertTrue(eventually(lambda: memory.byte(0).value == 0x81 and memory.byte(1).value == 0x02, every=0.005))
             report = finish(child)
             self.assertEqual((memory.byte(0).value, memory.byte(1).value), (0x80, 0))

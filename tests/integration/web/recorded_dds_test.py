@@ -145,13 +145,17 @@ class RecordedDds(unittest.TestCase):
         marks = status["replay"]["marks"]
         self.assertEqual(status["replay"]["mark_count"], len(marks))
         self.assertEqual([mark["text"] for mark in marks if mark["kind"] == "collision"], [f'{one["a"]}, {one["b"]}' for one in struck])
-        self.assertEqual([mark["text"] for mark in marks if mark["kind"] == "fault"], [lost["text"]])
+        # Besides that of the robot there may be faults of the loop, and a robot that was late, on a busy machine.
+        faults = [mark for mark in marks if mark["kind"] == "fault"]
+        self.assertIn(lost["text"], [mark["text"] for mark in faults])
+        for mark in faults:
+            self.assertRegex(mark["text"], "the data of demo_arm are lost|periods missed within a second|the loop stood still")
         self.assertEqual([mark["position_s"] for mark in marks], sorted(mark["position_s"] for mark in marks))
         # The strike is where the mark says, and was not there before; so is the alarm.
         at = next(mark["position_s"] for mark in marks if mark["kind"] == "collision")
         replay.seek(at + 0.01)
         self.assertTrue(g.eventually(lambda: replay.status()["collisions"]["touching_count"] > 0), "nothing touches at the mark")
-        fault = next(mark["position_s"] for mark in marks if mark["kind"] == "fault")
+        fault = next(mark["position_s"] for mark in faults if mark["text"] == lost["text"])
         self.assertIsNone(self.lost(replay.seek(fault - 0.3)))
         self.assertEqual(self.lost(replay.seek(fault + 0.3))["id"], lost["id"])
 
