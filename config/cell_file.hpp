@@ -23,7 +23,9 @@
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/haptics/settings.hpp"
+#include "rt_core/ports/controller_config.hpp"
 #include "rt_core/ports/display_layout.hpp"
+#include "rt_core/ports/ros_presence.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
 
@@ -78,10 +80,12 @@ struct LoadedCell {
   KismetHome home;
   Eigen::Vector3d gravity_m_s2 = kStandardGravity;  // in the world
   LoopSettings loop;
-  std::vector<RobotStream> streams;  // each of another robot
-  std::vector<RobotHaptic> haptics;  // each of another robot, which has no stream
+  std::vector<RobotStream> streams;           // each of another robot
+  std::vector<RobotHaptic> haptics;           // each of another robot, which has no stream
+  std::vector<ControllerConfig> controllers;  // of ROS 2, each of another robot
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
+  RosPresence ros;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;

@@ -24,6 +24,7 @@
 #include "app/owner/played_commands.hpp"
 #include "app/owner/tissue/tissue_parts.hpp"
 #include "config/volume/voxel_memory.hpp"
+#include "drivers/dds/presence.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
 
@@ -96,6 +97,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
   if (playback != nullptr) {
     streams.clear();
     loaded.haptics.clear();
+    loaded.controllers.clear();
     loaded.foot_switches = {};
   }
   const auto save = [this](std::string_view name) -> Result<void> {
@@ -117,6 +119,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .home = loaded.home,
                        .streams = std::move(streams),
                        .haptics = std::move(loaded.haptics),
+                       .controllers = std::move(loaded.controllers),
                        .views = std::move(loaded.views),
                        .layout = std::move(loaded.layout),
                        .collision = std::move(loaded.collision),
@@ -350,6 +353,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->take_instance(options);
   if (step && live) parts->open_command_log();
   if (step) parts->open_alarms();
+  if (step) dds::set_ros_presence(loaded->ros);
   if (step && live) step = parts->make_tissue(loaded->tissue);
   if (step) step = parts->make_owner(std::move(*loaded), options);
   if (step) step = parts->start_messages();
