@@ -104,6 +104,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
     source->load(reader.root, of_components);
     reader.read_streams(source->robots(), true);
     reader.read_haptics(source->robots(), true);
+    reader.read_controllers(source->robots(), true);
     check_streams(reader, path.string(), check_stream, of_streams, of_bus_files);
     reader.tissue.read_files(files, of_tissue);
     // With earlier errors Cell::build() returns no cell, but continues to check.
@@ -143,8 +144,10 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
                     std::move(reader.haptics),
                     std::move(reader.io.nodes),
                     std::move(reader.io.barriers),
+                    std::move(reader.controllers),
                     reader.foot_switches,
                     reader.dds,
+                    reader.ros,
                     reader.queues,
                     reader.web,
                     std::move(reader.record),

@@ -23,9 +23,11 @@
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/haptics/settings.hpp"
+#include "rt_core/ports/controller_config.hpp"
 #include "rt_core/ports/display_layout.hpp"
 #include "rt_core/ports/io_config.hpp"
 #include "rt_core/ports/light_barrier.hpp"
+#include "rt_core/ports/ros_presence.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
 
@@ -84,8 +86,10 @@ struct LoadedCell {
   std::vector<RobotHaptic> haptics;  // each of another robot, which has no stream
   std::vector<IoNodeConfig> io_nodes;
   std::vector<LightBarrier> barriers;
+  std::vector<ControllerConfig> controllers;  // of ROS 2, each of another robot
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
+  RosPresence ros;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;

@@ -69,7 +69,7 @@ bool CellReader::read(std::string_view text) {
   }
   if (const auto g = top.numbers("gravity_m_s2", 3, kGravity)) gravity_m_s2 = {(*g)[0], (*g)[1], (*g)[2]};
   read_loop(top);
-  dds.security = read_dds_security(top, files_);
+  dds.security = read_dds(top, files_, ros);
   read_dds_output(top);
   read_queues(top);
   web = read_web(top);
@@ -85,6 +85,7 @@ bool CellReader::read(std::string_view text) {
   device_tables_ = top.tables("device", kMostStreams);
   io.read(top);
   haptic_tables_ = top.tables("haptic", kMaxHapticDevices);
+  controller_tables_ = top.tables("controller", kMaxRobots);
   top.belongs_to("[loop]", {"rate_hz", "real_time", "priority"});
   top.belongs_to("[[stream]]", {"robot", "kind", "channel", "topic", "dbc", "address"});
   top.belongs_to("[startup]", {"script"});
@@ -128,6 +129,22 @@ void CellReader::read_haptics(const RobotDirectory& robots, bool complete) {
     if (haptic->key && haptic->key == foot_switches.key)
       table.error("shm_key", fmt::format("the foot switches have the key {} too", *haptic->key));
     haptics.push_back(std::move(*haptic));
+  }
+}
+
+void CellReader::read_controllers(const RobotDirectory& robots, bool complete) {
+  for (TableReader& table : controller_tables_) {
+    auto controller = read_controller(table, robots, complete);
+    if (!controller) continue;
+    controller->security = dds.security;
+    controller->distribution = ros.messages();
+    for (const ControllerConfig& other : controllers) {
+      if (other.robot == controller->robot)
+        table.error("robot", fmt::format("there is another controller of {}", printable(controller->robot)));
+      if (other.name == controller->name && !other.name.empty())
+        table.error("name", fmt::format("there is another controller /{}", printable(controller->name)));
+    }
+    controllers.push_back(std::move(*controller));
   }
 }
 

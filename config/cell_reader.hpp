@@ -22,10 +22,11 @@ class CellReader {
   CellReader(const CellReader&) = delete;
   CellReader& operator=(const CellReader&) = delete;
 
-  // Everything but the streams and haptic devices. False where the text is no TOML.
+  // Everything but the streams, controllers and haptic devices. False where the text is no TOML.
   bool read(std::string_view text);
   // `complete`: all robots of the cell are in `robots`.
   void read_streams(const RobotDirectory& robots, bool complete);
+  void read_controllers(const RobotDirectory& robots, bool complete);
   // After the streams.
   void read_haptics(const RobotDirectory& robots, bool complete);
 
@@ -37,8 +38,10 @@ class CellReader {
   std::vector<RobotStream> streams;
   std::vector<RobotHaptic> haptics;
   IoReader io;
+  std::vector<ControllerConfig> controllers;
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
+  RosPresence ros;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;
@@ -63,6 +66,7 @@ class CellReader {
   std::vector<TableReader> stream_tables_;
   std::vector<TableReader> device_tables_;
   std::vector<TableReader> haptic_tables_;
+  std::vector<TableReader> controller_tables_;
 };
 
 }  // namespace cellmirror

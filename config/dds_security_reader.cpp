@@ -1,7 +1,12 @@
 #include "config/dds_security_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
+
+#include "rt_core/base/dds_topic.hpp"
+#include "rt_core/base/text.hpp"
 
 namespace cellmirror {
 
@@ -18,9 +23,18 @@ std::string read_path(TableReader& table, std::string_view key, const FileFinder
 
 }  // namespace
 
-DdsSecurityConfig read_dds_security(TableReader& top, const FileFinder& files) {
+DdsSecurityConfig read_dds(TableReader& top, const FileFinder& files, RosPresence& ros) {
   auto dds = top.table("dds");
   if (!dds) return {};
+  ros.distribution = dds->choice<RosDistribution>(
+      "ros_distribution",
+      {{"humble", RosDistribution::humble}, {"jazzy", RosDistribution::jazzy}, {"kilted", RosDistribution::kilted}});
+  if (const auto name = dds->text("node_name")) {
+    if (!is_ros_topic("rt/" + *name) || name->find('/') != std::string::npos)
+      dds->error("node_name", fmt::format("\"{}\" is not the name of a node", printable(*name)),
+                 "letters, digits and _, no digit in front");
+    ros.node_name = *name;
+  }
   auto table = dds->table("security");
   dds->finish();
   if (!table) return {};

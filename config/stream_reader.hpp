@@ -20,6 +20,10 @@ namespace cellmirror {
 [[nodiscard]] std::optional<RobotStream> read_device(TableReader& reader, const RobotDirectory& robots, bool complete,
                                                      const FileFinder& files);
 
+// [[controller]]; nothing where it does not say of which robot.
+[[nodiscard]] std::optional<ControllerConfig> read_controller(TableReader& reader, const RobotDirectory& robots,
+                                                              bool complete);
+
 // The robot that a table names with the key "robot"; null where it is not known, with an error where `complete`.
 [[nodiscard]] const RobotFacts* find_robot(const TableReader& reader, const std::string& robot,
                                            const RobotDirectory& robots, bool complete);

@@ -25,6 +25,7 @@
 #include "app/owner/tissue/tissue_parts.hpp"
 #include "app/pictures/tissue_at_rest.hpp"
 #include "config/volume/voxel_memory.hpp"
+#include "drivers/dds/presence.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
 
@@ -105,6 +106,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
     streams.clear();
     loaded.haptics.clear();
     loaded.io_nodes.clear();
+    loaded.controllers.clear();
     loaded.foot_switches = {};
   }
   const auto save = [this](std::string_view name) -> Result<void> {
@@ -127,6 +129,7 @@ Result<void> Gateway::Parts::make_owner(LoadedCell loaded, const GatewayOptions&
                        .streams = std::move(streams),
                        .haptics = std::move(loaded.haptics),
                        .io_nodes = std::move(loaded.io_nodes),
+                       .controllers = std::move(loaded.controllers),
                        .views = std::move(loaded.views),
                        .layout = std::move(loaded.layout),
                        .collision = std::move(loaded.collision),
@@ -374,6 +377,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->take_instance(options);
   if (step && live) parts->open_command_log();
   if (step) parts->open_alarms();
+  if (step) dds::set_ros_presence(loaded->ros);
   if (step && live) step = parts->make_tissue(loaded->tissue);
   if (step && !live) parts->rest_tissue(loaded->tissue);
   if (step) step = parts->make_owner(std::move(*loaded), options);

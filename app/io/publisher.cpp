@@ -119,10 +119,21 @@ void Publisher::publish_description(const CellState& cell_state) {
   }
 }
 
+// Puts `next` before the next one.
+void Publisher::publish_controllers(Timestamp now, Timestamp& next) {
+  const std::shared_ptr<const CellState> cell_state = board_.latest();
+  if (!cell_state || cell_state->controllers.empty()) return;
+  const Timestamp by = now + tick_period_ / 2;
+  if (controllers_.due(*cell_state, by)) controllers_.publish(*cell_state, ticks_.newest(), now, by);
+  const Timestamp first = controllers_.next(*cell_state);
+  if (first.known()) next = std::min(next, first);
+}
+
 Timestamp Publisher::publish_due(Timestamp now) {
   Timestamp next = now + kLongestSleep;
   // Where the time was set back, nothing waits until it is there again.
   for (std::size_t i = 0; i < due_.size(); ++i) due_[i] = std::min(due_[i], now + outputs_[i].period);
+  publish_controllers(now, next);
   const bool any_due =
       std::any_of(due_.begin(), due_.end(), [now, this](Timestamp due) { return due <= now + tick_period_ / 2; });
   if (any_due) {

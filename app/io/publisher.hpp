@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/io/controller_publisher.hpp"
 #include "app/io/range_watch.hpp"
 #include "app/io/tissue_publisher.hpp"
 #include "app/snapshot/board.hpp"
@@ -75,6 +76,7 @@ class Publisher {
   void loop(const std::stop_token& stop);
   // Puts out what is due by `now`; the earliest next due time.
   Timestamp publish_due(Timestamp now);
+  void publish_controllers(Timestamp now, Timestamp& next);
   // Gives the description of the sending robots to the outputs where it is new.
   void publish_description(const CellState& cell_state);
   void select_sending(const CellState& cell_state, std::span<const RobotState> robots);
@@ -85,6 +87,7 @@ class Publisher {
   const Clock& clock_;
   Nanoseconds tick_period_;
   std::vector<PublishedOutput> outputs_;
+  ControllerPublisher controllers_;
   std::vector<FindingsPublisher> findings_;  // one an output
   TissuePublisher tissue_;
   std::vector<Timestamp> due_;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/io/controller_endpoints.hpp"
 #include "config/volume_user_tables.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
@@ -75,7 +76,10 @@ CellOwner::CellOwner(Parts parts)
       programs_({cell_, home_, *fleet_, motion_, display_, program_motion_, clock_,
                  [this]() -> script::ScriptRunner& { return *runner_; }, std::move(parts.program_event),
                  !parts.let_tick_pass}),
-      guarded_motion_(motion_, programs_),
+      controllers_({cell_, *fleet_, motion_, couplings_,
+                    [this](std::string_view robot) { return programs_.moving_program(robot); }, clock_,
+                    std::move(parts.controllers), [this] { wake_.wake(); }, &make_controller_endpoint}),
+      guarded_motion_(motion_, programs_, controllers_),
       world_({cell_, *fleet_, motion_, programs_, volumes_, [this] { publish_state(); }}),
       robots_(cell_, *fleet_, motion_, couplings_, programs_, names_),
       sensing_(cell_, std::move(parts.collision)),
@@ -117,6 +121,7 @@ Result<void> CellOwner::prepare(const std::string& script, bool is_path) {
   }
   if (auto prepared = switches_->prepare(); !prepared) return prepared;
   if (io_) io_->prepare();
+  if (auto opened = controllers_.prepare(); !opened) return opened;
   publish_state();
   if (script.empty()) return {};
   const auto path = is_path ? Result<std::filesystem::path>(script) : startup_file(home_, script);
@@ -174,6 +179,7 @@ bool CellOwner::execute_files() {
 bool CellOwner::turn() {
   turns_.fetch_add(1, std::memory_order_acq_rel);
   motion_.follow();
+  changed_ = controllers_.follow() || changed_;
   couplings_.follow();
   haptics_.follow();
   forces_.follow();
@@ -194,7 +200,8 @@ bool CellOwner::turn() {
 }
 
 bool CellOwner::quiet() const {
-  return runner_->idle() && !motion_.moving() && !switches_->busy() && !programs_.needs_turns();
+  return runner_->idle() && !motion_.moving() && !controllers_.moving() && !switches_->busy() &&
+         !programs_.needs_turns();
 }
 
 void CellOwner::loop(const std::stop_token& stop) {
@@ -241,6 +248,7 @@ void CellOwner::publish_state() {
   cell_state->programs = programs_.snapshot();
   cell_state->switches = switches_->snapshot();
   cell_state->couplings = couplings_.snapshots();
+  cell_state->controllers = controllers_.snapshots();
   cell_state->tissue = tissue_.settings();
   cell_state->volumes = volumes_.states();
   if (io_) cell_state->io_nodes = io_->snapshots();

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/owner/command_queue.hpp"
+#include "app/owner/controllers/controller_service.hpp"
 #include "app/owner/display/display_service.hpp"
 #include "app/owner/fleet.hpp"
 #include "app/owner/foot_switch_service.hpp"
@@ -50,6 +51,7 @@ class CellOwner {
     std::map<std::string, StreamConfig, std::less<>> streams;
     std::vector<RobotHaptic> haptics;
     std::vector<IoNodeConfig> io_nodes = {};
+    std::vector<ControllerConfig> controllers = {};  // of ROS 2
     std::vector<ViewSetting> views;
     DisplayLayout layout = {};
     collision::Settings collision;
@@ -125,6 +127,7 @@ class CellOwner {
   void publish_state();
   [[nodiscard]] bool is_online(std::size_t slot) const;
 
+  WakeSignal wake_;  // of the owner's thread
   Cell cell_;
   KismetHome home_;
   Board<CellState>& board_;
@@ -137,6 +140,7 @@ class CellOwner {
   CouplingService couplings_;
   CellProgramMotion program_motion_;
   ProgramService programs_;
+  ControllerService controllers_;
   GuardedMotion guarded_motion_;
   CellWorld world_;
   CellRobots robots_;
@@ -150,7 +154,6 @@ class CellOwner {
   std::unique_ptr<script::ScriptRunner> runner_;
   CommandQueue queue_{kCommandQueue};
   NodeLevels levels_;
-  WakeSignal wake_;
   std::unique_ptr<FootSwitchService> switches_;  // its thread wakes the owner's
   std::unique_ptr<IoService> io_;                // likewise; null: off line
   WakeSignal room_;                              // wakes the receiver's thread when the queue has room again

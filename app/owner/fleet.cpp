@@ -297,6 +297,13 @@ Result<void> Fleet::hold_behind(std::string_view id, std::uint32_t move) {
   return {};
 }
 
+Result<std::uint64_t> Fleet::follow_trajectory(std::string_view id,
+                                               std::shared_ptr<const motion::Trajectory> trajectory) {
+  auto sent = send(engine::FollowTrajectory{.slot = slot_of(id), .trajectory = lend(std::move(trajectory))});
+  if (sent) robots_.find(id)->second.commanded = true;
+  return sent;
+}
+
 std::uint8_t Fleet::slot_of(std::string_view id) const { return slot_number(find(id)->slot); }
 
 Result<void> Fleet::jump(std::string_view id, const JointValues& positions) {

@@ -93,6 +93,9 @@ class Fleet final : public MotionPort {
   Result<void> set_pace(std::string_view id, double pace) override;
   Result<void> hold_behind(std::string_view id, std::uint32_t move) override;
 
+  // Of a robot that is known. The id of the command.
+  Result<std::uint64_t> follow_trajectory(std::string_view id, std::shared_ptr<const motion::Trajectory> trajectory);
+
   [[nodiscard]] bool has_stream(std::string_view id) const { return streams_.find(id) != streams_.end(); }
 
   // The newest state that the tick published; valid until the next call of any function of the fleet.

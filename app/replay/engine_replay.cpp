@@ -11,6 +11,7 @@
 #include "rt_core/base/state_bytes.hpp"
 #include "rt_core/engine/instrument_bytes.hpp"
 #include "rt_core/engine/state_transfer.hpp"
+#include "rt_core/engine/trajectory_bytes.hpp"
 #include "rt_core/rt/watchdog.hpp"
 
 namespace cellmirror::app {
@@ -22,6 +23,7 @@ using engine::InputRecord;
 constexpr std::chrono::milliseconds kNeverWatched{100};
 constexpr std::size_t kMostCommandsKept = 100'000;
 constexpr std::size_t kMostChains = 100'000;
+constexpr std::size_t kMostTrajectories = kMaxRobots;  // that run at one time
 
 }  // namespace
 
@@ -77,6 +79,8 @@ void EngineReplay::take_record(InputRecord kind, ByteSpan content) {
     }
     case InputRecord::chain:
       return take_chain(content);
+    case InputRecord::trajectory:
+      return take_trajectory(content);
     case InputRecord::robots:
       if (auto names = read_names(content)) {
         names_ = *std::move(names);
@@ -111,6 +115,18 @@ void EngineReplay::take_chain(ByteSpan content) {
   chain_of(object_id, *std::move(chain), bytes);
 }
 
+// Only a start state that comes behind them refers to them.
+void EngineReplay::take_trajectory(ByteSpan content) {
+  StateReader in(content);
+  std::uint64_t object_id = 0;
+  in(object_id);
+  auto trajectory = engine::read_trajectory(in);
+  if (!trajectory || !in.at_end()) return note({"a trajectory is not sound", {}});
+  // Those before it are of start states that are over, or that were not needed.
+  if (trajectories_.size() >= kMostTrajectories) trajectories_.erase(trajectories_.begin());
+  trajectories_[object_id] = std::make_shared<const motion::Trajectory>(*std::move(trajectory));
+}
+
 // While the replay goes on it is right already, unless the next tick shows that some are missing.
 void EngineReplay::begin(ByteSpan start) {
   if (session_) return spare_start_.assign(start.begin(), start.end());
@@ -121,6 +137,10 @@ void EngineReplay::begin(ByteSpan start) {
       start, {.chain = [this](std::uint64_t object_id) -> ChainPtr {
                 const auto known = chains_.find(object_id);
                 return known == chains_.end() ? ChainPtr() : known->second.chain;
+              },
+              .trajectory = [this](std::uint64_t object_id) -> std::shared_ptr<const motion::Trajectory> {
+                const auto known = trajectories_.find(object_id);
+                return known == trajectories_.end() ? nullptr : known->second;
               },
               .device = [&](std::size_t channel, std::uint64_t /*id*/) -> std::shared_ptr<HapticDevicePort> {
                 session->recorded_devices[channel] = std::make_shared<RecordedDevice>();

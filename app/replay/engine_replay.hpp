@@ -15,6 +15,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/input_commands.hpp"
+#include "rt_core/motion/trajectory.hpp"
 
 namespace cellmirror::app {
 
@@ -66,6 +67,7 @@ class EngineReplay {
 
   void take_record(engine::InputRecord kind, ByteSpan content);
   void take_chain(ByteSpan content);
+  void take_trajectory(ByteSpan content);
   void begin(ByteSpan start);
   void begin_again_after_a_gap(ByteSpan record);
   void run(ByteSpan record);
@@ -87,7 +89,8 @@ class EngineReplay {
   };
   std::map<std::uint64_t, KnownChain> chains_;  // by id
   std::vector<ChainPtr> all_chains_;            // as long as an engine may refer to them
-  std::vector<std::byte> spare_start_;          // came while a replay went on; for a gap right before it
+  std::map<std::uint64_t, std::shared_ptr<const motion::Trajectory>> trajectories_;  // by id
+  std::vector<std::byte> spare_start_;  // came while a replay went on; for a gap right before it
   NamesBySlot names_;
   std::optional<ReplayDifference> difference_;
   ReplayCounts counts_;

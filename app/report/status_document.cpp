@@ -14,6 +14,7 @@
 #include "app/report/status_alarms.hpp"
 #include "app/report/status_collisions.hpp"
 #include "app/report/status_commands.hpp"
+#include "app/report/status_controllers.hpp"
 #include "app/report/status_couplings.hpp"
 #include "app/report/status_display.hpp"
 #include "app/report/status_forces.hpp"
@@ -310,6 +311,7 @@ std::string status_document(const StatusSources& sources) {
       {"programs", programs_json(sources.cell_state.programs)},
       {"foot_switches", switches_json(sources.cell_state.switches, sources.now)},
       {"io_nodes", io_nodes_json(sources.cell_state)},
+      {"controllers", controllers_json(sources.cell_state.controllers, sources.tick, sources.now)},
       {"couplings", couplings_json(sources.cell_state.couplings, sources.tick)},
       {"tissue", tissue_json(sources.tissue, sources.cell_state, sources.now)},
       {"volumes", volumes_json(sources.cell_state)},

@@ -10,6 +10,7 @@
 
 #include "app/snapshot/board.hpp"
 #include "app/snapshot/contact_inlet.hpp"
+#include "app/snapshot/controller_snapshot.hpp"
 #include "app/snapshot/coupling_snapshot.hpp"
 #include "app/snapshot/foot_switch_snapshot.hpp"
 #include "app/snapshot/force_settings.hpp"
@@ -62,6 +63,7 @@ struct CellState {
   ProgramsSnapshot programs;
   FootSwitchSnapshot switches;
   std::vector<CouplingSnapshot> couplings;
+  std::vector<ControllerSnapshot> controllers;
   std::shared_ptr<const TissueSettings> tissue;  // the same object as long as nothing changes
   std::shared_ptr<const VolumeStates> volumes;   // the same object as long as nothing changes
   std::vector<IoNodeSnapshot> io_nodes;

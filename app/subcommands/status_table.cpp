@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "app/subcommands/status_table_controllers.hpp"
 #include "app/subcommands/status_table_display.hpp"
 #include "app/subcommands/status_table_forces.hpp"
 #include "app/subcommands/status_table_haptics.hpp"
@@ -44,6 +45,7 @@ class TableWriter {
     }
     for (const json& robot : status.at("robots")) write_robot(robot);
     out_ += couplings_table(status);
+    out_ += controllers_table(status);
     out_ += programs_table(status);
     out_ += sensing_table(status);
     out_ += forces_table(status);

@@ -22,6 +22,8 @@ std::string_view words(CdrFault fault) {
       return "a string is not terminated by a zero";
     case CdrFault::too_many:
       return "more elements than are accepted in one message";
+    case CdrFault::time:
+      return "a time has nanoseconds beyond a second, or is before 1970";
   }
   return "unknown fault";
 }
@@ -75,6 +77,11 @@ DoubleSequenceView CdrReader::read_doubles() {
   if (count == 0) return {};  // no padding follows an empty sequence
   const std::byte* at = take(std::size_t{count} * sizeof(double), sizeof(double));
   return at == nullptr ? DoubleSequenceView{} : DoubleSequenceView{at, count, swapped_};
+}
+
+void CdrReader::read_octets(std::span<std::uint8_t> out) {
+  const std::byte* at = take(out.size(), 1);
+  for (std::uint8_t& octet : out) octet = at == nullptr ? std::uint8_t{0} : std::to_integer<std::uint8_t>(*at++);
 }
 
 std::uint32_t CdrReader::read_count(std::size_t least_bytes, std::uint32_t most) {

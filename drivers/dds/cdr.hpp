@@ -22,6 +22,7 @@ enum class CdrFault : std::uint8_t {
   truncated,      // a value or a length reaches beyond the end
   text,           // a string without its terminating zero
   too_many,       // more elements than this gateway accepts
+  time,           // nanoseconds beyond a second, or a stamp before 1970
 };
 [[nodiscard]] std::string_view words(CdrFault fault);
 
@@ -31,6 +32,10 @@ struct Bits;
 template <>
 struct Bits<1> {
   using type = std::uint8_t;
+};
+template <>
+struct Bits<2> {
+  using type = std::uint16_t;
 };
 template <>
 struct Bits<4> {
@@ -47,8 +52,9 @@ T load(const std::byte* from, bool swapped) {
   std::memcpy(&bits, from, sizeof(T));
   if constexpr (sizeof(T) > 1) {
     if (swapped) {
-      bits = sizeof(T) == 8 ? static_cast<decltype(bits)>(__builtin_bswap64(bits))
-                            : static_cast<decltype(bits)>(__builtin_bswap32(static_cast<std::uint32_t>(bits)));
+      if constexpr (sizeof(T) == 8) bits = __builtin_bswap64(bits);
+      if constexpr (sizeof(T) == 4) bits = __builtin_bswap32(bits);
+      if constexpr (sizeof(T) == 2) bits = __builtin_bswap16(bits);
     }
   }
   return std::bit_cast<T>(bits);
@@ -92,17 +98,20 @@ class CdrReader {
   // Without the terminating zero. A length of zero, which some peers write for the empty string, is accepted.
   std::string_view read_text();
   DoubleSequenceView read_doubles();
+  // So many octets; zeros where they are not there.
+  void read_octets(std::span<std::uint8_t> out);
   // The number of elements that follow, each at least `least_bytes` long in any encoding; a number that cannot fit into
   // what is left of the payload, or beyond `most`, is a fault and gives zero.
   std::uint32_t read_count(std::size_t least_bytes, std::uint32_t most);
 
+  // For values that a decoder finds wrong itself.
+  void fail_with(CdrFault fault);
   [[nodiscard]] CdrFault fault() const { return fault_; }
   // What is left: padding, or members that a newer type appended.
   [[nodiscard]] std::size_t remaining() const { return body_.size() - position_; }
 
  private:
   const std::byte* take(std::size_t size, std::size_t alignment);
-  void fail_with(CdrFault fault);
 
   std::span<const std::byte> body_;  // behind the encapsulation header: alignment counts from here
   std::size_t position_ = 0;

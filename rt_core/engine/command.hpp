@@ -14,6 +14,7 @@
 #include "rt_core/haptics/instrument.hpp"
 #include "rt_core/kinematics/chain.hpp"
 #include "rt_core/motion/move.hpp"
+#include "rt_core/motion/trajectory.hpp"
 #include "rt_core/ports/haptic_device.hpp"
 #include "rt_core/ports/plausibility.hpp"
 #include "rt_core/ports/stream_config.hpp"
@@ -83,6 +84,13 @@ struct HoldBehind {
   std::uint32_t move = 0;  // motion::MoveExecutor::hold_behind()
 };
 
+// In place of a trajectory or of moves, at once: from the present posture and velocities. StopMotion brakes it; a move
+// that is added takes its place. The tick gives it back when it has ended.
+struct FollowTrajectory {
+  std::uint8_t slot = 0;
+  Lease<const motion::Trajectory> trajectory = {};
+};
+
 // The moves of the slave are braked.
 struct Couple {
   Lease<const Coupling> coupling = {};
@@ -117,7 +125,7 @@ struct SetDeviceGone {
 // In groups, since libstdc++ moves and ends what a variant holds by a branch up to eleven types, and by a table of
 // pointers to functions beyond, which nothing could follow that checks what the tick calls (docs/tick.md).
 using RobotCommand = std::variant<AddRobot, RemoveRobot, SetMode, SetPositions, SetLimits>;
-using MotionCommand = std::variant<SetChain, AddMove, StopMotion, SetPace, HoldBehind>;
+using MotionCommand = std::variant<SetChain, AddMove, StopMotion, SetPace, HoldBehind, FollowTrajectory>;
 using CouplingCommand = std::variant<Couple, Uncouple>;
 using HapticCommand = std::variant<OpenHaptic, CloseHaptic, ResetHaptic, SetDeviceGone>;
 using Command = std::variant<RobotCommand, MotionCommand, CouplingCommand, HapticCommand>;

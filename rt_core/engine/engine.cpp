@@ -157,6 +157,10 @@ bool Engine::carry_out(const HoldBehind& command) CELL_RT {
   return is_slot(command.slot) && slots_[command.slot].hold_behind(command.move);
 }
 
+bool Engine::carry_out(FollowTrajectory& command) CELL_RT {
+  return is_slot(command.slot) && slots_[command.slot].follow_trajectory(std::move(command.trajectory));
+}
+
 bool Engine::carry_out(const Couple& command) CELL_RT {
   return command.coupling && couplings_.couple(*command.coupling, slots_);
 }

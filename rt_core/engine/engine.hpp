@@ -62,6 +62,7 @@ struct EngineStart {
 // Who stands for what cannot be in a file, by the id that it had.
 struct StartParts {
   std::function<std::shared_ptr<const kinematics::Chain>(std::uint64_t id)> chain;
+  std::function<std::shared_ptr<const motion::Trajectory>(std::uint64_t id)> trajectory = {};  // may be empty
   // Not null.
   std::function<std::shared_ptr<HapticDevicePort>(std::size_t channel, std::uint64_t id)> device;
 };
@@ -101,7 +102,7 @@ class Engine final : public Cycle {
   // free_returned(), or with the engine. Only the owner's thread frees.
   template <class T>
   [[nodiscard]] Lease<T> lend(std::shared_ptr<T> object) {
-    if constexpr (std::is_same_v<T, const kinematics::Chain>) inputs_.note(object);
+    if constexpr (requires { inputs_.note(object); }) inputs_.note(object);
     return lender_.lend(std::move(object));
   }
   void free_returned() { lender_.collect(); }
@@ -145,6 +146,7 @@ class Engine final : public Cycle {
   };
 
   void write_start(StateWriter& out) CELL_RT;
+  Result<void> restore_trajectories(std::span<const std::byte> tail, const StartParts& parts);
   Result<void> restore_haptics(StateReader& in, const StartParts& parts, EngineStart& out);
   void record_published() CELL_RT;
   int take_commands(Timestamp now) CELL_RT;
@@ -159,6 +161,7 @@ class Engine final : public Cycle {
   bool carry_out(const StopMotion& command) CELL_RT;
   bool carry_out(const SetPace& command) CELL_RT;
   bool carry_out(const HoldBehind& command) CELL_RT;
+  bool carry_out(FollowTrajectory& command) CELL_RT;
   bool carry_out(const Couple& command) CELL_RT;
   bool carry_out(const Uncouple& command) CELL_RT;
   bool carry_out(OpenHaptic& command) CELL_RT;

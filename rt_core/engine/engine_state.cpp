@@ -1,9 +1,10 @@
 // The state of the engine between two ticks as bytes, and back. Beginning of a recording of its inputs.
 //
 // A start state: robots and channels of the engine's capacity; periods missed, commands done and refused; the ids
-// of the devices of open haptic channels; used slots with their state; couplings; open haptic channels, to the end of
-// the record: number, state. Recordings of versions before that end behind the couplings: of those a replay takes what
-// such a channel gave until it is opened again.
+// of the devices of open haptic channels; used slots with their state; couplings; open haptic channels: number,
+// state. Recordings of versions before that end behind the couplings: of those a replay takes what such a channel gave
+// until it is opened again. Where robots have followed trajectories: kMaxHapticDevices, the number of those robots, and
+// of each its slot and state.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,6 +60,18 @@ void Engine::write_start(StateWriter& out) CELL_RT {
     out.bounded(number, kMaxHapticDevices);
     haptics_.write(channel, out);
   }
+  std::size_t followers = 0;
+  for (const RobotSlot& slot : slots_) followers += slot.used() && slot.has_trajectory() ? 1 : 0;
+  if (followers == 0) return;
+  std::size_t mark = kMaxHapticDevices;
+  out.bounded(mark, kMaxHapticDevices);
+  out.bounded(followers, kMaxRobots);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!slots_[i].used() || !slots_[i].has_trajectory()) continue;
+    std::size_t number = i;
+    out.bounded(number, kMaxRobots);
+    slots_[i].write_trajectory(out);
+  }
 }
 
 void Engine::record_published() CELL_RT {
@@ -79,6 +92,29 @@ Result<EngineCapacity> Engine::capacity_of(std::span<const std::byte> start) {
   return capacity;
 }
 
+// To the end of the record.
+Result<void> Engine::restore_trajectories(std::span<const std::byte> tail, const StartParts& parts) {
+  std::shared_ptr<const motion::Trajectory> found;  // of the robot that is read
+  StateReader in(tail, [&](std::uint64_t id) -> const void* {
+    found = parts.trajectory ? parts.trajectory(id) : nullptr;
+    return found.get();
+  });
+  std::size_t count = 0;
+  in.bounded(count, slots_.size());
+  for (std::size_t i = 0; i < count && in.ok(); ++i) {
+    std::size_t number = 0;
+    in.bounded(number, kMaxRobots);
+    if (!in.ok() || !is_slot(number) || !slots_[number].used() || slots_[number].has_trajectory())
+      return std::unexpected(not_sound("the slot of a trajectory"));
+    found.reset();
+    slots_[number].restore_trajectory(
+        in, [&](const motion::Trajectory* wanted) { return lend(wanted == nullptr ? nullptr : found); });
+    if (!in.ok()) return std::unexpected(not_sound(fmt::format("the trajectory of the robot in slot {}", number)));
+  }
+  if (!in.ok() || !in.at_end()) return std::unexpected(not_sound("its trajectories"));
+  return {};
+}
+
 Result<void> Engine::restore_haptics(StateReader& in, const StartParts& parts, EngineStart& out) {
   const auto lend_instrument = [this](haptics::Instrument&& instrument) {
     return lend(std::make_shared<const haptics::Instrument>(std::move(instrument)));
@@ -86,6 +122,7 @@ Result<void> Engine::restore_haptics(StateReader& in, const StartParts& parts, E
   while (!in.at_end()) {
     std::size_t channel = 0;
     in.bounded(channel, kMaxHapticDevices);
+    if (in.ok() && channel == kMaxHapticDevices) return restore_trajectories(in.rest(), parts);
     if (!in.ok() || channel >= haptics_.size() || out.open_devices[channel] == 0 || out.restored[channel])
       return std::unexpected(not_sound("the number of a haptic channel"));
     if (!haptics_.restore(channel, in, lend(parts.device(channel, out.open_devices[channel])), lend_instrument,

@@ -6,6 +6,7 @@
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/instrument_bytes.hpp"
 #include "rt_core/engine/state_transfer.hpp"
+#include "rt_core/engine/trajectory_bytes.hpp"
 
 namespace cellmirror {
 
@@ -85,6 +86,18 @@ struct Members {
   void operator()(StopMotion& one) const { archive(one.slot); }
   void operator()(SetPace& one) const { archive(one.slot, one.pace); }
   void operator()(HoldBehind& one) const { archive(one.slot, one.move); }
+  void operator()(FollowTrajectory& one) const {
+    archive(one.slot);
+    bool there = static_cast<bool>(one.trajectory);
+    archive(there);
+    if (!there || !archive.ok()) return;
+    if constexpr (Archive::kReads) {
+      if (auto read = read_trajectory(archive))
+        one.trajectory = parts->engine.lend(std::make_shared<const motion::Trajectory>(*std::move(read)));
+    } else {
+      write_trajectory(archive, *one.trajectory);
+    }
+  }
   void operator()(Couple& one) const { lent(one.coupling); }
   void operator()(Uncouple& one) const { archive(one.slot); }
   void operator()(OpenHaptic& one) const;
@@ -124,6 +137,14 @@ bool choose(Variant& variant, std::size_t index) {
 }
 
 }  // namespace
+
+std::size_t most_bytes_of(const Command& command) {
+  constexpr std::size_t kMostCommandBytes = std::size_t{64} << 10;
+  const auto* const motion = std::get_if<MotionCommand>(&command);
+  const auto* const follow = motion == nullptr ? nullptr : std::get_if<FollowTrajectory>(motion);
+  if (follow == nullptr || !follow->trajectory) return kMostCommandBytes;
+  return kMostCommandBytes + bytes_of(*follow->trajectory);
+}
 
 void write_command(StateWriter& out, Command& command) {
   auto group = static_cast<std::uint8_t>(command.index());

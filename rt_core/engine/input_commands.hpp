@@ -1,6 +1,7 @@
 // Commands of the tick as bytes, with all that they lend, and back. Not for the tick.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,6 +15,8 @@ namespace cellmirror::engine {
 
 class Engine;
 
+// Enough for write_command().
+[[nodiscard]] std::size_t most_bytes_of(const Command& command);
 void write_command(StateWriter& out, Command& command);
 
 // Who stands for what cannot be in a file.

@@ -6,6 +6,7 @@
 #include "rt_core/engine/input_commands.hpp"
 #include "rt_core/engine/instrument_bytes.hpp"
 #include "rt_core/engine/state_transfer.hpp"
+#include "rt_core/engine/trajectory_bytes.hpp"
 
 namespace cellmirror::engine {
 
@@ -18,7 +19,7 @@ constexpr std::size_t kMostOtherBytes = std::size_t{64} << 10;
 // An open haptic channel: its instrument with a chain whose variables have long names, two contact models, its state.
 constexpr std::size_t kMostHapticBytes = std::size_t{24} << 10;
 constexpr std::size_t kLeastRing = std::size_t{4} << 20;
-constexpr std::size_t kMostCommandBytes = std::size_t{64} << 10;
+constexpr std::size_t kMostChainBytes = std::size_t{64} << 10;
 
 void append(std::vector<std::byte>& out, InputRecord kind, std::span<const std::byte> content) {
   const auto length = static_cast<std::uint32_t>(content.size());
@@ -49,7 +50,9 @@ void InputTap::request_start() {
     if (!takes_commands_ || commands_lost_) first_command_.store(newest_sent_ + 1, std::memory_order_relaxed);
     takes_commands_ = true;
     commands_lost_ = false;
-    for (LentChain& one : chains_) one.kept = one.chain.lock();
+    with_lent([](auto& all) {
+      for (auto& one : all) one.kept = one.object.lock();
+    });
   }
   requests_ = requests_ + 1 == 0 ? 1 : requests_ + 1;
   wanted_.store(requests_, std::memory_order_release);
@@ -60,17 +63,21 @@ void InputTap::end() {
   const std::scoped_lock lock(mutex_);
   takes_commands_ = false;
   pending_.clear();
-  for (LentChain& one : chains_) one.kept.reset();
+  with_lent([](auto& all) {
+    for (auto& one : all) one.kept.reset();
+  });
 }
 
 bool InputTap::drain(std::vector<std::byte>& out) {
   if (!memory_) return false;
   // What nobody but this list has now, the tick gave back before what is taken from the ring below was written.
-  std::vector<const kinematics::Chain*> unused;
+  std::vector<const void*> unused;
   {
     const std::scoped_lock lock(mutex_);
-    for (const LentChain& one : chains_)
-      if (one.kept.use_count() == 1) unused.push_back(one.kept.get());
+    with_lent([&unused](auto& all) {
+      for (const auto& one : all)
+        if (one.kept.use_count() == 1) unused.push_back(one.kept.get());
+    });
   }
   from_tick_.clear();
   bool has_start = false;
@@ -83,9 +90,16 @@ bool InputTap::drain(std::vector<std::byte>& out) {
   bool lost = false;
   {
     const std::scoped_lock lock(mutex_);
-    if (has_start) append_chains(out);
-    for (LentChain& one : chains_)
-      if (one.kept.use_count() == 1 && std::ranges::find(unused, one.kept.get()) != unused.end()) one.kept.reset();
+    if (has_start) {
+      append_chains(out);
+      append_trajectories(out);
+    }
+    with_lent([&unused](auto& all) {
+      for (auto& one : all) {
+        const void* const kept = one.kept.get();
+        if (one.kept.use_count() == 1 && std::ranges::find(unused, kept) != unused.end()) one.kept.reset();
+      }
+    });
     out.insert(out.end(), pending_.begin(), pending_.end());
     pending_.clear();
     lost = commands_lost_;
@@ -96,8 +110,8 @@ bool InputTap::drain(std::vector<std::byte>& out) {
 }
 
 void InputTap::append_chains(std::vector<std::byte>& out) const {
-  std::vector<std::byte> buffer(kMostCommandBytes);
-  for (const LentChain& one : chains_) {
+  std::vector<std::byte> buffer(kMostChainBytes);
+  for (const auto& one : chains_) {
     if (!one.kept) continue;
     StateWriter writer(buffer);
     const kinematics::Chain* chain = one.kept.get();
@@ -107,14 +121,32 @@ void InputTap::append_chains(std::vector<std::byte>& out) const {
   }
 }
 
-void InputTap::note(const std::shared_ptr<const kinematics::Chain>& chain) {
-  if (!chain) return;
-  const std::scoped_lock lock(mutex_);
-  std::erase_if(chains_, [](const LentChain& one) { return one.chain.expired(); });
-  const auto known = std::ranges::find_if(chains_, [&](const LentChain& one) { return one.chain.lock() == chain; });
-  LentChain& lent = known == chains_.end() ? chains_.emplace_back(LentChain{chain}) : *known;
-  if (takes_commands_) lent.kept = chain;
+void InputTap::append_trajectories(std::vector<std::byte>& out) const {
+  std::vector<std::byte> buffer;
+  for (const auto& one : trajectories_) {
+    if (!one.kept) continue;
+    buffer.resize(sizeof(std::uint64_t) + bytes_of(*one.kept));
+    StateWriter writer(buffer);
+    const motion::Trajectory* trajectory = one.kept.get();
+    writer.reference(trajectory);
+    write_trajectory(writer, *one.kept);
+    if (writer.ok()) append(out, InputRecord::trajectory, writer.written());
+  }
 }
+
+template <class T>
+void InputTap::note(std::vector<Lent<T>>& all, const std::shared_ptr<const T>& object) {
+  if (!object) return;
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(all, [](const Lent<T>& one) { return one.object.expired(); });
+  const auto known = std::ranges::find_if(all, [&](const Lent<T>& one) { return one.object.lock() == object; });
+  Lent<T>& lent = known == all.end() ? all.emplace_back(Lent<T>{object}) : *known;
+  if (takes_commands_) lent.kept = object;
+}
+
+void InputTap::note(const std::shared_ptr<const kinematics::Chain>& chain) { note(chains_, chain); }
+
+void InputTap::note(const std::shared_ptr<const motion::Trajectory>& trajectory) { note(trajectories_, trajectory); }
 
 InputTap::Sending::Sending(InputTap& tap, std::uint64_t id, Command& command)
     : tap_(tap), lock_(tap.mutex_), pending_before_(tap.pending_.size()), newest_before_(tap.newest_sent_) {
@@ -124,7 +156,7 @@ InputTap::Sending::Sending(InputTap& tap, std::uint64_t id, Command& command)
     tap_.commands_lost_ = true;
     return;
   }
-  tap_.encoding_.resize(kMostCommandBytes);
+  tap_.encoding_.resize(most_bytes_of(command));
   StateWriter writer(tap_.encoding_);
   writer(id);
   write_command(writer, command);

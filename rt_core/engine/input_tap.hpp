@@ -12,6 +12,7 @@
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/engine/command.hpp"
 #include "rt_core/kinematics/chain.hpp"
+#include "rt_core/motion/trajectory.hpp"
 #include "rt_core/rt/byte_ring.hpp"
 
 namespace cellmirror::engine {
@@ -19,11 +20,12 @@ namespace cellmirror::engine {
 // Kinds of records. A message of a recording is kInputsVersion, then records: kind (8 bits), length (32 bits), content.
 inline constexpr std::uint8_t kInputsVersion = 1;
 enum class InputRecord : std::uint8_t {
-  command = 1,  // id, command (input_commands.hpp)
-  chain = 2,    // id, chain: what a start state refers to
-  robots = 3,   // names of slots and joints (written by who records)
-  start = 4,    // the state of the engine before a tick (engine_state.cpp)
-  tick = 5,     // what it took, and what has changed in what it publishes (tick_recorder.hpp)
+  command = 1,     // id, command (input_commands.hpp)
+  chain = 2,       // id, chain: what a start state refers to
+  robots = 3,      // names of slots and joints (written by who records)
+  start = 4,       // the state of the engine before a tick (engine_state.cpp)
+  tick = 5,        // what it took, and what has changed in what it publishes (tick_recorder.hpp)
+  trajectory = 6,  // id, trajectory: what a start state refers to
 };
 // Within a record of a tick: what follows its head.
 enum class TickPart : std::uint8_t { end = 0, sample = 1, haptic = 2, robot = 3, haptic_state = 4 };
@@ -59,8 +61,9 @@ class InputTap {
     std::size_t pending_before_;
     std::uint64_t newest_before_;
   };
-  // Of a chain that is lent: start states may refer to it as long as it is used.
+  // Of what is lent: start states may refer to it as long as it is used.
   void note(const std::shared_ptr<const kinematics::Chain>& chain);
+  void note(const std::shared_ptr<const motion::Trajectory>& trajectory);
 
   // What the tick writes with.
   struct PublishedPart {
@@ -79,7 +82,22 @@ class InputTap {
   friend class TickRecorder;
   static constexpr std::size_t kMostPending = std::size_t{16} << 20;
 
+  // An object that start states may refer to.
+  template <class T>
+  struct Lent {
+    std::weak_ptr<const T> object;       // until nobody uses it
+    std::shared_ptr<const T> kept = {};  // while something records
+  };
+  template <class T>
+  void note(std::vector<Lent<T>>& all, const std::shared_ptr<const T>& object);
+  // Calls `function` with each list of them.
+  template <class Function>
+  void with_lent(const Function& function) {
+    function(chains_);
+    function(trajectories_);
+  }
   void append_chains(std::vector<std::byte>& out) const;
+  void append_trajectories(std::vector<std::byte>& out) const;
 
   const std::size_t robots_;
   const std::size_t haptic_devices_;
@@ -101,11 +119,8 @@ class InputTap {
   std::uint64_t newest_sent_ = 0;
   std::vector<std::byte> pending_;  // records of commands
   std::vector<std::byte> encoding_;
-  struct LentChain {
-    std::weak_ptr<const kinematics::Chain> chain;        // until nobody uses it
-    std::shared_ptr<const kinematics::Chain> kept = {};  // while something records
-  };
-  std::vector<LentChain> chains_;
+  std::vector<Lent<kinematics::Chain>> chains_;
+  std::vector<Lent<motion::Trajectory>> trajectories_;
 };
 
 }  // namespace cellmirror::engine

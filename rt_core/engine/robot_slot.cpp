@@ -13,6 +13,8 @@ bool RobotSlot::add(const RobotSetup& robot) CELL_RT {
   const std::uint8_t joints = std::min(robot.joint_count, static_cast<std::uint8_t>(kMaxJointsPerRobot));
   if (gate_.add(joints, robot.positions, robot.limits) != LimiterVerdict::passed) return false;
   executor_.reset(joints);
+  follower_.reset(joints);
+  trajectory_.give_back();
   chain_.give_back();
   give_back_chains();
   return true;
@@ -21,6 +23,8 @@ bool RobotSlot::add(const RobotSetup& robot) CELL_RT {
 void RobotSlot::remove() CELL_RT {
   gate_.remove();
   executor_.reset(0);
+  follower_.reset(0);
+  trajectory_.give_back();
   chain_.give_back();
   give_back_chains();
 }
@@ -29,6 +33,7 @@ void RobotSlot::set_mode(const SetMode& command) CELL_RT {
   if (!used()) return;
   gate_.set_mode(command.mode, command.ages, command.given, command.plausibility.get());
   executor_.abort(motion::Outcome::stopped);
+  follower_.abort(motion::TrajectoryOutcome::stopped);
   if (!simulated()) {
     executor_.set_chain(nullptr);
     chain_.give_back();
@@ -41,6 +46,7 @@ void RobotSlot::set_mode(const SetMode& command) CELL_RT {
 bool RobotSlot::set_positions(const JointValues& positions) CELL_RT {
   if (!simulated() || gate_.jump(positions, free_joints()) != LimiterVerdict::passed) return false;
   executor_.abort(motion::Outcome::stopped);
+  follower_.abort(motion::TrajectoryOutcome::stopped);
   return true;
 }
 
@@ -74,10 +80,26 @@ void RobotSlot::give_back_chains() CELL_RT {
   }
 }
 
-bool RobotSlot::add_move(const motion::Move& move) CELL_RT { return simulated() && executor_.add(move); }
+bool RobotSlot::add_move(const motion::Move& move) CELL_RT {
+  if (!simulated()) return false;
+  follower_.abort(motion::TrajectoryOutcome::superseded);
+  return executor_.add(move);
+}
+
+bool RobotSlot::follow_trajectory(Lease<const motion::Trajectory> trajectory) CELL_RT {
+  // Joints that follow a master are moved by it alone.
+  if (!simulated() || !trajectory || state().follow.follows()) return false;
+  JointValues velocities{};
+  for (std::size_t i = 0; i < state().joint_count; ++i) velocities[i] = state().joints[i].velocity;
+  if (!follower_.begin(*trajectory, std::span(velocities).first(state().joint_count))) return false;
+  executor_.abort(motion::Outcome::superseded);
+  std::swap(trajectory_, trajectory);
+  return true;
+}
 
 bool RobotSlot::stop_motion() CELL_RT {
   if (simulated()) executor_.stop();
+  if (simulated()) follower_.stop(motion::TrajectoryOutcome::stopped);
   return simulated();
 }
 
@@ -103,14 +125,21 @@ bool RobotSlot::move(double dt, Timestamp now) CELL_RT {
     lower[i] = std::min(gate_.limits().lower[i], step.next[i]);
     upper[i] = std::max(gate_.limits().upper[i], step.next[i]);
   }
-  const bool moved = executor_.step(dt, now, {std::span(lower).first(n), std::span(upper).first(n)},
-                                    std::span(step.next).first(n), std::span(step.velocity).first(n));
+  const motion::JointRange range{std::span(lower).first(n), std::span(upper).first(n)};
+  const std::span<double> q = std::span(step.next).first(n);
+  const std::span<double> qd = std::span(step.velocity).first(n);
+  const bool follows = follower_.active();
+  const bool moved = follows ? follower_.step(dt, now, range, q, qd) : executor_.step(dt, now, range, q, qd);
   if (moved) {
-    step.fastest = executor_.fastest();
-    if (gate_.step(step) != LimiterVerdict::passed) executor_.abort(motion::Outcome::blocked);
+    step.fastest = follows ? follower_.fastest() : executor_.fastest();
+    if (gate_.step(step) != LimiterVerdict::passed) {
+      follower_.abort(motion::TrajectoryOutcome::blocked);
+      executor_.abort(motion::Outcome::blocked);
+    }
   } else {
     gate_.stand(step.joints);
   }
+  if (!follower_.active()) trajectory_.give_back();
   gate_.set_motion(executor_.state());
   give_back_chains();
   return moved;
@@ -124,6 +153,7 @@ void RobotSlot::set_follow(std::uint8_t master, JointSet joints) CELL_RT {
   } else {
     executor_.stop();
   }
+  follower_.abort(motion::TrajectoryOutcome::stopped);
   gate_.stand(before);
   FollowTickState follow;
   follow.master = master;
@@ -197,8 +227,17 @@ void RobotSlot::restore(StateReader& in, const LendChain& lend) {
   }
 }
 
+void RobotSlot::write_trajectory(StateWriter& out) CELL_RT { follower_.transfer(out, state().joint_count); }
+
+void RobotSlot::restore_trajectory(StateReader& in, const LendTrajectory& lend) {
+  follower_.transfer(in, state().joint_count);
+  trajectory_ = lend(follower_.running());
+}
+
 void RobotSlot::publish(RobotTickState& out) const CELL_RT {
   static_cast<RobotTickHead&>(out) = state();
+  // Most robots never follow one: then nothing large is copied.
+  if (has_trajectory() || out.trajectory.given != 0) out.trajectory = follower_.state();
   std::copy_n(state().joints.begin(), state().joint_count, out.joints.begin());
 }
 

@@ -12,6 +12,8 @@
 #include "rt_core/engine/joint_gate.hpp"
 #include "rt_core/engine/tick_state.hpp"
 #include "rt_core/motion/executor.hpp"
+#include "rt_core/motion/trajectory.hpp"
+#include "rt_core/motion/trajectory_follower.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 
 namespace cellmirror::engine {
@@ -27,6 +29,7 @@ class RobotSlot {
   void set_limits(const JointLimits& limits) CELL_RT { gate_.set_limits(limits); }
   bool set_chain(Lease<const kinematics::Chain> chain) CELL_RT;
   bool add_move(const motion::Move& move) CELL_RT;
+  bool follow_trajectory(Lease<const motion::Trajectory> trajectory) CELL_RT;
   bool stop_motion() CELL_RT;
   bool set_pace(double pace) CELL_RT;
   bool hold_behind(std::uint32_t move) CELL_RT;
@@ -53,10 +56,16 @@ class RobotSlot {
     gate_.transfer_published(archive, part);
   }
   void write(StateWriter& out) CELL_RT;
+  // Of what follows trajectories; restore_trajectory() is its opposite.
+  void write_trajectory(StateWriter& out) CELL_RT;
   // As it was written, in a slot that was not used yet; chains are lent again. What does not fit makes `in` fail. Not
   // for the tick.
   using LendChain = std::function<Lease<const kinematics::Chain>(const kinematics::Chain* chain)>;
   void restore(StateReader& in, const LendChain& lend);
+  using LendTrajectory = std::function<Lease<const motion::Trajectory>(const motion::Trajectory* trajectory)>;
+  void restore_trajectory(StateReader& in, const LendTrajectory& lend);
+  // Whether it has ever followed one.
+  [[nodiscard]] bool has_trajectory() const CELL_RT { return follower_.newest() != 0; }
 
  private:
   void retire(Lease<const kinematics::Chain> chain) CELL_RT;
@@ -67,6 +76,8 @@ class RobotSlot {
 
   JointGate gate_;
   motion::MoveExecutor executor_;
+  motion::TrajectoryFollower follower_;  // moves the robot while it is active, else the executor does
+  Lease<const motion::Trajectory> trajectory_;
   Lease<const kinematics::Chain> chain_;
   // Chains that were replaced while moves needed them: at most one of each move that runs or waits.
   std::array<Lease<const kinematics::Chain>, motion::kMoveQueue + 1> retired_chains_;

@@ -8,6 +8,7 @@
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/motion/executor.hpp"
+#include "rt_core/motion/trajectory_follower.hpp"
 #include "rt_core/ports/haptic_state.hpp"
 #include "rt_core/ports/joint_stream.hpp"
 #include "rt_core/ports/plausibility.hpp"
@@ -61,6 +62,7 @@ struct RobotTickHead {
 
 struct RobotTickState : RobotTickHead {
   std::array<JointTickState, kMaxJointsPerRobot> joints{};  // the first joint_count count
+  motion::TrajectoryState trajectory;                       // of a simulated robot; not in recordings
 };
 
 struct TickState {

@@ -5,6 +5,9 @@
 namespace cellmirror::app {
 
 Result<void> GuardedMotion::check_free(std::string_view robot) const {
+  if (const std::string_view controller = controllers_.moving_controller(robot); !controller.empty())
+    return fail(fmt::format("{} is on a trajectory of the controller {}", robot, controller),
+                fmt::format("wait until it has ended, or end it with STOP_ROB {}", robot));
   const std::string program = programs_.moving_program(robot);
   if (program.empty()) return {};
   return fail(fmt::format("the robot program {} moves {}", program, robot),
@@ -23,6 +26,7 @@ Result<void> GuardedMotion::queue_move(std::string_view robot, MovePath path, co
 
 Result<void> GuardedMotion::stop(std::string_view robot) {
   programs_.give_up_waiting(robot, {"stopped by STOP_ROB", {}});
+  if (auto stopped = controllers_.stop(robot); !stopped) return stopped;
   if (programs_.moving_program(robot).empty()) return motion_.stop(robot);
   return programs_.stop_programs(robot);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <fastdds/rtps/common/WriteParams.h>
 #include <atomic>
 #include <exception>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -49,6 +50,20 @@ BytesWriter::~BytesWriter() {
 bool BytesWriter::write() {
   try {
     return writer_->write(&sample_);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+bool BytesWriter::write_reply(const SampleName& request) {
+  eprosima::fastrtps::rtps::WriteParams parameters;
+  auto& identity = parameters.related_sample_identity();
+  std::size_t at = 0;
+  for (auto& byte : identity.writer_guid().guidPrefix.value) byte = request.guid[at++];
+  for (auto& byte : identity.writer_guid().entityId.value) byte = request.guid[at++];
+  identity.sequence_number() = eprosima::fastrtps::rtps::SequenceNumber_t(static_cast<std::uint64_t>(request.number));
+  try {
+    return writer_->write(&sample_, parameters);
   } catch (const std::exception&) {
     return false;
   }

@@ -7,6 +7,7 @@
 
 #include "drivers/dds/internal/bytes_sample.hpp"
 #include "drivers/dds/internal/participant.hpp"
+#include "drivers/dds/sample_name.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror::dds {
@@ -25,6 +26,8 @@ class BytesWriter final {
   [[nodiscard]] std::vector<std::byte>& payload() { return sample_.payload; }
   // Does not wait for readers. False where DDS did not take the sample.
   bool write();
+  // The same, as the reply to a request: with its identity in the inline QoS.
+  bool write_reply(const SampleName& request);
   // Whether every reliable reader has confirmed every sample; true where there is none. Does not wait.
   [[nodiscard]] bool all_confirmed() const;
   [[nodiscard]] int matched_readers() const;

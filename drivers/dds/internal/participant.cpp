@@ -21,6 +21,9 @@
 
 #include "drivers/dds/internal/bytes_type.hpp"
 #include "drivers/dds/internal/library_log.hpp"
+#include "drivers/dds/presence.hpp"
+#include "drivers/dds/type_hashes.hpp"
+#include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::dds {
@@ -109,9 +112,13 @@ std::string remedy_for(const DdsSecurityConfig& security) {
          "the subject in the permissions is that of the certificate, the dates are valid (docs/dds.md)";
 }
 
+std::vector<eprosima::fastrtps::rtps::octet> octets_of(std::string_view text) { return {text.begin(), text.end()}; }
+
 fd::DomainParticipantQos participant_qos(int domain, const std::string& address, const DdsSecurityConfig& security) {
   fd::DomainParticipantQos qos;
   qos.name("cellmirror");
+  // By this programs of ROS 2 know their kind.
+  qos.user_data().setValue(octets_of("enclave=/;"));
   // UDP alone: shared memory is hardly faster at these sizes and leaves its segments behind after kill -9
   // (docs/decisions/0003-dds-transports.md).
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -127,8 +134,37 @@ fd::DomainParticipantQos participant_qos(int domain, const std::string& address,
   return qos;
 }
 
+Guid guid_of(const rtps::GUID_t& guid) {
+  Guid out{};
+  std::size_t at = 0;
+  for (const auto byte : guid.guidPrefix.value) out[at++] = byte;
+  for (const auto byte : guid.entityId.value) out[at++] = byte;
+  return out;
+}
+
+class PresenceSetting {
+ public:
+  static PresenceSetting& instance() {
+    static PresenceSetting setting;
+    return setting;
+  }
+  void set(const RosPresence& presence) {
+    const std::scoped_lock lock(mutex_);
+    presence_ = presence;
+  }
+  [[nodiscard]] RosPresence get() {
+    const std::scoped_lock lock(mutex_);
+    return presence_;
+  }
+
+ private:
+  std::mutex mutex_;
+  RosPresence presence_;
+};
+
 template <class Qos>
-void set_common(Qos& qos, const EndpointConfig& config) {
+void set_common(Qos& qos, const EndpointConfig& config, RosDistribution distribution) {
+  qos.user_data().setValue(octets_of(type_user_data(config.type, distribution)));
   qos.reliability().kind = config.reliable ? fd::RELIABLE_RELIABILITY_QOS : fd::BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind = fd::VOLATILE_DURABILITY_QOS;
   qos.history().kind = fd::KEEP_LAST_HISTORY_QOS;
@@ -152,7 +188,29 @@ Result<void> check_topic(std::string_view topic) {
   return {};
 }
 
-Participant::Participant(std::shared_ptr<fd::DomainParticipantFactory> factory) : factory_(std::move(factory)) {}
+void set_ros_presence(const RosPresence& presence) { PresenceSetting::instance().set(presence); }
+
+Participant::Participant(std::shared_ptr<fd::DomainParticipantFactory> factory, RosPresence presence)
+    : factory_(std::move(factory)), presence_(std::move(presence)) {}
+
+Result<void> Participant::open_graph() {
+  if (!presence_.distribution) return {};
+  const auto made = make_writer({std::string(kRosGraphTopic), kRosGraphType, true, 1, false, true}, nullptr);
+  if (!made) return std::unexpected(made.error());
+  graph_.participant = guid_of(participant_->guid());
+  graph_.node = presence_.node_name;
+  graph_writer_ = *made;
+  publish_graph();
+  return {};
+}
+
+// Under the mutex.
+void Participant::publish_graph() {
+  if (graph_writer_ == nullptr) return;
+  BytesSample sample;
+  encode(graph_, *presence_.distribution, sample.payload);
+  graph_writer_->write(&sample);
+}
 
 Result<std::shared_ptr<Participant>> Participant::shared(int domain, const std::string& interface_address,
                                                          const DdsSecurityConfig& security) {
@@ -165,7 +223,8 @@ Result<std::shared_ptr<Participant>> Participant::shared(int domain, const std::
   if (auto existing = entry.lock()) return existing;
   try {
     redirect_library_log();
-    std::shared_ptr<Participant> made(new Participant(fd::DomainParticipantFactory::get_shared_instance()));
+    std::shared_ptr<Participant> made(
+        new Participant(fd::DomainParticipantFactory::get_shared_instance(), PresenceSetting::instance().get()));
     const auto as_domain = static_cast<fd::DomainId_t>(domain);
     made->participant_ =
         made->factory_->create_participant(as_domain, participant_qos(domain, interface_address, security));
@@ -177,6 +236,8 @@ Result<std::shared_ptr<Participant>> Participant::shared(int domain, const std::
     made->subscriber_ = made->participant_->create_subscriber(fd::SubscriberQos{});
     if (made->publisher_ == nullptr || made->subscriber_ == nullptr)
       return fail("DDS refused a publisher or subscriber");
+    // Permissions may forbid it: names of nodes are no reason to be silent.
+    if (auto opened = made->open_graph(); !opened) log_warning("dds.graph", "{}", opened.error().text());
     entry = made;
     return made;
   } catch (const std::exception& error) {
@@ -214,9 +275,11 @@ Result<fd::DataReader*> Participant::add_reader(const EndpointConfig& config, fd
     const auto of_topic = topic(config);
     if (!of_topic) return std::unexpected(of_topic.error());
     fd::DataReaderQos qos;
-    set_common(qos, config);
+    set_common(qos, config, presence_.messages());
     fd::DataReader* made = subscriber_->create_datareader(*of_topic, qos, listener);
     if (made == nullptr) return fail(fmt::format("DDS refused a reader of {}", printable(config.topic)));
+    graph_.readers.push_back(guid_of(made->guid()));
+    publish_graph();
     return made;
   } catch (const std::exception& error) {
     return fail(fmt::format("a DDS reader of {}: {}", printable(config.topic), error.what()));
@@ -225,11 +288,19 @@ Result<fd::DataReader*> Participant::add_reader(const EndpointConfig& config, fd
 
 Result<fd::DataWriter*> Participant::add_writer(const EndpointConfig& config, fd::DataWriterListener* listener) {
   const std::scoped_lock lock(mutex_);
+  auto made = make_writer(config, listener);
+  if (!made) return made;
+  graph_.writers.push_back(guid_of((*made)->guid()));
+  publish_graph();
+  return made;
+}
+
+Result<fd::DataWriter*> Participant::make_writer(const EndpointConfig& config, fd::DataWriterListener* listener) {
   try {
     const auto of_topic = topic(config);
     if (!of_topic) return std::unexpected(of_topic.error());
     fd::DataWriterQos qos;
-    set_common(qos, config);
+    set_common(qos, config, presence_.messages());
     if (config.transient_local) qos.durability().kind = fd::TRANSIENT_LOCAL_DURABILITY_QOS;
     qos.publish_mode().kind = config.large ? fd::ASYNCHRONOUS_PUBLISH_MODE : fd::SYNCHRONOUS_PUBLISH_MODE;
     qos.reliability().max_blocking_time = {0, 1'000'000};                // how long write() may wait for a lock: 1 ms
@@ -244,12 +315,16 @@ Result<fd::DataWriter*> Participant::add_writer(const EndpointConfig& config, fd
 
 void Participant::remove(fd::DataReader* reader) {
   const std::scoped_lock lock(mutex_);
+  std::erase(graph_.readers, guid_of(reader->guid()));
   subscriber_->delete_datareader(reader);
+  publish_graph();
 }
 
 void Participant::remove(fd::DataWriter* writer) {
   const std::scoped_lock lock(mutex_);
+  std::erase(graph_.writers, guid_of(writer->guid()));
   publisher_->delete_datawriter(writer);
+  publish_graph();
 }
 
 }  // namespace cellmirror::dds

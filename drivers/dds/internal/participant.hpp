@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "drivers/dds/ros_graph.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/ports/ros_presence.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
 // The library's headers take seconds to compile: only sources that call it include them.
@@ -56,11 +58,19 @@ class Participant {
   void remove(eprosima::fastdds::dds::DataWriter* writer);
 
  private:
-  explicit Participant(std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory);
+  Participant(std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory, RosPresence presence);
+  // Makes the writer of what nodes there are, where the presence says for whom.
+  [[nodiscard]] Result<void> open_graph();
+  void publish_graph();
+  [[nodiscard]] Result<eprosima::fastdds::dds::DataWriter*> make_writer(
+      const EndpointConfig& config, eprosima::fastdds::dds::DataWriterListener* listener);
   [[nodiscard]] Result<eprosima::fastdds::dds::Topic*> topic(const EndpointConfig& config);
 
   std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory_;  // outlives the participant
   std::mutex mutex_;                                                           // making and removing endpoints
+  const RosPresence presence_;
+  RosGraph graph_;                                              // under the mutex
+  eprosima::fastdds::dds::DataWriter* graph_writer_ = nullptr;  // null: nothing is told
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

@@ -67,6 +67,30 @@ struct PlainMarker {
   bool rest_is_empty = false;  // textures, texts and meshes
 };
 
+struct PlainTrajectoryPoint {
+  std::vector<double> positions = {}, velocities = {}, accelerations = {};
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+};
+
+struct PlainTrajectory {
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+  std::vector<std::string> joints = {};
+  std::vector<PlainTrajectoryPoint> points = {};
+};
+
+struct PlainControllerState {
+  std::vector<std::string> joints;
+  std::vector<double> reference, feedback, error;  // positions
+  double speed = 0;
+};
+
+struct PlainNode {
+  std::string space, name;
+  std::vector<std::array<std::uint8_t, 16>> readers, writers;
+};
+
 // One participant on the loopback interface. At most one per domain and process at a time.
 class CyclonePeer {
  public:
@@ -77,6 +101,13 @@ class CyclonePeer {
 
   [[nodiscard]] dds_entity_t joint_state_writer(const std::string& topic, bool reliable);
   [[nodiscard]] dds_entity_t joint_state_reader(const std::string& topic, bool reliable);
+  [[nodiscard]] dds_entity_t trajectory_writer(const std::string& topic);
+  [[nodiscard]] dds_entity_t controller_state_reader(const std::string& topic);
+  // Of ros_discovery_info, as ROS 2 asks for it: reliable and transient local.
+  [[nodiscard]] dds_entity_t node_reader();
+  // What the writers of a topic announce as USER_DATA.
+  [[nodiscard]] std::vector<std::string> user_data_of_writers(const std::string& topic) const;
+  [[nodiscard]] std::vector<std::array<std::uint8_t, 16>> guids_of_writers(const std::string& topic) const;
   [[nodiscard]] dds_entity_t tf_reader(const std::string& topic);
   // `humble`: with the type that this release has.
   [[nodiscard]] dds_entity_t range_reader(const std::string& topic, bool humble);
@@ -88,6 +119,9 @@ class CyclonePeer {
   [[nodiscard]] dds_entity_t description_reader(const std::string& topic);
 
   static bool write(dds_entity_t writer, const PlainJointState& message);
+  static bool write(dds_entity_t writer, const PlainTrajectory& message);
+  static std::vector<PlainControllerState> take_controller_states(dds_entity_t reader);
+  static std::vector<PlainNode> take_nodes(dds_entity_t reader);  // of all messages
   static std::vector<PlainJointState> take_joint_states(dds_entity_t reader);
   static std::vector<PlainTransform> take_transforms(dds_entity_t reader);
   static std::vector<PlainRange> take_ranges(dds_entity_t reader, bool humble);

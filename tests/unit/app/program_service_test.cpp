@@ -127,7 +127,20 @@ class ProgramDeskTest : public testing::Test {
     CellProgramMotion moves{cell, motion, fleet, clock};
     DisplayService display;
     ProgramService programs;
-    GuardedMotion guarded{motion, programs};
+    struct NobodyFollows final : CoupledRobots {
+      [[nodiscard]] std::uint16_t coupled_joints(std::string_view /*robot*/) const override { return 0; }
+      [[nodiscard]] std::string_view master_of(std::string_view /*robot*/) const override { return {}; }
+    } nobody;
+    ControllerService controllers{{.cell = cell,
+                                   .fleet = fleet,
+                                   .motion = motion,
+                                   .coupled = nobody,
+                                   .moving_program = {},
+                                   .clock = clock,
+                                   .controllers = {},
+                                   .wake = {},
+                                   .make_endpoint = {}}};
+    GuardedMotion guarded{motion, programs, controllers};
     std::uint64_t cycle = 0;
   };
 

@@ -1,0 +1,70 @@
+// Any bytes as the requests of an action, and a book of goals that they are put to: it never holds more than it says,
+// answers each question once, and forgets nothing that runs.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+#include "drivers/dds/controller_messages.hpp"
+#include "drivers/dds/goal_book.hpp"
+
+namespace {
+
+using namespace cellmirror;
+using namespace cellmirror::dds;
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+// The first byte of each step says what is done, the second to which of a few goals.
+void use_book(std::span<const std::uint8_t> steps) {
+  GoalBook book;
+  for (std::size_t i = 0; i + 1 < steps.size(); i += 2) {
+    GoalId id{};
+    id[0] = static_cast<std::uint8_t>(steps[i + 1] % 48);
+    const RequestName from{{}, static_cast<std::int64_t>(i)};
+    switch (steps[i] % 6) {
+      case 0:
+        book.ask(id, from, {static_cast<std::int32_t>(i), 0});
+        break;
+      case 1:
+      case 2:
+        if (book.answer(id, steps[i] % 6 == 1)) require(!book.answer(id, true));
+        break;
+      case 3:
+        for (const GoalInfo& goal : book.cancel({id, {static_cast<std::int32_t>(steps[i + 1]), 0}}).goals)
+          require(goal.status == GoalStatus::canceling);
+        break;
+      case 4:
+        static_cast<void>(book.result_of(id, from));
+        break;
+      default:
+        if (const auto finished = book.finish(id, {GoalEnd::succeeded, 0, {}})) {
+          require(finished->waiting.size() <= GoalBook::kMostWaiting);
+          require(book.result_of(id, from)->status == GoalStatus::succeeded);
+        }
+        break;
+    }
+    require(book.status().size() <= GoalBook::kMostGoals);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span<const std::byte> payload(reinterpret_cast<const std::byte*>(data), size);
+  GoalRequest goal;
+  if (decode(payload, goal) == CdrFault::none) {
+    require(goal.trajectory.joints.size() <= kMaxTrajectoryJoints);
+    require(goal.trajectory.points.size() <= kMaxTrajectoryPoints);
+    require(goal.goal.path.size() <= 4 * kMaxTrajectoryJoints && goal.goal.goal.size() <= 4 * kMaxTrajectoryJoints);
+  }
+  CancelRequest cancel;
+  static_cast<void>(decode(payload, cancel));
+  GoalId id{};
+  static_cast<void>(decode(payload, id));
+  use_book({data, size});
+  return 0;
+}
