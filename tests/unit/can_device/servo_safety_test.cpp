@@ -192,8 +192,8 @@ TEST_F(Safety, NmtResetSwitchesOffAndKeepsThePosition) {
 TEST_F(Safety, HasOnlyModesMethodsAndOptionsThatItSays) {
   DriveMaster master;
   constexpr std::uint32_t kInvalid = 0x0609'0030;
-  for (const int mode : {-1, 2, 4, 5, 11}) EXPECT_EQ(master.write(0x6060, 0, mode & 0xFF, 1), kInvalid) << mode;
-  EXPECT_EQ(master.object(0x6502), 0x3E5);
+  for (const int mode : {-1, 2, 5, 11}) EXPECT_EQ(master.write(0x6060, 0, mode & 0xFF, 1), kInvalid) << mode;
+  EXPECT_EQ(master.object(0x6502), 0x3ED);
   EXPECT_EQ(master.write(0x6098, 0, 15, 1), kInvalid);
   EXPECT_EQ(master.write16(0x605A, 3), kInvalid);
   EXPECT_EQ(master.write16(0x6086, 2), kInvalid);
