@@ -37,7 +37,15 @@ class Recovery(unittest.TestCase):
         return hand
 
     def until(self, condition, what, timeout=g.PATIENCE_S):
-        self.assertTrue(g.eventually(lambda: condition(self.device()), timeout), (what, self.device()))
+        seen = {}
+
+        def look():
+            device = self.device()
+            state = (device["phase"], device["fault"], device["awaits"])
+            seen[state] = seen.get(state, 0) + 1
+            return condition(device)
+
+        self.assertTrue(g.eventually(look, timeout), (what, seen, self.device()))
 
     def active(self, process):
         """The force is on, for that process."""
