@@ -21,7 +21,7 @@ PATIENT = """
 profile = "strict"
 stale_after_s = 0.03
 model_stale_after_s = 10.0
-allowed_missed_periods = 500
+allowed_missed_periods = 5000
 """
 
 # Where nothing is to go wrong: the machine may stand still for a second or two.
