@@ -10,7 +10,7 @@ namespace cellmirror::app {
 
 // Of one computation; `cell`, `poses` and `table` are those that it was made with.
 void report_contacts(const CellState& cell_state, const CompiledCell& cell, const CellPoses& poses,
-                 const collision::PairTable& table, const ProximityState& found);
+                     const collision::PairTable& table, const ProximityState& found);
 // That they touch nothing.
 void release_drives(const CellState& cell_state);
 

@@ -176,8 +176,8 @@ void CanopenSlave::renumber(std::uint8_t node) {
 
 LssSlave::Identity CanopenSlave::identity() const {
   LssSlave::Identity numbers{};
-  for (std::uint8_t i = 0; i < numbers.size(); ++i)
-    numbers[i] = static_cast<std::uint32_t>(object(0x1018, static_cast<std::uint8_t>(i + 1)));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers.at(i) = static_cast<std::uint32_t>(object(0x1018, static_cast<std::uint8_t>(i + 1)));
   return numbers;
 }
 

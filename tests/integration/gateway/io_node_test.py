@@ -95,10 +95,9 @@ class IoNode(unittest.TestCase):
 
         with self.subTest("inputs come as a PDO when they change"):
             master.nmt(1, NODE)
-            self.assertTrue(g.eventually(lambda: "operational" in self.status()["condition"], PATIENCE))
-            self.assertEqual(send("ROBACT SCARA_1;").returncode, 0)
+            self.assertTrue(g.eventually(lambda: self.status()["condition"].endswith(": operational"), PATIENCE))
             # The answer comes on arrival; frames wait in the socket of the master.
-            self.assertEqual(send("POS_ROB JOINT_ABS 57.3;").returncode, 0)
+            self.assertEqual(send("POS_ROB SCARA_1 JOINT_ABS 57.3;").returncode, 0)
             both = lambda identifier, data: identifier == 0x180 + NODE and struct.unpack("<I", data)[0] == 0x201
             self.assertIsNotNone(master.hear(both, PATIENCE), "both inputs on")
             barrier = self.scratch.status()["ranges"]["light_barriers"][0]

@@ -76,6 +76,7 @@ struct Barriers : testing::Test {
       cell = Cell::build(std::make_shared<const Component>(root), std::make_shared<OneComponent>(bar), diagnostics);
       EXPECT_TRUE(cell) << diagnostics.text();
       compiled = cell->compile();
+      poses = {};  // a cell of its own with, perhaps, the revision of the one before
       sut.emplace(std::make_shared<geometry::SolidLibrary>(), std::vector{barrier});
       sut->adopt(compiled);
     }
