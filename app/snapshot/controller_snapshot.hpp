@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "rt_core/base/time.hpp"
-#include "rt_core/motion/trajectory_follower.hpp"
 #include "rt_core/ports/joint_trajectory.hpp"
 #include "rt_core/ports/robot_state.hpp"
 #include "rt_core/ports/trajectory_endpoint.hpp"

@@ -22,7 +22,7 @@ class GoalBook {
 
   // False where the id is known, or too many goals have not ended: refused at once.
   bool ask(const GoalId& id, const RequestName& from, RosTime now);
-  // Ends ask(). Whom to tell; none: there is no such question.
+  // Ends ask(). Who asked; none: there is no such question.
   std::optional<RequestName> answer(const GoalId& id, bool taken);
 
   struct Cancel {

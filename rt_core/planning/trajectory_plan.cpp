@@ -170,7 +170,7 @@ void set_points(const Columns& columns, const JointTrajectory& message, Trajecto
 using Bezier = std::array<double, 6>;
 
 Bezier bezier_of(const std::array<double, 6>& polynomial, double duration) {
-  constexpr std::size_t n = 5;
+  constexpr std::size_t kDegree = 5;
   constexpr std::array<std::array<double, 6>, 6> kBinomial = {{{1, 0, 0, 0, 0, 0},
                                                                {1, 1, 0, 0, 0, 0},
                                                                {1, 2, 1, 0, 0, 0},
@@ -179,8 +179,9 @@ Bezier bezier_of(const std::array<double, 6>& polynomial, double duration) {
                                                                {1, 5, 10, 10, 5, 1}}};
   Bezier out{};
   double power = 1;
-  for (std::size_t i = 0; i <= n; ++i) {
-    for (std::size_t j = i; j <= n; ++j) out[j] += kBinomial[j][i] / kBinomial[n][i] * polynomial[i] * power;
+  for (std::size_t i = 0; i <= kDegree; ++i) {
+    for (std::size_t j = i; j <= kDegree; ++j)
+      out[j] += kBinomial[j][i] / kBinomial[kDegree][i] * polynomial[i] * power;
     power *= duration;
   }
   return out;

@@ -16,6 +16,7 @@ EXCEPTIONS = {
     "rt_core/base/log.cpp": "the rate limit of messages, which come from all threads",
     "rt_core/rt": "the cyclic thread sleeps by the monotonic clock of the system and by no other",
     "drivers/can/channel": "I/O: receive time stamps and waiting with a limit, on the thread of a channel",
+    "drivers/dds/internal/action_server.cpp": "I/O: the wall-clock time at which a goal came is a part of its answer",
     "drivers/dds/internal/findings_writer.hpp": "I/O: how often diagnostics and markers are written, on the publisher's thread",
     "drivers/display/internal/volume/volume_casting.hpp": "measures how long volumes take, by which their resolution follows",
     "ipc/control": "I/O: time limits of the control socket, on the threads of server and client",

@@ -75,7 +75,7 @@ class ControllerService {
   bool follow(Controller& controller);
   void take(Controller& controller, const TrajectoryMessage& message);
   void take_goal(Controller& controller, const TrajectoryMessage& message);
-  // Plans it and gives it to the tick; whoever ran before has ended then.
+  // Plans it and gives it to the tick; the trajectory before has ended then.
   [[nodiscard]] std::optional<planning::TrajectoryFault> start(Controller& controller, const JointTrajectory& message,
                                                                const TrajectoryGoal* goal);
   void end_goal(Controller& controller, const GoalResult& result);

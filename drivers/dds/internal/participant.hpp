@@ -70,7 +70,7 @@ class Participant {
   std::mutex mutex_;                                                           // making and removing endpoints
   const RosPresence presence_;
   RosGraph graph_;                                              // under the mutex
-  eprosima::fastdds::dds::DataWriter* graph_writer_ = nullptr;  // null: nothing is told
+  eprosima::fastdds::dds::DataWriter* graph_writer_ = nullptr;  // null: nothing is published
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

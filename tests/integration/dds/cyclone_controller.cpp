@@ -1,37 +1,14 @@
 // Trajectories, states of controllers, and what ROS 2 tells of nodes, by Cyclone DDS.
 #include <cstring>
-#include <stdexcept>
 
 #include "cyclone_peer.hpp"
-#include "sensor_msgs.h"
+#include "cyclone_samples.hpp"
 
 namespace cellmirror::dds::test {
 
 namespace {
 
-dds_entity_t checked(dds_entity_t entity, const char* what) {
-  if (entity < 0) throw std::runtime_error(std::string(what) + ": " + dds_strretcode(-entity));
-  return entity;
-}
-
-dds_sequence_double view(const std::vector<double>& values) {
-  const auto n = static_cast<std::uint32_t>(values.size());
-  return {n, n, const_cast<double*>(values.data()), false};
-}
-
 std::vector<double> values_of(const dds_sequence_double& from) { return {from._buffer, from._buffer + from._length}; }
-
-template <class Sample, class Use>
-void take_all(dds_entity_t reader, Use use) {
-  for (;;) {
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    const dds_return_t taken = dds_take(reader, &sample, &info, 1, 1);
-    if (taken <= 0) return;
-    if (info.valid_data) use(*static_cast<const Sample*>(sample));
-    dds_return_loan(reader, &sample, taken);
-  }
-}
 
 std::vector<std::array<std::uint8_t, 16>> gids_of(const dds_sequence_rmw_dds_common_msg_dds__Gid_& from) {
   std::vector<std::array<std::uint8_t, 16>> out(from._length);

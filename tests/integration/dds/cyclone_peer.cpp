@@ -1,8 +1,6 @@
 #include "cyclone_peer.hpp"
 
-#include <stdexcept>
-
-#include "sensor_msgs.h"
+#include "cyclone_samples.hpp"
 
 namespace cellmirror::dds::test {
 
@@ -11,11 +9,6 @@ namespace {
 constexpr char kConfig[] = R"(
 <Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>)";
-
-dds_entity_t checked(dds_entity_t entity, const char* what) {
-  if (entity < 0) throw std::runtime_error(std::string(what) + ": " + dds_strretcode(-entity));
-  return entity;
-}
 
 class Qos {
  public:
@@ -31,23 +24,6 @@ class Qos {
  private:
   dds_qos_t* qos_;
 };
-
-dds_sequence_double view(const std::vector<double>& values) {
-  const auto n = static_cast<std::uint32_t>(values.size());
-  return {n, n, const_cast<double*>(values.data()), false};
-}
-
-template <class Sample, class Use>
-void take_all(dds_entity_t reader, Use use) {
-  for (;;) {
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    const dds_return_t taken = dds_take(reader, &sample, &info, 1, 1);
-    if (taken <= 0) return;
-    if (info.valid_data) use(*static_cast<const Sample*>(sample));
-    dds_return_loan(reader, &sample, taken);
-  }
-}
 
 }  // namespace
 

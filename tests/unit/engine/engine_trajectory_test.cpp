@@ -165,9 +165,9 @@ TEST_F(EngineTrajectoryTest, AStartStateHasTheTrajectoryThatRuns) {
   auto trajectory = read_trajectory(of_trajectory);
   ASSERT_TRUE(trajectory.has_value());
   const auto shared = std::make_shared<const Trajectory>(*std::move(trajectory));
-  Engine other(watchdog_, EngineCapacity{.robots = 4});
-  TickReader& ticks = other.subscribe("other");
-  const auto restored = other.restore(
+  const auto other = std::make_unique<Engine>(watchdog_, EngineCapacity{.robots = 4});
+  TickReader& ticks = other->subscribe("other");
+  const auto restored = other->restore(
       found[InputRecord::start], {.chain = [](std::uint64_t) { return std::shared_ptr<const kinematics::Chain>(); },
                                   .trajectory = [&](std::uint64_t wanted) { return wanted == id ? shared : nullptr; },
                                   .device = {}});
@@ -175,15 +175,15 @@ TEST_F(EngineTrajectoryTest, AStartStateHasTheTrajectoryThatRuns) {
   now_ = now_ - kPeriod;  // the start state is of before the last tick
   std::uint64_t cycle = cycle_ - 1;
   Timestamp now = now_;
-  run_cycles(other, now, cycle, 101);
+  run_cycles(*other, now, cycle, 101);
   now_ = now_ + kPeriod;
   tick(100);
   EXPECT_EQ(now, now_);
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(robot().joints[i].position, ticks.newest().robots[0].joints[i].position);
   EXPECT_TRUE(ticks.newest().robots[0].trajectory.moving);
-  Engine without(watchdog_, EngineCapacity{.robots = 4});
-  EXPECT_FALSE(without.restore(found[InputRecord::start], {.chain = {}, .trajectory = {}, .device = {}}).has_value());
+  const auto without = std::make_unique<Engine>(watchdog_, EngineCapacity{.robots = 4});
+  EXPECT_FALSE(without->restore(found[InputRecord::start], {.chain = {}, .trajectory = {}, .device = {}}).has_value());
 }
 
 }  // namespace
