@@ -15,11 +15,11 @@ struct ControllerConfigTest : testing::Test {
     home.write("envlib/arm.mpc", R"(format = 1
 [[node]]
 name = "J_1"
-joint = { type = "revolute", axis = [0, 0, 1], range_rad = [-1, 2] }
+joint = { type = "revolute", axis = [0, 0, 1], range_rad = [-1, 2], velocity_rad_s = 3 }
 [[node]]
 name = "J_2"
 parent = "J_1"
-joint = { type = "prismatic", axis = [0, 0, 1], range_m = [0, 1] }
+joint = { type = "prismatic", axis = [0, 0, 1], range_m = [0, 1], velocity_m_s = 1 }
 [robot]
 id = "ARM"
 flange = "J_2"
