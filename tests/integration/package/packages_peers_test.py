@@ -262,14 +262,14 @@ class Packages(unittest.TestCase):
         self.assertIn("Result=success", booted.sh("systemctl show cellmirror@first -p Result"))
 
     def check_the_priority_of_tissue(self, booted):
-        """LimitNICE= lets its thread go before the others."""
+        """LimitRTPRIO= lets its thread go before all but the loop."""
         booted.sh("systemctl start cellmirror@second || { journalctl -u cellmirror@second --no-pager; exit 1; }")
-        # Behind the name in stat, which may contain blanks: the nice value is the 17th field.
+        # Behind the name in stat, which may contain blanks: fields 38 and 39 are the real-time priority and the policy.
         threads = """for task in /proc/$(systemctl show --value -p MainPID cellmirror@second)/task/*; do
-                       echo "$(cat $task/comm) $(sed 's/.*) //' $task/stat | cut -d' ' -f17)"; done"""
-        nice = g.eventually(lambda: re.search(r"^tissue (-?\d+)$", booted.sh(threads), re.MULTILINE), timeout=20)
-        self.assertTrue(nice, booted.sh(threads))
-        self.assertEqual(nice[1], "-10")
+                       echo "$(cat $task/comm) $(sed 's/.*) //' $task/stat | cut -d' ' -f38,39)"; done"""
+        found = g.eventually(lambda: re.search(r"^tissue (\d+) (\d+)$", booted.sh(threads), re.MULTILINE), timeout=20)
+        self.assertTrue(found, booted.sh(threads))
+        self.assertEqual(found.groups(), ("60", "1"), "SCHED_FIFO, 20 below the loop")
         booted.sh("systemctl stop cellmirror@second")
 
     def check_upgrade_and_removal(self, booted):
