@@ -1,0 +1,258 @@
+// A CANopen master that loads the drives which the gateway answers for ([[device]]): all of them in cyclic synchronous
+// position, a target to each and SYNC in every period. Prints how long after SYNC their TPDOs came, SDO answers took,
+// and beside them the raw echo of the channel in the same run: a frame to a thread that sends another one back.
+//   device_load ENDPOINT NODES RATE_HZ SECONDS
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "drivers/can/channel/open_channel.hpp"
+#include "rt_core/base/time.hpp"
+
+using namespace cellmirror;
+
+namespace {
+
+constexpr std::uint32_t kNmt = 0x000;
+constexpr std::uint32_t kSync = 0x080;
+constexpr std::uint32_t kTpdo2 = 0x280;
+constexpr std::uint32_t kRpdo2 = 0x300;
+constexpr std::uint32_t kSdoAnswer = 0x580;
+constexpr std::uint32_t kSdoRequest = 0x600;
+constexpr std::uint32_t kPing = 0x7F0;  // used by nobody else
+constexpr std::uint32_t kPong = 0x7F1;
+constexpr std::int64_t kPatience_ns = 5'000'000'000;
+
+using Bytes = std::array<std::uint8_t, 8>;
+
+std::uint32_t word(const CanFrame& frame, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value |= static_cast<std::uint32_t>(frame.data[at + i]) << (8 * i);
+  return value;
+}
+
+CanFrame frame_of(std::uint32_t id, const Bytes& data, std::uint8_t length) {
+  CanFrame frame;
+  frame.id = id;
+  frame.length = length;
+  std::copy_n(data.begin(), length, frame.data.begin());
+  return frame;
+}
+
+// Expedited: what these objects need.
+CanFrame request(std::uint32_t node, std::uint8_t command, std::uint16_t index, std::uint8_t sub, std::uint32_t value) {
+  Bytes data{command, static_cast<std::uint8_t>(index & 0xFF), static_cast<std::uint8_t>(index >> 8), sub};
+  for (std::size_t i = 0; i < 4; ++i) data[4 + i] = static_cast<std::uint8_t>(value >> (8 * i));
+  return frame_of(kSdoRequest + node, data, 8);
+}
+
+void print(const char* name, std::vector<double> us) {
+  if (us.empty()) return;
+  std::sort(us.begin(), us.end());
+  const auto at = [&us](double p) { return us[static_cast<std::size_t>(p * static_cast<double>(us.size() - 1))]; };
+  std::printf("%-22s n %zu  p50 %.0f  p99 %.0f  p99.9 %.0f  max %.0f us\n", name, us.size(), at(0.5), at(0.99),
+              at(0.999), us.back());
+}
+
+class Master {
+ public:
+  Master(std::unique_ptr<CanChannel> channel, std::uint32_t nodes, double rate)
+      : channel_(std::move(channel)), nodes_(nodes), period_ns_(static_cast<std::int64_t>(1e9 / rate)), axes_(nodes) {}
+
+  bool prepare() {
+    channel_->send(frame_of(kNmt, {1, 0}, 2));
+    const auto period_ms = static_cast<std::uint32_t>(std::lround(1e-6 * static_cast<double>(period_ns_)));
+    for (std::uint32_t node = 1; node <= nodes_; ++node) {
+      const bool done = write(node, 0x60C2, 1, period_ms, 1) && write(node, 0x60C2, 2, 0xFD, 1) &&  // times 10^-3 s
+                        write(node, 0x6060, 0, 8, 1) && write(node, 0x6040, 0, 0x06, 2) &&
+                        write(node, 0x6040, 0, 0x07, 2) && write(node, 0x6040, 0, 0x0F, 2) && enabled(node);
+      if (!done) {
+        std::fprintf(stderr, "node %u cannot be enabled\n", node);
+        return false;
+      }
+      axes_[node - 1].start = static_cast<std::int32_t>(read(node, 0x6064));
+    }
+    return true;
+  }
+
+  // All axes rest for some periods and turn with one velocity then.
+  void run(double seconds) {
+    const auto periods = static_cast<std::int64_t>(seconds * 1e9) / period_ns_;
+    const std::int64_t begin = clock_.now().ns + period_ns_;
+    for (std::int64_t n = 0; n < periods; ++n) {
+      const std::int64_t due = begin + n * period_ns_;
+      hear_until(due, n);
+      count_missing(n);
+      if (clock_.now().ns > due + period_ns_ / 2) ++late_;
+      cycle(n);
+    }
+  }
+
+  void report(std::int64_t periods) {
+    print("raw echo", echo_us_);
+    print("SYNC to TPDO", tpdo_us_);
+    print("SYNC to the last TPDO", last_us_);
+    print("SDO answer", sdo_us_);
+    std::int64_t slowest = 0;
+    for (const Axis& axis : axes_) slowest = std::max(slowest, axis.moved_at < 0 ? periods : axis.moved_at - kRest);
+    std::printf(
+        "a target is motion after at most %lld periods; %lld of %lld SYNCs without all TPDOs in their period, "
+        "%lld periods of this program late\n",
+        static_cast<long long>(slowest), static_cast<long long>(missed_), static_cast<long long>(periods),
+        static_cast<long long>(late_));
+  }
+
+  [[nodiscard]] std::int64_t periods_of(double seconds) const {
+    return static_cast<std::int64_t>(seconds * 1e9) / period_ns_;
+  }
+
+ private:
+  static constexpr std::int64_t kRest = 200;  // periods
+  static constexpr double kSpeed = 5000;      // increments/s behind them
+
+  struct Axis {
+    std::int32_t start = 0;
+    bool answered = false;  // the SYNC of this period
+    std::int64_t moved_at = -1;
+  };
+
+  // The data of the answer to an SDO request; nothing within kPatience_ns or at an abort.
+  bool transfer(const CanFrame& frame, std::uint32_t& value) {
+    channel_->send(frame);
+    const std::int64_t end = clock_.now().ns + kPatience_ns;
+    ReceivedCanFrame got;
+    while (clock_.now().ns < end) {
+      if (channel_->receive(got, std::chrono::milliseconds(100)) != CanReceive::frame) continue;
+      if (got.frame.id != frame.id - kSdoRequest + kSdoAnswer) continue;
+      value = word(got.frame, 4);
+      return got.frame.data[0] != 0x80;
+    }
+    return false;
+  }
+
+  bool write(std::uint32_t node, std::uint16_t index, std::uint8_t sub, std::uint32_t value, int bytes) {
+    const auto command = static_cast<std::uint8_t>(0x23 | ((4 - bytes) << 2));
+    std::uint32_t answer = 0;
+    return transfer(request(node, command, index, sub, value), answer);
+  }
+
+  std::uint32_t read(std::uint32_t node, std::uint16_t index) {
+    std::uint32_t value = 0;
+    transfer(request(node, 0x40, index, 0, 0), value);
+    return value;
+  }
+
+  bool enabled(std::uint32_t node) {
+    for (int i = 0; i < 1000; ++i) {
+      if ((read(node, 0x6041) & 0x6F) == 0x27) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+
+  void cycle(std::int64_t n) {
+    const double way = n < kRest ? 0.0 : 1e-9 * kSpeed * static_cast<double>((n - kRest + 1) * period_ns_);
+    for (std::uint32_t node = 1; node <= nodes_; ++node) {
+      const auto target = static_cast<std::uint32_t>(axes_[node - 1].start + static_cast<std::int32_t>(way));
+      Bytes data{0x0F, 0};
+      for (std::size_t i = 0; i < 4; ++i) data[2 + i] = static_cast<std::uint8_t>(target >> (8 * i));
+      channel_->send(frame_of(kRpdo2 + node, data, 6));
+    }
+    synced_ns_ = clock_.now().ns;
+    channel_->send(frame_of(kSync, {}, 0));
+    // Beside them, not in each period: an SDO request, and a frame for the echo when the TPDOs are through.
+    echo_due_ = n % 4 == 0;
+    if (n % 10 != 5) return;
+    sdo_node_ = 1 + static_cast<std::uint32_t>(n / 10) % nodes_;
+    asked_ns_ = clock_.now().ns;
+    channel_->send(request(sdo_node_, 0x40, 0x6064, 0, 0));
+  }
+
+  void hear_until(std::int64_t due, std::int64_t n) {
+    ReceivedCanFrame got;
+    for (std::int64_t now = clock_.now().ns; now < due; now = clock_.now().ns) {
+      if (echo_due_ && now > synced_ns_ + period_ns_ * 3 / 4) {
+        echo_due_ = false;
+        pinged_ns_ = clock_.now().ns;
+        channel_->send(frame_of(kPing, {}, 0));
+      }
+      const std::int64_t most =
+          echo_due_ ? std::max<std::int64_t>(synced_ns_ + period_ns_ * 3 / 4 - now, 0) : due - now;
+      if (channel_->receive(got, Nanoseconds(std::min(most, due - now))) == CanReceive::frame) take(got.frame, n);
+    }
+  }
+
+  void take(const CanFrame& frame, std::int64_t n) {
+    const std::int64_t now = clock_.now().ns;
+    const auto us = [now](std::int64_t since) { return 1e-3 * static_cast<double>(now - since); };
+    if (frame.id == kPong) echo_us_.push_back(us(pinged_ns_));
+    if (frame.id == kSdoAnswer + sdo_node_) sdo_us_.push_back(us(asked_ns_));
+    if (frame.id <= kTpdo2 || frame.id > kTpdo2 + nodes_ || n == 0) return;
+    Axis& axis = axes_[frame.id - kTpdo2 - 1];
+    axis.answered = true;
+    tpdo_us_.push_back(us(synced_ns_));
+    newest_us_ = tpdo_us_.back();
+    const auto position = static_cast<std::int32_t>(word(frame, 2));
+    // The answer to the SYNC of the period n - 1. The first target away from the start comes with that of kRest.
+    if (axis.moved_at < 0 && n - 1 >= kRest && std::abs(position - axis.start) > 2) axis.moved_at = n - 1;
+  }
+
+  void count_missing(std::int64_t n) {
+    if (n == 0) return;
+    const bool all = std::ranges::all_of(axes_, &Axis::answered);
+    if (all) last_us_.push_back(newest_us_);
+    if (!all) ++missed_;
+    for (Axis& axis : axes_) axis.answered = false;
+  }
+
+  SystemClock clock_;
+  std::unique_ptr<CanChannel> channel_;
+  std::uint32_t nodes_;
+  std::int64_t period_ns_;
+  std::vector<Axis> axes_;
+  std::vector<double> echo_us_, tpdo_us_, last_us_, sdo_us_;
+  std::int64_t synced_ns_ = 0, asked_ns_ = 0, pinged_ns_ = 0;
+  double newest_us_ = 0;
+  std::uint32_t sdo_node_ = 1;
+  bool echo_due_ = false;
+  std::int64_t missed_ = 0, late_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int nodes = argc == 5 ? std::atoi(argv[2]) : 0;
+  const double rate = argc == 5 ? std::atof(argv[3]) : 0;
+  const double seconds = argc == 5 ? std::atof(argv[4]) : 0;
+  if (nodes < 1 || nodes > 127 || rate < 1 || rate > 1000 || seconds <= 0) {
+    std::fprintf(stderr, "usage: device_load ENDPOINT NODES RATE_HZ SECONDS\n");
+    return 2;
+  }
+  CanChannelConfig config;
+  config.endpoint = argv[1];
+  auto channel = can::open_can_channel(config);
+  auto echo = can::open_can_channel(config);
+  if (!channel || !echo) {
+    std::fprintf(stderr, "%s\n", (channel ? echo : channel).error().text().c_str());
+    return 1;
+  }
+  const std::jthread echoes([&echo](const std::stop_token& stop) {
+    ReceivedCanFrame got;
+    while (!stop.stop_requested()) {
+      if ((*echo)->receive(got, std::chrono::milliseconds(50)) != CanReceive::frame || got.frame.id != kPing) continue;
+      (*echo)->send(frame_of(kPong, {}, 0));
+    }
+  });
+  Master master(std::move(*channel), static_cast<std::uint32_t>(nodes), rate);
+  if (!master.prepare()) return 1;
+  master.run(seconds);
+  master.report(master.periods_of(seconds));
+  return 0;
+}
