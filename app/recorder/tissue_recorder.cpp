@@ -17,7 +17,7 @@ constexpr std::size_t kMostMarkerTriangles = 2'000;   // of all objects, 72 byte
 constexpr std::int64_t kMarkerLifetime_ns = 2'000'000'000;
 constexpr std::size_t kMostObjects = 64;
 
-bool is_due(Timestamp now, Timestamp last, Nanoseconds period) {
+bool has_passed(Timestamp now, Timestamp last, Nanoseconds period) {
   // A time before the last one: a recording that is played was set back.
   return !last.known() || now < last || now - last >= period;
 }
@@ -53,7 +53,7 @@ void TissueRecorder::look(Timestamp now) {
   if (!(rate_hz > 0)) return;
   // A recording that is played has a view for each recorded one, and its time may stand still.
   const bool played = sources_.report == nullptr;
-  if (!played && !is_due(now, last_look_, Nanoseconds(std::llround(1e9 / rate_hz)))) return;
+  if (!played && !has_passed(now, last_look_, Nanoseconds(std::llround(1e9 / rate_hz)))) return;
   if (!wanted()) return;
   const std::shared_ptr<const TissueView> view = sources_.view();
   if (!view) return;
@@ -61,7 +61,7 @@ void TissueRecorder::look(Timestamp now) {
   const bool begun = std::exchange(files_, files) != files;
   if (begun) forget();
   // Tissue that stands still has its shapes again from time to time, for seeks.
-  if (view->step == last_step_ && !begun && (played || !is_due(now, last_shapes_, kBetweenShapes))) return;
+  if (view->step == last_step_ && !begun && (played || !has_passed(now, last_shapes_, kBetweenShapes))) return;
   last_step_ = view->step;
   last_look_ = now;
   const auto report = sources_.newest_report();
@@ -71,7 +71,7 @@ void TissueRecorder::look(Timestamp now) {
   const std::int64_t wall_ns = to_wall_clock_ns(head.time);
   for (const TissueSurface& surface : view->surfaces) record_surface(surface, head, now, wall_ns);
   record_effects(*view, head, now, wall_ns);
-  if (played || is_due(now, last_markers_, kBetweenMarkers)) record_markers(*view, now, wall_ns);
+  if (played || has_passed(now, last_markers_, kBetweenMarkers)) record_markers(*view, now, wall_ns);
 }
 
 bool TissueRecorder::take_shape(Written& written, std::vector<std::shared_ptr<const void>> shape, Timestamp now) const {
@@ -80,7 +80,7 @@ bool TissueRecorder::take_shape(Written& written, std::vector<std::shared_ptr<co
     ++written.revision;
     written.with_shape = {};
   }
-  return is_due(now, written.with_shape, kBetweenShapes);
+  return has_passed(now, written.with_shape, kBetweenShapes);
 }
 
 void TissueRecorder::record_surface(const TissueSurface& surface, TissueHead head, Timestamp now,
