@@ -185,7 +185,7 @@ Result<void> Fleet::make_stream(FleetRobot& robot) {
   if (events_.payload_tap != nullptr) payloads = events_.payload_tap->sink_for(config->second, robot.id);
   std::shared_ptr<ContactInlet> contacts;
   if (std::holds_alternative<Cia402DeviceConfig>(config->second)) contacts = std::make_shared<ContactInlet>();
-  auto made = make_robot_stream(config->second, clock_, stream_priority_, open_can, std::move(payloads), contacts);
+  auto made = make_robot_stream(config->second, clock_, stream_priority_, open_can, payloads, contacts);
   if (!made) return std::unexpected(made.error());
   robot.contacts = std::move(contacts);
   robot.stream = std::move(*made);
