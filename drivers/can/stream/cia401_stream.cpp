@@ -7,6 +7,7 @@
 #include "drivers/can/canopen/earlier_due.hpp"
 #include "drivers/can/cia401/io_node.hpp"
 #include "drivers/can/stream/can_stream.hpp"
+#include "drivers/can/stream/counted_output.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/rt/latest.hpp"
 
@@ -45,7 +46,7 @@ class Cia401Protocol final : public CanProtocol {
   [[nodiscard]] Timestamp next_due() const override { return earlier_due(due_, node_.next_timer()); }
 
   void publish() override {
-    published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs(), output_.refused});
+    published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs(), output_.refused()});
   }
 
   void describe(JointStreamStatus& status, Timestamp /*now*/) override {
@@ -58,14 +59,6 @@ class Cia401Protocol final : public CanProtocol {
   }
 
  private:
-  struct Output final : FrameOutput {
-    explicit Output(CanProtocolHost& its_host) : host(&its_host) {}
-    void send(const CanFrame& frame) override {
-      if (!host->send(frame)) ++refused;
-    }
-    CanProtocolHost* host;
-    std::uint64_t refused = 0;
-  };
   struct Report {
     NmtState nmt = NmtState::boot_up;
     IoInputs inputs;
@@ -81,7 +74,7 @@ class Cia401Protocol final : public CanProtocol {
 
   Nanoseconds period_;
   IoLinks links_;
-  Output output_;
+  CountedOutput output_;
   IoNode node_;
   Timestamp due_;
   std::uint32_t given_ = 0;

@@ -11,6 +11,7 @@
 #include "drivers/can/cia402/device/contact_bounds.hpp"
 #include "drivers/can/cia402/device/servo_drive.hpp"
 #include "drivers/can/stream/can_stream.hpp"
+#include "drivers/can/stream/counted_output.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/rt/latest.hpp"
 
@@ -62,7 +63,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   void publish() override {
     Report& report = published_.writable();
     report.samples = sequence_;
-    report.send_refused = output_.refused;
+    report.send_refused = output_.refused();
     report.drives.clear();
     for (const auto& drive : drives_)
       report.drives.push_back({drive->node_id(), drive->nmt_state(), drive->state(), drive->mode(), drive->error_code(),
@@ -92,14 +93,6 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
  private:
-  struct Output final : FrameOutput {
-    explicit Output(CanProtocolHost& its_host) : host(&its_host) {}
-    void send(const CanFrame& frame) override {
-      if (!host->send(frame)) ++refused;
-    }
-    CanProtocolHost* host;
-    std::uint64_t refused = 0;
-  };
   struct DriveReport {
     std::uint8_t node = 0;
     NmtState nmt = NmtState::boot_up;
@@ -160,7 +153,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   bool touching_ = false;                            // the drives have bounds
   Timestamp touched_;                                // the first posture of the contact that they have them for
   CanProtocolHost* host_;
-  Output output_;
+  CountedOutput output_;
   std::vector<std::unique_ptr<ServoDrive>> drives_;
   std::vector<std::uint16_t> errors_;  // that were noted
   Timestamp due_;                      // of the next sample

@@ -83,34 +83,32 @@ class Master {
   }
 
   // All axes rest for some periods and turn with one velocity then.
+  // Ends with the time also where the channel does not carry the rate; report() tells how many periods there were.
   void run(double seconds) {
-    const auto periods = static_cast<std::int64_t>(seconds * 1e9) / period_ns_;
     const std::int64_t begin = clock_.now().ns + period_ns_;
-    for (std::int64_t n = 0; n < periods; ++n) {
+    const std::int64_t end = begin + static_cast<std::int64_t>(1e9 * seconds);
+    for (std::int64_t n = 0; begin + n * period_ns_ < end && clock_.now().ns < end; ++n) {
       const std::int64_t due = begin + n * period_ns_;
       hear_until(due, n);
       count_missing(n);
       if (clock_.now().ns > due + period_ns_ / 2) ++late_;
       cycle(n);
+      periods_ = n + 1;
     }
   }
 
-  void report(std::int64_t periods) {
+  void report() const {
     print("raw echo", echo_us_);
     print("SYNC to TPDO", tpdo_us_);
     print("SYNC to the last TPDO", last_us_);
     print("SDO answer", sdo_us_);
     std::int64_t slowest = 0;
-    for (const Axis& axis : axes_) slowest = std::max(slowest, axis.moved_at < 0 ? periods : axis.moved_at - kRest);
+    for (const Axis& axis : axes_) slowest = std::max(slowest, axis.moved_at < 0 ? periods_ : axis.moved_at - kRest);
     std::printf(
         "a target is motion after at most %lld periods; %lld of %lld SYNCs without all TPDOs in their period, "
         "%lld periods of this program late\n",
-        static_cast<long long>(slowest), static_cast<long long>(missed_), static_cast<long long>(periods),
+        static_cast<long long>(slowest), static_cast<long long>(missed_), static_cast<long long>(periods_),
         static_cast<long long>(late_));
-  }
-
-  [[nodiscard]] std::int64_t periods_of(double seconds) const {
-    return static_cast<std::int64_t>(seconds * 1e9) / period_ns_;
   }
 
  private:
@@ -176,9 +174,10 @@ class Master {
   }
 
   void hear_until(std::int64_t due, std::int64_t n) {
+    const std::int64_t ping_at = synced_ns_ + (due - synced_ns_) * 3 / 4;
     ReceivedCanFrame got;
     for (std::int64_t now = clock_.now().ns; now < due; now = clock_.now().ns) {
-      if (echo_due_ && now > synced_ns_ + period_ns_ * 3 / 4) {
+      if (echo_due_ && now >= ping_at) {
         echo_due_ = false;
         pinged_ns_ = clock_.now().ns;
         channel_->send(frame_of(kPing, {}, 0));
@@ -222,7 +221,7 @@ class Master {
   double newest_us_ = 0;
   std::uint32_t sdo_node_ = 1;
   bool echo_due_ = false;
-  std::int64_t missed_ = 0, late_ = 0;
+  std::int64_t periods_ = 0, missed_ = 0, late_ = 0;
 };
 
 }  // namespace
@@ -253,6 +252,6 @@ int main(int argc, char** argv) {
   Master master(std::move(*channel), static_cast<std::uint32_t>(nodes), rate);
   if (!master.prepare()) return 1;
   master.run(seconds);
-  master.report(master.periods_of(seconds));
+  master.report();
   return 0;
 }

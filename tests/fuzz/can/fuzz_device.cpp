@@ -4,21 +4,12 @@
 #include <cstdlib>
 
 #include "drivers/can/cia402/device/servo_drive.hpp"
+#include "tests/fuzz/can/checked_output.hpp"
 #include "tests/fuzz/can/frame_source.hpp"
-
-namespace {
-
-struct Output : cellmirror::can::FrameOutput {
-  void send(const cellmirror::CanFrame& frame) override {
-    if (frame.length > 8 || frame.id > 0x7FF) std::abort();
-  }
-};
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cellmirror;
-  Output output;
+  CheckedOutput output;
   DriveConfig config;
   config.node_id = 1;
   config.stops = JointInterval{-3, 3};

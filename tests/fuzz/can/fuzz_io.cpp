@@ -1,23 +1,13 @@
 // Any frames in any order to an I/O node that the gateway answers for.
 #include <cstdint>
-#include <cstdlib>
 
 #include "drivers/can/cia401/io_node.hpp"
+#include "tests/fuzz/can/checked_output.hpp"
 #include "tests/fuzz/can/frame_source.hpp"
-
-namespace {
-
-struct Output : cellmirror::can::FrameOutput {
-  void send(const cellmirror::CanFrame& frame) override {
-    if (frame.length > 8 || frame.id > 0x7FF) std::abort();
-  }
-};
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace cellmirror;
-  Output output;
+  CheckedOutput output;
   can::IoNode node(1, 50, output);
   Timestamp now{1'000'000'000};
   node.power_on(now);

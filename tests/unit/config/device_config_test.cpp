@@ -6,6 +6,7 @@
 
 #include "config/cell_file.hpp"
 #include "tests/unit/config/temporary_home.hpp"
+#include "tests/unit/config/two_joint_arm.hpp"
 
 namespace cellmirror {
 namespace {
@@ -13,20 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 struct DeviceConfig : testing::Test {
-  DeviceConfig() {
-    home.write("envlib/arm.mpc", R"(format = 1
-[[node]]
-name = "J_1"
-joint = { type = "revolute", axis = [0, 0, 1], range_rad = [-1, 2], velocity_rad_s = 3, acceleration_rad_s2 = 20 }
-[[node]]
-name = "J_2"
-parent = "J_1"
-joint = { type = "prismatic", axis = [0, 0, 1], range_m = [0, 1], velocity_m_s = 1 }
-[robot]
-id = "ARM"
-flange = "J_2"
-)");
-  }
+  DeviceConfig() { home.write("envlib/arm.mpc", kTwoJointArm); }
   // The robot "ARM" as a device on a channel; `nodes` and more follow.
   std::optional<LoadedCell> load(const std::string& nodes, const std::string& channel = "socketcan:can0") {
     diagnostics = {};

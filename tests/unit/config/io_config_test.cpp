@@ -4,6 +4,7 @@
 
 #include "config/cell_file.hpp"
 #include "tests/unit/config/temporary_home.hpp"
+#include "tests/unit/config/two_joint_arm.hpp"
 
 namespace cellmirror {
 namespace {
@@ -11,20 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 struct IoConfig : testing::Test {
-  IoConfig() {
-    home.write("envlib/arm.mpc", R"(format = 1
-[[node]]
-name = "J_1"
-joint = { type = "revolute", axis = [0, 0, 1], range_rad = [-1, 2], velocity_rad_s = 3 }
-[[node]]
-name = "J_2"
-parent = "J_1"
-joint = { type = "prismatic", axis = [0, 0, 1], range_m = [0, 1], velocity_m_s = 1 }
-[robot]
-id = "ARM"
-flange = "J_2"
-)");
-  }
+  IoConfig() { home.write("envlib/arm.mpc", kTwoJointArm); }
   std::optional<LoadedCell> load(const std::string& text) {
     diagnostics = {};
     return load_cell(home.write("cell.toml",
