@@ -18,7 +18,7 @@ namespace cellmirror::app {
 // Closed; `clock` outlives it. `fifo_priority`: of the threads of CAN streams, 0 for none; frames then reach the tick
 // also while the machine is busy with other things. Fails for what can never work, e.g. a DBC file without the signal
 // that the cell names. `open_can`: opens the channels of CAN streams; empty: as their endpoints say. `payloads`: is
-// given what DDS and RTDE streams receive. `contacts`: what the drives of a [[device]] feel; null: nothing.
+// given what DDS and RTDE streams receive. `contacts`: of the robot, for the drives of its [[device]]; null: none.
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
                                                        int fifo_priority, const can::ChannelOpener& open_can = {},
                                                        const std::shared_ptr<PayloadSink>& payloads = {},

@@ -38,7 +38,7 @@ struct RobotSnapshot {
   bool online = false;
   bool sending = false;
   std::shared_ptr<const JointStream> stream;  // null where it was never opened
-  std::shared_ptr<ContactInlet> contacts;     // null: nothing feels what it touches
+  std::shared_ptr<ContactInlet> contacts;     // null: no drives that contacts act on
   RobotParameters parameters;
   std::optional<JointValues> target;  // rad or m: where the newest commanded move ends
   Positioning positioning = Positioning::moving;

@@ -1,5 +1,4 @@
-// Where the contacts of a robot go whose motors feel them: from the collision tests to the drives that answer a
-// controller.
+// The contacts of a robot on their way from the collision tests to its drives, which answer a controller.
 #pragma once
 
 #include "rt_core/ports/robot_contacts.hpp"

@@ -46,7 +46,7 @@ bool CollisionWorker::wanted(const CellState& cell_state) {
   if (!wanted) {
     ages_.paused();
     show_nothing(cell_state);
-    release_drives(cell_state);
+    clear_contacts(cell_state);
   }
   return wanted;
 }

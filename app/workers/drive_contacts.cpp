@@ -11,7 +11,7 @@ void report_contacts(const CellState& cell_state, const CompiledCell& cell, cons
   }
 }
 
-void release_drives(const CellState& cell_state) {
+void clear_contacts(const CellState& cell_state) {
   for (const RobotSnapshot& robot : cell_state.robots) {
     if (robot.contacts) robot.contacts->write(RobotContacts{});
   }

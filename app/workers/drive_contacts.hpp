@@ -1,4 +1,4 @@
-// Tells drives that answer a controller what their robots touch. The collision worker's thread.
+// Publishes what robots touch for their drives, which answer a controller. The collision worker's thread.
 #pragma once
 
 #include "app/snapshot/cell_state.hpp"
@@ -12,6 +12,6 @@ namespace cellmirror::app {
 void report_contacts(const CellState& cell_state, const CompiledCell& cell, const CellPoses& poses,
                      const collision::PairTable& table, const ProximityState& found);
 // That they touch nothing.
-void release_drives(const CellState& cell_state);
+void clear_contacts(const CellState& cell_state);
 
 }  // namespace cellmirror::app

@@ -65,7 +65,7 @@ class Master:
     def send(self, identifier, data=b""):
         self.bus.send(can.Message(arbitration_id=identifier, data=data, is_extended_id=False))
 
-    def hear(self, until):
+    def receive(self, until):
         """The next frame as (identifier, data) before that time; None behind it."""
         while (left := until - time.monotonic()) > 0:
             message = self.bus.recv(left)
@@ -84,7 +84,7 @@ class Master:
     def transfer(self, node, request):
         self.send(SDO_REQUEST + node, request)
         end = time.monotonic() + PATIENCE_S
-        while frame := self.hear(end):
+        while frame := self.receive(end):
             identifier, data = frame
             if identifier == SDO_ANSWER + node and data[1:4] == request[1:4]:
                 if data[0] == 0x80:
@@ -117,7 +117,7 @@ class Master:
         while not self.booted >= set(NODES):  # again, where the gateway comes later
             self.send(NMT, bytes([130, 0]))
             again = time.monotonic() + 1.0
-            while not self.booted >= set(NODES) and self.hear(again):
+            while not self.booted >= set(NODES) and self.receive(again):
                 pass
             if time.monotonic() > end:
                 raise Failed(f"no boot-up message of nodes {sorted(set(NODES) - self.booted)}: does the gateway run on this channel?")
@@ -164,7 +164,7 @@ class Master:
         self.send(SYNC)
         missing, end = set(NODES), time.monotonic() + PATIENCE_S
         while missing:
-            frame = self.hear(end)
+            frame = self.receive(end)
             if frame is None:
                 raise Failed(f"nodes {sorted(missing)} do not answer SYNC")
             identifier, data = frame

@@ -1,4 +1,4 @@
-// Where a robot touches something, as the motors of its joints feel it. Plain data: the collision tests fill it, the
+// Where a robot touches something, in coordinates of its joints. Plain data: the collision tests fill it, the
 // drives of a simulated machine read it.
 #pragma once
 

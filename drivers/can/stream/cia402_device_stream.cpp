@@ -36,7 +36,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
   void receive(const CanFrame& frame, Timestamp now) override {
-    feel_contacts();
+    apply_contacts();
     const bool request = frame.id > kSdoRequestBase && frame.id <= kSdoRequestBase + kMaxNodeId;
     for (const auto& drive : drives_) {
       if (request && !frame.extended && frame.id != kSdoRequestBase + drive->node_id()) continue;
@@ -45,7 +45,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
   void advance(Timestamp now) override {
-    feel_contacts();
+    apply_contacts();
     for (const auto& drive : drives_) drive->advance(now);
     note_errors(now);
     if (now < due_) return;
@@ -107,7 +107,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
     std::vector<DriveReport> drives;
   };
 
-  void feel_contacts() {
+  void apply_contacts() {
     if (!contacts_) return;
     const RobotContacts& contacts = contacts_->read().value;
     if (contacts.count == 0 && !touching_) return;
