@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "config/dds_network_reader.hpp"
 #include "config/stream_reader.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -244,6 +245,7 @@ DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot) {
                  fmt::format("\"{}\" is not a numeric address", printable(config.interface_address)), "e.g. 127.0.0.1");
   }
   config.reliable = reader.boolean("reliable").value_or(false);
+  config.partition = read_partition(reader, "partition");
   constexpr std::size_t kMostJoints = 64;
   const auto read_any = [](TableReader& item) {
     DdsJointConfig ignored;

@@ -148,6 +148,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
                     reader.foot_switches,
                     reader.dds,
                     reader.ros,
+                    reader.dds_network,
                     reader.queues,
                     reader.web,
                     std::move(reader.record),

@@ -24,6 +24,7 @@
 #include "rt_core/collision/settings.hpp"
 #include "rt_core/haptics/settings.hpp"
 #include "rt_core/ports/controller_config.hpp"
+#include "rt_core/ports/dds_network.hpp"
 #include "rt_core/ports/display_layout.hpp"
 #include "rt_core/ports/io_config.hpp"
 #include "rt_core/ports/light_barrier.hpp"
@@ -90,6 +91,7 @@ struct LoadedCell {
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
   RosPresence ros;
+  DdsNetworkConfig dds_network;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;

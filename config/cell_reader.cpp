@@ -6,7 +6,8 @@
 #include <charconv>
 #include <numbers>
 
-#include "config/dds_security_reader.hpp"
+#include "config/dds_network_reader.hpp"
+#include "config/dds_reader.hpp"
 #include "config/display_reader.hpp"
 #include "config/foot_switch_reader.hpp"
 #include "config/haptic_reader.hpp"
@@ -69,7 +70,7 @@ bool CellReader::read(std::string_view text) {
   }
   if (const auto g = top.numbers("gravity_m_s2", 3, kGravity)) gravity_m_s2 = {(*g)[0], (*g)[1], (*g)[2]};
   read_loop(top);
-  dds.security = read_dds(top, files_, ros);
+  dds.security = read_dds(top, files_, ros, dds_network);
   read_dds_output(top);
   read_queues(top);
   web = read_web(top);
@@ -172,6 +173,8 @@ void CellReader::read_dds_output(TableReader& top) {
     table->error("interface_address", fmt::format("\"{}\" is not a numeric address", printable(dds.interface_address)),
                  "e.g. 127.0.0.1");
   }
+  dds.partition = read_partition(*table, "partition");
+  dds.summary_topic = read_topic(*table, "summary_topic").value_or(dds.summary_topic);
   dds.joint_states_topic = read_topic(*table, "joint_states_topic").value_or(dds.joint_states_topic);
   dds.tf_topic = read_topic(*table, "tf_topic").value_or(dds.tf_topic);
   dds.robot_description_topic = read_topic(*table, "robot_description_topic").value_or(dds.robot_description_topic);

@@ -42,6 +42,7 @@ class CellReader {
   FootSwitchSettings foot_switches;
   DdsOutputConfig dds;
   RosPresence ros;
+  DdsNetworkConfig dds_network;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;

@@ -20,14 +20,17 @@
 #include "app/io/outputs.hpp"
 #include "app/io/record_file.hpp"
 #include "app/io/robot_streams.hpp"
+#include "app/io/summary_outputs.hpp"
 #include "app/owner/command_records.hpp"
 #include "app/owner/played_commands.hpp"
 #include "app/owner/tissue/tissue_parts.hpp"
 #include "app/pictures/tissue_at_rest.hpp"
 #include "config/volume/voxel_memory.hpp"
+#include "drivers/dds/network.hpp"
 #include "drivers/dds/presence.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/wall_clock.hpp"
 
 namespace cellmirror::app {
 
@@ -299,6 +302,14 @@ void Gateway::Parts::start_fault_monitor() {
   });
 }
 
+Result<void> Gateway::Parts::start_summaries(const DdsOutputConfig& dds) {
+  auto outputs = make_summary_outputs(dds);
+  if (!outputs) return std::unexpected(outputs.error());
+  run = fmt::format("{:x}-{:x}", machine_wall_clock_ns(started), getpid());
+  summaries = std::make_unique<SummaryPublisher>(std::move(*outputs), [this] { return summary(); }, machine_clock);
+  return {};
+}
+
 Result<void> Gateway::Parts::start_control() {
   auto server = ControlServer::start_later(
       instance->control_socket(),
@@ -378,6 +389,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step && live) parts->open_command_log();
   if (step) parts->open_alarms();
   if (step) dds::set_ros_presence(loaded->ros);
+  if (step) dds::set_network(loaded->dds_network);
   if (step && live) step = parts->make_tissue(loaded->tissue);
   if (step && !live) parts->rest_tissue(loaded->tissue);
   if (step) step = parts->make_owner(std::move(*loaded), options);
@@ -397,6 +409,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
     watch_for_alarms(*parts->alarms, {parts->collisions->board(), *parts->faults,
                                       [all = parts.get()](const auto& look) { all->look_at(look); }});
   parts->page->open();
+  if (step = parts->start_summaries(dds); !step) return std::unexpected(step.error());
   parts->owner->start();  // last: the startup script finds everything running
   return std::unique_ptr<Gateway>(new Gateway(std::move(parts)));
 }

@@ -1,18 +1,32 @@
 // What a running gateway answers: status, the page's news, requests of the control socket.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
 #include <utility>
 
 #include "app/gateway/gateway_parts.hpp"
 #include "app/gateway/playback_request.hpp"
 #include "app/pictures/snapshot_request.hpp"
+#include "app/report/cell_summary_builder.hpp"
 #include "app/report/loop_health.hpp"
 #include "app/report/playback_document.hpp"
 #include "app/report/status_document.hpp"
 #include "ipc/control/queue_answer.hpp"
 #include "ipc/sysv/force_guard.hpp"
+#include "rt_core/base/wall_clock.hpp"
 
 namespace cellmirror::app {
+
+namespace {
+
+// As the machine calls itself; empty where that cannot be known.
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
+}
+
+}  // namespace
 
 void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
   const Result<ControlRequest> request = parse_control_request(line);
@@ -112,6 +126,9 @@ Problems Gateway::Parts::problems() const {
   add("alarm_log", alarms->problem());
   add("recording", recordings.hub().problem());
   for (const PublishedOutput& output : publisher->outputs()) add("sensor_queue", output.output->problem());
+  if (summaries) {
+    for (const auto& output : summaries->outputs()) add("summary", output->problem());
+  }
   if (playback == nullptr && (guard == nullptr || !guard->running())) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
                                    "restart the gateway",
@@ -127,6 +144,15 @@ web::Health Gateway::Parts::health() {
   return loop_health(clock.now() - newest, kLoopStandsStillAfter, faults->status());
 }
 
+CellSummary Gateway::Parts::summary() {
+  SummaryFacts facts{.host = host_name(), .run = run, .loop = health(), .page_port = page->port()};
+  if (faults) facts.faults = faults->status().faults;
+  facts.time_ns = machine_wall_clock_ns(machine_clock.now());
+  CellSummary out;
+  look_at([&](const LiveSources& sources) { out = summary_of(sources, facts); });
+  return out;
+}
+
 std::string Gateway::Parts::status() {
   const std::shared_ptr<const CellState> cell_state = board.latest();
   const std::scoped_lock lock(answering);
@@ -134,6 +160,9 @@ std::string Gateway::Parts::status() {
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
   for (const PublishedOutput& output : publisher->outputs())
     outputs.emplace_back(output.output->name(), output.output->counters());
+  if (summaries) {
+    for (const auto& output : summaries->outputs()) outputs.emplace_back(output->name(), output->counters());
+  }
   for (const ImageOutput* output : renderer->outputs()) outputs.emplace_back(output->name(), output->counters());
   const FaultStatus fault_status = faults ? faults->status() : FaultStatus();
   const ScriptMessageStatus message_status = messages->status();

@@ -22,6 +22,7 @@
 #include "app/gateway/tick_readers.hpp"
 #include "app/io/command_log.hpp"
 #include "app/io/publisher.hpp"
+#include "app/io/summary_publisher.hpp"
 #include "app/owner/cell_owner.hpp"
 #include "app/playback/played_recording.hpp"
 #include "app/render/render_service.hpp"
@@ -106,10 +107,13 @@ struct Gateway::Parts {
   std::mutex answering;  // of the engine's view for status and of what follows: several threads answer questions
   RobotStateBuilder status_builder;
   std::unique_ptr<MonitorPage> page;
+  std::unique_ptr<SummaryPublisher> summaries;
+  std::string run;  // for summaries: differs from start to start
   std::unique_ptr<ControlServer> control;
 
   ~Parts() {
     control.reset();
+    summaries.reset();
     // It stays until the end: its threads ask it for its report until it is closed.
     if (page) page->close();
     if (alarms) alarms->stop();
@@ -159,6 +163,7 @@ struct Gateway::Parts {
   Result<void> start_renderer(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
   void start_recorder(const RecordSettings& settings);
   void start_fault_monitor();
+  Result<void> start_summaries(const DdsOutputConfig& dds);
   Result<void> start_control();
   void make_page(const GatewayOptions& options, const WebSettings& settings);
 
@@ -169,6 +174,7 @@ struct Gateway::Parts {
   void answer_playback(const ControlRequest& request, ControlReply reply);
   std::string status();
   web::Health health();
+  CellSummary summary();
   [[nodiscard]] Problems problems() const;
   [[nodiscard]] CommandLogReport command_log() const { return commands ? commands->report() : CommandLogReport{}; }
   [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;

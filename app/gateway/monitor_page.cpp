@@ -45,6 +45,11 @@ void MonitorPage::open() {
     log_warning("web", "{}", written.error().text());
 }
 
+std::uint16_t MonitorPage::port() const {
+  const std::scoped_lock lock(mutex_);
+  return server_ ? static_cast<std::uint16_t>(server_->port()) : std::uint16_t{0};
+}
+
 void MonitorPage::close() {
   std::unique_ptr<web::Server> ended;
   {

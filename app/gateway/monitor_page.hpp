@@ -39,6 +39,8 @@ class MonitorPage {
 
   // Any thread, before open(), during close() and after it too.
   [[nodiscard]] PageReport report() const;
+  // 0: there is no page. Any thread.
+  [[nodiscard]] std::uint16_t port() const;
 
  private:
   Result<std::unique_ptr<web::Server>> start_server();

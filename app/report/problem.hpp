@@ -7,7 +7,7 @@
 namespace cellmirror::app {
 
 struct Problem {
-  // script_queue, reply_queue, sensor_queue, force_guard, command_log, alarm_log, recording
+  // script_queue, reply_queue, sensor_queue, force_guard, command_log, alarm_log, recording, summary
   std::string kind;
   std::string text;  // with the remedy
 };

@@ -131,7 +131,7 @@ Result<std::unique_ptr<DdsOutput>> make_dds_output(const DdsOutputConfig& config
   if (!std::isfinite(config.rate_hz) || config.rate_hz <= 0) {
     return fail(fmt::format("an output rate of {} Hz", config.rate_hz), "give a rate above zero");
   }
-  auto participant = Participant::shared(config.domain, config.interface_address, config.security);
+  auto participant = Participant::shared(config.domain, config.interface_address, config.security, config.partition);
   if (!participant) return std::unexpected(participant.error());
   const bool counts = config.rate_hz <= kMostCountedRateHz;
   // About a second of history, for repetition to readers that missed something.

@@ -58,7 +58,7 @@ class PictureOutput final : public ImageOutput {
 }  // namespace
 
 Result<std::unique_ptr<ImageOutput>> make_image_output(const DdsOutputConfig& config) {
-  auto participant = Participant::shared(config.domain, config.interface_address, config.security);
+  auto participant = Participant::shared(config.domain, config.interface_address, config.security, config.partition);
   if (!participant) return std::unexpected(participant.error());
   auto writer = CountingWriter::make(*participant, config.pictures.topic, kCompressedImageType, kNewest);
   if (!writer) return std::unexpected(writer.error());

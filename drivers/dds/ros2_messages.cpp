@@ -86,6 +86,12 @@ void encode(std::string_view text, std::vector<std::byte>& out) {
   writer.write_text(text);
 }
 
+CdrFault decode(std::span<const std::byte> payload, std::string_view& text) {
+  CdrReader reader(payload);
+  text = reader.read_text();
+  return reader.fault();
+}
+
 void write(const Header& header, CdrWriter& out) {
   out.write(header.stamp.sec);
   out.write(header.stamp.nanosec);

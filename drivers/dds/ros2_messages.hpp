@@ -81,8 +81,9 @@ struct TfMessage {
 // Little endian, with encapsulation header. `out` is overwritten and keeps its capacity.
 void encode(const JointState& message, std::vector<std::byte>& out);
 void encode(const TfMessage& message, std::vector<std::byte>& out);
-// std_msgs/String.
+// std_msgs/String. The text that is read is valid as long as the payload.
 void encode(std::string_view text, std::vector<std::byte>& out);
+[[nodiscard]] CdrFault decode(std::span<const std::byte> payload, std::string_view& text);
 // For messages that begin with a header.
 void write(const Header& header, CdrWriter& out);
 

@@ -138,6 +138,7 @@ struct DdsStreamConfig {
   PlausibilityConfig plausibility;
   std::vector<DdsJointConfig> joints;
   bool reliable = false;            // best effort matches every publisher
+  std::string partition = {};       // of DDS; empty: none, as ROS 2 has it
   DdsSecurityConfig security = {};  // [dds.security]: the same for all streams and outputs
 };
 
@@ -206,6 +207,8 @@ struct DdsOutputConfig {
   bool enabled = false;
   int domain = 0;
   std::string interface_address = "127.0.0.1";
+  std::string partition = {};                           // of all but the summary; empty: none, as ROS 2 has it
+  std::string summary_topic = "rt/cellmirror/summary";  // empty: not published
   std::string joint_states_topic = "rt/cellmirror/joint_states";
   std::string tf_topic = "rt/tf";
   std::string robot_description_topic = "rt/robot_description";  // empty: not published

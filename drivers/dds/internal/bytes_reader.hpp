@@ -25,8 +25,11 @@ class BytesReader final {
  public:
   // Called by a thread of the DDS library, one at a time, and no more when the reader is gone.
   using Receive = std::function<void(const ReceivedSample& sample)>;
+  // A writer that was matched was closed, or its lease has ended. As Receive.
+  using Gone = std::function<void(const Guid& writer)>;
   [[nodiscard]] static Result<std::unique_ptr<BytesReader>> make(const std::shared_ptr<Participant>& participant,
-                                                                 const EndpointConfig& config, Receive receive);
+                                                                 const EndpointConfig& config, Receive receive,
+                                                                 Gone gone = {});
   ~BytesReader();
   BytesReader(const BytesReader&) = delete;
   BytesReader& operator=(const BytesReader&) = delete;

@@ -40,14 +40,15 @@ JointStateTopic::JointStateTopic(std::shared_ptr<Participant> participant, const
 
 Result<std::shared_ptr<JointStateTopic>> JointStateTopic::shared(const DdsStreamConfig& config, const Clock& clock) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, std::string, DdsSecurityConfig, std::string, bool, const Clock*>,
+  static std::map<std::tuple<int, std::string, DdsSecurityConfig, std::string, std::string, bool, const Clock*>,
                   std::weak_ptr<JointStateTopic>>
       topics;
   const std::scoped_lock lock(mutex);
   auto& entry =
-      topics[{config.domain, config.interface_address, config.security, config.topic, config.reliable, &clock}];
+      topics[{config.domain, config.interface_address, config.security, config.partition, config.topic,
+              config.reliable, &clock}];
   if (auto existing = entry.lock()) return existing;
-  auto participant = Participant::shared(config.domain, config.interface_address, config.security);
+  auto participant = Participant::shared(config.domain, config.interface_address, config.security, config.partition);
   if (!participant) return std::unexpected(participant.error());
   std::shared_ptr<JointStateTopic> made(new JointStateTopic(*participant, clock));
   const auto reader =

@@ -1,10 +1,11 @@
-#include "config/dds_security_reader.hpp"
+#include "config/dds_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <string>
 #include <string_view>
 
+#include "config/dds_network_reader.hpp"
 #include "rt_core/base/dds_topic.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -23,7 +24,7 @@ std::string read_path(TableReader& table, std::string_view key, const FileFinder
 
 }  // namespace
 
-DdsSecurityConfig read_dds(TableReader& top, const FileFinder& files, RosPresence& ros) {
+DdsSecurityConfig read_dds(TableReader& top, const FileFinder& files, RosPresence& ros, DdsNetworkConfig& network) {
   auto dds = top.table("dds");
   if (!dds) return {};
   ros.distribution = dds->choice<RosDistribution>(
@@ -35,6 +36,7 @@ DdsSecurityConfig read_dds(TableReader& top, const FileFinder& files, RosPresenc
                  "letters, digits and _, no digit in front");
     ros.node_name = *name;
   }
+  network = read_dds_network(*dds);
   auto table = dds->table("security");
   dds->finish();
   if (!table) return {};

@@ -1,0 +1,183 @@
+#include "drivers/dds/internal/participant_qos.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/core.h>
+#include <ifaddrs.h>
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "rt_core/base/text.hpp"
+
+namespace cellmirror::dds {
+
+namespace {
+
+namespace fd = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+// RTPS 2.3, 9.6.1.1: a participant's own ports are kFirstPort + kPortsPerDomain * domain + 2 * participant, and one
+// more.
+constexpr int kFirstPort = 7410;
+constexpr int kPortsPerDomain = 250;
+constexpr int kMaxDomain = 232;                          // beyond it the ports pass 65535
+constexpr std::uint32_t kSocketBufferBytes = 4U << 20U;  // the kernel cuts it to net.core.rmem_max
+constexpr int kPeersPerHost = 64;                        // participants of this host that are found without multicast
+constexpr int kPeersPerMachine = 8;  // participants of another machine that are found by its address alone
+constexpr int kMaxPort = 65534;      // of discovery: the one above is the same participant's for data
+// What an Ethernet frame holds without IP fragments, of which one that is lost loses the whole datagram.
+constexpr std::uint32_t kDatagramWithoutFragments = 1400;
+constexpr char kDiscoveryGroup[] = "239.255.0.1";  // RTPS 2.3, 9.6.1.4
+
+std::vector<std::string> ipv4_addresses() {
+  std::vector<std::string> found;
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return found;
+  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = {};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
+    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) found.emplace_back(text);
+  }
+  freeifaddrs(list);
+  return found;
+}
+
+rtps::Locator_t locator_of(const std::string& address, std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, address);
+  locator.port = port;
+  return locator;
+}
+
+// Where a participant of another machine may listen for discovery (RTPS 2.3, 9.6.1.1).
+void add_peer(rtps::LocatorList_t& peers, int domain, const DdsPeer& peer) {
+  if (peer.port != 0) return peers.push_back(locator_of(peer.address, peer.port));
+  for (int participant = 0; participant < kPeersPerMachine; ++participant) {
+    const int port = kFirstPort + kPortsPerDomain * domain + 2 * participant;
+    if (port <= kMaxPort) peers.push_back(locator_of(peer.address, static_cast<std::uint32_t>(port)));
+  }
+}
+
+// By multicast on that interface, and by unicast to the first participants of this host, which also works where the
+// interface has no multicast (a bare `lo` in a network namespace).
+void discover_by_peers(rtps::BuiltinAttributes& builtin, int domain, const std::string& address,
+                       const DdsNetworkConfig& network) {
+  if (network.multicast) builtin.initialPeersList.push_back(locator_of(kDiscoveryGroup, 0));
+  builtin.initialPeersList.push_back(locator_of(address, 0));
+  for (const DdsPeer& peer : network.peers) add_peer(builtin.initialPeersList, domain, peer);
+  if (network.multicast) return;
+  // Otherwise the library would listen on the group.
+  builtin.avoid_builtin_multicast = true;
+  builtin.metatrafficUnicastLocatorList.push_back(locator_of(address, 0));
+}
+
+// The GUID prefix of a discovery server by its number, as fast-discovery-server and ROS_DISCOVERY_SERVER have it.
+rtps::GuidPrefix_t prefix_of_server(std::uint8_t id) {
+  rtps::GuidPrefix_t prefix;
+  constexpr std::array<rtps::octet, 12> kServer{0x44, 0x53, 0x00, 0x5f, 0x45, 0x50, 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};
+  std::ranges::copy(kServer, std::begin(prefix.value));
+  prefix.value[2] = id;
+  return prefix;
+}
+
+void discover_by_servers(rtps::BuiltinAttributes& builtin, const DdsNetworkConfig& network) {
+  auto& discovery = builtin.discovery_config;
+  discovery.discoveryProtocol = rtps::DiscoveryProtocol_t::CLIENT;
+  for (const DdsServer& server : network.discovery_servers) {
+    rtps::RemoteServerAttributes remote;
+    remote.guidPrefix = prefix_of_server(server.id);
+    remote.metatrafficUnicastLocatorList.push_back(locator_of(server.address, server.port));
+    discovery.m_DiscoveryServers.push_back(remote);
+  }
+}
+
+void set_discovery(fd::DomainParticipantQos& qos, int domain, const std::string& address,
+                   const DdsNetworkConfig& network) {
+  auto& builtin = qos.wire_protocol().builtin;
+  auto& discovery = builtin.discovery_config;
+  if (network.discovery_servers.empty()) {
+    discover_by_peers(builtin, domain, address, network);
+  } else {
+    discover_by_servers(builtin, network);
+  }
+  const bool lossy = network.link == DdsLink::lossy;
+  discovery.leaseDuration = {lossy ? 30 : 10, 0};
+  discovery.leaseDuration_announcementperiod = {1, 0};
+  if (lossy) discovery.initial_announcements = {20, {0, 250'000'000}};
+}
+
+// The library ends the process over a port beyond 65535.
+int peers_per_host(int domain) {
+  return std::min(kPeersPerHost, (kMaxPort - kFirstPort - kPortsPerDomain * domain) / 2);
+}
+
+// DDS Security 1.1, 9.3 to 9.5: the builtin plugins.
+void set_security(fd::DomainParticipantQos& qos, const DdsSecurityConfig& security) {
+  if (!security.enabled()) return;
+  auto& properties = qos.properties().properties();
+  const auto set = [&properties](std::string name, std::string value) {
+    properties.emplace_back("dds.sec." + std::move(name), std::move(value));
+  };
+  const auto file = [](const std::string& path) { return "file://" + path; };
+  set("auth.plugin", "builtin.PKI-DH");
+  set("auth.builtin.PKI-DH.identity_ca", file(security.identity_ca));
+  set("auth.builtin.PKI-DH.identity_certificate", file(security.certificate));
+  set("auth.builtin.PKI-DH.private_key", file(security.private_key));
+  set("access.plugin", "builtin.Access-Permissions");
+  set("access.builtin.Access-Permissions.permissions_ca", file(security.permissions_ca));
+  set("access.builtin.Access-Permissions.governance", file(security.governance));
+  set("access.builtin.Access-Permissions.permissions", file(security.permissions));
+  set("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
+}  // namespace
+
+Result<void> check_domain(int domain) {
+  if (domain >= 0 && domain <= kMaxDomain) return {};
+  return fail(fmt::format("DDS domain {} does not exist", domain), fmt::format("use 0 to {}", kMaxDomain));
+}
+
+Result<void> check_address(const std::string& address) {
+  std::string known;
+  for (const std::string& own : ipv4_addresses()) {
+    if (own == address) return {};
+    known += (known.empty() ? "" : ", ") + own;
+  }
+  return fail(fmt::format("'{}' is no IPv4 address of this machine", printable(address)),
+              known.empty() ? "bring an interface up: ip link set lo up" : "use one of: " + known);
+}
+
+fd::DomainParticipantQos participant_qos(int domain, const std::string& address, const DdsSecurityConfig& security,
+                                         const DdsNetworkConfig& network) {
+  fd::DomainParticipantQos qos;
+  qos.name("cellmirror");
+  // By this programs of ROS 2 know their kind.
+  constexpr std::string_view kEnclave = "enclave=/;";
+  qos.user_data().setValue({kEnclave.begin(), kEnclave.end()});
+  // UDP alone: shared memory is hardly faster at these sizes and leaves its segments behind after kill -9
+  // (docs/decisions/0003-dds-transports.md).
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList.push_back(address);
+  udp->receiveBufferSize = kSocketBufferBytes;
+  udp->sendBufferSize = kSocketBufferBytes;
+  udp->non_blocking_send = true;
+  if (network.link == DdsLink::lossy) udp->maxMessageSize = kDatagramWithoutFragments;
+  udp->maxInitialPeersRange = static_cast<std::uint32_t>(peers_per_host(domain));
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  set_discovery(qos, domain, address, network);
+  set_security(qos, security);
+  return qos;
+}
+
+}  // namespace cellmirror::dds
