@@ -1,14 +1,13 @@
 #include "config/dds_network_reader.hpp"
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "rt_core/base/ipv4_address.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror {
@@ -16,25 +15,6 @@ namespace cellmirror {
 namespace {
 
 constexpr std::size_t kLongestPartition = 255;
-
-struct AddressWithPort {
-  std::string address;
-  std::uint16_t port = 0;  // 0: none was given
-};
-
-// "192.168.7.5" or "192.168.7.5:11811".
-std::optional<AddressWithPort> parse_address(std::string_view text) {
-  AddressWithPort out;
-  const std::size_t colon = text.find(':');
-  out.address = std::string(text.substr(0, colon));
-  in_addr ignored{};
-  if (inet_pton(AF_INET, out.address.c_str(), &ignored) != 1) return std::nullopt;
-  if (colon == std::string_view::npos) return out;
-  const auto port = parse_integer(text.substr(colon + 1));
-  if (!port || *port < 1 || *port > 65535) return std::nullopt;
-  out.port = static_cast<std::uint16_t>(*port);
-  return out;
-}
 
 std::vector<std::string> read_list(TableReader& table, const char* key, std::size_t most) {
   std::vector<std::string> texts = table.texts(key).value_or(std::vector<std::string>{});
@@ -55,7 +35,7 @@ std::vector<DdsServer> read_servers(TableReader& table) {
   for (const std::string& text : read_list(table, "discovery_servers", kMostDiscoveryServers)) {
     const std::uint8_t own_id = id++;
     if (text.empty()) continue;
-    const auto parsed = parse_address(text);
+    const auto parsed = parse_ipv4_address(text);
     if (!parsed) {
       refuse(table, "discovery_servers", text);
       continue;
@@ -70,7 +50,7 @@ std::vector<DdsServer> read_servers(TableReader& table) {
 std::vector<DdsPeer> read_peers(TableReader& table) {
   std::vector<DdsPeer> peers;
   for (const std::string& text : read_list(table, "peers", kMostDdsPeers)) {
-    if (const auto parsed = parse_address(text)) {
+    if (const auto parsed = parse_ipv4_address(text)) {
       peers.push_back({parsed->address, parsed->port});
     } else {
       refuse(table, "peers", text);

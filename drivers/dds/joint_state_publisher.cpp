@@ -18,7 +18,7 @@ JointStatePublisher::JointStatePublisher(std::unique_ptr<Impl> impl) : impl_(std
 JointStatePublisher::~JointStatePublisher() = default;
 
 Result<std::unique_ptr<JointStatePublisher>> JointStatePublisher::make(const JointStatePublisherConfig& config) {
-  auto participant = Participant::shared(config.domain, config.interface_address, config.security);
+  auto participant = Participant::shared(config.domain, config.interface_address, config.security, config.partition);
   if (!participant) return std::unexpected(participant.error());
   auto writer = BytesWriter::make(*participant, {config.topic, kJointStateType, config.reliable, config.depth});
   if (!writer) return std::unexpected(writer.error());

@@ -20,6 +20,7 @@ struct JointStatePublisherConfig {
   bool reliable = true;  // as ROS 2's default; matches best-effort and reliable readers
   int depth = 64;        // samples kept for repetition to reliable readers
   DdsSecurityConfig security = {};
+  std::string partition = {};  // of DDS; empty: none
 };
 
 // One calling thread. Publishers and streams of one process share a DDS participant for each domain and interface.

@@ -11,9 +11,9 @@ namespace cellmirror::dds {
 
 namespace {
 
-// A summary is complete in itself: only the newest is of use.
+// The newest is complete in itself; the ones before are for readers that missed one on the way.
 constexpr CountingWriter::Options kNewestSummary{
-    .depth = 1, .counts_overwritten = true, .large = true, .transient_local = true};
+    .depth = 4, .counts_overwritten = true, .large = true, .transient_local = true};
 
 class DdsSummaryOutput final : public SummaryOutput {
  public:

@@ -13,7 +13,7 @@ namespace cellmirror::dds {
 
 namespace {
 
-constexpr int kNewestOfWriter = 1;
+constexpr int kOfWriter = 8;  // that wait to be taken: two of one instant are no loss
 
 void read(const ReceivedSample& sample, Timestamp now, SummaryInbox& inbox) {
   const std::string sender = text(sample.name.guid);
@@ -43,7 +43,7 @@ Result<std::unique_ptr<SummaryReader>> SummaryReader::open(const SummaryReaderCo
   auto participant = Participant::shared(config.domain, config.interface_address, config.security);
   if (!participant) return std::unexpected(participant.error());
   const EndpointConfig endpoint{
-      .topic = config.topic, .type = kStringType, .reliable = true, .depth = kNewestOfWriter, .transient_local = true};
+      .topic = config.topic, .type = kStringType, .reliable = true, .depth = kOfWriter, .transient_local = true};
   auto reader = BytesReader::make(
       *participant, endpoint, [&](const ReceivedSample& sample) { read(sample, clock.now(), inbox); },
       [&inbox](const Guid& writer) { inbox.gone(text(writer)); });

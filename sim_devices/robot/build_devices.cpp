@@ -8,7 +8,9 @@
 #include <system_error>
 
 #include "drivers/can/channel/open_channel.hpp"
+#include "drivers/dds/network.hpp"
 #include "rt_core/base/dds_topic.hpp"
+#include "rt_core/base/ipv4_address.hpp"
 #include "rt_core/base/text.hpp"
 #include "sim_devices/robot/cia402_robots.hpp"
 #include "sim_devices/robot/dbc_robot.hpp"
@@ -199,6 +201,19 @@ std::expected<BuiltDevices, Refusal> build_dbc(const CommonOptions& common, cons
   return built;
 }
 
+Result<DdsNetworkConfig> network_of(const std::vector<std::string>& servers) {
+  DdsNetworkConfig network;
+  std::uint8_t id = 0;
+  for (const std::string& text : servers) {
+    const auto parsed = parse_ipv4_address(text);
+    if (!parsed) return fail("--discovery-servers: " + printable(text) + " is no IPv4 address", "ADDRESS:PORT");
+    DdsServer server{.address = parsed->address, .id = id++};
+    if (parsed->port != 0) server.port = parsed->port;
+    network.discovery_servers.push_back(std::move(server));
+  }
+  return network;
+}
+
 std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, const DdsOptions& options) {
   DdsRobotsConfig config;
   config.domain = options.domain;
@@ -218,6 +233,10 @@ std::expected<BuiltDevices, Refusal> build_dds(const CommonOptions& common, cons
   config.stamped = !options.no_stamp;
   config.seed = common.seed;
   config.security = options.security;
+  config.partition = options.partition;
+  auto network = network_of(options.discovery_servers);
+  if (!network) return wrong_usage(network.error());
+  dds::set_network(*network);
   if (auto complete = check_security(config.security); !complete) return wrong_usage(complete.error());
   auto motion = make_motion(common.motion, config.joint_names.size());
   if (!motion) return wrong_usage(motion.error());

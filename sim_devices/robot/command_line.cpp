@@ -95,6 +95,10 @@ void add_dds(cli::Command app, DdsOptions& options) {
   app.option("--permissions-ca", options.security.permissions_ca, "DDS security: default is the identity CA");
   app.option("--governance", options.security.governance, "DDS security: signed by the permissions CA (S/MIME)");
   app.option("--permissions", options.security.permissions, "DDS security: likewise");
+  app.option("--discovery-servers", options.discovery_servers,
+             "ADDRESS:PORT,...: found by DDS discovery servers, numbered by their places")
+      .list_divided_by(',');
+  app.option("--partition", options.partition, "DDS partition, as `partition` of the cell file's stream");
   app.flag("--best-effort", options.best_effort, "instead of reliable");
   app.flag("--no-stamp", options.no_stamp, "header.stamp stays zero");
   app.option("--spread", options.spread, "send the robots of a period in this many groups, evenly spread")

@@ -35,7 +35,8 @@ Result<std::unique_ptr<DdsRobots>> DdsRobots::make(const DdsRobotsConfig& config
                                                     .interface_address = config.interface_address,
                                                     .topic = numbered(config.topic, robot.number),
                                                     .reliable = config.reliable,
-                                                    .security = config.security});
+                                                    .security = config.security,
+                                                    .partition = config.partition});
       if (!writer) return std::unexpected(writer.error());
       device->writers_.push_back(std::move(*writer));
     }

@@ -29,6 +29,7 @@ struct DdsRobotsConfig {
   bool stamped = true;
   std::uint64_t seed = 1;
   DdsSecurityConfig security = {};
+  std::string partition = {};
 };
 
 class DdsRobots final : public FaultyDevice<JointStateMessage> {

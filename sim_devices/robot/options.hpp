@@ -69,6 +69,8 @@ struct DdsOptions {
   int spread = 1;
   double wait_for_reader_s = 0;
   DdsSecurityConfig security = {};
+  std::string partition = {};
+  std::vector<std::string> discovery_servers = {};  // as in [dds] of a cell file
 };
 
 struct RtdeOptions {

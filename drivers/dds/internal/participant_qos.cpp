@@ -27,6 +27,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 // RTPS 2.3, 9.6.1.1: a participant's own ports are kFirstPort + kPortsPerDomain * domain + 2 * participant, and one
 // more.
 constexpr int kFirstPort = 7410;
+constexpr int kGroupPort = 7400;  // likewise, of the group
 constexpr int kPortsPerDomain = 250;
 constexpr int kMaxDomain = 232;                          // beyond it the ports pass 65535
 constexpr std::uint32_t kSocketBufferBytes = 4U << 20U;  // the kernel cuts it to net.core.rmem_max
@@ -72,7 +73,9 @@ void add_peer(rtps::LocatorList_t& peers, int domain, const DdsPeer& peer) {
 // interface has no multicast (a bare `lo` in a network namespace).
 void discover_by_peers(rtps::BuiltinAttributes& builtin, int domain, const std::string& address,
                        const DdsNetworkConfig& network) {
-  if (network.multicast) builtin.initialPeersList.push_back(locator_of(kDiscoveryGroup, 0));
+  // With its port: without one the library takes the group for a machine with many participants.
+  const auto group_port = static_cast<std::uint32_t>(kGroupPort + kPortsPerDomain * domain);
+  if (network.multicast) builtin.initialPeersList.push_back(locator_of(kDiscoveryGroup, group_port));
   builtin.initialPeersList.push_back(locator_of(address, 0));
   for (const DdsPeer& peer : network.peers) add_peer(builtin.initialPeersList, domain, peer);
   if (network.multicast) return;

@@ -3,16 +3,15 @@
 //   dds_summary_peer ADDRESS [DISCOVERY_SERVER...]   servers as ADDRESS:PORT, their numbers in the order given
 // {"event": "received" | "rejected" | "gone", "at_s": of CLOCK_MONOTONIC, "sender": GUID, "cell", "run", "sequence",
 //  "time_ns", "health", "robots", "bytes"}
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <thread>
 
 #include "drivers/dds/network.hpp"
 #include "drivers/dds/summary_reader.hpp"
+#include "rt_core/base/ipv4_address.hpp"
 #include "rt_core/base/json_writer.hpp"
 
 namespace {
@@ -56,11 +55,8 @@ class Printer final : public dds::SummaryInbox {
 };
 
 DdsServer server_of(std::string_view text, std::uint8_t id) {
-  const std::size_t colon = text.find(':');
-  DdsServer server{.address = std::string(text.substr(0, colon)), .id = id};
-  if (colon != std::string_view::npos)
-    server.port = static_cast<std::uint16_t>(std::atoi(std::string(text.substr(colon + 1)).c_str()));
-  return server;
+  const Ipv4Address parsed = parse_ipv4_address(text).value_or(Ipv4Address{});
+  return {.address = parsed.address, .port = parsed.port, .id = id};
 }
 
 }  // namespace

@@ -1,0 +1,133 @@
+"""Cells of a plant: gateways, discovery servers and a control room on machines of their own (network namespaces on one bridge)."""
+
+import json
+import pathlib
+import shutil
+import tempfile
+import time
+import unittest
+
+import gateway as g
+import plant
+
+CYCLONE_PEERS = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="{own}"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General><Discovery><Peers><Peer address="{peer}"/></Peers></Discovery></Domain></CycloneDDS>"""
+
+
+def setUpModule():
+    g.require(g.BIN / "dds_summary_peer", "the DDS peers of the tests are not built")
+    if not plant.is_possible() or not plant.enter():
+        raise unittest.SkipTest("skipped: network namespaces cannot be made here")
+
+
+class PlantCase(unittest.TestCase):
+    host = 10  # of the next machine: every test has addresses of its own
+
+    def setUp(self):
+        self.root = pathlib.Path(tempfile.mkdtemp(prefix="cellmirror-plant-"))
+        self.addCleanup(shutil.rmtree, self.root, ignore_errors=True)
+
+    def place(self):
+        PlantCase.host += 1
+        return plant.Place(PlantCase.host)
+
+    def keep(self, process):
+        self.addCleanup(process.close)
+        return process
+
+    def gateway(self, cell, place):
+        process = self.keep(place.start(cell.command(), cell.environment()))
+        self.assertTrue(g.eventually(lambda: "Ctrl-C ends it" in process.output()), process.output())
+        return process
+
+    def hears(self, reader, cells, since=0.0):
+        self.assertTrue(g.eventually(lambda: cells <= reader.cells_since(since)), reader.process.output())
+
+
+class DiscoveryServers(PlantCase):
+    """Two of them, as Debian's fastdds-tools has them."""
+
+    def setUp(self):
+        super().setUp()
+        g.require("fast-discovery-server", "fastdds-tools is not installed")
+        self.server_places = [self.place(), self.place()]
+        self.servers = [self.server(number) for number in (0, 1)]
+        self.dds = f"discovery_servers = {plant.servers_text(self.server_places)}"
+
+    def server(self, number):
+        return self.keep(plant.start_server(self.server_places[number], number))
+
+    def cell(self, name, place):
+        return plant.PlantCell(self.root, name, 2, place.address, self.dds)
+
+    def test_1_cells_are_found_and_stay_found_while_servers_die_and_come_back(self):
+        for name in ("left", "right"):
+            place = self.place()
+            self.gateway(self.cell(name, place), place)
+        early = self.keep(plant.SummaryReader(self.place(), self.server_places))
+        self.hears(early, {"left", "right"})
+
+        for server in self.servers:
+            server.kill()
+        # Longer than the lease of a participant, 10 s: those who know each other need no server.
+        time.sleep(15)
+        self.hears(early, {"left", "right"}, time.monotonic())
+
+        self.server(0)
+        late = self.keep(plant.SummaryReader(self.place(), self.server_places))
+        self.hears(late, {"left", "right"})
+        self.hears(early, {"left", "right"}, time.monotonic())
+        self.assertEqual(early.events("rejected"), [])
+
+    def test_2_a_gateway_that_was_cut_off_or_moved_is_found_again(self):
+        place, room = self.place(), self.place()
+        gateway = self.gateway(self.cell("welding", place), place)
+        reader = self.keep(plant.SummaryReader(room, self.server_places))
+        self.hears(reader, {"welding"})
+        runs = {event["run"] for event in reader.events()}
+
+        place.connect(False)
+        self.assertTrue(g.eventually(lambda: reader.events("gone")), "the lease of a silent gateway ends")
+        place.connect(True)
+        self.hears(reader, {"welding"}, time.monotonic())
+        self.assertEqual({event["run"] for event in reader.events()}, runs, "the gateway was not started again")
+
+        gateway.kill()
+        moved = self.place()
+        self.gateway(self.cell("welding", moved), moved)
+        self.assertTrue(g.eventually(lambda: {event["run"] for event in reader.events()} > runs))
+
+    def test_3_a_robot_is_mirrored_over_the_servers(self):
+        place, robot_place = self.place(), self.place()
+        cell = plant.PlantCell(
+            self.root, "mirroring", 1, place.address, self.dds,
+            more=f'[[stream]]\nrobot = "R0"\nkind = "dds"\ninterface_address = "{place.address}"\npartition = "robots"\n')
+        (cell.home / "scripts" / "startup.spt").write_text("ROBOT R0 online;\n")
+        with (cell.home / "cell.toml").open("a") as file:
+            file.write('[startup]\nscript = "startup.spt"\n')
+        self.gateway(cell, place)
+        servers = ",".join(json.loads(plant.servers_text(self.server_places)))
+        robot = self.keep(robot_place.start(
+            [g.BIN / "sim_robot", "dds", "--interface-address", robot_place.address, "--joint-names", "J_1,J_2,J_3,J_4,J_5,J_6",
+             "--discovery-servers", servers, "--partition", "robots", "--rate", "50"]))
+        reader = self.keep(plant.SummaryReader(self.place(), self.server_places))
+        self.assertTrue(g.eventually(lambda: any(event["health"] == "ok" for event in reader.events()[-1:])), reader.process.output())
+        robot.kill()
+        self.assertTrue(g.eventually(lambda: any(event["health"] == "attention" for event in reader.events()[-1:])),
+                        reader.process.output())
+
+
+class UnicastPeers(PlantCase):
+    def test_cyclone_dds_finds_a_gateway_without_multicast(self):
+        g.require(g.BIN / "dds_cyclone_peer", "cyclonedds-dev is not installed")
+        place, room = self.place(), self.place()
+        cell = plant.PlantCell(self.root, "unicast", 2, place.address, f'multicast = false\npeers = ["{room.address}"]')
+        self.gateway(cell, place)
+        uri = CYCLONE_PEERS.format(own=room.address, peer=place.address)
+        peer = self.keep(room.start([g.BIN / "dds_cyclone_peer", "description", "0", "rt/cellmirror/summary"],
+                                    {**cell.environment(), "CYCLONEDDS_URI": uri}))
+        self.assertTrue(g.eventually(lambda: '"cell":"unicast"' in peer.output()), peer.output())
+
+
+if __name__ == "__main__":
+    g.main()
