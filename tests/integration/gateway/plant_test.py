@@ -10,8 +10,8 @@ import unittest
 import gateway as g
 import plant
 
-CYCLONE_PEERS = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="{own}"/></Interfaces>
-<AllowMulticast>false</AllowMulticast></General><Discovery><Peers><Peer address="{peer}"/></Peers></Discovery></Domain></CycloneDDS>"""
+CYCLONE_PEERS = """<Domain><General><Interfaces><NetworkInterface address="{own}"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General><Discovery><Peers><Peer address="{peer}"/></Peers></Discovery></Domain>"""
 
 
 def setUpModule():
