@@ -60,6 +60,11 @@ class DiscoveryServers(PlantCase):
     def cell(self, name, place):
         return plant.PlantCell(self.root, name, 2, place.address, self.dds)
 
+    def newcomer_hears(self, cells):
+        reader = plant.SummaryReader(self.place(), self.server_places)
+        self.addCleanup(reader.close)
+        self.hears(reader, cells)
+
     def test_1_cells_are_found_and_stay_found_while_servers_die_and_come_back(self):
         for name in ("left", "right"):
             place = self.place()
@@ -67,15 +72,19 @@ class DiscoveryServers(PlantCase):
         early = self.keep(plant.SummaryReader(self.place(), self.server_places))
         self.hears(early, {"left", "right"})
 
-        for server in self.servers:
-            server.kill()
+        self.servers[0].kill()
+        self.newcomer_hears({"left", "right"})
+        self.servers[0] = self.server(0)
+        self.newcomer_hears({"left", "right"})
+        self.servers[1].kill()
+        self.newcomer_hears({"left", "right"})
+
+        self.servers[0].kill()
         # Longer than the lease of a participant, 10 s: those who know each other need no server.
         time.sleep(15)
         self.hears(early, {"left", "right"}, time.monotonic())
-
-        self.server(0)
-        late = self.keep(plant.SummaryReader(self.place(), self.server_places))
-        self.hears(late, {"left", "right"})
+        self.servers = [self.server(number) for number in (0, 1)]
+        self.newcomer_hears({"left", "right"})
         self.hears(early, {"left", "right"}, time.monotonic())
         self.assertEqual(early.events("rejected"), [])
 
