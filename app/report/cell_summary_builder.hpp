@@ -20,7 +20,7 @@ struct SummaryFacts {
   std::int64_t time_ns = 0;  // since 1970 (UTC)
 };
 
-// Its sequence stays 0: whoever sends it counts. Lists are cut to the limits of cell_summary.hpp.
+// Its sequence stays 0: the sender counts. Lists are cut to the limits of cell_summary.hpp.
 [[nodiscard]] CellSummary summary_of(const LiveSources& sources, const SummaryFacts& facts);
 
 }  // namespace cellmirror::app

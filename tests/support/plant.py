@@ -5,15 +5,21 @@ Needs the rights to make namespaces.
 """
 
 import ctypes
+import fcntl
 import json
 import os
 import pathlib
+import random
+import select
 import shutil
+import struct
 import subprocess
 import sys
+import threading
 
 import gateway as g
 
+TUNSETIFF, IFF_TAP, IFF_NO_PI = 0x400454CA, 0x0002, 0x1000
 CLONE_NEWNS, CLONE_NEWIPC, CLONE_NEWNET = 0x00020000, 0x08000000, 0x40000000
 SUBNET = "10.77.0"
 SERVER_PORT = 11811
@@ -40,17 +46,48 @@ def enter():
         ip("link", "set", "plant", "up", check=False)
 
 
+class LossyCable:
+    """Between two interfaces: each frame is lost with that probability, either way."""
+
+    def __init__(self, near, far, loss):
+        self.ends = [self.open(near), self.open(far)]
+        self.loss, self.chance = loss, random.Random(7)
+        threading.Thread(target=self.carry, daemon=True).start()
+
+    @staticmethod
+    def open(name):
+        end = os.open("/dev/net/tun", os.O_RDWR)
+        fcntl.ioctl(end, TUNSETIFF, struct.pack("16sH", name.encode(), IFF_TAP | IFF_NO_PI))
+        return end
+
+    def carry(self):
+        other = dict(zip(self.ends, reversed(self.ends)))
+        while True:
+            for end in select.select(self.ends, [], [])[0]:
+                frame = os.read(end, 65536)
+                if self.chance.random() >= self.loss:
+                    try:
+                        os.write(other[end], frame)
+                    except OSError:  # the interface is down
+                        pass
+
+
 class Place:
     """A machine of the plant."""
 
     made = 0
 
-    def __init__(self, host):
+    def __init__(self, host, loss=0.0):
         Place.made += 1
         self.name, self.port = f"m{Place.made}", f"p{Place.made}"
         self.address = f"{SUBNET}.{host}"
         ip("netns", "add", self.name)
-        ip("link", "add", self.port, "type", "veth", "peer", "name", "eth0", "netns", self.name)
+        if loss > 0:
+            self.cable = LossyCable(f"far{Place.made}", self.port, loss)
+            ip("link", "set", f"far{Place.made}", "netns", self.name)
+            ip("-n", self.name, "link", "set", f"far{Place.made}", "name", "eth0")
+        else:
+            ip("link", "add", self.port, "type", "veth", "peer", "name", "eth0", "netns", self.name)
         ip("link", "set", self.port, "master", "plant", "up")
         ip("-n", self.name, "link", "set", "lo", "up")
         ip("-n", self.name, "addr", "add", f"{self.address}/24", "dev", "eth0")

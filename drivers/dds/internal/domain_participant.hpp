@@ -1,4 +1,4 @@
-// The process's DDS participants, and what they tell programs of ROS 2 of themselves.
+// The process's DDS participants, and what they show programs of ROS 2 of themselves.
 #pragma once
 
 #include <memory>

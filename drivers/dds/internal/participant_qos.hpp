@@ -1,4 +1,4 @@
-// What DDS is told of a participant: transport, discovery, security.
+// Settings of a participant: transport, discovery, security.
 #pragma once
 
 #include <string>

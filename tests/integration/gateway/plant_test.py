@@ -138,5 +138,22 @@ class UnicastPeers(PlantCase):
         self.assertTrue(g.eventually(lambda: '"cell":"unicast"' in peer.output()), peer.output())
 
 
+class LossyLink(PlantCase):
+    """A fifth of all frames to and from the cell is lost."""
+
+    def test_summaries_are_repeated_until_they_arrive(self):
+        if not pathlib.Path("/dev/net/tun").exists():
+            self.skipTest("skipped: there is no /dev/net/tun")
+        PlantCase.host += 1
+        place, room = plant.Place(PlantCase.host, loss=0.2), self.place()
+        self.gateway(plant.PlantCell(self.root, "radio", 2, place.address, 'link = "lossy"'), place)
+        reader = self.keep(plant.SummaryReader(room))
+        self.assertTrue(g.eventually(lambda: len(reader.events()) >= 60), reader.process.output())
+        sequences = [event["sequence"] for event in reader.events()]
+        span = max(sequences) - min(sequences) + 1
+        # Without repetition it would be a fifth.
+        self.assertLess(span - len(set(sequences)), 0.05 * span, sequences)
+
+
 if __name__ == "__main__":
     g.main()
