@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <thread>
@@ -118,6 +119,21 @@ void SocketChannel::reopen_when_due(Timestamp now) {
   }
   back_off_ = Nanoseconds{0};
   ++status_.reopened;
+}
+
+void SocketChannel::send_messages(int fd, std::span<mmsghdr> messages, std::span<bool> sent) {
+  for (std::size_t done = 0; done < messages.size();) {
+    const std::span<mmsghdr> rest = messages.subspan(done);
+    const int count = fd < 0 ? -1 : sendmmsg(fd, rest.data(), static_cast<unsigned>(rest.size()), MSG_DONTWAIT);
+    if (count <= 0) {
+      refuse(fd < 0 ? ENOTCONN : errno);
+      sent[done++] = false;
+      continue;
+    }
+    status_.sent += static_cast<std::uint64_t>(count);
+    std::ranges::fill(sent.subspan(done, static_cast<std::size_t>(count)), true);
+    done += static_cast<std::size_t>(count);
+  }
 }
 
 void SocketChannel::note_dropped(const Ancillary& ancillary) {

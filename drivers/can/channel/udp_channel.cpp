@@ -2,14 +2,19 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <linux/filter.h>
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <netinet/ip.h>
+#include <netinet/ip6.h>
+#include <netinet/udp.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <optional>
 #include <vector>
@@ -70,6 +75,47 @@ bool same_sender(const sockaddr_storage& a, const sockaddr_storage& b) {
   return x.sin6_port == y.sin6_port && std::memcmp(&x.sin6_addr, &y.sin6_addr, sizeof x.sin6_addr) == 0;
 }
 
+// A filter of the kernel that leaves out datagrams of `sender`, port and address: multicast brings back what this
+// channel sends, and each of those would wake its thread. Offsets are those of the headers of UDP, IPv4 and IPv6.
+std::vector<sock_filter> filter_without(const sockaddr_storage& sender) {
+  struct Word {
+    std::uint32_t offset;
+    std::uint32_t value;  // as the filter loads it: in the order of the host
+  };
+  std::vector<Word> words;
+  std::uint16_t port = 0;
+  const auto network = [](std::size_t offset) {
+    return static_cast<std::uint32_t>(SKF_NET_OFF) + static_cast<std::uint32_t>(offset);
+  };
+  if (sender.ss_family == AF_INET) {
+    sockaddr_in v4{};
+    std::memcpy(&v4, &sender, sizeof v4);
+    port = ntohs(v4.sin_port);
+    words.push_back({network(offsetof(iphdr, saddr)), ntohl(v4.sin_addr.s_addr)});
+  } else {
+    sockaddr_in6 v6{};
+    std::memcpy(&v6, &sender, sizeof v6);
+    port = ntohs(v6.sin6_port);
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, &v6.sin6_addr.s6_addr[4 * i], sizeof word);
+      words.push_back({network(offsetof(ip6_hdr, ip6_src) + 4 * i), ntohl(word)});
+    }
+  }
+  constexpr std::uint32_t kWhole = 0xFFFF'FFFF;
+  std::vector<sock_filter> program{BPF_STMT(BPF_LD | BPF_H | BPF_ABS, offsetof(udphdr, source))};
+  // Behind each comparison: two instructions for each word to come, and the one that drops.
+  const auto otherwise_take = [&](std::size_t left) { return static_cast<std::uint8_t>(2 * left + 1); };
+  program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, port, 0, otherwise_take(words.size())));
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, words[i].offset));
+    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, words[i].value, 0, otherwise_take(words.size() - i - 1)));
+  }
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, 0));
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, kWhole));
+  return program;
+}
+
 // The address alone: 4 bytes, or 16.
 using SourceAddress = std::vector<std::uint8_t>;
 
@@ -116,10 +162,11 @@ class UdpChannel final : public SocketChannel {
       : endpoint_(std::move(endpoint)), interface_(std::move(interface)), allowed_(std::move(allowed)) {}
 
   [[nodiscard]] Result<void> open_socket() override;
-  bool send(const CanFrame& frame) override;
+  void send_all(std::span<const CanFrame> frames, std::span<bool> sent) override;
 
  private:
   [[nodiscard]] bool fill() override;
+  void refuse(int error) override { note_refused(fmt::format("send: {}", std::strerror(error))); }
   [[nodiscard]] bool is_current() override;
   [[nodiscard]] Result<Descriptor> open_receiver() const;
   [[nodiscard]] Result<Descriptor> open_sender() const;
@@ -133,6 +180,7 @@ class UdpChannel final : public SocketChannel {
   unsigned index_ = 0;
   Descriptor sender_;
   sockaddr_storage own_address_{};
+  std::array<UdpDatagram, kSendBatch> datagrams_;  // under way
 };
 
 Result<Descriptor> UdpChannel::open_receiver() const {
@@ -143,6 +191,10 @@ Result<Descriptor> UdpChannel::open_receiver() const {
   setsockopt(fd.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   setsockopt(fd.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
   set_receive_buffer(fd.get(), kUdpReceiveBuffer);
+  std::vector<sock_filter> others = filter_without(own_address_);
+  const sock_fprog program{static_cast<std::uint16_t>(others.size()), others.data()};
+  // Where the kernel refuses it, fill() leaves them out.
+  setsockopt(fd.get(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program);
   // Bound to the group, not to any address: other groups on the same port stay out.
   const Address address = Address::of(endpoint_, index_);
   if (bind(fd.get(), address.get(), address.size) != 0) return socket_failure("cannot bind to the group");
@@ -267,22 +319,22 @@ void UdpChannel::take(std::span<const std::uint8_t> datagram, bool cut, Timestam
   put(*frame, receive_time);
 }
 
-bool UdpChannel::send(const CanFrame& frame) {
+void UdpChannel::send_all(std::span<const CanFrame> frames, std::span<bool> sent) {
+  std::array<iovec, kSendBatch> buffers;
+  std::array<mmsghdr, kSendBatch> messages;
   const double now_s = 1e-9 * static_cast<double>(ClockPair::read().real_ns);
-  const UdpDatagram datagram = encode_udp_datagram(frame, now_s);
-  ssize_t written = -1;
-  int error = ENOTCONN;
-  if (sender_.valid()) {
-    written = ::send(sender_.get(), datagram.bytes.data(), datagram.size, MSG_DONTWAIT);
-    error = errno;
+  for (std::size_t done = 0; done < frames.size();) {
+    const std::size_t count = std::min(frames.size() - done, kSendBatch);
+    for (std::size_t i = 0; i < count; ++i) {
+      datagrams_[i] = encode_udp_datagram(frames[done + i], now_s);
+      buffers[i] = {datagrams_[i].bytes.data(), datagrams_[i].size};
+      messages[i] = {};
+      messages[i].msg_hdr.msg_iov = &buffers[i];
+      messages[i].msg_hdr.msg_iovlen = 1;
+    }
+    send_messages(sender_.get(), std::span(messages).first(count), sent.subspan(done, count));
+    done += count;
   }
-  const bool sent = written == static_cast<ssize_t>(datagram.size);
-  if (sent) {
-    ++status_.sent;
-  } else {
-    note_refused(fmt::format("send: {}", std::strerror(error)));
-  }
-  return sent;
 }
 
 }  // namespace

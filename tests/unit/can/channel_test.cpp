@@ -31,10 +31,11 @@ struct ChannelWithoutInterface final : SocketChannel {
   Result<void> open_socket() override { return fail("there is no network interface gone0"); }
   bool fill() override { return true; }
   bool is_current() override { return true; }
-  bool send(const CanFrame& /*frame*/) override {
-    note_refused("send: not connected");
-    return false;
+  void send_all(std::span<const CanFrame> frames, std::span<bool> sent) override {
+    std::vector<mmsghdr> messages(frames.size());
+    send_messages(socket_.get(), messages, sent);
   }
+  void refuse(int error) override { note_refused(error == ENOTCONN ? "send: not connected" : "send: ?"); }
 };
 
 TEST(SocketChannel, AFrameThatIsNotSentDoesNotHideWhyTheChannelIsDown) {
