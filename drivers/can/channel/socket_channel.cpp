@@ -59,6 +59,16 @@ Ancillary Ancillary::of(msghdr& message) {
   return result;
 }
 
+void send_messages(int fd, std::span<mmsghdr> messages, std::span<int> errors) {
+  std::ranges::fill(errors, 0);
+  for (std::size_t done = 0; done < messages.size();) {
+    const std::span<mmsghdr> rest = messages.subspan(done);
+    const int count = fd < 0 ? -1 : sendmmsg(fd, rest.data(), static_cast<unsigned>(rest.size()), MSG_DONTWAIT);
+    if (count <= 0) errors[done] = fd < 0 ? ENOTCONN : errno;
+    done += count <= 0 ? 1 : static_cast<std::size_t>(count);
+  }
+}
+
 CanReceive SocketChannel::receive(ReceivedCanFrame& frame, Nanoseconds timeout) {
   if (give(frame)) return CanReceive::frame;
   const Timestamp deadline = clock_.now() + timeout;
@@ -121,18 +131,14 @@ void SocketChannel::reopen_when_due(Timestamp now) {
   ++status_.reopened;
 }
 
-void SocketChannel::send_messages(int fd, std::span<mmsghdr> messages, std::span<bool> sent) {
-  for (std::size_t done = 0; done < messages.size();) {
-    const std::span<mmsghdr> rest = messages.subspan(done);
-    const int count = fd < 0 ? -1 : sendmmsg(fd, rest.data(), static_cast<unsigned>(rest.size()), MSG_DONTWAIT);
-    if (count <= 0) {
-      refuse(fd < 0 ? ENOTCONN : errno);
-      sent[done++] = false;
-      continue;
+void SocketChannel::count_sent(std::span<const int> errors, std::span<bool> sent) {
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    sent[i] = errors[i] == 0;
+    if (sent[i]) {
+      ++status_.sent;
+    } else {
+      refuse(errors[i]);
     }
-    status_.sent += static_cast<std::uint64_t>(count);
-    std::ranges::fill(sent.subspan(done, static_cast<std::size_t>(count)), true);
-    done += static_cast<std::size_t>(count);
   }
 }
 

@@ -41,6 +41,10 @@ inline constexpr std::size_t kReceiveBatch = 32;
 inline constexpr std::size_t kSendBatch = 64;
 inline constexpr std::size_t kControlCapacity = 128;
 
+// Gives messages to the kernel with as few calls as that takes. `errors`, as long as `messages`: 0, or why the kernel
+// did not take it (errno); ENOTCONN where `fd` is not valid.
+void send_messages(int fd, std::span<mmsghdr> messages, std::span<int> errors);
+
 class SocketChannel : public CanChannel {
  public:
   CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) final;
@@ -60,8 +64,8 @@ class SocketChannel : public CanChannel {
   [[nodiscard]] virtual bool fill() = 0;
   // Why the kernel did not take a frame (errno).
   virtual void refuse(int error) = 0;
-  // With as few calls as that takes. ENOTCONN for all where `fd` is not valid. Counts those that were sent.
-  void send_messages(int fd, std::span<mmsghdr> messages, std::span<bool> sent);
+  // Counts what was sent and what was not, as send_messages() tells it, and tells it by `sent`.
+  void count_sent(std::span<const int> errors, std::span<bool> sent);
   // Called every half second: whether the interface is still the one that was opened. False: re-open.
   [[nodiscard]] virtual bool is_current() = 0;
 

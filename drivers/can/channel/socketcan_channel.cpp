@@ -198,6 +198,7 @@ void SocketCanChannel::send_all(std::span<const CanFrame> frames, std::span<bool
   std::array<canfd_frame, kSendBatch> raw;
   std::array<iovec, kSendBatch> buffers;
   std::array<mmsghdr, kSendBatch> messages;
+  std::array<int, kSendBatch> errors;
   for (std::size_t done = 0; done < frames.size();) {
     if (frames[done].error) {  // a controller's to send
       refuse(EINVAL);
@@ -213,7 +214,8 @@ void SocketCanChannel::send_all(std::span<const CanFrame> frames, std::span<bool
       messages[count].msg_hdr.msg_iov = &buffers[count];
       messages[count].msg_hdr.msg_iovlen = 1;
     }
-    send_messages(socket_.get(), std::span(messages).first(count), sent.subspan(done, count));
+    send_messages(socket_.get(), std::span(messages).first(count), std::span(errors).first(count));
+    count_sent(std::span(errors).first(count), sent.subspan(done, count));
     done += count;
   }
 }

@@ -6,15 +6,11 @@
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/ip.h>
-#include <netinet/ip6.h>
-#include <netinet/udp.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstddef>
 #include <cstring>
 #include <optional>
 #include <vector>
@@ -22,6 +18,8 @@
 #include "drivers/can/channel/error_frame.hpp"
 #include "drivers/can/channel/socket_channel.hpp"
 #include "drivers/can/channel/udp_datagram.hpp"
+#include "drivers/can/channel/udp_filter.hpp"
+#include "drivers/can/channel/udp_sender.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::can {
@@ -73,47 +71,6 @@ bool same_sender(const sockaddr_storage& a, const sockaddr_storage& b) {
   std::memcpy(&x, &a, sizeof x);
   std::memcpy(&y, &b, sizeof y);
   return x.sin6_port == y.sin6_port && std::memcmp(&x.sin6_addr, &y.sin6_addr, sizeof x.sin6_addr) == 0;
-}
-
-// A filter of the kernel that leaves out datagrams of `sender`, port and address: multicast brings back what this
-// channel sends, and each of those would wake its thread. Offsets are those of the headers of UDP, IPv4 and IPv6.
-std::vector<sock_filter> filter_without(const sockaddr_storage& sender) {
-  struct Word {
-    std::uint32_t offset;
-    std::uint32_t value;  // as the filter loads it: in the order of the host
-  };
-  std::vector<Word> words;
-  std::uint16_t port = 0;
-  const auto network = [](std::size_t offset) {
-    return static_cast<std::uint32_t>(SKF_NET_OFF) + static_cast<std::uint32_t>(offset);
-  };
-  if (sender.ss_family == AF_INET) {
-    sockaddr_in v4{};
-    std::memcpy(&v4, &sender, sizeof v4);
-    port = ntohs(v4.sin_port);
-    words.push_back({network(offsetof(iphdr, saddr)), ntohl(v4.sin_addr.s_addr)});
-  } else {
-    sockaddr_in6 v6{};
-    std::memcpy(&v6, &sender, sizeof v6);
-    port = ntohs(v6.sin6_port);
-    for (std::size_t i = 0; i < 4; ++i) {
-      std::uint32_t word = 0;
-      std::memcpy(&word, &v6.sin6_addr.s6_addr[4 * i], sizeof word);
-      words.push_back({network(offsetof(ip6_hdr, ip6_src) + 4 * i), ntohl(word)});
-    }
-  }
-  constexpr std::uint32_t kWhole = 0xFFFF'FFFF;
-  std::vector<sock_filter> program{BPF_STMT(BPF_LD | BPF_H | BPF_ABS, offsetof(udphdr, source))};
-  // Behind each comparison: two instructions for each word to come, and the one that drops.
-  const auto otherwise_take = [&](std::size_t left) { return static_cast<std::uint8_t>(2 * left + 1); };
-  program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, port, 0, otherwise_take(words.size())));
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, words[i].offset));
-    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, words[i].value, 0, otherwise_take(words.size() - i - 1)));
-  }
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, 0));
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, kWhole));
-  return program;
 }
 
 // The address alone: 4 bytes, or 16.
@@ -178,7 +135,7 @@ class UdpChannel final : public SocketChannel {
   std::string interface_;
   std::vector<SourceAddress> allowed_;  // empty: all
   unsigned index_ = 0;
-  Descriptor sender_;
+  UdpSender sender_;
   sockaddr_storage own_address_{};
   std::array<UdpDatagram, kSendBatch> datagrams_;  // under way
 };
@@ -245,7 +202,7 @@ Result<void> UdpChannel::open_socket() {
   }
   auto receiver = open_receiver();
   if (!receiver) return std::unexpected(receiver.error());
-  sender_ = std::move(*sender);
+  sender_ = UdpSender(std::move(*sender));
   socket_ = std::move(*receiver);
   status_.bus = CanBusState::active;
   return {};
@@ -321,18 +278,16 @@ void UdpChannel::take(std::span<const std::uint8_t> datagram, bool cut, Timestam
 
 void UdpChannel::send_all(std::span<const CanFrame> frames, std::span<bool> sent) {
   std::array<iovec, kSendBatch> buffers;
-  std::array<mmsghdr, kSendBatch> messages;
+  std::array<int, kSendBatch> errors;
   const double now_s = 1e-9 * static_cast<double>(ClockPair::read().real_ns);
   for (std::size_t done = 0; done < frames.size();) {
     const std::size_t count = std::min(frames.size() - done, kSendBatch);
     for (std::size_t i = 0; i < count; ++i) {
       datagrams_[i] = encode_udp_datagram(frames[done + i], now_s);
       buffers[i] = {datagrams_[i].bytes.data(), datagrams_[i].size};
-      messages[i] = {};
-      messages[i].msg_hdr.msg_iov = &buffers[i];
-      messages[i].msg_hdr.msg_iovlen = 1;
     }
-    send_messages(sender_.get(), std::span(messages).first(count), sent.subspan(done, count));
+    sender_.send(std::span(buffers).first(count), std::span(errors).first(count));
+    count_sent(std::span(errors).first(count), sent.subspan(done, count));
     done += count;
   }
 }
