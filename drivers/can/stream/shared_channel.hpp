@@ -73,7 +73,7 @@ class SharedChannel {
   std::mutex control_mutex_;  // of join() and leave(); never taken by the thread
   std::size_t joined_ = 0;
 
-  // The thread takes `request_mutex_` only where `requested_` says that somebody waits for it.
+  // The thread takes `request_mutex_` only where `requested_` says that join() or leave() waits for it.
   std::mutex request_mutex_;
   std::condition_variable served_;
   std::optional<Request> request_;
