@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,6 +33,7 @@ constexpr std::uint32_t kSdoRequest = 0x600;
 constexpr std::uint32_t kPing = 0x7F0;  // used by nobody else
 constexpr std::uint32_t kPong = 0x7F1;
 constexpr std::int64_t kPatience_ns = 5'000'000'000;
+constexpr std::int64_t kLastAnswers_ns = 100'000'000;
 
 using Bytes = std::array<std::uint8_t, 8>;
 
@@ -104,6 +106,9 @@ class Master {
       cycle(n);
       periods_ = n + 1;
     }
+    echo_due_ = false;
+    hear_until(clock_.now().ns + kLastAnswers_ns, periods_);
+    count_missing(periods_);
   }
 
   void report() const {
@@ -113,10 +118,11 @@ class Master {
     print("SDO answer", sdo_us_);
     std::int64_t slowest = 0;
     for (const Axis& axis : axes_) slowest = std::max(slowest, axis.moved_at < 0 ? periods_ : axis.moved_at - kRest);
+    const auto unanswered = static_cast<long long>(periods_ * nodes_) - static_cast<long long>(tpdo_us_.size());
     std::printf(
-        "a target is motion after at most %lld periods; %lld of %lld SYNCs without all TPDOs in their period, "
-        "%lld periods of this program late\n",
-        static_cast<long long>(slowest), static_cast<long long>(missed_), static_cast<long long>(periods_),
+        "a target is motion after at most %lld periods; of %lld SYNCs %lld answers never came, %lld were not all "
+        "answered in their period; this program was late in %lld periods\n",
+        static_cast<long long>(slowest), static_cast<long long>(periods_), unanswered, static_cast<long long>(missed_),
         static_cast<long long>(late_));
   }
 
@@ -126,6 +132,7 @@ class Master {
 
   struct Axis {
     std::int32_t start = 0;
+    std::int32_t rest = 0;  // where it stood before the first target away from the start
     bool answered = false;  // the SYNC of this period
     std::int64_t moved_at = -1;
   };
@@ -166,12 +173,14 @@ class Master {
 
   void cycle(std::int64_t n) {
     const double way = n < kRest ? 0.0 : 1e-9 * kSpeed * static_cast<double>((n - kRest + 1) * period_ns_);
+    std::vector<CanFrame> targets;
     for (std::uint32_t node = 1; node <= nodes_; ++node) {
       const auto target = static_cast<std::uint32_t>(axes_[node - 1].start + static_cast<std::int32_t>(way));
       Bytes data{0x0F, 0};
       for (std::size_t i = 0; i < 4; ++i) data[2 + i] = static_cast<std::uint8_t>(target >> (8 * i));
-      channel_->send(frame_of(kRpdo2 + node, data, 6));
+      targets.push_back(frame_of(kRpdo2 + node, data, 6));
     }
+    channel_->send_all(targets, std::span(sent_).first(nodes_));
     synced_ns_ = clock_.now().ns;
     channel_->send(frame_of(kSync, {}, 0));
     // Beside them, not in each period: an SDO request, and an echo when the TPDOs are through.
@@ -219,7 +228,8 @@ class Master {
     newest_us_ = tpdo_us_.back();
     const auto position = static_cast<std::int32_t>(word(frame, 2));
     // The answer to the SYNC of the period n - 1. The first target away from the start comes with that of kRest.
-    if (axis.moved_at < 0 && n - 1 >= kRest && std::abs(position - axis.start) > 2) axis.moved_at = n - 1;
+    if (n - 1 <= kRest) axis.rest = position;
+    if (axis.moved_at < 0 && position != axis.rest) axis.moved_at = n - 1;
   }
 
   void count_missing(std::int64_t n) {
@@ -237,6 +247,7 @@ class Master {
   std::int64_t period_ns_;
   std::vector<Axis> axes_;
   std::vector<double> echo_us_, tpdo_us_, last_us_, sdo_us_;
+  std::array<bool, 127> sent_{};
   std::int64_t synced_ns_ = 0, asked_ns_ = 0;
   double newest_us_ = 0;
   std::uint32_t sdo_node_ = 1;
