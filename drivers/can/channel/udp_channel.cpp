@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <linux/filter.h>
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -18,7 +17,6 @@
 #include "drivers/can/channel/error_frame.hpp"
 #include "drivers/can/channel/socket_channel.hpp"
 #include "drivers/can/channel/udp_datagram.hpp"
-#include "drivers/can/channel/udp_filter.hpp"
 #include "drivers/can/channel/udp_sender.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -148,10 +146,6 @@ Result<Descriptor> UdpChannel::open_receiver() const {
   setsockopt(fd.get(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   setsockopt(fd.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
   set_receive_buffer(fd.get(), kUdpReceiveBuffer);
-  std::vector<sock_filter> others = filter_without(own_address_);
-  const sock_fprog program{static_cast<std::uint16_t>(others.size()), others.data()};
-  // Where the kernel refuses it, fill() leaves them out.
-  setsockopt(fd.get(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program);
   // Bound to the group, not to any address: other groups on the same port stay out.
   const Address address = Address::of(endpoint_, index_);
   if (bind(fd.get(), address.get(), address.size) != 0) return socket_failure("cannot bind to the group");

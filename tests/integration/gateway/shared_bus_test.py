@@ -89,13 +89,25 @@ class SharedBus(unittest.TestCase):
         recorder = g.Process([g.BIN / "cellmirror", "record", "-o", file, "--instance", self.scratch.instance],
                              self.scratch.environment)
         self.addCleanup(recorder.close)
-        self.assertTrue(g.eventually(lambda: any(one["messages"] > 0 for one in self.scratch.status()["recordings"])))
+        def recorded():
+            topics = [topic for one in self.scratch.status()["recordings"] for topic in one["topics"]]
+            return {topic["topic"]: topic["messages"] for topic in topics}.get("/inputs/can/R1", 0)
+
+        def is_recorded():
+            self.master.send(0x7FF)  # what nobody takes
+            return recorded() > 0
+
+        self.assertTrue(g.eventually(is_recorded))
         self.master.nmt(1)
         syncs = 20
         for _ in range(syncs):
             self.master.send(drive_master.SYNC)
             self.assertIsNotNone(self.master.hear(lambda identifier, _: identifier == 0x283))
+        before = recorded()
         self.assertEqual(self.master.read(IO_NODE, 0x1018, 4), IO_NODE)
+        # The answer is the last frame: what came before it is in the file then.
+        self.assertTrue(g.eventually(lambda: recorded() > before))
+        self.assertTrue(g.eventually(lambda: recorded() == recorded()))
         recorder.stop()
         topics = {one["topic"] for one in json.loads(self.run_recording("info", str(file), "--json"))["topics"]}
         self.assertEqual({topic for topic in topics if topic.startswith("/inputs/can/")}, {"/inputs/can/R1"})
