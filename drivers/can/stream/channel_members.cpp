@@ -107,6 +107,7 @@ void ChannelMembers::send_from(const ChannelMember& member, std::size_t node, co
 }
 
 void ChannelMembers::send_together() {
+  if (outgoing_.empty()) return;
   std::array<CanFrame, kTogether> frames;
   std::array<bool, kTogether> taken{};
   std::ranges::transform(outgoing_, frames.begin(), &Sent::frame);

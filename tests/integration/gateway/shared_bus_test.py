@@ -103,11 +103,12 @@ class SharedBus(unittest.TestCase):
         for _ in range(syncs):
             self.master.send(drive_master.SYNC)
             self.assertIsNotNone(self.master.hear(lambda identifier, _: identifier == 0x283))
-        before = recorded()
         self.assertEqual(self.master.read(IO_NODE, 0x1018, 4), IO_NODE)
-        # The answer is the last frame: what came before it is in the file then.
-        self.assertTrue(g.eventually(lambda: recorded() > before))
-        self.assertTrue(g.eventually(lambda: recorded() == recorded()))
+        # Frames are recorded in their order: with 300 more than now, all of the less than 300 before are in the file.
+        before = recorded()
+        for _ in range(400):
+            self.master.send(0x7FF)
+        self.assertTrue(g.eventually(lambda: recorded() > before + 300))
         recorder.stop()
         topics = {one["topic"] for one in json.loads(self.run_recording("info", str(file), "--json"))["topics"]}
         self.assertEqual({topic for topic in topics if topic.startswith("/inputs/can/")}, {"/inputs/can/R1"})

@@ -45,7 +45,7 @@ struct KeepingChannel final : CanChannel {
 
 // One node that takes some identifiers and does on each frame what it is told.
 struct Node final : ChannelMember, CanProtocol {
-  Node(ChannelMembers& members, std::vector<std::uint32_t> takes) : members_(&members), identifiers(std::move(takes)) {}
+  Node(ChannelMembers& members, std::vector<std::uint32_t> takes) : identifiers(std::move(takes)), members_(&members) {}
 
   void send(const CanFrame& frame) { members_->send_from(*this, 0, frame); }
 
@@ -72,7 +72,6 @@ struct Node final : ChannelMember, CanProtocol {
   }
   [[nodiscard]] std::uint64_t routes_revision() const override { return revision; }
 
-  ChannelMembers* members_;
   std::vector<std::uint32_t> identifiers;
   std::uint64_t revision = 1;
   Timestamp due;
@@ -82,6 +81,9 @@ struct Node final : ChannelMember, CanProtocol {
   std::vector<std::string> errors;
   int refused = 0;
   int published = 0;
+
+ private:
+  ChannelMembers* members_;
 };
 
 struct Members : testing::Test {
