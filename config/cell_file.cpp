@@ -13,6 +13,7 @@
 #include "config/hyper_file.hpp"
 #include "config/layout_file.hpp"
 #include "config/msh/msh_file.hpp"
+#include "config/node_numbers.hpp"
 #include "config/parse.hpp"
 #include "config/tissue_object.hpp"
 #include "rt_core/base/text.hpp"
@@ -103,6 +104,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
   if (readable) {
     source->load(reader.root, of_components);
     reader.read_streams(source->robots(), true);
+    check_node_numbers(reader.streams, reader.io.nodes, reader.findings);
     reader.read_haptics(source->robots(), true);
     reader.read_controllers(source->robots(), true);
     check_streams(reader, path.string(), check_stream, of_streams, of_bus_files);

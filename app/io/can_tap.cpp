@@ -27,6 +27,14 @@ class CanTap::Channel final : public CanChannel {
     if (sent && on()) line_->frames.push({frame, clock_.now(), true});
     return sent;
   }
+  void send_all(std::span<const CanFrame> frames, std::span<bool> sent) override {
+    inner_->send_all(frames, sent);
+    if (!on()) return;
+    const Timestamp now = clock_.now();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (sent[i]) line_->frames.push({frames[i], now, true});
+    }
+  }
   [[nodiscard]] const CanChannelStatus& status() const override { return inner_->status(); }
 
  private:

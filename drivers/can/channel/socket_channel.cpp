@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <thread>
@@ -56,6 +57,16 @@ Ancillary Ancillary::of(msghdr& message) {
     }
   }
   return result;
+}
+
+void send_messages(int fd, std::span<mmsghdr> messages, std::span<int> errors) {
+  std::ranges::fill(errors, 0);
+  for (std::size_t done = 0; done < messages.size();) {
+    const std::span<mmsghdr> rest = messages.subspan(done);
+    const int count = fd < 0 ? -1 : sendmmsg(fd, rest.data(), static_cast<unsigned>(rest.size()), MSG_DONTWAIT);
+    if (count <= 0) errors[done] = fd < 0 ? ENOTCONN : errno;
+    done += count <= 0 ? 1 : static_cast<std::size_t>(count);
+  }
 }
 
 CanReceive SocketChannel::receive(ReceivedCanFrame& frame, Nanoseconds timeout) {
@@ -118,6 +129,17 @@ void SocketChannel::reopen_when_due(Timestamp now) {
   }
   back_off_ = Nanoseconds{0};
   ++status_.reopened;
+}
+
+void SocketChannel::count_sent(std::span<const int> errors, std::span<bool> sent) {
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    sent[i] = errors[i] == 0;
+    if (sent[i]) {
+      ++status_.sent;
+    } else {
+      refuse(errors[i]);
+    }
+  }
 }
 
 void SocketChannel::note_dropped(const Ancillary& ancillary) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "rt_core/base/descriptor.hpp"
@@ -37,11 +38,21 @@ struct Ancillary {
 };
 
 inline constexpr std::size_t kReceiveBatch = 32;
+inline constexpr std::size_t kSendBatch = 64;
 inline constexpr std::size_t kControlCapacity = 128;
+
+// Gives messages to the kernel with as few calls as that takes. `errors`, as long as `messages`: 0, or why the kernel
+// did not take it (errno); ENOTCONN where `fd` is not valid.
+void send_messages(int fd, std::span<mmsghdr> messages, std::span<int> errors);
 
 class SocketChannel : public CanChannel {
  public:
   CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) final;
+  bool send(const CanFrame& frame) final {
+    bool sent = false;
+    send_all(std::span(&frame, 1), std::span(&sent, 1));
+    return sent;
+  }
   [[nodiscard]] const CanChannelStatus& status() const final { return status_; }
 
  protected:
@@ -51,6 +62,10 @@ class SocketChannel : public CanChannel {
   [[nodiscard]] virtual Result<void> open_socket() = 0;
   // Takes what has arrived into the batch, without waiting. False: the socket is of no use any more.
   [[nodiscard]] virtual bool fill() = 0;
+  // Why the kernel did not take a frame (errno).
+  virtual void refuse(int error) = 0;
+  // Counts what was sent and what was not, as send_messages() tells it, and tells it by `sent`.
+  void count_sent(std::span<const int> errors, std::span<bool> sent);
   // Called every half second: whether the interface is still the one that was opened. False: re-open.
   [[nodiscard]] virtual bool is_current() = 0;
 

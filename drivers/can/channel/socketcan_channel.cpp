@@ -49,6 +49,18 @@ std::uint8_t sendable_length(const CanFrame& frame) {
   return kCanMaxData;
 }
 
+canfd_frame to_kernel(const CanFrame& frame) {
+  canfd_frame raw{};
+  raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) | (frame.remote ? CAN_RTR_FLAG : 0U);
+  raw.len = sendable_length(frame);
+  if (frame.fd) {
+    raw.flags = static_cast<std::uint8_t>((frame.bit_rate_switch ? CANFD_BRS : 0) |
+                                          (frame.error_state_indicator ? CANFD_ESI : 0));
+  }
+  std::copy_n(frame.data.begin(), frame.length, raw.data);
+  return raw;
+}
+
 // What reading and sending say when the interface of a bound socket was removed.
 bool is_gone(int error) { return error == ENODEV || error == ENXIO; }
 
@@ -57,10 +69,11 @@ class SocketCanChannel final : public SocketChannel {
   explicit SocketCanChannel(std::string interface) : interface_(std::move(interface)) {}
 
   [[nodiscard]] Result<void> open_socket() override;
-  bool send(const CanFrame& frame) override;
+  void send_all(std::span<const CanFrame> frames, std::span<bool> sent) override;
 
  private:
   [[nodiscard]] bool fill() override;
+  void refuse(int error) override;
   [[nodiscard]] bool is_current() override;
   void take(const canfd_frame& raw, std::size_t bytes, Timestamp receive_time);
   [[nodiscard]] bool is_up() const;
@@ -181,31 +194,36 @@ void SocketCanChannel::take(const canfd_frame& raw, std::size_t bytes, Timestamp
   put(frame, receive_time);
 }
 
-bool SocketCanChannel::send(const CanFrame& frame) {
-  canfd_frame raw{};
-  raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0U) | (frame.remote ? CAN_RTR_FLAG : 0U);
-  raw.len = sendable_length(frame);
-  if (frame.fd) {
-    raw.flags = static_cast<std::uint8_t>((frame.bit_rate_switch ? CANFD_BRS : 0) |
-                                          (frame.error_state_indicator ? CANFD_ESI : 0));
+void SocketCanChannel::send_all(std::span<const CanFrame> frames, std::span<bool> sent) {
+  std::array<canfd_frame, kSendBatch> raw;
+  std::array<iovec, kSendBatch> buffers;
+  std::array<mmsghdr, kSendBatch> messages;
+  std::array<int, kSendBatch> errors;
+  for (std::size_t done = 0; done < frames.size();) {
+    if (frames[done].error) {  // a controller's to send
+      refuse(EINVAL);
+      sent[done++] = false;
+      continue;
+    }
+    std::size_t count = 0;
+    for (; count < kSendBatch && done + count < frames.size() && !frames[done + count].error; ++count) {
+      const CanFrame& frame = frames[done + count];
+      raw[count] = to_kernel(frame);
+      buffers[count] = {&raw[count], frame.fd ? CANFD_MTU : CAN_MTU};
+      messages[count] = {};
+      messages[count].msg_hdr.msg_iov = &buffers[count];
+      messages[count].msg_hdr.msg_iovlen = 1;
+    }
+    send_messages(socket_.get(), std::span(messages).first(count), std::span(errors).first(count));
+    count_sent(std::span(errors).first(count), sent.subspan(done, count));
+    done += count;
   }
-  std::copy_n(frame.data.begin(), frame.length, raw.data);
-  const std::size_t bytes = frame.fd ? CANFD_MTU : CAN_MTU;
-  ssize_t written = -1;
-  int error = frame.error ? EINVAL : ENOTCONN;  // error frames are a controller's to send
-  if (socket_.valid() && !frame.error) {
-    written = ::send(socket_.get(), &raw, bytes, MSG_DONTWAIT);
-    error = errno;
-  }
-  const bool sent = written == static_cast<ssize_t>(bytes);
-  if (sent) {
-    ++status_.sent;
-    return true;
-  }
+}
+
+void SocketCanChannel::refuse(int error) {
   if (error == ENETDOWN) go_down(switched_off());
   if (is_gone(error)) go_down(removed());
   note_refused(fmt::format("send: {}", std::strerror(error)));
-  return false;
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "drivers/can/channel/error_frame.hpp"
 #include "drivers/can/channel/socket_channel.hpp"
 #include "drivers/can/channel/udp_datagram.hpp"
+#include "drivers/can/channel/udp_sender.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::can {
@@ -116,10 +117,11 @@ class UdpChannel final : public SocketChannel {
       : endpoint_(std::move(endpoint)), interface_(std::move(interface)), allowed_(std::move(allowed)) {}
 
   [[nodiscard]] Result<void> open_socket() override;
-  bool send(const CanFrame& frame) override;
+  void send_all(std::span<const CanFrame> frames, std::span<bool> sent) override;
 
  private:
   [[nodiscard]] bool fill() override;
+  void refuse(int error) override { note_refused(fmt::format("send: {}", std::strerror(error))); }
   [[nodiscard]] bool is_current() override;
   [[nodiscard]] Result<Descriptor> open_receiver() const;
   [[nodiscard]] Result<Descriptor> open_sender() const;
@@ -131,8 +133,9 @@ class UdpChannel final : public SocketChannel {
   std::string interface_;
   std::vector<SourceAddress> allowed_;  // empty: all
   unsigned index_ = 0;
-  Descriptor sender_;
+  UdpSender sender_;
   sockaddr_storage own_address_{};
+  std::array<UdpDatagram, kSendBatch> datagrams_;  // under way
 };
 
 Result<Descriptor> UdpChannel::open_receiver() const {
@@ -193,7 +196,7 @@ Result<void> UdpChannel::open_socket() {
   }
   auto receiver = open_receiver();
   if (!receiver) return std::unexpected(receiver.error());
-  sender_ = std::move(*sender);
+  sender_ = UdpSender(std::move(*sender));
   socket_ = std::move(*receiver);
   status_.bus = CanBusState::active;
   return {};
@@ -267,22 +270,20 @@ void UdpChannel::take(std::span<const std::uint8_t> datagram, bool cut, Timestam
   put(*frame, receive_time);
 }
 
-bool UdpChannel::send(const CanFrame& frame) {
+void UdpChannel::send_all(std::span<const CanFrame> frames, std::span<bool> sent) {
+  std::array<iovec, kSendBatch> buffers;
+  std::array<int, kSendBatch> errors;
   const double now_s = 1e-9 * static_cast<double>(ClockPair::read().real_ns);
-  const UdpDatagram datagram = encode_udp_datagram(frame, now_s);
-  ssize_t written = -1;
-  int error = ENOTCONN;
-  if (sender_.valid()) {
-    written = ::send(sender_.get(), datagram.bytes.data(), datagram.size, MSG_DONTWAIT);
-    error = errno;
+  for (std::size_t done = 0; done < frames.size();) {
+    const std::size_t count = std::min(frames.size() - done, kSendBatch);
+    for (std::size_t i = 0; i < count; ++i) {
+      datagrams_[i] = encode_udp_datagram(frames[done + i], now_s);
+      buffers[i] = {datagrams_[i].bytes.data(), datagrams_[i].size};
+    }
+    sender_.send(std::span(buffers).first(count), std::span(errors).first(count));
+    count_sent(std::span(errors).first(count), sent.subspan(done, count));
+    done += count;
   }
-  const bool sent = written == static_cast<ssize_t>(datagram.size);
-  if (sent) {
-    ++status_.sent;
-  } else {
-    note_refused(fmt::format("send: {}", std::strerror(error)));
-  }
-  return sent;
 }
 
 }  // namespace

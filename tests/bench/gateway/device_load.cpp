@@ -1,7 +1,8 @@
 // A CANopen master that loads the drives which the gateway answers for ([[device]]): all of them in cyclic synchronous
 // position, a target to each and SYNC in every period. Prints how long after SYNC their TPDOs came, SDO answers took,
-// and beside them the raw echo of the channel in the same run: a frame to a thread that sends another one back.
-//   device_load ENDPOINT NODES RATE_HZ SECONDS
+// and beside them the raw echo of such a channel in the same run: a frame to a thread that sends another one back. It
+// has a channel of its own, since each frame of the drives would wake that thread.
+//   device_load ENDPOINT ECHO_ENDPOINT NODES RATE_HZ SECONDS
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,11 +26,14 @@ constexpr std::uint32_t kNmt = 0x000;
 constexpr std::uint32_t kSync = 0x080;
 constexpr std::uint32_t kTpdo2 = 0x280;
 constexpr std::uint32_t kRpdo2 = 0x300;
+constexpr std::uint32_t kTpdo3 = 0x380;
+constexpr std::uint32_t kNoPdo = 0x8000'0000;
 constexpr std::uint32_t kSdoAnswer = 0x580;
 constexpr std::uint32_t kSdoRequest = 0x600;
 constexpr std::uint32_t kPing = 0x7F0;  // used by nobody else
 constexpr std::uint32_t kPong = 0x7F1;
 constexpr std::int64_t kPatience_ns = 5'000'000'000;
+constexpr std::int64_t kLastAnswers_ns = 100'000'000;
 
 using Bytes = std::array<std::uint8_t, 8>;
 
@@ -63,14 +68,20 @@ void print(const char* name, std::vector<double> us) {
 
 class Master {
  public:
-  Master(std::unique_ptr<CanChannel> channel, std::uint32_t nodes, double rate)
-      : channel_(std::move(channel)), nodes_(nodes), period_ns_(static_cast<std::int64_t>(1e9 / rate)), axes_(nodes) {}
+  Master(std::unique_ptr<CanChannel> channel, std::unique_ptr<CanChannel> echo, std::uint32_t nodes, double rate)
+      : channel_(std::move(channel)),
+        echo_(std::move(echo)),
+        nodes_(nodes),
+        period_ns_(static_cast<std::int64_t>(1e9 / rate)),
+        axes_(nodes) {}
 
+  // Of each drive only TPDO2 is left, as a master of this mode needs it.
   bool prepare() {
     channel_->send(frame_of(kNmt, {1, 0}, 2));
     const auto period_ms = static_cast<std::uint32_t>(std::lround(1e-6 * static_cast<double>(period_ns_)));
     for (std::uint32_t node = 1; node <= nodes_; ++node) {
-      const bool done = write(node, 0x60C2, 1, period_ms, 1) && write(node, 0x60C2, 2, 0xFD, 1) &&  // times 10^-3 s
+      const bool done = write(node, 0x1802, 1, kNoPdo | (kTpdo3 + node), 4) && write(node, 0x60C2, 1, period_ms, 1) &&
+                        write(node, 0x60C2, 2, 0xFD, 1) &&  // times 10^-3 s
                         write(node, 0x6060, 0, 8, 1) && write(node, 0x6040, 0, 0x06, 2) &&
                         write(node, 0x6040, 0, 0x07, 2) && write(node, 0x6040, 0, 0x0F, 2) && enabled(node);
       if (!done) {
@@ -95,6 +106,9 @@ class Master {
       cycle(n);
       periods_ = n + 1;
     }
+    echo_due_ = false;
+    hear_until(clock_.now().ns + kLastAnswers_ns, periods_);
+    count_missing(periods_);
   }
 
   void report() const {
@@ -104,10 +118,11 @@ class Master {
     print("SDO answer", sdo_us_);
     std::int64_t slowest = 0;
     for (const Axis& axis : axes_) slowest = std::max(slowest, axis.moved_at < 0 ? periods_ : axis.moved_at - kRest);
+    const auto unanswered = static_cast<long long>(periods_ * nodes_) - static_cast<long long>(tpdo_us_.size());
     std::printf(
-        "a target is motion after at most %lld periods; %lld of %lld SYNCs without all TPDOs in their period, "
-        "%lld periods of this program late\n",
-        static_cast<long long>(slowest), static_cast<long long>(missed_), static_cast<long long>(periods_),
+        "a target is motion after at most %lld periods; of %lld SYNCs %lld answers never came, %lld were not all "
+        "answered in their period; this program was late in %lld periods\n",
+        static_cast<long long>(slowest), static_cast<long long>(periods_), unanswered, static_cast<long long>(missed_),
         static_cast<long long>(late_));
   }
 
@@ -117,6 +132,7 @@ class Master {
 
   struct Axis {
     std::int32_t start = 0;
+    std::int32_t rest = 0;  // where it stood before the first target away from the start
     bool answered = false;  // the SYNC of this period
     std::int64_t moved_at = -1;
   };
@@ -157,15 +173,17 @@ class Master {
 
   void cycle(std::int64_t n) {
     const double way = n < kRest ? 0.0 : 1e-9 * kSpeed * static_cast<double>((n - kRest + 1) * period_ns_);
+    std::vector<CanFrame> targets;
     for (std::uint32_t node = 1; node <= nodes_; ++node) {
       const auto target = static_cast<std::uint32_t>(axes_[node - 1].start + static_cast<std::int32_t>(way));
       Bytes data{0x0F, 0};
       for (std::size_t i = 0; i < 4; ++i) data[2 + i] = static_cast<std::uint8_t>(target >> (8 * i));
-      channel_->send(frame_of(kRpdo2 + node, data, 6));
+      targets.push_back(frame_of(kRpdo2 + node, data, 6));
     }
+    channel_->send_all(targets, std::span(sent_).first(nodes_));
     synced_ns_ = clock_.now().ns;
     channel_->send(frame_of(kSync, {}, 0));
-    // Beside them, not in each period: an SDO request, and a frame for the echo when the TPDOs are through.
+    // Beside them, not in each period: an SDO request, and an echo when the TPDOs are through.
     echo_due_ = n % 4 == 0;
     if (n % 10 != 5) return;
     sdo_node_ = 1 + static_cast<std::uint32_t>(n / 10) % nodes_;
@@ -179,19 +197,29 @@ class Master {
     for (std::int64_t now = clock_.now().ns; now < due; now = clock_.now().ns) {
       if (echo_due_ && now >= ping_at) {
         echo_due_ = false;
-        pinged_ns_ = clock_.now().ns;
-        channel_->send(frame_of(kPing, {}, 0));
+        ping();
+        continue;
       }
-      const std::int64_t most =
-          echo_due_ ? std::max<std::int64_t>(synced_ns_ + period_ns_ * 3 / 4 - now, 0) : due - now;
-      if (channel_->receive(got, Nanoseconds(std::min(most, due - now))) == CanReceive::frame) take(got.frame, n);
+      const std::int64_t until = echo_due_ ? std::min(ping_at, due) : due;
+      const Nanoseconds longest(std::max<std::int64_t>(until - now, 0));
+      if (channel_->receive(got, longest) == CanReceive::frame) take(got.frame, n);
+    }
+  }
+
+  void ping() {
+    ReceivedCanFrame got;
+    const std::int64_t sent_ns = clock_.now().ns;
+    echo_->send(frame_of(kPing, {}, 0));
+    while (echo_->receive(got, std::chrono::seconds(1)) == CanReceive::frame) {
+      if (got.frame.id != kPong) continue;
+      echo_us_.push_back(1e-3 * static_cast<double>(clock_.now().ns - sent_ns));
+      return;
     }
   }
 
   void take(const CanFrame& frame, std::int64_t n) {
     const std::int64_t now = clock_.now().ns;
     const auto us = [now](std::int64_t since) { return 1e-3 * static_cast<double>(now - since); };
-    if (frame.id == kPong) echo_us_.push_back(us(pinged_ns_));
     if (frame.id == kSdoAnswer + sdo_node_) sdo_us_.push_back(us(asked_ns_));
     if (frame.id <= kTpdo2 || frame.id > kTpdo2 + nodes_ || n == 0) return;
     Axis& axis = axes_[frame.id - kTpdo2 - 1];
@@ -200,7 +228,8 @@ class Master {
     newest_us_ = tpdo_us_.back();
     const auto position = static_cast<std::int32_t>(word(frame, 2));
     // The answer to the SYNC of the period n - 1. The first target away from the start comes with that of kRest.
-    if (axis.moved_at < 0 && n - 1 >= kRest && std::abs(position - axis.start) > 2) axis.moved_at = n - 1;
+    if (n - 1 <= kRest) axis.rest = position;
+    if (axis.moved_at < 0 && position != axis.rest) axis.moved_at = n - 1;
   }
 
   void count_missing(std::int64_t n) {
@@ -213,11 +242,13 @@ class Master {
 
   SystemClock clock_;
   std::unique_ptr<CanChannel> channel_;
+  std::unique_ptr<CanChannel> echo_;
   std::uint32_t nodes_;
   std::int64_t period_ns_;
   std::vector<Axis> axes_;
   std::vector<double> echo_us_, tpdo_us_, last_us_, sdo_us_;
-  std::int64_t synced_ns_ = 0, asked_ns_ = 0, pinged_ns_ = 0;
+  std::array<bool, 127> sent_{};
+  std::int64_t synced_ns_ = 0, asked_ns_ = 0;
   double newest_us_ = 0;
   std::uint32_t sdo_node_ = 1;
   bool echo_due_ = false;
@@ -227,19 +258,23 @@ class Master {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int nodes = argc == 5 ? std::atoi(argv[2]) : 0;
-  const double rate = argc == 5 ? std::atof(argv[3]) : 0;
-  const double seconds = argc == 5 ? std::atof(argv[4]) : 0;
+  const int nodes = argc == 6 ? std::atoi(argv[3]) : 0;
+  const double rate = argc == 6 ? std::atof(argv[4]) : 0;
+  const double seconds = argc == 6 ? std::atof(argv[5]) : 0;
   if (nodes < 1 || nodes > 127 || rate < 1 || rate > 1000 || seconds <= 0) {
-    std::fprintf(stderr, "usage: device_load ENDPOINT NODES RATE_HZ SECONDS\n");
+    std::fprintf(stderr, "usage: device_load ENDPOINT ECHO_ENDPOINT NODES RATE_HZ SECONDS\n");
     return 2;
   }
   CanChannelConfig config;
   config.endpoint = argv[1];
+  CanChannelConfig beside;
+  beside.endpoint = argv[2];
   auto channel = can::open_can_channel(config);
-  auto echo = can::open_can_channel(config);
-  if (!channel || !echo) {
-    std::fprintf(stderr, "%s\n", (channel ? echo : channel).error().text().c_str());
+  auto pings = can::open_can_channel(beside);
+  auto echo = can::open_can_channel(beside);
+  for (const auto* opened : {&channel, &pings, &echo}) {
+    if (*opened) continue;
+    std::fprintf(stderr, "%s\n", opened->error().text().c_str());
     return 1;
   }
   const std::jthread echoes([&echo](const std::stop_token& stop) {
@@ -249,7 +284,7 @@ int main(int argc, char** argv) {
       (*echo)->send(frame_of(kPong, {}, 0));
     }
   });
-  Master master(std::move(*channel), static_cast<std::uint32_t>(nodes), rate);
+  Master master(std::move(*channel), std::move(*pings), static_cast<std::uint32_t>(nodes), rate);
   if (!master.prepare()) return 1;
   master.run(seconds);
   master.report();

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Drives that the running gateway answers for ([[device]]), in cyclic synchronous position: 32 at 250 Hz unless said otherwise.
 
-  device_load_bench.py [--channel udp:GROUP:PORT | socketcan:INTERFACE] [--nodes N] [--rate HZ] [SECONDS=60]
+  device_load_bench.py [--channel udp:GROUP:PORT | socketcan:INTERFACE] [--echo CHANNEL]
+                       [--nodes N] [--rate HZ] [SECONDS=60]
 
-The master is build/bin/device_load. Prints how long after SYNC the TPDOs came, how long SDO answers took, the raw echo of the
+The master is build/bin/device_load. Prints how long after SYNC the TPDOs came, how long SDO answers took, the raw echo of such a
 channel in the same run, SYNCs without all answers, and the gateway's processor time. Goals: no SYNC missed; SYNC to TPDO p99 at most
 150 us beyond the raw echo; SDO p99 at most 1 ms; a target is motion after one period. For vcan: run-in-vcan.sh.
 """
@@ -22,6 +23,7 @@ JOINTS = 4  # of a robot
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("seconds", nargs="?", type=float, default=60.0)
 parser.add_argument("--channel", default="udp:239.74.163.23:43951")
+parser.add_argument("--echo", help="the channel of the raw echo; else the port behind that of CHANNEL, or vcan1")
 parser.add_argument("--nodes", type=int, default=32)
 parser.add_argument("--rate", type=int, default=250)
 OPTIONS = parser.parse_args()
@@ -53,6 +55,13 @@ def write_cell(home):
     return len(numbers)
 
 
+def echo_channel():
+    if OPTIONS.echo or not OPTIONS.channel.startswith("udp:"):
+        return OPTIONS.echo or "socketcan:vcan1"
+    group, port = OPTIONS.channel.rsplit(":", 1)
+    return f"{group}:{int(port) + 1}"
+
+
 def processor_s(pid):
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / 100
@@ -65,7 +74,7 @@ def main():
     try:
         assert g.eventually(lambda: scratch.status()["script"]["done"] >= robots), gateway.output()
         cpu, start = processor_s(gateway.child.pid), time.monotonic()
-        done = subprocess.run([g.BIN / "device_load", OPTIONS.channel, str(OPTIONS.nodes), str(OPTIONS.rate), str(OPTIONS.seconds)],
+        done = subprocess.run([g.BIN / "device_load", OPTIONS.channel, echo_channel(), str(OPTIONS.nodes), str(OPTIONS.rate), str(OPTIONS.seconds)],
                               capture_output=True, text=True, timeout=OPTIONS.seconds + 60)
         cores = (processor_s(gateway.child.pid) - cpu) / (time.monotonic() - start)
         print(f"{OPTIONS.nodes} drives of {robots} robots at {OPTIONS.rate} Hz on {OPTIONS.channel} for {OPTIONS.seconds:g} s\n{done.stdout}{done.stderr}", end="")

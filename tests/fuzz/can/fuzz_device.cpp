@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   drive.power_on(now);
   FrameSource source(data, size);
   while (const auto frame = source.next(now)) {
-    drive.receive(*frame, now);
+    receive_checked(drive, output, *frame, now);
     drive.set_bounds(
         {.lower = (frame->data[0] & 1U) != 0 ? 0.0 : -1e9, .upper = (frame->data[0] & 2U) != 0 ? 0.0 : 1e9});
     drive.advance(now);

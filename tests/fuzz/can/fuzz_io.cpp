@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   IoInputs inputs;
   FrameSource source(data, size);
   while (const auto frame = source.next(now)) {
-    node.receive(*frame, now);
+    receive_checked(node, output, *frame, now);
     inputs.digital = inputs.digital * 2 + 1;
     inputs.analogue[0] = static_cast<std::int16_t>(inputs.analogue[0] + 9999);
     node.set_inputs(inputs, now);

@@ -6,6 +6,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -31,10 +33,13 @@ struct ChannelWithoutInterface final : SocketChannel {
   Result<void> open_socket() override { return fail("there is no network interface gone0"); }
   bool fill() override { return true; }
   bool is_current() override { return true; }
-  bool send(const CanFrame& /*frame*/) override {
-    note_refused("send: not connected");
-    return false;
+  void send_all(std::span<const CanFrame> frames, std::span<bool> sent) override {
+    std::vector<mmsghdr> messages(frames.size());
+    std::vector<int> errors(frames.size());
+    send_messages(socket_.get(), messages, errors);
+    count_sent(errors, sent);
   }
+  void refuse(int error) override { note_refused(error == ENOTCONN ? "send: not connected" : "send: ?"); }
 };
 
 TEST(SocketChannel, AFrameThatIsNotSentDoesNotHideWhyTheChannelIsDown) {
@@ -272,6 +277,27 @@ TEST(UdpChannel, MembersHearEachOtherButNotThemselves) {
   EXPECT_EQ((*a)->status().sent, 1U);
   EXPECT_EQ((*a)->status().received, 1U);
   EXPECT_EQ((*a)->status().bus, CanBusState::active);
+}
+
+TEST(UdpChannel, SeveralFramesAreSentInTheirOrderWhateverTheirSizes) {
+  CanChannelConfig config;
+  config.endpoint = own_group();
+  auto sender = open_can_channel(config);
+  auto listener = open_can_channel(config);
+  if (!sender || !listener) GTEST_SKIP() << "skipped: no multicast on the loopback interface";
+  Frames frames;
+  for (int i = 0; i < 150; ++i) frames.push_back(i % 40 < 30 ? frame(0x281, {i, 0, 0, 0}) : frame(0x281, {i, i % 7}));
+  std::array<bool, 150> sent{};
+  (*sender)->send_all(frames, sent);
+  EXPECT_TRUE(std::ranges::all_of(sent, [](bool each) { return each; }));
+  EXPECT_EQ((*sender)->status().sent, frames.size());
+  for (const CanFrame& expected : frames) {
+    ReceivedCanFrame got;
+    ASSERT_EQ((*listener)->receive(got, kLong), CanReceive::frame);
+    EXPECT_EQ(got.frame, expected);
+  }
+  ReceivedCanFrame own;
+  EXPECT_EQ((*sender)->receive(own, 1ms), CanReceive::timeout);
 }
 
 TEST(UdpChannel, BusOffEndsWithTheFirstFrame) {

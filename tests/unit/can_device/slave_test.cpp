@@ -40,6 +40,49 @@ TEST_F(Slave, AMasterMapsATpdo) {
   EXPECT_NE(std::ranges::find(sent, frame(0x485, {0, 0, 0, 0, 8})), sent.end());
 }
 
+// Frames beyond the list need not be given to it: they change nothing.
+TEST_F(Slave, ListsEveryIdentifierThatItTakes) {
+  EXPECT_EQ(write(0x1400, 1, 0x8000'0205, 4), 0U);
+  EXPECT_EQ(write(0x1400, 1, 0x0000'0333, 4), 0U);
+  EXPECT_EQ(write(0x1016, 1, 0x0021'0064, 4), 0U);  // the heartbeat of node 33
+  master.receive(frame(0x000, {0x01, 0x05}));
+  std::vector<std::uint32_t> listed;
+  master.drive.list_identifiers(listed);
+  for (const std::uint32_t id : {0x000U, 0x080U, 0x605U, 0x705U, 0x721U, 0x333U, 0x305U, 0x405U, 0x7E5U})
+    EXPECT_NE(std::ranges::find(listed, id), listed.end()) << std::hex << id;
+  EXPECT_EQ(std::ranges::find(listed, 0x205U), listed.end());
+
+  master.take();
+  const auto before = master.drive.objects().entries();
+  for (std::uint32_t id = 0; id < 0x800; ++id) {
+    if (std::ranges::find(listed, id) != listed.end()) continue;
+    for (int length = 0; length <= 8; ++length) {
+      CanFrame other = frame(id, {0x23, 0x40, 0x60, 0, 0x0F, 0, 0, 0});
+      other.length = static_cast<std::uint8_t>(length);
+      master.receive(other);
+      other.remote = true;
+      master.receive(other);
+    }
+  }
+  EXPECT_TRUE(master.take().empty());
+  for (const auto& [address, entry] : before)
+    EXPECT_EQ(master.drive.objects().find(address)->value, entry.value) << text(address);
+}
+
+TEST_F(Slave, TellsThatItMayTakeOtherIdentifiers) {
+  auto changes = [&, last = master.drive.identifiers_revision()]() mutable {
+    return std::exchange(last, master.drive.identifiers_revision()) != last;
+  };
+  EXPECT_EQ(write(0x6060, 0, 8, 1), 0U);
+  EXPECT_FALSE(changes());
+  EXPECT_EQ(write(0x1400, 1, 0x8000'0205, 4), 0U);
+  EXPECT_TRUE(changes());
+  EXPECT_EQ(write(0x1016, 1, 0x0021'0064, 4), 0U);
+  EXPECT_TRUE(changes());
+  master.receive(frame(0x000, {0x82, 0x05}));
+  EXPECT_TRUE(changes());
+}
+
 TEST_F(Slave, RefusesRubbishInMappings) {
   EXPECT_EQ(write(0x1A00, 0, 0, 1), 0x0800'0022U) << "the PDO exists";
   EXPECT_EQ(write(0x1800, 1, 0x8000'0185, 4), 0U);

@@ -80,5 +80,22 @@ TEST_F(DeviceConfig, RefusesWhatNoDriveCanBe) {
   EXPECT_FALSE(load(node, "log:none.log"));
 }
 
+TEST_F(DeviceConfig, RefusesANodeThatTwoTablesHaveOnOneChannel) {
+  const std::string node = kNode1;
+  const auto io_node = [](const std::string& channel, int id) {
+    return "[[io_node]]\nid = " + std::to_string(id) + "\nchannel = \"" + channel + "\"\n";
+  };
+  EXPECT_FALSE(load(node + io_node("socketcan:can0", 11)));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("the drives of ARM have a node 11 on the channel socketcan:can0 too"));
+  EXPECT_TRUE(load(node + io_node("socketcan:can0", 12))) << diagnostics.text();
+  EXPECT_TRUE(load(node + io_node("socketcan:can1", 11))) << diagnostics.text();
+
+  const std::string second =
+      "[[node]]\nname = \"Arm2\"\nabstract = \"arm.mpc\"\nrobot_id = \"ARM_2\"\n"
+      "[[device]]\nrobot = \"ARM_2\"\nprotocol = \"cia402\"\nchannel = \"socketcan:can0\"\n";
+  EXPECT_FALSE(load(node + second + node));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("the drives of ARM have a node 11"));
+}
+
 }  // namespace
 }  // namespace cellmirror
