@@ -1,0 +1,51 @@
+// The folder with this server's key and certificate, and those of clients. On the loopback interface every client is accepted; its
+// folder is another one, so that a client that was accepted there is not trusted beyond this machine.
+import fs from "node:fs/promises";
+import path from "node:path";
+import opcua from "node-opcua";
+
+import {Refusal} from "./refusal.mjs";
+
+const kKeyBits = 3072;
+export const kMostUnasked = 64; // certificates that clients have sent unasked: the oldest go
+
+export async function certificate_manager(state, loopback) {
+  const folder = path.join(state, loopback ? "pki-loopback" : "pki");
+  await make_private(state);
+  await make_private(folder);
+  const manager = new opcua.OPCUACertificateManager({rootFolder: folder, automaticallyAcceptUnknownCertificate: loopback, keySize: kKeyBits});
+  await manager.initialize();
+  // What others could read would be no secret; a folder of another user is none of ours.
+  await fs.chmod(path.join(folder, "own", "private", "private_key.pem"), 0o600);
+  return manager;
+}
+
+async function make_private(folder) {
+  try {
+    await fs.mkdir(folder, {recursive: true, mode: 0o700});
+    const found = await fs.lstat(folder);
+    if (!found.isDirectory() || found.uid !== process.geteuid()) throw new Refusal("it is not a folder of this user");
+    await fs.chmod(folder, 0o700);
+  } catch (error) {
+    throw new Refusal(`the folder ${folder} cannot be used: ${error.code ?? error.message}`, "choose another --state FOLDER");
+  }
+}
+
+// Keeps the newest `most` files of a folder.
+export async function keep_newest(folder, most) {
+  const found = [];
+  for (const name of await fs.readdir(folder).catch(() => [])) {
+    const file = path.join(folder, name);
+    const {mtimeMs} = await fs.lstat(file).catch(() => ({}));
+    if (mtimeMs !== undefined) found.push({file, mtimeMs});
+  }
+  found.sort((a, b) => b.mtimeMs - a.mtimeMs);
+  for (const {file} of found.slice(most)) await fs.rm(file, {force: true});
+}
+
+// Call it now and then: whoever reaches the port can send certificates.
+export async function forget_unasked(state, loopback) {
+  const folder = path.join(state, loopback ? "pki-loopback" : "pki");
+  await keep_newest(path.join(folder, "rejected"), kMostUnasked);
+  if (loopback) await keep_newest(path.join(folder, "trusted", "certs"), kMostUnasked);
+}
