@@ -6,6 +6,7 @@ export const kMostRobots = 256;
 export const kMostJoints = 64; // of a robot
 export const kLongestName = 256; // characters
 const kMostProblems = 16;
+const kLargest = 1e9; // of any quantity in SI units; beyond that dates and units overflow
 const kUnlimited = 1e5; // rad; no limit of a joint is as large, and continuous joints have 1e6 (config/urdf_joint.cpp)
 
 export function plain_object(value) {
@@ -17,13 +18,18 @@ function list(value) {
 }
 
 function number(value) {
-  return typeof value === "number" && Number.isFinite(value) ? value : null;
+  return typeof value === "number" && Math.abs(value) <= kLargest ? value : null;
 }
 
-// Not negative: an age, a number of things.
+// Not negative: an age, a distance.
 function amount(value) {
   const found = number(value);
   return found === null || found < 0 ? null : found;
+}
+
+// A number of things, told as UInt32.
+function count(value) {
+  return Number.isInteger(value) && value >= 0 ? Math.min(value, 0xffff_ffff) : null;
 }
 
 // Cut to its length and well-formed, control characters replaced: it is shown by clients.
@@ -95,14 +101,14 @@ function collisions(value) {
     active: active === true,
     known,
     age_s: amount(age_s),
-    touching: amount(touching_count),
+    touching: count(touching_count),
     nearest: amount(pair.distance_m) === null ? null : {distance_m: pair.distance_m, names: [plain_text(pair.a), plain_text(pair.b)]},
   };
 }
 
 function alarms(value) {
   const {unacknowledged, highest_priority} = plain_object(value);
-  return {unacknowledged: amount(unacknowledged), highest: plain_text(highest_priority)};
+  return {unacknowledged: count(unacknowledged), highest: plain_text(highest_priority)};
 }
 
 // Refusal where the document is not the status of a gateway.

@@ -94,7 +94,7 @@ export function cell_values(image) {
     touching: tested(collisions.touching),
     nearest_distance: tested(collisions.nearest && collisions.nearest.distance_m * kMillimetres),
     nearest_pair: tested(collisions.nearest?.names ?? null),
-    alarms: value_of(alarms.unacknowledged, "Good"),
+    alarms: alarms.unacknowledged === null ? kNotYet : {value: alarms.unacknowledged, quality: "Good"},
     highest_priority: {value: alarms.highest, quality: "Good"},
     problems: {value: image.problems, quality: "Good"},
     version: {value: image.version, quality: "Good"},

@@ -31,7 +31,7 @@ async function make_private(folder) {
   }
 }
 
-// Keeps the newest `most` files of a folder.
+// Keeps the newest `most` files of a folder; how many there are then.
 export async function keep_newest(folder, most) {
   const found = [];
   for (const name of await fs.readdir(folder).catch(() => [])) {
@@ -41,11 +41,12 @@ export async function keep_newest(folder, most) {
   }
   found.sort((a, b) => b.mtimeMs - a.mtimeMs);
   for (const {file} of found.slice(most)) await fs.rm(file, {force: true});
+  return Math.min(found.length, most);
 }
 
-// Call it now and then: whoever reaches the port can send certificates.
+// Call it now and then: whoever reaches the port can send certificates. How many clients wait to be trusted.
 export async function forget_unasked(state, loopback) {
   const folder = path.join(state, loopback ? "pki-loopback" : "pki");
-  await keep_newest(path.join(folder, "rejected"), kMostUnasked);
   if (loopback) await keep_newest(path.join(folder, "trusted", "certs"), kMostUnasked);
+  return keep_newest(path.join(folder, "rejected"), kMostUnasked);
 }

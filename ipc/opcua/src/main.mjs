@@ -30,30 +30,48 @@ function told_to_end() {
   });
 }
 
-async function serve(options) {
-  const ended = told_to_end();
+// Looks after the certificates of clients, and says when another one waits to be trusted.
+function tidier(options, forget_unasked) {
+  let known = 0;
+  return async () => {
+    try {
+      const waiting = await forget_unasked(options.state, options.loopback);
+      if (waiting > known) say(`${waiting} client certificates are not trusted: see ${options.state}/pki/rejected`);
+      known = waiting;
+    } catch (error) {
+      say(`the certificates in ${options.state}: ${in_words(error)}`);
+    }
+  };
+}
+
+// The server with the nodes of all cells, not listening yet, and what feeds them.
+async function made(options) {
   const [{default: opcua}, {certificate_manager, forget_unasked}, {make_server}, {NodeFactory}, {CellNodes}, {Feed}, {read_nameplates}] = await modules();
   opcua.setLogLevel(opcua.LogLevel.Error);
-  process.umask(0o077);
   const nameplates = options.nameplates ? read_nameplates(options.nameplates) : new Map();
   const certificates = await certificate_manager(options.state, options.loopback);
   const server = await make_server(options, certificates, version());
   const factory = new NodeFactory(server.engine.addressSpace);
   const feeds = options.instances.map((instance) => new Feed({instance, period_ms: options.period_ms, cell: new CellNodes(factory, instance, nameplates, Date.now()), say}));
+  return {server, feeds, tidy: tidier(options, forget_unasked)};
+}
+
+async function serve(options) {
+  const ended = told_to_end();
+  process.umask(0o077);
+  const {server, feeds, tidy} = await made(options);
   try {
     await server.start();
   } catch (error) {
     throw new Refusal(`${options.bind}:${options.port} cannot be listened on: ${in_words(error)}`, "choose another --port");
   }
-  const tidy = setInterval(() => forget_unasked(options.state, options.loopback).catch((error) => say(`certificates: ${in_words(error)}`)), kTidy_ms);
   say(`OPC UA at opc.tcp://${options.hostname}:${options.port}${options.unencrypted ? "" : ", encrypted"}; certificates are in ${options.state}; Ctrl-C ends it`);
-  const running = feeds.map((feed) => feed.run());
+  const tidying = setInterval(tidy, kTidy_ms);
+  for (const feed of feeds) feed.run();
   await ended;
-  clearInterval(tidy);
-  for (const feed of feeds) feed.end();
-  await Promise.all(running);
+  clearInterval(tidying);
+  for (const feed of feeds) feed.end(); // one that still waits for an answer tells nothing any more
   await server.shutdown(0);
-  await certificates.dispose();
 }
 
 // The exit status: 0; 1 for a failure; 2 for a wrong command line.

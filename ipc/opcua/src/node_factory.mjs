@@ -5,9 +5,11 @@ import {kChildMark} from "./node_ids.mjs";
 import {Told} from "./told.mjs";
 
 const {DataType} = opcua;
+opcua.NamespaceOptions.nodeIdNameSeparator = kChildMark;
 const kRobotics = "http://opcfoundation.org/UA/Robotics/";
 const kDevices = "http://opcfoundation.org/UA/DI/";
 const kDeviceSet = 5001; // DI: the object below which devices are found
+const kReadOnly = {accessLevel: "CurrentRead", userAccessLevel: "CurrentRead"};
 const kOwn = 1; // the server's own namespace
 
 export class NodeFactory {
@@ -56,8 +58,7 @@ export class NodeFactory {
       nodeId: this.below_(parent, name),
       dataType: data_type,
       valueRank: is_array ? 1 : -1,
-      accessLevel: "CurrentRead",
-      userAccessLevel: "CurrentRead",
+      ...kReadOnly,
       description,
     };
     if (!unit) return new Told(this.own_.addVariable(options));
@@ -86,7 +87,8 @@ export class NodeFactory {
 
   property_(variable, name, data_type) {
     const found = variable.getPropertyByName(name);
-    return found ?? this.own_.addVariable({propertyOf: variable, browseName: {name, namespaceIndex: 0}, nodeId: this.below_(variable, name), dataType: data_type, typeDefinition: "PropertyType"});
+    const options = {propertyOf: variable, browseName: {name, namespaceIndex: 0}, nodeId: this.below_(variable, name), dataType: data_type, typeDefinition: "PropertyType"};
+    return found ?? this.own_.addVariable({...options, ...kReadOnly});
   }
 
   below_(parent, name) {

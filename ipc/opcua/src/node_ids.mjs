@@ -1,9 +1,6 @@
 // Names of nodes. A NodeId is text made of the instance and the names of robots and joints: the same after every start.
-// Children that a type brings along are named by node-opcua: the id of their parent, kChildMark and their BrowseName.
-import opcua from "node-opcua";
-
+// Children that a type brings along have the id of their parent, kChildMark and their BrowseName.
 export const kChildMark = "."; // escaped in names
-opcua.NamespaceOptions.nodeIdNameSeparator = kChildMark;
 
 // Letters, digits, _ and - stay; of everything else the bytes of UTF-8 as %XX.
 export function escaped(name) {
