@@ -7,13 +7,16 @@ import opcua from "node-opcua";
 import {Refusal} from "./refusal.mjs";
 
 const kKeyBits = 3072;
+const kLookAtFolders_ms = 1000;
 export const kMostUnasked = 64; // certificates that clients have sent unasked: the oldest go
 
 export async function certificate_manager(state, loopback) {
   const folder = path.join(state, loopback ? "pki-loopback" : "pki");
   await make_private(state);
   await make_private(folder);
+  await drop_trusted(folder);
   const manager = new opcua.OPCUACertificateManager({rootFolder: folder, automaticallyAcceptUnknownCertificate: loopback, keySize: kKeyBits});
+  manager.folderPoolingInterval = kLookAtFolders_ms;
   await manager.initialize();
   // What others could read would be no secret; a folder of another user is none of ours.
   await fs.chmod(path.join(folder, "own", "private", "private_key.pem"), 0o600);
@@ -31,6 +34,12 @@ async function make_private(folder) {
   }
 }
 
+// A client that was trusted while it tried again lies in both folders, and the package would look at the rejected ones first.
+async function drop_trusted(folder) {
+  const trusted = await fs.readdir(path.join(folder, "trusted", "certs")).catch(() => []);
+  for (const name of trusted) await fs.rm(path.join(folder, "rejected", name), {force: true});
+}
+
 // Keeps the newest `most` files of a folder; how many there are then.
 export async function keep_newest(folder, most) {
   const found = [];
@@ -45,8 +54,12 @@ export async function keep_newest(folder, most) {
 }
 
 // Call it now and then: whoever reaches the port can send certificates. How many clients wait to be trusted.
-export async function forget_unasked(state, loopback) {
+export async function forget_unasked(manager, state, loopback) {
+  // The package remembers what it rejected, without a bound, and would not look again for one that was moved to the trusted.
+  const {rejected} = manager._thumbs;
+  for (const fingerprint of Object.keys(rejected)) delete rejected[fingerprint];
   const folder = path.join(state, loopback ? "pki-loopback" : "pki");
+  await drop_trusted(folder);
   if (loopback) await keep_newest(path.join(folder, "trusted", "certs"), kMostUnasked);
   return keep_newest(path.join(folder, "rejected"), kMostUnasked);
 }

@@ -4,7 +4,7 @@ import fs from "node:fs";
 import {kHelp, parse} from "./command_line.mjs";
 import {in_words, Refusal} from "./refusal.mjs";
 
-const kTidy_ms = 10_000;
+const kTidy_ms = 2000;
 
 function say(line) {
   process.stdout.write(`${line}\n`);
@@ -31,11 +31,11 @@ function told_to_end() {
 }
 
 // Looks after the certificates of clients, and says when another one waits to be trusted.
-function tidier(options, forget_unasked) {
+function tidier(options, forget) {
   let known = 0;
   return async () => {
     try {
-      const waiting = await forget_unasked(options.state, options.loopback);
+      const waiting = await forget();
       if (waiting > known) say(`${waiting} client certificates are not trusted: see ${options.state}/pki/rejected`);
       known = waiting;
     } catch (error) {
@@ -53,7 +53,7 @@ async function made(options) {
   const server = await make_server(options, certificates, version());
   const factory = new NodeFactory(server.engine.addressSpace);
   const feeds = options.instances.map((instance) => new Feed({instance, period_ms: options.period_ms, cell: new CellNodes(factory, instance, nameplates, Date.now()), say}));
-  return {server, feeds, tidy: tidier(options, forget_unasked)};
+  return {server, feeds, tidy: tidier(options, () => forget_unasked(certificates, options.state, options.loopback))};
 }
 
 async function serve(options) {

@@ -42,6 +42,8 @@ class Security(unittest.TestCase):
         rejected[0].rename(bridge.state / "pki" / "trusted" / "certs" / rejected[0].name)
         self.assertTrue(g.eventually(lambda: "uris" in self.session(bridge, "SignAndEncrypt", "Basic256Sha256"), every=0.5))
         self.assertIn("refused", self.session(bridge, "None", "None"))
+        bridge.close()
+        self.assertIn("uris", self.session(self.started(ADDRESS), "SignAndEncrypt", "Basic256Sha256"))
 
     def test_a_client_accepted_on_this_machine_is_not_trusted_beyond_it(self):
         bridge = self.started("127.0.0.1")
