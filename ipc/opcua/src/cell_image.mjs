@@ -27,7 +27,7 @@ function amount(value) {
   return found === null || found < 0 ? null : found;
 }
 
-// A number of things, told as UInt32.
+// A number of things, reported as UInt32.
 function count(value) {
   return Number.isInteger(value) && value >= 0 ? Math.min(value, 0xffff_ffff) : null;
 }
@@ -74,7 +74,7 @@ function robot(value, left_out) {
     simulated: value.mode === "simulated",
     stream: plain_text(stream.state),
     stream_age_s: amount(stream.age_s),
-    // The safety mode in words, where the stream tells it.
+    // The safety mode in words, where the stream reports it.
     safety: stream.kind === "rtde" && typeof details.safety === "string" ? plain_text(details.safety) : null,
     joints: named(value.joints, kMostJoints, (one) => one.name, joint, left_out),
     program: null,
@@ -87,7 +87,7 @@ function add_programs(robots, programs) {
     const {robot: id, program, state} = plain_object(value);
     const owner = by_id.get(plain_text(id));
     if (!owner || typeof program !== "string") continue;
-    // A robot may have several; the one that runs is told.
+    // A robot may have several; the one that runs is reported.
     const runs = state === "running" || state === "waiting";
     if (owner.program === null || runs) owner.program = {name: plain_text(program), runs};
   }

@@ -3,10 +3,10 @@
 import {cell_values, kUnknown, without_gateway} from "./cell_values.mjs";
 import {node_id} from "./node_ids.mjs";
 import {RobotNodes, shape_of} from "./robot_nodes.mjs";
-import {tell_all} from "./told.mjs";
+import {report_all} from "./reported.mjs";
 import {kUnits} from "./units.mjs";
 
-function told_of_cell(factory, system) {
+function reported_of_cell(factory, system) {
   const cell = factory.plain_object(system, "Cell", "What the gateway computes of the cell as a whole");
   return {
     answers: factory.variable(cell, "GatewayAnswers", "Boolean"),
@@ -37,53 +37,53 @@ export class CellNodes {
     });
     const software = factory.object("SoftwareType", {name: "cellmirror", id: node_id(instance, "", "Gateway", "cellmirror"), parent: factory.child(controller, "Software")});
     for (const node of [controller, software]) {
-      factory.told(node, "Manufacturer").tell({value: "cellmirror", quality: "Good"}, now_ms);
-      factory.told(node, "Model").tell({value: "cellmirror gateway", quality: "Good"}, now_ms);
+      factory.reported(node, "Manufacturer").report({value: "cellmirror", quality: "Good"}, now_ms);
+      factory.reported(node, "Model").report({value: "cellmirror gateway", quality: "Good"}, now_ms);
     }
-    factory.told(controller, "ProductCode").tell({value: "cellmirror", quality: "Good"}, now_ms);
-    factory.told(controller, "SerialNumber").tell(kUnknown, now_ms);
-    factory.told(controller, "CurrentUser", "Level").tell(kUnknown, now_ms);
+    factory.reported(controller, "ProductCode").report({value: "cellmirror", quality: "Good"}, now_ms);
+    factory.reported(controller, "SerialNumber").report(kUnknown, now_ms);
+    factory.reported(controller, "CurrentUser", "Level").report(kUnknown, now_ms);
     this.places_ = {
       devices: factory.child(this.system_, "MotionDevices"),
       tasks: factory.child(controller, "TaskControls"),
       safety: factory.child(this.system_, "SafetyStates"),
     };
-    this.told_ = told_of_cell(factory, this.system_);
-    this.told_.version = factory.told(software, "SoftwareRevision");
-    this.tell_unanswered_("BadNoCommunication", now_ms);
+    this.reported_ = reported_of_cell(factory, this.system_);
+    this.reported_.version = factory.reported(software, "SoftwareRevision");
+    this.report_unanswered_("BadNoCommunication", now_ms);
   }
 
   // The answer of a request that was sent at `asked_ms`.
-  tell(image, asked_ms) {
+  report(image, asked_ms) {
     const present = new Set(image.robots.map((robot) => robot.id));
     for (const id of [...this.robots_.keys()].filter((one) => !present.has(one))) this.remove_(id);
-    for (const robot of image.robots) this.nodes_of_(robot, asked_ms).tell(robot, asked_ms);
-    tell_all(this.told_, cell_values(image), asked_ms);
+    for (const robot of image.robots) this.nodes_of_(robot, asked_ms).report(robot, asked_ms);
+    report_all(this.reported_, cell_values(image), asked_ms);
     this.image_ = {image, asked_ms};
   }
 
-  // The gateway is late, and the last values are told as such; their times stay.
-  tell_late() {
-    this.tell_again_("UncertainNoCommunicationLastUsableValue", this.image_?.asked_ms);
+  // The gateway is late, and the last values are reported as such; their times stay.
+  report_late() {
+    this.report_again_("UncertainNoCommunicationLastUsableValue", this.image_?.asked_ms);
   }
 
   // The gateway is gone.
-  tell_gone(now_ms) {
-    this.tell_again_("BadNoCommunication", now_ms);
-    this.tell_unanswered_("BadNoCommunication", now_ms);
+  report_gone(now_ms) {
+    this.report_again_("BadNoCommunication", now_ms);
+    this.report_unanswered_("BadNoCommunication", now_ms);
   }
 
-  tell_again_(quality, at_ms) {
+  report_again_(quality, at_ms) {
     if (!this.image_) return;
     const {image} = this.image_;
     const changed = (values) => without_gateway(values, quality);
-    for (const robot of image.robots) this.robots_.get(robot.id)?.tell(robot, at_ms, changed);
-    tell_all(this.told_, changed(cell_values(image)), at_ms);
+    for (const robot of image.robots) this.robots_.get(robot.id)?.report(robot, at_ms, changed);
+    report_all(this.reported_, changed(cell_values(image)), at_ms);
   }
 
-  tell_unanswered_(quality, now_ms) {
-    for (const one of Object.values(this.told_)) one.tell({quality}, now_ms);
-    this.told_.answers.tell({value: false, quality: "Good"}, now_ms);
+  report_unanswered_(quality, now_ms) {
+    for (const one of Object.values(this.reported_)) one.report({quality}, now_ms);
+    this.reported_.answers.report({value: false, quality: "Good"}, now_ms);
   }
 
   nodes_of_(robot, asked_ms) {

@@ -24,7 +24,7 @@ function quality_of_state(state) {
     case "off":
     case "":
       return "BadWaitingForInitialData";
-    default: // stale, invalid, implausible, conflict: the last valid value is told
+    default: // stale, invalid, implausible, conflict: the last valid value is reported
       return "UncertainLastUsableValue";
   }
 }
@@ -67,8 +67,8 @@ const kSafetyModes = new Map([
 ]);
 
 function safety_values(robot) {
-  const told = robot.simulated || robot.safety === null ? [null, null] : kSafetyModes.get(robot.safety) ?? [null, null];
-  const [emergency_stop, protective_stop] = told.map((stop) => (stop === null ? kUnknown : value_of(stop, quality_of_state(robot.stream), robot.stream_age_s)));
+  const reported = robot.simulated || robot.safety === null ? [null, null] : kSafetyModes.get(robot.safety) ?? [null, null];
+  const [emergency_stop, protective_stop] = reported.map((stop) => (stop === null ? kUnknown : value_of(stop, quality_of_state(robot.stream), robot.stream_age_s)));
   return {emergency_stop, protective_stop, operational_mode: kUnknown};
 }
 
@@ -101,13 +101,13 @@ export function cell_values(image) {
   };
 }
 
-// Every value of `values` as it is told while the gateway does not answer; what never was known stays so.
+// Every value of `values` as it is reported while the gateway does not answer; what never was known stays so.
 export function without_gateway(values, quality) {
-  const told = {};
+  const reported = {};
   for (const [key, one] of Object.entries(values)) {
-    if (one.quality === "BadNotSupported") told[key] = one;
-    else if (quality.startsWith("Bad")) told[key] = {quality};
-    else told[key] = one.quality.startsWith("Bad") ? one : {...one, quality};
+    if (one.quality === "BadNotSupported") reported[key] = one;
+    else if (quality.startsWith("Bad")) reported[key] = {quality};
+    else reported[key] = one.quality.startsWith("Bad") ? one : {...one, quality};
   }
-  return told;
+  return reported;
 }

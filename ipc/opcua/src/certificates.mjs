@@ -53,7 +53,7 @@ export async function keep_newest(folder, most) {
   return Math.min(found.length, most);
 }
 
-// Call it now and then: whoever reaches the port can send certificates. How many clients wait to be trusted.
+// Call it now and then: a client that reaches the port can send certificates. How many clients wait to be trusted.
 export async function forget_unasked(manager, state, loopback) {
   // The package remembers what it rejected, without a bound, and would not look again for one that was moved to the trusted.
   const {rejected} = manager._thumbs;

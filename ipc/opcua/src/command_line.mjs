@@ -14,7 +14,7 @@ Robotics (OPC 40010-1). Nothing can be written or called. Run it as the gateway'
   --instance NAME        the gateway; again for each further one (default: default)
   --bind ADDRESS         IPv4 address to listen on; 0.0.0.0: all (default: 127.0.0.1)
   --port PORT            (default: 4840)
-  --hostname NAME        what clients are told to connect to (default: the address, or this machine's name)
+  --hostname NAME        the address for clients to connect to (default: the address, or this machine's name)
   --period MS            between two requests to a gateway, 50 to 10000 (default: 100)
   --state FOLDER         own certificate and those of clients (default: $XDG_STATE_HOME/cellmirror-opcua,
                          else ~/.local/state/cellmirror-opcua)

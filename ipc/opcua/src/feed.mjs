@@ -1,4 +1,4 @@
-// Asks one gateway for its status again and again, and tells what it answers, when it is late, and when it is gone.
+// Asks one gateway for its status again and again, and reports what it answers, when it is late, and when it is gone.
 import {setTimeout as wait} from "node:timers/promises";
 
 import {cell_image} from "./cell_image.mjs";
@@ -41,13 +41,13 @@ export class Feed {
   }
 
   async once_() {
-    const late = setTimeout(() => this.cell.tell_late(), kLate_ms + 3 * this.period_ms);
+    const late = setTimeout(() => this.cell.report_late(), kLate_ms + 3 * this.period_ms);
     try {
       const place = await control_socket(this.instance);
       const asked_ms = Date.now();
       const image = cell_image(await ask(place, {request: "status"}, {timeout_ms: this.longest_answer_ms_}));
       if (this.ended_.signal.aborted) return true;
-      this.cell.tell(image, asked_ms);
+      this.cell.report(image, asked_ms);
       this.answers++;
       this.note_(image);
       return true;
@@ -67,7 +67,7 @@ export class Feed {
   }
 
   gone_(error) {
-    this.cell.tell_gone(Date.now());
+    this.cell.report_gone(Date.now());
     const trouble = in_words(error);
     if (trouble !== this.trouble_) this.say(`the gateway ${this.instance} is not shown: ${trouble}`);
     this.trouble_ = trouble;

@@ -24,7 +24,7 @@ async function modules() {
 }
 
 // Resolves with the signal that ends the program.
-function told_to_end() {
+function asked_to_end() {
   return new Promise((resolve) => {
     for (const name of ["SIGINT", "SIGTERM", "SIGHUP"]) process.on(name, () => resolve(name));
   });
@@ -57,7 +57,7 @@ async function made(options) {
 }
 
 async function serve(options) {
-  const ended = told_to_end();
+  const ended = asked_to_end();
   process.umask(0o077);
   const {server, feeds, tidy} = await made(options);
   try {
@@ -70,7 +70,7 @@ async function serve(options) {
   for (const feed of feeds) feed.run();
   await ended;
   clearInterval(tidying);
-  for (const feed of feeds) feed.end(); // one that still waits for an answer tells nothing any more
+  for (const feed of feeds) feed.end(); // one that still waits for an answer reports nothing any more
   await server.shutdown(0);
 }
 

@@ -1,4 +1,4 @@
-// What the maker's plate of each robot says: a JSON file that the user writes, because no stream tells it.
+// What the maker's plate of each robot says: a JSON file that the user writes, because no stream reports it.
 //   {"ROBOT_ID": {"manufacturer": "...", "model": "...", "product_code": "...", "serial_number": "...", "category": "articulated"}}
 import fs from "node:fs";
 

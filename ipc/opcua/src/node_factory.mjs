@@ -2,7 +2,7 @@
 import opcua from "node-opcua";
 
 import {kChildMark} from "./node_ids.mjs";
-import {Told} from "./told.mjs";
+import {Reported} from "./reported.mjs";
 
 const {DataType} = opcua;
 opcua.NamespaceOptions.nodeIdNameSeparator = kChildMark;
@@ -41,8 +41,8 @@ export class NodeFactory {
     return found;
   }
 
-  told(node, ...names) {
-    return new Told(this.child(node, ...names));
+  reported(node, ...names) {
+    return new Reported(this.child(node, ...names));
   }
 
   // A plain object of ours below `parent`.
@@ -61,10 +61,10 @@ export class NodeFactory {
       ...kReadOnly,
       description,
     };
-    if (!unit) return new Told(this.own_.addVariable(options));
+    if (!unit) return new Reported(this.own_.addVariable(options));
     const variable = this.own_.addVariable({...options, typeDefinition: "AnalogUnitType"});
     this.property_(variable, "EngineeringUnits", "EUInformation").setValueFromSource({dataType: DataType.ExtensionObject, value: unit});
-    return new Told(variable);
+    return new Reported(variable);
   }
 
   set_unit(variable, unit) {
@@ -73,7 +73,7 @@ export class NodeFactory {
 
   // The optional EURange of an AnalogUnitType, which AxisType does not mention.
   range(variable) {
-    return new Told(this.property_(variable, "EURange", "Range"));
+    return new Reported(this.property_(variable, "EURange", "Range"));
   }
 
   // A reference of the Robotics specification: Moves, Controls, IsConnectedTo.

@@ -50,7 +50,7 @@ export async function make_server(options, certificates, version) {
     port: options.port,
     securityModes: [MessageSecurityMode.SignAndEncrypt, MessageSecurityMode.Sign, ...(options.unencrypted ? [MessageSecurityMode.None] : [])],
     securityPolicies: [SecurityPolicy.Basic256Sha256, SecurityPolicy.Aes128_Sha256_RsaOaep, SecurityPolicy.Aes256_Sha256_RsaPss, ...(options.unencrypted ? [SecurityPolicy.None] : [])],
-    // Who the client is, its certificate says; beyond this machine it must be trusted. There are no users to tell apart.
+    // Who the client is, its certificate says; beyond this machine it must be trusted. There are no users.
     allowAnonymous: true,
     userManager: {isValidUser: () => false},
     serverCertificateManager: certificates,

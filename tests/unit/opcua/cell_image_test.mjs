@@ -22,7 +22,7 @@ test("what is no status is refused", () => {
   }
 });
 
-test("robots and joints that cannot be told apart or shown are left out and counted", () => {
+test("robots and joints that have no name of their own or shown are left out and counted", () => {
   const image = cell_image(status([robot("A"), robot("A"), robot(""), 7, null, robot("B", {joints: [joint("J"), joint("J"), joint("K", {unit: "inch"}), "x"]})]));
   assert.deepEqual(image.robots.map((one) => [one.id, one.joints.length]), [["A", 2], ["B", 1]]);
   assert.equal(image.left_out, 4 + 3);
@@ -41,7 +41,7 @@ test("names keep their letters, but no control characters or halves of character
   assert.equal(one.id, "Gr\u00f6\u00dfe \u{1f916}/.;=\ufffd\ufffd\ufffd\ufffd");
 });
 
-test("the program that runs is told before others of its robot", () => {
+test("the program that runs is reported before others of its robot", () => {
   const loaded = [{robot: "A", program: "first", state: "ended"}, {robot: "A", program: "second", state: "running"}, {robot: "A", program: "third", state: "loaded"}, {robot: "?", program: "x"}, null];
   const [one] = cell_image(status([robot("A")], {programs: {loaded}})).robots;
   assert.deepEqual(one.program, {name: "second", runs: true});

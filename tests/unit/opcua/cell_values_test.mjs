@@ -52,16 +52,16 @@ test("a simulated robot is good although its joints have no stream", () => {
   assert.deepEqual([position.quality, position.age_s], ["Good", 0]);
 });
 
-test("a number that is none is not told as one", () => {
+test("a number that is none is not reported as one", () => {
   assert.deepEqual(of_joint({position: null}).position, {quality: "BadWaitingForInitialData"});
 });
 
-test("what cellmirror does not know it does not tell", () => {
+test("what cellmirror does not know it does not report", () => {
   const values = robot_values(first(status()).robot);
   for (const key of ["speed_override", "operational_mode", "emergency_stop", "protective_stop", "on_path"]) assert.deepEqual(values[key], {quality: "BadNotSupported"}, key);
 });
 
-test("safety is told where a controller reports it, and as old as its report", () => {
+test("safety is reported where a controller reports it, and as old as its report", () => {
   const of_mode = (safety, more = {}) => robot_values(first(status([robot("A", {stream: {kind: "rtde", state: "fresh", age_s: 0.125, details: {safety}, ...more}})])).robot);
   for (const [mode, emergency, protective] of [["normal", false, false], ["reduced", false, false], ["protective stop", false, true], ["safeguard stop", false, true], ["robot emergency stop", true, undefined],
     ["system emergency stop", true, undefined], ["fault", undefined, undefined], ["violation", undefined, undefined], ["safety mode 77", undefined, undefined]]) {
@@ -81,9 +81,9 @@ test("a simulated robot is on its path while its program runs", () => {
   assert.deepEqual([values("held").program_name.value, values("held").program_loaded.value], ["p", true]);
 });
 
-test("collisions that are not tested are not told as none", () => {
-  const told = cell_values(cell_image(status()));
-  assert.deepEqual([told.touching.value, told.nearest_distance.value, told.nearest_pair.value], [2, 250, ["A.x", "B.y"]]);
+test("collisions that are not tested are not reported as none", () => {
+  const reported = cell_values(cell_image(status()));
+  assert.deepEqual([reported.touching.value, reported.nearest_distance.value, reported.nearest_pair.value], [2, 250, ["A.x", "B.y"]]);
   const off = cell_values(cell_image(status([], {collisions: {active: false, sequence: 7, touching_count: 0}})));
   assert.equal(off.touching.quality, "BadOutOfService");
   const not_yet = cell_values(cell_image(status([], {collisions: {active: true, sequence: 0, touching_count: 0, nearest: null}})));

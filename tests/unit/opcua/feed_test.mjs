@@ -70,15 +70,15 @@ test("a socket or folder of another user, a link and a file are refused", async 
 });
 
 class Heard {
-  told = [];
-  tell(image) {
-    this.told.push(image.robots.length);
+  reported = [];
+  report(image) {
+    this.reported.push(image.robots.length);
   }
-  tell_late() {
-    this.told.push("late");
+  report_late() {
+    this.reported.push("late");
   }
-  tell_gone() {
-    this.told.push("gone");
+  report_gone() {
+    this.reported.push("gone");
   }
 }
 
@@ -97,15 +97,15 @@ async function with_feed(folder, limits, body) {
   }
 }
 
-test("a gateway that answers, goes and comes back is told as that, and the log names each change once", async () => {
+test("a gateway that answers, goes and comes back is reported as that, and the log names each change once", async () => {
   let says = () => status();
   await with_socket((socket) => socket.end(`${JSON.stringify(says())}\n`), async ({folder}) => {
     await with_feed(folder, {first_pause_ms: 20, longest_pause_ms: 40}, async ({cell, lines}) => {
-      await eventually(() => cell.told.filter((one) => one === 1).length >= 3);
+      await eventually(() => cell.reported.filter((one) => one === 1).length >= 3);
       says = () => ({error: "it starts", remedy: "wait"});
-      await eventually(() => cell.told.filter((one) => one === "gone").length >= 3);
+      await eventually(() => cell.reported.filter((one) => one === "gone").length >= 3);
       says = () => status([]);
-      await eventually(() => cell.told.includes(0));
+      await eventually(() => cell.reported.includes(0));
       assert.deepEqual(lines, ["the gateway default answers: 1 robots", "the gateway default is not shown: it starts; wait", "the gateway default answers: 0 robots"]);
     });
   });
@@ -114,8 +114,8 @@ test("a gateway that answers, goes and comes back is told as that, and the log n
 test("a gateway that does not answer is late first, then gone", async () => {
   await with_socket(() => {}, async ({folder}) => {
     await with_feed(folder, {longest_answer_ms: 1500}, async ({cell}) => {
-      await eventually(() => cell.told.includes("gone"));
-      assert.equal(cell.told[0], "late");
+      await eventually(() => cell.reported.includes("gone"));
+      assert.equal(cell.reported[0], "late");
     });
   });
 });

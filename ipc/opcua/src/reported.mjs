@@ -1,4 +1,4 @@
-// One variable of the address space, and what clients were told of it.
+// One variable of the address space, and what was reported of it.
 import opcua from "node-opcua";
 
 const {DataType, StatusCodes, VariantArrayType} = opcua;
@@ -8,7 +8,7 @@ function same(a, b) {
   return a === b;
 }
 
-export class Told {
+export class Reported {
   constructor(variable) {
     this.variable_ = variable;
     this.type_ = variable.getBasicDataType();
@@ -18,7 +18,7 @@ export class Told {
 
   // `one`: {value, quality, age_s} as in cell_values.mjs. Its SourceTimestamp is `asked_ms` (of Date.now()) less its age; without
   // an age, the time when it changed. What is bad has no value.
-  tell(one, asked_ms) {
+  report(one, asked_ms) {
     const {value, quality, age_s} = one;
     if (age_s === undefined && this.last_ && this.last_.quality === quality && same(this.last_.value, value)) return;
     this.last_ = {value, quality};
@@ -34,6 +34,6 @@ export class Told {
 }
 
 // Each of `values` to the variable of the same name.
-export function tell_all(told, values, asked_ms) {
-  for (const [key, one] of Object.entries(values)) told[key]?.tell(one, asked_ms);
+export function report_all(reported, values, asked_ms) {
+  for (const [key, one] of Object.entries(values)) reported[key]?.report(one, asked_ms);
 }
