@@ -2,8 +2,8 @@
 // docs/status.md says is left out or null, and counted where it is a robot or a joint.
 import {Refusal} from "./refusal.mjs";
 
-export const kMostRobots = 256;
-export const kMostJoints = 64; // of a robot
+export const kMostRobots = 256; // kMaxRobots, kMaxJointsPerRobot of rt_core/base/capacity.hpp; 50 kB of memory a joint
+export const kMostJoints = 16;
 export const kLongestName = 256; // characters
 const kMostProblems = 16;
 const kLargest = 1e9; // of any quantity in SI units; beyond that dates and units overflow

@@ -48,13 +48,13 @@ def why_missing():
 class Bridge(g.Process):
     """A running bridge that shows the gateway of the scratch folder, or those of `instances`."""
 
-    def __init__(self, scratch, *arguments, instances=None, bind="127.0.0.1", state="opcua"):
+    def __init__(self, scratch, *arguments, instances=None, bind="127.0.0.1", state="opcua", node_options=""):
         self.port = g.free_port()
         self.url = f"opc.tcp://{bind}:{self.port}"
         self.state = scratch.root / state
         names = [part for name in instances or [scratch.instance] for part in ("--instance", name)]
         super().__init__(["node", PLACE / "cellmirror-opcua.mjs", *names, "--bind", bind, "--port", self.port, "--state",
-                          self.state, *arguments], scratch.environment)
+                          self.state, *arguments], scratch.environment | {"NODE_OPTIONS": node_options})
         if not g.eventually(lambda: "OPC UA at" in self.output() or not self.running()) or not self.running():
             raise AssertionError(f"the bridge did not start:\n{self.output()}")
 
