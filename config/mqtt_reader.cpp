@@ -70,7 +70,8 @@ void read_broker(TableReader& table, MqttConfig& config) {
   const auto broker = table.text("broker");
   const bool insecure = table.boolean("insecure").value_or(false);
   if (broker && !is_host(*broker)) {
-    table.error("broker", fmt::format("\"{}\" is neither a name of a machine nor a numeric address", printable(*broker)),
+    table.error("broker",
+                fmt::format("\"{}\" is neither a name of a machine nor a numeric address", printable(*broker)),
                 "the port has a key of its own: port = 8883");
   }
   config.broker = broker.value_or("localhost");

@@ -129,6 +129,7 @@ Problems Gateway::Parts::problems() const {
   if (summaries) {
     for (const auto& output : summaries->outputs()) add("summary", output->problem());
   }
+  if (mqtt) add("mqtt", mqtt->problem());
   if (playback == nullptr && (guard == nullptr || !guard->running())) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
                                    "restart the gateway",

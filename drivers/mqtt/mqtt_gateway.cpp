@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <map>
+#include <span>
 
 #include "drivers/mqtt/broker_link.hpp"
 #include "drivers/mqtt/sparkplug_conversation.hpp"
@@ -54,23 +55,27 @@ class Summaries final : public SummaryOutput {
       : name_(std::move(name)), json_(json), node_(node) {}
 
   void publish(const CellSummary& summary, std::string_view text) override {
+    ++published_;
     json_.summary(summary, text);
     if (node_ != nullptr) node_->summary(summary);
   }
-  // The gateway has them.
-  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override { return {}; }
+  // What becomes of them is with the others: they are replaced by newer ones, never dropped.
+  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override {
+    return {{"published", published_}};
+  }
   [[nodiscard]] std::string name() const override { return name_; }
 
  private:
   std::string name_;
   JsonConversation& json_;
   SparkplugConversation* node_;
+  std::atomic<std::uint64_t> published_{0};
 };
 
 class States final : public StatesOutput {
  public:
-  States(std::string name, double rate_hz, JsonConversation& json, SparkplugConversation* node)
-      : name_(std::move(name)), json_(json), node_(node) {
+  States(const MqttGateway& gateway, double rate_hz, JsonConversation& json, SparkplugConversation* node)
+      : gateway_(gateway), json_(json), node_(node) {
     if (rate_hz > 0) period_ = Nanoseconds(std::llround(1e9 / rate_hz));
   }
 
@@ -88,11 +93,13 @@ class States final : public StatesOutput {
     for (const ProximityEvent& event : state.events) json_.collision(event);
   }
   void publish_ranges(std::span<const RangeReading> /*readings*/, RangeSendMode /*mode*/) override {}
-  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override { return {}; }
-  [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const override {
+    return gateway_.counters();
+  }
+  [[nodiscard]] std::string name() const override { return gateway_.name(); }
 
  private:
-  std::string name_;
+  const MqttGateway& gateway_;
   Nanoseconds period_{0};
   Timestamp due_;
   JsonConversation& json_;
@@ -116,11 +123,11 @@ void MqttGateway::stop() {
 }
 
 std::unique_ptr<SummaryOutput> MqttGateway::summary_output() {
-  return std::make_unique<Summaries>(name(), *impl_->json, impl_->node.get());
+  return std::make_unique<Summaries>(name() + " summary", *impl_->json, impl_->node.get());
 }
 
 std::unique_ptr<StatesOutput> MqttGateway::states_output() {
-  return std::make_unique<States>(name(), impl_->config.joint_states_hz, *impl_->json, impl_->node.get());
+  return std::make_unique<States>(*this, impl_->config.joint_states_hz, *impl_->json, impl_->node.get());
 }
 
 double MqttGateway::states_rate_hz() const { return std::max(kLeastLook_hz, impl_->config.joint_states_hz); }

@@ -20,6 +20,7 @@
 namespace cellmirror::mqtt {
 
 // Joint states and collisions. The first are sent at their own rate, however often they are given.
+// Its counters are those of the whole gateway.
 class StatesOutput : public RobotStateOutput, public FindingsOutput {};
 
 // Never waits for the broker: what it does not take is bounded, see outbox.hpp. Not for the tick (it allocates).
