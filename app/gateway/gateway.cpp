@@ -317,6 +317,7 @@ void Gateway::Parts::start_fault_monitor() {
 Result<void> Gateway::Parts::start_summaries(const DdsOutputConfig& dds) {
   auto outputs = make_summary_outputs(dds);
   if (!outputs) return std::unexpected(outputs.error());
+  if (mqtt) outputs->push_back(mqtt->summary_output());
   run = fmt::format("{:x}-{:x}", machine_wall_clock_ns(started), getpid());
   summaries = std::make_unique<SummaryPublisher>(std::move(*outputs), [this] { return summary(); }, machine_clock);
   return {};

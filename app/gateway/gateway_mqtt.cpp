@@ -1,22 +1,16 @@
 #include "app/gateway/gateway_mqtt.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
 #include <utility>
 
 #include "app/alarms/alarm_line.hpp"
+#include "app/gateway/host_name.hpp"
 #include "ipc/wire/script_message.hpp"
 
 namespace cellmirror::app {
 
 namespace {
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
-}
 
 mqtt::CommandHandlers handlers_of(MqttParts parts, script::CommandSource source) {
   const auto refused = [refused = std::move(parts.refused), source](std::string_view command, const std::string& why) {

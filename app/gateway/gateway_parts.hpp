@@ -179,6 +179,7 @@ struct Gateway::Parts {
   std::string status();
   web::Health health();
   CellSummary summary();
+  [[nodiscard]] OutputCounters output_counters() const;
   [[nodiscard]] Problems problems() const;
   [[nodiscard]] CommandLogReport command_log() const { return commands ? commands->report() : CommandLogReport{}; }
   [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;

@@ -6,6 +6,7 @@
 
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
+#include "rt_core/base/wall_clock.hpp"
 
 namespace cellmirror::mqtt {
 
@@ -25,9 +26,10 @@ JsonConversation::JsonConversation(const MqttConfig& config, Identity identity, 
       wake_(std::move(wake)),
       gate_(config.commands_per_s) {}
 
-std::int64_t JsonConversation::wall_ms() const { return to_wall_clock_ns(clock_.now()) / kNsOfMs; }
+// Of the machine, also where a recording is played.
+std::int64_t JsonConversation::wall_ms() const { return machine_wall_clock_ns(clock_.now()) / kNsOfMs; }
 
-EventStamp JsonConversation::stamp(Timestamp time) { return {++events_, to_wall_clock_ns(time) / kNsOfMs}; }
+EventStamp JsonConversation::stamp() { return {++events_, wall_ms()}; }
 
 void JsonConversation::put(Outgoing message) { outbox_.put(std::move(message)); }
 
@@ -46,15 +48,14 @@ void JsonConversation::put_birth() {
 
 // Streams that are lost and come back, and faults, are changes from summary to summary: a new one comes at once.
 void JsonConversation::changes_of(const CellSummary& summary) {
-  const Timestamp now = clock_.now();
-  if (faults_ && summary.loop.faults > *faults_) put_event(fault_text(stamp(now), summary));
+  if (faults_ && summary.loop.faults > *faults_) put_event(fault_text(stamp(), summary));
   faults_ = summary.loop.faults;
   std::map<std::string, DataState> states;
   for (const RobotSummary& robot : summary.robots) {
     if (!robot.mirrored) continue;
     const auto known = states_.find(robot.id);
     const DataState was = known == states_.end() ? DataState::none : known->second;
-    if (was != robot.state) put_event(stream_text(stamp(now), robot, was));
+    if (was != robot.state) put_event(stream_text(stamp(), robot, was));
     states.emplace(robot.id, robot.state);
   }
   states_ = std::move(states);
@@ -73,7 +74,7 @@ void JsonConversation::summary(const CellSummary& summary, std::string_view text
 void JsonConversation::collision(const ProximityEvent& event) {
   {
     const std::scoped_lock lock(mutex_);
-    put_event(collision_text(stamp(event.posture_time), event));
+    put_event(collision_text({++events_, to_wall_clock_ns(event.posture_time) / kNsOfMs}, event));
   }
   wake_();
 }
@@ -81,7 +82,7 @@ void JsonConversation::collision(const ProximityEvent& event) {
 void JsonConversation::alarm(std::string_view line) {
   {
     const std::scoped_lock lock(mutex_);
-    put_event(alarm_text(stamp(clock_.now()), line));
+    put_event(alarm_text(stamp(), line));
   }
   wake_();
 }

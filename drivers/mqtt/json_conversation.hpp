@@ -67,11 +67,11 @@ class JsonConversation final : public Conversation, public std::enable_shared_fr
   };
 
   [[nodiscard]] std::int64_t wall_ms() const;
-  [[nodiscard]] EventStamp stamp(Timestamp time);  // with the lock
-  void put(Outgoing message);                      // with the lock
-  void put_event(std::string payload);             // with the lock
-  void put_birth();                                // with the lock
-  void changes_of(const CellSummary& summary);     // with the lock
+  [[nodiscard]] EventStamp stamp();             // with the lock
+  void put(Outgoing message);                   // with the lock
+  void put_event(std::string payload);          // with the lock
+  void put_birth();                             // with the lock
+  void changes_of(const CellSummary& summary);  // with the lock
   void reply(const ReplyTo& to, bool done, std::string_view text);
   void refuse(const ReplyTo* to, std::string_view command, const std::string& why);
   void refuse_flood();

@@ -12,6 +12,7 @@
 #include "drivers/mqtt/conversation.hpp"
 #include "drivers/mqtt/sparkplug_node.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/base/wall_clock.hpp"
 
 namespace cellmirror::mqtt {
 
@@ -38,7 +39,7 @@ class SparkplugConversation final : public Conversation {
   [[nodiscard]] std::vector<Outgoing> farewell() override;
 
  private:
-  [[nodiscard]] std::int64_t wall_ms() const { return to_wall_clock_ns(clock_.now()) / 1'000'000; }
+  [[nodiscard]] std::int64_t wall_ms() const { return machine_wall_clock_ns(clock_.now()) / 1'000'000; }
 
   const Clock& clock_;
   const std::function<void()> wake_;
