@@ -86,7 +86,7 @@ set(CELLMIRROR_LAYERS
   "app/new_cell: rt_core/base rt_core/ports rt_core/cell config drivers/can app/io"
   "app/volume_info: rt_core/base rt_core/ports config config/volume app/plot"
   "app/simulation: rt_core/base rt_core/rt rt_core/ports rt_core/motion rt_core/geometry rt_core/collision rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine config scripts/programs/controller app/plot app/console app/snapshot app/owner app/workers"
-  "app/gateway: rt_core/base rt_core/rt rt_core/ports drivers/mqtt rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording app/replay app/playback"
+  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde drivers/mqtt ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording app/replay app/playback"
   "app: *"
   "tests: *")
 

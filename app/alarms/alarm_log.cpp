@@ -107,7 +107,7 @@ void AlarmLog::watch(const std::stop_token& stop) {
       list_.update(conditions, moment());
       changed = list_.take_changed();
     }
-    tell(changed);
+    hand_out(changed);
     wake_.wait(kLookEvery);
   }
   std::vector<Alarm> changed;
@@ -115,10 +115,10 @@ void AlarmLog::watch(const std::stop_token& stop) {
     const std::scoped_lock lock(mutex_);
     changed = list_.take_changed();
   }
-  tell(changed);
+  hand_out(changed);
 }
 
-void AlarmLog::tell(const std::vector<Alarm>& changed) {
+void AlarmLog::hand_out(const std::vector<Alarm>& changed) {
   if (changed.empty()) return;
   if (changed_) changed_(changed);
   save(changed);

@@ -55,7 +55,7 @@ class AlarmLog {
  private:
   void load();
   void watch(const std::stop_token& stop);
-  void tell(const std::vector<Alarm>& changed);
+  void hand_out(const std::vector<Alarm>& changed);
   void save(const std::vector<Alarm>& changed);
   Result<void> append(const std::vector<Alarm>& changed);
   Result<void> write_anew();

@@ -424,7 +424,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
     watch_for_alarms(
         *parts->alarms,
         {parts->collisions->board(), *parts->faults, [all = parts.get()](const auto& look) { all->look_at(look); }},
-        tell_alarms(parts->mqtt.get()));
+        report_alarms(parts->mqtt.get()));
   parts->page->open();
   if (step = parts->start_summaries(dds); !step) return std::unexpected(step.error());
   parts->owner->start();  // last: the startup script finds everything running

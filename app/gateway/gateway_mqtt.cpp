@@ -46,7 +46,7 @@ std::unique_ptr<mqtt::MqttGateway> open_mqtt(const MqttConfig& config, MqttParts
   return std::make_unique<mqtt::MqttGateway>(config, identity, clock, handlers_of(std::move(parts), std::move(source)));
 }
 
-AlarmLog::Changed tell_alarms(mqtt::MqttGateway* gateway) {
+AlarmLog::Changed report_alarms(mqtt::MqttGateway* gateway) {
   if (gateway == nullptr) return {};
   return [gateway](const std::vector<Alarm>& changed) {
     for (const Alarm& alarm : changed) gateway->alarm(alarm_line_of(alarm));

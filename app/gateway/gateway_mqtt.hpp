@@ -11,7 +11,6 @@
 #include "drivers/mqtt/mqtt_gateway.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/mqtt_config.hpp"
-#include "scripts/runner/script_command.hpp"
 
 namespace cellmirror::app {
 
@@ -27,6 +26,6 @@ struct MqttParts {
 // All of `parts` outlives it. Null where the cell file has no [mqtt], or not enabled.
 [[nodiscard]] std::unique_ptr<mqtt::MqttGateway> open_mqtt(const MqttConfig& config, MqttParts parts);
 // For AlarmLog::start().
-[[nodiscard]] AlarmLog::Changed tell_alarms(mqtt::MqttGateway* gateway);
+[[nodiscard]] AlarmLog::Changed report_alarms(mqtt::MqttGateway* gateway);
 
 }  // namespace cellmirror::app

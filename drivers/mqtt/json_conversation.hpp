@@ -98,7 +98,7 @@ class JsonConversation final : public Conversation, public std::enable_shared_fr
   CommandGate gate_;  // the connection's thread, as what follows
   Timestamp flood_told_;
   std::uint64_t flood_untold_ = 0;
-  std::shared_ptr<std::atomic<std::size_t>> waiting_ = std::make_shared<std::atomic<std::size_t>>(0);
+  std::shared_ptr<std::atomic<std::uint64_t>> waiting_ = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
 }  // namespace cellmirror::mqtt

@@ -18,7 +18,7 @@ namespace cellmirror::mqtt {
 
 class SparkplugConversation final : public Conversation {
  public:
-  static constexpr Nanoseconds kRebirthEvery{1'000'000'000};  // at most, whoever asks for it
+  static constexpr Nanoseconds kRebirthEvery{1'000'000'000};  // at most, whatever comes
 
   // `clock` outlives it. `wake` is called after anything was put, by the thread that did.
   SparkplugConversation(const SparkplugConfig& config, const Identity& identity, const Clock& clock,

@@ -100,7 +100,7 @@ void SparkplugNode::see(const CellSummary& summary) {
 void SparkplugNode::see(const RobotState& robot) {
   const auto device = devices_.find(robot.id);
   if (device == devices_.end()) return;
-  // A robot of that name that was loaded anew has other joints: the former ones are forgotten.
+  // A robot of that name that was loaded again may have other joints: the former ones are forgotten.
   if (device->second.metrics.by_name.size() > kMostMetrics) device->second.metrics = Metrics();
   for (const RobotJointState& joint : robot.joints | std::views::take(kMaxJointsPerRobot)) {
     const std::string name = "Joints/" + topic_level(joint.name);

@@ -34,7 +34,7 @@ struct CommandSource {
     return {.kind = Kind::page, .process = 0, .place = {}, .user = {}, .session = session, .peer = std::move(peer)};
   }
 
-  // The broker does not tell who has published a command.
+  // The broker does not say who has published a command.
   [[nodiscard]] static CommandSource mqtt(std::string broker) {
     return {.kind = Kind::mqtt, .process = 0, .place = {}, .user = {}, .session = 0, .peer = std::move(broker)};
   }

@@ -34,7 +34,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // TCP, the beginning of TLS, CONNECT. `host`: where it is known that somebody listens. accepted() tells the answer.
+  // TCP, the beginning of TLS, CONNECT. `host`: where a broker is known to listen. accepted() tells the answer.
   [[nodiscard]] Result<void> connect(const std::string& host);
   [[nodiscard]] bool accepted() const;
   // Why it is over; none: it is not.

@@ -1,4 +1,4 @@
-// Whether somebody listens at the address of a broker. The library for MQTT connects with a call that waits as long as
+// Whether a program listens at the address of a broker. The library for MQTT connects with a call that waits as long as
 // the kernel does, which may be minutes: it is only called where this one was answered.
 #pragma once
 

@@ -98,11 +98,13 @@ def publish(broker, topic, payload, options=()):
         raise AssertionError(done.stderr)
 
 
-def ask(broker, document, answer=f"{BASE}/reply/tester"):
-    """The answer to a command that is sent with MQTT 5's response topic."""
+def ask(broker, document, answer=f"{BASE}/reply/tester", patience=g.PATIENCE_S):
+    """The answer to a command that is sent with MQTT 5's response topic; None where none comes."""
     done = subprocess.run(["mosquitto_rr", "-h", "127.0.0.1", "-p", str(broker.port), "-V", "5", "-q", "1", "-t", f"{BASE}/command", "-e",
-                           answer, "-m", json.dumps(document), "-W", str(g.PATIENCE_S)],
+                           answer, "-m", json.dumps(document), "-W", str(patience)],
                           capture_output=True, text=True, timeout=2 * g.PATIENCE_S)
+    if "Timed out" in done.stderr:
+        return None
     if done.returncode != 0:
         raise AssertionError(done.stderr)
     return json.loads(done.stdout)
