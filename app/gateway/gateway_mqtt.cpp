@@ -12,7 +12,7 @@ namespace cellmirror::app {
 
 namespace {
 
-mqtt::CommandHandlers handlers_of(MqttParts parts, script::CommandSource source) {
+mqtt::CommandHandlers handlers_of(MqttParts parts, const script::CommandSource& source) {
   const auto refused = [refused = std::move(parts.refused), source](std::string_view command, const std::string& why) {
     refused(source, command, why);
   };
@@ -42,8 +42,8 @@ std::unique_ptr<mqtt::MqttGateway> open_mqtt(const MqttConfig& config, MqttParts
   if (!config.enabled) return nullptr;
   const Clock& clock = parts.clock;
   const mqtt::Identity identity{parts.cell, parts.instance, host_name(), CELLMIRROR_VERSION};
-  auto source = script::CommandSource::mqtt(fmt::format("broker {}:{}", config.broker, config.port));
-  return std::make_unique<mqtt::MqttGateway>(config, identity, clock, handlers_of(std::move(parts), std::move(source)));
+  const auto source = script::CommandSource::mqtt(fmt::format("broker {}:{}", config.broker, config.port));
+  return std::make_unique<mqtt::MqttGateway>(config, identity, clock, handlers_of(std::move(parts), source));
 }
 
 AlarmLog::Changed report_alarms(mqtt::MqttGateway* gateway) {

@@ -34,7 +34,10 @@ std::vector<RobotState> make_robots() {
   for (int i = 0; i < kRobots; ++i) {
     out[i].id = "robot_" + std::to_string(i);
     out[i].joints.resize(kJoints);
-    for (int j = 0; j < kJoints; ++j) out[i].joints[j] = {.name = "J_" + std::to_string(j), .position = 0.1234567 * j};
+    for (int j = 0; j < kJoints; ++j) {
+      out[i].joints[j].name = "J_" + std::to_string(j);
+      out[i].joints[j].position = 0.1234567 * j;
+    }
   }
   return out;
 }
@@ -70,7 +73,10 @@ int main(int argc, char** argv) {
   CellSummary summary = make_summary();
   const std::string text(2000, 'x');  // as long as that of eight robots
   ProximityState found;
-  found.events = {{.change = ProximityChange::touched, .a = "robot_0.hand", .b = "robot_1.hand"}};
+  found.events.resize(1);
+  found.events[0].change = ProximityChange::touched;
+  found.events[0].a = "robot_0.hand";
+  found.events[0].b = "robot_1.hand";
   const double before = resident_mb();
   const auto begin = std::chrono::steady_clock::now();
   Timestamp time = clock.now();

@@ -15,7 +15,10 @@ TEST(MqttPayloads, BirthAndLastWill) {
 }
 
 TEST(MqttPayloads, Events) {
-  ProximityEvent event{.sequence = 3, .change = ProximityChange::touched, .a = "x.R1.hand", .b = "x.table"};
+  ProximityEvent event;
+  event.change = ProximityChange::touched;
+  event.a = "x.R1.hand";
+  event.b = "x.table";
   event.short_a = "R1.hand";
   EXPECT_EQ(
       collision_text({1, 1000}, event),

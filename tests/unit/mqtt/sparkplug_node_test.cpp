@@ -41,9 +41,9 @@ TEST(SparkplugPayload, ACommandAsksForRebirthOrNot) {
   const auto command = [](const std::string& name, bool value) {
     return encode({.metrics = {{name, SparkplugType::boolean, value}}});
   };
-  EXPECT_EQ(asks_for_rebirth(command("Node Control/Rebirth", true)), Result<bool>(true));
-  EXPECT_EQ(asks_for_rebirth(command("Node Control/Rebirth", false)), Result<bool>(false));
-  EXPECT_EQ(asks_for_rebirth(command("Node Control/Reboot", true)), Result<bool>(false));
+  EXPECT_TRUE(asks_for_rebirth(command("Node Control/Rebirth", true)).value());
+  EXPECT_FALSE(asks_for_rebirth(command("Node Control/Rebirth", false)).value());
+  EXPECT_FALSE(asks_for_rebirth(command("Node Control/Reboot", true)).value());
   EXPECT_FALSE(asks_for_rebirth("\xFF\xFF\xFF"));
   EXPECT_FALSE(asks_for_rebirth(std::string(kMostSparkplugCommandBytes + 1, '\0')));
   std::string many;
