@@ -159,7 +159,7 @@ TEST_F(Node, DevicesTakeTurns) {
     node_.see(next);
     seen.push_back(node_.next(1)->topic.substr(22));
   }
-  EXPECT_EQ(seen, (std::vector<std::string>{"/R1", "/R2", "/R1", "/R2"}));
+  EXPECT_EQ(seen, (std::vector<std::string>{"R1", "R2", "R1", "R2"}));
 }
 
 }  // namespace
