@@ -26,6 +26,8 @@ find_path(GDCM_INCLUDE_DIRS gdcmReader.h PATH_SUFFIXES gdcm-3.0 REQUIRED)
 foreach(library gdcmCommon gdcmDICT gdcmDSED gdcmMSFF)
   find_library(${library}_LIBRARY ${library} REQUIRED)
 endforeach()
+pkg_check_modules(MOSQUITTO REQUIRED IMPORTED_TARGET libmosquitto)  # drivers/mqtt, as is protobuf (Sparkplug B)
+find_package(Protobuf REQUIRED)
 find_package(Qhull REQUIRED)   # rt_core/geometry: convex hulls
 # drivers/display. Of OSMesa and EGL only the headers: the libraries are opened when a picture is wanted.
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)

@@ -151,6 +151,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
                     reader.dds,
                     reader.ros,
                     reader.dds_network,
+                    reader.mqtt,
                     reader.queues,
                     reader.web,
                     std::move(reader.record),

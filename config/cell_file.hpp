@@ -28,6 +28,7 @@
 #include "rt_core/ports/display_layout.hpp"
 #include "rt_core/ports/io_config.hpp"
 #include "rt_core/ports/light_barrier.hpp"
+#include "rt_core/ports/mqtt_config.hpp"
 #include "rt_core/ports/ros_presence.hpp"
 #include "rt_core/ports/stream_config.hpp"
 #include "rt_core/ports/view_change.hpp"
@@ -92,6 +93,7 @@ struct LoadedCell {
   DdsOutputConfig dds;
   RosPresence ros;
   DdsNetworkConfig dds_network;
+  MqttConfig mqtt;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;

@@ -11,6 +11,7 @@
 #include "config/display_reader.hpp"
 #include "config/foot_switch_reader.hpp"
 #include "config/haptic_reader.hpp"
+#include "config/mqtt_reader.hpp"
 #include "config/node_reader.hpp"
 #include "config/record_reader.hpp"
 #include "config/stream_reader.hpp"
@@ -72,6 +73,7 @@ bool CellReader::read(std::string_view text) {
   read_loop(top);
   dds.security = read_dds(top, files_, ros, dds_network);
   read_dds_output(top);
+  mqtt = read_mqtt(top, files_);
   read_queues(top);
   web = read_web(top);
   record = read_record(top);

@@ -43,6 +43,7 @@ class CellReader {
   DdsOutputConfig dds;
   RosPresence ros;
   DdsNetworkConfig dds_network;
+  MqttConfig mqtt;
   QueueOverrides queues;
   WebSettings web;
   RecordSettings record;

@@ -84,8 +84,9 @@ void AlarmLog::load() {
   }
 }
 
-void AlarmLog::start(std::function<std::vector<AlarmCondition>()> conditions) {
+void AlarmLog::start(std::function<std::vector<AlarmCondition>()> conditions, Changed changed) {
   conditions_ = std::move(conditions);
+  changed_ = std::move(changed);
   thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
 }
 
@@ -106,7 +107,7 @@ void AlarmLog::watch(const std::stop_token& stop) {
       list_.update(conditions, moment());
       changed = list_.take_changed();
     }
-    save(changed);
+    hand_out(changed);
     wake_.wait(kLookEvery);
   }
   std::vector<Alarm> changed;
@@ -114,11 +115,17 @@ void AlarmLog::watch(const std::stop_token& stop) {
     const std::scoped_lock lock(mutex_);
     changed = list_.take_changed();
   }
+  hand_out(changed);
+}
+
+void AlarmLog::hand_out(const std::vector<Alarm>& changed) {
+  if (changed.empty()) return;
+  if (changed_) changed_(changed);
   save(changed);
 }
 
 void AlarmLog::save(const std::vector<Alarm>& changed) {
-  if (!options_.file || changed.empty()) return;
+  if (!options_.file) return;
   const Result<void> saved = append(changed);
   const std::string problem = saved ? std::string() : saved.error().text();
   const std::scoped_lock lock(mutex_);

@@ -37,8 +37,11 @@ class AlarmLog {
   AlarmLog(const AlarmLog&) = delete;
   AlarmLog& operator=(const AlarmLog&) = delete;
 
-  // `conditions`: all that are so now; called by the log's thread until stop() has returned.
-  void start(std::function<std::vector<AlarmCondition>()> conditions);
+  using Changed = std::function<void(const std::vector<Alarm>& changed)>;
+
+  // `conditions`: all that are so now; `changed`, which may be empty, is given those that have changed. Both are called
+  // by the log's thread until stop() has returned.
+  void start(std::function<std::vector<AlarmCondition>()> conditions, Changed changed = {});
   // Writes what is left. Alarms can still be acknowledged then, without a file.
   void stop();
 
@@ -52,6 +55,7 @@ class AlarmLog {
  private:
   void load();
   void watch(const std::stop_token& stop);
+  void hand_out(const std::vector<Alarm>& changed);
   void save(const std::vector<Alarm>& changed);
   Result<void> append(const std::vector<Alarm>& changed);
   Result<void> write_anew();
@@ -60,6 +64,7 @@ class AlarmLog {
   Options options_;
   const Clock& clock_;
   std::function<std::vector<AlarmCondition>()> conditions_;
+  Changed changed_;
 
   // The thread's own.
   Descriptor file_;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/gateway/gateway_alarms.hpp"
+#include "app/gateway/gateway_mqtt.hpp"
 #include "app/gateway/gateway_parts.hpp"
 #include "app/gateway/loaded_cell.hpp"
 #include "app/gateway/picture_outputs.hpp"
@@ -243,10 +244,21 @@ Result<void> Gateway::Parts::start_messages() {
   return messages->start(take, refused);
 }
 
+// A recording that is played takes no commands.
+void Gateway::Parts::start_mqtt(const MqttConfig& settings, bool publish) {
+  if (playback != nullptr && !publish) return;
+  MqttConfig wanted = settings;
+  wanted.commands = wanted.commands && playback == nullptr;
+  mqtt = open_mqtt(wanted, {cell_name, instance->info().name, machine_clock, *owner,
+                            [this](const script::CommandSource& source, std::string_view command,
+                                   const std::string& why) { note_refused(source, command, why); }});
+}
+
 Result<void> Gateway::Parts::start_outputs(const DdsOutputConfig& dds, bool publish) {
   Result<std::vector<PublishedOutput>> outputs;
   if (playback == nullptr || publish) outputs = make_outputs(queues, dds, instance->info().name);
   if (!outputs) return std::unexpected(outputs.error());
+  if (mqtt) add_output(*outputs, mqtt->states_output(), mqtt->states_rate_hz());
   publisher =
       std::make_unique<Publisher>(readers->publisher, board, collisions->board(), ranging->board(), forces->board(),
                                   clock, loop->options().period, std::move(*outputs), tissue_sources());
@@ -305,6 +317,7 @@ void Gateway::Parts::start_fault_monitor() {
 Result<void> Gateway::Parts::start_summaries(const DdsOutputConfig& dds) {
   auto outputs = make_summary_outputs(dds);
   if (!outputs) return std::unexpected(outputs.error());
+  if (mqtt) outputs->push_back(mqtt->summary_output());
   run = fmt::format("{:x}-{:x}", machine_wall_clock_ns(started), getpid());
   summaries = std::make_unique<SummaryPublisher>(std::move(*outputs), [this] { return summary(); }, machine_clock);
   return {};
@@ -379,6 +392,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   dds.enabled = dds.enabled && (options.playback == nullptr || options.publish);
   const PictureSettings pictures = loaded->pictures;
   const WebSettings web = loaded->web;
+  const MqttConfig mqtt_settings = loaded->mqtt;
   const RecordSettings record = loaded->record;
   const Eigen::Vector3d gravity_W = loaded->gravity_m_s2;
   parts->barriers = std::move(loaded->barriers);
@@ -396,6 +410,7 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   if (step) step = parts->start_messages();
   if (step) step = parts->start_loop();
   if (step) parts->start_sensing(gravity_W);
+  if (step) parts->start_mqtt(mqtt_settings, options.publish);
   if (step) step = parts->start_outputs(dds, options.publish);
   if (step) step = parts->start_renderer(pictures, options.headless, dds);
   if (!step) return std::unexpected(step.error());
@@ -406,8 +421,10 @@ Result<std::unique_ptr<Gateway>> Gateway::start(const GatewayOptions& options) {
   parts->start_recorder(record);
   if (step = parts->start_control(); !step) return std::unexpected(step.error());
   if (live)
-    watch_for_alarms(*parts->alarms, {parts->collisions->board(), *parts->faults,
-                                      [all = parts.get()](const auto& look) { all->look_at(look); }});
+    watch_for_alarms(
+        *parts->alarms,
+        {parts->collisions->board(), *parts->faults, [all = parts.get()](const auto& look) { all->look_at(look); }},
+        report_alarms(parts->mqtt.get()));
   parts->page->open();
   if (step = parts->start_summaries(dds); !step) return std::unexpected(step.error());
   parts->owner->start();  // last: the startup script finds everything running

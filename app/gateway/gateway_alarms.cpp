@@ -28,14 +28,16 @@ std::unique_ptr<AlarmLog> open_alarm_log(const KismetHome& home, std::string_vie
   return std::make_unique<AlarmLog>(std::move(options), clock);
 }
 
-void watch_for_alarms(AlarmLog& alarms, AlarmSources sources) {
-  alarms.start([of = std::move(sources), conditions = AlarmConditions()]() mutable {
-    std::vector<AlarmCondition> out;
-    const std::vector<ProximityEvent> events = of.collisions.events_after(conditions.newest_event());
-    const FaultStatus faults = of.faults.status();
-    of.at([&](const LiveSources& live) { out = conditions.look(live, faults, events); });
-    return out;
-  });
+void watch_for_alarms(AlarmLog& alarms, AlarmSources sources, AlarmLog::Changed changed) {
+  alarms.start(
+      [of = std::move(sources), conditions = AlarmConditions()]() mutable {
+        std::vector<AlarmCondition> out;
+        const std::vector<ProximityEvent> events = of.collisions.events_after(conditions.newest_event());
+        const FaultStatus faults = of.faults.status();
+        of.at([&](const LiveSources& live) { out = conditions.look(live, faults, events); });
+        return out;
+      },
+      std::move(changed));
 }
 
 AlarmLines alarm_lines(const AlarmLog& alarms) {

@@ -25,7 +25,7 @@ struct AlarmSources {
   const FaultMonitor& faults;
   std::function<void(const std::function<void(const LiveSources&)>&)> at;  // hands in everything as of now
 };
-void watch_for_alarms(AlarmLog& alarms, AlarmSources sources);
+void watch_for_alarms(AlarmLog& alarms, AlarmSources sources, AlarmLog::Changed changed = {});
 // For recordings; `alarms` outlives what comes back.
 [[nodiscard]] AlarmLines alarm_lines(const AlarmLog& alarms);
 

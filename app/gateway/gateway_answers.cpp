@@ -1,11 +1,10 @@
 // What a running gateway answers: status, the page's news, requests of the control socket.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
 #include <utility>
 
 #include "app/gateway/gateway_parts.hpp"
+#include "app/gateway/host_name.hpp"
 #include "app/gateway/playback_request.hpp"
 #include "app/pictures/snapshot_request.hpp"
 #include "app/report/cell_summary_builder.hpp"
@@ -17,16 +16,6 @@
 #include "rt_core/base/wall_clock.hpp"
 
 namespace cellmirror::app {
-
-namespace {
-
-// As the machine calls itself; empty where that cannot be known.
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
-}
-
-}  // namespace
 
 void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
   const Result<ControlRequest> request = parse_control_request(line);
@@ -111,7 +100,8 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
         tissue_sources().newest_report(),
         renderer->counters(),
         playback != nullptr ? alarm_report().counts : alarms->counts(),
-        playback_state()});
+        playback_state(),
+        [this] { return output_counters(); }});
 }
 
 Problems Gateway::Parts::problems() const {
@@ -129,6 +119,7 @@ Problems Gateway::Parts::problems() const {
   if (summaries) {
     for (const auto& output : summaries->outputs()) add("summary", output->problem());
   }
+  if (mqtt) add("mqtt", mqtt->problem());
   if (playback == nullptr && (guard == nullptr || !guard->running())) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
                                    "restart the gateway",
@@ -153,17 +144,21 @@ CellSummary Gateway::Parts::summary() {
   return out;
 }
 
+OutputCounters Gateway::Parts::output_counters() const {
+  OutputCounters out;
+  for (const PublishedOutput& output : publisher->outputs())
+    out.emplace_back(output.output->name(), output.output->counters());
+  if (summaries) {
+    for (const auto& output : summaries->outputs()) out.emplace_back(output->name(), output->counters());
+  }
+  for (const ImageOutput* output : renderer->outputs()) out.emplace_back(output->name(), output->counters());
+  return out;
+}
+
 std::string Gateway::Parts::status() {
   const std::shared_ptr<const CellState> cell_state = board.latest();
   const std::scoped_lock lock(answering);
   const engine::TickState& tick = readers->status.newest();
-  std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>> outputs;
-  for (const PublishedOutput& output : publisher->outputs())
-    outputs.emplace_back(output.output->name(), output.output->counters());
-  if (summaries) {
-    for (const auto& output : summaries->outputs()) outputs.emplace_back(output->name(), output->counters());
-  }
-  for (const ImageOutput* output : renderer->outputs()) outputs.emplace_back(output->name(), output->counters());
   const FaultStatus fault_status = faults ? faults->status() : FaultStatus();
   const ScriptMessageStatus message_status = messages->status();
   const CollisionReport collision_report = collisions->report();
@@ -194,7 +189,7 @@ std::string Gateway::Parts::status() {
                           render_report,
                           page_report,
                           thread_queues(*cell_state),
-                          std::move(outputs),
+                          output_counters(),
                           problems(),
                           {guard != nullptr && guard->running(), guard != nullptr ? guard->process() : 0},
                           command_log(),

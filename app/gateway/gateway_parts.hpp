@@ -42,6 +42,7 @@
 #include "app/workers/tissue_worker.hpp"
 #include "app/workers/trace_worker.hpp"
 #include "config/cell_file.hpp"
+#include "drivers/mqtt/mqtt_gateway.hpp"
 #include "ipc/control/control_request.hpp"
 #include "ipc/control/control_server.hpp"
 #include "ipc/control/instance.hpp"
@@ -100,6 +101,7 @@ struct Gateway::Parts {
   std::unique_ptr<ForceWorker> forces;
   std::unique_ptr<TcpForceWorker> tcp_force;
   std::unique_ptr<TraceWorker> traces;
+  std::unique_ptr<mqtt::MqttGateway> mqtt;  // null: not wanted; the publisher has outputs of it
   std::unique_ptr<Publisher> publisher;
   std::unique_ptr<RenderService> renderer;
   std::unique_ptr<SceneService> scene;
@@ -123,6 +125,7 @@ struct Gateway::Parts {
     scene.reset();
     renderer.reset();
     publisher.reset();
+    if (mqtt) mqtt->stop();
     forces.reset();
     tcp_force.reset();
     contacts.reset();
@@ -159,6 +162,7 @@ struct Gateway::Parts {
   Result<void> start_loop();
   void start_sensing(const Eigen::Vector3d& gravity_W);
   Result<void> start_messages();
+  void start_mqtt(const MqttConfig& settings, bool publish);
   Result<void> start_outputs(const DdsOutputConfig& dds, bool publish);
   Result<void> start_renderer(const PictureSettings& settings, bool headless, const DdsOutputConfig& dds);
   void start_recorder(const RecordSettings& settings);
@@ -175,6 +179,7 @@ struct Gateway::Parts {
   std::string status();
   web::Health health();
   CellSummary summary();
+  [[nodiscard]] OutputCounters output_counters() const;
   [[nodiscard]] Problems problems() const;
   [[nodiscard]] CommandLogReport command_log() const { return commands ? commands->report() : CommandLogReport{}; }
   [[nodiscard]] std::vector<engine::QueueStatus> thread_queues(const CellState& cell_state) const;

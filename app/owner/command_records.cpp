@@ -12,6 +12,8 @@ const char* word(script::CommandSource::Kind kind) {
       return "message";
     case script::CommandSource::Kind::page:
       return "page";
+    case script::CommandSource::Kind::mqtt:
+      return "mqtt";
     case script::CommandSource::Kind::file:
       return "file";
     case script::CommandSource::Kind::program:

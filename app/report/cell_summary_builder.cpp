@@ -62,7 +62,9 @@ class HealthFinder {
 void add_health(const LiveSources& sources, const web::Health& loop, CellSummary& out) {
   HealthFinder health(out);
   if (!loop.ok) health.add(CellHealth::fault, loop.text);
-  for (const Problem& problem : sources.problems) health.add(CellHealth::fault, problem.text);
+  // A broker that is away is no fault of the cell.
+  for (const Problem& problem : sources.problems)
+    health.add(problem.kind == "mqtt" ? CellHealth::attention : CellHealth::fault, problem.text);
   if (out.touching > 0) health.add(CellHealth::attention, number_of(out.touching, "pair") + " of bodies in contact");
   for (const RobotSummary& robot : out.robots) {
     if (robot.mirrored && robot.state != DataState::fresh)

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/report/problem.hpp"
@@ -24,6 +26,9 @@
 #include "rt_core/rt/cyclic_thread.hpp"
 
 namespace cellmirror::app {
+
+// What each output counts, by its name.
+using OutputCounters = std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::uint64_t>>>>;
 
 // As of one moment.
 struct LiveSources {
@@ -47,7 +52,8 @@ struct LiveSources {
   std::shared_ptr<const TissueReport> tissue = nullptr;  // null: no deformable objects
   RendererCounters renderer = {};                        // of the newest picture
   AlarmCounts alarms = {};
-  std::optional<PlaybackState> playback = {};  // of a recording; none: real robots
+  std::optional<PlaybackState> playback = {};    // of a recording; none: real robots
+  std::function<OutputCounters()> outputs = {};  // empty: there are none
 };
 
 // Percentiles of the loop since the last time this was asked, so that a chart shows what is going on now. One thread at

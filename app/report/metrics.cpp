@@ -144,6 +144,13 @@ void add_traffic(MetricsText& out, const LiveSources& sources, const web::Server
   out.family("cellmirror_queue_passed_total", "counter", "Values that went into a queue between threads.");
   for (const engine::QueueStatus& queue : sources.queues)
     out.sample(static_cast<double>(queue.passed), {{"queue", queue.name}});
+  if (sources.outputs) {
+    out.family("cellmirror_output", "gauge", "What an output counts, as queues[] of status has it.");
+    for (const auto& [name, counters] : sources.outputs()) {
+      for (const auto& [counter, value] : counters)
+        out.sample(static_cast<double>(value), {{"output", name}, {"counter", counter}});
+    }
+  }
   const script::SourceCounters script = sources.cell_state.script.all();
   out.one("cellmirror_script_done_total", "counter", "SCRIPT commands carried out.", static_cast<double>(script.done));
   out.one("cellmirror_script_refused_total", "counter", "SCRIPT commands refused.",

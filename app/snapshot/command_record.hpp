@@ -13,11 +13,11 @@ struct CommandRecord {
   double took_s = 0;
   std::uint64_t tick = 0;                  // the newest one when its outcome was known; 0: none yet
   std::uint64_t loop_command = 0;          // the newest command to the loop by then; 0: none, or unknown
-  std::string source = {};                 // message, page, file, program
+  std::string source = {};                 // message, page, mqtt, file, program
   std::int32_t process = 0;                // of a message; 0: unknown
   std::optional<std::uint32_t> user = {};  // of that process
   std::uint64_t session = 0;               // of the page: number of its connection since the start
-  std::string peer = {};                   // of the page: "uid 1000", or the address of another machine
+  std::string peer = {};                   // of the page: "uid 1000", or the address of another machine; the broker
   std::string place = {};                  // of a file or a program: "scripts/a.spt:12"
   std::uint64_t run = 0;                   // of a file
   std::string command = {};

@@ -16,6 +16,8 @@ class WakeSignal {
   void wake() noexcept;
   // True where it was woken, false where `timeout` ran out.
   bool wait(Nanoseconds timeout) noexcept;
+  // Readable while it was woken and wait() was not called since: for a waiter that waits for other descriptors too.
+  [[nodiscard]] int descriptor() const noexcept { return event_.get(); }
 
  private:
   Descriptor event_;

@@ -98,6 +98,7 @@ SourceCounters& ScriptRunner::counters_of(CommandSource::Kind from) {
       return counters_.file;
     case CommandSource::Kind::message:
     case CommandSource::Kind::page:
+    case CommandSource::Kind::mqtt:
       return counters_.message;
     case CommandSource::Kind::program:
       return counters_.program;

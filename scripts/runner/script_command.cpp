@@ -10,6 +10,8 @@ std::string CommandSource::text() const {
       return process > 0 ? fmt::format("message from process {}", process) : "message";
     case Kind::page:
       return "monitor page";
+    case Kind::mqtt:
+      return "MQTT";
     case Kind::file:
     case Kind::program:
       return place;

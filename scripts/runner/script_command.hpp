@@ -15,8 +15,9 @@ namespace cellmirror::script {
 
 // For errors, the log and the counters.
 struct CommandSource {
-  // message: the SCRIPT queue; page: the monitor page; file: a SCRIPT file; program: a comment of a robot program.
-  enum class Kind : std::uint8_t { message, page, file, program };
+  // message: the SCRIPT queue; page: the monitor page; mqtt: a broker; file: a SCRIPT file; program: a comment of a
+  // robot program.
+  enum class Kind : std::uint8_t { message, page, mqtt, file, program };
 
   Kind kind = Kind::message;
   std::int32_t process = 0;  // of a message; 0: unknown
@@ -24,7 +25,7 @@ struct CommandSource {
   // For the log of commands.
   std::optional<std::uint32_t> user = {};  // of the process of a message
   std::uint64_t session = 0;               // of the page
-  std::string peer = {};                   // of the page: who is at the other end of the connection
+  std::string peer = {};  // of the page: who is at the other end of the connection; of MQTT: the broker
 
   [[nodiscard]] static CommandSource message(std::int32_t process, std::optional<std::uint32_t> user = {}) {
     return {.kind = Kind::message, .process = process, .place = {}, .user = user};
@@ -33,7 +34,12 @@ struct CommandSource {
     return {.kind = Kind::page, .process = 0, .place = {}, .user = {}, .session = session, .peer = std::move(peer)};
   }
 
-  // "message from process 12", "monitor page", the place
+  // The broker does not say who has published a command.
+  [[nodiscard]] static CommandSource mqtt(std::string broker) {
+    return {.kind = Kind::mqtt, .process = 0, .place = {}, .user = {}, .session = 0, .peer = std::move(broker)};
+  }
+
+  // "message from process 12", "monitor page", "MQTT", the place
   [[nodiscard]] std::string text() const;
 };
 

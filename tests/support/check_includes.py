@@ -11,7 +11,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+([<"])([^>"]+)[>"]', re.MULTIL
 # Each of these is private to the folder that links it. (What may show: the standard library, POSIX, Eigen,
 # fmt/core.h, Boost's lock-free queue inside our own.)
 PRIVATE_LIBRARIES = re.compile(r"^(fcl|ccd|coin|Ip[A-Z]|GL/|GLES|EGL|fastdds|fastrtps|fastcdr|ft2build|freetype|nlohmann|toml\+\+|toml\.hpp"
-                               r"|tinyxml2|spdlog|CLI/|dds/|urdf|assimp|embree|civetweb|turbojpeg|png|cairo|gdcm)")
+                               r"|tinyxml2|spdlog|CLI/|dds/|urdf|assimp|embree|civetweb|turbojpeg|png|cairo|gdcm|mosquitto|mqtt_protocol|google/protobuf|.*\.pb\.h)")
 # The programs' own folders: nobody includes them whom cmake/Layers.cmake does not name, and their headers may show what
 # they like.
 PROGRAM_FOLDERS = ("app", "sim_devices", "tests")

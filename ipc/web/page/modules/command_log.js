@@ -11,6 +11,7 @@ export function source_text(entry) {
     return entry.user === undefined ? process : `${process} of uid ${entry.user}`;
   }
   if (entry.source === "page") return [`page session ${entry.session ?? "?"}`, entry.peer].filter(Boolean).join(", ");
+  if (entry.source === "mqtt") return ["MQTT", entry.peer].filter(Boolean).join(", ");
   return entry.place ?? entry.source ?? "";
 }
 
