@@ -1,8 +1,11 @@
-// A CANopen master that loads the drives which the gateway answers for ([[device]]): all of them in cyclic synchronous
-// position, a target to each and SYNC in every period. Prints how long after SYNC their TPDOs came, SDO answers took,
-// and beside them the raw echo of such a channel in the same run: a frame to a thread that sends another one back. It
-// has a channel of its own, since each frame of the drives would wake that thread.
+// A CANopen master that loads the drives which the gateway answers for ([[device]]): all of them in cyclic
+// synchronous position, a target to each and SYNC in every period. Prints how long after SYNC their TPDOs came, SDO
+// answers took, and beside them the raw echo of such a channel in the same run: a frame to a thread that sends
+// another one back. It has a channel of its own, since each frame of the drives would wake that thread. Both have
+// SCHED_FIFO where that is allowed, as a controller has.
 //   device_load ENDPOINT ECHO_ENDPOINT NODES RATE_HZ SECONDS
+#include <sched.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,6 +36,7 @@ constexpr std::uint32_t kSdoRequest = 0x600;
 constexpr std::uint32_t kPing = 0x7F0;  // used by nobody else
 constexpr std::uint32_t kPong = 0x7F1;
 constexpr std::int64_t kPatience_ns = 5'000'000'000;
+constexpr int kPriority = 10;  // below the gateway's threads
 constexpr std::int64_t kLastAnswers_ns = 100'000'000;
 
 using Bytes = std::array<std::uint8_t, 8>;
@@ -265,6 +269,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: device_load ENDPOINT ECHO_ENDPOINT NODES RATE_HZ SECONDS\n");
     return 2;
   }
+  sched_param priority{};
+  priority.sched_priority = kPriority;
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) std::fprintf(stderr, "SCHED_FIFO is not allowed\n");
   CanChannelConfig config;
   config.endpoint = argv[1];
   CanChannelConfig beside;
