@@ -98,15 +98,16 @@ class Master {
   }
 
   // All axes rest for some periods and turn with one velocity then.
-  // Ends with the time also where the channel does not carry the rate; report() tells how many periods there were.
+  // Periods that this program missed are left out: a controller does not send several SYNCs at once.
   void run(double seconds) {
-    const std::int64_t begin = clock_.now().ns + period_ns_;
-    const std::int64_t end = begin + static_cast<std::int64_t>(1e9 * seconds);
-    for (std::int64_t n = 0; begin + n * period_ns_ < end && clock_.now().ns < end; ++n) {
-      const std::int64_t due = begin + n * period_ns_;
+    std::int64_t due = clock_.now().ns + period_ns_;
+    const std::int64_t end = due + static_cast<std::int64_t>(1e9 * seconds);
+    for (std::int64_t n = 0; due < end; ++n, due += period_ns_) {
       hear_until(due, n);
       count_missing(n);
-      if (clock_.now().ns > due + period_ns_ / 2) ++late_;
+      const std::int64_t behind = clock_.now().ns - due;
+      if (behind > period_ns_ / 2) ++late_;
+      due += behind / period_ns_ * period_ns_;
       cycle(n);
       periods_ = n + 1;
     }
@@ -208,6 +209,9 @@ class Master {
       const Nanoseconds longest(std::max<std::int64_t>(until - now, 0));
       if (channel_->receive(got, longest) == CanReceive::frame) take(got.frame, n);
     }
+    // What has come already.
+    for (std::uint32_t i = 0; i < 4 * nodes_ && channel_->receive(got, Nanoseconds(0)) == CanReceive::frame; ++i)
+      take(got.frame, n);
   }
 
   void ping() {
