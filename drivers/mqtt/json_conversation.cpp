@@ -87,8 +87,8 @@ void JsonConversation::alarm(std::string_view line) {
   wake_();
 }
 
-void JsonConversation::joint_states(const RobotState& robot, Timestamp time) {
-  {
+void JsonConversation::joint_states(std::span<const RobotState> robots, Timestamp time) {
+  for (const RobotState& robot : robots) {
     const std::scoped_lock lock(mutex_);
     put({.kind = Outgoing::Kind::joint_states,
          .topic = topics_.joint_states(robot.id),

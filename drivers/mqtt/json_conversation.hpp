@@ -48,7 +48,7 @@ class JsonConversation final : public Conversation, public std::enable_shared_fr
   void summary(const CellSummary& summary, std::string_view text);
   void collision(const ProximityEvent& event);
   void alarm(std::string_view line);
-  void joint_states(const RobotState& robot, Timestamp time);
+  void joint_states(std::span<const RobotState> robots, Timestamp time);
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const;
 
   [[nodiscard]] Outgoing begin() override;

@@ -84,10 +84,8 @@ class States final : public StatesOutput {
     constexpr Nanoseconds kEarly{static_cast<std::int64_t>(0.5e9 / (2 * kLeastLook_hz))};
     if (period_ == Nanoseconds{0} || (due_.known() && time + std::min(kEarly, period_ / 2) < due_)) return;
     due_ = due_.known() && time - due_ < period_ ? due_ + period_ : time + period_;
-    for (const RobotState& robot : robots) {
-      json_.joint_states(robot, time);
-      if (node_ != nullptr) node_->joint_states(robot);
-    }
+    json_.joint_states(robots, time);
+    if (node_ != nullptr) node_->joint_states(robots);
   }
   void publish_proximity(const ProximityState& state) override {
     for (const ProximityEvent& event : state.events) json_.collision(event);

@@ -12,8 +12,8 @@ void SparkplugConversation::summary(const CellSummary& summary) {
   wake_();
 }
 
-void SparkplugConversation::joint_states(const RobotState& robot) {
-  {
+void SparkplugConversation::joint_states(std::span<const RobotState> robots) {
+  for (const RobotState& robot : robots) {
     const std::scoped_lock lock(mutex_);
     node_.see(robot);
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,7 +28,7 @@ class SparkplugConversation final : public Conversation {
 
   // Any thread.
   void summary(const CellSummary& summary);
-  void joint_states(const RobotState& robot);
+  void joint_states(std::span<const RobotState> robots);
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const;
 
   [[nodiscard]] Outgoing begin() override;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFirstRefusal = 128;             // of the reason codes of MQTT 5 (2.4)
 constexpr std::uint32_t kMostPacket = 65'536;  // that the broker may send, so that it cannot fill the memory
-constexpr int kReadsAtOnce = 16;
+constexpr int kTlsReads = 16;
 constexpr int kSubscriptionQos = 2;  // the publisher's choice counts: 4.3
 constexpr const char* kSystemAuthorities = "/etc/ssl/certs";
 
@@ -63,6 +63,7 @@ void prepare_library() {
 struct Session::Impl {
   mosquitto* client = nullptr;
   bool old_protocol = false;
+  bool tls = false;
   std::uint16_t port = 0;
   int keep_alive_s = 10;
   std::function<void(const Incoming&)> received;
@@ -162,8 +163,8 @@ struct Session::Impl {
 
   void read_and_write(short events) {
     if ((events & (POLLIN | POLLERR | POLLHUP)) != 0) {
-      // Several, since the library may have decrypted more than one packet already, of which poll() knows nothing.
-      for (int i = 0; i < kReadsAtOnce && !end; ++i) check(mosquitto_loop_read(client, 1));
+      // With TLS several, since more than one packet may have been decrypted already, of which poll() knows nothing.
+      for (int i = 0; i < (tls ? kTlsReads : 1) && !end; ++i) check(mosquitto_loop_read(client, 1));
     }
     if (!end && mosquitto_want_write(client)) check(mosquitto_loop_write(client, 1));
     if (!end) check(mosquitto_loop_misc(client));
@@ -181,6 +182,7 @@ Result<std::unique_ptr<Session>> Session::make(const MqttConfig& config, const s
   impl->client = mosquitto_new(client_id.c_str(), true, impl.get());
   if (impl->client == nullptr) return fail("the library for MQTT has no memory");
   impl->old_protocol = config.old_protocol;
+  impl->tls = config.tls;
   impl->port = config.port;
   impl->keep_alive_s = config.keep_alive_s;
   impl->received = std::move(received);

@@ -126,6 +126,16 @@ class Commands(brokers.MqttCase):
         # In the flood a command of others is not answered either.
         self.assertTrue(g.eventually(lambda: brokers.ask(self.broker, {"command": f"ROBACT {ROBOT}"}, patience=3)))
 
+    def test_a_broker_that_is_spoken_to_in_3_1_1(self):
+        self.make(self.broker, commands=True, protocol="3.1.1")
+        self.start()
+        listener = brokers.Listener(self.broker, f"{BASE}/reply")
+        self.addCleanup(listener.close)
+        brokers.publish(self.broker, f"{BASE}/command", json.dumps({"command": f"ROBACT {ROBOT}", "id": "old"}))
+        self.assertTrue(g.eventually(lambda: listener.all(f"{BASE}/reply")))
+        answer = listener.all(f"{BASE}/reply")[0]
+        self.assertEqual((answer["done"], answer["id"]), (True, "old"))
+
     def test_nothing_is_taken_where_it_is_not_allowed(self):
         self.make(self.broker)
         self.start()

@@ -1,5 +1,6 @@
 """TLS, certificates and passwords between the gateway and a broker."""
 
+import json
 import pathlib
 import subprocess
 import unittest
@@ -72,6 +73,19 @@ class Tls(brokers.MqttCase):
         self.credentials(PASSWORD)
         self.connected()
         self.assertNotIn(PASSWORD, self.gateway.output())
+
+    def test_a_burst_of_commands_over_tls_is_answered_as_a_whole(self):
+        self.broker()
+        self.write(self.at, ca_file="security/ca.pem", credentials="security/credentials", commands=True, commands_per_s=50)
+        self.start()
+        options = ["--cafile", str(self.folder / "ca.pem"), "-u", "gateway", "-P", PASSWORD]
+        listener = brokers.Listener(self.at, f"{brokers.BASE}/reply", options)
+        self.addCleanup(listener.close)
+        lines = "".join(json.dumps({"command": f"ROBACT {brokers.ROBOT}", "id": i}) + "\n" for i in range(60))
+        subprocess.run(["mosquitto_pub", "-h", "127.0.0.1", "-p", str(self.at.port), "-t", f"{brokers.BASE}/command", "-l", "-q", "1",
+                        *options], input=lines, text=True, check=True, timeout=g.PATIENCE_S)
+        self.assertTrue(g.eventually(lambda: len(listener.all(f"{brokers.BASE}/reply")) == 60), len(listener.all(f"{brokers.BASE}/reply")))
+        self.assertEqual(sorted(one["id"] for one in listener.all(f"{brokers.BASE}/reply")), list(range(60)))
 
     def test_certificates_of_both(self):
         self.broker("require_certificate true\n")
