@@ -73,6 +73,11 @@ CanopenSlave::CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectA
   CELLMIRROR_EXPECTS(node >= 1 && node <= kMaxNodeId);
 }
 
+void CanopenSlave::wait_for_number() {
+  first_node_ = node_ = kNoNodeNumber;
+  lss_.restart(kNoNodeNumber);
+}
+
 void CanopenSlave::power_on(NmtState first, Timestamp now) {
   now_ = now;
   powered_ = true;
@@ -95,6 +100,8 @@ void CanopenSlave::reset(Timestamp now) {
   length_error_ = false;
   nmt_ = NmtState::boot_up;
   application_->on_reset(now);
+  heartbeat_due_ = {};
+  if (node_ == kNoNodeNumber) return;
   output_->send(encode_heartbeat({node_, NmtState::boot_up}));
   restart_heartbeat(now);
   enter(first_, now);
@@ -109,17 +116,24 @@ void CanopenSlave::enter(NmtState state, Timestamp now) {
   }
 }
 
+void CanopenSlave::on_lss(const CanFrame& frame, Timestamp now) {
+  const LssSlave::Reaction reaction = lss_.receive(frame, identity(), node_);
+  if (reaction.answer) output_->send(*reaction.answer);
+  if (reaction.starts) on_nmt(NmtCommand::reset_communication, now);
+}
+
 void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
   if (!powered_ || frame.error) return;
   now_ = now;
   if (frame.remote) {
-    if (!frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
+    if (node_ != kNoNodeNumber && !frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
     return;
   }
   if (!frame.extended && frame.id == kLssMasterCobId) {
-    if (const auto answer = lss_.receive(frame, identity(), node_)) output_->send(*answer);
+    on_lss(frame, now);
     return;
   }
+  if (node_ == kNoNodeNumber) return;
   if (const auto message = decode_nmt(frame)) {
     if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
     return;
@@ -162,7 +176,7 @@ void CanopenSlave::on_nmt(NmtCommand command, Timestamp now) {
 void CanopenSlave::renumber(std::uint8_t node) {
   constexpr std::int64_t kNodeBits = 0x7F;
   lss_.restart(node);
-  if (std::exchange(node_, node) == node) return;
+  if (std::exchange(node_, node) == node || node == kNoNodeNumber) return;
   server_.set_node(node);
   std::vector<ObjectAddress> identifiers{{0x1014, 0}};
   for (std::uint16_t i = 0; i < kSlavePdos; ++i) {

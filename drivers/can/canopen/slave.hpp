@@ -50,6 +50,9 @@ class CanopenSlave final : private SdoObjects {
   CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectAddress event, SlaveApplication& application,
                FrameOutput& output);
 
+  // Before power_on(): has no number until a master gives it one by LSS (CiA 305), and says nothing until then; again
+  // after NMT reset node. The serial number stays that of the objects.
+  void wait_for_number();
   // Boot-up message, then `first`: pre-operational, or operational without being told.
   void power_on(NmtState first, Timestamp now);
   void power_off();  // silent and deaf
@@ -62,7 +65,7 @@ class CanopenSlave final : private SdoObjects {
   // EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: the error is reset.
   void emergency(std::uint16_t code, std::uint8_t error_register);
 
-  [[nodiscard]] std::uint8_t node() const { return node_; }  // a master may change it by LSS
+  [[nodiscard]] std::uint8_t node() const { return node_; }  // a master may change it by LSS; kNoNodeNumber
   [[nodiscard]] bool is_powered() const { return powered_; }
   [[nodiscard]] NmtState state() const { return nmt_; }
   [[nodiscard]] ObjectDictionary& objects() { return objects_; }
@@ -80,6 +83,7 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] LssSlave::Identity identity() const;
   void on_nmt(NmtCommand command, Timestamp now);
   void enter(NmtState state, Timestamp now);
+  void on_lss(const CanFrame& frame, Timestamp now);
   void on_sync(const CanFrame& frame, Timestamp now);
   void on_guarding(Timestamp now);
   void on_heartbeat(const Heartbeat& heartbeat, Timestamp now);

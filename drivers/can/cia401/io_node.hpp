@@ -18,6 +18,8 @@ class IoNode final : private SlaveApplication {
   // `node_id` 1..127; `output` outlives the node. Off until power_on().
   IoNode(std::uint8_t node_id, std::uint16_t heartbeat_ms, FrameOutput& output);
 
+  // Before power_on(): slave.hpp.
+  void wait_for_number() { slave_.wait_for_number(); }
   void power_on(Timestamp now);  // boot-up message, then NMT pre-operational
   void receive(const CanFrame& frame, Timestamp now);
   void advance(Timestamp now) { slave_.advance(now); }

@@ -20,7 +20,9 @@ class Cia401Protocol final : public CanProtocol {
       : period_(config.period),
         links_(std::move(links)),
         output_(host),
-        node_(config.node_id, config.heartbeat_ms, output_) {}
+        node_(config.node_id, config.heartbeat_ms, output_) {
+    if (config.waits_for_lss) node_.wait_for_number();
+  }
 
   void start(Timestamp now) override {
     due_ = now + period_;

@@ -47,7 +47,9 @@ ServoDrive::ServoDrive(const DriveConfig& config, std::uint16_t heartbeat_ms, Fr
       joint_sign_(config.sign < 0 ? -1.0 : 1.0),
       slave_(config.node_id, make_servo_objects(config, heartbeat_ms), kServoStatusword, *this, output),
       motor_(config),
-      parameters_(read_servo_parameters(slave_.objects())) {}
+      parameters_(read_servo_parameters(slave_.objects())) {
+  if (config.waits_for_lss) slave_.wait_for_number();
+}
 
 void ServoDrive::power_on(Timestamp now) {
   moved_ = now;

@@ -26,7 +26,8 @@ class ServoDrive final : private SlaveApplication {
   // `output` outlives the drive. Off until power_on(). `config` has a valid node number and positive constants.
   ServoDrive(const DriveConfig& config, std::uint16_t heartbeat_ms, FrameOutput& output);
 
-  void power_on(Timestamp now);  // boot-up message, then NMT pre-operational
+  // Boot-up message, then NMT pre-operational; a drive that waits for its number has them when it has got one.
+  void power_on(Timestamp now);
 
   // Any frame of the bus. What concerns this node is carried out at once; SYNC is answered before the motion goes on.
   void receive(const CanFrame& frame, Timestamp now);
