@@ -16,30 +16,27 @@ namespace {
 struct StreamMaker {
   const Clock& clock;
   int fifo_priority;
-  const can::ChannelOpener& open_can;
-  const std::shared_ptr<PayloadSink>& payloads;
-  const std::shared_ptr<ContactInlet>& contacts;
+  const StreamLinks& links;
 
   Result<std::unique_ptr<JointStream>> operator()(const std::monostate&) const {
     return fail("the cell file names no stream");
   }
   Result<std::unique_ptr<JointStream>> operator()(const Cia402StreamConfig& config) const {
-    return can::make_cia402_stream(config, clock,
-                                   {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
+    return can::make_cia402_stream(
+        config, clock, {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = links.open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const DbcStreamConfig& config) const {
     return can::make_dbc_stream(config, clock,
-                                {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = open_can});
+                                {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = links.open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const Cia402DeviceConfig& config) const {
-    return can::make_cia402_device(
-        config, clock, {.thread_name = "device", .fifo_priority = fifo_priority, .open_channel = open_can}, contacts);
+    return can::make_cia402_device(config, clock, links.device_channel, links.contacts);
   }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
-    return dds::make_dds_stream(config, clock, payloads);
+    return dds::make_dds_stream(config, clock, links.payloads);
   }
   Result<std::unique_ptr<JointStream>> operator()(const RtdeStreamConfig& config) const {
-    return rtde::make_rtde_stream(config, clock, fifo_priority, payloads);
+    return rtde::make_rtde_stream(config, clock, fifo_priority, links.payloads);
   }
 };
 
@@ -83,16 +80,8 @@ void check_robot_stream(const RobotStream& stream, Diagnostics& diagnostics) {
 }
 
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
-                                                       int fifo_priority, const can::ChannelOpener& open_can,
-                                                       const std::shared_ptr<PayloadSink>& payloads,
-                                                       const std::shared_ptr<ContactInlet>& contacts) {
-  return std::visit(StreamMaker{clock, fifo_priority, open_can, payloads, contacts}, config);
-}
-
-std::unique_ptr<JointStream> make_io_node(const IoNodeConfig& config, can::IoLinks links, const Clock& clock,
-                                          int fifo_priority) {
-  return can::make_cia401_node(config, std::move(links), clock,
-                               {.thread_name = "io-node", .fifo_priority = fifo_priority, .open_channel = {}});
+                                                       int fifo_priority, const StreamLinks& links) {
+  return std::visit(StreamMaker{clock, fifo_priority, links}, config);
 }
 
 }  // namespace cellmirror::app

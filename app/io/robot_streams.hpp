@@ -15,18 +15,19 @@
 
 namespace cellmirror::app {
 
+// What a stream is given beside its description; what its kind does not need stays empty.
+struct StreamLinks {
+  can::ChannelOpener open_can = {};                         // of CAN streams; empty: as their endpoints say
+  std::shared_ptr<can::SharedChannel> device_channel = {};  // of a [[device]], which needs it
+  std::shared_ptr<PayloadSink> payloads = {};               // is given what DDS and RTDE streams receive
+  std::shared_ptr<ContactInlet> contacts = {};              // of the robot, for the drives of its [[device]]
+};
+
 // Closed; `clock` outlives it. `fifo_priority`: of the threads of CAN streams, 0 for none; frames then reach the tick
 // also while the machine is busy with other things. Fails for what can never work, e.g. a DBC file without the signal
-// that the cell names. `open_can`: opens the channels of CAN streams; empty: as their endpoints say. `payloads`: is
-// given what DDS and RTDE streams receive. `contacts`: of the robot, for the drives of its [[device]]; null: none.
+// that the cell names.
 Result<std::unique_ptr<JointStream>> make_robot_stream(const StreamConfig& config, const Clock& clock,
-                                                       int fifo_priority, const can::ChannelOpener& open_can = {},
-                                                       const std::shared_ptr<PayloadSink>& payloads = {},
-                                                       const std::shared_ptr<ContactInlet>& contacts = {});
-
-// An I/O node of a [[io_node]], closed; it takes no samples: can::no_samples(). `clock` outlives it.
-[[nodiscard]] std::unique_ptr<JointStream> make_io_node(const IoNodeConfig& config, can::IoLinks links,
-                                                        const Clock& clock, int fifo_priority);
+                                                       int fifo_priority, const StreamLinks& links = {});
 
 // Reads the EDS, DCF or DBC files of the stream and tells what is wrong with them and with what the cell file takes
 // from them, each at its place; warns of joints without a source. What the reader of the cell file told is not told

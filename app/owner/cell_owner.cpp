@@ -55,6 +55,7 @@ CellOwner::CellOwner(Parts parts)
       home_(std::move(parts.home)),
       board_(parts.board),
       clock_(parts.clock),
+      node_channels_(parts.streams, parts.io_nodes, clock_, parts.stream_priority, parts.can_tap),
       names_(cell_),
       volumes_(cell_, [this] { return load_volume_tables(home_); }),
       fleet_(std::make_unique<Fleet>(
@@ -63,6 +64,7 @@ CellOwner::CellOwner(Parts parts)
                         .move_given = std::move(parts.move_given),
                         .device_stream = [this](std::string_view robot) { return haptics_.stream(robot); },
                         .can_tap = parts.can_tap,
+                        .node_channels = &node_channels_,
                         .payload_tap = parts.payload_tap})),
       display_(
           {cell_, names_, home_, clock_, [this] { return fleet_->positions(); }, std::move(parts.picture_updates),
@@ -106,8 +108,9 @@ CellOwner::CellOwner(Parts parts)
                                  std::move(parts.switch_changed)},
       *runner_, home_, clock_);
   if (parts.let_tick_pass) return;
-  io_ = std::make_unique<IoService>(IoService::Parts{cell_, *fleet_, guarded_motion_, motion_, *runner_, clock_},
-                                    std::move(parts.io_nodes), parts.stream_priority, [this] { wake_.wake(); });
+  io_ = std::make_unique<IoService>(
+      IoService::Parts{cell_, *fleet_, guarded_motion_, motion_, *runner_, clock_, node_channels_},
+      std::move(parts.io_nodes), [this] { wake_.wake(); });
 }
 
 CellOwner::~CellOwner() { stop(); }

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/io/node_channels.hpp"
 #include "app/owner/command_queue.hpp"
 #include "app/owner/controllers/controller_service.hpp"
 #include "app/owner/display/display_service.hpp"
@@ -132,6 +133,7 @@ class CellOwner {
   KismetHome home_;
   Board<CellState>& board_;
   const Clock& clock_;
+  NodeChannels node_channels_;
   CellNames names_;
   VolumeService volumes_;
   std::unique_ptr<Fleet> fleet_;

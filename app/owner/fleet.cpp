@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "app/io/can_tap.hpp"
+#include "app/io/node_channels.hpp"
 #include "app/io/payload_tap.hpp"
 #include "app/io/robot_streams.hpp"
+#include "rt_core/base/contract.hpp"
 
 namespace cellmirror::app {
 
@@ -179,15 +181,17 @@ Result<void> Fleet::make_stream(FleetRobot& robot) {
         fmt::format("the cell file names no stream and no haptic device for the robot {}", robot.id),
         fmt::format("add a [[stream]] or [[haptic]] table with robot = \"{}\" to it (docs/cell-files.md)", robot.id));
   }
-  can::ChannelOpener open_can;
-  if (events_.can_tap != nullptr) open_can = events_.can_tap->opener(robot.id);
-  std::shared_ptr<PayloadSink> payloads;
-  if (events_.payload_tap != nullptr) payloads = events_.payload_tap->sink_for(config->second, robot.id);
-  std::shared_ptr<ContactInlet> contacts;
-  if (std::holds_alternative<Cia402DeviceConfig>(config->second)) contacts = std::make_shared<ContactInlet>();
-  auto made = make_robot_stream(config->second, clock_, stream_priority_, open_can, payloads, contacts);
+  StreamLinks links;
+  if (events_.can_tap != nullptr) links.open_can = events_.can_tap->opener(robot.id);
+  if (events_.payload_tap != nullptr) links.payloads = events_.payload_tap->sink_for(config->second, robot.id);
+  if (const auto* device = std::get_if<Cia402DeviceConfig>(&config->second)) {
+    CELLMIRROR_EXPECTS(events_.node_channels != nullptr);
+    links.device_channel = events_.node_channels->find(device->channel);
+    links.contacts = std::make_shared<ContactInlet>();
+  }
+  auto made = make_robot_stream(config->second, clock_, stream_priority_, links);
   if (!made) return std::unexpected(made.error());
-  robot.contacts = std::move(contacts);
+  robot.contacts = std::move(links.contacts);
   robot.stream = std::move(*made);
   return {};
 }

@@ -23,6 +23,7 @@
 namespace cellmirror::app {
 
 class CanTap;
+class NodeChannels;
 class PayloadTap;
 
 // One robot of the fleet, beside its RobotModel in the cell.
@@ -51,8 +52,9 @@ class Fleet final : public MotionPort {
     std::function<void(std::string_view robot, const motion::Move& move)> move_given = {};
     // What a robot without a stream in the cell file follows when it goes online; null: it has nothing of the kind.
     std::function<std::shared_ptr<JointStream>(std::string_view robot)> device_stream = {};
-    CanTap* can_tap = nullptr;          // sees the frames of CAN streams; outlives the fleet; null: nobody does
-    PayloadTap* payload_tap = nullptr;  // what DDS and RTDE streams receive; likewise
+    CanTap* can_tap = nullptr;  // sees the frames of CAN streams; outlives the fleet; null: nobody does
+    const NodeChannels* node_channels = nullptr;  // of drives that answer; outlives the fleet; null: there are none
+    PayloadTap* payload_tap = nullptr;            // what DDS and RTDE streams receive; likewise
   };
   // Before the first tick, since it subscribes to the engine. `stream_priority`: SCHED_FIFO priority of the streams'
   // threads; 0: none.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "app/io/robot_streams.hpp"
+#include "app/io/node_channels.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::app {
@@ -21,12 +21,12 @@ std::string name_of(const IoNodeConfig& node, const DigitalOutputConfig& output)
 
 }  // namespace
 
-IoService::IoService(Parts parts, std::vector<IoNodeConfig> nodes, int priority, const std::function<void()>& wake)
-    : parts_(parts) {
+IoService::IoService(Parts parts, std::vector<IoNodeConfig> nodes, const std::function<void()>& wake) : parts_(parts) {
   for (IoNodeConfig& config : nodes) {
     Node& node = nodes_.emplace_back();
     node.config = std::make_shared<const IoNodeConfig>(std::move(config));
-    node.stream = make_io_node(*node.config, {node.inputs, node.outputs, wake}, parts_.clock, priority);
+    node.stream = can::make_cia401_node(*node.config, {node.inputs, node.outputs, wake}, parts_.clock,
+                                        parts_.channels.find(node.config->channel));
   }
 }
 

@@ -18,6 +18,8 @@
 
 namespace cellmirror::app {
 
+class NodeChannels;
+
 class IoService {
  public:
   struct Parts {
@@ -27,11 +29,12 @@ class IoService {
     const MotionService& targets;
     script::ScriptRunner& runner;
     const Clock& clock;
+    const NodeChannels& channels;
   };
 
-  // What the parts refer to outlives the service. `priority`: SCHED_FIFO of the nodes' threads; 0: none. `wake`: wakes
-  // the owner's thread; any thread.
-  IoService(Parts parts, std::vector<IoNodeConfig> nodes, int priority, const std::function<void()>& wake);
+  // What the parts refer to outlives the service; the channels have those of all nodes. `wake`: wakes the owner's
+  // thread; any thread.
+  IoService(Parts parts, std::vector<IoNodeConfig> nodes, const std::function<void()>& wake);
   // Closes the channels.
   ~IoService();
   IoService(const IoService&) = delete;

@@ -61,6 +61,10 @@ class CanChannel {
   virtual CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) = 0;
   // Never waits. False where the frame could not be sent (counted).
   virtual bool send(const CanFrame& frame) = 0;
+  // The same for several in their order, in one go where the channel can; `sent` is as long as `frames`.
+  virtual void send_all(std::span<const CanFrame> frames, std::span<bool> sent) {
+    for (std::size_t i = 0; i < frames.size(); ++i) sent[i] = send(frames[i]);
+  }
   // Valid until the next call. Takes no lock: who needs it on another thread publishes a copy.
   [[nodiscard]] virtual const CanChannelStatus& status() const = 0;
 };

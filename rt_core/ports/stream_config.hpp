@@ -31,6 +31,7 @@ struct CanChannelConfig {
   std::vector<std::string> allow_from;   // udp: numeric addresses whose datagrams are taken; empty: all
   bool log_as_fast_as_possible = false;  // log: ignore the time stamps
   bool log_repeat = false;
+  bool operator==(const CanChannelConfig&) const = default;
 };
 
 // One entry of a PDO: which object, how many bits, in the order of the bits of the frame.

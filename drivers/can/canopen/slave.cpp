@@ -94,6 +94,7 @@ void CanopenSlave::reset(Timestamp now) {
   objects_ = defaults_;
   server_.reset();
   pdos_.load(now);
+  ++identifiers_revision_;
   master_due_ = {};
   guard_due_ = {};
   guard_toggle_ = false;
@@ -120,6 +121,19 @@ void CanopenSlave::on_lss(const CanFrame& frame, Timestamp now) {
   const LssSlave::Reaction reaction = lss_.receive(frame, identity(), node_);
   if (reaction.answer) output_->send(*reaction.answer);
   if (reaction.starts) on_nmt(NmtCommand::reset_communication, now);
+}
+
+// Those that receive() looks at.
+void CanopenSlave::list_identifiers(std::vector<std::uint32_t>& identifiers) const {
+  if (node_ == kNoNodeNumber) {
+    identifiers.push_back(kLssMasterCobId);
+    return;
+  }
+  identifiers.insert(identifiers.end(),
+                     {kNmtCobId, kSyncCobId, kLssMasterCobId, kSdoRequestBase + node_, kHeartbeatBase + node_});
+  const auto watched = static_cast<std::uint32_t>(object(kHeartbeatConsumer.index, kHeartbeatConsumer.subindex));
+  if (const std::uint32_t node = watched >> 16U & 0xFFU; node > 0) identifiers.push_back(kHeartbeatBase + node);
+  pdos_.list_identifiers(identifiers);
 }
 
 void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
@@ -249,7 +263,9 @@ void CanopenSlave::after_write(std::span<const ObjectAddress> addresses, Timesta
   const auto has = [&](std::uint16_t index) {
     return std::ranges::any_of(addresses, [index](ObjectAddress address) { return address.index == index; });
   };
-  if (std::ranges::any_of(addresses, SlavePdos::is_parameter)) pdos_.load(now);
+  const bool has_parameter = std::ranges::any_of(addresses, SlavePdos::is_parameter);
+  if (has_parameter) pdos_.load(now);
+  if (has_parameter || has(kHeartbeatConsumer.index)) ++identifiers_revision_;
   if (has(kHeartbeatProducer)) restart_heartbeat(now);
   if (has(kHeartbeatConsumer.index)) master_due_ = {};
   if (has(kErrorField)) {

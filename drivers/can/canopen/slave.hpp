@@ -58,6 +58,10 @@ class CanopenSlave final : private SdoObjects {
   void power_off();  // silent and deaf
 
   void receive(const CanFrame& frame, Timestamp now);
+  // The 11-bit identifiers of the frames that it takes, added to `identifiers`; others need not be given to it.
+  void list_identifiers(std::vector<std::uint32_t>& identifiers) const;
+  // Grows wherever they may have changed.
+  [[nodiscard]] std::uint64_t identifiers_revision() const { return identifiers_revision_; }
   void advance(Timestamp now);               // timers; call at next_due() or more often
   [[nodiscard]] Timestamp next_due() const;  // "never" while nothing is timed
   // The application has changed values of objects.
@@ -103,6 +107,7 @@ class CanopenSlave final : private SdoObjects {
   ObjectDictionary objects_;
   SdoServer server_;
   SlavePdos pdos_;
+  std::uint64_t identifiers_revision_ = 0;
   bool powered_ = false;
   NmtState nmt_ = NmtState::boot_up;
   NmtState first_ = NmtState::pre_operational;

@@ -202,6 +202,12 @@ void SlavePdos::start(Timestamp now) {
   }
 }
 
+void SlavePdos::list_identifiers(std::vector<std::uint32_t>& identifiers) const {
+  for (const Rpdo& rpdo : rpdos_) {
+    if (rpdo.valid) identifiers.push_back(rpdo.cob_id);
+  }
+}
+
 SlavePdos::Received SlavePdos::receive(const CanFrame& frame, std::vector<ObjectAddress>& written) {
   if (frame.extended) return Received::none;
   for (Rpdo& rpdo : rpdos_) {

@@ -50,6 +50,8 @@ class SlavePdos {
   // NMT operational begins: event-driven TPDOs are sent once.
   void start(Timestamp now);
 
+  // The identifiers of the RPDOs that exist, added to `identifiers`. They change with load() only.
+  void list_identifiers(std::vector<std::uint32_t>& identifiers) const;
   // An RPDO's values go into the dictionary now, or with the next SYNC; `written` gets the objects.
   [[nodiscard]] Received receive(const CanFrame& frame, std::vector<ObjectAddress>& written);
   // Sends the TPDOs of this SYNC; `counter` where the SYNC has one.

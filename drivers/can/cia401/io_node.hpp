@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "drivers/can/canopen/frame_output.hpp"
 #include "drivers/can/canopen/slave.hpp"
@@ -22,6 +23,9 @@ class IoNode final : private SlaveApplication {
   void wait_for_number() { slave_.wait_for_number(); }
   void power_on(Timestamp now);  // boot-up message, then NMT pre-operational
   void receive(const CanFrame& frame, Timestamp now);
+  // As those of CanopenSlave.
+  void list_identifiers(std::vector<std::uint32_t>& identifiers) const { slave_.list_identifiers(identifiers); }
+  [[nodiscard]] std::uint64_t identifiers_revision() const { return slave_.identifiers_revision(); }
   void advance(Timestamp now) { slave_.advance(now); }
   [[nodiscard]] Timestamp next_timer() const { return slave_.next_due(); }
 

@@ -2,12 +2,13 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "drivers/can/canopen/cob_id.hpp"
 #include "drivers/can/canopen/earlier_due.hpp"
 #include "drivers/can/cia401/io_node.hpp"
 #include "drivers/can/stream/can_stream.hpp"
-#include "drivers/can/stream/counted_output.hpp"
+#include "drivers/can/stream/node_output.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/rt/latest.hpp"
 
@@ -19,7 +20,7 @@ class Cia401Protocol final : public CanProtocol {
   Cia401Protocol(const IoNodeConfig& config, IoLinks links, CanProtocolHost& host)
       : period_(config.period),
         links_(std::move(links)),
-        output_(host),
+        output_(host, 0),
         node_(config.node_id, config.heartbeat_ms, output_) {
     if (config.waits_for_lss) node_.wait_for_number();
   }
@@ -31,7 +32,7 @@ class Cia401Protocol final : public CanProtocol {
     give_outputs();
   }
 
-  void receive(const CanFrame& frame, Timestamp now) override {
+  void receive(const CanFrame& frame, Timestamp now, std::size_t /*node*/) override {
     node_.receive(frame, now);
     give_outputs();
   }
@@ -47,25 +48,28 @@ class Cia401Protocol final : public CanProtocol {
 
   [[nodiscard]] Timestamp next_due() const override { return earlier_due(due_, node_.next_timer()); }
 
-  void publish() override {
-    published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs(), output_.refused()});
-  }
+  void publish() override { published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs()}); }
 
   void describe(JointStreamStatus& status, Timestamp /*now*/) override {
     const Report& report = published_.read().value;
     status.condition = fmt::format("answers as an I/O node: {}", words(report.nmt));
     status.details.emplace_back("inputs", fmt::format("0x{:08X}", report.inputs.digital));
     status.details.emplace_back("outputs", fmt::format("0x{:08X}", report.outputs.digital));
-    if (report.send_refused > 0)
-      status.details.emplace_back("frames that the channel refused", fmt::format("{}", report.send_refused));
   }
+
+  void add_routes(std::uint16_t member, IdentifierRoutes& routes) const override {
+    std::vector<std::uint32_t> identifiers;
+    node_.list_identifiers(identifiers);
+    routes.add({member, 0}, identifiers);
+  }
+
+  [[nodiscard]] std::uint64_t routes_revision() const override { return node_.identifiers_revision(); }
 
  private:
   struct Report {
     NmtState nmt = NmtState::boot_up;
     IoInputs inputs;
     IoOutputs outputs;
-    std::uint64_t send_refused = 0;
   };
 
   void give_outputs() {
@@ -76,7 +80,7 @@ class Cia401Protocol final : public CanProtocol {
 
   Nanoseconds period_;
   IoLinks links_;
-  CountedOutput output_;
+  NodeOutput output_;
   IoNode node_;
   Timestamp due_;
   std::uint32_t given_ = 0;
@@ -97,10 +101,10 @@ JointSampleSink& no_samples() {
 }
 
 std::unique_ptr<JointStream> make_cia401_node(const IoNodeConfig& config, IoLinks links, const Clock& clock,
-                                              CanStreamOptions options) {
+                                              std::shared_ptr<SharedChannel> channel) {
   CELLMIRROR_EXPECTS(config.node_id >= 1 && config.node_id <= kMaxNodeId && links.inputs && links.outputs);
   return std::make_unique<CanStream>(
-      "cia401-node", config.channel, clock, std::move(options),
+      "cia401-node", std::move(channel), clock,
       [config, links = std::move(links)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
         return std::make_unique<Cia401Protocol>(config, links, host);
       });

@@ -11,7 +11,7 @@
 #include "drivers/can/cia402/device/contact_bounds.hpp"
 #include "drivers/can/cia402/device/servo_drive.hpp"
 #include "drivers/can/stream/can_stream.hpp"
-#include "drivers/can/stream/counted_output.hpp"
+#include "drivers/can/stream/node_output.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/rt/latest.hpp"
 
@@ -24,9 +24,11 @@ class Cia402DeviceProtocol final : public CanProtocol {
   // `nodes` keeps where the joints are for the next time that the stream is opened.
   Cia402DeviceProtocol(const Cia402DeviceConfig& config, std::shared_ptr<std::vector<DriveConfig>> nodes,
                        std::shared_ptr<Latest<RobotContacts>> contacts, CanProtocolHost& host)
-      : period_(config.period), nodes_(std::move(nodes)), contacts_(std::move(contacts)), host_(&host), output_(host) {
-    for (const DriveConfig& node : *nodes_)
-      drives_.push_back(std::make_unique<ServoDrive>(node, config.heartbeat_ms, output_));
+      : period_(config.period), nodes_(std::move(nodes)), contacts_(std::move(contacts)), host_(&host) {
+    for (const DriveConfig& node : *nodes_) {
+      outputs_.push_back(std::make_unique<NodeOutput>(host, drives_.size()));
+      drives_.push_back(std::make_unique<ServoDrive>(node, config.heartbeat_ms, *outputs_.back()));
+    }
     errors_.resize(drives_.size());
   }
 
@@ -35,13 +37,10 @@ class Cia402DeviceProtocol final : public CanProtocol {
     for (const auto& drive : drives_) drive->power_on(now);
   }
 
-  void receive(const CanFrame& frame, Timestamp now) override {
-    apply_contacts();
-    const bool request = frame.id > kSdoRequestBase && frame.id <= kSdoRequestBase + kMaxNodeId;
-    for (const auto& drive : drives_) {
-      if (request && !frame.extended && frame.id != kSdoRequestBase + drive->node_id()) continue;
-      drive->receive(frame, now);
-    }
+  void receive(const CanFrame& frame, Timestamp now, std::size_t node) override {
+    // Once where several drives take the frame.
+    if (std::exchange(contacts_applied_, now) != now) apply_contacts();
+    drives_[node]->receive(frame, now);
   }
 
   void advance(Timestamp now) override {
@@ -63,7 +62,6 @@ class Cia402DeviceProtocol final : public CanProtocol {
   void publish() override {
     Report& report = published_.writable();
     report.samples = sequence_;
-    report.send_refused = output_.refused();
     report.drives.clear();
     for (const auto& drive : drives_)
       report.drives.push_back({drive->node_id(), drive->nmt_state(), drive->state(), drive->mode(), drive->error_code(),
@@ -88,8 +86,22 @@ class Cia402DeviceProtocol final : public CanProtocol {
     }
     status.condition = fmt::format("answers as {} {}: {} operational, {} enabled", report.drives.size(),
                                    report.drives.size() == 1 ? "drive" : "drives", operational, enabled);
-    if (report.send_refused > 0)
-      status.details.emplace_back("frames that the channel refused", fmt::format("{}", report.send_refused));
+  }
+
+  void add_routes(std::uint16_t member, IdentifierRoutes& routes) const override {
+    std::vector<std::uint32_t> identifiers;
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      identifiers.clear();
+      drives_[i]->list_identifiers(identifiers);
+      routes.add({member, static_cast<std::uint16_t>(i)}, identifiers);
+    }
+  }
+
+  // Each drive's number only grows.
+  [[nodiscard]] std::uint64_t routes_revision() const override {
+    std::uint64_t sum = 0;
+    for (const auto& drive : drives_) sum += drive->identifiers_revision();
+    return sum;
   }
 
  private:
@@ -103,7 +115,6 @@ class Cia402DeviceProtocol final : public CanProtocol {
   };
   struct Report {
     std::uint64_t samples = 0;
-    std::uint64_t send_refused = 0;
     std::vector<DriveReport> drives;
   };
 
@@ -152,8 +163,9 @@ class Cia402DeviceProtocol final : public CanProtocol {
   std::shared_ptr<Latest<RobotContacts>> contacts_;  // may be null
   bool touching_ = false;                            // the drives have bounds
   Timestamp touched_;                                // the first posture of the contact that they have them for
+  Timestamp contacts_applied_;                       // the frame before which they were looked at
   CanProtocolHost* host_;
-  CountedOutput output_;
+  std::vector<std::unique_ptr<NodeOutput>> outputs_;  // of the drives
   std::vector<std::unique_ptr<ServoDrive>> drives_;
   std::vector<std::uint16_t> errors_;  // that were noted
   Timestamp due_;                      // of the next sample
@@ -164,7 +176,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
 }  // namespace
 
 Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig& config, const Clock& clock,
-                                                        CanStreamOptions options,
+                                                        std::shared_ptr<SharedChannel> channel,
                                                         std::shared_ptr<Latest<RobotContacts>> contacts) {
   if (config.nodes.empty()) return fail("the device has no drives", "add [[device.node]] with id and joint");
   for (const DriveConfig& node : config.nodes) {
@@ -173,7 +185,7 @@ Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig
   }
   auto nodes = std::make_shared<std::vector<DriveConfig>>(config.nodes);
   return std::make_unique<CanStream>(
-      "cia402-device", config.channel, clock, std::move(options),
+      "cia402-device", std::move(channel), clock,
       [config, nodes, contacts = std::move(contacts)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
         return std::make_unique<Cia402DeviceProtocol>(config, nodes, contacts, host);
       });

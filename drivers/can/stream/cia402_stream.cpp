@@ -44,7 +44,7 @@ class Cia402Protocol final : public CanProtocol, private Cia402SessionOutput {
   Cia402Protocol(const Cia402Plan& plan, CanProtocolHost& host) : host_(&host), session_(plan, *this) {}
 
   void start(Timestamp now) override { session_.start(now); }
-  void receive(const CanFrame& frame, Timestamp now) override { session_.receive(frame, now); }
+  void receive(const CanFrame& frame, Timestamp now, std::size_t /*node*/) override { session_.receive(frame, now); }
   void advance(Timestamp now) override { session_.advance(now); }
   [[nodiscard]] Timestamp next_due() const override { return session_.next_due(); }
 
@@ -108,7 +108,8 @@ Result<std::unique_ptr<JointStream>> make_cia402_stream(const Cia402StreamConfig
   Diagnostics diagnostics;
   auto plan = plan_cia402(config, diagnostics);
   if (!plan) return fail("the CiA 402 stream cannot be set up:\n" + diagnostics.text());
-  return std::make_unique<CanStream>("can-cia402", config.channel, clock, std::move(options),
+  return std::make_unique<CanStream>("can-cia402",
+                                     std::make_shared<SharedChannel>(config.channel, clock, std::move(options)), clock,
                                      [plan = std::move(*plan)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
                                        return std::make_unique<Cia402Protocol>(plan, host);
                                      });

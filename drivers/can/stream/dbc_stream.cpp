@@ -19,7 +19,7 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
       : host_(&host), ages_(plan.config.ages), session_(plan, *this) {}
 
   void start(Timestamp now) override { started_ = now; }
-  void receive(const CanFrame& frame, Timestamp now) override { session_.receive(frame, now); }
+  void receive(const CanFrame& frame, Timestamp now, std::size_t /*node*/) override { session_.receive(frame, now); }
   void advance(Timestamp) override {}
   [[nodiscard]] Timestamp next_due() const override { return {}; }
 
@@ -99,7 +99,8 @@ Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& conf
   Diagnostics diagnostics;
   auto plan = plan_dbc(config, diagnostics);
   if (!plan) return fail("the DBC stream cannot be set up:\n" + diagnostics.text());
-  return std::make_unique<CanStream>("can-dbc", config.channel, clock, std::move(options),
+  return std::make_unique<CanStream>("can-dbc",
+                                     std::make_shared<SharedChannel>(config.channel, clock, std::move(options)), clock,
                                      [plan = std::move(*plan)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
                                        return std::make_unique<DbcProtocol>(plan, host);
                                      });

@@ -1,4 +1,5 @@
-// Joint streams over CAN, ready to use: a channel, a protocol session and a thread of their own each.
+// Joint streams over CAN, ready to use: a channel, a protocol session and a thread of their own each; nodes that the
+// gateway answers for share channel and thread.
 #pragma once
 
 #include <functional>
@@ -35,23 +36,29 @@ struct CanStreamOptions {
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_dbc_stream(const DbcStreamConfig& config, const Clock& clock,
                                                                    CanStreamOptions options = {});
 
+// A channel and its thread, for any number of the nodes below. All of them see each other's frames, as on a bus. Open
+// while one of its streams is. `clock` outlives it.
+class SharedChannel;
+[[nodiscard]] std::shared_ptr<SharedChannel> make_shared_channel(const CanChannelConfig& config, const Clock& clock,
+                                                                 CanStreamOptions options = {});
+
 // The gateway answers as the drives of the robot; the samples are where the drives have moved it. SYNC is answered by
-// the thread that received it, before the drives move on. `config` is as the reader of the cell file leaves it.
-// `contacts`: what the robot touches, read by the stream's thread; null: nothing ever.
+// the thread that received it, before the drives move on. `config` is as the reader of the cell file leaves it; its
+// channel is that of `channel`. `contacts`: what the robot touches, read by the channel's thread; null: nothing ever.
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_device(
-    const Cia402DeviceConfig& config, const Clock& clock, CanStreamOptions options = {},
+    const Cia402DeviceConfig& config, const Clock& clock, std::shared_ptr<SharedChannel> channel,
     std::shared_ptr<Latest<RobotContacts>> contacts = {});
 
 // Between the thread of an I/O node and the gateway.
 struct IoLinks {
   std::shared_ptr<Latest<IoInputs>> inputs;    // the node reads
   std::shared_ptr<Latest<IoOutputs>> outputs;  // the node writes, where they change
-  std::function<void()> outputs_changed;       // then, on the node's thread; must not wait
+  std::function<void()> outputs_changed;       // then, on the channel's thread; must not wait
 };
-// The gateway answers as a CiA 401 I/O node, with a thread of its own on the channel. It gives no samples: open it with
+// The gateway answers as a CiA 401 I/O node on `channel`, which is that of `config`. It gives no samples: open it with
 // no_samples().
 [[nodiscard]] std::unique_ptr<JointStream> make_cia401_node(const IoNodeConfig& config, IoLinks links,
-                                                            const Clock& clock, CanStreamOptions options = {});
+                                                            const Clock& clock, std::shared_ptr<SharedChannel> channel);
 [[nodiscard]] JointSampleSink& no_samples();
 
 // Everything that would keep such a stream from being made, and what makes its values doubtful, at its place in the

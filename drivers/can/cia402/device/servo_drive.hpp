@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "drivers/can/canopen/frame_output.hpp"
 #include "drivers/can/canopen/slave.hpp"
@@ -31,6 +32,9 @@ class ServoDrive final : private SlaveApplication {
 
   // Any frame of the bus. What concerns this node is carried out at once; SYNC is answered before the motion goes on.
   void receive(const CanFrame& frame, Timestamp now);
+  // As those of CanopenSlave.
+  void list_identifiers(std::vector<std::uint32_t>& identifiers) const { slave_.list_identifiers(identifiers); }
+  [[nodiscard]] std::uint64_t identifiers_revision() const { return slave_.identifiers_revision(); }
   // Motion and timers until `now`. At most 0.1 s of motion is made up for.
   void advance(Timestamp now);
   [[nodiscard]] Timestamp next_timer() const { return slave_.next_due(); }  // heartbeat and the like; not the motion
