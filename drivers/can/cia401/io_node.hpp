@@ -29,8 +29,13 @@ class IoNode final : private SlaveApplication {
   void advance(Timestamp now) { slave_.advance(now); }
   [[nodiscard]] Timestamp next_timer() const { return slave_.next_due(); }
 
+  // Faults: slave.hpp. Inputs that are stuck are so from the next set_inputs() on.
+  void inject(const NodeFault& fault, Timestamp now) { slave_.inject(fault, now); }
+  void end_faults(Timestamp now) { slave_.end_faults(now); }
+  [[nodiscard]] const FaultGate& faults() const { return slave_.faults(); }
+
   // TPDOs of events are sent at once, as the interrupt objects allow.
-  void set_inputs(const IoInputs& inputs, Timestamp now);
+  void set_inputs(const IoInputs& real, Timestamp now);
   // Where the master is lost or has stopped the node, outputs have their error values (0x6206, 0x6207).
   [[nodiscard]] const IoOutputs& outputs() const { return outputs_; }
 

@@ -435,6 +435,12 @@ void ServoDrive::note_target_reached(bool now, double after) {
   target_reached_ = now && reached_for_ > after;
 }
 
+bool ServoDrive::fail(std::uint16_t code, std::uint8_t error_register, Timestamp /*now*/) {
+  raise_fault(code, error_register);
+  write_objects();
+  return true;
+}
+
 void ServoDrive::raise_fault(std::uint16_t code, std::uint8_t error_register) {
   error_code_ = code;
   power_.fault(parameters_);
