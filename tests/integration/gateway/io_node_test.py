@@ -109,6 +109,9 @@ class IoNode(unittest.TestCase):
             self.assertEqual(self.scratch.cellmirror("fault", str(NODE), "stuck:bit=5,value=1").returncode, 0)
             self.assertTrue(g.eventually(stuck(1), PATIENCE))
             self.assertIn("stuck", str(self.status()))
+            table = self.scratch.cellmirror("status").stdout
+            self.assertRegex(table, rf"I/O node {NODE} on udp:.*injected faults stuck")
+            self.assertRegex(table, r"gate: interrupted by .*J_2, 1 interruption")
             self.assertEqual(self.scratch.cellmirror("fault", str(NODE), "end").returncode, 0)
             self.assertTrue(g.eventually(stuck(0), PATIENCE))
 
