@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
     add_snapshot(program, action);
     add_page(program, action);
     add_simulate(program, action);
+    add_fault(program, action);
     add_record(program, action);
     add_recording(program, action);
     add_replay(program, action);

@@ -103,6 +103,7 @@ DriveConfig read_drive(TableReader& reader, const RobotFacts* robot) {
   drive.place = reader.place();
   reader.require("id");
   drive.node_id = static_cast<std::uint8_t>(reader.integer("id", 1, 127).value_or(0));
+  drive.waits_for_lss = reader.boolean("wait_for_lss").value_or(false);
   const auto joint = read_joint_reference(reader, robot);
   JointKind kind = reader.has("feed_m") ? JointKind::prismatic : JointKind::revolute;
   KnownLimits known;

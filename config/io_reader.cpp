@@ -112,6 +112,7 @@ void IoReader::read_node(TableReader& table, const RobotDirectory& robots, bool 
   node.place = table.place();
   table.require("id");
   node.node_id = static_cast<std::uint8_t>(table.integer("id", 1, 127).value_or(0));
+  node.waits_for_lss = table.boolean("wait_for_lss").value_or(false);
   node.channel = read_channel(table, files);
   if (node.channel.endpoint.starts_with("log:"))
     table.error("channel", "a log answers no controller", "use socketcan:INTERFACE or udp:GROUP:PORT");

@@ -1,10 +1,13 @@
 // What a running gateway answers: status, the page's news, requests of the control socket.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "app/gateway/gateway_parts.hpp"
 #include "app/gateway/host_name.hpp"
+#include "app/gateway/node_fault_request.hpp"
 #include "app/gateway/playback_request.hpp"
 #include "app/pictures/snapshot_request.hpp"
 #include "app/report/cell_summary_builder.hpp"
@@ -13,6 +16,7 @@
 #include "app/report/status_document.hpp"
 #include "ipc/control/queue_answer.hpp"
 #include "ipc/sysv/force_guard.hpp"
+#include "rt_core/base/log.hpp"
 #include "rt_core/base/wall_clock.hpp"
 
 namespace cellmirror::app {
@@ -27,8 +31,53 @@ void Gateway::Parts::answer(std::string_view line, ControlReply reply) {
   if (request->request == "record" && playback != nullptr)
     return reply(control_error({"this is a replay: it is recorded already", "copy the file that is played"}));
   if (request->request == "record") return reply(recordings.answer(*request));
+  if (request->request == "fault") {
+    const Result<void> injected = inject(*request);
+    return reply(injected ? R"({"done":true})" : control_error(injected.error()));
+  }
   reply(control_error({fmt::format("the request {} is not known", request->request),
-                       "known: status, snapshot, queues, record, playback"}));
+                       "known: status, snapshot, queues, record, playback, fault"}));
+}
+
+namespace {
+
+// The nodes that answer at this moment.
+std::vector<const FaultTarget*> targets_of(const CellState& cell_state, const FaultRequest& wanted) {
+  std::vector<const FaultTarget*> found;
+  const auto add = [&](const FaultTarget* target) {
+    if (target == nullptr || (!wanted.channel.empty() && target->channel != wanted.channel)) return;
+    if (std::ranges::find(target->nodes, wanted.order.node) != target->nodes.end()) found.push_back(target);
+  };
+  for (const RobotSnapshot& robot : cell_state.robots) {
+    if (robot.online) add(robot.faults.get());
+  }
+  for (const IoNodeSnapshot& node : cell_state.io_nodes) {
+    if (node.trouble.empty()) add(node.faults.get());
+  }
+  return found;
+}
+
+}  // namespace
+
+// By the thread of the control socket, which alone orders faults.
+Result<void> Gateway::Parts::inject(const ControlRequest& request) {
+  const Result<FaultRequest> wanted = fault_request(request);
+  if (!wanted) return std::unexpected(wanted.error());
+  const NodeFaultOrder& order = wanted->order;
+  const std::shared_ptr<const CellState> cell_state = board.latest();
+  const auto targets = targets_of(*cell_state, *wanted);
+  if (targets.empty())
+    return fail(fmt::format("no node {} answers a controller", order.node),
+                "nodes are those of [[device]], while its robot is online, and of [[io_node]]");
+  if (targets.size() > 1)
+    return fail(fmt::format("several nodes have the number {}", order.node), "name the channel, e.g. --channel socketcan:can0");
+  const FaultTarget& target = *targets.front();
+  if (!order.ends_all && order.fault.kind == NodeFaultKind::stuck && !target.robot.empty())
+    return fail(fmt::format("node {} is a drive; inputs of I/O nodes get stuck", order.node));
+  if (!target.inlet->push(order)) return fail("too many faults wait already", "try it again");
+  log_warning("node-fault", "node {} on {}: {}", order.node, target.channel,
+              order.ends_all ? "all injected faults end" : "a fault is injected: " + *request.argument("fault"));
+  return {};
 }
 
 // {"request":"playback", "play":true, "speed":2, "seek_s":1.5}: seconds after the beginning of the range.

@@ -175,6 +175,7 @@ struct Gateway::Parts {
   void answer(std::string_view request, ControlReply reply);
   void answer_snapshot(const ControlRequest& request, ControlReply reply);
   void answer_queues(ControlReply reply);
+  [[nodiscard]] Result<void> inject(const ControlRequest& request);
   void answer_playback(const ControlRequest& request, ControlReply reply);
   std::string status();
   web::Health health();

@@ -46,6 +46,7 @@ void FindingsPublisher::publish_news(FindingsOutput& output, RangeSendMode mode)
   if (ranges && ranges->sequence != newest_ranges_) {
     newest_ranges_ = ranges->sequence;
     output.publish_ranges(ranges->readings, mode);
+    output.publish_barriers(ranges->barriers);
   }
 }
 

@@ -30,7 +30,7 @@ struct StreamMaker {
                                 {.thread_name = "can", .fifo_priority = fifo_priority, .open_channel = links.open_can});
   }
   Result<std::unique_ptr<JointStream>> operator()(const Cia402DeviceConfig& config) const {
-    return can::make_cia402_device(config, clock, links.device_channel, links.contacts);
+    return can::make_cia402_device(config, clock, links.device_channel, links.contacts, links.faults);
   }
   Result<std::unique_ptr<JointStream>> operator()(const DdsStreamConfig& config) const {
     return dds::make_dds_stream(config, clock, links.payloads);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/snapshot/contact_inlet.hpp"
+#include "app/snapshot/fault_target.hpp"
 #include "config/cell_file.hpp"
 #include "drivers/can/stream/streams.hpp"
 #include "rt_core/base/diagnostics.hpp"
@@ -21,6 +22,7 @@ struct StreamLinks {
   std::shared_ptr<can::SharedChannel> device_channel = {};  // of a [[device]], which needs it
   std::shared_ptr<PayloadSink> payloads = {};               // is given what DDS and RTDE streams receive
   std::shared_ptr<ContactInlet> contacts = {};              // of the robot, for the drives of its [[device]]
+  std::shared_ptr<NodeFaultInlet> faults = {};              // likewise
 };
 
 // Closed; `clock` outlives it. `fifo_priority`: of the threads of CAN streams, 0 for none; frames then reach the tick

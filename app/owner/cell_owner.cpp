@@ -236,7 +236,7 @@ void CellOwner::publish_state() {
     const FleetRobot* robot = fleet_->find(compiled.id);
     if (robot == nullptr) continue;
     cell_state->robots.push_back({robot->id, robot->slot, robot->online, robot->sending, robot->stream, robot->contacts,
-                                  cell_.robot(robot->id)->parameters(), motion_.target(robot->id),
+                                  robot->faults, cell_.robot(robot->id)->parameters(), motion_.target(robot->id),
                                   motion_.positioning(robot->id)});
   }
   cell_state->haptics = haptics_.snapshots();

@@ -188,6 +188,11 @@ Result<void> Fleet::make_stream(FleetRobot& robot) {
     CELLMIRROR_EXPECTS(events_.node_channels != nullptr);
     links.device_channel = events_.node_channels->find(device->channel);
     links.contacts = std::make_shared<ContactInlet>();
+    auto target =
+        std::make_shared<FaultTarget>(FaultTarget{.channel = device->channel.endpoint, .robot = robot.id, .nodes = {}});
+    for (const DriveConfig& node : device->nodes) target->nodes.push_back(node.node_id);
+    links.faults = target->inlet;
+    robot.faults = std::move(target);
   }
   auto made = make_robot_stream(config->second, clock_, stream_priority_, links);
   if (!made) return std::unexpected(made.error());

@@ -13,6 +13,7 @@
 
 #include "app/owner/motion/motion_port.hpp"
 #include "app/snapshot/contact_inlet.hpp"
+#include "app/snapshot/fault_target.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/cell/cell.hpp"
@@ -39,6 +40,7 @@ struct FleetRobot {
   bool commanded = false;                       // it has been moved, set to a position, or online since it was added
   std::shared_ptr<JointStream> stream;          // null until the first `online`; status() is asked from other threads
   std::shared_ptr<ContactInlet> contacts = {};  // of drives that answer a controller; null: the robot has none
+  std::shared_ptr<const FaultTarget> faults = {};  // likewise
 };
 
 // Belongs to the thread that owns the cell. Keeps the tick's slots equal to the robots of the cell.

@@ -25,8 +25,10 @@ IoService::IoService(Parts parts, std::vector<IoNodeConfig> nodes, const std::fu
   for (IoNodeConfig& config : nodes) {
     Node& node = nodes_.emplace_back();
     node.config = std::make_shared<const IoNodeConfig>(std::move(config));
-    node.stream = can::make_cia401_node(*node.config, {node.inputs, node.outputs, wake}, parts_.clock,
-                                        parts_.channels.find(node.config->channel));
+    node.faults = std::make_shared<const FaultTarget>(
+        FaultTarget{.channel = node.config->channel.endpoint, .robot = {}, .nodes = {node.config->node_id}});
+    node.stream = can::make_cia401_node(*node.config, {node.inputs, node.outputs, wake, node.faults->inlet},
+                                        parts_.clock, parts_.channels.find(node.config->channel));
   }
 }
 
@@ -106,7 +108,7 @@ std::vector<IoNodeSnapshot> IoService::snapshots() const {
   std::vector<IoNodeSnapshot> out;
   for (const Node& node : nodes_)
     out.push_back({node.config, node.stream, node.inputs, node.done, node.changes, node.refusals->count,
-                   node.refusals->last, node.trouble});
+                   node.refusals->last, node.trouble, node.faults});
   return out;
 }
 

@@ -10,6 +10,7 @@
 
 #include "app/owner/fleet.hpp"
 #include "app/owner/motion/motion_service.hpp"
+#include "app/snapshot/fault_target.hpp"
 #include "app/snapshot/io_snapshot.hpp"
 #include "rt_core/cell/cell.hpp"
 #include "rt_core/ports/io_config.hpp"
@@ -61,6 +62,7 @@ class IoService {
     std::uint32_t done = 0;  // outputs that were carried out
     std::uint64_t changes = 0;
     std::shared_ptr<Refusals> refusals = std::make_shared<Refusals>();
+    std::shared_ptr<const FaultTarget> faults;
     std::string trouble;
     bool open = false;
     Timestamp tried;

@@ -52,6 +52,7 @@ bool SceneSource::refresh() {
   input.robots = conditions_;
   input.proximity = proximity.get();
   if (ranges) input.ranges = ranges->readings;
+  if (ranges) input.barriers = ranges->barriers;
   input.forces = forces.get();
   input.arrows = arrows;
   if (traces && traces->smear_ends == picture_->display->smear_ends) input.traces = traces->traces;

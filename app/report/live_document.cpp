@@ -171,6 +171,22 @@ void add_ranges(JsonWriter& out, const RangeReadings* readings) {
   out.end_array();
 }
 
+void add_barriers(JsonWriter& out, const RangeReadings* readings) {
+  out.key("light_barriers").begin_array();
+  for (std::size_t i = 0; readings != nullptr && i < readings->barriers.size(); ++i) {
+    const BarrierReading& barrier = readings->barriers[i];
+    out.begin_object()
+        .member("name", barrier.name)
+        .member("interrupted", barrier.interrupted)
+        .member("interruptions", barrier.interruptions)
+        .member("object", barrier.object)
+        .member("object_short", barrier.short_object.empty() ? barrier.object : barrier.short_object)
+        .member("doubtful", barrier.doubtful)
+        .end_object();
+  }
+  out.end_array();
+}
+
 void add_forces(JsonWriter& out, const ForceState* state) {
   out.key("forces").begin_array();
   for (std::size_t i = 0; state != nullptr && i < state->robots.size(); ++i) {
@@ -365,6 +381,7 @@ std::string live_document(const LiveSources& sources, LoopWindow& window, std::u
   add_robots(out, sources);
   add_proximity(out, sources);
   add_ranges(out, sources.ranges.get());
+  add_barriers(out, sources.ranges.get());
   add_forces(out, sources.forces.get());
   add_tissue(out, sources.tissue.get(), sources.cell_state, sources.now);
   add_volumes(out, sources.cell_state);

@@ -46,12 +46,19 @@ json sensor_json(const CompiledSensor& sensor, const std::string& path, const Ra
   return out;
 }
 
+json short_of(const BarrierReading& barrier) {
+  if (barrier.object.empty()) return nullptr;
+  return barrier.short_object.empty() ? barrier.object : barrier.short_object;
+}
+
 json barriers_json(const std::vector<BarrierReading>& barriers, Timestamp now) {
   json out = json::array();
   for (const BarrierReading& barrier : barriers) {
     out.push_back({{"name", barrier.name},
                    {"interrupted", barrier.interrupted},
+                   {"interruptions", barrier.interruptions},
                    {"object", barrier.object.empty() ? json(nullptr) : json(barrier.object)},
+                   {"object_short", short_of(barrier)},
                    {"doubtful", barrier.doubtful},
                    {"age_s", seconds(now - barrier.posture_time)}});
   }

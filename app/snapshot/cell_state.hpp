@@ -12,6 +12,7 @@
 #include "app/snapshot/contact_inlet.hpp"
 #include "app/snapshot/controller_snapshot.hpp"
 #include "app/snapshot/coupling_snapshot.hpp"
+#include "app/snapshot/fault_target.hpp"
 #include "app/snapshot/foot_switch_snapshot.hpp"
 #include "app/snapshot/force_settings.hpp"
 #include "app/snapshot/haptic_snapshot.hpp"
@@ -39,6 +40,7 @@ struct RobotSnapshot {
   bool sending = false;
   std::shared_ptr<const JointStream> stream;  // null where it was never opened
   std::shared_ptr<ContactInlet> contacts;     // null: no drives that contacts act on
+  std::shared_ptr<const FaultTarget> faults;  // null: no drives that answer a controller
   RobotParameters parameters;
   std::optional<JointValues> target;  // rad or m: where the newest commanded move ends
   Positioning positioning = Positioning::moving;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "app/snapshot/fault_target.hpp"
 #include "rt_core/ports/io_config.hpp"
 #include "rt_core/ports/io_image.hpp"
 #include "rt_core/ports/joint_stream.hpp"
@@ -21,6 +22,7 @@ struct IoNodeSnapshot {
   std::uint64_t refused = 0;  // of them: commands and moves that were refused
   std::string last_refusal;   // empty: none
   std::string trouble;        // why the channel is not open; empty: it is
+  std::shared_ptr<const FaultTarget> faults;
 };
 
 }  // namespace cellmirror::app

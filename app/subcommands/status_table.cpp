@@ -10,6 +10,7 @@
 #include "app/subcommands/status_table_display.hpp"
 #include "app/subcommands/status_table_forces.hpp"
 #include "app/subcommands/status_table_haptics.hpp"
+#include "app/subcommands/status_table_io.hpp"
 #include "app/subcommands/status_table_pictures.hpp"
 #include "app/subcommands/status_table_programs.hpp"
 #include "app/subcommands/status_table_recordings.hpp"
@@ -46,6 +47,7 @@ class TableWriter {
     for (const json& robot : status.at("robots")) write_robot(robot);
     out_ += couplings_table(status);
     out_ += controllers_table(status);
+    out_ += io_nodes_table(status);
     out_ += programs_table(status);
     out_ += sensing_table(status);
     out_ += forces_table(status);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "app/subcommands/status_words.hpp"
@@ -99,12 +100,25 @@ std::string range_lines(const json& ranges) {
   return out;
 }
 
+// Also while no ultrasonic sensor is active.
+std::string barrier_lines(const json& ranges) {
+  if (!ranges.contains("light_barriers") || ranges.at("light_barriers").empty()) return {};
+  std::string out = fmt::format("light barriers  age {}\n", age(ranges.at("age_s")));
+  for (const json& barrier : ranges.at("light_barriers")) {
+    const bool interrupted = barrier.at("interrupted").get<bool>();
+    const std::string by = barrier.at("object").is_null() ? "" : " by " + body(barrier, "object");
+    out += fmt::format("  {}: {}{}{}, {}\n", text(barrier.at("name")), interrupted ? "interrupted" : "free", by,
+                       doubt(barrier), number_of(barrier.value("interruptions", std::uint64_t{0}), "interruption"));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string sensing_table(const json& status) {
   std::string out;
   if (status.contains("collisions")) out += collision_lines(status.at("collisions"));
-  if (status.contains("ranges")) out += range_lines(status.at("ranges"));
+  if (status.contains("ranges")) out += range_lines(status.at("ranges")) + barrier_lines(status.at("ranges"));
   return out;
 }
 

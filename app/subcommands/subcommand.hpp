@@ -31,6 +31,7 @@ void add_range(cli::Command program, Action& action);
 void add_snapshot(cli::Command program, Action& action);
 void add_page(cli::Command program, Action& action);
 void add_simulate(cli::Command program, Action& action);
+void add_fault(cli::Command program, Action& action);
 void add_record(cli::Command program, Action& action);
 void add_recording(cli::Command program, Action& action);
 void add_replay(cli::Command program, Action& action);

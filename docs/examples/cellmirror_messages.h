@@ -32,6 +32,7 @@
 #define CELLMIRROR_KIND_PROXIMITY 5u
 #define CELLMIRROR_KIND_EVENT 6u
 #define CELLMIRROR_KIND_TISSUE_EVENT 7u
+#define CELLMIRROR_KIND_BARRIER 8u
 
 #define CELLMIRROR_NAME_BYTES 64 /* with at least one NUL */
 #define CELLMIRROR_PATH_BYTES 128
@@ -146,6 +147,16 @@
 #define CELLMIRROR_TISSUE_OFFSET_OBJECT 152
 #define CELLMIRROR_TISSUE_OFFSET_PART 216
 #define CELLMIRROR_TISSUE_BYTES 280
+
+#define CELLMIRROR_BARRIER_OFFSET_ID 40
+#define CELLMIRROR_BARRIER_OFFSET_OBJECT 104
+#define CELLMIRROR_BARRIER_OFFSET_INTERRUPTIONS 232
+#define CELLMIRROR_BARRIER_OFFSET_FLAGS 240
+#define CELLMIRROR_BARRIER_BYTES 248
+
+/* Flags of a light barrier. */
+#define CELLMIRROR_BARRIER_INTERRUPTED 1u
+#define CELLMIRROR_BARRIER_DOUBTFUL 2u
 
 /* Flags of a range. */
 #define CELLMIRROR_RANGE_SEEN 1u          /* something is in the cone */
@@ -337,6 +348,15 @@ struct cellmirror_tissue_event {
   char part[CELLMIRROR_NAME_BYTES];
 };
 
+struct cellmirror_barrier {
+  struct cellmirror_header header;
+  char id[CELLMIRROR_NAME_BYTES];
+  char object[CELLMIRROR_PATH_BYTES]; /* in the beam; empty: none, or not known */
+  uint64_t interruptions;             /* since the start */
+  uint32_t flags;                     /* CELLMIRROR_BARRIER_... */
+  uint32_t reserved;
+};
+
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 #define CELLMIRROR_CHECK(condition) _Static_assert(condition, #condition)
 #elif defined(__cplusplus) && __cplusplus >= 201103L
@@ -356,6 +376,7 @@ CELLMIRROR_CHECK(sizeof(struct cellmirror_pair) == CELLMIRROR_PAIR_BYTES);
 CELLMIRROR_CHECK(offsetof(struct cellmirror_proximity, pairs) == CELLMIRROR_PROXIMITY_OFFSET_PAIRS);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_event) == CELLMIRROR_EVENT_BYTES);
 CELLMIRROR_CHECK(sizeof(struct cellmirror_tissue_event) == CELLMIRROR_TISSUE_BYTES);
+CELLMIRROR_CHECK(sizeof(struct cellmirror_barrier) == CELLMIRROR_BARRIER_BYTES);
 
 /* Whether a received message is a record of this version and kind with at least `least` bytes. */
 static inline int cellmirror_is_record(const void* message, size_t bytes, unsigned kind, size_t least) {
@@ -439,6 +460,15 @@ static inline int cellmirror_read_tissue_event(const void* message, size_t bytes
   event->robot[CELLMIRROR_NAME_BYTES - 1] = '\0';
   event->object[CELLMIRROR_NAME_BYTES - 1] = '\0';
   event->part[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  return 1;
+}
+
+static inline int cellmirror_read_barrier(const void* message, size_t bytes, struct cellmirror_barrier* barrier) {
+  if (!cellmirror_is_record(message, bytes, CELLMIRROR_KIND_BARRIER, CELLMIRROR_BARRIER_BYTES)) return 0;
+  if (bytes != sizeof *barrier) return 0;
+  memcpy(barrier, message, bytes);
+  barrier->id[CELLMIRROR_NAME_BYTES - 1] = '\0';
+  barrier->object[CELLMIRROR_PATH_BYTES - 1] = '\0';
   return 1;
 }
 

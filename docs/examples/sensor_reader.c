@@ -7,6 +7,7 @@
  *   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
  *   sequence event NUMBER CHANGE a b DISTANCE
  *   sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
+ *   sequence barrier NAME interrupted|free|doubt COUNT object|-
  *
  *   cc -o sensor_reader sensor_reader.c
  *   ./sensor_reader --count 10
@@ -116,6 +117,13 @@ static void print_tissue_event(const struct cellmirror_tissue_event* event) {
          event->place[2]);
 }
 
+static void print_barrier(const struct cellmirror_barrier* barrier) {
+  const char* state = (barrier->flags & CELLMIRROR_BARRIER_INTERRUPTED) ? "interrupted" : "free";
+  if (barrier->flags & CELLMIRROR_BARRIER_DOUBTFUL) state = "doubt";
+  printf("%llu barrier %s %s %llu %s\n", (unsigned long long)barrier->header.sequence, barrier->id, state,
+         (unsigned long long)barrier->interruptions, text_or_dash(barrier->object));
+}
+
 /* 1: it was a record of a kind that this program knows. */
 static int print_record(const void* message, size_t bytes) {
   static union {
@@ -126,6 +134,7 @@ static int print_record(const void* message, size_t bytes) {
     struct cellmirror_proximity proximity;
     struct cellmirror_event event;
     struct cellmirror_tissue_event tissue_event;
+    struct cellmirror_barrier barrier;
   } record;
   if (cellmirror_read_robot(message, bytes, &record.robot)) {
     print_robot(&record.robot);
@@ -141,6 +150,8 @@ static int print_record(const void* message, size_t bytes) {
     print_event(&record.event);
   } else if (cellmirror_read_tissue_event(message, bytes, &record.tissue_event)) {
     print_tissue_event(&record.tissue_event);
+  } else if (cellmirror_read_barrier(message, bytes, &record.barrier)) {
+    print_barrier(&record.barrier);
   } else {
     return 0;
   }

@@ -7,6 +7,7 @@
 #   sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
 #   sequence event NUMBER CHANGE a b DISTANCE
 #   sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
+#   sequence barrier NAME interrupted|free|doubt COUNT object|-
 #
 #   perl sensor_reader.pl --count 10
 #
@@ -19,7 +20,7 @@ use constant { MESSAGE_TYPE => 5, MAX_MESSAGE => 8192, MSG_NOERROR => 010000 };
 # Places in a record: docs/messages.md
 use constant { PAYLOAD => 40, WORLD_TCP => 176, JOINTS => 232, JOINT_BYTES => 112, JOINT_POSITION => 72 };
 use constant { RANGE_BYTES => 296, RANGES => 48, RANGE_ENTRY_BYTES => 112 };
-use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320, CAMERA_BYTES => 384, TISSUE_BYTES => 280 };
+use constant { PAIRS => 88, PAIR_BYTES => 376, EVENT_BYTES => 320, CAMERA_BYTES => 384, TISSUE_BYTES => 280, BARRIER_BYTES => 248 };
 
 my $usage = <<'END';
 usage: sensor_reader.pl [--count N] [--timeout SECONDS] [--key KEY]
@@ -131,7 +132,17 @@ sub tissue {
         map { sprintf '%.6f', $_ } @more[0 .. 2]);
 }
 
-my %kinds = (1 => \&robot, 2 => \&range, 3 => \&ranges, 4 => \&camera, 5 => \&proximity, 6 => \&event, 7 => \&tissue);
+# Flags: 1 interrupted, 2 doubtful.
+sub barrier {
+    my ($record) = @_;
+    return if length($record) != BARRIER_BYTES;
+    my ($id, $object, $interruptions, $flags) = unpack('Z64 Z128 Q< L<', substr($record, PAYLOAD));
+    my $state = ($flags & 2) ? 'doubt' : ($flags & 1) ? 'interrupted' : 'free';
+    return ('barrier', $id, $state, $interruptions, $object eq '' ? '-' : $object);
+}
+
+my %kinds = (1 => \&robot, 2 => \&range, 3 => \&ranges, 4 => \&camera, 5 => \&proximity, 6 => \&event, 7 => \&tissue,
+    8 => \&barrier);
 for (my $printed = 0; $count == 0 || $printed < $count;) {
     my $message;
     alarm($timeout);

@@ -9,7 +9,8 @@
     sequence camera NAME tracks FRAME|free mirrored|simulated pan P tilt T distance D fovy F   CAM_ONLINE
     sequence proximity touching N warning N of TESTED pairs: a|b=DISTANCE|touching ...
     sequence event NUMBER CHANGE a b DISTANCE
-     sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
+    sequence tissue NUMBER KIND robot|- object|- part|- VALUE at x y z
+    sequence barrier NAME interrupted|free|doubt COUNT object|-
 
 A record that was read is gone from the queue: there is one reader. SPDX-License-Identifier: Apache-2.0
 """
@@ -35,11 +36,13 @@ PROXIMITY = struct.Struct("<Q2d5IH2x")  # tested, touching, within warning, doub
 PAIR = struct.Struct("<128s128s13d2Id")  # distance, depth, points, normal, closing speed, time to contact; flags; contact age
 EVENT = struct.Struct("<QB7xd128s128s")
 TISSUE_EVENT = struct.Struct("<QBB6x4d64s64s64s")  # event, kind, limit; value, place; robot, object, part
+BARRIER = struct.Struct("<64s128sQI4x")  # name, object, interruptions; flags
 STATES = ("none", "fresh", "stale", "lost", "invalid")
 CHANGES = ("entered_warning", "touched", "parted", "left_warning")
 DEEDS = ("grip", "release", "slip", "clip", "cut", "coagulate", "tear", "bleed", "bleed_end", "limit")
 CAMERA_TRACKING, CAMERA_MIRRORED = 1, 2
 RANGE_SEEN, RANGE_IN_BLIND_ZONE, RANGE_DOUBTFUL, PAIR_TOUCHING = 1, 2, 4, 1
+BARRIER_INTERRUPTED, BARRIER_DOUBTFUL = 1, 2
 
 
 def name(field):
@@ -105,7 +108,13 @@ def tissue(payload):
     return words + [f"{value:.6f}", "at"] + [f"{place:.6f}" for place in (x, y, z)]
 
 
-KINDS = {1: robot, 2: single_range, 3: ranges, 4: camera, 5: proximity, 6: event, 7: tissue}
+def barrier(payload):
+    barrier_id, seen, interruptions, flags = BARRIER.unpack(payload)
+    state = "doubt" if flags & BARRIER_DOUBTFUL else "interrupted" if flags & BARRIER_INTERRUPTED else "free"
+    return ["barrier", name(barrier_id), state, str(interruptions), name(seen) or "-"]
+
+
+KINDS = {1: robot, 2: single_range, 3: ranges, 4: camera, 5: proximity, 6: event, 7: tissue, 8: barrier}
 
 
 def record_line(record):

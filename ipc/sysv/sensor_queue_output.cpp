@@ -9,6 +9,7 @@
 
 #include "ipc/sysv/owned_queue.hpp"
 #include "ipc/sysv/proximity_pacing.hpp"
+#include "ipc/wire/barrier_record.hpp"
 #include "ipc/wire/camera_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
@@ -27,6 +28,8 @@ constexpr Nanoseconds kBetweenRepairs{1'000'000'000};
 constexpr Nanoseconds kReaderGone{10'000'000'000};
 // More sensors than a cell has; a part's numbers are 16 bits wide.
 constexpr std::size_t kMostReadings = 4096;
+// After so long a light barrier is reported again, though nothing has changed.
+constexpr Nanoseconds kBarrierAgain{1'000'000'000};
 
 // Of one kind of record. Relaxed: counters for people, each on its own.
 struct Count {
@@ -42,6 +45,13 @@ struct SentAndRefused {
 // Nothing in the cone is a reading, too.
 bool has_finite_values(const RangeReading& reading) {
   return !reading.distance_m || (std::isfinite(*reading.distance_m) && reading.point_m.allFinite());
+}
+
+bool is_news(const BarrierReading& before, const BarrierReading& now) {
+  const Nanoseconds since = now.posture_time - before.posture_time;
+  return before.interrupted != now.interrupted || before.interruptions != now.interruptions ||
+         before.doubtful != now.doubtful || before.object != now.object || since >= kBarrierAgain ||
+         since < Nanoseconds(0);
 }
 
 bool has_finite_values(const CameraState& camera) {
@@ -62,8 +72,9 @@ struct SensorQueueOutput::Impl {
   ProximityPacing pacing;
   std::uint64_t last_check = 0;  // number of the state whose events were sent last
   std::uint64_t last_event = 0;
-  std::vector<RangeReading> finite;  // reused
-  Timestamp read_at;                 // when another program was last seen to read
+  std::vector<RangeReading> finite;      // reused
+  std::vector<BarrierReading> reported;  // light barriers as they were sent last
+  Timestamp read_at;                     // when another program was last seen to read
   Count dropped;
   Count unread;  // of these, those that nobody was there to read
   Count events_missing;
@@ -74,6 +85,7 @@ struct SensorQueueOutput::Impl {
   SentAndRefused proximity;
   SentAndRefused events;
   SentAndRefused cameras;
+  SentAndRefused barriers;
   SentAndRefused tissue_events;
 
   template <class Record, class Encode>
@@ -82,8 +94,8 @@ struct SensorQueueOutput::Impl {
   bool deliver(std::span<const std::byte> record, Timestamp time);
   bool make_room(Timestamp time);
   bool repair(Timestamp time);
-  [[nodiscard]] std::array<const SentAndRefused*, 6> kinds() const {
-    return {&robots, &ranges, &proximity, &events, &cameras, &tissue_events};
+  [[nodiscard]] std::array<const SentAndRefused*, 7> kinds() const {
+    return {&robots, &ranges, &proximity, &events, &cameras, &barriers, &tissue_events};
   }
 };
 
@@ -186,6 +198,17 @@ void SensorQueueOutput::publish_ranges(std::span<const RangeReading> readings, R
   }
 }
 
+void SensorQueueOutput::publish_barriers(std::span<const BarrierReading> barriers) {
+  std::vector<BarrierReading>& reported = impl_->reported;
+  const bool anew = reported.size() != barriers.size();
+  if (anew) reported.assign(barriers.begin(), barriers.end());
+  for (std::size_t i = 0; i < barriers.size(); ++i) {
+    if (!anew && !is_news(reported[i], barriers[i])) continue;
+    reported[i] = barriers[i];
+    impl_->send(barrier_record_of(barriers[i]), barriers[i].posture_time, encode_barrier_record, impl_->barriers);
+  }
+}
+
 // Restarted numbers are those of a new checker; nothing is skipped then.
 void SensorQueueOutput::Impl::send_events(const ProximityState& state) {
   if (state.sequence == last_check) return;
@@ -241,6 +264,8 @@ std::vector<std::pair<std::string, std::uint64_t>> SensorQueueOutput::counters()
           {"refused", refused},
           {"ranges_sent", impl_->ranges.sent.get()},
           {"ranges_refused", impl_->ranges.refused.get()},
+          {"barriers_sent", impl_->barriers.sent.get()},
+          {"barriers_refused", impl_->barriers.refused.get()},
           {"proximity_sent", impl_->proximity.sent.get()},
           {"proximity_refused", impl_->proximity.refused.get()},
           {"events_sent", impl_->events.sent.get()},

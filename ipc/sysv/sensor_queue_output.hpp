@@ -1,5 +1,6 @@
 // What leaves over the SENSOR channel (manual 1.2.1: key 1990, type 5): robot parameters (ROBOT send_on), ultrasonic
-// ranges (SET_USSPAR), what touches and what is near, cameras that are online (CAM_ONLINE), events of tissue.
+// ranges (SET_USSPAR), light barriers, what touches and what is near, cameras that are online (CAM_ONLINE), events of
+// tissue.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +34,8 @@ class SensorQueueOutput final : public RobotStateOutput,
   void publish(Timestamp time, std::span<const RobotState> robots, std::span<const FramePose> frames) override;
   // A record a sensor, or one for all (more where they do not fit). Readings that are not finite are refused.
   void publish_ranges(std::span<const RangeReading> readings, RangeSendMode mode) override;
+  // A record for each barrier whose state has changed, and for each once a second.
+  void publish_barriers(std::span<const BarrierReading> barriers) override;
   // A record for each event, then one for the state where that is due (ProximityPacing). The state of the same
   // computation again sends no event twice.
   void publish_proximity(const ProximityState& state) override;

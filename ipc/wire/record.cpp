@@ -13,7 +13,7 @@ using namespace record_offset;
 
 bool known_kind(std::uint16_t kind) {
   return kind >= static_cast<std::uint16_t>(RecordKind::robot_parameters) &&
-         kind <= static_cast<std::uint16_t>(RecordKind::tissue_event);
+         kind <= static_cast<std::uint16_t>(RecordKind::light_barrier);
 }
 
 }  // namespace

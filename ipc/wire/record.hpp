@@ -26,6 +26,7 @@ enum class RecordKind : std::uint16_t {
   proximity = 5,
   proximity_event = 6,
   tissue_event = 7,
+  light_barrier = 8,
 };
 
 // Byte offsets of the header's fields.

@@ -20,9 +20,10 @@ struct JointInterval {
 // One drive = one joint. "Unit" is rad or m, of the joint; the motor's quantities are seen from the joint, behind gear
 // and feed. Increments are those of the encoder: they are the drive's unit of position.
 struct DriveConfig {
-  std::uint8_t node_id = 0;  // 1..127
-  std::size_t joint = 0;     // the joint's number in the robot
-  std::string joint_name;    // for messages
+  std::uint8_t node_id = 0;    // 1..127
+  bool waits_for_lss = false;  // has no number until a master gives it one; node_id is its serial number
+  std::size_t joint = 0;       // the joint's number in the robot
+  std::string joint_name;      // for messages
   // joint = sign * increments / increments_per_unit + offset
   std::uint32_t encoder_increments = 65536;  // of one revolution of the motor
   std::uint32_t gear_motor = 1;              // revolutions of the motor

@@ -61,6 +61,7 @@ struct DigitalOutputConfig {
 struct IoNodeConfig {
   CanChannelConfig channel;
   std::uint8_t node_id = 0;        // 1..127
+  bool waits_for_lss = false;      // has no number until a master gives it one; node_id is its serial number
   std::uint16_t heartbeat_ms = 0;  // object 0x1017 at power-on
   Nanoseconds period{1'000'000};   // of looking at the inputs
   std::vector<DigitalInputConfig> inputs;

@@ -10,6 +10,8 @@ inline constexpr Colour kNear{0.95F, 0.72F, 0.12F, 1.0F};
 inline constexpr Colour kTouching{0.80F, 0.22F, 0.04F, 1.0F};
 inline constexpr Colour kGhost{0.52F, 0.56F, 0.66F, 0.45F};
 inline constexpr Colour kRange{0.34F, 0.71F, 0.91F, 0.22F};  // cones of sensors
+inline constexpr Colour kBeam{0.42F, 0.76F, 0.30F, 1.0F};    // of light barriers
+inline constexpr Colour kBeamInterrupted{0.72F, 0.10F, 0.36F, 1.0F};
 inline constexpr Colour kTrace{0.00F, 0.45F, 0.70F, 1.0F};
 inline constexpr Colour kForce{0.00F, 0.50F, 0.38F, 1.0F};
 inline constexpr Colour kTorque{0.62F, 0.30F, 0.52F, 1.0F};

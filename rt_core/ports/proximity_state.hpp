@@ -12,6 +12,7 @@
 
 #include "rt_core/base/pose.hpp"
 #include "rt_core/base/time.hpp"
+#include "rt_core/ports/light_barrier.hpp"
 
 namespace cellmirror {
 
@@ -113,6 +114,8 @@ class FindingsOutput {
   virtual void publish_proximity(const ProximityState& state) = 0;
   // `readings`: of the active sensors.
   virtual void publish_ranges(std::span<const RangeReading> readings, RangeSendMode mode) = 0;
+  // All light barriers of the cell, always in the same order.
+  virtual void publish_barriers(std::span<const BarrierReading> /*barriers*/) {}
 };
 
 }  // namespace cellmirror

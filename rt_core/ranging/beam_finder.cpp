@@ -44,19 +44,25 @@ void BeamFinder::adopt(const CompiledCell& cell, const SeenParts& parts) {
 }
 
 std::span<const BarrierReading> BeamFinder::read(const CompiledCell& cell, const CellPoses& poses,
-                                                 const SeenParts& parts, Timestamp posture_time) {
+                                                 const SeenParts& parts, std::span<const std::string> short_names,
+                                                 Timestamp posture_time) {
   readings_.resize(barriers_.size());
   for (std::size_t i = 0; i < barriers_.size(); ++i) {
-    readings_[i].name = barriers_[i].name;
-    readings_[i].posture_time = posture_time;
-    read(beams_[i], barriers_[i], cell, poses, parts, readings_[i]);
+    BarrierReading& reading = readings_[i];
+    const bool was_interrupted = reading.interrupted;
+    reading.name = barriers_[i].name;
+    reading.posture_time = posture_time;
+    read(beams_[i], barriers_[i], cell, poses, parts, short_names, reading);
+    if (reading.interrupted && !was_interrupted) ++reading.interruptions;
   }
   return readings_;
 }
 
 void BeamFinder::read(Beam& beam, const LightBarrier& barrier, const CompiledCell& cell, const CellPoses& poses,
-                      const SeenParts& parts, BarrierReading& out) {
+                      const SeenParts& parts, std::span<const std::string> short_names, BarrierReading& out) {
   out.object.clear();
+  out.short_object.clear();
+  out.placed = false;
   out.doubtful = true;
   out.interrupted = true;
   if (beam.from < 0 || beam.to < 0) return;
@@ -72,6 +78,9 @@ void BeamFinder::read(Beam& beam, const LightBarrier& barrier, const CompiledCel
   X_WB.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), b - a).toRotationMatrix();
   X_WB.translation() = 0.5 * (a + b);
   out.doubtful = parts.incomplete();
+  out.placed = true;
+  out.from = a;
+  out.to = b;
   const auto near = [&](std::size_t i) {
     const double reach = parts.radius(i) + barrier.radius;
     return beam.housing[i] == 0 && !(distance_to_segment(parts.centre(i), a, b) > reach);
@@ -87,6 +96,7 @@ void BeamFinder::read(Beam& beam, const LightBarrier& barrier, const CompiledCel
   if (!out.interrupted) return;
   beam.last = found;
   out.object = body_name(cell, parts.part(found).node);
+  out.short_object = short_names[found];
 }
 
 bool BeamFinder::meets(Beam& beam, const Pose& X_WB, const SeenParts& parts, std::size_t part) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,10 @@ class BeamFinder {
   void set_barriers(std::vector<LightBarrier> barriers) { barriers_ = std::move(barriers); }
   // The cell has changed; `parts` are its parts.
   void adopt(const CompiledCell& cell, const SeenParts& parts);
-  // In the order of the barriers; `parts` are where `poses` have them. Valid until the next call.
+  // In the order of the barriers; `parts` are where `poses` have them, `short_names` are theirs. Valid until the next
+  // call.
   std::span<const BarrierReading> read(const CompiledCell& cell, const CellPoses& poses, const SeenParts& parts,
-                                       Timestamp posture_time);
+                                       std::span<const std::string> short_names, Timestamp posture_time);
 
  private:
   struct Beam {
@@ -36,7 +38,7 @@ class BeamFinder {
   };
 
   void read(Beam& beam, const LightBarrier& barrier, const CompiledCell& cell, const CellPoses& poses,
-            const SeenParts& parts, BarrierReading& out);
+            const SeenParts& parts, std::span<const std::string> short_names, BarrierReading& out);
   [[nodiscard]] static bool meets(Beam& beam, const Pose& X_WB, const SeenParts& parts, std::size_t part);
 
   std::vector<LightBarrier> barriers_;

@@ -120,7 +120,7 @@ std::span<const RangeReading> RangeFinder::read(const CellPoses& poses, Timestam
 std::span<const BarrierReading> RangeFinder::read_barriers(const CellPoses& poses, Timestamp posture_time) {
   State& s = *state_;
   CELLMIRROR_EXPECTS(s.cell != nullptr && poses.X_WN.size() == s.cell->size());
-  return s.beams.read(*s.cell, poses, s.parts, posture_time);
+  return s.beams.read(*s.cell, poses, s.parts, s.short_names, posture_time);
 }
 
 // Strings are assigned to what is there: no heap memory once they have been as long.

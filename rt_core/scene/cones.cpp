@@ -13,6 +13,8 @@ namespace cellmirror::scene {
 
 namespace {
 
+constexpr float kBeamWidth = 2.5F;
+
 std::string reading_text(const RangeReading& reading) {
   std::string text = reading.id;
   if (!reading.distance_m)
@@ -21,6 +23,15 @@ std::string reading_text(const RangeReading& reading) {
     text += " " + distance_text(*reading.distance_m);
   if (reading.in_blind_zone) text += ", blind zone";
   if (reading.doubtful) text += ", doubtful";
+  return text;
+}
+
+std::string barrier_text(const BarrierReading& barrier) {
+  std::string text = barrier.name;
+  if (barrier.interrupted) text += " interrupted";
+  const std::string& object = barrier.short_object.empty() ? barrier.object : barrier.short_object;
+  if (!object.empty()) text += ": " + object;
+  if (barrier.doubtful) text += ", doubtful";
   return text;
 }
 
@@ -52,6 +63,20 @@ void draw_cones(const SceneInput& input, Scene& scene) {
     if (read) continue;
     scene.cones.push_back({input.poses->X_WN[static_cast<std::size_t>(sensor.node)], sensor.sensor.half_angle_rad,
                            sensor.sensor.range_m, palette::kRange});
+  }
+}
+
+void draw_beams(const SceneInput& input, Scene& scene) {
+  for (const BarrierReading& barrier : input.barriers) {
+    if (!barrier.placed) continue;
+    SceneLine beam;
+    beam.from = barrier.from;
+    beam.to = barrier.to;
+    beam.rgba = barrier.interrupted ? palette::kBeamInterrupted : palette::kBeam;
+    beam.width_px = kBeamWidth;
+    beam.dashed = barrier.doubtful;
+    scene.lines.push_back(beam);
+    scene.labels.push_back({0.5 * (barrier.from + barrier.to), barrier_text(barrier), Mark::none});
   }
 }
 

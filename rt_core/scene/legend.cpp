@@ -33,6 +33,14 @@ void write_legend(const SceneInput& input, const ForceArrows& arrows, const Tiss
   add(any_marked(scene, Mark::near), palette::kNear, warning_text(input));
   add(any_marked(scene, Mark::ghost), palette::kGhost, "old data");
   add(!scene.cones.empty(), palette::kRange, "range sensor");
+  const auto beam = [&input](bool interrupted) {
+    const auto shown = [interrupted](const BarrierReading& one) {
+      return one.placed && one.interrupted == interrupted;
+    };
+    return std::ranges::any_of(input.barriers, shown);
+  };
+  add(beam(false), palette::kBeam, "light barrier");
+  add(beam(true), palette::kBeamInterrupted, "light barrier, interrupted");
   add(!scene.traces.empty(), palette::kTrace, "trace of the TCP");
   const double force = arrows.newton_per_metre();
   const double torque = arrows.newton_metre_per_metre();

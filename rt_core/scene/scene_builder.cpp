@@ -107,6 +107,7 @@ void SceneBuilder::build(const SceneInput& input, Scene& scene) {
   draw_frames(input, scene);
   draw_traces(input, scene);
   draw_cones(input, scene);
+  draw_beams(input, scene);
   parts.arrows.draw(input.arrows, longest_arrow(parts.bodies), scene);
   place_volumes(input, scene);
   parts.tissue.draw(input.tissue, input.display->draw_rules, scene);

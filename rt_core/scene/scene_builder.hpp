@@ -36,6 +36,7 @@ struct SceneInput {
   std::span<const RobotCondition> robots;
   const ProximityState* proximity = nullptr;
   std::span<const RangeReading> ranges;
+  std::span<const BarrierReading> barriers;
   const ForceState* forces = nullptr;
   std::span<const ForceArrow> arrows;        // rt_core/dynamics/arrows.hpp
   std::span<const TcpTrace> traces;          // of SMEAR; drawn while the mode is on

@@ -74,7 +74,7 @@ class Scratch:
     def cellmirror(self, *arguments, timeout=120, instance=None):
         """Runs the program to its end; the completed process."""
         command = [str(BIN / "cellmirror"), *arguments]
-        if instance is not False and arguments and arguments[0] in ("send", "status"):
+        if instance is not False and arguments and arguments[0] in ("fault", "send", "status"):
             command += ["--instance", instance or self.instance]
         return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=timeout)
 

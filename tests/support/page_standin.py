@@ -127,6 +127,8 @@ class Cell:
             "collision_age_s": 0.003,
             "ranges": [{"id": f"USS_{i}", "distance_m": 0.4 + 0.3 * math.sin(now + i) if i < 2 else None, "range_m": 2.0,
                         "object": "Cell.Table_1.top", "object_short": "Table_1.top", "in_blind_zone": False, "doubtful": i == 1} for i in range(3)],
+            "light_barriers": [{"name": "gate", "interrupted": bool(touching), "interruptions": int(now / 16), "doubtful": False,
+                                "object": "Cell.Table_1.top" if touching else "", "object_short": "Table_1.top" if touching else ""}],
             "forces": forces,
             "problems": [{"kind": "script_queue", "text": text} for text in self.problems], "commands_logged": 3,
             "alarms": self.alarms.counts(), **({"replay": self.playback.state()} if self.playback else {}),

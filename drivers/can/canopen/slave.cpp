@@ -26,6 +26,26 @@ constexpr std::uint16_t kEmcyMasterLost = 0x8130;
 constexpr std::uint8_t kErrorGeneric = 0x01;
 constexpr std::uint8_t kErrorCommunication = 0x10;
 
+// CiA 301, 7.5.2.2: what the classes of error codes are in the error register.
+std::uint8_t error_register_of(std::uint16_t code) {
+  switch (code >> 12U) {
+    case 0x2:
+      return kErrorGeneric | 0x02;  // current
+    case 0x3:
+      return kErrorGeneric | 0x04;  // voltage
+    case 0x4:
+      return kErrorGeneric | 0x08;  // temperature
+    case 0x8:
+      return kErrorGeneric | (code >> 8U == 0x81 || code >> 8U == 0x82 ? kErrorCommunication : 0x20);
+    case 0x7:
+      return kErrorGeneric | 0x20;  // device profile
+    case 0xF:
+      return kErrorGeneric | 0x80;  // manufacturer
+    default:
+      return kErrorGeneric;
+  }
+}
+
 }  // namespace
 
 void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, const SlaveIdentity& identity) {
@@ -65,12 +85,17 @@ CanopenSlave::CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectA
       first_node_(node),
       lss_(node),
       application_(&application),
-      output_(&output),
+      gate_(output),
       defaults_(std::move(defaults)),
       objects_(defaults_),
       server_(node, *this),
-      pdos_(objects_, event, application, output) {
+      pdos_(objects_, event, application, gate_) {
   CELLMIRROR_EXPECTS(node >= 1 && node <= kMaxNodeId);
+}
+
+void CanopenSlave::wait_for_number() {
+  first_node_ = node_ = kNoNodeNumber;
+  lss_.restart(kNoNodeNumber);
 }
 
 void CanopenSlave::power_on(NmtState first, Timestamp now) {
@@ -96,7 +121,9 @@ void CanopenSlave::reset(Timestamp now) {
   length_error_ = false;
   nmt_ = NmtState::boot_up;
   application_->on_reset(now);
-  output_->send(encode_heartbeat({node_, NmtState::boot_up}));
+  heartbeat_due_ = {};
+  if (node_ == kNoNodeNumber) return;
+  gate_.send(encode_heartbeat({node_, NmtState::boot_up}));
   restart_heartbeat(now);
   enter(first_, now);
 }
@@ -110,8 +137,18 @@ void CanopenSlave::enter(NmtState state, Timestamp now) {
   }
 }
 
+void CanopenSlave::on_lss(const CanFrame& frame, Timestamp now) {
+  const LssSlave::Reaction reaction = lss_.receive(frame, identity(), node_);
+  if (reaction.answer) gate_.send(*reaction.answer);
+  if (reaction.starts) on_nmt(NmtCommand::reset_communication, now);
+}
+
 // Those that receive() looks at.
 void CanopenSlave::list_identifiers(std::vector<std::uint32_t>& identifiers) const {
+  if (node_ == kNoNodeNumber) {
+    identifiers.push_back(kLssMasterCobId);
+    return;
+  }
   identifiers.insert(identifiers.end(),
                      {kNmtCobId, kSyncCobId, kLssMasterCobId, kSdoRequestBase + node_, kHeartbeatBase + node_});
   const auto watched = static_cast<std::uint32_t>(object(kHeartbeatConsumer.index, kHeartbeatConsumer.subindex));
@@ -122,14 +159,17 @@ void CanopenSlave::list_identifiers(std::vector<std::uint32_t>& identifiers) con
 void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
   if (!powered_ || frame.error) return;
   now_ = now;
+  follow_faults(now);
+  if (gate_.is_dead()) return;
   if (frame.remote) {
-    if (!frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
+    if (node_ != kNoNodeNumber && !frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
     return;
   }
   if (!frame.extended && frame.id == kLssMasterCobId) {
-    if (const auto answer = lss_.receive(frame, identity(), node_)) output_->send(*answer);
+    on_lss(frame, now);
     return;
   }
+  if (node_ == kNoNodeNumber) return;
   if (const auto message = decode_nmt(frame)) {
     if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
     return;
@@ -144,7 +184,7 @@ void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
   }
   if (nmt_ == NmtState::operational) on_rpdo(frame, now);
   if (nmt_ == NmtState::stopped) return;
-  if (const auto answer = server_.receive(frame, now)) output_->send(*answer);
+  if (const auto answer = server_.receive(frame, now)) gate_.send(*answer);
   drain_server(now);
 }
 
@@ -172,7 +212,7 @@ void CanopenSlave::on_nmt(NmtCommand command, Timestamp now) {
 void CanopenSlave::renumber(std::uint8_t node) {
   constexpr std::int64_t kNodeBits = 0x7F;
   lss_.restart(node);
-  if (std::exchange(node_, node) == node) return;
+  if (std::exchange(node_, node) == node || node == kNoNodeNumber) return;
   server_.set_node(node);
   std::vector<ObjectAddress> identifiers{{0x1014, 0}};
   for (std::uint16_t i = 0; i < kSlavePdos; ++i) {
@@ -215,7 +255,7 @@ void CanopenSlave::on_rpdo(const CanFrame& frame, Timestamp now) {
 void CanopenSlave::on_guarding(Timestamp now) {
   const auto state = static_cast<std::uint8_t>(static_cast<unsigned>(nmt_) | (guard_toggle_ ? 0x80U : 0U));
   guard_toggle_ = !guard_toggle_;
-  output_->send(make_frame(kHeartbeatBase + node_, {state}));
+  gate_.send(make_frame(kHeartbeatBase + node_, {state}));
   const Nanoseconds life = std::chrono::milliseconds(object(0x100C) * object(0x100D));
   guard_due_ = life.count() > 0 ? now + life : Timestamp{};
 }
@@ -288,15 +328,50 @@ std::optional<SdoAbort> CanopenSlave::refuse(ObjectAddress address, std::int64_t
 }
 
 void CanopenSlave::drain_server(Timestamp now) {
-  while (const auto frame = server_.advance(now)) output_->send(*frame);
+  while (const auto frame = server_.advance(now)) gate_.send(*frame);
+}
+
+void CanopenSlave::inject(const NodeFault& fault, Timestamp now) {
+  if (!powered_) return;
+  follow_faults(now);
+  const bool was_dead = gate_.is_dead();
+  if (!gate_.add(fault, now) || was_dead) return;
+  if (fault.kind == NodeFaultKind::emergency) {
+    const std::uint8_t error_register = error_register_of(fault.code);
+    reports_error_ = !application_->fail(fault.code, error_register, now);
+    if (reports_error_) emergency(fault.code, error_register);
+  }
+  if (fault.kind != NodeFaultKind::death) return;
+  objects_ = defaults_;
+  server_.reset();
+  pdos_.load(now);
+  nmt_ = NmtState::boot_up;
+  heartbeat_due_ = master_due_ = guard_due_ = {};
+  application_->on_reset(now);
+}
+
+void CanopenSlave::end_faults(Timestamp now) {
+  gate_.end_all();
+  follow_faults(now);
+}
+
+void CanopenSlave::follow_faults(Timestamp now) {
+  const FaultGate::Ended ended = gate_.advance(now);
+  if (ended.death) {
+    renumber(first_node_);
+    reset(now);
+  }
+  if (ended.emergency && !gate_.is_dead() && std::exchange(reports_error_, false)) emergency(0, 0);
 }
 
 void CanopenSlave::advance(Timestamp now) {
   if (!powered_) return;
   now_ = now;
+  follow_faults(now);
+  if (gate_.is_dead()) return;
   drain_server(now);
   if (heartbeat_due_.known() && now >= heartbeat_due_) {
-    output_->send(encode_heartbeat({node_, nmt_}));
+    gate_.send(encode_heartbeat({node_, nmt_}));
     const Nanoseconds period = std::chrono::milliseconds(object(kHeartbeatProducer));
     heartbeat_due_ = heartbeat_due_ + period;
     if (heartbeat_due_ <= now) heartbeat_due_ = now + period;
@@ -312,6 +387,7 @@ void CanopenSlave::advance(Timestamp now) {
 Timestamp CanopenSlave::next_due() const {
   if (!powered_) return {};
   Timestamp due = earlier_due(heartbeat_due_, earlier_due(master_due_, guard_due_));
+  due = earlier_due(due, gate_.next_due());
   due = earlier_due(due, server_.next_due());
   return nmt_ == NmtState::operational ? earlier_due(due, pdos_.next_due()) : due;
 }
@@ -336,7 +412,7 @@ void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
   emcy.node = node_;
   emcy.code = code;
   emcy.error_register = error_register;
-  output_->send(encode_emcy(emcy));
+  gate_.send(encode_emcy(emcy));
 }
 
 std::int64_t CanopenSlave::object(std::uint16_t index, std::uint8_t subindex) const {

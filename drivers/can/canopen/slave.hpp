@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/canopen/fault_gate.hpp"
 #include "drivers/can/canopen/frame_output.hpp"
 #include "drivers/can/canopen/lss.hpp"
 #include "drivers/can/canopen/nmt.hpp"
@@ -33,6 +34,8 @@ class SlaveApplication : public PdoEvents {
   virtual void synced(Timestamp now) = 0;
   // The master's heartbeat or guarding ended, or it stopped this node.
   virtual void communication_lost(Timestamp now) = 0;
+  // A fault was injected: the device fails with this error. False: it only reports the error.
+  virtual bool fail(std::uint16_t /*code*/, std::uint8_t /*error_register*/, Timestamp /*now*/) { return false; }
 };
 
 // Objects 0x1000 to 0x1029 that the slave serves itself, beside the PDOs' (slave_pdos.hpp).
@@ -50,6 +53,9 @@ class CanopenSlave final : private SdoObjects {
   CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectAddress event, SlaveApplication& application,
                FrameOutput& output);
 
+  // Before power_on(): has no number until a master gives it one by LSS (CiA 305), and says nothing until then; again
+  // after NMT reset node. The serial number stays that of the objects.
+  void wait_for_number();
   // Boot-up message, then `first`: pre-operational, or operational without being told.
   void power_on(NmtState first, Timestamp now);
   void power_off();  // silent and deaf
@@ -66,7 +72,13 @@ class CanopenSlave final : private SdoObjects {
   // EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: the error is reset.
   void emergency(std::uint16_t code, std::uint8_t error_register);
 
-  [[nodiscard]] std::uint8_t node() const { return node_; }  // a master may change it by LSS
+  // A fault of this node from now on, at most FaultGate::kMostFaults at a time. Without power (death) it is deaf and
+  // silent, as after a reset, and boots in the end.
+  void inject(const NodeFault& fault, Timestamp now);
+  void end_faults(Timestamp now);
+  [[nodiscard]] const FaultGate& faults() const { return gate_; }
+
+  [[nodiscard]] std::uint8_t node() const { return node_; }  // a master may change it by LSS; kNoNodeNumber
   [[nodiscard]] bool is_powered() const { return powered_; }
   [[nodiscard]] NmtState state() const { return nmt_; }
   [[nodiscard]] ObjectDictionary& objects() { return objects_; }
@@ -79,11 +91,13 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] std::optional<SdoAbort> refuse(ObjectAddress address, std::int64_t value);
 
   void reset(Timestamp now);
+  void follow_faults(Timestamp now);
   // The node's number, and the identifiers at power-on that follow from it.
   void renumber(std::uint8_t node);
   [[nodiscard]] LssSlave::Identity identity() const;
   void on_nmt(NmtCommand command, Timestamp now);
   void enter(NmtState state, Timestamp now);
+  void on_lss(const CanFrame& frame, Timestamp now);
   void on_sync(const CanFrame& frame, Timestamp now);
   void on_guarding(Timestamp now);
   void on_heartbeat(const Heartbeat& heartbeat, Timestamp now);
@@ -98,7 +112,7 @@ class CanopenSlave final : private SdoObjects {
   std::uint8_t first_node_;  // at power-on, and after NMT reset node
   LssSlave lss_;
   SlaveApplication* application_;
-  FrameOutput* output_;
+  FaultGate gate_;  // what is sent goes through it
   ObjectDictionary defaults_;
   ObjectDictionary objects_;
   SdoServer server_;
@@ -109,6 +123,7 @@ class CanopenSlave final : private SdoObjects {
   NmtState first_ = NmtState::pre_operational;
   bool guard_toggle_ = false;
   bool length_error_ = false;           // the newest RPDO was too short
+  bool reports_error_ = false;          // an injected one that the application leaves to this
   Timestamp now_;                       // of the call under way, for writes that come through the SDO server
   Timestamp heartbeat_due_;             // of our own
   Timestamp master_due_;                // of the master's, once it was heard; never: it is not watched

@@ -19,7 +19,8 @@ void IoNode::power_on(Timestamp now) { slave_.power_on(NmtState::pre_operational
 
 void IoNode::receive(const CanFrame& frame, Timestamp now) { slave_.receive(frame, now); }
 
-void IoNode::set_inputs(const IoInputs& inputs, Timestamp now) {
+void IoNode::set_inputs(const IoInputs& real, Timestamp now) {
+  const IoInputs inputs = slave_.faults().seen(real);
   if (inputs.digital == inputs_.digital && inputs.analogue == inputs_.analogue) return;
   inputs_ = inputs;
   write_inputs();

@@ -19,6 +19,8 @@ class IoNode final : private SlaveApplication {
   // `node_id` 1..127; `output` outlives the node. Off until power_on().
   IoNode(std::uint8_t node_id, std::uint16_t heartbeat_ms, FrameOutput& output);
 
+  // Before power_on(): slave.hpp.
+  void wait_for_number() { slave_.wait_for_number(); }
   void power_on(Timestamp now);  // boot-up message, then NMT pre-operational
   void receive(const CanFrame& frame, Timestamp now);
   // As those of CanopenSlave.
@@ -27,8 +29,13 @@ class IoNode final : private SlaveApplication {
   void advance(Timestamp now) { slave_.advance(now); }
   [[nodiscard]] Timestamp next_timer() const { return slave_.next_due(); }
 
+  // Faults: slave.hpp. Inputs that are stuck are so from the next set_inputs() on.
+  void inject(const NodeFault& fault, Timestamp now) { slave_.inject(fault, now); }
+  void end_faults(Timestamp now) { slave_.end_faults(now); }
+  [[nodiscard]] const FaultGate& faults() const { return slave_.faults(); }
+
   // TPDOs of events are sent at once, as the interrupt objects allow.
-  void set_inputs(const IoInputs& inputs, Timestamp now);
+  void set_inputs(const IoInputs& real, Timestamp now);
   // Where the master is lost or has stopped the node, outputs have their error values (0x6206, 0x6207).
   [[nodiscard]] const IoOutputs& outputs() const { return outputs_; }
 

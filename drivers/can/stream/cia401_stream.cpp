@@ -8,6 +8,7 @@
 #include "drivers/can/canopen/earlier_due.hpp"
 #include "drivers/can/cia401/io_node.hpp"
 #include "drivers/can/stream/can_stream.hpp"
+#include "drivers/can/stream/fault_orders.hpp"
 #include "drivers/can/stream/node_output.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/rt/latest.hpp"
@@ -21,9 +22,12 @@ class Cia401Protocol final : public CanProtocol {
       : period_(config.period),
         links_(std::move(links)),
         output_(host, 0),
-        node_(config.node_id, config.heartbeat_ms, output_) {}
+        node_(config.node_id, config.heartbeat_ms, output_) {
+    if (config.waits_for_lss) node_.wait_for_number();
+  }
 
   void start(Timestamp now) override {
+    forget_orders(links_.faults.get());
     due_ = now + period_;
     node_.set_inputs(links_.inputs->read().value, now);
     node_.power_on(now);
@@ -36,6 +40,8 @@ class Cia401Protocol final : public CanProtocol {
   }
 
   void advance(Timestamp now) override {
+    NodeFaultOrder order;
+    while (links_.faults && links_.faults->pop(order)) carry_out(order, node_, now);
     node_.set_inputs(links_.inputs->read().value, now);
     node_.advance(now);
     give_outputs();
@@ -46,13 +52,16 @@ class Cia401Protocol final : public CanProtocol {
 
   [[nodiscard]] Timestamp next_due() const override { return earlier_due(due_, node_.next_timer()); }
 
-  void publish() override { published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs()}); }
+  void publish() override {
+    published_.write({node_.nmt_state(), links_.inputs->read().value, node_.outputs(), node_.faults().kinds()});
+  }
 
   void describe(JointStreamStatus& status, Timestamp /*now*/) override {
     const Report& report = published_.read().value;
     status.condition = fmt::format("answers as an I/O node: {}", words(report.nmt));
     status.details.emplace_back("inputs", fmt::format("0x{:08X}", report.inputs.digital));
     status.details.emplace_back("outputs", fmt::format("0x{:08X}", report.outputs.digital));
+    if (report.faults != 0) status.details.emplace_back("injected faults", fault_words(report.faults));
   }
 
   void add_routes(std::uint16_t member, IdentifierRoutes& routes) const override {
@@ -68,6 +77,7 @@ class Cia401Protocol final : public CanProtocol {
     NmtState nmt = NmtState::boot_up;
     IoInputs inputs;
     IoOutputs outputs;
+    std::uint8_t faults = 0;
   };
 
   void give_outputs() {

@@ -11,6 +11,7 @@
 #include "drivers/can/cia402/device/contact_bounds.hpp"
 #include "drivers/can/cia402/device/servo_drive.hpp"
 #include "drivers/can/stream/can_stream.hpp"
+#include "drivers/can/stream/fault_orders.hpp"
 #include "drivers/can/stream/node_output.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/rt/latest.hpp"
@@ -23,8 +24,13 @@ class Cia402DeviceProtocol final : public CanProtocol {
  public:
   // `nodes` keeps where the joints are for the next time that the stream is opened.
   Cia402DeviceProtocol(const Cia402DeviceConfig& config, std::shared_ptr<std::vector<DriveConfig>> nodes,
-                       std::shared_ptr<Latest<RobotContacts>> contacts, CanProtocolHost& host)
-      : period_(config.period), nodes_(std::move(nodes)), contacts_(std::move(contacts)), host_(&host) {
+                       std::shared_ptr<Latest<RobotContacts>> contacts, std::shared_ptr<NodeFaultInlet> faults,
+                       CanProtocolHost& host)
+      : period_(config.period),
+        nodes_(std::move(nodes)),
+        contacts_(std::move(contacts)),
+        faults_(std::move(faults)),
+        host_(&host) {
     for (const DriveConfig& node : *nodes_) {
       outputs_.push_back(std::make_unique<NodeOutput>(host, drives_.size()));
       drives_.push_back(std::make_unique<ServoDrive>(node, config.heartbeat_ms, *outputs_.back()));
@@ -33,6 +39,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
   void start(Timestamp now) override {
+    forget_orders(faults_.get());
     due_ = now + period_;
     for (const auto& drive : drives_) drive->power_on(now);
   }
@@ -44,6 +51,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   }
 
   void advance(Timestamp now) override {
+    take_faults(now);
     apply_contacts();
     for (const auto& drive : drives_) drive->advance(now);
     note_errors(now);
@@ -65,7 +73,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
     report.drives.clear();
     for (const auto& drive : drives_)
       report.drives.push_back({drive->node_id(), drive->nmt_state(), drive->state(), drive->mode(), drive->error_code(),
-                               drive->is_held_back()});
+                               drive->is_held_back(), drive->faults().kinds()});
     published_.publish();
   }
 
@@ -82,6 +90,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
       std::string text = fmt::format("{}, {}, {}", words(drive.nmt), words(drive.state), words(drive.mode));
       if (drive.held_back) text += ", blocked by what it touches";
       if (drive.error != 0) text += fmt::format(", 0x{:04X} {}", drive.error, emcy_words(drive.error));
+      if (drive.faults != 0) text += fmt::format(", injected: {}", fault_words(drive.faults));
       status.details.emplace_back(fmt::format("node {} ({})", drive.node, node.joint_name), std::move(text));
     }
     status.condition = fmt::format("answers as {} {}: {} operational, {} enabled", report.drives.size(),
@@ -112,11 +121,21 @@ class Cia402DeviceProtocol final : public CanProtocol {
     DriveMode mode = DriveMode::none;
     std::uint16_t error = 0;
     bool held_back = false;
+    std::uint8_t faults = 0;
   };
   struct Report {
     std::uint64_t samples = 0;
     std::vector<DriveReport> drives;
   };
+
+  void take_faults(Timestamp now) {
+    NodeFaultOrder order;
+    while (faults_ && faults_->pop(order)) {
+      for (std::size_t i = 0; i < drives_.size(); ++i) {
+        if ((*nodes_)[i].node_id == order.node) carry_out(order, *drives_[i], now);
+      }
+    }
+  }
 
   void apply_contacts() {
     if (!contacts_) return;
@@ -161,6 +180,7 @@ class Cia402DeviceProtocol final : public CanProtocol {
   Nanoseconds period_;
   std::shared_ptr<std::vector<DriveConfig>> nodes_;
   std::shared_ptr<Latest<RobotContacts>> contacts_;  // may be null
+  std::shared_ptr<NodeFaultInlet> faults_;           // likewise
   bool touching_ = false;                            // the drives have bounds
   Timestamp touched_;                                // the first posture of the contact that they have them for
   Timestamp contacts_applied_;                       // the frame before which they were looked at
@@ -177,7 +197,8 @@ class Cia402DeviceProtocol final : public CanProtocol {
 
 Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig& config, const Clock& clock,
                                                         std::shared_ptr<SharedChannel> channel,
-                                                        std::shared_ptr<Latest<RobotContacts>> contacts) {
+                                                        std::shared_ptr<Latest<RobotContacts>> contacts,
+                                                        std::shared_ptr<NodeFaultInlet> faults) {
   if (config.nodes.empty()) return fail("the device has no drives", "add [[device.node]] with id and joint");
   for (const DriveConfig& node : config.nodes) {
     CELLMIRROR_EXPECTS(node.node_id >= 1 && node.node_id <= kMaxNodeId && node.joint < kMaxJointsPerRobot);
@@ -186,8 +207,9 @@ Result<std::unique_ptr<JointStream>> make_cia402_device(const Cia402DeviceConfig
   auto nodes = std::make_shared<std::vector<DriveConfig>>(config.nodes);
   return std::make_unique<CanStream>(
       "cia402-device", std::move(channel), clock,
-      [config, nodes, contacts = std::move(contacts)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
-        return std::make_unique<Cia402DeviceProtocol>(config, nodes, contacts, host);
+      [config, nodes, contacts = std::move(contacts),
+       faults = std::move(faults)](CanProtocolHost& host) -> std::unique_ptr<CanProtocol> {
+        return std::make_unique<Cia402DeviceProtocol>(config, nodes, contacts, faults, host);
       });
 }
 

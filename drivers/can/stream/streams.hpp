@@ -13,8 +13,10 @@
 #include "rt_core/ports/io_config.hpp"
 #include "rt_core/ports/io_image.hpp"
 #include "rt_core/ports/joint_stream.hpp"
+#include "rt_core/ports/node_fault.hpp"
 #include "rt_core/ports/robot_contacts.hpp"
 #include "rt_core/ports/stream_config.hpp"
+#include "rt_core/rt/fifo.hpp"
 #include "rt_core/rt/latest.hpp"
 
 namespace cellmirror::can {
@@ -42,18 +44,24 @@ class SharedChannel;
 [[nodiscard]] std::shared_ptr<SharedChannel> make_shared_channel(const CanChannelConfig& config, const Clock& clock,
                                                                  CanStreamOptions options = {});
 
+// From who orders faults of nodes to the thread that answers for them; read in each period. Orders that are there when
+// the nodes are switched on are forgotten.
+using NodeFaultInlet = Fifo<NodeFaultOrder, 16>;
+
 // The gateway answers as the drives of the robot; the samples are where the drives have moved it. SYNC is answered by
 // the thread that received it, before the drives move on. `config` is as the reader of the cell file leaves it; its
 // channel is that of `channel`. `contacts`: what the robot touches, read by the channel's thread; null: nothing ever.
+// `faults` may be null.
 [[nodiscard]] Result<std::unique_ptr<JointStream>> make_cia402_device(
     const Cia402DeviceConfig& config, const Clock& clock, std::shared_ptr<SharedChannel> channel,
-    std::shared_ptr<Latest<RobotContacts>> contacts = {});
+    std::shared_ptr<Latest<RobotContacts>> contacts = {}, std::shared_ptr<NodeFaultInlet> faults = {});
 
 // Between the thread of an I/O node and the gateway.
 struct IoLinks {
-  std::shared_ptr<Latest<IoInputs>> inputs;    // the node reads
-  std::shared_ptr<Latest<IoOutputs>> outputs;  // the node writes, where they change
-  std::function<void()> outputs_changed;       // then, on the channel's thread; must not wait
+  std::shared_ptr<Latest<IoInputs>> inputs;     // the node reads
+  std::shared_ptr<Latest<IoOutputs>> outputs;   // the node writes, where they change
+  std::function<void()> outputs_changed;        // then, on the channel's thread; must not wait
+  std::shared_ptr<NodeFaultInlet> faults = {};  // the node reads; null: there are none
 };
 // The gateway answers as a CiA 401 I/O node on `channel`, which is that of `config`. It gives no samples: open it with
 // no_samples().

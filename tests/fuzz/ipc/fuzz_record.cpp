@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 
+#include "ipc/wire/barrier_record.hpp"
 #include "ipc/wire/camera_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
@@ -40,5 +41,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   round_trip(bytes, decode_proximity_record, encode_proximity_record);
   round_trip(bytes, decode_event_record, encode_event_record);
   round_trip(bytes, decode_tissue_record, encode_tissue_record);
+  round_trip(bytes, decode_barrier_record, encode_barrier_record);
   return 0;
 }

@@ -175,6 +175,45 @@ class Device(unittest.TestCase):
             self.go_online()
             self.assertTrue(g.eventually(lambda: abs(self.joint(0)["position"] - before) < 0.001))
 
+    def fault(self, *arguments):
+        return self.scratch.cellmirror("fault", *map(str, arguments))
+
+    def test_injected_faults_are_seen_by_the_master(self):
+        done = self.fault(11, "death")
+        self.assertEqual(done.returncode, 1)
+        self.start()
+        master = self.master
+        details = lambda: str(self.scratch.robot("SCARA_1")["stream"])
+
+        with self.subTest("an error"):
+            self.assertEqual(self.fault(11, "emergency:code=0x2310").returncode, 0)
+            emcy = master.hear(lambda identifier, data: identifier == 0x8B, 30)
+            self.assertEqual(struct.unpack_from("<HB", emcy), (0x2310, 0x03))
+            self.assertEqual(master.state(11), "fault")
+
+        with self.subTest("no heartbeat, until it ends"):
+            master.write(12, 0x1017, 20, 2)
+            heartbeat = lambda identifier, data: identifier == drive_master.HEARTBEAT + 12
+            self.assertIsNotNone(master.hear(heartbeat, 30))
+            self.assertEqual(self.fault(12, "loss:only=heartbeat").returncode, 0)
+            self.assertTrue(g.eventually(lambda: "injected: loss" in details(), 30), details())
+            # Those that were under way wait in the socket of the master.
+            self.assertTrue(g.eventually(lambda: master.hear(heartbeat, 0.5) is None, 30))
+            self.assertEqual(self.fault(12, "end").returncode, 0)
+            self.assertIsNotNone(master.hear(heartbeat, 30))
+
+        with self.subTest("no power, then it boots"):
+            self.assertEqual(self.fault(13, "death", "--for", 0.5).returncode, 0)
+            boot = master.hear(lambda identifier, data: identifier == drive_master.HEARTBEAT + 13, 30)
+            self.assertEqual(boot, b"\0")
+
+        with self.subTest("what is wrong is refused with the reason"):
+            for arguments, reason in (((11, "deth"), "known: death"), ((99, "death"), "no node 99 answers"),
+                                      ((11, "stuck:bit=0,value=1"), "is a drive"), ((11, "death", "--channel", "socketcan:x"), "no node 11")):
+                done = self.fault(*arguments)
+                self.assertEqual(done.returncode, 1, arguments)
+                self.assertIn(reason, done.stderr)
+
     def test_a_contact_blocks_the_drive_until_it_is_driven_out(self):
         with self.scratch.cell_file.open("a") as cell:
             cell.write(POST)

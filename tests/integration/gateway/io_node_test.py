@@ -104,6 +104,17 @@ class IoNode(unittest.TestCase):
             self.assertTrue(barrier["interrupted"])
             self.assertIn("J_2", barrier["object"])
 
+        with self.subTest("an input is stuck until the fault ends"):
+            stuck = lambda on: lambda: (self.inputs() >> 5 & 1) == on
+            self.assertEqual(self.scratch.cellmirror("fault", str(NODE), "stuck:bit=5,value=1").returncode, 0)
+            self.assertTrue(g.eventually(stuck(1), PATIENCE))
+            self.assertIn("stuck", str(self.status()))
+            table = self.scratch.cellmirror("status").stdout
+            self.assertRegex(table, rf"I/O node {NODE} on udp:.*injected faults stuck")
+            self.assertRegex(table, r"gate: interrupted by .*J_2, 1 interruption")
+            self.assertEqual(self.scratch.cellmirror("fault", str(NODE), "end").returncode, 0)
+            self.assertTrue(g.eventually(stuck(0), PATIENCE))
+
         with self.subTest("an output moves a joint to one of two positions"):
             master.send(0x200 + NODE, b"\1\0\0\0")
             self.assertTrue(g.eventually(lambda: abs(self.joint("TABLE_1", "TILT") - 0.3) < 1e-6, PATIENCE))

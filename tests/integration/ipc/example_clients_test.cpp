@@ -137,7 +137,9 @@ TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsCamerasAndTissueTell) {
             "fovy 0.750000\n"
             "9 camera CAMERA_5 free simulated pan 0.250000 tilt -0.500000 distance 4.000000 fovy 0.750000\n"
             "10 tissue 1 clip APPLIER liver cystic_artery 0.062500 at 0.125000 -0.500000 1.000000\n"
-            "11 tissue 2 bleed - liver - 12.500000 at 0.000000 0.000000 0.000000\n");
+            "11 tissue 2 bleed - liver - 12.500000 at 0.000000 0.000000 0.000000\n"
+            "12 barrier gate free 0 -\n"
+            "13 barrier door interrupted 3 cell.A\n");
 }
 
 TEST_P(ExampleClients, ReaderEndsInTimeWithoutRecords) {

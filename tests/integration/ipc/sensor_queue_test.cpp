@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ipc/sysv/sensor_queue_output.hpp"
+#include "ipc/wire/barrier_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
 #include "ipc/wire/robot_record.hpp"
@@ -269,6 +270,33 @@ TEST_F(SensorQueue, EventsThatFindNoRoomLeaveAGapInTheirNumbers) {
   EXPECT_GT(first->event, 1U);
   EXPECT_EQ(first->header.sequence, first->event);
   EXPECT_EQ(counters_of(*sut_)["dropped"], first->event - 1);
+}
+
+BarrierReading barrier(const char* name, Timestamp time, std::uint64_t interruptions) {
+  BarrierReading reading;
+  reading.name = name;
+  reading.posture_time = time;
+  reading.interruptions = interruptions;
+  return reading;
+}
+
+TEST_F(SensorQueue, LightBarriersGoWhenTheyChangeAndOnceASecond) {
+  const Timestamp start = SystemClock().now();
+  sut_->publish_barriers(std::array{barrier("gate", start, 0), barrier("door", start, 0)});
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_barrier_record)->id, "gate");
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_barrier_record)->id, "door");
+  const Timestamp later = start + Nanoseconds(20'000'000);
+  sut_->publish_barriers(std::array{barrier("gate", later, 0), barrier("door", later, 1)});
+  const auto changed = next_of(queues_.sensor_key, decode_barrier_record);
+  ASSERT_TRUE(changed);
+  EXPECT_EQ(changed->id, "door") << "an interruption between two records";
+  EXPECT_EQ(changed->interruptions, 1U);
+  EXPECT_FALSE(changed->interrupted);
+  const Timestamp again = start + Nanoseconds(1'010'000'000);
+  sut_->publish_barriers(std::array{barrier("gate", again, 0), barrier("door", again, 1)});
+  EXPECT_EQ(next_of(queues_.sensor_key, decode_barrier_record)->id, "gate");
+  EXPECT_EQ(counters_of(*sut_)["barriers_sent"], 4U);
+  EXPECT_EQ(counters_of(*sut_)["waiting"], 0U);
 }
 
 NamedTissueEvent tissue_event(std::uint64_t number) {

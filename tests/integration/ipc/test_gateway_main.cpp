@@ -95,6 +95,15 @@ void send_findings(SensorQueueOutput& output) {
   bleeds.value = 12.5;
   const NamedTissueEvent events[] = {{clip, "APPLIER", "liver"}, {bleeds, "", "liver"}};
   output.publish_tissue_events(events);
+  BarrierReading gate;
+  gate.name = "gate";
+  gate.posture_time = now;
+  BarrierReading door = gate;
+  door.name = "door";
+  door.interrupted = true;
+  door.interruptions = 3;
+  door.object = "cell.A";
+  output.publish_barriers(std::array{gate, door});
 }
 
 int refuse(const Error& error) {

@@ -27,8 +27,9 @@ struct IoInputsTest : testing::Test {
 };
 
 TEST_F(IoInputsTest, BarriersJointsAndSensors) {
-  ranges.barriers.push_back(
-      {.name = "gate", .posture_time = {}, .interrupted = false, .object = {}, .doubtful = false});
+  BarrierReading gate;
+  gate.name = "gate";
+  ranges.barriers.push_back(gate);
   RangeReading echo;
   echo.id = "Echo";
   echo.distance_m = 0.5;

@@ -49,11 +49,32 @@ class LiveDocument : public testing::Test {
 
 TEST_F(LiveDocument, HasEveryDocumentedKeyWhereNothingIsKnown) {
   const json sut = document();
-  for (const char* key :
-       {"time_s",  "uptime_s", "cell",           "instance", "revision",   "tree_revision",      "loop",
-        "robots",  "touching", "touching_count", "near",     "near_count", "warning_distance_m", "collision_age_s",
-        "ranges",  "forces",   "programs",       "deadlock", "queues",     "messages",           "bell",
-        "display", "cameras",  "tissue",         "volumes"})
+  for (const char* key : {"time_s",
+                          "uptime_s",
+                          "cell",
+                          "instance",
+                          "revision",
+                          "tree_revision",
+                          "loop",
+                          "robots",
+                          "touching",
+                          "touching_count",
+                          "near",
+                          "near_count",
+                          "warning_distance_m",
+                          "collision_age_s",
+                          "ranges",
+                          "light_barriers",
+                          "forces",
+                          "programs",
+                          "deadlock",
+                          "queues",
+                          "messages",
+                          "bell",
+                          "display",
+                          "cameras",
+                          "tissue",
+                          "volumes"})
     EXPECT_TRUE(sut.contains(key)) << key;
   EXPECT_EQ(sut["cell"], "small");
   EXPECT_EQ(sut["uptime_s"], 12.5);
@@ -204,6 +225,11 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
   ranges_->readings[1].short_object = "T";
   ranges_->readings[1].in_blind_zone = true;
   ranges_->readings[1].doubtful = true;
+  ranges_->barriers.resize(1);
+  ranges_->barriers[0].name = "gate";
+  ranges_->barriers[0].interrupted = true;
+  ranges_->barriers[0].interruptions = 2;
+  ranges_->barriers[0].object = "Table";
   forces_ = std::make_shared<ForceState>();
   forces_->robots.resize(2);
   forces_->robots[0].id = "ARM";
@@ -222,6 +248,10 @@ TEST_F(LiveDocument, RangesAndForcesTellWhatIsNotKnown) {
     EXPECT_EQ(sut["ranges"][0][key], false) << key;
     EXPECT_EQ(sut["ranges"][1][key], true) << key;
   }
+  EXPECT_EQ(sut["light_barriers"][0]["name"], "gate");
+  EXPECT_EQ(sut["light_barriers"][0]["interrupted"], true);
+  EXPECT_EQ(sut["light_barriers"][0]["interruptions"], 2);
+  EXPECT_EQ(sut["light_barriers"][0]["object_short"], "Table");
   EXPECT_THAT(sut["forces"][0]["tcp_force_n"], ElementsAre(1.0, 2.0, 3.0));
   EXPECT_TRUE(sut["forces"][1]["tcp_force_n"].is_null());
   EXPECT_EQ(sut["forces"][0]["joints"][0]["unit"], "Nm");

@@ -133,6 +133,17 @@ struct StatusOfRanges : testing::Test {
     readings->readings.push_back(reading);
     reading.path = "Bed.USS";  // it was switched off since
     readings->readings.push_back(reading);
+    BarrierReading gate;
+    gate.name = "gate";
+    gate.posture_time = kPosture;
+    gate.interrupted = true;
+    gate.interruptions = 2;
+    gate.object = "Cell.Arm.hand";
+    gate.short_object = "Arm.hand";
+    BarrierReading door;
+    door.name = "door";
+    door.posture_time = kPosture;
+    readings->barriers = {gate, door};
     ranges.readings = readings;
   }
   CellState cell_state;
@@ -150,6 +161,17 @@ TEST_F(StatusOfRanges, TellsTheReadingsOfActiveSensorsByPath) {
   EXPECT_FALSE(sut["sensors"][1]["active"].get<bool>());
   EXPECT_TRUE(sut["sensors"][1]["distance_m"].is_null());
   EXPECT_TRUE(sut["sensors"][1]["age_s"].is_null());
+}
+
+TEST_F(StatusOfRanges, TellsLightBarriers) {
+  const json sut = ranges_json(ranges, cell_state, kMeasuredAt);
+  ASSERT_EQ(sut["light_barriers"].size(), 2U);
+  EXPECT_EQ(sut["light_barriers"][0]["interruptions"], 2);
+  EXPECT_EQ(sut["light_barriers"][0]["object_short"], "Arm.hand");
+  EXPECT_TRUE(sut["light_barriers"][1]["object_short"].is_null());
+  const std::string table = sensing_table({{"ranges", sut}});
+  EXPECT_THAT(table, HasSubstr("gate: interrupted by Arm.hand, 2 interruptions"));
+  EXPECT_THAT(table, HasSubstr("door: free, 0 interruptions"));
 }
 
 TEST_F(StatusOfRanges, TableShowsTouchesNearPairsAndReadings) {

@@ -34,7 +34,7 @@ TEST_F(DeviceConfig, TakesLimitsFromTheJoint) {
   const auto sut =
       load(std::string("heartbeat_s = 0.1\n") + kNode1 + "gear_motor_turns = 100\ngear_shaft_turns = 2\n" +
            "[[device.node]]\nid = 12\njoint = \"J_2\"\nencoder_increments = 1000\nfeed_m = 0.02\n" +
-           "mass_kg = 5\nrated_force_n = 80\nhome_switch_m = [0.2, 0.3]\nsoftware_limits_m = [0.1, 0.9]\n");
+           "wait_for_lss = true\nmass_kg = 5\nrated_force_n = 80\nhome_switch_m = [0.2, 0.3]\nsoftware_limits_m = [0.1, 0.9]\n");
   ASSERT_TRUE(sut) << diagnostics.text();
   const auto& device = std::get<Cia402DeviceConfig>(sut->streams.at(0).config);
   EXPECT_EQ(sut->streams.at(0).robot, "ARM");
@@ -51,6 +51,8 @@ TEST_F(DeviceConfig, TakesLimitsFromTheJoint) {
   EXPECT_EQ(turning.rated_torque, 40) << "twice what 20 rad/s2 of 1 kg m2 need";
   const DriveConfig& sliding = device.nodes.at(1);
   EXPECT_EQ(sliding.joint, 1U);
+  EXPECT_TRUE(sliding.waits_for_lss);
+  EXPECT_FALSE(turning.waits_for_lss);
   EXPECT_NEAR(sliding.increments_per_unit(), 50'000, 1e-9);
   EXPECT_EQ(sliding.inertia, 5);
   EXPECT_EQ(sliding.rated_torque, 80);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "docs/examples/cellmirror_messages.h"
+#include "ipc/wire/barrier_record.hpp"
 #include "ipc/wire/camera_record.hpp"
 #include "ipc/wire/proximity_record.hpp"
 #include "ipc/wire/range_record.hpp"
@@ -22,6 +23,7 @@ namespace robot = robot_record_offset;
 namespace range = range_record_offset;
 namespace ranges = range_array_offset;
 namespace camera = camera_record_offset;
+namespace barrier = barrier_record_offset;
 namespace proximity = proximity_record_offset;
 namespace event = event_record_offset;
 namespace tissue = tissue_record_offset;
@@ -219,6 +221,19 @@ TEST(DocumentedLayout, OfATissueEvent) {
   EXPECT_EQ(sizeof(Struct), tissue::kBytes);
 }
 
+TEST(DocumentedLayout, OfALightBarrier) {
+  using Struct = cellmirror_barrier;
+  expect_agreement(
+      "Light barrier (kind 8)",
+      {{"id", "char[64]", barrier::kId, offsetof(Struct, id), CELLMIRROR_BARRIER_OFFSET_ID},
+       {"object", "char[128]", barrier::kObject, offsetof(Struct, object), CELLMIRROR_BARRIER_OFFSET_OBJECT},
+       {"interruptions", "u64", barrier::kInterruptions, offsetof(Struct, interruptions),
+        CELLMIRROR_BARRIER_OFFSET_INTERRUPTIONS},
+       {"flags", "u32", barrier::kFlags, offsetof(Struct, flags), CELLMIRROR_BARRIER_OFFSET_FLAGS},
+       {"reserved", "u32", barrier::kReserved, offsetof(Struct, reserved), barrier::kReserved}});
+  EXPECT_EQ(sizeof(Struct), barrier::kBytes);
+}
+
 TEST(DocumentedLayout, NamesOfTissueEvents) {
   for (std::size_t kind = 0; kind < kTissueEventWords.size(); ++kind)
     EXPECT_EQ(cellmirror_tissue_name(static_cast<unsigned>(kind)), kTissueEventWords.at(kind));
@@ -246,6 +261,9 @@ TEST(DocumentedLayout, ConstantsOfTheCHeader) {
   EXPECT_EQ(CELLMIRROR_KIND_PROXIMITY, static_cast<unsigned>(RecordKind::proximity));
   EXPECT_EQ(CELLMIRROR_KIND_EVENT, static_cast<unsigned>(RecordKind::proximity_event));
   EXPECT_EQ(CELLMIRROR_KIND_TISSUE_EVENT, static_cast<unsigned>(RecordKind::tissue_event));
+  EXPECT_EQ(CELLMIRROR_KIND_BARRIER, static_cast<unsigned>(RecordKind::light_barrier));
+  EXPECT_EQ(CELLMIRROR_BARRIER_INTERRUPTED, kBarrierInterrupted);
+  EXPECT_EQ(CELLMIRROR_BARRIER_DOUBTFUL, kBarrierDoubtful);
   EXPECT_EQ(CELLMIRROR_RANGE_SEEN, kRangeSeen);
   EXPECT_EQ(CELLMIRROR_RANGE_IN_BLIND_ZONE, kRangeInBlindZone);
   EXPECT_EQ(CELLMIRROR_RANGE_DOUBTFUL, kRangeDoubtful);

@@ -1,7 +1,7 @@
 // What the head of the page says of collisions.
 import test from "node:test";
 import assert from "node:assert/strict";
-import {collisions_in_brief, cut_note, range_in_words, warned_count} from "./modules/proximity.js";
+import {barrier_in_words, collisions_in_brief, cut_note, range_in_words, warned_count} from "./modules/proximity.js";
 import {ShortNames} from "./modules/short_names.js";
 
 const pair = {a: "Arm.J_1", b: "Table", depth_m: 0.01};
@@ -30,6 +30,13 @@ test("a reading that may be wrong warns and says why", () => {
   assert.deepEqual(words({distance_m: 1.2, object: "Arm.J_1.J_2"}), {value: "1.200 m", more: "Arm.J_1.J_2", warns: false});
   assert.deepEqual(words({distance_m: null, object: "", doubtful: true}), {value: "no echo", more: "doubtful, may be nearer", warns: true});
   assert.match(words({distance_m: 0.01, object: "A.b", in_blind_zone: true, doubtful: true}).more, /A\.b; doubtful, may be nearer; in the blind zone/);
+});
+
+test("a light barrier says what interrupts it, and how often it was", () => {
+  const words = (barrier) => barrier_in_words(barrier, new ShortNames());
+  assert.deepEqual(words({interrupted: false, interruptions: 0, object: ""}), {value: "free", more: ""});
+  assert.deepEqual(words({interrupted: true, interruptions: 1, object: "Arm.hand"}), {value: "interrupted", more: "Arm.hand; 1 interruption"});
+  assert.deepEqual(words({interrupted: true, interruptions: 3, object: "", doubtful: true}), {value: "interrupted", more: "doubtful; 3 interruptions"});
 });
 
 test("pairs that the gateway left out are counted", () => {

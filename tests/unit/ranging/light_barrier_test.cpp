@@ -132,6 +132,23 @@ TEST_F(Barriers, HousingsDoNotInterruptTheirOwnBeam) {
   EXPECT_TRUE(at(0.8).interrupted);
 }
 
+TEST_F(Barriers, InterruptionsAreCounted) {
+  EXPECT_EQ(at(0).interruptions, 0U);
+  EXPECT_EQ(at(0.8).interruptions, 1U);
+  EXPECT_EQ(at(0.81).interruptions, 1U) << "still the same";
+  EXPECT_EQ(at(0).interruptions, 1U);
+  sut->adopt(compiled);
+  EXPECT_EQ(at(0.8).interruptions, 2U) << "also where the cell has changed";
+}
+
+TEST_F(Barriers, TellsWhereItsEndsAre) {
+  const BarrierReading reading = at(0.8);
+  ASSERT_TRUE(reading.placed);
+  EXPECT_EQ(reading.from, Vector3d(0.5, 0.2, 0));
+  EXPECT_EQ(reading.to, Vector3d(0.5, 2.0, 0));
+  EXPECT_FALSE(reading.short_object.empty());
+}
+
 TEST_F(Barriers, AnEndMayMove) {
   barrier.from = "FOOT.TURN.TIP";
   root.nodes.push_back(frame_at("POST", -1, {0.75, 1.0, 0}));
@@ -146,6 +163,7 @@ TEST_F(Barriers, WhatIsNotKnownCountsAsInterrupted) {
   const BarrierReading missing = at(0);
   EXPECT_TRUE(missing.interrupted);
   EXPECT_TRUE(missing.doubtful);
+  EXPECT_FALSE(missing.placed);
   sut.reset();
   barrier.to = "RECEIVER";
   barrier.from = "FOOT.TURN.TIP";

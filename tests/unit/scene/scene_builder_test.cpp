@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "rt_core/ports/palette.hpp"
 #include "rt_core/scene/draw_rules.hpp"
 #include "tests/unit/scene/small_cell.hpp"
 
@@ -267,6 +268,28 @@ TEST_F(BuilderTest, AReadingEndsTheConeAtTheSurface) {
   EXPECT_EQ(build().cones.at(0).length_m, 1.5);
   EXPECT_EQ(scene_.labels.at(0).text, "USS > 1.50 m");
   EXPECT_TRUE(scene_.lines.empty());
+}
+
+TEST_F(BuilderTest, ALightBarrierIsALineWithItsState) {
+  std::vector<BarrierReading> barriers(2);
+  barriers[0].name = "gate";
+  barriers[0].placed = true;
+  barriers[0].from = {0, 0, 1};
+  barriers[0].to = {0, 2, 1};
+  barriers[1].name = "lost";
+  input_.barriers = barriers;
+  ASSERT_EQ(build().lines.size(), 1U) << "a beam whose ends are not known is not drawn";
+  EXPECT_EQ(scene_.lines[0].from, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(scene_.lines[0].to, Eigen::Vector3d(0, 2, 1));
+  EXPECT_EQ(scene_.lines[0].rgba, palette::kBeam);
+  EXPECT_EQ(scene_.labels.at(0).text, "gate");
+  barriers[0].interrupted = true;
+  barriers[0].object = "Cell.Arm.hand";
+  barriers[0].short_object = "Arm.hand";
+  barriers[0].doubtful = true;
+  EXPECT_EQ(build().lines.at(0).rgba, palette::kBeamInterrupted);
+  EXPECT_TRUE(scene_.lines[0].dashed);
+  EXPECT_EQ(scene_.labels.at(0).text, "gate interrupted: Arm.hand, doubtful");
 }
 
 }  // namespace

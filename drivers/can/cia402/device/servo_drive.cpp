@@ -22,7 +22,9 @@ ServoDrive::ServoDrive(const DriveConfig& config, std::uint16_t heartbeat_ms, Fr
       joint_sign_(config.sign < 0 ? -1.0 : 1.0),
       slave_(config.node_id, make_servo_objects(config, heartbeat_ms), kServoStatusword, *this, output),
       motor_(config),
-      parameters_(read_servo_parameters(slave_.objects())) {}
+      parameters_(read_servo_parameters(slave_.objects())) {
+  if (config.waits_for_lss) slave_.wait_for_number();
+}
 
 void ServoDrive::power_on(Timestamp now) {
   moved_ = now;
@@ -77,6 +79,12 @@ void ServoDrive::communication_lost(Timestamp now) {
   if (parameters_.connection_option == kQuickStop) power_.quick_stop(parameters_);
   write_objects();
   slave_.changed(now);
+}
+
+bool ServoDrive::fail(std::uint16_t code, std::uint8_t error_register, Timestamp /*now*/) {
+  raise_fault(code, error_register);
+  write_objects();
+  return true;
 }
 
 void ServoDrive::raise_fault(std::uint16_t code, std::uint8_t error_register) {

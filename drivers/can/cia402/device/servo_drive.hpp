@@ -27,7 +27,8 @@ class ServoDrive final : private SlaveApplication {
   // `output` outlives the drive. Off until power_on(). `config` has a valid node number and positive constants.
   ServoDrive(const DriveConfig& config, std::uint16_t heartbeat_ms, FrameOutput& output);
 
-  void power_on(Timestamp now);  // boot-up message, then NMT pre-operational
+  // Boot-up message, then NMT pre-operational; a drive that waits for its number has them when it has got one.
+  void power_on(Timestamp now);
 
   // Any frame of the bus. What concerns this node is carried out at once; SYNC is answered before the motion goes on.
   void receive(const CanFrame& frame, Timestamp now);
@@ -37,6 +38,10 @@ class ServoDrive final : private SlaveApplication {
   // Motion and timers until `now`. At most 0.1 s of motion is made up for.
   void advance(Timestamp now);
   [[nodiscard]] Timestamp next_timer() const { return slave_.next_due(); }  // heartbeat and the like; not the motion
+  // Faults: slave.hpp. Without power the brake holds; after an error the master resets the fault.
+  void inject(const NodeFault& fault, Timestamp now) { slave_.inject(fault, now); }
+  void end_faults(Timestamp now) { slave_.end_faults(now); }
+  [[nodiscard]] const FaultGate& faults() const { return slave_.faults(); }
   // What the robot touches leaves of the joint's velocity, from now on.
   void set_bounds(const VelocityBounds& bounds) { motor_.set_bounds(bounds); }
 
@@ -61,6 +66,7 @@ class ServoDrive final : private SlaveApplication {
   void on_reset(Timestamp now) override;
   void synced(Timestamp now) override;
   void communication_lost(Timestamp now) override;
+  bool fail(std::uint16_t code, std::uint8_t error_register, Timestamp now) override;
 
   void on_controlword(std::uint16_t controlword);
   void on_mode(DriveMode mode);

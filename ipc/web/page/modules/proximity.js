@@ -64,6 +64,7 @@ export class Proximity {
       row.node.classList.toggle("warning", warned_of(pair, this.warning_m_));
     });
     this.ranges_ = new KeyedRows(byId("range-list"), range_row, (row, range) => update_range(row, range, names));
+    this.barriers_ = new KeyedRows(byId("barrier-list"), barrier_row, (row, barrier) => update_barrier(row, barrier, names));
     this.forces_ = new KeyedRows(byId("force-list"), force_row, update_force);
   }
 
@@ -76,12 +77,14 @@ export class Proximity {
     this.touching_.show(touching.slice(0, kMostRows), pair_key);
     this.near_.show(near.slice(0, kMostRows), pair_key);
     this.ranges_.show((live.ranges ?? []).slice(0, kMostRows), (range) => range.id);
+    this.barriers_.show((live.light_barriers ?? []).slice(0, kMostRows), (barrier) => barrier.name);
     this.forces_.show((live.forces ?? []).slice(0, kMostRows), (force) => force.robot);
     byId("no-touching").hidden = touching.length > 0;
     setText(byId("no-touching"), live.touching ? "Nothing touches." : "Not known: nothing is tested.");
     byId("no-near").hidden = near.length > 0;
     setText(byId("no-near"), live.touching ? "Nothing is near." : "Not known: nothing is tested.");
     byId("range-part").hidden = (live.ranges ?? []).length === 0;
+    byId("barrier-part").hidden = (live.light_barriers ?? []).length === 0;
     byId("force-part").hidden = (live.forces ?? []).length === 0;
     const warning = Number.isFinite(this.warning_m_) ? `nearest first; warning below ${length(this.warning_m_)}` : "nearest first";
     const shown = (list) => Math.min(kMostRows, list?.length ?? 0);
@@ -89,6 +92,7 @@ export class Proximity {
     setText(byId("near-note"), near_cut ? `${warning}; ${near_cut}` : warning);
     setText(byId("touching-note"), cut_note(shown(touching), live.touching_count ?? touching.length));
     setText(byId("range-note"), cut_note(shown(live.ranges), live.ranges?.length ?? 0));
+    setText(byId("barrier-note"), cut_note(shown(live.light_barriers), live.light_barriers?.length ?? 0));
     setText(byId("force-note"), cut_note(shown(live.forces), live.forces?.length ?? 0));
   }
 
@@ -132,6 +136,27 @@ function update_range(row, range, names) {
   row.node.classList.toggle("warning", warns);
   const place = known ? place_in_range(range.distance_m, 0, range.range_m) : 0;
   row.mark.style.setProperty("transform", `translateX(${((place ?? 0) * 100 - 100).toFixed(1)}%)`);
+}
+
+function barrier_row(barrier) {
+  const row = {value: element("span", {class: "value"}), more: element("span", {class: "more"})};
+  row.node = element("li", {class: "barrier"}, element("span", {class: "name"}, barrier.name), row.value, row.more);
+  return row;
+}
+
+export function barrier_in_words(barrier, names) {
+  const count = barrier.interruptions ?? 0;
+  const words = [barrier.object ? names.of(barrier.object) : "", barrier.doubtful ? "doubtful" : "",
+    count ? `${count} interruption${count === 1 ? "" : "s"}` : ""];
+  return {value: barrier.interrupted ? "interrupted" : "free", more: words.filter(Boolean).join("; ")};
+}
+
+function update_barrier(row, barrier, names) {
+  const {value, more} = barrier_in_words(barrier, names);
+  setText(row.value, value);
+  setText(row.more, more);
+  setAttribute(row.more, "title", barrier.object || null);
+  row.node.classList.toggle("warning", Boolean(barrier.interrupted || barrier.doubtful));
 }
 
 function force_row(force) {

@@ -13,7 +13,7 @@ export class ShortNames {
       this.names_.set(pair.a, pair.a_short);
       this.names_.set(pair.b, pair.b_short);
     }
-    for (const range of live.ranges ?? []) this.names_.set(range.object, range.object_short);
+    for (const range of [...(live.ranges ?? []), ...(live.light_barriers ?? [])]) this.names_.set(range.object, range.object_short);
   }
 
   of(path) {
