@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "config/dds_network_reader.hpp"
 #include "config/dds_reader.hpp"
 #include "config/stream_reader.hpp"
 #include "config/tables_file.hpp"
@@ -21,7 +22,7 @@ constexpr std::size_t kLongestPage = 255;
 // "http://host[:port][/path]" without what could carry a secret.
 bool is_page(std::string_view text) {
   const std::size_t scheme = text.starts_with("http://") ? 7 : text.starts_with("https://") ? 8 : 0;
-  constexpr std::string_view kOthers = "-._~:[]/%";
+  static constexpr std::string_view kOthers = "-._~:[]/%";
   return scheme > 0 && text.size() > scheme && text[scheme] != '/' && text.size() <= kLongestPage &&
          std::ranges::all_of(text, [](char c) {
            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||

@@ -12,7 +12,8 @@ namespace {
 constexpr std::uint8_t kMarker = 0xFF;
 constexpr std::uint8_t kStart = 0xD8;
 constexpr std::uint8_t kStartOfScan = 0xDA;
-constexpr std::size_t kFrameBytes = 8;  // of a frame header up to its width: length, precision, height, width, components
+constexpr std::size_t kFrameBytes =
+    8;  // of a frame header up to its width: length, precision, height, width, components
 
 // SOF0 to SOF15 without DHT, JPG and DAC, which lie among them.
 bool is_frame(std::uint8_t code) {
@@ -39,8 +40,8 @@ std::optional<JpegSize> jpeg_size(std::span<const std::uint8_t> bytes) {
     if (is_frame(code)) {
       if (length < kFrameBytes || at + 2 + kFrameBytes > bytes.size()) return std::nullopt;
       const JpegSize size{two_bytes(bytes, at + 7), two_bytes(bytes, at + 5)};
-      const bool good = size.width > 0 && size.height > 0 && size.width <= kLargestImageEdge &&
-                        size.height <= kLargestImageEdge;
+      const bool good =
+          size.width > 0 && size.height > 0 && size.width <= kLargestImageEdge && size.height <= kLargestImageEdge;
       return good ? std::optional(size) : std::nullopt;
     }
     at += 2 + length;

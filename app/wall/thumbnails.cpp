@@ -27,8 +27,7 @@ void Thumbnails::receive(std::string_view cell, std::span<const std::uint8_t> by
     ++entry.report.left_out;
     return;
   }
-  entry.newest.jpeg =
-      std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  entry.newest.jpeg = std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   entry.newest.receive_time = now;
   entry.report.number = ++entry.newest.number;
   entry.report.receive_time = now;

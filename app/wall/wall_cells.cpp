@@ -132,11 +132,7 @@ WallTile* WallCells::place_for(const WallMessage& message) {
     WallTile& tile = tiles_.at(number);
     // Where the one before still sends, it comes back and finds its place taken: then both are shown.
     const bool restarted = same_gateway(tile, message.summary) && tile.previous_sender != message.sender;
-    const int fit = tile.sender == message.sender ? 4
-                    : !tile.ever_heard()          ? 3
-                    : restarted                   ? 2
-                    : !tile.live                  ? 1
-                                                  : 0;
+    const int fit = tile.sender == message.sender ? 4 : !tile.ever_heard() ? 3 : restarted ? 2 : !tile.live ? 1 : 0;
     if (fit <= rank) continue;
     rank = fit;
     best = &tile;

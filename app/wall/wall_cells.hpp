@@ -43,32 +43,32 @@ enum class WallMark : std::uint8_t {
 
 // A gateway that says it is that cell; or a cell of which nothing was heard yet.
 struct WallTile {
-  std::uint64_t number = 0;  // does not change, is not used again
+  std::uint64_t number = 0;   // does not change, is not used again
   std::uint64_t version = 0;  // of all that follows: grows with each change
   std::string cell;
-  const WallCell* expected = nullptr;    // by wall.toml
-  std::string sender;                    // empty: not heard in this run of the wall
-  std::optional<CellSummary> summary;    // the newest; none: nothing was heard in this run
-  std::string host;                      // of the gateway, also where it is known from an earlier run of the wall
+  const WallCell* expected = nullptr;  // by wall.toml
+  std::string sender;                  // empty: not heard in this run of the wall
+  std::optional<CellSummary> summary;  // the newest; none: nothing was heard in this run
+  std::string host;                    // of the gateway, also where it is known from an earlier run of the wall
   std::string instance;
-  Timestamp last_heard;                  // never: not in this run
-  std::int64_t last_heard_wall_ns = 0;   // since 1970 (UTC), by this machine's clock; 0: never
-  bool live = false;                     // heard within WallSettings::silent_after, and its writer is there
-  std::string called_before;             // the other name
-  std::string moved_from;                // "host/instance", where another gateway was this cell before
-  bool conflict = false;                 // while more than one is live
-  bool unexpected = false;               // wall.toml names cells, but not this one
-  bool flooding = false;                 // something was dropped within kFloodShownFor
-  double clock_difference_s = 0;         // positive: the gateway's clock is ahead
+  Timestamp last_heard;                 // never: not in this run
+  std::int64_t last_heard_wall_ns = 0;  // since 1970 (UTC), by this machine's clock; 0: never
+  bool live = false;                    // heard within WallSettings::silent_after, and its writer is there
+  std::string called_before;            // the other name
+  std::string moved_from;               // "host/instance", where another gateway was this cell before
+  bool conflict = false;                // while more than one is live
+  bool unexpected = false;              // wall.toml names cells, but not this one
+  bool flooding = false;                // something was dropped within kFloodShownFor
+  double clock_difference_s = 0;        // positive: the gateway's clock is ahead
   std::uint64_t received = 0;
-  std::uint64_t lost = 0;                // by gaps of the sequence
-  std::uint64_t repeated = 0;            // with a sequence that is not greater than the one before
-  std::uint64_t restarts = 0;            // of the gateway
-  std::uint64_t dropped = 0;             // flood
+  std::uint64_t lost = 0;      // by gaps of the sequence
+  std::uint64_t repeated = 0;  // with a sequence that is not greater than the one before
+  std::uint64_t restarts = 0;  // of the gateway
+  std::uint64_t dropped = 0;   // flood
   Timestamp last_dropped;
   std::uint64_t rejected = 0;
-  std::string rejected_why;              // of the last one
-  std::uint64_t names_refused = 0;       // messages under further names of the same sender
+  std::string rejected_why;         // of the last one
+  std::uint64_t names_refused = 0;  // messages under further names of the same sender
 
   std::string previous_sender = {};  // whose place this one took
 
@@ -83,8 +83,8 @@ struct WallTile {
 struct WallTotals {
   std::uint64_t received = 0;
   std::uint64_t rejected = 0;
-  std::uint64_t dropped = 0;    // flood
-  std::uint64_t left_out = 0;   // there were too many cells, senders or names
+  std::uint64_t dropped = 0;      // flood
+  std::uint64_t left_out = 0;     // there were too many cells, senders or names
   std::string rejected_why = {};  // of the last one, whoever sent it
 };
 
@@ -142,8 +142,8 @@ class WallCells {
   void settle_claims(std::vector<std::uint64_t>& numbers);
 
   const WallSettings settings_;
-  std::map<std::uint64_t, WallTile> tiles_;                                         // by number
-  std::map<std::string, std::vector<std::uint64_t>, std::less<>> by_cell_;          // numbers
+  std::map<std::uint64_t, WallTile> tiles_;                                 // by number
+  std::map<std::string, std::vector<std::uint64_t>, std::less<>> by_cell_;  // numbers
   std::map<std::string, Sender, std::less<>> senders_;
   WallTotals totals_;
   std::uint64_t next_number_ = 1;

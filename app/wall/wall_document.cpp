@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/wall/wall_words.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror::app {
 
@@ -26,14 +27,15 @@ json pair_of(const BodyPair& pair) { return json::array({pair.a, pair.b}); }
 json robots_of(const CellSummary& summary) {
   json out = json::array();
   for (const RobotSummary& robot : summary.robots)
-    out.push_back({{"id", robot.id}, {"mirrored", robot.mirrored}, {"state", robot.mirrored ? word(robot.state) : ""}});
+    out.push_back({{"id", robot.id},
+                   {"mirrored", robot.mirrored},
+                   {"state", robot.mirrored ? word(robot.state) : std::string_view()}});
   return out;
 }
 
 json marks_of(const WallTile& tile) {
   json out = json::array();
-  for (const WallMark mark : tile.marks())
-    out.push_back({{"mark", word(mark)}, {"text", mark_text(tile, mark)}});
+  for (const WallMark mark : tile.marks()) out.push_back({{"mark", word(mark)}, {"text", mark_text(tile, mark)}});
   return out;
 }
 
@@ -102,8 +104,11 @@ std::optional<ThumbnailReport> thumbnail_of(const WallTile& tile, const Thumbnai
 
 json totals_of(const WallCells& cells) {
   const WallTotals& totals = cells.totals();
-  return {{"received", totals.received}, {"rejected", totals.rejected},        {"dropped", totals.dropped},
-          {"left_out", totals.left_out}, {"rejected_why", totals.rejected_why}};
+  return {{"received", totals.received},
+          {"rejected", totals.rejected},
+          {"dropped", totals.dropped},
+          {"left_out", totals.left_out},
+          {"rejected_why", totals.rejected_why}};
 }
 
 }  // namespace

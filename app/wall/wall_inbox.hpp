@@ -1,6 +1,6 @@
-// What arrives for the wall, between the threads that receive and the one that shows it. Bounded: of each sender so many
-// messages a second, of all together so many bytes; what is beyond is dropped and counted, and the receiving threads
-// never wait for more than a short lock.
+// What arrives for the wall, between the threads that receive and the one that shows it. Bounded: of each sender so
+// many messages a second, of all together so many bytes; what is beyond is dropped and counted, and the receiving
+// threads never wait for more than a short lock.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@
 
 namespace cellmirror::app {
 
-inline constexpr double kSummariesPerSecond = 20;  // of a sender: twice what a gateway sends at most; twice as many at once
+inline constexpr double kSummariesPerSecond =
+    20;  // of a sender: twice what a gateway sends at most; twice as many at once
 inline constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20U;
 inline constexpr std::size_t kMostWaitingMessages = 8'192;
 
@@ -29,10 +30,10 @@ class WallInbox {
     std::string why;             // of the last of those
   };
   struct Taken {
-    std::vector<WallMessage> messages;                       // as they came
-    std::vector<std::string> gone;                           // senders
-    std::map<std::string, Refused, std::less<>> refused;     // by sender
-    std::uint64_t left_out = 0;                              // too many senders
+    std::vector<WallMessage> messages;                    // as they came
+    std::vector<std::string> gone;                        // senders
+    std::map<std::string, Refused, std::less<>> refused;  // by sender
+    std::uint64_t left_out = 0;                           // too many senders
   };
 
   void received(WallMessage message);

@@ -11,6 +11,7 @@
 
 #include "app/wall/wall_words.hpp"
 #include "ipc/web/metrics_text.hpp"
+#include "rt_core/ports/words.hpp"
 
 namespace cellmirror::app {
 
@@ -115,8 +116,9 @@ void add_states(CellMetrics& out, Timestamp now) {
                if (!tile.last_heard.known()) return std::nullopt;
                return seconds(now - tile.last_heard);
              });
-  out.family("cellmirror_wall_cell_level", "gauge", "0: ok, 1: attention, 2: fault, silent or never seen.",
-             [](const WallTile& tile) { return std::optional(static_cast<double>(std::to_underlying(level_of(tile)))); });
+  out.family(
+      "cellmirror_wall_cell_level", "gauge", "0: ok, 1: attention, 2: fault, silent or never seen.",
+      [](const WallTile& tile) { return std::optional(static_cast<double>(std::to_underlying(level_of(tile)))); });
   out.of_summary("cellmirror_wall_cell_health", "0: ok, 1: attention, 2: fault, as the gateway says.",
                  [](const CellSummary& s) { return std::optional(static_cast<double>(std::to_underlying(s.health))); });
   out.of_summary("cellmirror_wall_cell_touching", "Pairs of bodies that touch.",

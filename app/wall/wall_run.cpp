@@ -41,6 +41,7 @@ WallRun::WallRun(const WallOptions& options)
 WallRun::~WallRun() {
   pictures_.clear();
   summaries_.reset();
+  site_.set_server(nullptr);
   server_.reset();
   stopping_.store(true, std::memory_order_relaxed);
   if (!keeper_.joinable()) return;
@@ -75,6 +76,7 @@ Result<void> WallRun::open() {
     auto server = web::Server::start(to, site_);
     if (!server) return std::unexpected(server.error());
     server_ = std::move(*server);
+    site_.set_server(server_.get());
   }
   auto reader = dds::SummaryReader::open(
       {settings.domain, settings.interface_address, settings.topic, settings.security}, clock_, *inbox_);

@@ -69,7 +69,8 @@ std::string WallSite::live_json() {
 }
 
 std::string WallSite::metrics_text() {
-  const web::ServerStatus server = server_status_ ? server_status_() : web::ServerStatus();
+  const web::Server* const found = server_.load(std::memory_order_acquire);
+  const web::ServerStatus server = found == nullptr ? web::ServerStatus() : found->status();
   const std::scoped_lock lock(mutex_);
   drain_locked(clock_.now());
   return wall_metrics(cells_, server, clock_.now());
@@ -85,8 +86,10 @@ web::MakeDocument WallSite::document(std::string_view path, std::string_view que
 // "cell=NAME", and anything else, such as a number that makes the address of each picture another one.
 web::MakeDocument WallSite::picture(std::string_view query) {
   std::string cell;
-  for (const auto& [name, value] : web::query_parts(query).value_or(decltype(web::query_parts(query))::value_type())) {
-    if (name == "cell") cell = value;
+  if (const auto parts = web::query_parts(query)) {
+    for (const auto& [name, value] : *parts) {
+      if (name == "cell") cell = value;
+    }
   }
   return [this, cell = std::move(cell)] {
     const auto found = thumbnails_.newest(cell);

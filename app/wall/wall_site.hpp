@@ -1,9 +1,10 @@
 // The wall behind its page: takes what has arrived, keeps the cells, makes documents. It commands nothing.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,8 +28,8 @@ class WallSite final : public web::Site {
 
   [[nodiscard]] WallInbox& inbox() { return inbox_; }
   [[nodiscard]] Thumbnails& thumbnails() { return thumbnails_; }
-  // Before the server: what it says of itself.
-  void set_server_status(std::function<web::ServerStatus()> status) { server_status_ = std::move(status); }
+  // For /metrics; null before it has started and from the time when it ends.
+  void set_server(const web::Server* server) { server_.store(server, std::memory_order_release); }
 
   void remember(const std::vector<RememberedCell>& cells);
   [[nodiscard]] std::vector<RememberedCell> remembered() const;
@@ -52,7 +53,7 @@ class WallSite final : public web::Site {
   const Clock& clock_;
   WallInbox inbox_;
   Thumbnails thumbnails_;
-  std::function<web::ServerStatus()> server_status_;
+  std::atomic<const web::Server*> server_{nullptr};
   mutable std::mutex mutex_;  // of what follows
   WallCells cells_;
   WallDocuments documents_;

@@ -246,10 +246,10 @@ void Connection::do_route(OpenWebSocket& open, Timestamp now) {
   place_ = context_.places.take(peer, open.has_token);
   if (place_ == nullptr) {
     count(context_.counters.refused);
-    return answer(text_answer(
-        503, context_.gateway == nullptr ? "too many of these pages are open; close one of yours"
-                                         : "too many pages of this gateway are open; close one of yours, or open the "
-                                           "page by the address that this prints: cellmirror page"));
+    return answer(text_answer(503, context_.gateway == nullptr
+                                       ? "too many of these pages are open; close one of yours"
+                                       : "too many pages of this gateway are open; close one of yours, or open the "
+                                         "page by the address that this prints: cellmirror page"));
   }
   count(context_.counters.clients);
   // Pictures in the send buffer of the kernel get old: room for about two.

@@ -76,8 +76,9 @@ Result<Descriptor> listen_at(const std::string& address, int port, bool of_gatew
                                       ? "another program uses that port: choose another one with --port N, or switch "
                                         "the page off with --no-web"
                                       : "another program uses that port: choose another one with --port N";
-  const std::string_view other = of_gateway ? "choose another --port N (1024 to 65535), or [web] address in the cell file"
-                                            : "choose another --port N (1024 to 65535), or another address with --bind";
+  const std::string_view other = of_gateway
+                                     ? "choose another --port N (1024 to 65535), or [web] address in the cell file"
+                                     : "choose another --port N (1024 to 65535), or another address with --bind";
   return fail(fmt::format("no {}page: cannot listen at {} port {}: {}", of_gateway ? "monitor " : "", address, port,
                           system_error_text(why)),
               std::string(why == EADDRINUSE ? in_use : other));
