@@ -35,7 +35,7 @@ class WallRun::Inbox final : public dds::SummaryInbox {
 
 WallRun::WallRun(const WallOptions& options)
     : options_(options),
-      site_(options.settings, clock_, options.version),
+      site_(options.settings, clock_, CELLMIRROR_VERSION),
       inbox_(std::make_unique<Inbox>(site_.inbox())) {}
 
 WallRun::~WallRun() {
@@ -71,7 +71,7 @@ Result<void> WallRun::open() {
     to.address = settings.address;
     to.port = settings.port;
     to.read_only = true;
-    to.version = options_.version;
+    to.version = CELLMIRROR_VERSION;
     to.cell = "wall";
     auto server = web::Server::start(to, site_);
     if (!server) return std::unexpected(server.error());

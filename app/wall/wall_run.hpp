@@ -21,7 +21,6 @@ struct WallOptions {
   WallSettings settings;
   bool page = true;             // otherwise it only listens
   std::filesystem::path state;  // file of the memory; empty: none
-  std::string version;
 };
 
 class WallRun {
