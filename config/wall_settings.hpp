@@ -18,12 +18,11 @@ inline constexpr int kDefaultWallPort = 8430;
 
 // A cell that is expected.
 struct WallCell {
-  std::string name;           // as its cell file calls it
-  std::string title = {};     // for people; empty: the name
-  std::string host = {};      // of its gateway; empty: any
-  std::string instance = {};  // of its gateway on that host; empty: any
-  std::string page =
-      {};  // "http://127.0.0.1:9001/": where the browser of the wall reaches its monitor page; empty: unknown
+  std::string name;            // as its cell file calls it
+  std::string title = {};      // for people; empty: the name
+  std::string host = {};       // of its gateway; empty: any
+  std::string instance = {};   // of its gateway on that host; empty: any
+  std::string page = {};       // where the browser of the wall reaches its monitor page, as a URL; empty: unknown
   std::string thumbnail = {};  // the DDS topic of its pictures; empty: none
   std::string partition = {};  // of that topic; empty: the default one
 

@@ -48,8 +48,16 @@ class Wall:
         line = self.child.stdout.readline()
         if not line.startswith("the wall is at "):
             self.child.wait(g.PATIENCE_S)
-            raise AssertionError(f"no wall: {line}{self.told()}")
+            told = self.told()
+            self.close_files()
+            raise AssertionError(f"no wall: {line}{told}")
         self.address = line.split()[-1]
+
+    def close_files(self):
+        self.child.stdout.close()
+        self.errors.close()
+        if self.file is not None:
+            self.file.close()
 
     def told(self):
         self.errors.seek(0)
@@ -79,5 +87,5 @@ class Wall:
     def close(self):
         self.child.terminate()
         status = self.child.wait(g.PATIENCE_S)
-        self.child.stdout.close()
+        self.close_files()
         return status

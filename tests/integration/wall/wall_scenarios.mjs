@@ -59,6 +59,7 @@ const scenarios = {
     await says(page, "cell_005", "the loop is late");
     await says(page, "cell_004", "1: robot_1/gripper and table");
     await says(page, "cell_003", /silent since \d\d:\d\d:\d\d \(/);
+    await says(page, "cell_003", "robot_3: was fresh");
     const order = await page.locator(".tile h3").allInnerTexts();
     assert.deepEqual(order.slice(0, 4), ["cell_003", "cell_005", "Paint shop", "cell_004"], "the worst first");
     assert.match(await page.locator("#count-fault").innerText(), /^3 fault/);

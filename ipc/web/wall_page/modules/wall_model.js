@@ -82,6 +82,7 @@ export function age_of(tile, now) {
 // How a person comes to the page of that gateway: {href}, {command} to be typed on the own machine, or {text}.
 export function way_to_page(content) {
   if (content.page && /^https?:\/\//.test(content.page)) return {href: content.page};
+  if (content.page_port === undefined) return {text: ""};  // nothing was heard of it
   if (!content.page_port) return {text: "it has no monitor page"};
   if (!/^[A-Za-z0-9][A-Za-z0-9._-]*$/.test(content.host)) return {text: `its page is at port ${content.page_port} of its machine`};
   return {command: `ssh -L ${content.page_port}:127.0.0.1:${content.page_port} ${content.host}`, href: `http://127.0.0.1:${content.page_port}/`};
@@ -91,7 +92,8 @@ export function way_to_page(content) {
 export function silent_text(content, now = new Date()) {
   if (content.silent_since_ms === undefined) return "";
   const since = new Date(content.silent_since_ms);
-  const day = since.toDateString() === now.toDateString() ? "" : `${since.toISOString().slice(0, 10)} `;
+  const date = [since.getFullYear(), since.getMonth() + 1, since.getDate()].map((part) => String(part).padStart(2, "0")).join("-");
+  const day = since.toDateString() === now.toDateString() ? "" : `${date} `;
   return `since ${day}${since.toTimeString().slice(0, 8)}`;
 }
 

@@ -97,8 +97,9 @@ export class Tile {
 
   show_robots_(tile) {
     const {shown, more} = robots_of(tile, kMostRobots);
+    const silent = tile.content.state === "silent";  // then nobody knows
     const items = shown.map((robot) => {
-      const told = robot.mirrored ? `${robot.state}${robot.age_s === null ? "" : ` ${age(robot.age_s)}`}` : "not mirrored";
+      const told = !robot.mirrored ? "not mirrored" : silent ? `was ${robot.state}` : `${robot.state}${robot.age_s === null ? "" : ` ${age(robot.age_s)}`}`;
       return {key: robot.id, bad: robot.bad, text: `${robot.id}: ${told}`};
     });
     if (more > 0) items.push({key: "", bad: false, text: `and ${count(more)} more`});
@@ -107,11 +108,12 @@ export class Tile {
 
   show_pulse_(content, pulse) {
     const known = content.health !== undefined;
+    const was = content.state === "silent" ? "was " : "";
     const pairs = (content.touching_pairs ?? []).map((pair) => pair.join(" and ")).join("; ");
-    this.touching.show(known && content.touching > 0 ? `${count(content.touching)}: ${pairs}` : null);
-    this.nearest.show(known && content.nearest && pulse.nearest_m !== null ? `${length(pulse.nearest_m)}, ${content.nearest.join(" and ")}` : null);
-    this.loop.show(known ? `${number(pulse.rate_hz, 0)} Hz, ${content.on_time ? "on time" : "late"}, ${count(pulse.missed)} missed, ${count(content.faults)} faults` : null);
-    this.alarms.show(known && content.alarms + content.unacknowledged > 0 ? `${count(content.alarms)} active, ${count(content.unacknowledged)} not acknowledged` : null);
+    this.touching.show(known && content.touching > 0 ? `${was}${count(content.touching)}: ${pairs}` : null);
+    this.nearest.show(known && content.nearest && pulse.nearest_m !== null ? `${was}${length(pulse.nearest_m)}, ${content.nearest.join(" and ")}` : null);
+    this.loop.show(known ? `${was}${number(pulse.rate_hz, 0)} Hz, ${content.on_time ? "on time" : "late"}, ${count(pulse.missed)} missed, ${count(content.faults)} faults` : null);
+    this.alarms.show(known && content.alarms + content.unacknowledged > 0 ? `${was}${count(content.alarms)} active, ${count(content.unacknowledged)} not acknowledged` : null);
     const bad = [["lost", pulse.lost], ["left out", pulse.dropped], ["refused", pulse.rejected], ["repeated", pulse.repeated]]
       .filter(([, value]) => value > 0).map(([name, value]) => `${count(value)} ${name}`);
     this.sent.show(bad.length ? bad.join(", ") : null);
