@@ -53,6 +53,7 @@ void read_cell(TableReader& table, WallSettings& out, std::set<std::string>& nam
   table.require("name");
   WallCell cell;
   cell.name = read_short(table, "name");
+  if (!cell.name.empty()) table.set_where("cell " + printable(cell.name));
   cell.title = read_short(table, "title");
   cell.host = read_short(table, "host");
   cell.instance = read_short(table, "instance");
@@ -63,8 +64,7 @@ void read_cell(TableReader& table, WallSettings& out, std::set<std::string>& nam
   if (table.has("name") && cell.name.empty()) table.error("name", "the name is empty");
   if (cell.name.empty()) return;
   if (!names.insert(cell.name).second)
-    table.error("name", fmt::format("cell {} appears twice", printable(cell.name)),
-                "a cell has one gateway; rename one of the two in its cell file");
+    table.error("name", "the name appears twice", "a cell has one gateway; rename one of the two in its cell file");
   out.cells.push_back(std::move(cell));
 }
 

@@ -59,7 +59,8 @@ int run_wall(const WallCommand& command) {
   const EndSignals signals;
   auto settings = settings_of(command);
   if (!settings) return refuse("the list of cells has errors");
-  auto wall = WallRun::start({*settings, !command.json, command.state});
+  const SystemClock clock;
+  auto wall = WallRun::start({*settings, !command.json, command.state}, clock);
   if (!wall) return refuse(wall.error().text());
   if (!command.json) {
     std::printf("the wall is at %s\n", (*wall)->url().c_str());

@@ -65,7 +65,7 @@ WallTile* WallCells::add(const std::string& cell) {
   return &tile;
 }
 
-// Gives up a cell that nobody expects, the one that is silent for longest.
+// Removes a cell that nobody expects, the one that is silent for longest.
 bool WallCells::make_room() {
   const WallTile* oldest = nullptr;
   for (const auto& [number, tile] : tiles_) {

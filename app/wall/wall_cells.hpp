@@ -29,7 +29,7 @@ struct WallMessage {
   std::size_t bytes = 0;
 };
 
-// What is told of a cell beyond its own summary.
+// What the wall adds to the summary of a cell.
 enum class WallMark : std::uint8_t {
   conflict,       // two gateways say that they are this cell
   wrong_gateway,  // wall.toml expects another host or instance
@@ -85,7 +85,7 @@ struct WallTotals {
   std::uint64_t rejected = 0;
   std::uint64_t dropped = 0;      // flood
   std::uint64_t left_out = 0;     // there were too many cells, senders or names
-  std::string rejected_why = {};  // of the last one, whoever sent it
+  std::string rejected_why = {};  // of the last one, of any sender
 };
 
 // What is kept over a restart of the wall.

@@ -33,8 +33,9 @@ class WallRun::Inbox final : public dds::SummaryInbox {
   WallInbox& to_;
 };
 
-WallRun::WallRun(const WallOptions& options)
+WallRun::WallRun(const WallOptions& options, const Clock& clock)
     : options_(options),
+      clock_(clock),
       site_(options.settings, clock_, CELLMIRROR_VERSION),
       inbox_(std::make_unique<Inbox>(site_.inbox())) {}
 
@@ -49,8 +50,8 @@ WallRun::~WallRun() {
   write_memory();
 }
 
-Result<std::unique_ptr<WallRun>> WallRun::start(const WallOptions& options) {
-  std::unique_ptr<WallRun> made(new WallRun(options));
+Result<std::unique_ptr<WallRun>> WallRun::start(const WallOptions& options, const Clock& clock) {
+  std::unique_ptr<WallRun> made(new WallRun(options, clock));
   if (auto opened = made->open(); !opened) return std::unexpected(opened.error());
   return made;
 }

@@ -26,7 +26,8 @@ struct WallOptions {
 class WallRun {
  public:
   // Fails, with a remedy, where the interface, the port or the memory is not what it should be.
-  [[nodiscard]] static Result<std::unique_ptr<WallRun>> start(const WallOptions& options);
+  // `clock` outlives it.
+  [[nodiscard]] static Result<std::unique_ptr<WallRun>> start(const WallOptions& options, const Clock& clock);
   // Writes the memory once more.
   ~WallRun();
   WallRun(const WallRun&) = delete;
@@ -39,14 +40,14 @@ class WallRun {
  private:
   class Inbox;
 
-  explicit WallRun(const WallOptions& options);
+  WallRun(const WallOptions& options, const Clock& clock);
   Result<void> open();
   Result<void> open_pictures();
   void keep();
   void write_memory();
 
   const WallOptions options_;
-  SystemClock clock_;
+  const Clock& clock_;
   WallSite site_;
   std::unique_ptr<Inbox> inbox_;
   std::atomic<bool> stopping_{false};

@@ -29,6 +29,11 @@ web::Document document_of(std::string text, std::string content_type) {
 WallSite::WallSite(const WallSettings& settings, const Clock& clock, const std::string& version)
     : clock_(clock), thumbnails_(cells_with_pictures(settings)), cells_(settings), documents_(version) {}
 
+void WallSite::set_server(const web::Server* server) {
+  const std::scoped_lock lock(server_mutex_);
+  server_ = server;
+}
+
 void WallSite::remember(const std::vector<RememberedCell>& cells) {
   const std::scoped_lock lock(mutex_);
   for (const RememberedCell& cell : cells) cells_.remember(cell);
@@ -69,8 +74,11 @@ std::string WallSite::live_json() {
 }
 
 std::string WallSite::metrics_text() {
-  const web::Server* const found = server_.load(std::memory_order_acquire);
-  const web::ServerStatus server = found == nullptr ? web::ServerStatus() : found->status();
+  web::ServerStatus server;
+  {
+    const std::scoped_lock lock(server_mutex_);
+    if (server_ != nullptr) server = server_->status();
+  }
   const std::scoped_lock lock(mutex_);
   drain_locked(clock_.now());
   return wall_metrics(cells_, server, clock_.now());

@@ -1,7 +1,6 @@
 // The wall behind its page: takes what has arrived, keeps the cells, makes documents. It commands nothing.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <span>
@@ -29,7 +28,7 @@ class WallSite final : public web::Site {
   [[nodiscard]] WallInbox& inbox() { return inbox_; }
   [[nodiscard]] Thumbnails& thumbnails() { return thumbnails_; }
   // For /metrics; null before it has started and from the time when it ends.
-  void set_server(const web::Server* server) { server_.store(server, std::memory_order_release); }
+  void set_server(const web::Server* server);
 
   void remember(const std::vector<RememberedCell>& cells);
   [[nodiscard]] std::vector<RememberedCell> remembered() const;
@@ -53,8 +52,9 @@ class WallSite final : public web::Site {
   const Clock& clock_;
   WallInbox inbox_;
   Thumbnails thumbnails_;
-  std::atomic<const web::Server*> server_{nullptr};
-  mutable std::mutex mutex_;  // of what follows
+  std::mutex server_mutex_;
+  const web::Server* server_ = nullptr;  // under it
+  mutable std::mutex mutex_;             // of what follows
   WallCells cells_;
   WallDocuments documents_;
 };

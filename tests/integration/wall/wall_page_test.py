@@ -11,8 +11,9 @@ sys.path.insert(0, str(HERE.parent / "page"))
 import browser  # noqa: E402
 from wall import Plant, Wall  # noqa: E402
 
-CELLS = "format = 1\n" + '[[cell]]\nname = "cell_001"\npage = "http://127.0.0.1:9001/"\n' + "".join(
+CELLS = "format = 1\n" + '[[cell]]\nname = "cell_001"\npage = "http://127.0.0.1:9001/"\nthumbnail = "rt/cell_1/picture"\n' + "".join(
     f'[[cell]]\nname = "cell_{i:03}"\n' for i in range(2, 8)) + '[[cell]]\nname = "paint"\ntitle = "Paint shop"\n'
+PICTURE = browser.SOURCE / "docs" / "figures" / "cell_mirrored.jpg"
 
 
 def setUpModule():
@@ -54,7 +55,7 @@ class WallPage(unittest.TestCase):
         self.addCleanup(lambda: self.wall.close())
 
     def test_it_shows_the_worst_first_and_what_is_silent(self):
-        scenario(self.wall.address, "cells", answer=self.plant.tell)
+        scenario(self.wall.address, "cells", PICTURE, answer=self.plant.tell)
 
     def test_it_shows_what_does_not_fit_as_what_it_is(self):
         scenario(self.wall.address, "lies", answer=self.plant.tell)

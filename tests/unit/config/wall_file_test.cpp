@@ -72,13 +72,13 @@ name = "A"
 [[cell]]
 name = "A"
 )");
-  EXPECT_NE(text.find("wall.toml:3:11: error: the page at 0.0.0.0 would be reachable from other machines"),
+  EXPECT_NE(text.find("wall.toml:3:11: error: [wall]: the page at 0.0.0.0 would be reachable from other machines"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("wall.toml:4:"), std::string::npos) << text;
   EXPECT_NE(text.find("wall.toml:5:"), std::string::npos) << text;
   EXPECT_NE(text.find("wall.toml:6:"), std::string::npos) << text;
-  EXPECT_NE(text.find("wall.toml:11:8: error: cell A appears twice"), std::string::npos) << text;
+  EXPECT_NE(text.find("wall.toml:11:8: error: cell A: the name appears twice"), std::string::npos) << text;
 }
 
 TEST(WallFile, TakesNoPageThatCarriesASecretOrAScript) {

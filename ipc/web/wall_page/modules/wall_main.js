@@ -16,7 +16,7 @@ const rows = new KeyedRows(byId("cells"), () => {
   const tile = new Tile();
   visibility.watch(tile.node);
   return tile;
-}, (row, tile) => row.show(tile, performance.now()));
+}, (row, tile) => row.show(tile, performance.now(), visibility.sees(row.node)));
 let fetching = false;
 
 function show() {

@@ -1,6 +1,7 @@
 // What is known of the cells, from the documents of the wall (docs/wall.md). Pure.
 
 const kLevels = ["fault", "attention", "ok"];  // in the order in which they are shown
+const kNames = new Intl.Collator("en", {numeric: true});
 const kMostHeld = 16;  // changes that wait for the whole
 
 export function name_of(content) {
@@ -64,7 +65,7 @@ export class WallModel {
     const rank = ({content}) => kLevels.indexOf(content.level);
     return [...this.tiles.values()]
       .filter(({content}) => !wanted || [content.cell, content.title, content.host].some((text) => text.toLowerCase().includes(wanted)))
-      .sort((a, b) => rank(a) - rank(b) || name_of(a.content).localeCompare(name_of(b.content), "en", {numeric: true}) || a.number - b.number);
+      .sort((a, b) => rank(a) - rank(b) || kNames.compare(name_of(a.content), name_of(b.content)) || a.number - b.number);
   }
 
   counts() {
@@ -99,7 +100,7 @@ export function silent_text(content, now = new Date()) {
 
 const kGood = new Set(["fresh", ""]);
 
-// Those with something to tell first, and how many are left out.
+// Those that are not fresh first, and how many are left out.
 export function robots_of(tile, most) {
   const ages = tile.pulse.robots_age_s ?? [];
   const all = (tile.content.robots ?? []).map((robot, i) => ({...robot, age_s: ages[i] ?? null, bad: !kGood.has(robot.state)}));

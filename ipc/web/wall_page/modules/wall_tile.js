@@ -47,11 +47,15 @@ export class Tile {
     this.shown_ = null;      // content
     this.thumbnail_ = null;  // number
     this.foot_ = "";
+    this.waits_ = false;
   }
 
-  show(tile, now) {
+  // `seen`: it takes room on the screen. Otherwise what changes with each summary waits until it does.
+  show(tile, now, seen) {
     const {content, pulse} = tile;
     if (content !== this.shown_) this.show_content_(content);
+    this.waits_ = !seen;
+    if (!seen) return;
     this.show_robots_(tile);
     this.show_pulse_(content, pulse);
     this.show_picture_(content, pulse);
@@ -60,6 +64,10 @@ export class Tile {
 
   // What changes by time alone.
   tick(tile, now) {
+    if (this.waits_) {
+      this.show(tile, now, true);
+      return;
+    }
     const seconds = age_of(tile, now);
     if (tile.content.state === "silent") setText(this.state, `silent ${silent_text(tile.content)} (${duration((Date.now() - tile.content.silent_since_ms) / 1000)})`);
     this.heard.show(seconds === null ? null : `${age(Math.round(seconds * 10) / 10)} ago`);
@@ -75,7 +83,7 @@ export class Tile {
     setAttribute(this.node, "data-level", content.level);
     setAttribute(this.state, "data-level", content.level);
     setText(this.title, name_of(content));
-    if (content.state !== "silent") setText(this.state, content.replay ? `${content.state}, a recording` : content.state);
+    setText(this.state, content.state === "silent" ? `silent ${silent_text(content)}` : content.replay ? `${content.state}, a recording` : content.state);
     const of = [content.title ? content.cell : "", content.host ? `${content.host}/${content.instance}` : ""].filter((text) => text);
     if (content.moved_from) of.push(`before: ${content.moved_from}`);
     setText(this.of, of.join(" · "));
