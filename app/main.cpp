@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
         "  cellmirror status --watch                               what it does now\n"
         "  cellmirror page                                         where its monitor page is\n"
         "  cellmirror send 'POS_ROB PUMA_762 JOINT_INC 5'          command it\n"
+        "  cellmirror wall                                         one page for many cells\n"
         "  cellmirror doctor                                       check this machine",
         "cellmirror");
     program.require_subcommand();
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
     add_recording(program, action);
     add_replay(program, action);
     add_volume(program, action);
+    add_wall(program, action);
     if (const std::optional<int> status = program.parse(argc, argv)) return *status;
     return action();
   } catch (const std::bad_alloc&) {

@@ -86,6 +86,7 @@ set(CELLMIRROR_LAYERS
   "app/new_cell: rt_core/base rt_core/ports rt_core/cell config drivers/can app/io"
   "app/volume_info: rt_core/base rt_core/ports config config/volume app/plot"
   "app/simulation: rt_core/base rt_core/rt rt_core/ports rt_core/motion rt_core/geometry rt_core/collision rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine config scripts/programs/controller app/plot app/console app/snapshot app/owner app/workers"
+  "app/wall: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics rt_core/tissue/description ipc/wire config config/volume config/reader_process config/msh drivers/dds ipc/runtime ipc/foxglove ipc/web"
   "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde drivers/mqtt ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording app/replay app/playback"
   "app: *"
   "tests: *")
@@ -97,7 +98,7 @@ set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/ki
   scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/rapid scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot
-  app/console app/snapshot app/io app/owner app/workers app/render app/report app/alarms app/kinematics app/proximity app/pictures app/simulation app/volume_info app/new_cell app/recording_layout app/recording app/replay app/playback app/recorder app/live app/gateway app tests)
+  app/console app/snapshot app/io app/owner app/workers app/render app/report app/alarms app/kinematics app/proximity app/pictures app/simulation app/volume_info app/new_cell app/recording_layout app/recording app/replay app/playback app/recorder app/live app/wall app/gateway app tests)
 
 function(cellmirror_allowed_folders folder result)
   foreach(row IN LISTS CELLMIRROR_LAYERS)

@@ -30,22 +30,22 @@ bool is_origin(std::string_view text) {
          });
 }
 
-void read_address(TableReader& table, WebSettings& settings) {
+}  // namespace
+
+std::string read_page_address(TableReader& table, const std::string& otherwise) {
   const auto address = table.text("address");
   const bool remote = table.boolean("allow_remote").value_or(false);
-  if (!address) return;
+  if (!address) return otherwise;
   if (!is_address(*address)) {
     table.error("address", fmt::format("\"{}\" is not a numeric address", printable(*address)), "e.g. 127.0.0.1");
-    return;
+    return otherwise;
   }
-  settings.address = *address;
   if (!is_loopback(*address) && !remote) {
     table.error("address", fmt::format("the page at {} would be reachable from other machines", printable(*address)),
                 "if intended, add allow_remote = true; the connection is not encrypted");
   }
+  return *address;
 }
-
-}  // namespace
 
 WebSettings read_web(TableReader& top) {
   WebSettings settings;
@@ -53,7 +53,7 @@ WebSettings read_web(TableReader& top) {
   if (!table) return settings;
   settings.enabled = table->boolean("enabled").value_or(true);
   if (const auto port = table->integer("port", 1, 65535)) settings.port = static_cast<int>(*port);
-  read_address(*table, settings);
+  settings.address = read_page_address(*table, settings.address);
   settings.read_only = table->boolean("read_only").value_or(false);
   settings.origins = table->texts("origins").value_or(settings.origins);
   if (settings.origins.size() > kMostOrigins) {

@@ -36,6 +36,7 @@ void add_record(cli::Command program, Action& action);
 void add_recording(cli::Command program, Action& action);
 void add_replay(cli::Command program, Action& action);
 void add_volume(cli::Command program, Action& action);
+void add_wall(cli::Command program, Action& action);
 
 // Prints "cellmirror: what; remedy" on standard error and gives kExitRefused.
 int refuse(const std::string& what);

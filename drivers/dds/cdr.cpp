@@ -79,6 +79,13 @@ DoubleSequenceView CdrReader::read_doubles() {
   return at == nullptr ? DoubleSequenceView{} : DoubleSequenceView{at, count, swapped_};
 }
 
+std::span<const std::uint8_t> CdrReader::read_bytes() {
+  const auto count = read<std::uint32_t>();
+  const std::byte* at = take(count, 1);
+  return at == nullptr ? std::span<const std::uint8_t>()
+                       : std::span(reinterpret_cast<const std::uint8_t*>(at), std::size_t{count});
+}
+
 void CdrReader::read_octets(std::span<std::uint8_t> out) {
   const std::byte* at = take(out.size(), 1);
   for (std::uint8_t& octet : out) octet = at == nullptr ? std::uint8_t{0} : std::to_integer<std::uint8_t>(*at++);

@@ -98,6 +98,8 @@ class CdrReader {
   // Without the terminating zero. A length of zero, which some peers write for the empty string, is accepted.
   std::string_view read_text();
   DoubleSequenceView read_doubles();
+  // A sequence of octets: what lies in the payload.
+  std::span<const std::uint8_t> read_bytes();
   // So many octets; zeros where they are not there.
   void read_octets(std::span<std::uint8_t> out);
   // The number of elements that follow, each at least `least_bytes` long in any encoding; a number that cannot fit into

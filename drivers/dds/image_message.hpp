@@ -19,6 +19,17 @@ struct CompressedImage {
   std::span<const std::uint8_t> data = {};  // of a whole file
 };
 
+// The same, looking into a payload.
+struct CompressedImageView {
+  RosTime stamp;
+  std::string_view frame_id;
+  std::string_view format;
+  std::span<const std::uint8_t> data;
+};
+
+// Checks form only; `data` is whatever was sent. After a fault the content is unspecified.
+[[nodiscard]] CdrFault decode(std::span<const std::byte> payload, CompressedImageView& message);
+
 // Little endian, with encapsulation header. `out` is overwritten and keeps its capacity.
 void encode(const CompressedImage& message, std::vector<std::byte>& out);
 

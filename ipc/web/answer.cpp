@@ -96,6 +96,14 @@ Answer json_answer(std::string text) {
   return out;
 }
 
+Answer document_answer(const Document& document) {
+  Answer out;
+  out.status = document.status;
+  out.content_type = document.content_type;
+  out.body = {document.bytes, *document.bytes};
+  return out;
+}
+
 Answer picture_answer(Result<EncodedImage> picture) {
   if (!picture) return text_answer(503, picture.error().text());
   Answer out;

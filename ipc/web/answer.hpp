@@ -10,6 +10,7 @@
 #include "ipc/web/http_request.hpp"
 #include "ipc/web/outgoing.hpp"
 #include "ipc/web/page_files.hpp"
+#include "ipc/web/web_site.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
@@ -26,6 +27,7 @@ struct Answer {
 
 [[nodiscard]] Answer text_answer(int status, std::string text);
 [[nodiscard]] Answer json_answer(std::string text);
+[[nodiscard]] Answer document_answer(const Document& document);
 // 503 with the reason where there is no picture.
 [[nodiscard]] Answer picture_answer(Result<EncodedImage> picture);
 // The file with its hash as ETag; 304 where that is `known`, the header If-None-Match (may be empty). 503 with the

@@ -209,7 +209,7 @@ void Connection::do_route(TakeSnapshot& snapshot, Timestamp now) {
   stage_ = Stage::waiting;
   since_ = now;
   waiting.fetch_add(1, std::memory_order_relaxed);
-  context_.backend.ask_picture(
+  context_.gateway->ask_picture(
       snapshot.request, snapshot.format,
       [inbox = context_.inbox, number = number_, snapshots = context_.snapshots](Result<EncodedImage> picture) {
         snapshots->fetch_sub(1, std::memory_order_relaxed);
@@ -225,7 +225,7 @@ void Connection::do_route(TakeGeometry& take, Timestamp now) {
   stage_ = Stage::waiting;
   since_ = now;
   waiting.fetch_add(1, std::memory_order_relaxed);
-  context_.backend.ask_geometry(
+  context_.gateway->ask_geometry(
       [inbox = context_.inbox, number = number_, known = std::move(take.known),
        snapshots = context_.snapshots](const Result<std::shared_ptr<const SceneGeometry>>& geometry) {
         snapshots->fetch_sub(1, std::memory_order_relaxed);
@@ -246,9 +246,10 @@ void Connection::do_route(OpenWebSocket& open, Timestamp now) {
   place_ = context_.places.take(peer, open.has_token);
   if (place_ == nullptr) {
     count(context_.counters.refused);
-    return answer(text_answer(503,
-                              "too many pages of this gateway are open; close one of yours, or open the page by "
-                              "the address that this prints: cellmirror page"));
+    return answer(text_answer(503, context_.gateway == nullptr
+                                       ? "too many of these pages are open; close one of yours"
+                                       : "too many pages of this gateway are open; close one of yours, or open the "
+                                         "page by the address that this prints: cellmirror page"));
   }
   count(context_.counters.clients);
   // Pictures in the send buffer of the kernel get old: room for about two.
@@ -284,7 +285,7 @@ void Connection::execute_body(Timestamp now) {
   stage_ = Stage::waiting;
   since_ = now;
   count(context_.counters.commands);
-  context_.backend.execute(
+  context_.gateway->execute(
       text, {number_, peer_of(fd())}, [inbox = context_.inbox, number = number_](const CommandReply& reply) {
         inbox->post(number, [reply](Connection* client) { client->answer(json_answer(command_answer(reply))); });
       });

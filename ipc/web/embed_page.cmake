@@ -1,4 +1,4 @@
-# Run as a script: cmake -DPAGE=folder -DOUTPUT=page_files_data.cpp "-DFILES=a|b" "-DLIBRARIES=c=/path/of/c" -P embed_page.cmake
+# Run as a script: cmake -DPAGE=folder -DOUTPUT=page_files_data.cpp -DFUNCTION=page_files "-DFILES=a|b" "-DLIBRARIES=c=/path/of/c" -P embed_page.cmake
 # Writes the files as string literals, beside each its compressed form, so that the page needs no file at run time.
 set(TYPES ".html=text/html\; charset=utf-8" ".css=text/css\; charset=utf-8" ".js=text/javascript\; charset=utf-8"
   ".svg=image/svg+xml" ".png=image/png" ".ico=image/x-icon" ".json=application/json" ".txt=text/plain\; charset=utf-8"
@@ -95,7 +95,7 @@ ${rows}}};
 
 }  // namespace
 
-std::span<const PageFile> page_files() { return kFiles; }
+std::span<const PageFile> ${FUNCTION}() { return kFiles; }
 
 }  // namespace cellmirror::web
 ")

@@ -79,7 +79,7 @@ void FoxgloveSession::welcome(Outgoing& out) {
   foxglove::ServerInfo info{"cellmirror " + options.cell,
                             {{"version", options.version}, {"cell", options.cell}, {"instance", options.instance}},
                             options.run};
-  PlaybackPort* const playback = context_.backend.playback();
+  PlaybackPort* const playback = context_.gateway->playback();
   if (playback != nullptr) {
     const PlaybackState state = playback->state();
     info.played = {static_cast<std::uint64_t>(state.from_ns), static_cast<std::uint64_t>(state.to_ns)};
@@ -299,7 +299,7 @@ void FoxgloveSession::handle(const foxglove::CallService& message, Outgoing& out
   ++commands_waiting_;
   count(context_.counters.commands);
   foxglove::CallService call{message.service, message.call, message.encoding, {}};
-  context_.backend.execute(
+  context_.gateway->execute(
       request->command, {connection_, peer_},
       [inbox = context_.inbox, connection = connection_, call = std::move(call)](const CommandReply& reply) {
         inbox->post(connection, [call, reply](Connection* client) {
@@ -336,7 +336,7 @@ void FoxgloveSession::send_playback(const PlaybackState& state, std::string_view
 }
 
 void FoxgloveSession::handle(const foxglove::PlaybackControl& message, Outgoing& out) {
-  PlaybackPort* const playback = context_.backend.playback();
+  PlaybackPort* const playback = context_.gateway->playback();
   if (playback == nullptr) return report_problem("this gateway plays no recording", out);
   if (context_.options.read_only) return report_problem("playback: this gateway was started read-only", out);
   PlaybackRequest request{.play = message.play, .speed = message.speed, .seek_ns = {}};
@@ -350,7 +350,7 @@ void FoxgloveSession::handle(const foxglove::PlaybackControl& message, Outgoing&
 }
 
 void FoxgloveSession::report_playback(Outgoing& out) {
-  PlaybackPort* const playback = context_.backend.playback();
+  PlaybackPort* const playback = context_.gateway->playback();
   if (playback == nullptr) return;
   const PlaybackState state = playback->state();
   if (state.changes != known_playback_) send_playback(state, {}, out);
@@ -378,7 +378,7 @@ void FoxgloveSession::send(Outgoing& out) {
 void FoxgloveSession::look(Timestamp now, Outgoing& out) {
   if (out.pending() >= kMostAhead) return;
   send_binary(
-      out, foxglove::time_message(static_cast<std::uint64_t>(to_wall_clock_ns(context_.backend.cell_clock().now()))));
+      out, foxglove::time_message(static_cast<std::uint64_t>(to_wall_clock_ns(context_.gateway->cell_clock().now()))));
   report_playback(out);
   if (const std::vector<foxglove::Channel> channels = topics_->new_channels(); !channels.empty())
     send_text(out, foxglove::advertise_message(channels));

@@ -35,6 +35,11 @@ bool LiveSession::receive(std::string_view text, Timestamp now, Outgoing& out) {
     send_text(out, refused_message(message.error().id, message.error().why));
     return true;
   }
+  if (context_.gateway == nullptr && !std::holds_alternative<HelloMessage>(*message)) {
+    count(context_.counters.refused);
+    send_text(out, refused_message(0, "this page only shows"));
+    return true;
+  }
   std::visit([&](const auto& one) { handle(one, out); }, *message);
   return wrong_tokens_ < kMostWrongTokens;
 }
@@ -59,7 +64,7 @@ void LiveSession::handle(const PictureMessage& message, Outgoing& out) {
     stream_->change(request_);
     return;
   }
-  auto stream = context_.backend.open_pictures(request_);
+  auto stream = context_.gateway->open_pictures(request_);
   if (!stream) {
     send_text(out, refused_message(0, stream.error().text()));
     return;
@@ -80,7 +85,7 @@ void LiveSession::handle(const ShownMessage& message, Outgoing& /*out*/) {
 
 void LiveSession::handle(const SceneMessage& /*message*/, Outgoing& out) {
   if (scene_) return;
-  auto scene = context_.backend.open_scene();
+  auto scene = context_.gateway->open_scene();
   if (!scene) return send_text(out, refused_message(0, scene.error().text()));
   scene_ = std::move(*scene);
   newest_poses_ = 0;
@@ -113,7 +118,7 @@ void LiveSession::handle(const CommandMessage& message, Outgoing& out) {
     return refuse(fmt::format("{} commands are waiting for their acknowledgement", commands_waiting_));
   ++commands_waiting_;
   count(context_.counters.commands);
-  context_.backend.execute(
+  context_.gateway->execute(
       message.text, {connection_, peer_},
       [inbox = context_.inbox, connection = connection_, id = message.id](const CommandReply& reply) {
         inbox->post(connection, [id, reply](Connection* client) { client->command_answered(id, reply); });
@@ -127,7 +132,7 @@ void LiveSession::handle(const PickMessage& message, Outgoing& out) {
   if (picks_waiting_ >= kMostPicksWaiting)
     return send_text(out, refused_message(message.id, "too many requests at once; try again"));
   ++picks_waiting_;
-  context_.backend.ask_pick(
+  context_.gateway->ask_pick(
       request_, message.x, message.y,
       [inbox = context_.inbox, connection = connection_, id = message.id](Result<std::optional<PickedObject>> object) {
         inbox->post(connection, [id, object = std::move(object)](Connection* client) { client->picked(id, object); });
@@ -135,7 +140,7 @@ void LiveSession::handle(const PickMessage& message, Outgoing& out) {
 }
 
 void LiveSession::handle(const PlaybackMessage& message, Outgoing& out) {
-  PlaybackPort* const playback = context_.backend.playback();
+  PlaybackPort* const playback = context_.gateway->playback();
   if (playback == nullptr) return send_text(out, refused_message(0, "this gateway plays no recording"));
   if (context_.options.read_only) return send_text(out, refused_message(0, "this gateway was started read-only"));
   PlaybackRequest request{.play = message.play, .speed = message.speed, .seek_ns = {}};
@@ -181,7 +186,7 @@ void LiveSession::send_poses(Outgoing& out) {
     out.push(Chunk{update->marks, *update->marks});
   }
   out.push(frame_header(Opcode::binary, kPosesHeaderBytes + update->poses.size()) +
-           poses_header(pose_credit_.next(), *update, context_.backend.cell_clock().now()));
+           poses_header(pose_credit_.next(), *update, context_.gateway->cell_clock().now()));
   out.push(Chunk{update, update->poses});
   // Behind the poses whose number is acknowledged: none of it is sent faster than the client draws.
   const auto push_whole = [&](const std::shared_ptr<const std::string>& message) {
@@ -202,7 +207,7 @@ void LiveSession::send_picture_of_stream(Timestamp now, Outgoing& out) {
   reported_problem_.clear();
   const std::string_view bytes(reinterpret_cast<const char*>(picture->bytes.data()), picture->bytes.size());
   out.push(frame_header(Opcode::binary, kPictureHeaderBytes + bytes.size()) +
-           picture_header(credit_.next(), *picture, context_.backend.cell_clock().now()));
+           picture_header(credit_.next(), *picture, context_.gateway->cell_clock().now()));
   out.push(Chunk{picture, bytes});
   count(context_.counters.pictures);
   if (!credit_.may_send()) no_credit_since_ = now;

@@ -26,7 +26,7 @@ class LiveSession {
   void welcome(Outgoing& out) const;
   // Counts frames: messages, their parts, pings and pongs. False: too many; the connection is to be closed.
   [[nodiscard]] bool within_rate(std::size_t frames, Timestamp now) { return frames_.allows(frames, now); }
-  // False: the connection is to be closed.
+  // False: the connection is to be closed. Where there is no gateway all but a greeting is refused.
   [[nodiscard]] bool receive(std::string_view text, Timestamp now, Outgoing& out);
   void command_answered(std::int64_t id, const CommandReply& reply, Outgoing& out);
   void picked(std::int64_t id, const Result<std::optional<PickedObject>>& object, Outgoing& out);

@@ -4,8 +4,7 @@
 
 namespace cellmirror::web {
 
-const PageFile* find_page_file(std::string_view path) {
-  const auto files = page_files();
+const PageFile* find_page_file(std::span<const PageFile> files, std::string_view path) {
   const auto found = std::ranges::find(files, path, &PageFile::path);
   return found == files.end() ? nullptr : &*found;
 }

@@ -1,4 +1,4 @@
-// The files of the page, embedded in the program (page/, embed_page.cmake).
+// The files of the pages, embedded in the program (page/, wall_page/, embed_page.cmake).
 #pragma once
 
 #include <span>
@@ -14,7 +14,11 @@ struct PageFile {
   std::string_view gzip;  // empty where it would not be smaller
 };
 
+// Of the monitor page.
 [[nodiscard]] std::span<const PageFile> page_files();
-[[nodiscard]] const PageFile* find_page_file(std::string_view path);
+// Of the wall, the page of many cells.
+[[nodiscard]] std::span<const PageFile> wall_page_files();
+// Null: there is none.
+[[nodiscard]] const PageFile* find_page_file(std::span<const PageFile> files, std::string_view path);
 
 }  // namespace cellmirror::web

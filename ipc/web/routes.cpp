@@ -21,37 +21,27 @@ Answer refused(ServerContext& context, int status, std::string text) {
 std::optional<Answer> check_access(const HttpRequest& request, ServerContext& context) {
   if (!context.access.host_allowed(*request.header("host")))
     return refused(context, 421,
-                   "unknown host name; use the address of the server, or add the origin of the page to [web] "
-                   "origins of the cell file");
+                   context.gateway == nullptr
+                       ? "unknown host name; use the address of the server"
+                       : "unknown host name; use the address of the server, or add the origin of the page to [web] "
+                         "origins of the cell file");
   if (!context.access.origin_allowed(request.header("origin")))
-    return refused(context, 403, "this origin is not allowed; [web] origins of the cell file adds origins");
+    return refused(context, 403,
+                   context.gateway == nullptr
+                       ? "this origin is not allowed"
+                       : "this origin is not allowed; [web] origins of the cell file adds origins");
   return std::nullopt;
 }
 
 std::optional<Route> document(const HttpRequest& request, ServerContext& context) {
-  using Make = std::string (Backend::*)();
-  constexpr std::array<std::pair<std::string_view, Make>, 7> kDocuments = {
-      {{"/api/status", &Backend::status_json},
-       {"/api/tree", &Backend::tree_json},
-       {"/api/commands", &Backend::commands_json},
-       {"/api/names", &Backend::names_json},
-       {"/api/command-log", &Backend::command_log_json},
-       {"/api/alarms", &Backend::alarms_json},
-       {"/metrics", &Backend::metrics_text}}};
-  for (const auto& [path, make] : kDocuments) {
-    if (request.path != path) continue;
-    return Work([&backend = context.backend, one = make, metrics = path == "/metrics"] {
-      Answer answer = json_answer((backend.*one)());
-      if (metrics) answer.content_type = "text/plain; version=0.0.4; charset=utf-8";
-      return answer;
-    });
-  }
-  return std::nullopt;
+  MakeDocument make = context.site.document(request.path, request.query);
+  if (!make) return std::nullopt;
+  return Work([make = std::move(make)] { return document_answer(make()); });
 }
 
 // For those who watch the gateway and decide by the status alone.
-Answer health_answer(Backend& backend) {
-  const Health health = backend.health();
+Answer health_answer(Site& site) {
+  const Health health = site.health();
   return text_answer(health.ok ? 200 : 503, health.text);
 }
 
@@ -94,7 +84,7 @@ std::optional<Route> foxglove_client(const HttpRequest& request, ServerContext& 
   if (request.path != "/" && request.path != "/foxglove") return std::nullopt;
   auto accept = websocket_accept(request);
   if (!accept) return std::nullopt;
-  LiveData* data = context.backend.live_data();
+  LiveData* data = context.gateway == nullptr ? nullptr : context.gateway->live_data();
   const auto offered = std::ranges::find_if(foxglove::kSubprotocols, [&](std::string_view name) {
     return request.header_has("sec-websocket-protocol", name);
   });
@@ -107,27 +97,33 @@ std::optional<Route> foxglove_client(const HttpRequest& request, ServerContext& 
   return OpenWebSocket{std::move(*accept), has_token, std::string(*offered), data};
 }
 
+// What only a gateway has; decided before the method is looked at.
+std::optional<Route> gateway_route(const HttpRequest& request, ServerContext& context) {
+  if (context.gateway == nullptr) return std::nullopt;
+  if (auto found = foxglove_client(request, context)) return found;
+  if (request.path == "/api/command") return command(request, context);
+  if (request.method != "GET" && request.method != "HEAD") return std::nullopt;
+  if (request.path == "/") context.gateway->expect_pictures();
+  if (auto found = snapshot(request, context)) return found;
+  if (request.path != "/scene.glb") return std::nullopt;
+  const std::string* known = request.header("if-none-match");
+  return TakeGeometry{known == nullptr ? std::string() : *known};
+}
+
 }  // namespace
 
 Route route(const HttpRequest& request, ServerContext& context) {
   if (auto answer = check_access(request, context)) return std::move(*answer);
   if (request.path == "/live") return live(request, context);
-  if (auto found = foxglove_client(request, context)) return std::move(*found);
-  if (request.path == "/api/command") return command(request, context);
+  if (auto found = gateway_route(request, context)) return std::move(*found);
   if (request.method != "GET" && request.method != "HEAD") {
     Answer answer = refused(context, 405, "only GET and HEAD are allowed");
     answer.headers.emplace_back("Allow", "GET, HEAD");
     return answer;
   }
-  if (request.path == "/") context.backend.expect_pictures();
-  if (const PageFile* file = find_page_file(request.path)) return file_answer(*file, request);
-  if (request.path == "/healthz") return Work([&backend = context.backend] { return health_answer(backend); });
+  if (const PageFile* file = find_page_file(context.site.files(), request.path)) return file_answer(*file, request);
+  if (request.path == "/healthz") return Work([&site = context.site] { return health_answer(site); });
   if (auto found = document(request, context)) return std::move(*found);
-  if (auto found = snapshot(request, context)) return std::move(*found);
-  if (request.path == "/scene.glb") {
-    const std::string* known = request.header("if-none-match");
-    return TakeGeometry{known == nullptr ? std::string() : *known};
-  }
   return text_answer(404, "not found");
 }
 

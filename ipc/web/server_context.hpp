@@ -34,7 +34,8 @@ inline void count(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) {
 struct ServerContext {
   ServerOptions options;  // with port and token as they are
   AccessRules access;
-  Backend& backend;
+  Site& site;
+  Backend* gateway;  // null: the site only shows
   JobPool& jobs;
   std::shared_ptr<Inbox> inbox;
   Counters& counters;

@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "ipc/web/page_files.hpp"
+#include "ipc/web/web_site.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/image.hpp"
@@ -22,11 +25,6 @@ struct CommandReply {
   std::string text;  // empty, or why it was refused, with the remedy
 };
 
-struct Health {
-  bool ok = false;
-  std::string text;  // one line: "ok", or what is wrong
-};
-
 // Who sent a command, for the log of commands.
 struct CommandOrigin {
   std::uint64_t session = 0;  // number of the connection since the start of the server
@@ -35,18 +33,19 @@ struct CommandOrigin {
 
 class LiveData;
 
-class Backend {
+class Backend : public Site {
  public:
-  virtual ~Backend() = default;
-  // The time source of the server; outlives it.
-  [[nodiscard]] virtual const Clock& clock() const = 0;
+  [[nodiscard]] std::span<const PageFile> files() const override { return page_files(); }
+  // Those below, by their paths.
+  [[nodiscard]] MakeDocument document(std::string_view path, std::string_view query) override;
+  [[nodiscard]] Backend* gateway() override { return this; }
+
   // The time of what it shows: that of a recording, where one is played.
   [[nodiscard]] virtual const Clock& cell_clock() const { return clock(); }
   // Of that recording; null: real robots. Outlives the server.
   [[nodiscard]] virtual PlaybackPort* playback() { return nullptr; }
-  // JSON documents, each made when called. The live one is sent to pages several times a second: small, with the keys
-  // of `status --json` for the same things (docs/monitor-page.md).
-  [[nodiscard]] virtual std::string live_json() = 0;
+  // JSON documents, each made when called. The live one has the keys of `status --json` for the same things
+  // (docs/monitor-page.md).
   [[nodiscard]] virtual std::string status_json() = 0;
   [[nodiscard]] virtual std::string tree_json() = 0;         // the tree of the cell with the level shown
   [[nodiscard]] virtual std::string commands_json() = 0;     // as `cellmirror commands --json`; never changes
@@ -54,7 +53,6 @@ class Backend {
   [[nodiscard]] virtual std::string command_log_json() = 0;  // the newest entries of the log of commands
   [[nodiscard]] virtual std::string alarms_json() = 0;       // alarms that are open, and the newest of the others
   [[nodiscard]] virtual std::string metrics_text() = 0;      // Prometheus text format
-  [[nodiscard]] virtual Health health() = 0;                 // of the loop
   // Executes a SCRIPT command of `origin`; `reply` is called once, from another thread, or at once if it is refused.
   virtual void execute(std::string_view command, const CommandOrigin& origin,
                        std::function<void(const CommandReply&)> reply) = 0;

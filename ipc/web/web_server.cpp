@@ -29,7 +29,6 @@ namespace cellmirror::web {
 
 namespace {
 
-constexpr Nanoseconds kLivePeriod{100'000'000};
 constexpr Nanoseconds kPicturePeriod{5'000'000};  // how often newer pictures are looked up
 constexpr Nanoseconds kLongestWait{1'000'000'000};
 constexpr Nanoseconds kNoDescriptorWait{100'000'000};
@@ -64,7 +63,7 @@ Result<SocketAddress> socket_address(const std::string& address, int port) {
   return fail(fmt::format("{} is not a numeric address", address), "e.g. 127.0.0.1");
 }
 
-Result<Descriptor> listen_at(const std::string& address, int port) {
+Result<Descriptor> listen_at(const std::string& address, int port, bool of_gateway) {
   auto to = socket_address(address, port);
   if (!to) return std::unexpected(to.error());
   Descriptor listener(::socket(to->bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -73,11 +72,16 @@ Result<Descriptor> listen_at(const std::string& address, int port) {
   if (listener.valid() && ::bind(listener.get(), to->get(), to->length) == 0 && ::listen(listener.get(), kBacklog) == 0)
     return listener;
   const int why = errno;
-  return fail(fmt::format("no monitor page: cannot listen at {} port {}: {}", address, port, system_error_text(why)),
-              why == EADDRINUSE
-                  ? "another program uses that port: choose another one with --port N, or switch the page "
-                    "off with --no-web"
-                  : "choose another --port N (1024 to 65535), or [web] address in the cell file");
+  const std::string_view in_use = of_gateway
+                                      ? "another program uses that port: choose another one with --port N, or switch "
+                                        "the page off with --no-web"
+                                      : "another program uses that port: choose another one with --port N";
+  const std::string_view other = of_gateway
+                                     ? "choose another --port N (1024 to 65535), or [web] address in the cell file"
+                                     : "choose another --port N (1024 to 65535), or another address with --bind";
+  return fail(fmt::format("no {}page: cannot listen at {} port {}: {}", of_gateway ? "monitor " : "", address, port,
+                          system_error_text(why)),
+              std::string(why == EADDRINUSE ? in_use : other));
 }
 
 int port_of(int listener) {
@@ -96,7 +100,7 @@ std::uint64_t read_counter(const std::atomic<std::uint64_t>& counter) {
 
 }  // namespace
 
-bool port_is_free(const std::string& address, int port) { return listen_at(address, port).has_value(); }
+bool port_is_free(const std::string& address, int port) { return listen_at(address, port, true).has_value(); }
 
 struct Server::Impl {
   Descriptor listener;
@@ -161,7 +165,7 @@ int Server::Impl::poll_timeout_ms(Timestamp now) const {
 
 void Server::Impl::serve() {
   set_thread_name("web");
-  const Clock& clock = context->backend.clock();
+  const Clock& clock = context->site.clock();
   std::vector<pollfd> polled;
   for (;;) {
     polled.clear();
@@ -235,11 +239,11 @@ bool Server::Impl::make_room() {
 void Server::Impl::request_live(Timestamp now) {
   if (live_under_way || now < next_live) return;
   if (std::ranges::none_of(connections, [](const auto& connection) { return connection->is_page(); })) return;
-  next_live = now + kLivePeriod;
-  live_under_way = jobs->submit_first([this, &backend = context->backend, box = inbox] {
+  next_live = now + context->site.live_period();
+  live_under_way = jobs->submit_first([this, &site = context->site, box = inbox] {
     std::string text;
     try {
-      text = frame(Opcode::text, live_message(backend.live_json()));
+      text = frame(Opcode::text, live_message(site.live_json()));
     } catch (const std::exception& error) {
       log_error("web.live", "the live document could not be made: {}", error.what());
     }
@@ -269,15 +273,15 @@ Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Server::~Server() = default;
 
-Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Backend& backend) {
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site& site) {
   ServerOptions settled = options;
   if (settled.token.empty()) {
     auto token = make_token();
     if (!token) return std::unexpected(token.error());
     settled.token = std::move(*token);
   }
-  if (settled.run.empty()) settled.run = std::to_string(to_wall_clock_ns(backend.clock().now()));
-  auto listener = listen_at(options.address, options.port);
+  if (settled.run.empty()) settled.run = std::to_string(to_wall_clock_ns(site.clock().now()));
+  auto listener = listen_at(options.address, options.port, site.gateway() != nullptr);
   if (!listener) return std::unexpected(listener.error());
   Descriptor wake_up(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
   if (!wake_up.valid()) return fail(fmt::format("no monitor page: {}", system_error_text(errno)));
@@ -287,7 +291,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Back
   impl->inbox = std::make_shared<Inbox>(std::move(wake_up));
   impl->jobs.emplace(kWorkers);
   const AccessRules access(settled.address, settled.port, settled.origins);
-  impl->context.emplace(ServerContext{settled, access, backend, *impl->jobs, impl->inbox, impl->counters});
+  impl->context.emplace(ServerContext{settled, access, site, site.gateway(), *impl->jobs, impl->inbox, impl->counters});
   impl->thread = std::thread([server = impl.get()] { server->serve(); });
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }

@@ -1,5 +1,5 @@
-// The server of the monitor page: HTTP and WebSocket. Protocol: docs/monitor-page.md. One thread does all I/O and never
-// waits for a client; two others do work that takes longer.
+// The server of the monitor page, and of pages that only show (web_site.hpp): HTTP and WebSocket. Protocol:
+// docs/monitor-page.md. One thread does all I/O and never waits for a client; two others do work that takes longer.
 #pragma once
 
 #include <cstdint>
@@ -61,8 +61,8 @@ struct ServerStatus {
 
 class Server {
  public:
-  // `backend` is not owned and outlives the server. Refused, with a remedy, where the port is in use.
-  [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Backend& backend);
+  // `site` is not owned and outlives the server. Refused, with a remedy, where the port is in use.
+  [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Site& site);
   // Ends at once, regardless of clients.
   ~Server();
   Server(const Server&) = delete;

@@ -34,6 +34,7 @@ PLOTS = {
     "collide_plot.png": f"build/bin/cellmirror collide --cell {TRANSFER} --poses SCRATCH/postures.csv --plot FILE",
     "range_plot.png": f"build/bin/cellmirror range --cell {TRANSFER} --poses SCRATCH/postures.csv --plot FILE",
     "volume_plot.png": "build/bin/cellmirror volume info config/cells/volume_cell/envlib/phantom.nrrd --plot FILE",
+    "wall.png": "/usr/bin/python3 -B tests/support/wall_figure.py FILE",
 }
 PAGE = {name: "tests/support/page_figure.py" for name in ("monitor_page.png", "monitor_page_3d.png", "monitor_page_phone.png")}
 MEASURED = {

@@ -10,6 +10,7 @@ import unittest
 
 SOURCE = pathlib.Path(os.environ.get("CELLMIRROR_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[3]))
 PAGE = SOURCE / "ipc" / "web" / "page"
+WALL = SOURCE / "ipc" / "web" / "wall_page"
 MOST_BYTES = 300_000
 
 
@@ -21,6 +22,7 @@ class Modules(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="cellmirror-page-") as folder:
             place = pathlib.Path(folder)
             shutil.copytree(PAGE / "modules", place / "modules")
+            shutil.copytree(WALL / "modules", place / "modules", dirs_exist_ok=True)
             (place / "package.json").write_text('{"type": "module"}')  # else node takes .js for its older kind
             for test in pathlib.Path(__file__).parent.glob("*_test.mjs"):
                 shutil.copy(test, place)
@@ -66,6 +68,42 @@ class Files(unittest.TestCase):
                 outside = re.findall(r"https?://(?!www\.w3\.org/2000/svg)[^\s\"'`)]+", path.read_text())
                 self.assertEqual(outside, [], path)
 
+class WallFiles(Files):
+    """The same of the wall, which has some of the files of the page (ipc/web/CMakeLists.txt)."""
+
+    def files(self):
+        return [path for path in WALL.rglob("*") if path.is_file()]
+
+    def shared(self):
+        text = (WALL.parent / "CMakeLists.txt").read_text()
+        return re.search(r"set\(shared ([^)]*)\)", text)[1].split()
+
+    def test_what_the_page_names_is_there(self):
+        named = re.findall(r'(?:src|href)="page/([^"]+)"', (WALL / "index.html").read_text())
+        for module in (WALL / "modules").glob("*.js"):
+            named += [f"modules/{name}" for name in re.findall(r'from "\./([^"]+)"', module.read_text())]
+        for name in self.shared():
+            self.assertTrue((PAGE / name).is_file(), name)
+            if name.endswith(".js"):
+                named += [f"modules/{other}" for other in re.findall(r'from "\./([^"]+)"', (PAGE / name).read_text())]
+        self.assertIn("modules/wall_main.js", named)
+        for name in named:
+            self.assertTrue((WALL / name).is_file() or name in self.shared(), name)
+
+    def test_every_id_that_modules_ask_for_is_in_the_page_once(self):
+        text = (WALL / "index.html").read_text()
+        ids = re.findall(r'\bid="([^"]+)"', text)
+        self.assertEqual(len(ids), len(set(ids)))
+        for module in (WALL / "modules").glob("*.js"):
+            for name in re.findall(r'byId\("([^"]+)"\)', module.read_text()):
+                self.assertIn(name, ids, module.name)
+
+    def test_nothing_is_inline_and_nothing_comes_from_elsewhere(self):
+        text = (WALL / "index.html").read_text()
+        self.assertNotRegex(text, r"<style|\sstyle=|\son\w+=|<script(?![^>]*\ssrc=)")
+        for path in self.files():
+            outside = re.findall(r"https?://(?!127\.0\.0\.1)[a-z][^\s\"'`)]+", path.read_text())
+            self.assertEqual(outside, [], path)
 
 
 if __name__ == "__main__":

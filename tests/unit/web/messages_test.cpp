@@ -233,11 +233,11 @@ TEST(Answers, CarryWhatKeepsThePageApart) {
 }
 
 TEST(PageFiles, AreServedCompressedAndOnlyWhereTheyAreNew) {
-  const PageFile* index = find_page_file("/");
+  const PageFile* index = find_page_file(page_files(), "/");
   ASSERT_NE(index, nullptr);
   EXPECT_EQ(index->content_type, "text/html; charset=utf-8");
-  EXPECT_EQ(find_page_file("/page/index.html"), nullptr);
-  EXPECT_EQ(find_page_file("/page/../CMakeLists.txt"), nullptr);
+  EXPECT_EQ(find_page_file(page_files(), "/page/index.html"), nullptr);
+  EXPECT_EQ(find_page_file(page_files(), "/page/../CMakeLists.txt"), nullptr);
   HttpRequest request;
   const Answer plain = file_answer(*index, request);
   EXPECT_EQ(plain.body.bytes, index->bytes);
