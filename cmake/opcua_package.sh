@@ -1,13 +1,11 @@
 # For ./package --opcua: the package cellmirror-opcua, of ipc/opcua and the packages of npm that its lock file names. Sourced.
 
-# What only those who develop with the packages of npm need, and the node sets of other specifications.
+# What only those who develop with the packages of npm need. Node sets stay: node-opcua looks for each of them when it is loaded.
 prune_modules() {
   local modules=$1
   find "$modules" -type f \( -name '*.map' -o -name '*.ts' -o -name '*.mts' -o -name '*.cts' -o -name '*.flow' -o -name '*.tsbuildinfo' -o \
-    -name '.[a-z]*' -o -iname 'readme*' -o -iname 'changelog*' -o -iname 'history*' \) -delete
+    -name '.[a-z]*' -o -name '*.md' \) ! -iname 'licen[cs]e*' -delete
   rm -rf "$modules"/@types "$modules"/.bin "$modules"/.package-lock.json "$modules"/node-opcua*/source "$modules"/*/{test,tests,examples}
-  find "$modules/node-opcua-nodesets/nodesets" -type f ! -name 'Opc.Ua.NodeSet2.xml' ! -name 'Opc.Ua.Di.NodeSet2.xml' \
-    ! -name 'Opc.Ua.Robotics.NodeSet2.xml' -delete
   find "$modules" -type d -empty -delete
 }
 
@@ -23,6 +21,8 @@ stage_opcua() {
   (cd "$to/app" && npm ci --omit=dev --ignore-scripts --no-audit --no-fund --loglevel=error) >"$to/../npm.log" 2>&1 ||
     die "./package: npm ci failed (full output: $to/../npm.log)"
   prune_modules "$to/app/node_modules"
+  (cd "$to/app" && node --input-type=module -e 'await Promise.all(["server", "certificates", "cell_nodes"].map((name) => import(`./src/${name}.mjs`)))') ||
+    die "./package: the program cannot load what is left of its packages"
   # One line a package: name, version, licence.
   find "$to/app/node_modules" -name package.json -exec node -e '
     const lines = new Set();

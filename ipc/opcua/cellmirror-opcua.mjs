@@ -1,4 +1,4 @@
-#!/usr/bin/env -S node --max-old-space-size=768
+#!/usr/bin/env node
 import {main} from "./src/main.mjs";
 
 process.exit(await main(process.argv.slice(2)));
