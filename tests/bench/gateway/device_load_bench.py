@@ -6,7 +6,8 @@
 
 The master is build/bin/device_load. Prints how long after SYNC the TPDOs came, how long SDO answers took, the raw echo of such a
 channel in the same run, SYNCs without all answers, and the gateway's processor time. Goals: no SYNC missed; SYNC to TPDO p99 at most
-150 us beyond the raw echo; SDO p99 at most 1 ms; a target is motion after one period. For vcan: run-in-vcan.sh.
+150 us beyond the raw echo; SDO p99 at most 1 ms; a target is motion after one period. For vcan: in User-Mode Linux with 2.5 GB
+(tests/support/run-in-vcan.sh has less).
 """
 
 import argparse
