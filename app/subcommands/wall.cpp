@@ -1,6 +1,4 @@
 // cellmirror wall: one page for the cells of a plant.
-#include <unistd.h>
-
 #include <cstdio>
 #include <memory>
 #include <optional>
