@@ -70,7 +70,8 @@ Result<void> Gateway::Parts::inject(const ControlRequest& request) {
     return fail(fmt::format("no node {} answers a controller", order.node),
                 "nodes are those of [[device]], while its robot is online, and of [[io_node]]");
   if (targets.size() > 1)
-    return fail(fmt::format("several nodes have the number {}", order.node), "name the channel, e.g. --channel socketcan:can0");
+    return fail(fmt::format("several nodes have the number {}", order.node),
+                "name the channel, e.g. --channel socketcan:can0");
   const FaultTarget& target = *targets.front();
   if (!order.ends_all && order.fault.kind == NodeFaultKind::stuck && !target.robot.empty())
     return fail(fmt::format("node {} is a drive; inputs of I/O nodes get stuck", order.node));

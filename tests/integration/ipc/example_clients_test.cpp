@@ -120,10 +120,10 @@ TEST_P(ExampleClients, ReadsRecords) {
   EXPECT_EQ(lines, 5);
 }
 
-TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsCamerasAndTissueTell) {
+TEST_P(ExampleClients, ReadsWhatSensorsCollisionTestsCamerasAndTissueReport) {
   ChildProcess gateway(gateway_command("findings"));
   ASSERT_EQ(gateway.line(), "ready");
-  ChildProcess sut(read("11", "60"));
+  ChildProcess sut(read("13", "60"));
   EXPECT_EQ(sut.wait(), 0) << sut.errors();
   EXPECT_EQ(sut.output(),
             "1 range USS_1 0.250000 cell.box\n"

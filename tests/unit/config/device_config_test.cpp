@@ -31,10 +31,10 @@ struct DeviceConfig : testing::Test {
 constexpr const char* kNode1 = "[[device.node]]\nid = 11\njoint = \"J_1\"\nencoder_increments = 4096\n";
 
 TEST_F(DeviceConfig, TakesLimitsFromTheJoint) {
-  const auto sut =
-      load(std::string("heartbeat_s = 0.1\n") + kNode1 + "gear_motor_turns = 100\ngear_shaft_turns = 2\n" +
-           "[[device.node]]\nid = 12\njoint = \"J_2\"\nencoder_increments = 1000\nfeed_m = 0.02\n" +
-           "wait_for_lss = true\nmass_kg = 5\nrated_force_n = 80\nhome_switch_m = [0.2, 0.3]\nsoftware_limits_m = [0.1, 0.9]\n");
+  const auto sut = load(std::string("heartbeat_s = 0.1\n") + kNode1 + "gear_motor_turns = 100\ngear_shaft_turns = 2\n" +
+                        "[[device.node]]\nid = 12\njoint = \"J_2\"\nencoder_increments = 1000\nfeed_m = 0.02\n" +
+                        "wait_for_lss = true\nmass_kg = 5\nrated_force_n = 80\nhome_switch_m = [0.2, "
+                        "0.3]\nsoftware_limits_m = [0.1, 0.9]\n");
   ASSERT_TRUE(sut) << diagnostics.text();
   const auto& device = std::get<Cia402DeviceConfig>(sut->streams.at(0).config);
   EXPECT_EQ(sut->streams.at(0).robot, "ARM");
