@@ -25,7 +25,7 @@ inline constexpr std::size_t kMostSummaryBytes = 32'768;
 // Worst last.
 enum class CellHealth : std::uint8_t {
   ok,
-  attention,  // bodies touch, a mirrored robot has no fresh values, an alarm is open
+  attention,  // bodies touch, a mirrored robot has no fresh values, an alarm is open, no MQTT broker is reached
   fault,      // the loop is not on time, or the gateway itself has a problem
 };
 inline constexpr std::array<std::string_view, 3> kCellHealthWords = {"ok", "attention", "fault"};
