@@ -50,9 +50,9 @@ void read_pictures(TableReader& table, RecordSettings& settings) {
 std::optional<RecordedPicture> recorded_picture(std::string_view text) {
   constexpr double kLeast_hz = 0.01;
   constexpr double kMost_hz = 10;
-  constexpr std::size_t kLongestName = 255;
+  constexpr std::size_t kLongestPictureName = 255;
   const std::size_t at = text.rfind('@');
-  if (at == std::string_view::npos || at == 0 || at > kLongestName) return std::nullopt;
+  if (at == std::string_view::npos || at == 0 || at > kLongestPictureName) return std::nullopt;
   const auto rate = parse_number(text.substr(at + 1));
   if (!rate || !(*rate >= kLeast_hz && *rate <= kMost_hz)) return std::nullopt;
   return RecordedPicture{std::string(text.substr(0, at)), *rate};

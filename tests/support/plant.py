@@ -114,7 +114,7 @@ def servers_text(places):
 class PlantCell:
     """The home of a cell with `robots` arms that stand still."""
 
-    def __init__(self, root, name, robots, address, dds="", rate_hz=100, more=""):
+    def __init__(self, root, name, robots, address, dds="", rate_hz=100, more="", output_hz=2):
         self.name, self.home, self.runtime = name, root / name, root / "runtime"
         for folder in ("envlib", "scripts"):
             (self.home / folder).mkdir(parents=True, exist_ok=True)
@@ -122,7 +122,7 @@ class PlantCell:
         (self.home / "envlib" / "arm.mpc").write_text(ARM)
         (self.home / "cell.toml").write_text(
             f'format = 1\nname = "{name}"\n[loop]\nrate_hz = {rate_hz}\nreal_time = "off"\n'
-            f'[dds]\n{dds}\n[dds_output]\ninterface_address = "{address}"\nrate_hz = 2\n{more}' + "".join(
+            f'[dds]\n{dds}\n[dds_output]\ninterface_address = "{address}"\nrate_hz = {output_hz}\n{more}' + "".join(
                 f'[[node]]\nname = "N{robot}"\nabstract = "arm.mpc"\nrobot_id = "R{robot}"\nxyz_m = [{robot}.0, 0.0, 0.0]\n'
                 for robot in range(robots)))
 

@@ -44,9 +44,8 @@ Result<std::shared_ptr<JointStateTopic>> JointStateTopic::shared(const DdsStream
                   std::weak_ptr<JointStateTopic>>
       topics;
   const std::scoped_lock lock(mutex);
-  auto& entry =
-      topics[{config.domain, config.interface_address, config.security, config.partition, config.topic,
-              config.reliable, &clock}];
+  auto& entry = topics[{config.domain, config.interface_address, config.security, config.partition, config.topic,
+                        config.reliable, &clock}];
   if (auto existing = entry.lock()) return existing;
   auto participant = Participant::shared(config.domain, config.interface_address, config.security, config.partition);
   if (!participant) return std::unexpected(participant.error());

@@ -80,8 +80,8 @@ struct Session::Impl {
 
   static Impl& of(void* object) { return *static_cast<Impl*>(object); }
 
-  void ended(Error why) {
-    if (!end) end = std::move(why);
+  void ended(const Error& why) {
+    if (!end) end = why;
   }
   void check(int code) {
     if (code != MOSQ_ERR_SUCCESS) ended(connection_lost(code, library_error));
@@ -176,7 +176,7 @@ Session::~Session() = default;
 
 Result<std::unique_ptr<Session>> Session::make(const MqttConfig& config, const std::string& client_id,
                                                const std::optional<Credentials>& credentials, const Outgoing& will,
-                                               std::function<void(const Incoming&)> received) {
+                                               const std::function<void(const Incoming&)>& received) {
   prepare_library();
   auto impl = std::make_unique<Impl>();
   impl->client = mosquitto_new(client_id.c_str(), true, impl.get());
@@ -185,7 +185,7 @@ Result<std::unique_ptr<Session>> Session::make(const MqttConfig& config, const s
   impl->tls = config.tls;
   impl->port = config.port;
   impl->keep_alive_s = config.keep_alive_s;
-  impl->received = std::move(received);
+  impl->received = received;
   impl->set_callbacks();
   if (const int code = impl->set_up(config, credentials, will); code != MOSQ_ERR_SUCCESS) {
     const Error why = connection_lost(code, impl->library_error);

@@ -29,7 +29,7 @@ class Session {
   [[nodiscard]] static Result<std::unique_ptr<Session>> make(const MqttConfig& config, const std::string& client_id,
                                                              const std::optional<Credentials>& credentials,
                                                              const Outgoing& will,
-                                                             std::function<void(const Incoming&)> received);
+                                                             const std::function<void(const Incoming&)>& received);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
