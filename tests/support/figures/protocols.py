@@ -161,24 +161,24 @@ def plant():
     d = Drawing(880, 400, "A plant: cells, discovery servers, and who reads the summaries")
     cells = [d.box(20, 40 + 110 * i, 190, 80, f"cell {name}\nrobots\ngateway", "green") for i, name in enumerate(("1", "2", "30"))]
     d.text(115, 253, "...", 16)
-    servers = [d.box(320, 40 + 60 * i, 190, 44, f"discovery server {i}\nUDP 11811", "grey", 12) for i in range(2)]
+    servers = [d.box(320, 14 + 44 * i, 190, 38, f"discovery server {i}\nUDP 11811", "grey", 12) for i in range(2)]
     broker = d.box(320, 330, 190, 50, "MQTT broker\nTCP 8883", "grey", 12)
     wall = d.box(620, 160, 230, 76, "cellmirror wall\none page for all cells\nmetrics of all", "blue")
     ros = d.box(620, 40, 230, 50, "ROS 2 programs", "blue")
     other = d.box(620, 330, 230, 50, "programs of the plant", "blue")
     opcua = d.box(620, 260, 230, 50, "cellmirror-opcua\nTCP 4840", "amber", 12)
     for cell in cells:
-        d.arrow(cell.right_at(0.3), servers[0].left_at(), dash=True)
-        d.arrow(cell.right_at(0.3), servers[1].left_at(), dash=True)
-        d.arrow(cell.right_at(0.55), wall.left_at(0.5))
-        d.arrow(cell.right_at(0.85), broker.left_at())
+        d.arrow(cell.right_at(0.2), servers[0].left_at(), dash=True)
+        d.arrow(cell.right_at(0.2), servers[1].left_at(), dash=True)
+        d.arrow(cell.right_at(0.75 if cell is cells[0] else 0.55), wall.left_at(0.5))
+        d.arrow(cell.right_at(0.92), broker.left_at())
     for server in servers:
         d.arrow(wall.top_at(0.1), server.right_at(), dash=True)
         d.arrow(ros.left_at(), server.right_at(), dash=True)
     d.arrow(broker.right_at(), other.left_at())
     d.arrow(cells[2].right_at(0.7), opcua.left_at())
-    d.text(440, 232, "summaries, 2 a second each (DDS)", 12, colour=FAINT)
-    d.text(560, 28, "dashed: who is there", 12, colour=FAINT)
+    d.text(400, 184, "summaries (DDS)", 12, colour=FAINT)
+    d.text(565, 28, "who is there", 12, colour=FAINT)
     return d
 
 
