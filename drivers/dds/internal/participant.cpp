@@ -14,6 +14,7 @@
 
 #include "drivers/dds/internal/endpoint_qos.hpp"
 #include "drivers/dds/internal/library_guid.hpp"
+#include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
 
 namespace cellmirror::dds {
@@ -62,7 +63,8 @@ Participant::~Participant() {
   try {
     if (publisher_ != nullptr) of_->library().delete_publisher(publisher_);
     if (subscriber_ != nullptr) of_->library().delete_subscriber(subscriber_);
-  } catch (const std::exception&) {  // they go with the library's participant
+  } catch (const std::exception& error) {
+    log_warning("dds.participant", "endpoints stay until the end of the library's participant: {}", error.what());
   }
 }
 
