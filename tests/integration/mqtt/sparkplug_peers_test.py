@@ -4,16 +4,12 @@ encoder of the command that it takes."""
 import json
 import pathlib
 import subprocess
-import sys
 
 import brokers
 import gateway as g
+from npm_packages import Packages
 
-sys.path.append(str(g.SOURCE / "tests" / "integration" / "record_peers"))
-import npm_packages  # noqa: E402
-
-npm_packages.HERE = pathlib.Path(__file__).resolve().parent
-npm_packages.PLACE = g.BIN.parent / "mqtt_peers"
+PACKAGES = Packages(pathlib.Path(__file__).resolve().parent, g.BIN.parent / "mqtt_peers")
 NODE = "spBv1.0/hall/{}/n1"
 
 
@@ -42,7 +38,7 @@ class Sparkplug(brokers.MqttCase):
         lines = [line for line in self.listener.output().splitlines() if line.startswith("spBv1.0/") and len(line.split()) == 2]
         file = self.scratch.root / "messages"
         file.write_text("\n".join(lines))
-        return [(one["topic"], one["payload"]) for one in npm_packages.run("sparkplug.mjs", "decode", file)]
+        return [(one["topic"], one["payload"]) for one in PACKAGES.run("sparkplug.mjs", "decode", file)]
 
     def of(self, kind, device=""):
         topic = NODE.format(kind) + (f"/{device}" if device else "")
@@ -67,7 +63,7 @@ class Sparkplug(brokers.MqttCase):
         self.assertAlmostEqual(told()["value"], joint["position"], places=6)
         births = len(self.of("NBIRTH"))
         file = self.scratch.root / "command"
-        npm_packages.run("sparkplug.mjs", "rebirth", file)
+        PACKAGES.run("sparkplug.mjs", "rebirth", file)
         subprocess.run(["mosquitto_pub", "-h", "127.0.0.1", "-p", str(self.broker.port), "-t", NODE.format("NCMD"), "-f", file], check=True,
                        timeout=g.PATIENCE_S)
         self.assertTrue(g.eventually(lambda: len(self.of("NBIRTH")) > births, every=0.5))
@@ -95,4 +91,4 @@ class Sparkplug(brokers.MqttCase):
 
 
 if __name__ == "__main__":
-    npm_packages.main()
+    PACKAGES.main()

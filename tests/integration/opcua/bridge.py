@@ -3,45 +3,30 @@
 The packages are downloaded where CELLMIRROR_PEERS is set (./check --peers), and kept beside the build; else tests skip where they
 are not there."""
 
-import hashlib
 import json
-import os
 import shutil
 import subprocess
 import sys
 import unittest
 
 import gateway as g
+from npm_packages import SKIPPED, Packages
 
 SOURCE = g.SOURCE / "ipc" / "opcua"
 HERE = g.SOURCE / "tests" / "integration" / "opcua"
 PLACE = g.BIN.parent / "opcua"
 NODESETS = PLACE / "node_modules" / "node-opcua-nodesets" / "nodesets"
-SKIPPED = 77
+PACKAGES = Packages(SOURCE, PLACE, scripts=HERE)
 
 
 def why_missing():
     """Empty where the packages are there; the program and the client lie beside them then."""
-    if shutil.which("npm") is None or shutil.which("node") is None:
-        return "npm or node is not installed"
-    wanted = hashlib.sha256((SOURCE / "package-lock.json").read_bytes()).hexdigest()
-    mark = PLACE / "installed"
-    if not (mark.exists() and mark.read_text() == wanted):
-        if not os.environ.get("CELLMIRROR_PEERS"):
-            return "node-opcua is not installed; ./check --peers does that"
-        shutil.rmtree(PLACE, ignore_errors=True)
-        PLACE.mkdir(parents=True)
-        for name in ("package.json", "package-lock.json"):
-            shutil.copy(SOURCE / name, PLACE)
-        done = subprocess.run(["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund"], cwd=PLACE, capture_output=True,
-                              text=True, timeout=300)
-        if done.returncode != 0:
-            return f"npm ci failed: {done.stderr[-300:]}"
-        mark.write_text(wanted)
+    missing = PACKAGES.why_missing()
+    if missing:
+        return missing
     for name in ("package.json", "cellmirror-opcua.mjs"):
         shutil.copy(SOURCE / name, PLACE)
     shutil.copytree(SOURCE / "src", PLACE / "src", dirs_exist_ok=True)
-    shutil.copy(HERE / "client.mjs", PLACE)
     return ""
 
 

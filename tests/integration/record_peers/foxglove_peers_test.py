@@ -4,7 +4,7 @@ import json
 import unittest
 
 import gateway as g
-import npm_packages
+from judges import PACKAGES
 
 
 class Live(unittest.TestCase):
@@ -19,7 +19,7 @@ class Live(unittest.TestCase):
         url = page["address"].replace("http://", "ws://")
         mesh = self.scratch.home / "envlib" / "meshes" / "coupling.stl"
         for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
-            found = npm_packages.run("live.mjs", url, protocol, page["token"], "package://cell/envlib/meshes/coupling.stl")
+            found = PACKAGES.run("live.mjs", url, protocol, page["token"], "package://cell/envlib/meshes/coupling.stl")
             self.assertEqual(found["errors"], [])
             self.assertEqual(found["protocol"], protocol)
             self.assertEqual(found["info"]["metadata"]["instance"], self.scratch.instance)
@@ -42,4 +42,4 @@ class Live(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    npm_packages.main()
+    PACKAGES.main()

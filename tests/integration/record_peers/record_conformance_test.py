@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 import gateway as g
-import npm_packages
+from judges import PACKAGES
 
 # Of "NAME SHA256\n" of all variants of an input, sorted by name; computed from the pointers of the repository.
 SUITE = {
@@ -43,8 +43,8 @@ class Conformance(unittest.TestCase):
     def setUpClass(cls):
         cls.scratch = g.Scratch()
         cls.variants = cls.scratch.root / "variants"
-        cls.hashes = npm_packages.run("conformance.mjs", "make", cls.variants)
-        cls.theirs = npm_packages.run("conformance.mjs", "read", *sorted(cls.variants.iterdir()))
+        cls.hashes = PACKAGES.run("conformance.mjs", "make", cls.variants)
+        cls.theirs = PACKAGES.run("conformance.mjs", "read", *sorted(cls.variants.iterdir()))
 
     @classmethod
     def tearDownClass(cls):
@@ -91,7 +91,7 @@ class Conformance(unittest.TestCase):
     def test_writer(self):
         for compression in ("none", "lz4", "zstd"):
             _, copies = self.ours(compression)
-            written = npm_packages.run("conformance.mjs", "read", *sorted(copies.iterdir()))
+            written = PACKAGES.run("conformance.mjs", "read", *sorted(copies.iterdir()))
             self.assertEqual(set(written), set(self.theirs))
             for name, found in written.items():
                 with self.subTest(variant=name, compression=compression):
@@ -104,4 +104,4 @@ class Conformance(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    npm_packages.main()
+    PACKAGES.main()

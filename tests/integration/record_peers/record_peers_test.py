@@ -6,11 +6,11 @@ import unittest
 
 import gateway as g
 import mcap_structure
-import npm_packages
+from judges import PACKAGES
 
 
 def peers(*arguments):
-    return npm_packages.run("peers.mjs", *arguments)
+    return PACKAGES.run("peers.mjs", *arguments)
 
 
 class Peers(unittest.TestCase):
@@ -105,4 +105,4 @@ class Peers(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    npm_packages.main()
+    PACKAGES.main()
