@@ -57,6 +57,8 @@ class Saying(brokers.MqttCase):
         listener = self.listen(f"{BASE}/state")
         self.gateway.kill()
         self.assertTrue(g.eventually(lambda: listener.all(f"{BASE}/state")[-1] == {"online": False, "reason": "lost"}))
+        self.start()
+        self.assertTrue(g.eventually(lambda: listener.all(f"{BASE}/state")[-1]["online"]), "its next run")
 
     def test_events_of_alarms_and_collisions(self):
         self.make(self.broker)
