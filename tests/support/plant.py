@@ -102,9 +102,10 @@ class Place:
         ip("link", "set", self.port, "up" if connected else "down")
 
 
-def start_server(place, number):
-    """One of the discovery servers, of Debian's fastdds-tools."""
-    return place.start(["fast-discovery-server", "-i", str(number), "-l", place.address, "-p", str(SERVER_PORT)])
+def start_server(place, number, folder):
+    """One of the discovery servers, of Debian's fastdds-tools; in `folder` it keeps what it knows (-b, docs/plant.md)."""
+    folder.mkdir(exist_ok=True)
+    return place.start(["env", "-C", folder, "fast-discovery-server", "-b", "-i", str(number), "-l", place.address, "-p", str(SERVER_PORT)])
 
 
 def servers_text(places):

@@ -87,7 +87,11 @@ def main():
     root = pathlib.Path(tempfile.mkdtemp(prefix="cellmirror-plant-"))
     servers = [] if OPTIONS.simple else [plant.Place(1), plant.Place(2)]
     meter = DiscoveryMeter()
-    running = [plant.start_server(place, number) for number, place in enumerate(servers)]
+
+    def start_all():
+        return [plant.start_server(place, number, root / f"server_{number}") for number, place in enumerate(servers)]
+
+    running = start_all()
     dds = f"discovery_servers = {plant.servers_text(servers)}" if servers else ""
     places = [plant.Place(10 + cell) for cell in range(OPTIONS.cells)]
     cells = [plant.PlantCell(root, f"cell{number:02}", OPTIONS.robots, place.address, dds) for number, place in enumerate(places)]
@@ -118,7 +122,7 @@ def main():
         for server in running:
             server.kill()
         time.sleep(3)
-        running = [plant.start_server(place, number) for number, place in enumerate(servers)]
+        running = start_all()
         since = time.monotonic()
         later = plant.SummaryReader(plant.Place(4), servers)
         wait_for_all(later, OPTIONS.cells, since, "servers killed for 3 s, a new control room from their start on")
@@ -128,7 +132,7 @@ def main():
             server.kill()
         time.sleep(40)
         print(f"servers dead for 40 s: {len(reader.cells_since(time.monotonic() - 1.5))} cells heard in the last 1.5 s")
-        running = [plant.start_server(place, number) for number, place in enumerate(servers)]
+        running = start_all()
         since = time.monotonic()
         later = plant.SummaryReader(plant.Place(5), servers)
         wait_for_all(later, OPTIONS.cells, since, "servers back after 40 s, a new control room from their start on")
