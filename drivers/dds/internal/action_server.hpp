@@ -1,17 +1,20 @@
-// The server of FollowJointTrajectory as rmw_fastrtps maps actions: three services, each a topic of requests and one of
-// replies (rq/...Request, rr/...Reply), and the topics of feedback and status.
+// The server of FollowJointTrajectory as ROS 2 maps actions on DDS: three services, each a topic of requests and one of
+// replies (rq/...Request, rr/...Reply; service_mapping.hpp), and the topics of feedback and status.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "drivers/dds/goal_book.hpp"
 #include "drivers/dds/internal/bytes_reader.hpp"
 #include "drivers/dds/internal/bytes_writer.hpp"
+#include "drivers/dds/internal/participant.hpp"
+#include "drivers/dds/service_mapping.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/controller_config.hpp"
@@ -45,17 +48,21 @@ class ActionServer {
     std::unique_ptr<BytesWriter> replies;
     std::unique_ptr<BytesReader> requests;
   };
-  ActionServer(TrajectorySink& sink, RosDistribution distribution) : sink_(sink), distribution_(distribution) {}
+  ActionServer(std::shared_ptr<Participant> participant, TrajectorySink& sink, RosDistribution distribution)
+      : participant_(std::move(participant)), sink_(sink), distribution_(distribution) {}
   Result<void> open(Service& service, const std::shared_ptr<Participant>& participant, const std::string& topic,
                     std::string_view request_type, std::string_view reply_type, BytesReader::Receive receive);
+  [[nodiscard]] std::optional<ServiceRequest> open(const ReceivedSample& sample) const;
   void take_goal(const ReceivedSample& sample);
   void take_cancel(const ReceivedSample& sample);
   void take_result(const ReceivedSample& sample);
   void note_bad();
+  void refuse(CdrFault fault);  // a goal
   void publish_status();
   template <class Encode>
   static void reply(Service& service, const RequestName& to, const Encode& encode);
 
+  const std::shared_ptr<Participant> participant_;
   TrajectorySink& sink_;
   const RosDistribution distribution_;
   std::mutex mutex_;  // of the book; nothing is sent while it is held

@@ -1,0 +1,78 @@
+// How ROS 2's middleware maps services on DDS: by what a request tells who asks, and a reply whom it answers. Pure: no
+// DDS library, no clock. Two mappings, told apart for each request:
+// - Identity (rmw_fastrtps, rmw_connextdds): the reply has the request's sample identity in its inline QoS
+// (DDS-RPC 1.0,
+//   7.8.2.5). rmw_fastrtps names the client's reader of replies in the request's inline QoS, and is answered under that
+//   name; others are answered under the name of their writer.
+// - Header (rmw_cyclonedds 1.3 to 3.2, Humble to Rolling): 16 bytes in front of the content, within its alignment: the
+//   client (8 bytes, a number of its own process) and the request's number there (int64). The reply repeats them. Such
+//   a client announces `clientid=` in its writer's USER_DATA and never names a reader in the inline QoS.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "drivers/dds/cdr.hpp"
+#include "drivers/dds/ros_graph.hpp"
+#include "drivers/dds/sample_name.hpp"
+
+namespace cellmirror::dds {
+
+struct RequestHeader {
+  std::uint64_t client = 0;
+  std::int64_t number = 0;
+
+  bool operator==(const RequestHeader&) const = default;
+};
+
+// Whose request is answered.
+struct RequestName {
+  SampleName sample;
+  std::optional<RequestHeader> header = {};  // none: mapped by identity
+
+  bool operator==(const RequestName&) const = default;
+};
+
+struct ServiceRequest {
+  RequestName name;
+  CdrReader content;  // of the payload
+};
+
+// A sample on a topic of requests.
+struct RequestSample {
+  std::span<const std::byte> payload;  // outlives what is made of it
+  SampleName name;
+  Guid related{};                 // of the inline QoS; zeros: none
+  bool announces_client = false;  // the writer, in its USER_DATA
+};
+
+// None: there is no whole header, so that nobody can be answered.
+[[nodiscard]] std::optional<ServiceRequest> open_request(const RequestSample& sample);
+
+// Around the content of a reply.
+void begin_reply(const RequestName& to, CdrWriter& out);
+// A reply without a header reaches clients with one too, which take its first bytes for theirs: there are enough of
+// them, so that none compares what it did not read.
+void end_reply(CdrWriter& out);
+
+// Whether USER_DATA (`key=value;...`) has the key `clientid`.
+[[nodiscard]] bool announces_client(std::string_view user_data);
+
+// The writers that do so. One thread at a time.
+class ClientWriters {
+ public:
+  static constexpr std::size_t kMost = 4096;
+
+  // False where there is no room for another one.
+  bool note(const Guid& writer, bool announces);
+  [[nodiscard]] bool contains(const Guid& writer) const { return writers_.contains(writer); }
+
+ private:
+  std::set<Guid> writers_;
+};
+
+}  // namespace cellmirror::dds
