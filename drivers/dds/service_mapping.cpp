@@ -8,6 +8,9 @@ namespace {
 
 constexpr std::size_t kRequestHeaderBytes = 16;
 constexpr std::string_view kClientKey = "clientid";
+constexpr std::uint8_t kReaderBit = 0x04;  // of the last octet of a GUID (RTPS 2.3, 9.3.1.2)
+
+bool is_reader(const Guid& endpoint) { return (endpoint.back() & kReaderBit) != 0; }
 
 }  // namespace
 
@@ -34,24 +37,37 @@ void begin_reply(const RequestName& to, CdrWriter& out) {
 
 void end_reply(CdrWriter& out) { out.fill_to(kRequestHeaderBytes); }
 
-bool announces_client(std::string_view user_data) {
+std::optional<std::string_view> client_id(std::string_view user_data) {
   while (!user_data.empty()) {
     const std::size_t end = std::min(user_data.find(';'), user_data.size());
     const std::string_view pair = user_data.substr(0, end);
-    if (pair.substr(0, pair.find('=')) == kClientKey && pair.size() > kClientKey.size()) return true;
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == kClientKey)
+      return pair.substr(equals + 1, kMostClientId);
     user_data.remove_prefix(std::min(end + 1, user_data.size()));
   }
-  return false;
+  return std::nullopt;
 }
 
-bool ClientWriters::note(const Guid& writer, bool announces) {
-  if (!announces) {
-    writers_.erase(writer);
+bool ClientEndpoints::note(const Guid& endpoint, std::optional<std::string_view> client) {
+  if (!client) {
+    clients_.erase(endpoint);
     return true;
   }
-  if (writers_.size() >= kMost && !writers_.contains(writer)) return false;
-  writers_.insert(writer);
+  if (clients_.size() >= kMost && !clients_.contains(endpoint)) return false;
+  clients_.insert_or_assign(endpoint, std::string(*client));
   return true;
+}
+
+bool ClientEndpoints::reaches(const RequestName& to, std::span<const Guid> readers) const {
+  const Guid& asker = to.sample.guid;
+  if (!to.header) return !is_reader(asker) || std::ranges::find(readers, asker) != readers.end();
+  const auto client = clients_.find(asker);
+  if (client == clients_.end()) return false;
+  return std::ranges::any_of(readers, [&](const Guid& reader) {
+    const auto known = clients_.find(reader);
+    return known != clients_.end() && known->second == client->second;
+  });
 }
 
 }  // namespace cellmirror::dds

@@ -6,14 +6,16 @@
 //   name; others are answered under the name of their writer.
 // - Header (rmw_cyclonedds 1.3 to 3.2, Humble to Rolling): 16 bytes in front of the content, within its alignment: the
 //   client (8 bytes, a number of its own process) and the request's number there (int64). The reply repeats them. Such
-//   a client announces `clientid=` in its writer's USER_DATA and never names a reader in the inline QoS.
+//   a client announces `clientid=` in the USER_DATA of its writer and of its reader of replies, and never names a
+//   reader in the inline QoS.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "drivers/dds/cdr.hpp"
@@ -59,20 +61,24 @@ void begin_reply(const RequestName& to, CdrWriter& out);
 // them, so that none compares what it did not read.
 void end_reply(CdrWriter& out);
 
-// Whether USER_DATA (`key=value;...`) has the key `clientid`.
-[[nodiscard]] bool announces_client(std::string_view user_data);
+// The value of `clientid` in USER_DATA (`key=value;...`), at most kMostClientId characters of it; none: it has no such
+// key.
+inline constexpr std::size_t kMostClientId = 64;  // rmw_cyclonedds: at most 47
+[[nodiscard]] std::optional<std::string_view> client_id(std::string_view user_data);
 
-// The writers that do so. One thread at a time.
-class ClientWriters {
+// The readers and writers of others that announce a client. One thread at a time.
+class ClientEndpoints {
  public:
   static constexpr std::size_t kMost = 4096;
 
-  // False where there is no room for another one.
-  bool note(const Guid& writer, bool announces);
-  [[nodiscard]] bool contains(const Guid& writer) const { return writers_.contains(writer); }
+  // `client`: none, it announces none (any more). False where there is no room for another one.
+  bool note(const Guid& endpoint, std::optional<std::string_view> client);
+  [[nodiscard]] bool contains(const Guid& endpoint) const { return clients_.contains(endpoint); }
+  // Whether one of the `readers` of replies belongs to whom the reply is for. True where that cannot be known.
+  [[nodiscard]] bool reaches(const RequestName& to, std::span<const Guid> readers) const;
 
  private:
-  std::set<Guid> writers_;
+  std::map<Guid, std::string> clients_;
 };
 
 }  // namespace cellmirror::dds

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "drivers/dds/internal/service_clients.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::dds {
@@ -47,8 +49,11 @@ Result<std::unique_ptr<ActionServer>> ActionServer::make(const std::shared_ptr<P
 }
 
 ActionServer::~ActionServer() {
-  // The readers first, while what they call is there.
-  for (Service* service : {&goals_, &cancels_, &results_}) service->requests.reset();
+  // Those that call first, while what they call is there.
+  for (Service* service : {&goals_, &cancels_, &results_}) {
+    service->requests.reset();
+    if (service->replies) service->replies->on_reader({});
+  }
 }
 
 Result<void> ActionServer::open(Service& service, const std::shared_ptr<Participant>& participant,
@@ -57,6 +62,7 @@ Result<void> ActionServer::open(Service& service, const std::shared_ptr<Particip
   auto replies = BytesWriter::make(participant, {"rr/" + topic + "Reply", reply_type, true, kServiceDepth});
   if (!replies) return std::unexpected(replies.error());
   service.replies = std::move(*replies);
+  service.replies->on_reader([this, &service] { send_held(service); });
   auto requests = BytesReader::make(participant, {"rq/" + topic + "Request", request_type, true, kServiceDepth},
                                     std::move(receive));
   if (!requests) return std::unexpected(requests.error());
@@ -71,7 +77,23 @@ void ActionServer::reply(Service& service, const RequestName& to, const Encode& 
   begin_reply(to, out);
   encode(out);
   end_reply(out);
+  if (participant_->clients().reaches(to, service.replies->readers())) return send(service, to);
+  if (!service.held.hold(to, service.replies->payload())) unanswered_.fetch_add(1, std::memory_order_relaxed);
+}
+
+// Under the service's mutex.
+void ActionServer::send(Service& service, const RequestName& to) {
   if (!service.replies->write_reply(to.sample)) log_warning("dds.action", "an answer could not be sent");
+}
+
+void ActionServer::send_held(Service& service) {
+  const std::scoped_lock lock(service.mutex);
+  const std::vector<Guid> readers = service.replies->readers();
+  const auto reaches = [&](const RequestName& to) { return participant_->clients().reaches(to, readers); };
+  for (HeldReply& reply : service.held.take(reaches)) {
+    service.replies->payload().swap(reply.payload);
+    send(service, reply.to);
+  }
 }
 
 void ActionServer::note_bad() { bad_requests_.fetch_add(1, std::memory_order_relaxed); }
@@ -80,7 +102,7 @@ std::optional<ServiceRequest> ActionServer::open(const ReceivedSample& sample) c
   return open_request({.payload = too_long(sample) ? sample.start : sample.payload,
                        .name = sample.name,
                        .related = sample.related_guid,
-                       .announces_client = participant_->announces_client(sample.name.guid)});
+                       .announces_client = participant_->clients().contains(sample.name.guid)});
 }
 
 void ActionServer::refuse(CdrFault fault) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "drivers/dds/goal_book.hpp"
+#include "drivers/dds/held_replies.hpp"
 #include "drivers/dds/internal/bytes_reader.hpp"
 #include "drivers/dds/internal/bytes_writer.hpp"
 #include "drivers/dds/internal/participant.hpp"
@@ -40,12 +41,15 @@ class ActionServer {
   [[nodiscard]] int clients() const;
   [[nodiscard]] std::uint64_t feedback() const { return feedback_sent_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t bad_requests() const { return bad_requests_.load(std::memory_order_relaxed); }
+  // Replies that were dropped, since whoever asked has no reader of them.
+  [[nodiscard]] std::uint64_t unanswered() const { return unanswered_.load(std::memory_order_relaxed); }
 
  private:
   // A service's side of the server.
   struct Service {
-    std::mutex mutex;  // of the writer
+    std::mutex mutex;  // of the writer and of what is held
     std::unique_ptr<BytesWriter> replies;
+    HeldReplies held;
     std::unique_ptr<BytesReader> requests;
   };
   ActionServer(std::shared_ptr<Participant> participant, TrajectorySink& sink, RosDistribution distribution)
@@ -60,7 +64,9 @@ class ActionServer {
   void refuse(CdrFault fault);  // a goal
   void publish_status();
   template <class Encode>
-  static void reply(Service& service, const RequestName& to, const Encode& encode);
+  void reply(Service& service, const RequestName& to, const Encode& encode);
+  static void send(Service& service, const RequestName& to);
+  void send_held(Service& service);
 
   const std::shared_ptr<Participant> participant_;
   TrajectorySink& sink_;
@@ -72,6 +78,7 @@ class ActionServer {
   std::unique_ptr<BytesWriter> feedback_;  // the publisher's thread
   std::atomic<std::uint64_t> feedback_sent_{0};
   std::atomic<std::uint64_t> bad_requests_{0};
+  std::atomic<std::uint64_t> unanswered_{0};
   // Last: their readers call the above.
   Service goals_;
   Service cancels_;

@@ -7,7 +7,11 @@
 #include <exception>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <mutex>
+#include <set>
 #include <utility>
+
+#include "drivers/dds/internal/library_guid.hpp"
 
 namespace cellmirror::dds {
 
@@ -20,11 +24,37 @@ class BytesWriter::Listener final : public eprosima::fastdds::dds::DataWriterLis
   void on_publication_matched(eprosima::fastdds::dds::DataWriter* /*writer*/,
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
     matched_.store(status.current_count, std::memory_order_relaxed);
+    note(guid_of(eprosima::fastrtps::rtps::iHandle2GUID(status.last_subscription_handle)),
+         status.current_count_change > 0);
+    if (status.current_count_change <= 0) return;
+    const std::scoped_lock lock(call_mutex_);
+    if (call_) call_();
+  }
+  void set_call(std::function<void()> call) {
+    const std::scoped_lock lock(call_mutex_);
+    call_ = std::move(call);
   }
   [[nodiscard]] int matched() const { return matched_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::vector<Guid> readers() const {
+    const std::scoped_lock lock(readers_mutex_);
+    return {readers_.begin(), readers_.end()};
+  }
 
  private:
+  void note(const Guid& reader, bool matched) {
+    const std::scoped_lock lock(readers_mutex_);
+    if (matched) {
+      readers_.insert(reader);
+    } else {
+      readers_.erase(reader);
+    }
+  }
+
   std::atomic<int> matched_{0};
+  mutable std::mutex readers_mutex_;  // nothing is called while it is held
+  std::set<Guid> readers_;
+  std::mutex call_mutex_;
+  std::function<void()> call_;
 };
 
 BytesWriter::BytesWriter(std::shared_ptr<Participant> participant)
@@ -75,5 +105,9 @@ bool BytesWriter::all_confirmed() const {
 }
 
 int BytesWriter::matched_readers() const { return listener_->matched(); }
+
+std::vector<Guid> BytesWriter::readers() const { return listener_->readers(); }
+
+void BytesWriter::on_reader(std::function<void()> call) { listener_->set_call(std::move(call)); }
 
 }  // namespace cellmirror::dds

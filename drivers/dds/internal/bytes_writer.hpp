@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,7 +13,7 @@
 
 namespace cellmirror::dds {
 
-// One calling thread, but for matched_readers().
+// One calling thread, but for matched_readers() and readers().
 class BytesWriter final {
  public:
   // `config.depth`: 1..400.
@@ -31,6 +32,10 @@ class BytesWriter final {
   // Whether every reliable reader has confirmed every sample; true where there is none. Does not wait.
   [[nodiscard]] bool all_confirmed() const;
   [[nodiscard]] int matched_readers() const;
+  [[nodiscard]] std::vector<Guid> readers() const;
+  // What is called when readers() has a new one, by a thread of the DDS library; it may write. An empty one ends that:
+  // none runs when this returns.
+  void on_reader(std::function<void()> call);
 
  private:
   explicit BytesWriter(std::shared_ptr<Participant> participant);

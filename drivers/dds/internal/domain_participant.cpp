@@ -147,8 +147,6 @@ Result<fd::Topic*> DomainParticipant::topic(const EndpointConfig& config) {
   return made;
 }
 
-bool DomainParticipant::announces_client(const Guid& writer) const { return clients_->announces_client(writer); }
-
 void DomainParticipant::add_reader(const Guid& reader) {
   graph_.readers.push_back(reader);
   publish_graph();

@@ -42,8 +42,7 @@ class DomainParticipant {
   // Held while endpoints are made and removed, and for what follows.
   [[nodiscard]] std::mutex& mutex() { return mutex_; }
   [[nodiscard]] Result<eprosima::fastdds::dds::Topic*> topic(const EndpointConfig& config);
-  // Whether a writer of another participant announces `clientid=` (service_mapping.hpp).
-  [[nodiscard]] bool announces_client(const Guid& writer) const;
+  [[nodiscard]] const ServiceClients& clients() const { return *clients_; }
   void add_reader(const Guid& reader);
   void add_writer(const Guid& writer);
   void remove_reader(const Guid& reader);

@@ -39,8 +39,7 @@ class Participant {
       const EndpointConfig& config, eprosima::fastdds::dds::DataWriterListener* listener);
   void remove(eprosima::fastdds::dds::DataReader* reader);
   void remove(eprosima::fastdds::dds::DataWriter* writer);
-  // Whether a writer of another participant is that of a client with a header (service_mapping.hpp).
-  [[nodiscard]] bool announces_client(const Guid& writer) const { return of_->announces_client(writer); }
+  [[nodiscard]] const ServiceClients& clients() const { return of_->clients(); }
 
  private:
   explicit Participant(std::shared_ptr<DomainParticipant> of) : of_(std::move(of)) {}

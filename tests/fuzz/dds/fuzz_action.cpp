@@ -92,7 +92,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::span<const std::byte> payload(reinterpret_cast<const std::byte*>(data), size);
   take_request(payload, false);
   take_request(payload, true);
-  static_cast<void>(announces_client({reinterpret_cast<const char*>(data), size}));
+  const auto client = client_id({reinterpret_cast<const char*>(data), size});
+  require(!client || client->size() <= kMostClientId);
   use_book({data, size});
   return 0;
 }

@@ -3,6 +3,7 @@
 //   dds_cyclone_action_client DOMAIN NAME   reads from standard input, one a line, prints what comes as JSON, one a
 //   line: goal ID JOINTS POINTS [path=X] [goal=X] [time=S]      POINTS: "T:P,P;T:P,P", T in s; tolerances of all joints
 //   cancel ID | result ID
+//   late ID    a client that asks for a result before it has a reader of replies: {"late": STATUS}
 //   raw goal|cancel|result HEX    as a client that writes so: a number of bytes (4 bytes), and these
 // Replies to others are counted: {"foreign": N}. One to a request that was answered already, or never made:
 // "unexpected".
@@ -34,7 +35,6 @@ using cellmirror::dds::test::view;
 constexpr char kNetwork[] = R"(
 <Domain><General><Interfaces><NetworkInterface name="lo"/></Interfaces></General>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>)";
-constexpr int kProbe = 255;  // a goal that nobody knows
 
 void print(const std::string& line) {
   static std::mutex mutex;
@@ -188,6 +188,8 @@ using ResultRequest = control_msgs_action_dds__FollowJointTrajectory_GetResult_R
 using ResultReply = control_msgs_action_dds__FollowJointTrajectory_GetResult_Response_;
 using Cancel = action_msgs_srv_dds__CancelGoal_Request_;
 using CancelReply = action_msgs_srv_dds__CancelGoal_Response_;
+const dds_topic_descriptor_t& kResultRequest = control_msgs_action_dds__FollowJointTrajectory_GetResult_Request__desc;
+const dds_topic_descriptor_t& kResultReply = control_msgs_action_dds__FollowJointTrajectory_GetResult_Response__desc;
 using Feedback = control_msgs_action_dds__FollowJointTrajectory_FeedbackMessage_;
 using Status = action_msgs_msg_dds__GoalStatusArray_;
 
@@ -267,6 +269,30 @@ void send_raw(int domain, const std::string& name, const char* type, const std::
   dds_write(writer, &sample);  // the participant stays until the end, so that it arrives
 }
 
+// Asks before it has a reader of replies.
+void ask_early(const Endpoint& endpoint, const std::string& service, int number) {
+  const std::string id = endpoint.client_id();
+  const dds_entity_t writer = endpoint.writer("rq/" + service + "Request", kResultRequest, id);
+  while (dds_get_matched_subscriptions(writer, nullptr, 0) <= 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ResultRequest request{};
+  dds_instance_handle_t client = 0;
+  checked(dds_get_instance_handle(writer, &client), "Cyclone handle");
+  request.head = {client, 1};
+  request.goal_id = id_of(number);
+  dds_write(writer, &request);
+  checked(dds_wait_for_acks(writer, DDS_SECS(60)), "Cyclone acknowledgment");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // so that the server has answered by then
+  const dds_entity_t reader = endpoint.reader("rr/" + service + "Reply", kResultReply, id);
+  for (bool heard = false; !heard; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+    take_all<ResultReply>(reader, [&](const ResultReply& reply) {
+      if (reply.head.client != client || reply.head.number != 1) return;
+      heard = true;
+      print("{\"late\": " + text(reply.status) + "}");
+    });
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -289,16 +315,8 @@ int main(int argc, char** argv) {
       action_msgs_srv_dds__CancelGoal_Response__desc, [](const CancelReply& reply) {
         print("{\"cancel\": " + text(reply.return_code) + ", \"goals\": " + text(reply.goals_canceling._length) + "}");
       });
-  std::atomic<bool> ready{false};
-  std::atomic<int> probes{0};
   Service<ResultRequest, ResultReply> results(
-      endpoint, action + "get_result", control_msgs_action_dds__FollowJointTrajectory_GetResult_Request__desc,
-      control_msgs_action_dds__FollowJointTrajectory_GetResult_Response__desc, [&](const ResultReply& reply) {
-        if (probes > 0 && reply.status == 0) {
-          --probes;
-          ready = true;
-          return;
-        }
+      endpoint, action + "get_result", kResultRequest, kResultReply, [](const ResultReply& reply) {
         print("{\"result\": " + text(reply.status) + ", \"error_code\": " + text(reply.error_code) + ", \"text\": \"" +
               reply.error_string + "\"}");
       });
@@ -314,17 +332,6 @@ int main(int argc, char** argv) {
   }).detach();
   while (!goals.matched() || !cancels.matched() || !results.matched())
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  // The server may know our writers before it knows our readers, of which that of results is announced last: ask until
-  // it answers.
-  for (int i = 0; !ready; ++i) {
-    if (i % 50 == 0) {
-      ResultRequest probe{};
-      probe.goal_id = id_of(kProbe);
-      ++probes;
-      results.send(probe);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
   print("{\"ready\": true}");
   for (std::string line_text; std::getline(std::cin, line_text);) {
     std::istringstream line(line_text);
@@ -352,6 +359,7 @@ int main(int argc, char** argv) {
         request.goal_id = id_of(number);
         results.send(request);
       }
+      if (verb == "late") ask_early(endpoint, action + "get_result", number);
       if (verb == "cancel") {
         Cancel request{};
         request.goal_info.goal_id = id_of(number);

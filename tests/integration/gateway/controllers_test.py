@@ -16,7 +16,7 @@ robot = "{ROBOT}"
 name = "/{NAME}"
 domain = {DOMAIN}
 """
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # action_msgs/GoalStatus
+UNKNOWN, SUCCEEDED, CANCELED, ABORTED = 0, 4, 5, 6  # action_msgs/GoalStatus
 
 
 def setUpModule():
@@ -252,6 +252,11 @@ class Controllers(unittest.TestCase):
             self.assertEqual(heard, [1, 2, 1 if client is self.client else 0], client.program)
             self.assertEqual(client.lines("unexpected"), [])
         self.assertTrue(other.lines("foreign"), "replies to others reach it too")
+
+    def test_an_answer_waits_for_the_reader_of_who_asked(self):
+        self.cyclone.write("late 199")
+        self.assertEqual(self.cyclone.next_line("late", 0)["late"], UNKNOWN)
+        self.assertEqual(self.status()["action"]["unanswered"], 0)
 
     def test_requests_whose_header_is_cut_or_missing_are_refused(self):
         requests = [("goal", bytes(4)), ("cancel", bytes(11)), ("result", b""),  # cut inside the header

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "drivers/dds/controller_messages.hpp"
+#include "drivers/dds/held_replies.hpp"
 #include "tests/unit/dds/golden.hpp"
 
 namespace cellmirror::dds {
@@ -105,27 +109,85 @@ TEST(ServiceMapping, AReplyWithoutAHeaderIsAsLongAsOneAndNoClientsOwn) {
                    }));
 }
 
-TEST(ServiceMapping, UserDataOfAClientHasItsKey) {
-  for (const char* yes : {"clientid= 1.10.ab;", "clientid=1", "typehash=RIHS01_0;clientid=1;", "a=;clientid=;"})
-    EXPECT_TRUE(announces_client(yes)) << yes;
+TEST(ServiceMapping, UserDataNamesAClient) {
+  EXPECT_EQ(client_id("clientid= 1.10.ab;"), " 1.10.ab");
+  EXPECT_EQ(client_id("clientid=1"), "1");
+  EXPECT_EQ(client_id("typehash=RIHS01_0;clientid=2;"), "2");
+  EXPECT_EQ(client_id("a=;clientid=;"), "");
+  EXPECT_EQ(client_id("clientid=" + std::string(100, 'x'))->size(), kMostClientId);
   for (const char* no :
        {"", ";", "clientid", "clientid;", "serviceid=1;", "typehash=clientid=1;", "xclientid=1;", "Clientid=1;"})
-    EXPECT_FALSE(announces_client(no)) << no;
+    EXPECT_FALSE(client_id(no).has_value()) << no;
 }
 
+Guid endpoint(std::size_t number, std::uint8_t kind) {
+  Guid out{static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(number >> 8U)};
+  out.back() = kind;
+  return out;
+}
+constexpr std::uint8_t kWriterKind = 0x03;
+constexpr std::uint8_t kReaderKind = 0x04;
+
 TEST(ServiceMapping, RemembersABoundedNumberOfClients) {
-  ClientWriters sut;
-  const auto writer = [](std::size_t number) {
-    return Guid{static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(number >> 8U)};
-  };
-  for (std::size_t i = 0; i < ClientWriters::kMost; ++i) ASSERT_TRUE(sut.note(writer(i), true));
-  EXPECT_FALSE(sut.note(writer(ClientWriters::kMost), true));
-  EXPECT_FALSE(sut.contains(writer(ClientWriters::kMost)));
-  EXPECT_TRUE(sut.note(writer(3), true)) << "known already";
-  EXPECT_TRUE(sut.note(writer(3), false)) << "it has left, or announces it no more";
-  EXPECT_FALSE(sut.contains(writer(3)));
-  EXPECT_TRUE(sut.note(writer(ClientWriters::kMost), true));
-  EXPECT_TRUE(sut.contains(writer(ClientWriters::kMost)));
+  ClientEndpoints sut;
+  const Guid more = endpoint(ClientEndpoints::kMost, kWriterKind);
+  const Guid third = endpoint(3, kWriterKind);
+  for (std::size_t i = 0; i < ClientEndpoints::kMost; ++i) ASSERT_TRUE(sut.note(endpoint(i, kWriterKind), "1"));
+  EXPECT_FALSE(sut.note(more, "1"));
+  EXPECT_FALSE(sut.contains(more));
+  EXPECT_TRUE(sut.note(third, "2")) << "known already";
+  EXPECT_TRUE(sut.note(third, std::nullopt)) << "it has left, or announces none any more";
+  EXPECT_FALSE(sut.contains(third));
+  EXPECT_TRUE(sut.note(more, "1"));
+  EXPECT_TRUE(sut.contains(more));
+}
+
+TEST(ServiceMapping, AReplyReachesTheReaderOfTheSameClient) {
+  const Guid writer = endpoint(1, kWriterKind);
+  const Guid own = endpoint(2, kReaderKind);
+  const Guid foreign = endpoint(3, kReaderKind);
+  const RequestName to{{writer, 1}, RequestHeader{5, 1}};
+  ClientEndpoints sut;
+  EXPECT_FALSE(sut.reaches(to, std::vector{own}));
+  sut.note(writer, "a");
+  sut.note(own, "a");
+  sut.note(foreign, "b");
+  EXPECT_TRUE(sut.reaches(to, std::vector{foreign, own}));
+  EXPECT_FALSE(sut.reaches(to, std::vector{foreign}));
+  EXPECT_FALSE(sut.reaches(to, {}));
+  sut.note(writer, std::nullopt);
+  EXPECT_FALSE(sut.reaches(to, std::vector{own}));
+}
+
+TEST(ServiceMapping, AReplyWithoutAHeaderReachesTheReaderThatTheRequestNames) {
+  const Guid own = endpoint(2, kReaderKind);
+  const ClientEndpoints sut;
+  EXPECT_TRUE(sut.reaches({{own, 1}}, std::vector{endpoint(3, kReaderKind), own}));
+  EXPECT_FALSE(sut.reaches({{own, 1}}, std::vector{endpoint(3, kReaderKind)}));
+  EXPECT_TRUE(sut.reaches({{endpoint(1, kWriterKind), 1}}, {})) << "who names none: nobody knows";
+}
+
+TEST(HeldReplies, GoWhenTheyReachWhoAskedInTheirOrder) {
+  HeldReplies sut;
+  const auto to = [](std::int64_t number) { return RequestName{{{}, number}}; };
+  for (std::int64_t i = 1; i <= 4; ++i) EXPECT_TRUE(sut.hold(to(i), bytes({static_cast<int>(i)})));
+  EXPECT_TRUE(sut.take([](const RequestName&) { return false; }).empty());
+  const auto even = sut.take([](const RequestName& name) { return name.sample.number % 2 == 0; });
+  ASSERT_EQ(even.size(), 2U);
+  EXPECT_EQ(even[0].to, to(2));
+  EXPECT_EQ(even[1].payload, bytes({4}));
+  EXPECT_EQ(sut.take([](const RequestName&) { return true; }).size(), 2U);
+  EXPECT_TRUE(sut.take([](const RequestName&) { return true; }).empty());
+}
+
+TEST(HeldReplies, TheOldestIsDroppedForANewOne) {
+  HeldReplies sut;
+  for (std::size_t i = 0; i < HeldReplies::kMost; ++i) EXPECT_TRUE(sut.hold({{{}, static_cast<std::int64_t>(i)}}, {}));
+  EXPECT_FALSE(sut.hold({{{}, 100}}, {}));
+  const auto all = sut.take([](const RequestName&) { return true; });
+  ASSERT_EQ(all.size(), HeldReplies::kMost);
+  EXPECT_EQ(all.front().to.sample.number, 1);
+  EXPECT_EQ(all.back().to.sample.number, 100);
 }
 
 }  // namespace
