@@ -37,6 +37,14 @@ void begin_reply(const RequestName& to, CdrWriter& out) {
 
 void end_reply(CdrWriter& out) { out.fill_to(kRequestHeaderBytes); }
 
+void write_reply_to_nobody(std::vector<std::byte>& out) {
+  CdrWriter writer(out);
+  begin_reply({{}, RequestHeader{}}, writer);
+  // As content of any reply of an action: refused; no goals; an unknown status without text.
+  writer.write(std::uint64_t{0});
+  writer.write_text({});
+}
+
 std::optional<std::string_view> client_id(std::string_view user_data) {
   while (!user_data.empty()) {
     const std::size_t end = std::min(user_data.find(';'), user_data.size());

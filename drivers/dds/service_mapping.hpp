@@ -17,6 +17,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "drivers/dds/cdr.hpp"
 #include "drivers/dds/ros_graph.hpp"
@@ -60,6 +61,11 @@ void begin_reply(const RequestName& to, CdrWriter& out);
 // A reply without a header reaches clients with one too, which take its first bytes for theirs: there are enough of
 // them, so that none compares what it did not read.
 void end_reply(CdrWriter& out);
+
+// What every client passes over. Fast DDS (2.9) sends a new reader what it does not get of the history, and a heartbeat
+// that counts the first sample for it, before that sample; Cyclone DDS (0.10) takes nothing up to its first heartbeat
+// of a writer. So this is the first sample for a reader of Cyclone DDS, and no reply is lost.
+void write_reply_to_nobody(std::vector<std::byte>& out);
 
 // The value of `clientid` in USER_DATA (`key=value;...`), at most kMostClientId characters of it; none: it has no such
 // key.

@@ -62,7 +62,8 @@ Result<void> ActionServer::open(Service& service, const std::shared_ptr<Particip
   auto replies = BytesWriter::make(participant, {"rr/" + topic + "Reply", reply_type, true, kServiceDepth});
   if (!replies) return std::unexpected(replies.error());
   service.replies = std::move(*replies);
-  service.replies->on_reader([this, &service] { send_held(service); });
+  service.replies->on_reader(
+      [this, &service](const Guid& reader, bool matched) { note_reader(service, reader, matched); });
   auto requests = BytesReader::make(participant, {"rq/" + topic + "Request", request_type, true, kServiceDepth},
                                     std::move(receive));
   if (!requests) return std::unexpected(requests.error());
@@ -77,7 +78,7 @@ void ActionServer::reply(Service& service, const RequestName& to, const Encode& 
   begin_reply(to, out);
   encode(out);
   end_reply(out);
-  if (participant_->clients().reaches(to, service.replies->readers())) return send(service, to);
+  if (participant_->clients().reaches(to, service.readers)) return send(service, to);
   if (!service.held.hold(to, service.replies->payload())) unanswered_.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -86,10 +87,16 @@ void ActionServer::send(Service& service, const RequestName& to) {
   if (!service.replies->write_reply(to.sample)) log_warning("dds.action", "an answer could not be sent");
 }
 
-void ActionServer::send_held(Service& service) {
+void ActionServer::note_reader(Service& service, const Guid& reader, bool matched) {
   const std::scoped_lock lock(service.mutex);
-  const std::vector<Guid> readers = service.replies->readers();
-  const auto reaches = [&](const RequestName& to) { return participant_->clients().reaches(to, readers); };
+  std::erase(service.readers, reader);
+  if (!matched) return;
+  service.readers.push_back(reader);
+  if (participant_->clients().contains(reader)) {
+    write_reply_to_nobody(service.replies->payload());
+    send(service, {});
+  }
+  const auto reaches = [&](const RequestName& to) { return participant_->clients().reaches(to, service.readers); };
   for (HeldReply& reply : service.held.take(reaches)) {
     service.replies->payload().swap(reply.payload);
     send(service, reply.to);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/dds/goal_book.hpp"
 #include "drivers/dds/held_replies.hpp"
@@ -41,15 +42,16 @@ class ActionServer {
   [[nodiscard]] int clients() const;
   [[nodiscard]] std::uint64_t feedback() const { return feedback_sent_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t bad_requests() const { return bad_requests_.load(std::memory_order_relaxed); }
-  // Replies that were dropped, since whoever asked has no reader of them.
+  // Replies that were dropped, since the client has no reader of them.
   [[nodiscard]] std::uint64_t unanswered() const { return unanswered_.load(std::memory_order_relaxed); }
 
  private:
   // A service's side of the server.
   struct Service {
-    std::mutex mutex;  // of the writer and of what is held
-    std::unique_ptr<BytesWriter> replies;
+    std::mutex mutex;  // of the next three
     HeldReplies held;
+    std::vector<Guid> readers;  // of replies, matched
+    std::unique_ptr<BytesWriter> replies;
     std::unique_ptr<BytesReader> requests;
   };
   ActionServer(std::shared_ptr<Participant> participant, TrajectorySink& sink, RosDistribution distribution)
@@ -66,7 +68,7 @@ class ActionServer {
   template <class Encode>
   void reply(Service& service, const RequestName& to, const Encode& encode);
   static void send(Service& service, const RequestName& to);
-  void send_held(Service& service);
+  void note_reader(Service& service, const Guid& reader, bool matched);
 
   const std::shared_ptr<Participant> participant_;
   TrajectorySink& sink_;

@@ -24,37 +24,29 @@ class BytesWriter::Listener final : public eprosima::fastdds::dds::DataWriterLis
   void on_publication_matched(eprosima::fastdds::dds::DataWriter* /*writer*/,
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
     matched_.store(status.current_count, std::memory_order_relaxed);
-    note(guid_of(eprosima::fastrtps::rtps::iHandle2GUID(status.last_subscription_handle)),
-         status.current_count_change > 0);
-    if (status.current_count_change <= 0) return;
-    const std::scoped_lock lock(call_mutex_);
-    if (call_) call_();
-  }
-  void set_call(std::function<void()> call) {
-    const std::scoped_lock lock(call_mutex_);
-    call_ = std::move(call);
-  }
-  [[nodiscard]] int matched() const { return matched_.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::vector<Guid> readers() const {
-    const std::scoped_lock lock(readers_mutex_);
-    return {readers_.begin(), readers_.end()};
-  }
-
- private:
-  void note(const Guid& reader, bool matched) {
-    const std::scoped_lock lock(readers_mutex_);
+    const bool matched = status.current_count_change > 0;
+    const Guid reader = guid_of(eprosima::fastrtps::rtps::iHandle2GUID(status.last_subscription_handle));
+    const std::scoped_lock lock(mutex_);
     if (matched) {
       readers_.insert(reader);
     } else {
       readers_.erase(reader);
     }
+    if (call_) call_(reader, matched);
   }
+  void set_call(OnReader call) {
+    const std::scoped_lock lock(mutex_);
+    call_ = std::move(call);
+    if (!call_) return;
+    for (const Guid& reader : readers_) call_(reader, true);
+  }
+  [[nodiscard]] int matched() const { return matched_.load(std::memory_order_relaxed); }
 
+ private:
   std::atomic<int> matched_{0};
-  mutable std::mutex readers_mutex_;  // nothing is called while it is held
+  std::mutex mutex_;  // also while the call runs
   std::set<Guid> readers_;
-  std::mutex call_mutex_;
-  std::function<void()> call_;
+  OnReader call_;
 };
 
 BytesWriter::BytesWriter(std::shared_ptr<Participant> participant)
@@ -106,8 +98,6 @@ bool BytesWriter::all_confirmed() const {
 
 int BytesWriter::matched_readers() const { return listener_->matched(); }
 
-std::vector<Guid> BytesWriter::readers() const { return listener_->readers(); }
-
-void BytesWriter::on_reader(std::function<void()> call) { listener_->set_call(std::move(call)); }
+void BytesWriter::on_reader(OnReader call) { listener_->set_call(std::move(call)); }
 
 }  // namespace cellmirror::dds

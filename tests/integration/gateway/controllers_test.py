@@ -258,6 +258,14 @@ class Controllers(unittest.TestCase):
         self.assertEqual(self.cyclone.next_line("late", 0)["late"], UNKNOWN)
         self.assertEqual(self.status()["action"]["unanswered"], 0)
 
+    def test_clients_that_come_and_are_killed_are_answered_at_once(self):
+        # What the killed ones did not acknowledge stays in the writer's history for those that come after.
+        for _ in range(10):
+            for program in ("dds_cyclone_action_client", "dds_action_client"):
+                client = self.action_client(program)
+                self.assertEqual(self.result(client, 250)["result"], UNKNOWN)
+                client.kill()
+
     def test_requests_whose_header_is_cut_or_missing_are_refused(self):
         requests = [("goal", bytes(4)), ("cancel", bytes(11)), ("result", b""),  # cut inside the header
                     ("goal", bytes(12)), ("cancel", bytes(12)), ("result", bytes(20)),  # nothing behind it, or not enough

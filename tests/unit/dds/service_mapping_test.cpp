@@ -109,6 +109,19 @@ TEST(ServiceMapping, AReplyWithoutAHeaderIsAsLongAsOneAndNoClientsOwn) {
                    }));
 }
 
+TEST(ServiceMapping, AReplyToNobodyIsOneOfEachService) {
+  std::vector<std::byte> reply;
+  write_reply_to_nobody(reply);
+  EXPECT_EQ(reply, bytes({
+                       0x00, 0x01, 0x00, 0x00,                          //
+                       0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,  // no client's number
+                       0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,  //
+                       0x00, 0x00, 0x00, 0x00,                          // refused; code; status
+                       0x00, 0x00, 0x00, 0x00,                          // stamp; no goals; error_code
+                       0x01, 0x00, 0x00, 0x00, 0x00,                    // stamp; ; text
+                   }));
+}
+
 TEST(ServiceMapping, UserDataNamesAClient) {
   EXPECT_EQ(client_id("clientid= 1.10.ab;"), " 1.10.ab");
   EXPECT_EQ(client_id("clientid=1"), "1");
