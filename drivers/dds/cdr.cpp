@@ -113,6 +113,10 @@ void CdrWriter::align(std::size_t alignment) {
   out_.resize(out_.size() + padding(out_.size() - kEncapsulationSize, alignment));
 }
 
+void CdrWriter::fill_to(std::size_t bytes) {
+  if (out_.size() < kEncapsulationSize + bytes) out_.resize(kEncapsulationSize + bytes);
+}
+
 void CdrWriter::write_text(std::string_view text) {
   text = text.substr(0, text.find('\0'));
   write_count(text.size() + 1);

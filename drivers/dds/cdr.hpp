@@ -140,6 +140,8 @@ class CdrWriter {
   void write_count(std::size_t count) { write(static_cast<std::uint32_t>(count)); }
   void write_doubles(std::span<const double> values);
   void write_bytes(std::span<const std::uint8_t> values) { append(values.data(), values.size()); }
+  // Appends zeros until there are so many bytes behind the encapsulation header.
+  void fill_to(std::size_t bytes);
 
  private:
   static const std::byte* bytes_of(const void* value) { return static_cast<const std::byte*>(value); }

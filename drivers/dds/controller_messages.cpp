@@ -129,8 +129,7 @@ void encode_feedback(const GoalId& goal, const ControllerMessage& message, RosDi
   if (has_index) writer.write(std::int32_t{0});
 }
 
-CdrFault decode(std::span<const std::byte> payload, GoalRequest& request) {
-  CdrReader in(payload);
+CdrFault decode(CdrReader in, GoalRequest& request) {
   in.read_octets(request.goal.id);
   read(in, request.trajectory);
   request.goal.multi_dof = !read_no_multi_dof(in) && in.fault() == CdrFault::none;
@@ -143,40 +142,35 @@ CdrFault decode(std::span<const std::byte> payload, GoalRequest& request) {
   return in.fault();
 }
 
-CdrFault decode(std::span<const std::byte> payload, CancelRequest& request) {
-  CdrReader in(payload);
+CdrFault decode(CdrReader in, CancelRequest& request) {
   in.read_octets(request.id);
   request.stamp = read_stamp(in);
   return in.fault();
 }
 
-CdrFault decode(std::span<const std::byte> payload, GoalId& id) {
-  CdrReader in(payload);
+CdrFault decode(CdrReader in, GoalId& id) {
   in.read_octets(id);
   return in.fault();
 }
 
-void encode_goal_reply(bool accepted, RosTime stamp, std::vector<std::byte>& out) {
-  CdrWriter writer(out);
-  writer.write(static_cast<std::uint8_t>(accepted ? 1 : 0));
-  write_time(stamp, writer);
+void write_goal_reply(bool accepted, RosTime stamp, CdrWriter& out) {
+  out.write(static_cast<std::uint8_t>(accepted ? 1 : 0));
+  write_time(stamp, out);
 }
 
-void encode_cancel_reply(CancelCode code, std::span<const GoalInfo> goals, std::vector<std::byte>& out) {
-  CdrWriter writer(out);
-  writer.write(std::to_underlying(code));
-  writer.write_count(goals.size());
+void write_cancel_reply(CancelCode code, std::span<const GoalInfo> goals, CdrWriter& out) {
+  out.write(std::to_underlying(code));
+  out.write_count(goals.size());
   for (const GoalInfo& goal : goals) {
-    write_id(goal.id, writer);
-    write_time(goal.stamp, writer);
+    write_id(goal.id, out);
+    write_time(goal.stamp, out);
   }
 }
 
-void encode_result_reply(GoalStatus status, const GoalResult& result, std::vector<std::byte>& out) {
-  CdrWriter writer(out);
-  writer.write(std::to_underlying(status));
-  writer.write(result.error_code);
-  writer.write_text(result.text);
+void write_result_reply(GoalStatus status, const GoalResult& result, CdrWriter& out) {
+  out.write(std::to_underlying(status));
+  out.write(result.error_code);
+  out.write_text(result.text);
 }
 
 void encode_status(std::span<const GoalInfo> goals, std::vector<std::byte>& out) {

@@ -47,21 +47,22 @@ void encode(const ControllerMessage& message, RosDistribution distribution, std:
 void encode_feedback(const GoalId& goal, const ControllerMessage& message, RosDistribution distribution,
                      std::vector<std::byte>& out);
 
+// The contents of requests.
 struct GoalRequest {
   TrajectoryGoal goal;
   JointTrajectory trajectory;
 };
 // Form and limits only; nothing behind points of joints with several axes is read (TrajectoryGoal::multi_dof).
-[[nodiscard]] CdrFault decode(std::span<const std::byte> payload, GoalRequest& request);
+[[nodiscard]] CdrFault decode(CdrReader in, GoalRequest& request);
 
 // action_msgs/CancelGoal. Zeros: all goals, or all of that time and before.
 struct CancelRequest {
   GoalId id{};
   RosTime stamp;
 };
-[[nodiscard]] CdrFault decode(std::span<const std::byte> payload, CancelRequest& request);
+[[nodiscard]] CdrFault decode(CdrReader in, CancelRequest& request);
 // Of the request for a result.
-[[nodiscard]] CdrFault decode(std::span<const std::byte> payload, GoalId& id);
+[[nodiscard]] CdrFault decode(CdrReader in, GoalId& id);
 
 // action_msgs/GoalStatus.
 enum class GoalStatus : std::int8_t { unknown, accepted, executing, canceling, succeeded, canceled, aborted };
@@ -73,9 +74,10 @@ struct GoalInfo {
   GoalStatus status = GoalStatus::unknown;
 };
 
-void encode_goal_reply(bool accepted, RosTime stamp, std::vector<std::byte>& out);
-void encode_cancel_reply(CancelCode code, std::span<const GoalInfo> goals, std::vector<std::byte>& out);
-void encode_result_reply(GoalStatus status, const GoalResult& result, std::vector<std::byte>& out);
+// The contents of replies: service_mapping.hpp has what stands around them.
+void write_goal_reply(bool accepted, RosTime stamp, CdrWriter& out);
+void write_cancel_reply(CancelCode code, std::span<const GoalInfo> goals, CdrWriter& out);
+void write_result_reply(GoalStatus status, const GoalResult& result, CdrWriter& out);
 void encode_status(std::span<const GoalInfo> goals, std::vector<std::byte>& out);
 
 }  // namespace cellmirror::dds

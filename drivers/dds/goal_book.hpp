@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "drivers/dds/controller_messages.hpp"
-#include "drivers/dds/sample_name.hpp"
+#include "drivers/dds/service_mapping.hpp"
 
 namespace cellmirror::dds {
-
-using RequestName = SampleName;  // whose request is answered
 
 class GoalBook {
  public:

@@ -76,6 +76,7 @@ class DdsTrajectoryEndpoint final : public TrajectoryEndpoint {
     status.clients = action_->clients();
     status.feedback = action_->feedback();
     status.bad_requests = action_->bad_requests();
+    status.unanswered = action_->unanswered();
     return status;
   }
 

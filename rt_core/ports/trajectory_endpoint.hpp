@@ -37,6 +37,7 @@ struct TrajectoryEndpointStatus {
   int clients = 0;                 // of the action, matched now
   std::uint64_t feedback = 0;      // sent
   std::uint64_t bad_requests = 0;  // of the action, that could not be read
+  std::uint64_t unanswered = 0;    // replies dropped, since the client has no reader of them
 };
 
 // What a controller wants and what its robot does, by joint in the order of the configuration.

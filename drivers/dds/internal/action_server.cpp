@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "drivers/dds/internal/service_clients.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::dds {
@@ -15,19 +17,13 @@ constexpr int kServiceDepth = 10;  // as rmw_qos_profile_services_default has it
 
 RosTime wall_time_now() { return ros_time(to_wall_clock_ns(SystemClock().now())); }
 
-// rmw_fastrtps names the client's reader of replies with each request, and answers under that name; other clients are
-// answered under the name of their writer.
-RequestName request_name(const ReceivedSample& sample) {
-  RequestName name = sample.name;
-  if (sample.related_guid != std::array<std::uint8_t, 16>{}) name.guid = sample.related_guid;
-  return name;
-}
+bool too_long(const ReceivedSample& sample) { return sample.received > sample.payload.size(); }
 
 }  // namespace
 
 Result<std::unique_ptr<ActionServer>> ActionServer::make(const std::shared_ptr<Participant>& participant,
                                                          const ControllerConfig& config, TrajectorySink& sink) {
-  std::unique_ptr<ActionServer> made(new ActionServer(sink, config.distribution));
+  std::unique_ptr<ActionServer> made(new ActionServer(participant, sink, config.distribution));
   ActionServer* const self = made.get();
   const std::string action = config.name + "/follow_joint_trajectory/_action/";
   auto status = BytesWriter::make(participant, {"rt/" + action + "status", kGoalStatusType, true, 1, false, true});
@@ -53,8 +49,11 @@ Result<std::unique_ptr<ActionServer>> ActionServer::make(const std::shared_ptr<P
 }
 
 ActionServer::~ActionServer() {
-  // The readers first, while what they call is there.
-  for (Service* service : {&goals_, &cancels_, &results_}) service->requests.reset();
+  // Those that call first, while what they call is there.
+  for (Service* service : {&goals_, &cancels_, &results_}) {
+    service->requests.reset();
+    if (service->replies) service->replies->on_reader({});
+  }
 }
 
 Result<void> ActionServer::open(Service& service, const std::shared_ptr<Participant>& participant,
@@ -63,6 +62,8 @@ Result<void> ActionServer::open(Service& service, const std::shared_ptr<Particip
   auto replies = BytesWriter::make(participant, {"rr/" + topic + "Reply", reply_type, true, kServiceDepth});
   if (!replies) return std::unexpected(replies.error());
   service.replies = std::move(*replies);
+  service.replies->on_reader(
+      [this, &service](const Guid& reader, bool matched) { note_reader(service, reader, matched); });
   auto requests = BytesReader::make(participant, {"rq/" + topic + "Request", request_type, true, kServiceDepth},
                                     std::move(receive));
   if (!requests) return std::unexpected(requests.error());
@@ -73,55 +74,91 @@ Result<void> ActionServer::open(Service& service, const std::shared_ptr<Particip
 template <class Encode>
 void ActionServer::reply(Service& service, const RequestName& to, const Encode& encode) {
   const std::scoped_lock lock(service.mutex);
-  encode(service.replies->payload());
-  if (!service.replies->write_reply(to)) log_warning("dds.action", "an answer could not be sent");
+  CdrWriter out(service.replies->payload());
+  begin_reply(to, out);
+  encode(out);
+  end_reply(out);
+  if (participant_->clients().reaches(to, service.readers)) return send(service, to);
+  if (!service.held.hold(to, service.replies->payload())) unanswered_.fetch_add(1, std::memory_order_relaxed);
+}
+
+// Under the service's mutex.
+void ActionServer::send(Service& service, const RequestName& to) {
+  if (!service.replies->write_reply(to.sample)) log_warning("dds.action", "an answer could not be sent");
+}
+
+void ActionServer::note_reader(Service& service, const Guid& reader, bool matched) {
+  const std::scoped_lock lock(service.mutex);
+  std::erase(service.readers, reader);
+  if (!matched) return;
+  service.readers.push_back(reader);
+  if (participant_->clients().contains(reader)) {
+    write_reply_to_nobody(service.replies->payload());
+    send(service, {});
+  }
+  const auto reaches = [&](const RequestName& to) { return participant_->clients().reaches(to, service.readers); };
+  for (HeldReply& reply : service.held.take(reaches)) {
+    service.replies->payload().swap(reply.payload);
+    send(service, reply.to);
+  }
 }
 
 void ActionServer::note_bad() { bad_requests_.fetch_add(1, std::memory_order_relaxed); }
 
+std::optional<ServiceRequest> ActionServer::open(const ReceivedSample& sample) const {
+  return open_request({.payload = too_long(sample) ? sample.start : sample.payload,
+                       .name = sample.name,
+                       .related = sample.related_guid,
+                       .announces_client = participant_->clients().contains(sample.name.guid)});
+}
+
+void ActionServer::refuse(CdrFault fault) {
+  note_bad();
+  sink_.refused(fault == CdrFault::too_many ? TrajectoryRefusal::too_many_points : TrajectoryRefusal::malformed,
+                fmt::format("a goal: {}", words(fault)));
+}
+
 void ActionServer::take_goal(const ReceivedSample& sample) {
-  const RequestName from = request_name(sample);
+  const auto opened = open(sample);
+  if (!opened) return refuse(CdrFault::truncated);
   GoalRequest request;
-  const CdrFault fault = sample.received > sample.payload.size() ? CdrFault::too_many : decode(sample.payload, request);
+  const CdrFault fault = too_long(sample) ? CdrFault::too_many : decode(opened->content, request);
   bool asked = false;
   if (fault == CdrFault::none) {
     const std::scoped_lock lock(mutex_);
-    asked = book_.ask(request.goal.id, from, wall_time_now());
+    asked = book_.ask(request.goal.id, opened->name, wall_time_now());
   } else {
-    note_bad();
-    sink_.refused(fault == CdrFault::too_many ? TrajectoryRefusal::too_many_points : TrajectoryRefusal::malformed,
-                  fmt::format("a goal: {}", words(fault)));
+    refuse(fault);
   }
   if (asked) return sink_.goal(std::move(request.goal), std::move(request.trajectory));
-  reply(goals_, from, [](std::vector<std::byte>& out) { encode_goal_reply(false, wall_time_now(), out); });
+  reply(goals_, opened->name, [](CdrWriter& out) { write_goal_reply(false, wall_time_now(), out); });
 }
 
 void ActionServer::take_cancel(const ReceivedSample& sample) {
+  const auto opened = open(sample);
   CancelRequest request;
-  if (decode(sample.payload, request) != CdrFault::none) return note_bad();
+  if (!opened || decode(opened->content, request) != CdrFault::none) return note_bad();
   GoalBook::Cancel cancel;
   {
     const std::scoped_lock lock(mutex_);
     cancel = book_.cancel(request);
   }
-  reply(cancels_, request_name(sample),
-        [&](std::vector<std::byte>& out) { encode_cancel_reply(cancel.code, cancel.goals, out); });
+  reply(cancels_, opened->name, [&](CdrWriter& out) { write_cancel_reply(cancel.code, cancel.goals, out); });
   if (cancel.goals.empty()) return;
   publish_status();
   for (const GoalInfo& goal : cancel.goals) sink_.cancel(goal.id);
 }
 
 void ActionServer::take_result(const ReceivedSample& sample) {
+  const auto opened = open(sample);
   GoalId id{};
-  if (decode(sample.payload, id) != CdrFault::none) return note_bad();
+  if (!opened || decode(opened->content, id) != CdrFault::none) return note_bad();
   std::optional<GoalBook::Reply> now;
   {
     const std::scoped_lock lock(mutex_);
-    now = book_.result_of(id, request_name(sample));
+    now = book_.result_of(id, opened->name);
   }
-  if (now)
-    reply(results_, request_name(sample),
-          [&](std::vector<std::byte>& out) { encode_result_reply(now->status, now->result, out); });
+  if (now) reply(results_, opened->name, [&](CdrWriter& out) { write_result_reply(now->status, now->result, out); });
 }
 
 void ActionServer::publish_status() {
@@ -142,7 +179,7 @@ void ActionServer::answer(const GoalId& goal, bool taken) {
     to = book_.answer(goal, taken);
   }
   if (!to) return;
-  reply(goals_, *to, [taken](std::vector<std::byte>& out) { encode_goal_reply(taken, wall_time_now(), out); });
+  reply(goals_, *to, [taken](CdrWriter& out) { write_goal_reply(taken, wall_time_now(), out); });
   if (taken) publish_status();
 }
 
@@ -154,9 +191,8 @@ void ActionServer::finish(const GoalId& goal, const GoalResult& result) {
   }
   if (!finished) return;
   for (const RequestName& to : finished->waiting)
-    reply(results_, to, [&](std::vector<std::byte>& out) {
-      encode_result_reply(finished->reply.status, finished->reply.result, out);
-    });
+    reply(results_, to,
+          [&](CdrWriter& out) { write_result_reply(finished->reply.status, finished->reply.result, out); });
   publish_status();
 }
 

@@ -35,6 +35,7 @@ class BytesReader::Listener final : public fd::DataReaderListener {
         ReceivedSample out;
         out.payload = sample.payload;
         out.received = sample.received;
+        out.start = sample.start;
         out.name.guid = guid_of(info.sample_identity.writer_guid());
         out.name.number = static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long());
         const auto& related = info.related_sample_identity.writer_guid();

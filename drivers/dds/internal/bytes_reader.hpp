@@ -17,6 +17,7 @@ namespace cellmirror::dds {
 struct ReceivedSample {
   std::span<const std::byte> payload;  // empty where it was longer than kMaxPayloadBytes
   std::size_t received = 0;            // bytes that came
+  std::span<const std::byte> start;    // the first of them (BytesSample)
   SampleName name;
   std::array<std::uint8_t, 16> related_guid{};  // of the related sample identity; zero: not given
 };

@@ -1,5 +1,6 @@
 #include "drivers/dds/internal/bytes_type.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace cellmirror::dds {
@@ -28,6 +29,8 @@ bool BytesType::deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* paylo
   const auto* first = reinterpret_cast<const std::byte*>(payload->data);
   const bool usable = first != nullptr && payload->length <= kMaxPayloadBytes;
   bytes.assign(first, usable ? first + payload->length : first);
+  sample.start = {};
+  if (first != nullptr) std::copy_n(first, std::min<std::size_t>(payload->length, kStartBytes), sample.start.begin());
   return true;
 }
 

@@ -7,7 +7,11 @@
 #include <exception>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <mutex>
+#include <set>
 #include <utility>
+
+#include "drivers/dds/internal/library_guid.hpp"
 
 namespace cellmirror::dds {
 
@@ -20,11 +24,29 @@ class BytesWriter::Listener final : public eprosima::fastdds::dds::DataWriterLis
   void on_publication_matched(eprosima::fastdds::dds::DataWriter* /*writer*/,
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
     matched_.store(status.current_count, std::memory_order_relaxed);
+    const bool matched = status.current_count_change > 0;
+    const Guid reader = guid_of(eprosima::fastrtps::rtps::iHandle2GUID(status.last_subscription_handle));
+    const std::scoped_lock lock(mutex_);
+    if (matched) {
+      readers_.insert(reader);
+    } else {
+      readers_.erase(reader);
+    }
+    if (call_) call_(reader, matched);
+  }
+  void set_call(OnReader call) {
+    const std::scoped_lock lock(mutex_);
+    call_ = std::move(call);
+    if (!call_) return;
+    for (const Guid& reader : readers_) call_(reader, true);
   }
   [[nodiscard]] int matched() const { return matched_.load(std::memory_order_relaxed); }
 
  private:
   std::atomic<int> matched_{0};
+  std::mutex mutex_;  // also while the call runs
+  std::set<Guid> readers_;
+  OnReader call_;
 };
 
 BytesWriter::BytesWriter(std::shared_ptr<Participant> participant)
@@ -75,5 +97,7 @@ bool BytesWriter::all_confirmed() const {
 }
 
 int BytesWriter::matched_readers() const { return listener_->matched(); }
+
+void BytesWriter::on_reader(OnReader call) { listener_->set_call(std::move(call)); }
 
 }  // namespace cellmirror::dds

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace cellmirror::dds {
 // One calling thread, but for matched_readers().
 class BytesWriter final {
  public:
+  using OnReader = std::function<void(const Guid& reader, bool matched)>;
   // `config.depth`: 1..400.
   [[nodiscard]] static Result<std::unique_ptr<BytesWriter>> make(const std::shared_ptr<Participant>& participant,
                                                                  const EndpointConfig& config);
@@ -31,6 +33,9 @@ class BytesWriter final {
   // Whether every reliable reader has confirmed every sample; true where there is none. Does not wait.
   [[nodiscard]] bool all_confirmed() const;
   [[nodiscard]] int matched_readers() const;
+  // Called for each reader that is matched, now or later, and for each that is no longer: by a thread of the DDS
+  // library, one at a time; it may write. An empty one ends that: none runs when this returns.
+  void on_reader(OnReader call);
 
  private:
   explicit BytesWriter(std::shared_ptr<Participant> participant);

@@ -17,6 +17,7 @@
 #include "drivers/dds/internal/library_log.hpp"
 #include "drivers/dds/internal/participant_qos.hpp"
 #include "drivers/dds/internal/process_setting.hpp"
+#include "drivers/dds/internal/service_clients.hpp"
 #include "drivers/dds/network.hpp"
 #include "drivers/dds/presence.hpp"
 #include "rt_core/base/log.hpp"
@@ -63,12 +64,14 @@ void set_network(const DdsNetworkConfig& network) { network_setting().set(networ
 
 DomainParticipant::DomainParticipant(RosPresence presence, DdsNetworkConfig network)
     : factory_(fd::DomainParticipantFactory::get_shared_instance()),
+      clients_(std::make_unique<ServiceClients>()),
       presence_(std::move(presence)),
       network_(std::move(network)) {}
 
 Result<void> DomainParticipant::open(int domain, const std::string& address, const DdsSecurityConfig& security) {
   const auto as_domain = static_cast<fd::DomainId_t>(domain);
-  participant_ = factory_->create_participant(as_domain, participant_qos(domain, address, security, network_));
+  participant_ = factory_->create_participant(as_domain, participant_qos(domain, address, security, network_),
+                                              clients_.get(), fd::StatusMask::none());
   if (participant_ == nullptr)
     return fail(fmt::format("no DDS participant in domain {} on {}", domain, address), remedy_for(security));
   // Permissions may forbid it: names of nodes are no reason to be silent.

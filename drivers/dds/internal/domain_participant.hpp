@@ -23,6 +23,8 @@ class Topic;
 
 namespace cellmirror::dds {
 
+class ServiceClients;
+
 // One for each domain, interface and security in use; lives as long as it is referenced. Any thread.
 class DomainParticipant {
  public:
@@ -40,6 +42,7 @@ class DomainParticipant {
   // Held while endpoints are made and removed, and for what follows.
   [[nodiscard]] std::mutex& mutex() { return mutex_; }
   [[nodiscard]] Result<eprosima::fastdds::dds::Topic*> topic(const EndpointConfig& config);
+  [[nodiscard]] const ServiceClients& clients() const { return *clients_; }
   void add_reader(const Guid& reader);
   void add_writer(const Guid& writer);
   void remove_reader(const Guid& reader);
@@ -53,6 +56,7 @@ class DomainParticipant {
   void publish_graph();
 
   std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory_;  // outlives the participant
+  const std::unique_ptr<ServiceClients> clients_;                              // outlives the participant
   std::mutex mutex_;
   const RosPresence presence_;
   const DdsNetworkConfig network_;

@@ -39,6 +39,7 @@ class Participant {
       const EndpointConfig& config, eprosima::fastdds::dds::DataWriterListener* listener);
   void remove(eprosima::fastdds::dds::DataReader* reader);
   void remove(eprosima::fastdds::dds::DataWriter* writer);
+  [[nodiscard]] const ServiceClients& clients() const { return of_->clients(); }
 
  private:
   explicit Participant(std::shared_ptr<DomainParticipant> of) : of_(std::move(of)) {}

@@ -1,6 +1,8 @@
-"""A ROS 2 controller of a simulated robot, commanded by foreign programs: trajectories by Cyclone DDS, the action by a client of its own."""
+"""A ROS 2 controller of a simulated robot, commanded by foreign programs: trajectories by Cyclone DDS, the action by clients of their own."""
 
+import functools
 import json
+import struct
 import unittest
 
 import gateway as g
@@ -14,7 +16,7 @@ robot = "{ROBOT}"
 name = "/{NAME}"
 domain = {DOMAIN}
 """
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # action_msgs/GoalStatus
+UNKNOWN, SUCCEEDED, CANCELED, ABORTED = 0, 4, 5, 6  # action_msgs/GoalStatus
 
 
 def setUpModule():
@@ -54,6 +56,24 @@ def points(*targets):
     return out
 
 
+def each_client(test):
+    """Calls it with a client as rmw_fastrtps makes one and with one as rmw_cyclonedds does, and with numbers of goals for each."""
+    @functools.wraps(test)
+    def of_all(self):
+        for client, goals in ((self.client, 0), (self.cyclone, 100)):
+            with self.subTest(client=str(client.program)):
+                test(self, client, goals)
+    return of_all
+
+
+def goal_without_header():
+    """FollowJointTrajectory_SendGoal_Request from its fifth byte on, which dds_cyclone_action_client counts in the first four."""
+    identity, stamp, nothing = bytes(12), bytes(8), struct.pack("<I4x", 1)
+    joints = struct.pack("<I", len(JOINTS)) + b"".join(struct.pack("<I3sx", 4, joint.encode()) for joint in JOINTS)
+    multi_dof = stamp + nothing + bytes(8)
+    return identity + stamp + nothing + joints + bytes(4) + multi_dof + bytes(16) + bytes(8)
+
+
 class Controllers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -64,10 +84,17 @@ class Controllers(unittest.TestCase):
         cls.addClassCleanup(cls.gateway.close)
         cls.peer = Peer([g.BIN / "dds_cyclone_peer", "controller", DOMAIN, NAME], stdin=True)
         cls.addClassCleanup(cls.peer.close)
-        cls.client = Peer([g.BIN / "dds_action_client", DOMAIN, NAME], stdin=True)
-        cls.addClassCleanup(cls.client.close)
-        cls.client.next_line("ready", 0)
+        cls.client = cls.action_client("dds_action_client")
+        cls.cyclone = cls.action_client("dds_cyclone_action_client")
         assert g.eventually(lambda: cls.status()["publishers"] == 1, PATIENCE_S), cls.status()
+
+    @classmethod
+    def action_client(cls, program):
+        client = Peer([g.BIN / program, DOMAIN, NAME], stdin=True)
+        client.program = program
+        cls.addClassCleanup(client.close)
+        client.next_line("ready", 0)
+        return client
 
     @classmethod
     def status(cls):
@@ -97,15 +124,15 @@ class Controllers(unittest.TestCase):
         self.assertTrue(seen, (line, reason, self.status()))
         self.assertIn(reason, self.status()["last_refusal"]["text"])
 
-    def goal(self, number, *targets, more="", joints=JOINTS):
-        before = len(self.client.lines("accepted"))
-        self.client.write(f"goal {number} {','.join(joints)} {';'.join(points(*targets))} {more}")
-        return self.client.next_line("accepted", before)["accepted"]
+    def goal(self, client, number, *targets, more="", joints=JOINTS):
+        before = len(client.lines("accepted"))
+        client.write(f"goal {number} {','.join(joints)} {';'.join(points(*targets))} {more}")
+        return client.next_line("accepted", before)["accepted"]
 
-    def result(self, number):
-        before = len(self.client.lines("result"))
-        self.client.write(f"result {number}")
-        return self.client.next_line("result", before)
+    def result(self, client, number):
+        before = len(client.lines("result"))
+        client.write(f"result {number}")
+        return client.next_line("result", before)
 
     def test_a_trajectory_moves_the_robot(self):
         self.command((0.2, 0.1), (0.5, 0.2))
@@ -157,44 +184,104 @@ class Controllers(unittest.TestCase):
         self.assertTrue(seen, self.status())
         self.assertEqual(len(seen[-1]["reference"]), len(JOINTS))
 
-    def test_a_goal_succeeds_with_feedback(self):
-        before = len(self.client.lines("feedback"))
-        self.assertTrue(self.goal(1, (0.3, 0.1), (1.5, 0.2)))
-        result = self.result(1)
+    @each_client
+    def test_a_goal_succeeds_with_feedback(self, client, goals):
+        before = len(client.lines("feedback"))
+        self.assertTrue(self.goal(client, goals + 1, (0.3, 0.1), (1.5, 0.2)))
+        result = self.result(client, goals + 1)
         self.assertEqual((result["result"], result["error_code"]), (SUCCEEDED, 0))
-        feedback = self.client.next_line("feedback", before)
-        self.assertEqual(feedback["feedback"], 1)
+        feedback = client.next_line("feedback", before)
+        self.assertEqual(feedback["feedback"], goals + 1)
         self.assertEqual(len(feedback["desired"]), len(JOINTS))
-        self.assertTrue(g.eventually(lambda: any(line["status"].get("1") == SUCCEEDED for line in self.client.lines("status")), PATIENCE_S))
+        self.assertTrue(g.eventually(lambda: any(line["status"].get(str(goals + 1)) == SUCCEEDED for line in client.lines("status")),
+                                     PATIENCE_S))
         self.assertTrue(g.eventually(lambda: abs(self.position() - 0.2) < 1e-9, PATIENCE_S))
 
-    def test_goals_that_are_wrong_tell_why(self):
-        self.assertTrue(self.goal(11, (1, 0), joints=JOINTS[:5] + ["other"]))
-        result = self.result(11)
+    @each_client
+    def test_goals_that_are_wrong_tell_why(self, client, goals):
+        self.assertTrue(self.goal(client, goals + 11, (1, 0), joints=JOINTS[:5] + ["other"]))
+        result = self.result(client, goals + 11)
         self.assertEqual((result["result"], result["error_code"]), (ABORTED, -2))
         self.assertIn("no joint other", result["text"])
-        self.assertTrue(self.goal(12, (0.1, 1.2), (60, 1.3), more="path=0.05"))
-        result = self.result(12)
+        self.assertTrue(self.goal(client, goals + 12, (0.1, 1.2), (60, 1.3), more="path=0.05"))
+        result = self.result(client, goals + 12)
         self.assertEqual((result["result"], result["error_code"]), (ABORTED, -4), result)
-        self.assertTrue(self.goal(13, (0.1, -1.2), more="goal=0.001 time=0.01"))
-        result = self.result(13)
+        self.assertTrue(self.goal(client, goals + 13, (0.1, -1.2), more="goal=0.001 time=0.01"))
+        result = self.result(client, goals + 13)
         self.assertEqual((result["result"], result["error_code"]), (ABORTED, -5), result)
-        self.assertFalse(self.goal(13, (1, 0)), "the id is known")
+        self.assertFalse(self.goal(client, goals + 13, (1, 0)), "the id is known")
 
-    def test_a_goal_can_be_cancelled_and_replaced(self):
-        self.assertTrue(self.goal(21, (300, 0.1)))
-        before = len(self.client.lines("cancel"))
-        self.client.write("cancel 21")
-        self.assertEqual(self.client.next_line("cancel", before), {"cancel": 0, "goals": 1})
-        self.assertEqual(self.result(21)["result"], CANCELED)
-        self.client.write("cancel 21")
-        self.assertEqual(self.client.next_line("cancel", before + 1), {"cancel": 3, "goals": 0})
-        self.client.write("cancel 99")
-        self.assertEqual(self.client.next_line("cancel", before + 2), {"cancel": 2, "goals": 0})
-        self.assertTrue(self.goal(22, (300, 0.1)))
-        self.assertTrue(self.goal(23, (0.2, 0.1)))
-        self.assertEqual(self.result(22)["result"], CANCELED)
-        self.assertEqual(self.result(23)["result"], SUCCEEDED)
+    @each_client
+    def test_a_goal_beyond_the_limits_is_refused(self, client, goals):
+        many = [(0.001 * (i + 1), 0) for i in range(14_000)]
+        self.assertFalse(self.goal(client, goals + 31, *many[:10_001]), "too many points")
+        self.assertFalse(self.goal(client, goals + 31, *many), "more than 1 MiB")
+
+    @each_client
+    def test_a_goal_can_be_cancelled_and_replaced(self, client, goals):
+        self.assertTrue(self.goal(client, goals + 21, (300, 0.1)))
+        before = len(client.lines("cancel"))
+        client.write(f"cancel {goals + 21}")
+        self.assertEqual(client.next_line("cancel", before), {"cancel": 0, "goals": 1})
+        self.assertEqual(self.result(client, goals + 21)["result"], CANCELED)
+        client.write(f"cancel {goals + 21}")
+        self.assertEqual(client.next_line("cancel", before + 1), {"cancel": 3, "goals": 0})
+        client.write("cancel 99")
+        self.assertEqual(client.next_line("cancel", before + 2), {"cancel": 2, "goals": 0})
+        self.assertTrue(self.goal(client, goals + 22, (300, 0.1)))
+        self.assertTrue(self.goal(client, goals + 23, (0.2, 0.1)))
+        self.assertEqual(self.result(client, goals + 22)["result"], CANCELED)
+        self.assertEqual(self.result(client, goals + 23)["result"], SUCCEEDED)
+
+    def test_clients_of_both_kinds_hear_only_their_own_replies(self):
+        other = self.action_client("dds_cyclone_action_client")
+        clients = ((self.cyclone, 141), (other, 142), (self.client, 43))
+        keys = ("accepted", "result", "cancel")
+        before = {client: [len(client.lines(key)) for key in keys] for client, _ in clients}
+        for client, number in clients:
+            self.assertTrue(self.goal(client, number, (300, 0.1)))
+            client.write(f"result {number}")
+        self.client.write("cancel 43")
+        results = [client.next_line("result", before[client][1])["result"] for client, _ in clients]
+        self.assertEqual(results, [CANCELED] * 3, "two were replaced, the last was cancelled")
+        # What comes after has come behind all that was said to others.
+        for client, number in clients:
+            self.assertEqual(self.result(client, number)["result"], CANCELED)
+        for client, _ in clients:
+            heard = [len(client.lines(key)) - count for key, count in zip(keys, before[client])]
+            self.assertEqual(heard, [1, 2, 1 if client is self.client else 0], client.program)
+            self.assertEqual(client.lines("unexpected"), [])
+        self.assertTrue(other.lines("foreign"), "replies to others reach it too")
+
+    def test_an_answer_waits_for_the_reader_of_who_asked(self):
+        self.cyclone.write("late 199")
+        self.assertEqual(self.cyclone.next_line("late", 0)["late"], UNKNOWN)
+        self.assertEqual(self.status()["action"]["unanswered"], 0)
+
+    def test_clients_that_come_and_are_killed_are_answered_at_once(self):
+        # What the killed ones did not acknowledge stays in the writer's history for those that come after.
+        for _ in range(10):
+            for program in ("dds_cyclone_action_client", "dds_action_client"):
+                client = self.action_client(program)
+                self.assertEqual(self.result(client, 250)["result"], UNKNOWN)
+                client.kill()
+
+    def test_requests_whose_header_is_cut_or_missing_are_refused(self):
+        requests = [("goal", bytes(4)), ("cancel", bytes(11)), ("result", b""),  # cut inside the header
+                    ("goal", bytes(12)), ("cancel", bytes(12)), ("result", bytes(20)),  # nothing behind it, or not enough
+                    ("goal", bytes(range(200))),
+                    ("goal", goal_without_header()), ("cancel", bytes(20)), ("result", bytes(12))]
+        for service, content in requests:
+            with self.subTest(service=service, bytes=len(content)):
+                before = self.status()["action"]["bad_requests"]
+                malformed = self.status()["refusals"].get("malformed", 0) + (service == "goal")
+                self.cyclone.write(f"raw {service} {content.hex()}")
+                self.assertTrue(g.eventually(lambda: self.status()["action"]["bad_requests"] > before, PATIENCE_S), self.status())
+                self.assertEqual(self.status()["action"]["bad_requests"], before + 1)
+                self.assertTrue(g.eventually(lambda: self.status()["refusals"].get("malformed", 0) == malformed, PATIENCE_S))
+        for client, number in ((self.client, 51), (self.cyclone, 151)):
+            self.assertTrue(self.goal(client, number, (0.2, 0.1)))
+            self.assertEqual(self.result(client, number)["result"], SUCCEEDED)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ GoalId id(std::uint8_t number) {
   out[0] = number;
   return out;
 }
-RequestName from(std::int64_t number) { return {{}, number}; }
+RequestName from(std::int64_t number) { return {{{}, number}}; }
 RosTime at(std::int32_t sec) { return {sec, 0}; }
 
 TEST(GoalBook, AGoalIsAnsweredOnceAndItsResultGoesToThoseThatWait) {
