@@ -1,9 +1,8 @@
 // How ROS 2's middleware maps services on DDS: by what a request tells who asks, and a reply whom it answers. Pure: no
 // DDS library, no clock. Two mappings, told apart for each request:
-// - Identity (rmw_fastrtps, rmw_connextdds): the reply has the request's sample identity in its inline QoS
-// (DDS-RPC 1.0,
-//   7.8.2.5). rmw_fastrtps names the client's reader of replies in the request's inline QoS, and is answered under that
-//   name; others are answered under the name of their writer.
+// - Identity (rmw_fastrtps, rmw_connextdds): the reply has the request's sample identity in its inline QoS (DDS-RPC
+//   1.0, 7.8.2.5). rmw_fastrtps names the client's reader of replies in the request's inline QoS, and is answered
+//   under that name; others are answered under the name of their writer.
 // - Header (rmw_cyclonedds 1.3 to 3.2, Humble to Rolling): 16 bytes in front of the content, within its alignment: the
 //   client (8 bytes, a number of its own process) and the request's number there (int64). The reply repeats them. Such
 //   a client announces `clientid=` in the USER_DATA of its writer and of its reader of replies, and never names a

@@ -102,10 +102,13 @@ class Place:
         ip("link", "set", self.port, "up" if connected else "down")
 
 
-def start_server(place, number, folder):
-    """One of the discovery servers, of Debian's fastdds-tools; in `folder` it keeps what it knows (-b, docs/plant.md)."""
-    folder.mkdir(exist_ok=True)
-    return place.start(["env", "-C", folder, "fast-discovery-server", "-b", "-i", str(number), "-l", place.address, "-p", str(SERVER_PORT)])
+SERVER_SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "examples" / "discovery_server.xml"
+SERVER_PAUSE_S = 5  # before it is started again, as docs/plant.md says: its clients have missed it then
+
+
+def start_server(place, number):
+    """One of the discovery servers, of Debian's fastdds-tools, as docs/plant.md has it."""
+    return place.start(["fast-discovery-server", "-x", SERVER_SETTINGS, "-i", str(number), "-l", place.address, "-p", str(SERVER_PORT)])
 
 
 def servers_text(places):

@@ -37,8 +37,8 @@ constexpr int kMaxPort = 65534;      // of discovery: the one above is the same 
 // What an Ethernet frame holds without IP fragments, of which one that is lost loses the whole datagram.
 constexpr std::uint32_t kDatagramWithoutFragments = 1400;
 constexpr int kLease_s = 10;
-// Longer than that of a discovery server, 20 s: after a cut Fast DDS 2.9 finds its peers again only where the client has
-// forgotten the server no later than the server has forgotten the client.
+// Longer than that of a discovery server, 20 s: after a cut Fast DDS 2.9 finds its peers again only where the client
+// has forgotten the server no later than the server has forgotten the client.
 constexpr int kLongLease_s = 30;
 constexpr char kDiscoveryGroup[] = "239.255.0.1";  // RTPS 2.3, 9.6.1.4
 

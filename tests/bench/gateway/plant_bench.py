@@ -89,7 +89,7 @@ def main():
     meter = DiscoveryMeter()
 
     def start_all():
-        return [plant.start_server(place, number, root / f"server_{number}") for number, place in enumerate(servers)]
+        return [plant.start_server(place, number) for number, place in enumerate(servers)]
 
     running = start_all()
     dds = f"discovery_servers = {plant.servers_text(servers)}" if servers else ""
@@ -121,11 +121,11 @@ def main():
     if servers:
         for server in running:
             server.kill()
-        time.sleep(3)
+        time.sleep(plant.SERVER_PAUSE_S)
         running = start_all()
         since = time.monotonic()
         later = plant.SummaryReader(plant.Place(4), servers)
-        wait_for_all(later, OPTIONS.cells, since, "servers killed for 3 s, a new control room from their start on")
+        wait_for_all(later, OPTIONS.cells, since, "servers killed for 5 s, a new control room from their start on")
         print("lost meanwhile by the one before: {} of {}".format(*lost(reader)))
         later.close()
         for server in running:

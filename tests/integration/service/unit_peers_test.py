@@ -11,6 +11,7 @@ import unittest
 import gateway as g
 
 UNIT = g.SOURCE / "config" / "systemd" / "cellmirror@.service"
+DISCOVERY_SERVER = g.SOURCE / "docs" / "examples" / "discovery-server.service"
 MOST_EXPOSED = 2.0
 
 
@@ -37,6 +38,13 @@ class Unit(unittest.TestCase):
 
     def test_is_well_formed(self):
         done = self.analyze("verify", "--man=no", "--generators=no", "--recursive-errors=no", str(self.unit))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")
+
+    def test_that_of_a_discovery_server_is_well_formed(self):
+        unit = self.root / DISCOVERY_SERVER.name
+        unit.write_text(DISCOVERY_SERVER.read_text().replace("/usr/bin/fast-discovery-server", "/bin/true"))
+        done = self.analyze("verify", "--man=no", "--generators=no", "--recursive-errors=no", str(unit))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr, "")
 
