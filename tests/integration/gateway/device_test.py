@@ -1,18 +1,13 @@
 """A robot of the cell as CiA 402 drives ([[device]]), commanded by a master on the bus."""
 
 import math
-import random
 import struct
 import time
 import unittest
 
 import gateway as g
-
-try:
-    import can
-    import drive_master
-except ImportError:
-    can = None
+import master_case
+from master_case import drive_master
 
 NODES = {11: "J_1", 12: "J_2", 13: "J_3", 14: "J_4"}
 TURN = 65536 / (2 * math.pi)  # increments a rad of J_1
@@ -56,30 +51,17 @@ geometry = [{ name = "post", box_m = [0.04, 0.04, 0.2] }]
 
 
 def setUpModule():
-    if can is None:
-        raise unittest.SkipTest("skipped: python3-can is not installed")
+    master_case.require()
 
 
-class Device(unittest.TestCase):
-    def setUp(self):
-        lot = random.SystemRandom()
-        group, port = f"239.75.{lot.randrange(1, 255)}.{lot.randrange(1, 255)}", lot.randrange(20000, 60000)
-        self.scratch = g.Scratch("can_cell")
-        text = self.scratch.cell_file.read_text()
+class Device(master_case.MasterCase):
+    def cell(self, text, channel):
         # In place of the stream of the arm; the table, on an interface that is not there, stays closed.
         start, end = text.index("[[stream]]"), text.index("[[stream]]", text.index("[[stream]]") + 1)
-        self.scratch.cell_file.write_text(text[:start] + device(f"udp:{group}:{port}") + text[end:])
-        self.master = drive_master.Master(group, port)
-        self.gateway = None
-
-    def tearDown(self):
-        if self.gateway:
-            self.gateway.close()
-        self.master.close()
-        self.scratch.remove()
+        return text[:start] + device(channel) + text[end:]
 
     def start(self):
-        self.gateway = g.Gateway(self.scratch)
+        self.start_gateway()
         self.go_online()
 
     def go_online(self):

@@ -1,16 +1,11 @@
 """I/O nodes ([[io_node]]): a controller reads limit switches and light barriers of the cell, and moves joints by outputs."""
 
-import random
 import struct
 import unittest
 
 import gateway as g
-
-try:
-    import can
-    import drive_master
-except ImportError:
-    can = None
+import master_case
+from master_case import drive_master
 
 NODE = 20
 PATIENCE = 30
@@ -60,24 +55,16 @@ off = "CONNECT Part TO Nowhere"
 
 
 def setUpModule():
-    if can is None:
-        raise unittest.SkipTest("skipped: python3-can is not installed")
+    master_case.require()
 
 
-class IoNode(unittest.TestCase):
+class IoNode(master_case.MasterCase):
+    def cell(self, text, channel):
+        return text + io_node(channel)
+
     def setUp(self):
-        lot = random.SystemRandom()
-        group, port = f"239.76.{lot.randrange(1, 255)}.{lot.randrange(1, 255)}", lot.randrange(20000, 60000)
-        self.scratch = g.Scratch("can_cell")
-        with self.scratch.cell_file.open("a") as cell:
-            cell.write(io_node(f"udp:{group}:{port}"))
-        self.master = drive_master.Master(group, port)
-        self.gateway = g.Gateway(self.scratch)
-
-    def tearDown(self):
-        self.gateway.close()
-        self.master.close()
-        self.scratch.remove()
+        super().setUp()
+        self.start_gateway()
 
     def inputs(self):
         return self.master.read(NODE, 0x6000, 1) | self.master.read(NODE, 0x6000, 2) << 8

@@ -2,16 +2,11 @@
 
 import json
 import pathlib
-import random
 import unittest
 
 import gateway as g
-
-try:
-    import can
-    import drive_master
-except ImportError:
-    can = None
+import master_case
+from master_case import drive_master
 
 DRIVES, IO_NODE = [1, 2, 3], 20
 ARM = """format = 1
@@ -36,24 +31,17 @@ def cell(channel):
 
 
 def setUpModule():
-    if can is None:
-        raise unittest.SkipTest("skipped: python3-can is not installed")
+    master_case.require()
 
 
-class SharedBus(unittest.TestCase):
+class SharedBus(master_case.MasterCase):
+    def cell(self, _, channel):
+        return cell(channel)
+
     def setUp(self):
-        lot = random.SystemRandom()
-        group, port = f"239.77.{lot.randrange(1, 255)}.{lot.randrange(1, 255)}", lot.randrange(20000, 60000)
-        self.scratch = g.Scratch("can_cell")
+        super().setUp()
         (self.scratch.home / "envlib" / "arm.mpc").write_text(ARM)
-        self.scratch.cell_file.write_text(cell(f"udp:{group}:{port}"))
-        self.master = drive_master.Master(group, port)
-        self.gateway = g.Gateway(self.scratch)
-
-    def tearDown(self):
-        self.gateway.close()
-        self.master.close()
-        self.scratch.remove()
+        self.start_gateway()
 
     def go_online(self):
         for node in DRIVES:
