@@ -103,7 +103,7 @@ class Place:
 
 
 SERVER_SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "examples" / "discovery_server.xml"
-SERVER_PAUSE_S = 5  # before it is started again, as docs/plant.md says: its clients have missed it then
+SERVER_PAUSE_S = 8  # before it is started again, as docs/plant.md says: its clients have missed it then
 
 
 def start_server(place, number):

@@ -125,7 +125,7 @@ def main():
         running = start_all()
         since = time.monotonic()
         later = plant.SummaryReader(plant.Place(4), servers)
-        wait_for_all(later, OPTIONS.cells, since, "servers killed for 5 s, a new control room from their start on")
+        wait_for_all(later, OPTIONS.cells, since, f"servers killed for {plant.SERVER_PAUSE_S} s, a new control room from their start on")
         print("lost meanwhile by the one before: {} of {}".format(*lost(reader)))
         later.close()
         for server in running:
