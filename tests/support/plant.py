@@ -106,9 +106,9 @@ SERVER_SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "exampl
 SERVER_PAUSE_S = 8  # before it is started again, as docs/plant.md says: its clients have missed it then
 
 
-def start_server(place, number):
-    """One of the discovery servers, of Debian's fastdds-tools, as docs/plant.md has it."""
-    return place.start(["fast-discovery-server", "-x", SERVER_SETTINGS, "-i", str(number), "-l", place.address, "-p", str(SERVER_PORT)])
+def start_server(place, number, settings=("-x", SERVER_SETTINGS)):
+    """One of the discovery servers, of Debian's fastdds-tools, as docs/plant.md has it; or with other `settings`."""
+    return place.start(["fast-discovery-server", *settings, "-i", str(number), "-l", place.address, "-p", str(SERVER_PORT)])
 
 
 def servers_text(places):
