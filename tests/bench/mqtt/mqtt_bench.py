@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """What [mqtt] costs a running gateway: the transfer cell (eight robots), joint states at 10 Hz, summaries, Sparkplug B.
 Processor share of the threads "mqtt" and "publisher" and of the whole, and resident memory, without, with a broker, and
 with a broker that was killed.   mqtt_bench.py [SECONDS]"""

@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """How long it takes until a recording can be played, and to seek in it.
 
     tests/bench/record/open_bench.py FILE [PROGRAM]      PROGRAM: build/bin/cellmirror unless given

@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """What the surfaces of deformable objects add to a recording of the trainer cell: bytes of the file, and processor time of the threads.
 
     tests/bench/record/tissue_bench.py [SECONDS]      build/bin has the programs"""
