@@ -68,7 +68,9 @@ class Library:
         found = sorted((self.prefix / "bin").glob("fast-discovery-server*"))
         if not found:
             sys.exit(f"no fast-discovery-server in {self.prefix / 'bin'}")
-        return [*self.run, found[0]]
+        # Since 3.2 the program behind `fastdds discovery` has commands, and this number is that of a server.
+        command = ["42"] if tuple(map(int, self.version.split(".")[:2])) >= (3, 2) else []
+        return [*self.run, found[0], *command]
 
 
 class Talk:
