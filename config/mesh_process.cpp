@@ -15,7 +15,7 @@
 #include <optional>
 #include <utility>
 
-#include "config/reader_process/reader_child.hpp"
+#include "ipc/sandbox/child_process.hpp"
 
 namespace cellmirror {
 

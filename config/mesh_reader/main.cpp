@@ -12,7 +12,7 @@
 
 #include "config/mesh_message/mesh_message.hpp"
 #include "config/mesh_reader/mesh_importer.hpp"
-#include "config/reader_process/confinement.hpp"
+#include "ipc/sandbox/confinement.hpp"
 #include "rt_core/base/text.hpp"
 
 // With AddressSanitizer, which does not work with an address limit: the largest permitted allocation.

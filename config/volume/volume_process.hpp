@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "config/reader_process/reader_child.hpp"
+#include "ipc/sandbox/child_process.hpp"
 #include "config/volume_message/slice_message.hpp"
 #include "rt_core/base/result.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "config/reader_process/confinement.hpp"
+#include "ipc/sandbox/confinement.hpp"
 #include "config/volume_message/slice_message.hpp"
 #include "config/volume_reader/slice_head.hpp"
 #include "config/volume_reader/slice_pixels.hpp"

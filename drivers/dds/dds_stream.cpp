@@ -70,6 +70,7 @@ class DdsStream final : public JointStream {
   [[nodiscard]] std::string condition(const FeedReport& feed, Timestamp now) const {
     if (topic_ == nullptr) return "closed";
     const TopicStatus topic = topic_->status();
+    if (!topic.outage.empty()) return topic.outage;
     if (topic.publishers == 0) {
       return topic.incompatible > 0 && config_.reliable
                  ? fmt::format("the publisher on {} is best effort, but reliable = true asks for more", config_.topic)
@@ -113,8 +114,8 @@ class DdsStream final : public JointStream {
   DdsStreamConfig config_;
   std::unique_ptr<RobotFeed> feed_;
   const Clock& clock_;
-  // Among callers of status(), open() and close(). Never taken by the threads of the DDS library that receive, nor does
-  // status() take the topic's mutex: what it reads is published by them.
+  // Among callers of status(), open() and close(). Never taken by the thread that receives, nor does status() take the
+  // topic's mutex: that thread publishes what it reads.
   mutable std::mutex status_mutex_;
   std::shared_ptr<JointStateTopic> topic_;  // open: not null
 };

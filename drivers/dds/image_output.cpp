@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "drivers/dds/image_message.hpp"
-#include "drivers/dds/internal/bytes_sample.hpp"
 #include "drivers/dds/internal/counting_writer.hpp"
+#include "drivers/dds/message/dds_message.hpp"
 
 namespace cellmirror::dds {
 

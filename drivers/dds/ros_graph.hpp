@@ -9,14 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/dds/message/guid.hpp"
 #include "rt_core/ports/ros_presence.hpp"
 
 namespace cellmirror::dds {
 
 inline constexpr std::string_view kRosGraphType = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 inline constexpr std::string_view kRosGraphTopic = "ros_discovery_info";
-
-using Guid = std::array<std::uint8_t, 16>;
 
 // Of a participant with one node.
 struct RosGraph {

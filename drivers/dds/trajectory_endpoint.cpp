@@ -10,8 +10,8 @@
 #include "drivers/dds/controller_messages.hpp"
 #include "drivers/dds/internal/action_server.hpp"
 #include "drivers/dds/internal/bytes_reader.hpp"
-#include "drivers/dds/internal/bytes_sample.hpp"
 #include "drivers/dds/internal/counting_writer.hpp"
+#include "drivers/dds/message/dds_message.hpp"
 #include "drivers/dds/trajectory_messages.hpp"
 #include "rt_core/base/log.hpp"
 

@@ -2,50 +2,67 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 
 #include "drivers/dds/internal/participant.hpp"
 #include "drivers/dds/sample_name.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/base/time.hpp"
 
 namespace cellmirror::dds {
 
 struct ReceivedSample {
   std::span<const std::byte> payload;  // empty where it was longer than kMaxPayloadBytes
   std::size_t received = 0;            // bytes that came
-  std::span<const std::byte> start;    // the first of them (BytesSample)
+  std::span<const std::byte> start;    // the first of them
   SampleName name;
   std::array<std::uint8_t, 16> related_guid{};  // of the related sample identity; zero: not given
+  Nanoseconds age{0};                           // since it was taken from the network
 };
 
-class BytesReader final {
+class BytesReader final : private EndpointEvents {
  public:
-  // Called by a thread of the DDS library, one at a time, and no more when the reader is gone.
+  // Called by the link's thread, one at a time, and no more when the reader is gone.
   using Receive = std::function<void(const ReceivedSample& sample)>;
-  // A writer that was matched was closed, or its lease has ended. As Receive.
+  // A writer that was matched was closed, or its lease has ended, or the process of the DDS library has. As Receive.
   using Gone = std::function<void(const Guid& writer)>;
   [[nodiscard]] static Result<std::unique_ptr<BytesReader>> make(const std::shared_ptr<Participant>& participant,
                                                                  const EndpointConfig& config, Receive receive,
                                                                  Gone gone = {});
-  ~BytesReader();
+  ~BytesReader() override;
   BytesReader(const BytesReader&) = delete;
   BytesReader& operator=(const BytesReader&) = delete;
 
-  // Any thread.
-  [[nodiscard]] int matched_writers() const;
-  [[nodiscard]] std::uint64_t samples() const;  // of any content
+  // Any thread; each value on its own.
+  [[nodiscard]] int matched_writers() const { return matched_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t samples() const { return samples_.load(std::memory_order_relaxed); }  // of any content
+  // Writers seen that do not offer what the reader asks for.
+  [[nodiscard]] std::uint64_t incompatible() const { return incompatible_.load(std::memory_order_relaxed); }
+  // Why nothing can come now; empty: it can.
+  [[nodiscard]] std::string outage() const { return participant_->link().outage(); }
 
  private:
   explicit BytesReader(std::shared_ptr<Participant> participant);
+  void sample(const SampleReceived& sample, std::span<const std::byte> payload) override;
+  void matched(const PeerMatched& event) override;
+  void incompatible(std::uint64_t total) override { incompatible_.store(total, std::memory_order_relaxed); }
+  void lost() override;
 
-  class Listener;
   std::shared_ptr<Participant> participant_;
-  std::unique_ptr<Listener> listener_;  // outlives the reader
-  eprosima::fastdds::dds::DataReader* reader_ = nullptr;
+  SystemClock clock_;
+  Receive receive_;
+  Gone gone_;
+  std::set<Guid> writers_;  // matched; the link's thread
+  std::atomic<int> matched_{0};
+  std::atomic<std::uint64_t> samples_{0};
+  std::atomic<std::uint64_t> incompatible_{0};
+  std::uint32_t id_ = 0;  // 0: none
 };
 
 }  // namespace cellmirror::dds

@@ -2,55 +2,21 @@
 
 #include <fmt/core.h>
 
-#include <fastdds/rtps/common/WriteParams.h>
-#include <atomic>
-#include <exception>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/DataWriterListener.hpp>
-#include <mutex>
-#include <set>
+#include <algorithm>
 #include <utility>
-
-#include "drivers/dds/internal/library_guid.hpp"
 
 namespace cellmirror::dds {
 
 namespace {
-constexpr int kMaxDepth = 400;  // the library's default of max_samples_per_instance
-}
 
-class BytesWriter::Listener final : public eprosima::fastdds::dds::DataWriterListener {
- public:
-  void on_publication_matched(eprosima::fastdds::dds::DataWriter* /*writer*/,
-                              const eprosima::fastdds::dds::PublicationMatchedStatus& status) override {
-    matched_.store(status.current_count, std::memory_order_relaxed);
-    const bool matched = status.current_count_change > 0;
-    const Guid reader = guid_of(eprosima::fastrtps::rtps::iHandle2GUID(status.last_subscription_handle));
-    const std::scoped_lock lock(mutex_);
-    if (matched) {
-      readers_.insert(reader);
-    } else {
-      readers_.erase(reader);
-    }
-    if (call_) call_(reader, matched);
-  }
-  void set_call(OnReader call) {
-    const std::scoped_lock lock(mutex_);
-    call_ = std::move(call);
-    if (!call_) return;
-    for (const Guid& reader : readers_) call_(reader, true);
-  }
-  [[nodiscard]] int matched() const { return matched_.load(std::memory_order_relaxed); }
+constexpr int kMaxDepth = 400;              // the library's default of max_samples_per_instance
+constexpr std::size_t kMostReaders = 4096;  // that are known by name
 
- private:
-  std::atomic<int> matched_{0};
-  std::mutex mutex_;  // also while the call runs
-  std::set<Guid> readers_;
-  OnReader call_;
-};
+}  // namespace
 
-BytesWriter::BytesWriter(std::shared_ptr<Participant> participant)
-    : participant_(std::move(participant)), listener_(std::make_unique<Listener>()) {}
+BytesWriter::BytesWriter(std::shared_ptr<Participant> participant, const EndpointConfig& config)
+    : participant_(std::move(participant)),
+      kept_most_(config.transient_local ? static_cast<std::size_t>(config.depth) : 0) {}
 
 Result<std::unique_ptr<BytesWriter>> BytesWriter::make(const std::shared_ptr<Participant>& participant,
                                                        const EndpointConfig& config) {
@@ -58,46 +24,63 @@ Result<std::unique_ptr<BytesWriter>> BytesWriter::make(const std::shared_ptr<Par
     return fail(fmt::format("a history of {} samples for topic {}", config.depth, config.topic),
                 fmt::format("use 1 to {}", kMaxDepth));
   }
-  std::unique_ptr<BytesWriter> made(new BytesWriter(participant));
-  const auto writer = participant->add_writer(config, made->listener_.get());
-  if (!writer) return std::unexpected(writer.error());
-  made->writer_ = *writer;
+  std::unique_ptr<BytesWriter> made(new BytesWriter(participant, config));
+  const auto id = participant->add_writer(config, *made);
+  if (!id) return std::unexpected(id.error());
+  made->id_ = *id;
   return made;
 }
 
 BytesWriter::~BytesWriter() {
-  if (writer_ != nullptr) participant_->remove(writer_);
+  if (id_ != 0) participant_->link().remove(id_);
 }
 
 bool BytesWriter::write() {
-  try {
-    return writer_->write(&sample_);
-  } catch (const std::exception&) {
-    return false;
+  if (kept_most_ > 0) {
+    const std::scoped_lock lock(kept_mutex_);
+    if (kept_.size() >= kept_most_) kept_.pop_front();
+    kept_.push_back(payload_);
   }
+  return participant_->link().write({.id = id_}, payload_);
 }
 
 bool BytesWriter::write_reply(const SampleName& request) {
-  eprosima::fastrtps::rtps::WriteParams parameters;
-  auto& identity = parameters.related_sample_identity();
-  std::size_t at = 0;
-  for (auto& byte : identity.writer_guid().guidPrefix.value) byte = request.guid[at++];
-  for (auto& byte : identity.writer_guid().entityId.value) byte = request.guid[at++];
-  identity.sequence_number() = eprosima::fastrtps::rtps::SequenceNumber_t(static_cast<std::uint64_t>(request.number));
-  try {
-    return writer_->write(&sample_, parameters);
-  } catch (const std::exception&) {
-    return false;
+  return participant_->link().write(
+      {.id = id_, .reply = true, .request_guid = request.guid, .request_number = request.number}, payload_);
+}
+
+void BytesWriter::on_reader(OnReader call) {
+  const std::scoped_lock lock(mutex_);
+  call_ = std::move(call);
+  if (!call_) return;
+  for (const Guid& reader : readers_) call_(reader, true);
+}
+
+void BytesWriter::matched(const PeerMatched& event) {
+  matched_.store(std::max(event.count, 0), std::memory_order_relaxed);
+  const std::scoped_lock lock(mutex_);
+  if (!event.matched) {
+    readers_.erase(event.peer);
+  } else if (readers_.size() < kMostReaders) {
+    readers_.insert(event.peer);
+  }
+  if (call_) call_(event.peer, event.matched);
+}
+
+void BytesWriter::dropped(std::uint64_t total) { dropped_.store(dropped_before_ + total, std::memory_order_relaxed); }
+
+void BytesWriter::added() {
+  const std::scoped_lock lock(kept_mutex_);
+  for (const std::vector<std::byte>& sample : kept_) participant_->link().write({.id = id_}, sample);
+}
+
+void BytesWriter::lost() {
+  matched_.store(0, std::memory_order_relaxed);
+  dropped_before_ = dropped_.load(std::memory_order_relaxed);
+  const std::scoped_lock lock(mutex_);
+  for (const Guid& reader : std::exchange(readers_, {})) {
+    if (call_) call_(reader, false);
   }
 }
-
-bool BytesWriter::all_confirmed() const {
-  return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t{0, 0}) ==
-         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
-}
-
-int BytesWriter::matched_readers() const { return listener_->matched(); }
-
-void BytesWriter::on_reader(OnReader call) { listener_->set_call(std::move(call)); }
 
 }  // namespace cellmirror::dds

@@ -41,41 +41,32 @@ class CountingWriter {
   [[nodiscard]] static Result<std::unique_ptr<CountingWriter>> make(const std::shared_ptr<Participant>& participant,
                                                                     const std::string& topic, std::string_view type,
                                                                     Options options) {
-    auto writer =
-        BytesWriter::make(participant, {topic, type, true, options.depth, options.large, options.transient_local});
+    auto writer = BytesWriter::make(participant, {topic, type, true, options.depth, options.large,
+                                                  options.transient_local, options.counts_overwritten});
     if (!writer) return std::unexpected(writer.error());
-    return std::unique_ptr<CountingWriter>(new CountingWriter(std::move(*writer), options));
+    return std::unique_ptr<CountingWriter>(new CountingWriter(std::move(*writer)));
   }
 
   [[nodiscard]] std::vector<std::byte>& payload() { return writer_->payload(); }
   void write() {
-    if (!options_.counts_overwritten || writer_->all_confirmed()) {
-      unconfirmed_ = 0;
-    } else if (unconfirmed_ >= options_.depth) {
-      dropped_.add();
-    }
     if (writer_->write()) {
       sent_.add();
-      unconfirmed_ = std::min(unconfirmed_ + 1, options_.depth);
     } else {
-      dropped_.add();
+      refused_.add();
     }
   }
   [[nodiscard]] std::uint64_t sent() const { return sent_.get(); }
-  [[nodiscard]] std::uint64_t dropped() const { return dropped_.get(); }
+  [[nodiscard]] std::uint64_t dropped() const { return refused_.get() + writer_->dropped(); }
   [[nodiscard]] std::uint64_t readers() const {
     return static_cast<std::uint64_t>(std::max(writer_->matched_readers(), 0));
   }
 
  private:
-  CountingWriter(std::unique_ptr<BytesWriter> writer, Options options)
-      : writer_(std::move(writer)), options_(options) {}
+  explicit CountingWriter(std::unique_ptr<BytesWriter> writer) : writer_(std::move(writer)) {}
 
   std::unique_ptr<BytesWriter> writer_;
-  Options options_;
-  int unconfirmed_ = 0;
   Counter sent_;
-  Counter dropped_;
+  Counter refused_;
 };
 
 }  // namespace cellmirror::dds

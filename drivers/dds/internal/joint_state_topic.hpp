@@ -1,14 +1,12 @@
 // One DDS reader of JointState and the robots that share it.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <memory>
 #include <mutex>
 #include <string>
 
-#include "drivers/dds/internal/participant.hpp"
+#include "drivers/dds/internal/bytes_reader.hpp"
 #include "drivers/dds/joint_state_router.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -20,45 +18,36 @@ struct TopicStatus {
   int publishers = 0;              // matched now
   std::uint64_t messages = 0;      // of any content
   std::uint64_t incompatible = 0;  // publishers seen that do not offer what we ask for
+  std::string outage;              // why nothing can come now; empty: it can
 };
 
-// Samples are taken on the thread of the DDS library that received them, without a hand-over. The mutex is among those
-// threads, where several serve one reader, and add() and remove() of the cell's owner; no status takes it.
-class JointStateTopic final : private eprosima::fastdds::dds::DataReaderListener {
+// Samples are decoded and routed on the link's thread. The mutex is among that thread and add() and remove() of the
+// cell's owner; no status takes it.
+class JointStateTopic final {
  public:
   // The one for this domain, interface, topic, reliability and clock; lives as long as it is referred to. Any thread.
   [[nodiscard]] static Result<std::shared_ptr<JointStateTopic>> shared(const DdsStreamConfig& config,
                                                                        const Clock& clock);
-  ~JointStateTopic() override;
   JointStateTopic(const JointStateTopic&) = delete;
   JointStateTopic& operator=(const JointStateTopic&) = delete;
 
   void add(RobotFeed& feed, JointSampleSink& sink);
   // After it returns nothing is pushed for this feed any more.
   void remove(RobotFeed& feed);
-  // Any thread; takes no lock. The counters are not taken at one instant.
+  // Any thread; does not wait for samples. The counters are not taken at one instant.
   [[nodiscard]] TopicStatus status() const {
-    return {publishers_.load(std::memory_order_relaxed), messages_.load(std::memory_order_relaxed),
-            incompatible_.load(std::memory_order_relaxed)};
+    return {reader_->matched_writers(), reader_->samples(), reader_->incompatible(), reader_->outage()};
   }
 
  private:
-  JointStateTopic(std::shared_ptr<Participant> participant, const Clock& clock);
-  void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
-  void on_subscription_matched(eprosima::fastdds::dds::DataReader* reader,
-                               const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
-  void on_requested_incompatible_qos(eprosima::fastdds::dds::DataReader* reader,
-                                     const eprosima::fastdds::dds::RequestedIncompatibleQosStatus& status) override;
+  explicit JointStateTopic(const Clock& clock) : clock_(clock) {}
+  void take(const ReceivedSample& sample);
+  void forget(const Guid& publisher);
 
-  std::shared_ptr<Participant> participant_;
   const Clock& clock_;
-  eprosima::fastdds::dds::DataReader* reader_ = nullptr;
   std::mutex mutex_;
-  JointStateRouter router_;  // under the mutex
-  // Relaxed: each publishes nothing but itself.
-  std::atomic<int> publishers_{0};
-  std::atomic<std::uint64_t> messages_{0};
-  std::atomic<std::uint64_t> incompatible_{0};
+  JointStateRouter router_;              // under the mutex
+  std::unique_ptr<BytesReader> reader_;  // last: it calls the above
 };
 
 }  // namespace cellmirror::dds

@@ -1,9 +1,7 @@
-// Which readers and writers of other participants are those of clients of services (service_mapping.hpp). Includes the
-// library's headers.
+// Which readers and writers of other participants are those of clients of services (service_mapping.hpp).
 #pragma once
 
 #include <atomic>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <mutex>
 #include <span>
 #include <string_view>
@@ -12,21 +10,18 @@
 
 namespace cellmirror::dds {
 
-// Outlives its participant. The library tells it of an endpoint before it matches that endpoint with ours.
-class ServiceClients final : public eprosima::fastdds::dds::DomainParticipantListener {
+// Any thread. The link tells it of an endpoint before it tells others that the endpoint is matched.
+class ServiceClients {
  public:
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
-  // As ClientEndpoints. Any thread.
+  // `gone`: the endpoint is no longer there.
+  void note(const Guid& endpoint, std::string_view user_data, bool gone);
+  void forget_all();
+  // As ClientEndpoints.
   [[nodiscard]] bool contains(const Guid& endpoint) const;
   [[nodiscard]] bool reaches(const RequestName& to, std::span<const Guid> readers) const;
 
  private:
-  void note(const Guid& endpoint, std::string_view user_data, bool gone);
-
-  mutable std::mutex mutex_;  // nothing of the library is called while it is held
+  mutable std::mutex mutex_;
   ClientEndpoints endpoints_;
   std::atomic<bool> warned_{false};
 };

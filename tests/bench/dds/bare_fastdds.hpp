@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/dds/internal/bytes_type.hpp"
+#include "drivers/dds/process/bytes_type.hpp"
 
 namespace cellmirror::dds::bench {
 

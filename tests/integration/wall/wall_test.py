@@ -145,7 +145,7 @@ class WallOfCells(unittest.TestCase):
             self.assertRegex(refused("--cells", file.name), r":4:8: error: .*without the token")
         wall = self.wall(free_domain())
         self.assertIn("--port", refused("--port", wall.address.split(":")[-1].rstrip("/")))
-        self.assertIn("is no IPv4 address of this machine", refused("--port", "0", "--interface", "192.0.2.1"))
+        self.assertIn("is not an IPv4 address of this machine", refused("--port", "0", "--interface", "192.0.2.1"))
 
 
 if __name__ == "__main__":

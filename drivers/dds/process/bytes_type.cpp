@@ -1,4 +1,4 @@
-#include "drivers/dds/internal/bytes_type.hpp"
+#include "drivers/dds/process/bytes_type.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -30,7 +30,7 @@ bool BytesType::deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* paylo
   const bool usable = first != nullptr && payload->length <= kMaxPayloadBytes;
   bytes.assign(first, usable ? first + payload->length : first);
   sample.start = {};
-  if (first != nullptr) std::copy_n(first, std::min<std::size_t>(payload->length, kStartBytes), sample.start.begin());
+  if (first != nullptr) std::memcpy(sample.start.data(), first, std::min<std::size_t>(payload->length, kStartBytes));
   return true;
 }
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-#include "drivers/dds/internal/bytes_sample.hpp"
+#include "drivers/dds/process/bytes_sample.hpp"
 
 namespace cellmirror::dds {
 

@@ -1,8 +1,4 @@
-#include "drivers/dds/internal/participant_qos.hpp"
-
-#include <arpa/inet.h>
-#include <fmt/core.h>
-#include <ifaddrs.h>
+#include "drivers/dds/process/participant_qos.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -14,8 +10,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include "rt_core/base/text.hpp"
 
 namespace cellmirror::dds {
 
@@ -29,7 +23,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 constexpr int kFirstPort = 7410;
 constexpr int kGroupPort = 7400;  // likewise, of the group
 constexpr int kPortsPerDomain = 250;
-constexpr int kMaxDomain = 232;                          // beyond it the ports pass 65535
 constexpr std::uint32_t kSocketBufferBytes = 4U << 20U;  // the kernel cuts it to net.core.rmem_max
 constexpr int kPeersPerHost = 64;                        // participants of this host that are found without multicast
 constexpr int kPeersPerMachine = 8;  // participants of another machine that are found by its address alone
@@ -41,20 +34,6 @@ constexpr int kLease_s = 10;
 // has forgotten the server no later than the server has forgotten the client.
 constexpr int kLongLease_s = 30;
 constexpr char kDiscoveryGroup[] = "239.255.0.1";  // RTPS 2.3, 9.6.1.4
-
-std::vector<std::string> ipv4_addresses() {
-  std::vector<std::string> found;
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) return found;
-  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
-    char text[INET_ADDRSTRLEN] = {};
-    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
-    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) found.emplace_back(text);
-  }
-  freeifaddrs(list);
-  return found;
-}
 
 rtps::Locator_t locator_of(const std::string& address, std::uint32_t port) {
   rtps::Locator_t locator;
@@ -150,23 +129,8 @@ void set_security(fd::DomainParticipantQos& qos, const DdsSecurityConfig& securi
 
 }  // namespace
 
-Result<void> check_domain(int domain) {
-  if (domain >= 0 && domain <= kMaxDomain) return {};
-  return fail(fmt::format("DDS domain {} does not exist", domain), fmt::format("use 0 to {}", kMaxDomain));
-}
-
-Result<void> check_address(const std::string& address) {
-  std::string known;
-  for (const std::string& own : ipv4_addresses()) {
-    if (own == address) return {};
-    known += (known.empty() ? "" : ", ") + own;
-  }
-  return fail(fmt::format("'{}' is no IPv4 address of this machine", printable(address)),
-              known.empty() ? "bring an interface up: ip link set lo up" : "use one of: " + known);
-}
-
-fd::DomainParticipantQos participant_qos(int domain, const std::string& address, const DdsSecurityConfig& security,
-                                         const DdsNetworkConfig& network) {
+fd::DomainParticipantQos participant_qos(const OpenParticipant& wanted) {
+  const auto& [domain, address, security, network] = wanted;
   fd::DomainParticipantQos qos;
   qos.name("cellmirror");
   // By this programs of ROS 2 know their kind.

@@ -3,18 +3,18 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
-namespace cellmirror::dds {
+#include "drivers/dds/message/dds_message.hpp"
 
-inline constexpr std::size_t kMaxPayloadBytes = 1U << 20U;
-inline constexpr std::size_t kStartBytes = 20;  // who asks, of a request (service_mapping.hpp)
+namespace cellmirror::dds {
 
 struct BytesSample {
   std::vector<std::byte> payload;  // encapsulation header included; empty where it was longer than kMaxPayloadBytes
   std::size_t received = 0;        // bytes that came
   // The first of them, also where the rest was too long; zeros where there are fewer.
-  std::array<std::byte, kStartBytes> start{};
+  std::array<std::uint8_t, kStartBytes> start{};
 };
 
 }  // namespace cellmirror::dds

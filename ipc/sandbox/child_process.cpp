@@ -1,4 +1,4 @@
-#include "config/reader_process/reader_child.hpp"
+#include "ipc/sandbox/child_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,6 +14,8 @@
 #include <cstring>
 #include <string>
 
+#include "ipc/sandbox/channel.hpp"
+
 namespace cellmirror {
 
 namespace {
@@ -21,12 +23,8 @@ namespace {
 // What the child does between its start and the program: the arguments of posix_spawn().
 class Beginning {
  public:
-  explicit Beginning(int socket) {
+  Beginning() {
     posix_spawn_file_actions_init(&files_);
-    posix_spawn_file_actions_adddup2(&files_, socket, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&files_, socket, STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&files_, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&files_, STDERR_FILENO + 1);
     posix_spawnattr_init(&attributes_);
     // Neither the gateway's signals nor its priority, and no Ctrl-C that is meant for the gateway.
     posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSCHEDULER |
@@ -48,9 +46,14 @@ class Beginning {
   Beginning(const Beginning&) = delete;
   Beginning& operator=(const Beginning&) = delete;
 
-  int spawn(const std::filesystem::path& program, pid_t& id) const {
+  void give(int own, int theirs) { posix_spawn_file_actions_adddup2(&files_, own, theirs); }
+  void discard(int theirs) { posix_spawn_file_actions_addopen(&files_, theirs, "/dev/null", O_WRONLY, 0); }
+  void close_from(int theirs) { posix_spawn_file_actions_addclosefrom_np(&files_, theirs); }
+
+  int spawn(const std::filesystem::path& program, const std::string& argument, pid_t& id) const {
     std::string name = program.filename().string();
-    std::array<char*, 2> arguments{name.data(), nullptr};
+    std::string subject = argument;
+    std::array<char*, 3> arguments{name.data(), argument.empty() ? nullptr : subject.data(), nullptr};
     return posix_spawn(&id, program.c_str(), &files_, &attributes_, arguments.data(), environ);
   }
 
@@ -66,7 +69,7 @@ Error not_started(const std::filesystem::path& program, int error) {
 
 }  // namespace
 
-ReaderChild& ReaderChild::operator=(ReaderChild&& other) noexcept {
+ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   if (this != &other) {
     end();
     id_ = std::exchange(other.id_, -1);
@@ -74,7 +77,7 @@ ReaderChild& ReaderChild::operator=(ReaderChild&& other) noexcept {
   return *this;
 }
 
-std::optional<int> ReaderChild::end() {
+std::optional<int> ChildProcess::end() {
   if (id_ <= 0) return std::nullopt;
   kill(id_, SIGKILL);
   int status = 0;
@@ -87,16 +90,47 @@ std::optional<int> ReaderChild::end() {
   return own ? std::optional(status) : std::nullopt;
 }
 
+std::optional<int> ChildProcess::changed() {
+  if (id_ <= 0) return std::nullopt;
+  int status = 0;
+  const pid_t found = waitpid(id_, &status, WNOHANG | WUNTRACED);
+  if (found != id_) return std::nullopt;
+  if (!WIFSTOPPED(status)) id_ = -1;
+  return status;
+}
+
 Result<StartedReader> start_reader(const std::filesystem::path& program) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     return fail(fmt::format("no connection to its reader: {}", std::strerror(errno)));
   Descriptor own(ends[0]);
   const Descriptor theirs(ends[1]);
+  Beginning beginning;
+  beginning.give(theirs.get(), STDIN_FILENO);
+  beginning.give(theirs.get(), STDOUT_FILENO);
+  beginning.discard(STDERR_FILENO);
+  beginning.close_from(STDERR_FILENO + 1);
   pid_t id = -1;
-  if (const int error = Beginning(theirs.get()).spawn(program, id); error != 0)
+  if (const int error = beginning.spawn(program, {}, id); error != 0)
     return std::unexpected(not_started(program, error));
-  return StartedReader{ReaderChild(id), std::move(own)};
+  return StartedReader{ChildProcess(id), std::move(own)};
+}
+
+Result<ChildProcess> start_on_channel(const std::filesystem::path& program, const std::string& subject,
+                                      const Descriptor& socket, const Descriptor& memory) {
+  // The order counts where a descriptor of ours has the number of one of theirs: the socket's may be kChildMemory.
+  const Descriptor high_socket(fcntl(socket.get(), F_DUPFD_CLOEXEC, kChildMemory + 1));
+  if (!high_socket.valid()) return std::unexpected(not_started(program, errno));
+  Beginning beginning;
+  beginning.give(memory.get(), kChildMemory);
+  beginning.give(high_socket.get(), kChildSocket);
+  beginning.discard(STDOUT_FILENO);
+  beginning.discard(STDERR_FILENO);
+  beginning.close_from(kChildMemory + 1);
+  pid_t id = -1;
+  if (const int error = beginning.spawn(program, subject, id); error != 0)
+    return std::unexpected(not_started(program, error));
+  return ChildProcess(id);
 }
 
 Result<void> check_reader_program(const std::filesystem::path& program) {

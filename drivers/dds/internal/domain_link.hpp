@@ -1,0 +1,111 @@
+// The gateway's DDS participants: each runs in a process of its own (cellmirror-dds), which is replaced when it ends,
+// with all its readers and writers. Here is what they mean; there, the DDS library and bytes.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/dds/internal/service_clients.hpp"
+#include "drivers/dds/message/dds_message.hpp"
+#include "drivers/dds/ros_graph.hpp"
+#include "ipc/sandbox/sandbox.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/ports/ros_presence.hpp"
+
+namespace cellmirror::dds {
+
+// A reader or writer, as the link tells it of its events: by the link's thread, one at a time, and no more after
+// remove().
+class EndpointEvents {
+ public:
+  virtual ~EndpointEvents() = default;
+  virtual void sample(const SampleReceived& /*sample*/, std::span<const std::byte> /*payload*/) {}
+  virtual void matched(const PeerMatched& /*event*/) {}
+  virtual void incompatible(std::uint64_t /*total*/) {}
+  virtual void dropped(std::uint64_t /*total*/) {}
+  // A process has it that did not have it before: a writer sends what late readers are to get.
+  virtual void added() {}
+  // The process has ended: no peer is matched any more.
+  virtual void lost() {}
+};
+
+// One for each domain, interface and security in use; lives as long as it is referenced. Any thread.
+class DomainLink {
+ public:
+  // Waits until the participant is open, a few seconds at most. Where the process ends meanwhile it is tried again by
+  // itself, and this succeeds.
+  [[nodiscard]] static Result<std::shared_ptr<DomainLink>> shared(int domain, const std::string& interface_address,
+                                                                  const DdsSecurityConfig& security);
+  ~DomainLink();
+  DomainLink(const DomainLink&) = delete;
+  DomainLink& operator=(const DomainLink&) = delete;
+
+  [[nodiscard]] const RosPresence& presence() const { return presence_; }
+  [[nodiscard]] const ServiceClients& clients() const { return clients_; }
+
+  // The endpoint's id. Waits until the library has it; where there is no process now, it gets it later. `events`
+  // outlives it until remove().
+  [[nodiscard]] Result<std::uint32_t> add(AddEndpoint wanted, EndpointEvents& events);
+  void remove(std::uint32_t id);
+  // A sample of a writer of ours. False where there is no process, or no room because it does not read.
+  bool write(const WriteSample& sample, std::span<const std::byte> payload);
+  // Why nothing comes or goes now; empty: it does.
+  [[nodiscard]] std::string outage() const { return sandbox_->outage(); }
+
+ private:
+  struct Endpoint {
+    AddEndpoint wanted;
+    EndpointEvents* events = nullptr;
+    bool there = false;  // in the process that runs now
+    std::optional<Guid> guid;
+    std::string refusal;
+  };
+  class GraphWriter;
+  DomainLink(OpenParticipant wanted, RosPresence presence, std::string subject);
+  [[nodiscard]] Result<void> open();
+  void send(DdsRequest request);
+  void on_started();
+  [[nodiscard]] bool on_message(std::span<const std::byte> message);
+  void on_ended();
+
+  // By what on_message() decodes. False: it may not come.
+  bool take(const ParticipantOpened& event, std::span<const std::byte> rest);
+  bool take(const ParticipantRefused& event, std::span<const std::byte> rest);
+  bool take(const EndpointAdded& event, std::span<const std::byte> rest);
+  bool take(const EndpointRefused& event, std::span<const std::byte> rest);
+  bool take(const SampleReceived& event, std::span<const std::byte> rest);
+  bool take(const PeerMatched& event, std::span<const std::byte> rest);
+  bool take(const PeersIncompatible& event, std::span<const std::byte> rest);
+  bool take(const PeerAnnounced& event, std::span<const std::byte> rest);
+  bool take(const SamplesDropped& event, std::span<const std::byte> rest);
+  bool take(const LibraryLog& event, std::span<const std::byte> rest);
+  // None: it was removed while the message was on its way.
+  [[nodiscard]] Endpoint* endpoint(std::uint32_t id);
+  void publish_graph();
+
+  const OpenParticipant wanted_;
+  const RosPresence presence_;
+  ServiceClients clients_;
+  std::mutex mutex_;  // of what follows; held while an endpoint is told of an event
+  std::condition_variable changed_;
+  std::map<std::uint32_t, Endpoint> endpoints_;
+  std::uint32_t last_id_ = 0;
+  bool opened_ = false;  // the process that runs now has the participant
+  std::optional<std::string> refused_;
+  RosGraph graph_;
+  std::unique_ptr<GraphWriter> graph_writer_;  // null: nothing is published
+  std::vector<std::byte> head_;                // reused by write(), under its own mutex
+  std::mutex write_mutex_;
+  std::unique_ptr<Sandbox> sandbox_;  // last: its thread calls the above
+};
+
+}  // namespace cellmirror::dds

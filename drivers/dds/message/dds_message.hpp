@@ -1,0 +1,181 @@
+// The messages between cellmirror and cellmirror-dds, the process in which the DDS library runs. Bytes go in and come
+// out: what they mean is known on cellmirror's side alone. Pure.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "drivers/dds/message/guid.hpp"
+#include "ipc/sandbox/channel.hpp"
+#include "rt_core/ports/dds_network.hpp"
+#include "rt_core/ports/stream_config.hpp"
+
+namespace cellmirror::dds {
+
+inline constexpr std::size_t kMaxPayloadBytes = 1U << 20U;  // of a sample; longer ones come without their content
+inline constexpr std::size_t kStartBytes = 20;              // who asks, of a request (service_mapping.hpp)
+inline constexpr std::size_t kMaxUserData = 4096;           // of an endpoint; longer ones come as none
+
+inline constexpr ChannelConfig kDdsChannel{
+    .to_child_bytes = 4U << 20U, .to_owner_bytes = 4U << 20U, .longest_message = 3U << 20U};
+
+// --- to the process -------------------------------------------------------------------------------------------------
+
+// The first message, once: the participant. Paths are absolute.
+struct OpenParticipant {
+  int domain = 0;
+  std::string address;
+  DdsSecurityConfig security;
+  DdsNetworkConfig network;
+
+  void fields(auto& bytes) {
+    bytes(domain, address, security.identity_ca, security.certificate, security.private_key, security.permissions_ca,
+          security.governance, security.permissions);
+    bytes(network.multicast);
+    bytes.choice(network.link, DdsLink::lossy);
+    bytes.list(network.discovery_servers, [&](DdsServer& server) { bytes(server.address, server.port, server.id); });
+    bytes.list(network.peers, [&](DdsPeer& peer) { bytes(peer.address, peer.port); });
+  }
+};
+
+// A reader or writer of the participant. Its id was not used before.
+struct AddEndpoint {
+  std::uint32_t id = 0;
+  bool writer = false;
+  std::string topic;
+  std::string type;
+  std::string partition;  // empty: in none
+  std::string user_data;
+  bool reliable = false;
+  std::int32_t depth = 1;
+  bool large = false;               // a writer's samples are larger than a datagram
+  bool transient_local = false;     // a writer gives its history to readers that come later, a reader asks for it
+  bool counts_overwritten = false;  // a writer reports samples that it overwrites before a reader has confirmed them
+
+  void fields(auto& bytes) {
+    bytes(id, writer, topic, type, partition, user_data, reliable, depth, large, transient_local, counts_overwritten);
+  }
+};
+
+struct RemoveEndpoint {
+  std::uint32_t id = 0;
+  void fields(auto& bytes) { bytes(id); }
+};
+
+// The sample's bytes follow.
+struct WriteSample {
+  std::uint32_t id = 0;
+  bool reply = false;
+  Guid request_guid{};  // of the request that this replies to
+  std::int64_t request_number = 0;
+
+  void fields(auto& bytes) { bytes(id, reply, request_guid, request_number); }
+};
+
+// The participant says goodbye to its peers, and the process ends.
+struct CloseParticipant {
+  void fields(auto&) {}
+};
+
+// --- from the process -----------------------------------------------------------------------------------------------
+
+struct ParticipantOpened {
+  Guid guid{};
+  void fields(auto& bytes) { bytes(guid); }
+};
+
+struct ParticipantRefused {
+  std::string what;
+  void fields(auto& bytes) { bytes(what); }
+};
+
+struct EndpointAdded {
+  std::uint32_t id = 0;
+  Guid guid{};
+  void fields(auto& bytes) { bytes(id, guid); }
+};
+
+struct EndpointRefused {
+  std::uint32_t id = 0;
+  std::string what;
+  void fields(auto& bytes) { bytes(id, what); }
+};
+
+// The sample's bytes follow; none where there were more than kMaxPayloadBytes.
+struct SampleReceived {
+  std::uint32_t id = 0;
+  std::int64_t taken_ns = 0;  // CLOCK_MONOTONIC
+  Guid writer{};
+  std::int64_t number = 0;
+  Guid related{};              // of the related sample identity; zeros: none
+  std::uint64_t received = 0;  // bytes that came
+  std::array<std::uint8_t, kStartBytes> start{};
+
+  void fields(auto& bytes) { bytes(id, taken_ns, writer, number, related, received, start); }
+};
+
+// An endpoint of another participant was matched with one of ours, or is no longer.
+struct PeerMatched {
+  std::uint32_t id = 0;
+  Guid peer{};
+  bool matched = false;
+  std::int32_t count = 0;  // matched now
+
+  void fields(auto& bytes) { bytes(id, peer, matched, count); }
+};
+
+// Writers were seen that do not offer what a reader of ours asks for.
+struct PeersIncompatible {
+  std::uint32_t id = 0;
+  std::uint64_t total = 0;
+  void fields(auto& bytes) { bytes(id, total); }
+};
+
+// An endpoint of another participant that announces USER_DATA, or that is gone.
+struct PeerAnnounced {
+  Guid peer{};
+  bool gone = false;
+  std::string user_data;
+  void fields(auto& bytes) { bytes(peer, gone, user_data); }
+};
+
+// Samples of a writer that did not reach the library, or that were overwritten before a reader had confirmed them.
+struct SamplesDropped {
+  std::uint32_t id = 0;
+  std::uint64_t total = 0;
+  void fields(auto& bytes) { bytes(id, total); }
+};
+
+// What the library logs.
+struct LibraryLog {
+  bool warning = false;
+  std::string category;
+  std::string text;
+  void fields(auto& bytes) { bytes(warning, category, text); }
+};
+
+using DdsRequest = std::variant<OpenParticipant, AddEndpoint, RemoveEndpoint, WriteSample, CloseParticipant>;
+using DdsEvent = std::variant<ParticipantOpened, ParticipantRefused, EndpointAdded, EndpointRefused, SampleReceived,
+                              PeerMatched, PeersIncompatible, PeerAnnounced, SamplesDropped, LibraryLog>;
+
+// A message and the bytes that follow it.
+template <class Variant>
+struct Received {
+  Variant message;
+  std::span<const std::byte> rest;
+};
+
+// In place of what `out` had; the bytes of a sample are sent behind it.
+void encode(DdsRequest& request, std::vector<std::byte>& out);
+void encode(DdsEvent& event, std::vector<std::byte>& out);
+// None: it is not such a message, or bytes are left over where none may follow.
+[[nodiscard]] std::optional<Received<DdsRequest>> decode_request(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<Received<DdsEvent>> decode_event(std::span<const std::byte> bytes);
+
+}  // namespace cellmirror::dds

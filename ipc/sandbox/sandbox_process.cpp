@@ -1,0 +1,142 @@
+#include "ipc/sandbox/sandbox_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+#include "ipc/sandbox/confinement.hpp"
+
+namespace cellmirror {
+
+namespace {
+
+constexpr std::uint64_t kMega = 1ULL << 20U;
+
+std::string signal_name(int signal) {
+  const char* known = sigabbrev_np(signal);
+  return known != nullptr ? fmt::format("{} (SIG{})", signal, known) : std::to_string(signal);
+}
+
+std::string ran_out_of_memory(std::uint64_t limit) {
+  return fmt::format("reached its memory limit of {} MB", limit / kMega);
+}
+
+// Of a status as waitpid() gives it.
+std::string in_words(int status, std::uint64_t memory_limit) {
+  if (WIFSTOPPED(status)) return fmt::format("was stopped by signal {}", signal_name(WSTOPSIG(status)));
+  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", signal_name(WTERMSIG(status)));
+  if (WEXITSTATUS(status) == kOutOfMemoryStatus) return ran_out_of_memory(memory_limit);
+  return fmt::format("ended with status {}", WEXITSTATUS(status));
+}
+
+// Resident memory; 0 where it is not known.
+std::uint64_t resident_bytes(pid_t pid) {
+  const Descriptor file(open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) return 0;
+  std::array<char, 128> text{};
+  if (read(file.get(), text.data(), text.size() - 1) <= 0) return 0;
+  const char* second = std::strchr(text.data(), ' ');
+  if (second == nullptr) return 0;
+  return std::strtoull(second, nullptr, 10) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+SandboxProcess::SandboxProcess(Channel channel, ChildProcess child, const SandboxConfig& config,
+                               std::shared_ptr<SandboxRecord> record)
+    : channel_(std::move(channel)),
+      child_(std::move(child)),
+      memory_limit_(config.memory_bytes),
+      record_(std::move(record)) {}
+
+Result<std::unique_ptr<SandboxProcess>> SandboxProcess::start(const SandboxConfig& config,
+                                                              std::shared_ptr<SandboxRecord> record) {
+  auto ends = Channel::make(config.channel);
+  if (!ends) return std::unexpected(ends.error());
+  auto child =
+      start_on_channel(program_beside_this(config.program), config.subject, ends->child_socket, ends->memory);
+  if (!child) return std::unexpected(child.error());
+  record->started(child->id());
+  return std::unique_ptr<SandboxProcess>(
+      new SandboxProcess(std::move(ends->owner), std::move(*child), config, std::move(record)));
+}
+
+bool SandboxProcess::receive(std::vector<std::byte>& out) {
+  if (channel_.receive(out) != RingResult::done) return false;
+  ++messages_;
+  return true;
+}
+
+void SandboxProcess::wait(Nanoseconds timeout, int also) {
+  channel_.wait(std::min(timeout, kLookEvery), also);
+  wakes_ += channel_.wakes();
+  if (channel_.ended()) next_look_ = {};
+}
+
+std::optional<std::string> SandboxProcess::floods(Timestamp now) {
+  constexpr Nanoseconds kOver{1'000'000'000};
+  if (!counted_since_.known()) counted_since_ = now;
+  const Nanoseconds since = now - counted_since_;
+  if (since < kOver) return std::nullopt;
+  const double per_second = 1.0 / seconds(since);
+  const double messages = static_cast<double>(std::exchange(messages_, 0)) * per_second;
+  const double wakes = static_cast<double>(std::exchange(wakes_, 0)) * per_second;
+  counted_since_ = now;
+  if (messages > static_cast<double>(kMostMessagesPerSecond))
+    return fmt::format("flooded cellmirror with {:.0f} messages per second", messages);
+  if (wakes > messages + static_cast<double>(kMostIdleWakesPerSecond))
+    return fmt::format("woke cellmirror {:.0f} times per second for nothing", wakes);
+  return std::nullopt;
+}
+
+std::optional<std::string> SandboxProcess::found(Timestamp now) {
+  if (channel_.damaged()) return "damaged the memory that it shares with cellmirror";
+  if (const auto status = child_.changed()) return in_words(*status, memory_limit_);
+  if (channel_.ended()) return why_it_left();
+  const std::uint64_t beats = channel_.beats();
+  silent_looks_ = beats == std::exchange(last_beats_, beats) ? silent_looks_ + 1 : 0;
+  if (silent_looks_ > kMostSilentLooks)
+    return fmt::format("did not answer for {:.1f} s", seconds(kLookEvery * silent_looks_));
+  if (auto flood = floods(now)) return flood;
+  const std::uint64_t memory = resident_bytes(child_.id());
+  record_->measured(memory);
+  if (memory > memory_limit_) return ran_out_of_memory(memory_limit_);
+  return std::nullopt;
+}
+
+std::optional<std::string> SandboxProcess::look(Timestamp now) {
+  if (next_look_.known() && now < next_look_) return std::nullopt;
+  next_look_ = now + kLookEvery;
+  auto why = found(now);
+  if (why) return end(*why);
+  return std::nullopt;
+}
+
+// An ending process closes its descriptors before its status can be had.
+std::string SandboxProcess::why_it_left() {
+  constexpr int kTries = 20;
+  constexpr timespec kPause{0, 5'000'000};
+  for (int i = 0; i < kTries; ++i) {
+    if (const auto status = child_.changed()) return in_words(*status, memory_limit_);
+    nanosleep(&kPause, nullptr);
+  }
+  return "closed its connection to cellmirror";
+}
+
+std::string SandboxProcess::end(const std::string& why) {
+  const auto status = child_.changed();
+  const bool by_itself = status && !WIFSTOPPED(*status);
+  child_.end();
+  return by_itself ? in_words(*status, memory_limit_) : why;
+}
+
+}  // namespace cellmirror
