@@ -19,7 +19,7 @@ constexpr Nanoseconds kMemoryPeriod{10'000'000'000};
 
 }  // namespace
 
-// Called by a thread of the DDS library.
+// Called by the thread of the participant's link.
 class WallRun::Inbox final : public dds::SummaryInbox {
  public:
   explicit Inbox(WallInbox& to) : to_(to) {}

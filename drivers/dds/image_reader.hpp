@@ -23,8 +23,8 @@ struct ImageReaderConfig {
 
 class ImageReader {
  public:
-  // With the bytes of a picture, whatever they are, valid during the call: by a thread of the DDS library, one call at
-  // a time; must not wait. What is no such message is dropped.
+  // With the bytes of a picture, whatever they are, valid during the call: by the thread of the participant's link, one
+  // call at a time; must not wait. What is no such message is dropped.
   using Receive = std::function<void(std::span<const std::uint8_t> picture, Timestamp receive_time)>;
 
   // `clock` outlives the reader; after its end nothing is called.

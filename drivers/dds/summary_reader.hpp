@@ -21,7 +21,7 @@ struct ReceivedSummary {
   std::size_t bytes = 0;
 };
 
-// By a thread of the DDS library, one call at a time; must not wait.
+// By the thread of the participant's link, one call at a time; must not wait.
 class SummaryInbox {
  public:
   virtual ~SummaryInbox() = default;

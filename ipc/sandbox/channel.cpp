@@ -6,12 +6,12 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include <fcntl.h>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <new>
 #include <utility>
 
@@ -103,7 +103,7 @@ Result<Channel::Ends> Channel::make(const ChannelConfig& config) {
 }
 
 Result<Channel> Channel::attach() {
-  struct stat state {};
+  struct stat state{};
   if (fstat(kChildMemory, &state) != 0) return no_channel("it was not started by cellmirror");
   const auto size = static_cast<std::size_t>(std::max<off_t>(state.st_size, 0));
   if (size < kHeaderBytes) return fail("no connection to cellmirror: the memory is too short");
@@ -143,13 +143,17 @@ void Channel::drain_wakes() {
   if (count > 0) wakes_ = static_cast<std::size_t>(count);
 }
 
-void Channel::wait(Nanoseconds timeout, int also) {
+void Channel::wait(Nanoseconds timeout, std::span<pollfd> also) {
+  CELLMIRROR_EXPECTS(also.size() <= kMostAlso);
   wakes_ = 0;
+  for (pollfd& other : also) other.revents = 0;
   if (!in_.prepare_to_sleep()) return;
-  std::array<pollfd, 2> waited{pollfd{socket_.get(), POLLIN, 0}, pollfd{also, POLLIN, 0}};
+  std::array<pollfd, kMostAlso + 1> waited{pollfd{socket_.get(), POLLIN, 0}};
+  std::ranges::copy(also, waited.begin() + 1);
   const std::int64_t ns = std::max<std::int64_t>(0, timeout.count());
   const timespec limit{ns / 1'000'000'000, ns % 1'000'000'000};
-  if (ppoll(waited.data(), waited.size(), &limit, nullptr) > 0 && waited[0].revents != 0) drain_wakes();
+  if (ppoll(waited.data(), also.size() + 1, &limit, nullptr) > 0 && waited[0].revents != 0) drain_wakes();
+  for (std::size_t i = 0; i < also.size(); ++i) also[i].revents = waited[i + 1].revents;
   in_.awake();
 }
 

@@ -1,11 +1,14 @@
-// The connection between a process of ours and a confined one: messages both ways through shared memory, and a socket by
-// which each wakes the other and notices the other's end. The owner's side never waits for the confined process and
+// The connection between a process of ours and a confined one: messages both ways through shared memory, and a socket
+// by which each wakes the other and notices the other's end. The owner's side never waits for the confined process and
 // checks all that it reads from the memory.
 #pragma once
+
+#include <poll.h>
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -19,8 +22,8 @@
 namespace cellmirror {
 
 struct ChannelConfig {
-  std::size_t to_child_bytes = 1U << 20U;   // messages that wait; a power of two
-  std::size_t to_owner_bytes = 1U << 20U;   // likewise
+  std::size_t to_child_bytes = 1U << 20U;    // messages that wait; a power of two
+  std::size_t to_owner_bytes = 1U << 20U;    // likewise
   std::size_t longest_message = 64U << 10U;  // both ways; less than either of the above
 };
 
@@ -60,8 +63,10 @@ class Channel {
   RingResult receive(std::vector<std::byte>& out);
   [[nodiscard]] bool damaged() const { return shared_->damaged.load(std::memory_order_relaxed); }
 
-  // Sleeps until there is a message, `also` (a descriptor, or -1) is readable, the other side has ended, or `timeout`.
-  void wait(Nanoseconds timeout, int also = -1);
+  // Sleeps until there is a message, one of `also` (at most kMostAlso) is ready as poll() has it, the other side has
+  // ended, or `timeout`.
+  static constexpr std::size_t kMostAlso = 3;
+  void wait(Nanoseconds timeout, std::span<pollfd> also = {});
   // Since the last wait(): it ended without a message. For the owner, who counts the wakes of a child that lies.
   [[nodiscard]] bool ended() const { return ended_; }
   // Bytes by which the other side woke this one in the last wait().

@@ -118,8 +118,8 @@ class SystemCallFilter {
   static constexpr std::uint32_t kLoad = BPF_LD | BPF_W | BPF_ABS;
   static constexpr std::uint32_t kIfEqual = BPF_JMP | BPF_JEQ | BPF_K;
   static constexpr std::uint32_t kReturn = BPF_RET | BPF_K;
-  static constexpr std::uint32_t kNotPermitted = 1;   // EPERM
-  static constexpr std::uint32_t kUnknownCall = 38;   // ENOSYS
+  static constexpr std::uint32_t kNotPermitted = 1;  // EPERM
+  static constexpr std::uint32_t kUnknownCall = 38;  // ENOSYS
 
   void add(const sock_filter& line) { program_.push_back(line); }
 
@@ -133,27 +133,79 @@ constexpr std::array kReading{
 
 // What threads, sockets and timers take, and what tells a process about itself.
 constexpr std::array kNetworking{
-    __NR_readv,       __NR_writev,        __NR_close,       __NR_fstat,        __NR_lseek,          __NR_fcntl,
-    __NR_ioctl,       __NR_ppoll,         __NR_pselect6,    __NR_epoll_create1, __NR_epoll_ctl,     __NR_epoll_pwait,
-    __NR_eventfd2,    __NR_pipe2,         __NR_dup,         __NR_timerfd_create, __NR_timerfd_settime,
-    __NR_bind,        __NR_sendto,        __NR_recvfrom,    __NR_sendmsg,      __NR_recvmsg,        __NR_sendmmsg,
-    __NR_recvmmsg,    __NR_setsockopt,    __NR_getsockopt,  __NR_getsockname,  __NR_getpeername,    __NR_shutdown,
-    __NR_set_robust_list, __NR_get_robust_list, __NR_rseq,  __NR_sched_yield,  __NR_sched_getaffinity,
-    __NR_sched_getparam, __NR_sched_getscheduler, __NR_gettid, __NR_getpid,    __NR_getppid,        __NR_getuid,
-    __NR_geteuid,     __NR_getgid,        __NR_getegid,     __NR_uname,        __NR_sysinfo,        __NR_getrlimit,
-    __NR_rt_sigaction, __NR_rt_sigtimedwait, __NR_sigaltstack, __NR_nanosleep, __NR_clock_nanosleep, __NR_clock_getres,
-    __NR_restart_syscall, __NR_set_tid_address, __NR_membarrier,
+    __NR_readv,
+    __NR_writev,
+    __NR_close,
+    __NR_fstat,
+    __NR_lseek,
+    __NR_fcntl,
+    __NR_ioctl,
+    __NR_ppoll,
+    __NR_pselect6,
+    __NR_epoll_create1,
+    __NR_epoll_ctl,
+    __NR_epoll_pwait,
+    __NR_eventfd2,
+    __NR_pipe2,
+    __NR_dup,
+    __NR_timerfd_create,
+    __NR_timerfd_settime,
+    __NR_bind,
+    __NR_sendto,
+    __NR_recvfrom,
+    __NR_sendmsg,
+    __NR_recvmsg,
+    __NR_sendmmsg,
+    __NR_recvmmsg,
+    __NR_setsockopt,
+    __NR_getsockopt,
+    __NR_getsockname,
+    __NR_getpeername,
+    __NR_shutdown,
+    __NR_set_robust_list,
+    __NR_get_robust_list,
+    __NR_rseq,
+    __NR_sched_yield,
+    __NR_sched_getaffinity,
+    __NR_sched_getparam,
+    __NR_sched_getscheduler,
+    __NR_gettid,
+    __NR_getpid,
+    __NR_getppid,
+    __NR_getuid,
+    __NR_geteuid,
+    __NR_getgid,
+    __NR_getegid,
+    __NR_uname,
+    __NR_sysinfo,
+    __NR_getrlimit,
+    __NR_rt_sigaction,
+    __NR_rt_sigtimedwait,
+    __NR_sigaltstack,
+    __NR_nanosleep,
+    __NR_clock_nanosleep,
+    __NR_clock_getres,
+    __NR_restart_syscall,
+    __NR_set_tid_address,
+    __NR_membarrier,
+    __NR_seccomp,
 #if defined(__x86_64__)
-    __NR_poll, __NR_select, __NR_epoll_wait, __NR_epoll_create, __NR_eventfd, __NR_pipe, __NR_dup2,
+    __NR_poll,
+    __NR_select,
+    __NR_epoll_wait,
+    __NR_epoll_create,
+    __NR_eventfd,
+    __NR_pipe,
+    __NR_dup2,
 #endif
 };
 
 // Only to read: confine_to_network() leaves no file that may be written.
 constexpr std::array kOpening{
-    __NR_openat, __NR_newfstatat, __NR_readlinkat, __NR_faccessat, __NR_faccessat2, __NR_statx, __NR_getdents64,
-    __NR_getcwd, __NR_pread64,
+    __NR_openat, __NR_newfstatat, __NR_readlinkat, __NR_faccessat, __NR_faccessat2,
+    __NR_statx,  __NR_getdents64, __NR_getcwd,     __NR_pread64,
 #if defined(__x86_64__)
-    __NR_open, __NR_stat, __NR_lstat, __NR_access, __NR_readlink,
+    __NR_open,   __NR_stat,       __NR_lstat,      __NR_access,    __NR_readlink,
 #endif
 };
 
@@ -192,12 +244,27 @@ constexpr std::uint64_t kRead = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_F
 constexpr std::uint64_t kFirstVersionRights = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1U) - 1;
 
 // What the C library and OpenSSL read: names of hosts, time zones, shared libraries, certificates.
-constexpr std::array kSystemFiles{"/etc/ld.so.cache",  "/etc/passwd",        "/etc/localtime", "/etc/nsswitch.conf",
-                                  "/etc/hosts",        "/etc/resolv.conf",   "/etc/host.conf", "/etc/gai.conf",
-                                  "/etc/services",     "/etc/ssl",           "/usr/lib",       "/usr/share/zoneinfo",
-                                  "/usr/share/ca-certificates", "/usr/local/share/ca-certificates",
-                                  "/lib",              "/lib64",             "/run/systemd/resolve",
-                                  "/sys/devices/system/cpu", "/dev/urandom", "/dev/null", "/proc/sys/vm/overcommit_memory"};
+constexpr std::array kSystemFiles{"/etc/ld.so.cache",
+                                  "/etc/passwd",
+                                  "/etc/localtime",
+                                  "/etc/nsswitch.conf",
+                                  "/etc/hosts",
+                                  "/etc/resolv.conf",
+                                  "/etc/host.conf",
+                                  "/etc/gai.conf",
+                                  "/etc/services",
+                                  "/etc/ssl",
+                                  "/usr/lib",
+                                  "/usr/share/zoneinfo",
+                                  "/usr/share/ca-certificates",
+                                  "/usr/local/share/ca-certificates",
+                                  "/lib",
+                                  "/lib64",
+                                  "/run/systemd/resolve",
+                                  "/sys/devices/system/cpu",
+                                  "/dev/urandom",
+                                  "/dev/null",
+                                  "/proc/sys/vm/overcommit_memory"};
 
 void permit_reading(int rules, const char* path) {
   const Descriptor file(open(path, O_PATH | O_CLOEXEC));

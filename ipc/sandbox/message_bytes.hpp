@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -142,6 +143,13 @@ void encode_variant(std::variant<Messages...>& message, std::vector<std::byte>& 
   std::visit([&bytes](auto& one) { one.fields(bytes); }, message);
 }
 
+// A message as it came. `rest`: what follows its fields, of a message that declares kCarriesBytes.
+template <class Variant>
+struct ReceivedMessage {
+  Variant message;
+  std::span<const std::byte> rest;
+};
+
 // False where it is none of them. `rest`: what follows the fields.
 template <class... Messages>
 [[nodiscard]] bool decode_variant(std::span<const std::byte> from, std::variant<Messages...>& message,
@@ -156,6 +164,17 @@ template <class... Messages>
   std::visit([&bytes](auto& one) { one.fields(bytes); }, message);
   rest = bytes.left();
   return bytes.good();
+}
+
+// None: it is none of the variant's messages, or bytes are left over where none may follow.
+template <class Variant>
+[[nodiscard]] std::optional<ReceivedMessage<Variant>> decode_message(std::span<const std::byte> bytes) {
+  ReceivedMessage<Variant> received;
+  if (!decode_variant(bytes, received.message, received.rest)) return std::nullopt;
+  const bool may_have_more =
+      std::visit([]<class Message>(const Message&) { return requires { Message::kCarriesBytes; }; }, received.message);
+  if (!received.rest.empty() && !may_have_more) return std::nullopt;
+  return received;
 }
 
 }  // namespace cellmirror

@@ -64,20 +64,20 @@ std::string Sandbox::outage() const {
 
 bool Sandbox::launch() {
   auto started = SandboxProcess::start(config_, record_);
+  const std::optional<Error> failure = started ? std::nullopt : std::optional(started.error());
+  if (started) {
+    const std::scoped_lock lock(mutex_);
+    process_ = std::move(*started);
+    outage_.clear();
+  }
   {
     const std::scoped_lock lock(start_mutex_);
-    if (!first_try_done_ && !started) first_failure_ = started.error();
+    if (!first_try_done_) first_failure_ = failure;
     first_try_done_ = true;
   }
   first_try_.notify_all();
-  if (!started) {
-    note_end(started.error().what);
-    return false;
-  }
-  const std::scoped_lock lock(mutex_);
-  process_ = std::move(*started);
-  outage_.clear();
-  return true;
+  if (failure) note_end(failure->what);
+  return !failure;
 }
 
 void Sandbox::run() {
@@ -91,7 +91,7 @@ void Sandbox::run() {
     const Timestamp now = clock_.now();
     const Nanoseconds delay = delay_.after_end(now);
     log_warning("sandbox", "{} ({}) {}; it starts again in {:.1f} s (restart {})", config_.program, config_.subject,
-                record_->report().last_exit, seconds(delay), record_->report().restarts + 1);
+                record_->report().last_exit, seconds(delay), record_->report().restarts);
     pause_until(now + delay);
   }
 }

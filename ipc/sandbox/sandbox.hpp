@@ -74,8 +74,8 @@ class Sandbox {
   WakeSignal wake_;
   std::atomic<bool> stop_{false};
   std::shared_ptr<SandboxRecord> record_;
-  RestartDelay delay_;                 // the thread's, as what follows
-  std::vector<std::byte> message_;     // reused
+  RestartDelay delay_;              // the thread's, as what follows
+  std::vector<std::byte> message_;  // reused
   Timestamp last_woken_;
   std::optional<Error> first_failure_;
   mutable std::mutex mutex_;                 // of what follows

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -49,6 +50,21 @@ std::uint64_t resident_bytes(pid_t pid) {
   return std::strtoull(second, nullptr, 10) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+// Of all its threads; 0 where it is not known (proc(5), /proc/pid/stat).
+double processor_seconds(pid_t pid) {
+  const Descriptor file(open(fmt::format("/proc/{}/stat", pid).c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) return 0;
+  std::array<char, 1024> text{};
+  if (read(file.get(), text.data(), text.size() - 1) <= 0) return 0;
+  const char* after_name = std::strrchr(text.data(), ')');
+  unsigned long user = 0;
+  unsigned long system = 0;
+  if (after_name == nullptr ||
+      std::sscanf(after_name + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system) != 2)
+    return 0;
+  return static_cast<double>(user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
 }  // namespace
 
 SandboxProcess::SandboxProcess(Channel channel, ChildProcess child, const SandboxConfig& config,
@@ -56,14 +72,14 @@ SandboxProcess::SandboxProcess(Channel channel, ChildProcess child, const Sandbo
     : channel_(std::move(channel)),
       child_(std::move(child)),
       memory_limit_(config.memory_bytes),
+      most_fruitless_s_(config.most_fruitless_s),
       record_(std::move(record)) {}
 
 Result<std::unique_ptr<SandboxProcess>> SandboxProcess::start(const SandboxConfig& config,
                                                               std::shared_ptr<SandboxRecord> record) {
   auto ends = Channel::make(config.channel);
   if (!ends) return std::unexpected(ends.error());
-  auto child =
-      start_on_channel(program_beside_this(config.program), config.subject, ends->child_socket, ends->memory);
+  auto child = start_on_channel(program_beside_this(config.program), config.subject, ends->child_socket, ends->memory);
   if (!child) return std::unexpected(child.error());
   record->started(child->id());
   return std::unique_ptr<SandboxProcess>(
@@ -77,7 +93,8 @@ bool SandboxProcess::receive(std::vector<std::byte>& out) {
 }
 
 void SandboxProcess::wait(Nanoseconds timeout, int also) {
-  channel_.wait(std::min(timeout, kLookEvery), also);
+  pollfd other{also, POLLIN, 0};
+  channel_.wait(std::min(timeout, kLookEvery), std::span(&other, also < 0 ? 0 : 1));
   wakes_ += channel_.wakes();
   if (channel_.ended()) next_look_ = {};
 }
@@ -95,7 +112,17 @@ std::optional<std::string> SandboxProcess::floods(Timestamp now) {
     return fmt::format("flooded cellmirror with {:.0f} messages per second", messages);
   if (wakes > messages + static_cast<double>(kMostIdleWakesPerSecond))
     return fmt::format("woke cellmirror {:.0f} times per second for nothing", wakes);
-  return std::nullopt;
+  return loops(messages);
+}
+
+std::optional<std::string> SandboxProcess::loops(double messages_per_second) {
+  constexpr double kRests = 0.3;     // of a processor; on a busy machine a loop has no more than its share
+  constexpr double kQuiet = 1000.0;  // messages; a busy network brings more
+  const double taken = processor_seconds(child_.id());
+  const double used = taken - std::exchange(processor_s_, taken);
+  fruitless_s_ = used > kRests && messages_per_second < kQuiet ? fruitless_s_ + used : 0;
+  if (fruitless_s_ < most_fruitless_s_) return std::nullopt;
+  return fmt::format("computed for {:.0f} s without a result", fruitless_s_);
 }
 
 std::optional<std::string> SandboxProcess::found(Timestamp now) {

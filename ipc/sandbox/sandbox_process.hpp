@@ -21,14 +21,17 @@ struct SandboxConfig {
   std::string subject;  // for status and lists of processes
   ChannelConfig channel;
   std::uint64_t memory_bytes = 512ULL << 20U;  // resident; it is ended beyond that
+  // Processor time in which it has said next to nothing and did not rest, of a library that loops over a malformed
+  // datagram for ever. Many participants that appear at once take some seconds, too.
+  double most_fruitless_s = 30;
 };
 
 class SandboxProcess {
  public:
   static constexpr Nanoseconds kLookEvery{100'000'000};
   // Looks in a row in which it gave no sign of life. Counted in looks, not in time: a machine that stalls as a whole
-  // does not count against it.
-  static constexpr int kMostSilentLooks = 7;
+  // does not count against it. One that was stopped or has ended is noticed at the next look.
+  static constexpr int kMostSilentLooks = 30;
   static constexpr std::uint64_t kMostMessagesPerSecond = 400'000;
   static constexpr std::uint64_t kMostIdleWakesPerSecond = 50'000;
 
@@ -54,15 +57,19 @@ class SandboxProcess {
                  std::shared_ptr<SandboxRecord> record);
   [[nodiscard]] std::optional<std::string> found(Timestamp now);
   [[nodiscard]] std::string why_it_left();
+  [[nodiscard]] std::optional<std::string> loops(double messages_per_second);
   [[nodiscard]] std::optional<std::string> floods(Timestamp now);
 
   Channel channel_;
   ChildProcess child_;
   std::uint64_t memory_limit_;
+  double most_fruitless_s_;
   std::shared_ptr<SandboxRecord> record_;
   Timestamp next_look_;
   std::uint64_t last_beats_ = 0;
   int silent_looks_ = 0;
+  double processor_s_ = 0;  // that it had taken at the last count
+  double fruitless_s_ = 0;
   Timestamp counted_since_;
   std::uint64_t messages_ = 0;  // since then
   std::uint64_t wakes_ = 0;     // likewise

@@ -55,8 +55,6 @@ void SandboxRecord::started(pid_t pid) {
   const std::scoped_lock lock(mutex_);
   report_.state = SandboxState::running;
   report_.pid = pid;
-  if (was_started_) ++report_.restarts;
-  was_started_ = true;
 }
 
 void SandboxRecord::measured(std::uint64_t memory_bytes) {
@@ -70,6 +68,7 @@ void SandboxRecord::ended(const std::string& why, bool again) {
   report_.pid = 0;
   report_.memory_bytes = 0;
   report_.last_exit = why;
+  if (again) ++report_.restarts;
 }
 
 void SandboxRecord::stopped() {

@@ -22,7 +22,7 @@ struct SandboxReport {
   pid_t pid = 0;                   // 0: there is none now
   std::uint64_t memory_bytes = 0;  // resident; of the last look, at most about a second ago
   std::uint64_t memory_limit_bytes = 0;
-  std::uint64_t restarts = 0;  // starts after the first one
+  std::uint64_t restarts = 0;  // because one ended that was not to end
   std::string last_exit;       // why the last one ended by itself or was ended; empty: none has
 };
 
@@ -46,7 +46,6 @@ class SandboxRecord {
 
   mutable std::mutex mutex_;
   SandboxReport report_;
-  bool was_started_ = false;
 };
 
 // In the order in which they were made.

@@ -124,13 +124,15 @@ void DomainLink::send(DdsRequest request) {
 }
 
 void DomainLink::on_started() {
-  send(wanted_);
   const std::scoped_lock lock(mutex_);
+  send(wanted_);
   for (const auto& [id, endpoint] : endpoints_) send(endpoint.wanted);
+  ready_ = true;
 }
 
 void DomainLink::on_ended() {
   const std::scoped_lock lock(mutex_);
+  ready_ = false;
   opened_ = false;
   graph_.readers.clear();
   graph_.writers.clear();
@@ -251,7 +253,7 @@ Result<std::uint32_t> DomainLink::add(AddEndpoint wanted, EndpointEvents& events
   const std::string topic = wanted.topic;
   const bool ready = opened_;
   endpoints_[id] = {.wanted = wanted, .events = &events, .there = false, .guid = {}, .refusal = {}};
-  send(std::move(wanted));
+  if (ready_) send(std::move(wanted));  // else on_started() does
   if (!ready) return id;
   changed_.wait_for(lock, kAddWithin, [&] {
     const Endpoint& made = endpoints_.at(id);
@@ -272,10 +274,11 @@ void DomainLink::remove(std::uint32_t id) {
     publish_graph();
   }
   endpoints_.erase(found);
-  send(RemoveEndpoint{id});
+  if (ready_) send(RemoveEndpoint{id});
 }
 
 bool DomainLink::write(const WriteSample& sample, std::span<const std::byte> payload) {
+  if (!ready_) return false;
   const std::scoped_lock lock(write_mutex_);
   DdsRequest request = sample;
   encode(request, head_);

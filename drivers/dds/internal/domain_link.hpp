@@ -95,7 +95,8 @@ class DomainLink {
   const OpenParticipant wanted_;
   const RosPresence presence_;
   ServiceClients clients_;
-  std::mutex mutex_;  // of what follows; held while an endpoint is told of an event
+  std::atomic<bool> ready_{false};  // the process knows the participant and all endpoints: others may follow
+  std::mutex mutex_;                // of what follows; held while an endpoint is told of an event
   std::condition_variable changed_;
   std::map<std::uint32_t, Endpoint> endpoints_;
   std::uint32_t last_id_ = 0;

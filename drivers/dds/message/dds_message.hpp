@@ -13,6 +13,7 @@
 
 #include "drivers/dds/message/guid.hpp"
 #include "ipc/sandbox/channel.hpp"
+#include "ipc/sandbox/message_bytes.hpp"
 #include "rt_core/ports/dds_network.hpp"
 #include "rt_core/ports/stream_config.hpp"
 
@@ -70,6 +71,8 @@ struct RemoveEndpoint {
 
 // The sample's bytes follow.
 struct WriteSample {
+  static constexpr bool kCarriesBytes = true;
+
   std::uint32_t id = 0;
   bool reply = false;
   Guid request_guid{};  // of the request that this replies to
@@ -109,6 +112,8 @@ struct EndpointRefused {
 
 // The sample's bytes follow; none where there were more than kMaxPayloadBytes.
 struct SampleReceived {
+  static constexpr bool kCarriesBytes = true;
+
   std::uint32_t id = 0;
   std::int64_t taken_ns = 0;  // CLOCK_MONOTONIC
   Guid writer{};
@@ -164,18 +169,11 @@ using DdsRequest = std::variant<OpenParticipant, AddEndpoint, RemoveEndpoint, Wr
 using DdsEvent = std::variant<ParticipantOpened, ParticipantRefused, EndpointAdded, EndpointRefused, SampleReceived,
                               PeerMatched, PeersIncompatible, PeerAnnounced, SamplesDropped, LibraryLog>;
 
-// A message and the bytes that follow it.
-template <class Variant>
-struct Received {
-  Variant message;
-  std::span<const std::byte> rest;
-};
-
 // In place of what `out` had; the bytes of a sample are sent behind it.
 void encode(DdsRequest& request, std::vector<std::byte>& out);
 void encode(DdsEvent& event, std::vector<std::byte>& out);
 // None: it is not such a message, or bytes are left over where none may follow.
-[[nodiscard]] std::optional<Received<DdsRequest>> decode_request(std::span<const std::byte> bytes);
-[[nodiscard]] std::optional<Received<DdsEvent>> decode_event(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<ReceivedMessage<DdsRequest>> decode_request(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<ReceivedMessage<DdsEvent>> decode_event(std::span<const std::byte> bytes);
 
 }  // namespace cellmirror::dds

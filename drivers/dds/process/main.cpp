@@ -12,6 +12,7 @@
 #include "drivers/dds/process/event_sender.hpp"
 #include "drivers/dds/process/library_log.hpp"
 #include "drivers/dds/process/participant_host.hpp"
+#include "ipc/sandbox/beating.hpp"
 #include "ipc/sandbox/channel.hpp"
 #include "ipc/sandbox/confinement.hpp"
 #include "rt_core/base/time.hpp"
@@ -20,12 +21,12 @@ namespace cellmirror::dds {
 namespace {
 
 constexpr Nanoseconds kBeat{50'000'000};
-constexpr int kMostRequests = 1024;        // between two beats
-constexpr int kArenas = 2;                 // of malloc: each takes 64 MB of addresses
+constexpr int kMostRequests = 1024;                   // between two beats
+constexpr int kArenas = 2;                            // of malloc: each takes 64 MB of addresses
 constexpr std::uint64_t kAddresses = 1536ULL << 20U;  // with the stacks of the library's threads
 
 // False: the participant is to be closed.
-bool carry_out(ParticipantHost& host, const Received<DdsRequest>& request) {
+bool carry_out(ParticipantHost& host, const ReceivedMessage<DdsRequest>& request) {
   if (const auto* add = std::get_if<AddEndpoint>(&request.message)) host.add(*add);
   if (const auto* gone = std::get_if<RemoveEndpoint>(&request.message)) host.remove(gone->id);
   if (const auto* sample = std::get_if<WriteSample>(&request.message)) host.write(*sample, request.rest);
@@ -72,7 +73,10 @@ int run() {
   EventSender sender(*channel);
   send_library_log(sender);
   ParticipantHost host(sender);
-  if (!host.open(*wanted)) return 1;
+  {
+    const Beating beating(*channel);
+    if (!host.open(*wanted)) return 1;
+  }
   forbid_opening_files();
   serve(*channel, sender, host, message);
   return 0;

@@ -1,0 +1,39 @@
+#include "ipc/sandbox/confinement.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/sandbox/sandbox_fixture.hpp"
+
+namespace cellmirror {
+namespace {
+
+class NetworkConfinementTest : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(sut_.sandbox.start().has_value()); }
+
+  ProbeSandbox sut_;
+};
+
+TEST_F(NetworkConfinementTest, ATakenOverProcessReachesNothing) {
+  for (const char* what : {"write a file", "read a file", "start a process", "start a program", "signal its parent",
+                           "connect by TCP", "trace its parent", "make a raw socket"}) {
+    const std::string answer = sut_.ask(std::string("try ") + what);
+    EXPECT_NE(answer, "worked") << what;
+    EXPECT_NE(answer, "unknown") << what;
+    EXPECT_NE(answer, "") << what;
+  }
+}
+
+TEST_F(NetworkConfinementTest, ItMaySpeakUdpAndReadFilesOfTheSystem) {
+  EXPECT_EQ(sut_.ask("try send a datagram"), "worked");
+  EXPECT_EQ(sut_.ask("try read a system file"), "worked");
+}
+
+TEST_F(NetworkConfinementTest, LaterItOpensNoFileAtAll) {
+  ASSERT_EQ(sut_.ask("forbid opening"), "done");
+  EXPECT_EQ(sut_.ask("try read a system file"), "Operation not permitted");
+  EXPECT_EQ(sut_.ask("try send a datagram"), "worked");
+}
+
+}  // namespace
+}  // namespace cellmirror
