@@ -7,7 +7,7 @@ foreach(program cellmirror sim_robot sim_haptic sim_footswitch sim_camera_head)
   endif()
 endforeach()
 # Started by cellmirror, not by people.
-foreach(program cellmirror-mesh-reader cellmirror-volume-reader cellmirror-dds)
+foreach(program cellmirror-mesh-reader cellmirror-volume-reader cellmirror-dds cellmirror-mqtt)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/cellmirror)
   endif()

@@ -39,7 +39,9 @@ set(CELLMIRROR_LAYERS
   "drivers/dds/process: drivers/dds/message ipc/sandbox rt_core/base rt_core/rt rt_core/ports"
   "drivers/dds: rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/sandbox drivers/dds/message"
   "drivers/rtde: rt_core/base rt_core/rt rt_core/ports"
-  "drivers/mqtt: rt_core/base rt_core/rt rt_core/ports"
+  "drivers/mqtt/message: rt_core/base rt_core/rt ipc/sandbox"
+  "drivers/mqtt/process: drivers/mqtt/message ipc/sandbox rt_core/base rt_core/rt"
+  "drivers/mqtt: rt_core/base rt_core/rt rt_core/ports ipc/sandbox drivers/mqtt/message"
   "drivers/haptic: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "drivers/footswitch: rt_core/base rt_core/rt rt_core/ports ipc/wire"
   "rt_core/scene: rt_core/base rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell"
@@ -74,7 +76,7 @@ set(CELLMIRROR_LAYERS
   "app/owner: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/kinematics rt_core/motion rt_core/cell rt_core/planning rt_core/collision rt_core/haptics rt_core/scene rt_core/tissue/description rt_core/engine config drivers/footswitch ipc/sysv scripts/programs/program scripts/programs/jet scripts/programs/languages scripts/lang scripts/commands scripts/runner scripts/programs/controller app/snapshot app/io"
   "app/workers: rt_core/base rt_core/rt rt_core/ports ipc/wire rt_core/geometry rt_core/cell rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine app/snapshot"
   "app/render: rt_core/base rt_core/rt rt_core/ports rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine config drivers/display app/snapshot"
-  "app/report: rt_core/base rt_core/rt rt_core/ports rt_core/motion ipc/wire rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine ipc/sysv ipc/control ipc/foxglove ipc/web app/snapshot"
+  "app/report: rt_core/base rt_core/rt rt_core/ports rt_core/motion ipc/wire ipc/sandbox rt_core/cell rt_core/dynamics rt_core/scene rt_core/engine ipc/sysv ipc/control ipc/foxglove ipc/web app/snapshot"
   "app/alarms: rt_core/base rt_core/rt rt_core/ports rt_core/engine app/snapshot app/io app/report"
   "app/recording_layout: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/motion rt_core/haptics rt_core/engine ipc/record"
   "app/recording: rt_core/base rt_core/rt rt_core/ports ipc/wire drivers/can drivers/dds ipc/record app/plot app/recording_layout"
@@ -89,14 +91,14 @@ set(CELLMIRROR_LAYERS
   "app/volume_info: rt_core/base rt_core/ports config config/volume app/plot"
   "app/simulation: rt_core/base rt_core/rt rt_core/ports rt_core/motion rt_core/geometry rt_core/collision rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/engine config scripts/programs/controller app/plot app/console app/snapshot app/owner app/workers"
   "app/wall: rt_core/base rt_core/rt rt_core/ports rt_core/kinematics rt_core/geometry rt_core/cell rt_core/collision rt_core/haptics rt_core/tissue/description ipc/wire config config/volume ipc/sandbox config/msh drivers/dds ipc/runtime ipc/foxglove ipc/web"
-  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire rt_core/engine config drivers/dds drivers/rtde drivers/mqtt ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording app/replay app/playback"
+  "app/gateway: rt_core/base rt_core/rt rt_core/ports rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue ipc/wire ipc/sandbox rt_core/engine config drivers/dds drivers/rtde drivers/mqtt ipc/sysv ipc/control ipc/foxglove ipc/web scripts/lang scripts/commands app/snapshot app/io app/owner app/workers app/render app/report app/pictures config/volume ipc/record app/recorder app/live app/alarms app/recording_layout app/recording app/replay app/playback"
   "app: *"
   "tests: *")
 
 # In the order in which CMake has to see them.
 set(CELLMIRROR_FOLDERS rt_core/base rt_core/rt rt_core/ports ipc/wire ipc/sandbox rt_core/kinematics rt_core/inverse_kinematics
   rt_core/motion rt_core/geometry rt_core/cell rt_core/planning rt_core/collision rt_core/ranging rt_core/haptics rt_core/dynamics rt_core/contact_model rt_core/tissue/description rt_core/tissue/body rt_core/tissue/contact rt_core/tissue/effects rt_core/tissue/instruments rt_core/tissue rt_core/volume rt_core/scene
-  rt_core/engine config/mesh_message config/mesh_reader config/msh config/volume_message config/volume_reader config/volume config config/command_line drivers/can drivers/dds/message drivers/dds/process drivers/dds drivers/rtde drivers/mqtt drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/foxglove ipc/web ipc/service_manager ipc/record
+  rt_core/engine config/mesh_message config/mesh_reader config/msh config/volume_message config/volume_reader config/volume config config/command_line drivers/can drivers/dds/message drivers/dds/process drivers/dds drivers/rtde drivers/mqtt/message drivers/mqtt/process drivers/mqtt drivers/haptic drivers/footswitch drivers/display ipc/runtime ipc/sysv ipc/control ipc/foxglove ipc/web ipc/service_manager ipc/record
   scripts/programs/program scripts/programs/irdata scripts/programs/srcl scripts/programs/jet scripts/programs/crcl scripts/programs/rapid scripts/programs/languages
   scripts/lang scripts/commands scripts/runner scripts/programs/controller
   sim_devices/base sim_devices/haptic sim_devices/footswitch sim_devices sim_devices/camera app/plot

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 
 #include "drivers/mqtt/credentials.hpp"
 #include "drivers/mqtt/internal/session.hpp"
-#include "drivers/mqtt/internal/tcp_probe.hpp"
 #include "rt_core/base/contract.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/text.hpp"
@@ -21,16 +19,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds kLongestWait = 500ms;  // the library looks after its own times
-constexpr Nanoseconds kConnectWithin = 3s;   // TCP, each address
+constexpr Nanoseconds kConnectWithin = 60s;  // to the first answer, with all addresses of a name
 constexpr Nanoseconds kRefusalShown = 60s;
-
-// OpenSSL writes to a socket that the broker has closed. The thread takes no signal for that.
-void block_broken_pipe() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGPIPE);
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
-}
 
 }  // namespace
 
@@ -40,7 +30,8 @@ BrokerLink::BrokerLink(MqttConfig config, std::string client_id, Conversation& c
       client_id_(std::move(client_id)),
       conversation_(conversation),
       wake_(wake),
-      clock_(clock) {}
+      clock_(clock),
+      record_(SandboxRecord::make("cellmirror-mqtt", fmt::format("MQTT broker {}", endpoint()), Session::kMemory)) {}
 
 BrokerLink::~BrokerLink() { stop(); }
 
@@ -63,10 +54,9 @@ std::string BrokerLink::endpoint() const {
 
 void BrokerLink::run() {
   set_thread_name("mqtt");
-  block_broken_pipe();
   while (!stop_) {
-    Nanoseconds lasted{0};
-    const Error why = attempt(lasted);
+    Attempt ended;
+    const Error why = attempt(ended);
     connected_ = false;
     std::vector<Outgoing> unconfirmed;
     for (auto& [number, message] : in_flight_) unconfirmed.push_back(std::move(message));
@@ -74,7 +64,7 @@ void BrokerLink::run() {
     conversation_.lost(std::move(unconfirmed));
     if (stop_) return;
     set_problem(fmt::format("nothing reaches the MQTT broker {}: {}", endpoint(), why.text()));
-    pause(delay_.after(lasted));
+    pause(ended.broke_down ? restart_delay_.after_end(clock_.now()) : delay_.after(ended.connected));
   }
 }
 
@@ -102,45 +92,44 @@ Result<std::unique_ptr<Session>> BrokerLink::open() {
     if (!read) return std::unexpected(read.error());
     credentials = *std::move(read);
   }
-  auto session =
-      Session::make(config_, client_id_, credentials, conversation_.begin(), [this](const Incoming& message) {
-        {
-          const std::scoped_lock lock(mutex_);
-          ++counters_.received;
-        }
-        conversation_.received(message);
-      });
-  if (!session) return session;
-  const auto address = answering_address(config_.broker, config_.port, kConnectWithin, [this] { return stop_.load(); });
-  if (!address) return std::unexpected(address.error());
-  // With TLS the library has to know the name, which it compares with the one in the certificate.
-  if (auto done = (*session)->connect(config_.tls ? config_.broker : *address); !done)
-    return std::unexpected(done.error());
-  return session;
+  return Session::make(config_, client_id_, credentials, conversation_.begin(), record_,
+                       [this](const Incoming& message) {
+                         {
+                           const std::scoped_lock lock(mutex_);
+                           ++counters_.received;
+                         }
+                         conversation_.received(message);
+                       });
 }
 
 Result<void> BrokerLink::wait_for_answer(Session& session) {
-  const Timestamp until = clock_.now() + kAnswerWithin;
+  const Timestamp begin = clock_.now();
+  Timestamp asked;
   while (!session.accepted()) {
     if (session.end()) return std::unexpected(*session.end());
     if (stop_) return fail("the gateway ends");
     const Timestamp now = clock_.now();
-    if (now >= until)
+    if (session.asked() && !asked.known()) asked = now;
+    if (asked.known() && now - asked >= kAnswerWithin)
       return fail(fmt::format("it has not answered for {:.0f} s", seconds(kAnswerWithin)),
                   "look whether it is a broker, and at its load");
+    if (now - begin >= kConnectWithin)
+      return fail(fmt::format("there was no connection within {:.0f} s", seconds(kConnectWithin)),
+                  "look at the network, and at the addresses of the broker's name");
     static_cast<void>(wake_.wait(Nanoseconds{0}));
-    session.wait(wake_.descriptor(), std::min<Nanoseconds>(until - now, kLongestWait));
+    session.wait(wake_.descriptor(), kLongestWait);
   }
   return {};
 }
 
-Error BrokerLink::attempt(Nanoseconds& lasted) {
+Error BrokerLink::attempt(Attempt& attempt) {
   auto session = open();
   if (!session) return session.error();
-  if (auto answered = wait_for_answer(**session); !answered) return answered.error();
-  for (const std::string& topic : conversation_.subscriptions()) {
-    if (auto done = (*session)->subscribe(topic); !done) return done.error();
+  if (auto answered = wait_for_answer(**session); !answered) {
+    attempt.broke_down = (*session)->broke_down();
+    return answered.error();
   }
+  for (const std::string& topic : conversation_.subscriptions()) (*session)->subscribe(topic);
   conversation_.connected();
   connected_ = true;
   const Timestamp begin = clock_.now();
@@ -151,7 +140,7 @@ Error BrokerLink::attempt(Nanoseconds& lasted) {
   }
   log_info("mqtt.connection", "connected to {}", endpoint());
   serve(**session);
-  lasted = clock_.now() - begin;
+  attempt = {clock_.now() - begin, (*session)->broke_down()};
   return (*session)->end().value_or(Error{"the gateway ends", {}});
 }
 
@@ -204,10 +193,13 @@ void BrokerLink::take_confirmations(Session& session) {
       counters_.sent_bytes += found->second.bytes();
     } else {
       ++counters_.refused;
-      refusal_ = fmt::format(
-          "the MQTT broker {} refuses messages on {}: {}; give the user of [mqtt] the right to "
-          "publish there",
-          endpoint(), printable(found->second.topic), confirmation.refusal);
+      refusal_ =
+          confirmation.by_library
+              ? fmt::format("a message on {} cannot be sent: {}", printable(found->second.topic), confirmation.refusal)
+              : fmt::format(
+                    "the MQTT broker {} refuses messages on {}: {}; give the user of [mqtt] the right "
+                    "to publish there",
+                    endpoint(), printable(found->second.topic), confirmation.refusal);
       refused_at_ = clock_.now();
     }
     in_flight_.erase(found);
@@ -235,7 +227,7 @@ void BrokerLink::say_farewell(Session& session) {
   }
   // Without this the broker publishes the last will.
   if (all && in_flight_.empty()) session.disconnect();
-  if (in_time()) session.wait(-1, kLook);
+  while (in_time()) session.wait(-1, kLook);
 }
 
 BrokerLink::Counters BrokerLink::counters() const {

@@ -15,6 +15,8 @@
 
 #include "drivers/mqtt/conversation.hpp"
 #include "drivers/mqtt/reconnect_delay.hpp"
+#include "ipc/sandbox/restart_delay.hpp"
+#include "ipc/sandbox/sandbox_report.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/mqtt_config.hpp"
@@ -58,8 +60,12 @@ class BrokerLink {
 
  private:
   void run();
-  // Until the connection is lost, or stop(); the reason, and how long it was connected.
-  Error attempt(Nanoseconds& lasted);
+  struct Attempt {
+    Nanoseconds connected{0};  // how long it was
+    bool broke_down = false;   // the process of the library did
+  };
+  // Until the connection is lost, or stop(); the reason.
+  Error attempt(Attempt& attempt);
   [[nodiscard]] Result<std::unique_ptr<Session>> open();
   [[nodiscard]] Result<void> wait_for_answer(Session& session);
   void serve(Session& session);
@@ -79,7 +85,9 @@ class BrokerLink {
   std::atomic<bool> stop_{false};
   std::atomic<bool> connected_{false};
 
-  ReconnectDelay delay_;                            // the thread's, as what follows
+  const std::shared_ptr<SandboxRecord> record_;
+  ReconnectDelay delay_;  // the thread's, as what follows
+  RestartDelay restart_delay_;
   std::deque<std::pair<int, Outgoing>> in_flight_;  // with their numbers, oldest first
 
   mutable std::mutex mutex_;  // of what follows

@@ -1,4 +1,5 @@
-// One connection to a broker, from its beginning to its end, by Debian's libmosquitto. One thread.
+// One connection to a broker, from its beginning to its end, in a process of its own (cellmirror-mqtt). One thread,
+// which outlives it.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +7,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "drivers/mqtt/conversation.hpp"
 #include "drivers/mqtt/credentials.hpp"
+#include "drivers/mqtt/message/mqtt_message.hpp"
 #include "drivers/mqtt/outgoing.hpp"
+#include "ipc/sandbox/sandbox_process.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/ports/mqtt_config.hpp"
@@ -20,43 +22,73 @@ namespace cellmirror::mqtt {
 
 class Session {
  public:
+  static constexpr std::uint64_t kMemory = 128ULL << 20U;  // resident, of the process
+
   struct Confirmation {
     int number = 0;            // that publish() gave
-    std::string refusal = {};  // why the broker has not taken it; empty: it has
+    std::string refusal = {};  // why it was not taken; empty: it was
+    bool by_library = false;   // the refusal is not the broker's
   };
 
-  // `received` is called by wait(). Fails where a certificate or key cannot be used.
+  // Starts the process, which connects. `received` is called by wait(). Fails where the program cannot be started.
   [[nodiscard]] static Result<std::unique_ptr<Session>> make(const MqttConfig& config, const std::string& client_id,
                                                              const std::optional<Credentials>& credentials,
                                                              const Outgoing& will,
-                                                             const std::function<void(const Incoming&)>& received);
+                                                             std::shared_ptr<SandboxRecord> record,
+                                                             std::function<void(const Incoming&)> received);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // TCP, the beginning of TLS, CONNECT. `host`: where a broker is known to listen. accepted() tells the answer.
-  [[nodiscard]] Result<void> connect(const std::string& host);
-  [[nodiscard]] bool accepted() const;
+  // The broker was found and asked; accepted() tells the answer.
+  [[nodiscard]] bool asked() const { return asked_; }
+  [[nodiscard]] bool accepted() const { return accepted_ && !end_; }
   // Why it is over; none: it is not.
-  [[nodiscard]] const std::optional<Error>& end() const;
+  [[nodiscard]] const std::optional<Error>& end() const { return end_; }
+  // It is over because the process ended in another way than by the end of the connection.
+  [[nodiscard]] bool broke_down() const { return broke_down_; }
 
-  [[nodiscard]] Result<void> subscribe(const std::string& topic);
+  void subscribe(const std::string& topic);
   // Why the broker has refused a subscription; empty: it has not.
-  [[nodiscard]] const std::string& refused_subscription() const;
+  [[nodiscard]] const std::string& refused_subscription() const { return refused_subscription_; }
   // The message's number in this connection.
   [[nodiscard]] Result<int> publish(const Outgoing& message);
   // Since the last call. With QoS 0: written to the socket.
   [[nodiscard]] std::vector<Confirmation> take_confirmations();
 
-  // Reads and writes what there is; waits at most `timeout` for it, or until the descriptor `wake` is readable.
+  // Takes what has come; waits at most `timeout` for it, or until the descriptor `wake` is readable.
   void wait(int wake, Nanoseconds timeout);
   // Asks the broker to end the connection without publishing the last will.
   void disconnect();
 
  private:
-  struct Impl;
-  explicit Session(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Session(std::unique_ptr<SandboxProcess> process, std::shared_ptr<SandboxRecord> record,
+          std::function<void(const Incoming&)> received);
+  // Waits for room for a moment. False: the process does not read.
+  bool send(MqttRequest request, std::string_view payload = {});
+  void take_events();
+  // By what take_events() decodes. False: it may not come.
+  bool take(const BrokerAsked& event, std::span<const std::byte> rest);
+  bool take(const BrokerAccepted& event, std::span<const std::byte> rest);
+  bool take(const ConnectionEnded& event, std::span<const std::byte> rest);
+  bool take(const SubscriptionRefused& event, std::span<const std::byte> rest);
+  bool take(const MessageConfirmed& event, std::span<const std::byte> rest);
+  bool take(const MessageReceived& event, std::span<const std::byte> rest);
+  void break_down(const std::string& why);
+
+  SystemClock clock_;
+  std::unique_ptr<SandboxProcess> process_;
+  std::shared_ptr<SandboxRecord> record_;
+  std::function<void(const Incoming&)> received_;
+  bool asked_ = false;
+  bool accepted_ = false;
+  bool broke_down_ = false;
+  std::optional<Error> end_;
+  std::string refused_subscription_;
+  std::vector<Confirmation> confirmations_;
+  int last_number_ = 0;
+  std::vector<std::byte> message_;  // reused
+  std::vector<std::byte> bytes_;    // likewise
 };
 
 }  // namespace cellmirror::mqtt

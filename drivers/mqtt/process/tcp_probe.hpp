@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "rt_core/base/result.hpp"
@@ -12,8 +11,7 @@
 namespace cellmirror::mqtt {
 
 // The first address of `host` that accepts a connection, numeric. Waits at most `each` for every address, of which at
-// most 8 are tried, and as long as the system's resolver takes for the name; less where `stopped` becomes true.
-[[nodiscard]] Result<std::string> answering_address(const std::string& host, std::uint16_t port, Nanoseconds each,
-                                                    const std::function<bool()>& stopped);
+// most 8 are tried, and as long as the system's resolver takes for the name.
+[[nodiscard]] Result<std::string> answering_address(const std::string& host, std::uint16_t port, Nanoseconds each);
 
 }  // namespace cellmirror::mqtt

@@ -1,4 +1,4 @@
-#include "drivers/mqtt/internal/reasons.hpp"
+#include "drivers/mqtt/process/reasons.hpp"
 
 #include <fmt/format.h>
 #include <mosquitto.h>

@@ -1,4 +1,4 @@
-#include "drivers/mqtt/internal/tcp_probe.hpp"
+#include "drivers/mqtt/process/tcp_probe.hpp"
 
 #include <fmt/format.h>
 #include <netdb.h>
@@ -18,16 +18,16 @@ namespace cellmirror::mqtt {
 namespace {
 
 constexpr int kMostAddresses = 8;
-constexpr Nanoseconds kLook{100'000'000};  // for `stopped`
+constexpr Nanoseconds kLook{100'000'000};
 
 // 0, or the reason why not as errno has it.
-int try_to_connect(const addrinfo& address, Nanoseconds limit, const std::function<bool()>& stopped) {
+int try_to_connect(const addrinfo& address, Nanoseconds limit) {
   const Descriptor socket(
       ::socket(address.ai_family, address.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, address.ai_protocol));
   if (!socket.valid()) return errno;
   if (::connect(socket.get(), address.ai_addr, address.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
-  for (Nanoseconds waited{0}; waited < limit && !stopped(); waited += kLook) {
+  for (Nanoseconds waited{0}; waited < limit; waited += kLook) {
     pollfd wait{socket.get(), POLLOUT, 0};
     const timespec look{0, kLook.count()};
     if (::ppoll(&wait, 1, &look, nullptr) <= 0) continue;
@@ -48,8 +48,7 @@ std::string numeric(const addrinfo& address) {
 
 }  // namespace
 
-Result<std::string> answering_address(const std::string& host, std::uint16_t port, Nanoseconds each,
-                                      const std::function<bool()>& stopped) {
+Result<std::string> answering_address(const std::string& host, std::uint16_t port, Nanoseconds each) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
@@ -59,9 +58,8 @@ Result<std::string> answering_address(const std::string& host, std::uint16_t por
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, &::freeaddrinfo);
   int reason = ETIMEDOUT;
   int tried = 0;
-  for (const addrinfo* at = addresses.get(); at != nullptr && tried < kMostAddresses && !stopped();
-       at = at->ai_next, ++tried) {
-    reason = try_to_connect(*at, each, stopped);
+  for (const addrinfo* at = addresses.get(); at != nullptr && tried < kMostAddresses; at = at->ai_next, ++tried) {
+    reason = try_to_connect(*at, each);
     if (reason == 0) return numeric(*at);
   }
   return fail(std::strerror(reason), "start the broker, or correct broker and port in [mqtt]");
