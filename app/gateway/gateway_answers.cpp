@@ -14,6 +14,7 @@
 #include "app/report/loop_health.hpp"
 #include "app/report/playback_document.hpp"
 #include "app/report/status_document.hpp"
+#include "app/report/status_processes.hpp"
 #include "ipc/control/queue_answer.hpp"
 #include "ipc/sysv/force_guard.hpp"
 #include "rt_core/base/log.hpp"
@@ -170,6 +171,7 @@ Problems Gateway::Parts::problems() const {
     for (const auto& output : summaries->outputs()) add("summary", output->problem());
   }
   if (mqtt) add("mqtt", mqtt->problem());
+  add_process_problems(out, sandbox_reports());
   if (playback == nullptr && (guard == nullptr || !guard->running())) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
                                    "restart the gateway",

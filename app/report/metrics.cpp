@@ -2,6 +2,7 @@
 
 #include "app/report/metrics_tissue.hpp"
 #include "app/report/metrics_volumes.hpp"
+#include "app/report/status_processes.hpp"
 
 #include <fmt/format.h>
 
@@ -157,6 +158,7 @@ std::string metrics_document(const LiveSources& sources, const web::ServerStatus
   out.family("cellmirror_info", "gauge", "Which gateway this is.");
   out.sample(1, {{"version", CELLMIRROR_VERSION}, {"instance", sources.instance}, {"cell", sources.cell}});
   add_loop(out, sources);
+  add_processes(out, sandbox_reports());
   add_robots(out, sources);
   add_findings(out, sources);
   add_tissue_metrics(out, sources);

@@ -22,6 +22,7 @@
 #include "app/report/status_io.hpp"
 #include "app/report/status_page.hpp"
 #include "app/report/status_pictures.hpp"
+#include "app/report/status_processes.hpp"
 #include "app/report/status_programs.hpp"
 #include "app/report/status_ranges.hpp"
 #include "app/report/status_recordings.hpp"
@@ -316,6 +317,7 @@ std::string status_document(const StatusSources& sources) {
       {"tissue", tissue_json(sources.tissue, sources.cell_state, sources.now)},
       {"volumes", volumes_json(sources.cell_state)},
       {"recordings", recordings_json(sources.recordings)},
+      {"processes", processes_json(sandbox_reports())},
       {"replay", sources.playback ? json::parse(playback_document(*sources.playback)) : json(nullptr)},
       {"cell_tree", {{"revision", cell.revision}, {"nodes", cell.size()}, {"visible", visible}}}};
   // Text from outside (names, messages) may hold bytes that are no UTF-8.

@@ -12,6 +12,7 @@
 #include "app/subcommands/status_table_haptics.hpp"
 #include "app/subcommands/status_table_io.hpp"
 #include "app/subcommands/status_table_pictures.hpp"
+#include "app/subcommands/status_table_processes.hpp"
 #include "app/subcommands/status_table_programs.hpp"
 #include "app/subcommands/status_table_recordings.hpp"
 #include "app/subcommands/status_table_sensing.hpp"
@@ -58,6 +59,7 @@ class TableWriter {
     out_ += display_table(status);
     out_ += pictures_table(status);
     out_ += recordings_table(status);
+    out_ += processes_table(status);
     write_page(status);
     write_script(status);
     write_queues(status.at("queues"));
