@@ -93,10 +93,10 @@ class Sim:
 class Hand(Sim):
     """A simulated hand that is told what to do while it runs."""
 
-    def __init__(self, scratch, key, *arguments):
+    def __init__(self, scratch, key, *arguments, seconds=120):
         self.fifo = scratch.root / f"hand-{key}-{uuid.uuid4().hex[:8]}"
         os.mkfifo(self.fifo)
-        super().__init__("sim_haptic", "--key", key, "--priority", 60, "--for", 120, "--control", self.fifo, *arguments)
+        super().__init__("sim_haptic", "--key", key, "--priority", 60, "--for", seconds, "--control", self.fifo, *arguments)
 
     def say(self, line):
         with open(self.fifo, "w", encoding="ascii") as fifo:
