@@ -1,4 +1,6 @@
 // From text to a TOML table, whatever the text is.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -88,24 +90,60 @@ class WordBefore {
   bool equals_on_line_ = false;
 };
 
-// Outside of texts and comments TOML is ASCII. toml++ 3.3 holds some other characters for impossible, with undefined
-// behaviour, so that they must not reach it there.
-std::optional<Place> place_of_stray_character(std::string_view text, const std::string& file) {
+// The parts of the dotted key of which `c` is a byte, counted by the dots between what separates keys. A number has one
+// dot at most.
+class KeyParts {
+ public:
+  static constexpr int kMost = 32;
+
+  // False: the key has more than kMost parts.
+  [[nodiscard]] bool add(char c) {
+    constexpr std::string_view kSeparators = "\n=,[]{}";
+    if (kSeparators.find(c) != std::string_view::npos) dots_ = 0;
+    if (c == '.') ++dots_;
+    return dots_ < kMost;
+  }
+
+ private:
+  int dots_ = 0;
+};
+
+struct Unreadable {
+  std::size_t at = 0;  // byte
+  std::string what;
+  std::string remedy;
+};
+
+// What must not reach toml++ 3.3. Outside of texts and comments TOML is ASCII: it holds some other characters for
+// impossible, with undefined behaviour. And each part of a dotted key becomes a table in a table, which it destroys by
+// recursion: a key with 160,000 parts overflows the stack.
+std::optional<Unreadable> find_unreadable(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   WordBefore word;
+  KeyParts key;
   while (at < text.size()) {
     if (static_cast<unsigned char>(text[at]) >= 0x80) {
-      const std::string_view before = text.substr(0, at);
-      const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-      return Place{file, static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(at - line_start) + 1};
+      return Unreadable{at, "a character outside ASCII is outside a string or comment",
+                        "write it in a quoted string on one line; the rest of the file was not read"};
     }
     const char c = text[at];
+    if (!key.add(c)) {
+      return Unreadable{
+          at, fmt::format("a key has more than {} parts between dots; at most {} are read", KeyParts::kMost, KeyParts::kMost),
+          "write fewer tables in each other, or quote a name that has dots; the rest of the file was not read"};
+    }
     const bool is_quote = c == '"' || c == '\'';
     at = is_quote && !word.lets_text_begin() ? at + 1 : step_over(text, at);
     word.add(c);
   }
   return std::nullopt;
+}
+
+Place place_of(std::string_view text, std::size_t at, const std::string& file) {
+  const std::string_view before = text.substr(0, at);
+  const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+  return {file, static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(at - line_start) + 1};
 }
 
 }  // namespace
@@ -115,9 +153,8 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string& 
     diagnostics.error({file, 0, 0}, "the file contains NUL bytes and is not TOML");
     return std::nullopt;
   }
-  if (const auto stray = place_of_stray_character(text, file)) {
-    diagnostics.error(*stray, "a character outside ASCII is outside a string or comment",
-                      "write it in a quoted string on one line; the rest of the file was not read");
+  if (const auto found = find_unreadable(text)) {
+    diagnostics.error(place_of(text, found->at, file), found->what, found->remedy);
     return std::nullopt;
   }
   const auto refuse = [&](Place place, std::string_view what) {
@@ -127,8 +164,12 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string& 
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
+    // It names its own macro.
+    const bool too_deep = error.description().find("TOML_MAX_NESTED_VALUES") != std::string_view::npos;
     return refuse({file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)},
-                  error.description());
+                  too_deep ? fmt::format("lists and tables are nested more than {} deep; at most {} levels are read",
+                                         kMostNestedValues, kMostNestedValues)
+                           : std::string(error.description()));
   } catch (const std::exception&) {
     // One of the parser's own checks: it does not check whether a table header begins with a name.
     return refuse({file, line_of_faulty_header(text), 0}, "the text is not TOML: a name was expected");

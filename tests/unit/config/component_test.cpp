@@ -9,6 +9,7 @@ namespace cellmirror {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 struct ComponentText : testing::Test {
   bool parse(const std::string& text) {
@@ -148,6 +149,58 @@ TEST_F(ComponentText, charactersOutsideOfAsciiStandInTextsAndCommentsOnly) {
   EXPECT_FALSE(parse("description = \xCC\xA2\n"));
   EXPECT_THAT(findings(), HasSubstr("a.mpc:2:15: error: a character outside ASCII"));
   EXPECT_FALSE(parse("description = \"\"\"\\\n\xCC\xA2\"\"\"\n"));
+}
+
+// Each part of a dotted key is a table in a table, which toml++ destroys by recursion.
+TEST_F(ComponentText, KeysOfTooManyPartsAreRefusedWithTheirPlace) {
+  const auto key = [](int parts, const std::string& part, const std::string& dot) {
+    std::string out = part;
+    for (int i = 1; i < parts; ++i) out += dot + part;
+    return out;
+  };
+  EXPECT_FALSE(parse(key(160'000, "a", ".") + " = 1\n"));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:2:64: error: a key has more than 32 parts"));
+  EXPECT_FALSE(parse("\n [" + key(160'000, "a", ".") + "]\n"));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:3:66: error: a key has more than 32 parts"));
+  for (const char* part : {"a", "\"a\"", "'a.b'"}) {
+    for (const char* dot : {".", " . ", "\t.\t"}) {
+      const std::string long_key = key(160'000, part, dot);
+      for (const std::string& text : {long_key + " = 1", "[" + long_key + "]", "[[" + long_key + "]]",
+                                      "a = { " + long_key + " = 1 }", "a = [[1], { b = 1, " + long_key + " = 1 }]"}) {
+        EXPECT_FALSE(parse(text + "\n"));
+        EXPECT_THAT(findings(), HasSubstr("a key has more than 32 parts")) << text.substr(0, 60);
+      }
+    }
+  }
+}
+
+TEST_F(ComponentText, KeysOfAsManyPartsAsAreAcceptedAreRead) {
+  std::string key = "a";
+  for (int i = 1; i < 32; ++i) key += ".a";
+  parse(key + " = 1\n");
+  EXPECT_THAT(findings(), Not(HasSubstr("parts")));
+  EXPECT_FALSE(parse(key + ".a = 1\n"));
+  EXPECT_THAT(findings(), HasSubstr("a key has more than 32 parts"));
+  // Dots of texts, comments and numbers are none of a key.
+  const std::string dots(200, '.');
+  std::string numbers = "0.5";
+  for (int i = 0; i < 100; ++i) numbers += ", 0.5";
+  parse("# " + dots + "\ndescription = \"" + dots + "\"\nx = [" + numbers + "]\n");
+  EXPECT_THAT(findings(), Not(HasSubstr("parts")));
+}
+
+TEST_F(ComponentText, ListsAndTablesNestedTooDeepAreRefusedWithTheirPlace) {
+  const auto nested = [](int depth) { return "a = " + std::string(depth, '[') + std::string(depth, ']') + "\n"; };
+  parse(nested(32));
+  EXPECT_THAT(findings(), Not(HasSubstr("nested")));
+  EXPECT_FALSE(parse(nested(33)));
+  EXPECT_THAT(findings(), HasSubstr("a.mpc:2:"));
+  EXPECT_THAT(findings(), HasSubstr("lists and tables are nested more than 32 deep"));
+  std::string tables = "a = ";
+  for (int i = 0; i < 100'000; ++i) tables += "{a=";
+  EXPECT_FALSE(parse(tables));
+  EXPECT_THAT(findings(), HasSubstr("lists and tables are nested more than 32 deep"));
+  EXPECT_THAT(findings(), Not(HasSubstr("TOML_MAX")));
 }
 
 TEST_F(ComponentText, countsAreBounded) {
