@@ -141,6 +141,11 @@ void add_traffic(MetricsText& out, const LiveSources& sources, const web::Server
   out.one("cellmirror_page_requests_total", "counter", "HTTP requests.", static_cast<double>(web.requests));
   out.one("cellmirror_page_refused_total", "counter", "Requests and messages refused.",
           static_cast<double>(web.refused));
+  out.one("cellmirror_page_wrong_tokens_total", "counter", "Wrong tokens that clients of the page have sent.",
+          static_cast<double>(web.wrong_tokens));
+  out.one("cellmirror_page_unread_tokens_total", "counter",
+          "Tokens refused without a look, because their sender had sent too many wrong ones.",
+          static_cast<double>(web.unread_tokens));
   out.one("cellmirror_page_cut_total", "counter", "Connections ended for being too slow or silent.",
           static_cast<double>(web.cut));
   out.one("cellmirror_page_commands_total", "counter", "Commands from monitor pages.",

@@ -23,6 +23,8 @@ nlohmann::json page_json(const PageReport& report) {
           {"refused", server.refused},
           {"cut", server.cut},
           {"commands", server.commands},
+          {"wrong_tokens", server.wrong_tokens},
+          {"unread_tokens", server.unread_tokens},
           {"foxglove", {{"clients", report.live.clients}, {"topics", std::move(topics)}}}};
 }
 

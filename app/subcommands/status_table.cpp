@@ -94,6 +94,11 @@ class TableWriter {
          number_of(page.at("clients").get<std::uint64_t>(), "client"),
          number_of(page.at("pictures").get<std::uint64_t>(), "picture"), page.at("refused").get<std::uint64_t>(),
          page.at("read_only").get<bool>() ? ", read-only" : "");
+    // An older gateway does not count them.
+    if (const auto wrong = page.value("wrong_tokens", std::uint64_t{0}); wrong > 0) {
+      line("          {}, {} more attempts refused unread: see the log for their addresses",
+           number_of(wrong, "wrong token"), page.value("unread_tokens", std::uint64_t{0}));
+    }
     if (page.contains("foxglove")) write_live(page.at("foxglove"));
   }
 

@@ -88,13 +88,19 @@ std::string_view bearer_token(const HttpRequest& request) {
                                                                       : std::string_view();
 }
 
+std::string shown_credentials(const HttpRequest& request) {
+  if (const std::string_view bearer = bearer_token(request); !bearer.empty()) return std::string(bearer);
+  const std::string* value = request.header("authorization");
+  return value == nullptr || trimmed(*value).empty() ? std::string() : "\n" + *value;
+}
+
 bool offers_subprotocol(const HttpRequest& request) {
   return request.header_has("sec-websocket-protocol", kSubprotocol);
 }
 
 std::string opening_token(const HttpRequest& request) {
   constexpr std::string_view kMark = "cellmirror.token.";
-  if (const std::string_view bearer = bearer_token(request); !bearer.empty()) return std::string(bearer);
+  if (std::string shown = shown_credentials(request); !shown.empty()) return shown;
   const std::string* offered = request.header("sec-websocket-protocol");
   const std::size_t at = offered == nullptr ? std::string::npos : offered->find(kMark);
   if (at == std::string::npos) return {};

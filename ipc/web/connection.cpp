@@ -186,7 +186,7 @@ void Connection::take_request(Timestamp now) {
 
 void Connection::begin(Timestamp now) {
   head_only_ = request_.method == "HEAD";
-  Route found = route(request_, context_);
+  Route found = route(request_, context_, {[this] { return peer_of(fd()); }, now});
   std::visit([&](auto& one) { do_route(one, now); }, found);
 }
 

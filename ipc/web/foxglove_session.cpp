@@ -272,10 +272,11 @@ void FoxgloveSession::send_asset(std::uint32_t request, Result<std::string> cont
 std::string FoxgloveSession::why_not_executed(const foxglove::CommandRequest& request) {
   if (context_.options.read_only) return "this gateway was started read-only";
   if (!request.token.empty()) {
-    const bool right = token_matches(request.token, context_.options.token);
-    may_command_ = right;
-    if (!right) {
+    const TokenTries::Check checked = check_token(context_, request.token, peer_, now_);
+    may_command_ = checked.right();
+    if (!may_command_) {
       ++wrong_tokens_;
+      if (checked.verdict == TokenTries::Verdict::unread) return too_many_wrong_tokens_text(checked.wait_s);
       return "wrong token: it belongs to another gateway or an older run; cellmirror page --json prints the current "
              "one";
     }

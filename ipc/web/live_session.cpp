@@ -45,14 +45,16 @@ bool LiveSession::receive(std::string_view text, Timestamp now, Outgoing& out) {
 }
 
 void LiveSession::handle(const HelloMessage& message, Outgoing& out) {
-  const bool right = token_matches(message.token, context_.options.token);
-  may_command_ = right && !context_.options.read_only;
-  if (!right && !message.token.empty()) {
+  using enum TokenTries::Verdict;
+  const TokenTries::Check checked = check_token(context_, message.token, peer_, now_);
+  may_command_ = checked.right() && !context_.options.read_only;
+  if (checked.verdict == wrong || checked.verdict == unread) {
     ++wrong_tokens_;
     count(context_.counters.refused);
-    send_text(out, refused_message(0,
-                                   "wrong token: it belongs to another gateway or an older run; cellmirror page prints "
-                                   "the address with the current one"));
+    send_text(out, refused_message(0, checked.verdict == unread
+                                          ? too_many_wrong_tokens_text(checked.wait_s)
+                                          : std::string("wrong token: it belongs to another gateway or an older run; "
+                                                        "cellmirror page prints the address with the current one")));
   }
   welcome(out);
 }

@@ -53,24 +53,42 @@ std::optional<Route> snapshot(const HttpRequest& request, ServerContext& context
   return TakeSnapshot{*picture, png ? ImageFormat::png : ImageFormat::jpeg};
 }
 
-Route command(const HttpRequest& request, ServerContext& context) {
+Answer too_many_wrong_tokens(ServerContext& context, int wait_s) {
+  Answer answer = refused(context, 429, too_many_wrong_tokens_text(wait_s));
+  answer.headers.emplace_back("Retry-After", std::to_string(wait_s));
+  return answer;
+}
+
+// What the client shows in order to be allowed something; checked only where there is anything, so that others cost
+// nothing.
+TokenTries::Check check_shown(std::string_view shown, ServerContext& context, const Requester& from) {
+  return shown.empty() ? TokenTries::Check() : check_token(context, shown, from.peer(), from.now);
+}
+
+Route command(const HttpRequest& request, ServerContext& context, const Requester& from) {
   if (request.method != "POST") return refused(context, 405, "commands need POST");
   if (context.options.read_only) return refused(context, 403, "this gateway was started read-only");
-  if (!token_matches(bearer_token(request), context.options.token)) {
+  const TokenTries::Check checked = check_shown(shown_credentials(request), context, from);
+  if (checked.verdict == TokenTries::Verdict::unread) return too_many_wrong_tokens(context, checked.wait_s);
+  if (!checked.right()) {
     Answer answer = refused(context, 401,
-                            "commands need the header Authorization: Bearer TOKEN; cellmirror page --json "
-                            "prints the token");
+                            checked.verdict == TokenTries::Verdict::none
+                                ? "commands need the header Authorization: Bearer TOKEN; cellmirror page --json "
+                                  "prints the token"
+                                : "wrong token: it belongs to another gateway or an older run; cellmirror page --json "
+                                  "prints the current one, for the header Authorization: Bearer TOKEN");
     answer.headers.emplace_back("WWW-Authenticate", "Bearer");
     return answer;
   }
   return ExecuteBody{};
 }
 
-Route live(const HttpRequest& request, ServerContext& context) {
+Route live(const HttpRequest& request, ServerContext& context, const Requester& from) {
   auto accept = websocket_accept(request);
   if (accept) {
-    const bool has_token = token_matches(opening_token(request), context.options.token);
-    return OpenWebSocket{std::move(*accept), has_token,
+    const TokenTries::Check checked = check_shown(opening_token(request), context, from);
+    if (checked.verdict == TokenTries::Verdict::unread) return too_many_wrong_tokens(context, checked.wait_s);
+    return OpenWebSocket{std::move(*accept), checked.right(),
                          offers_subprotocol(request) ? std::string(kSubprotocol) : std::string(), nullptr};
   }
   Answer answer = refused(context, 426, "this URL is a WebSocket, version 13");
@@ -80,7 +98,7 @@ Route live(const HttpRequest& request, ServerContext& context) {
 }
 
 // Clients of the Foxglove protocol give the address of the server without a path.
-std::optional<Route> foxglove_client(const HttpRequest& request, ServerContext& context) {
+std::optional<Route> foxglove_client(const HttpRequest& request, ServerContext& context, const Requester& from) {
   if (request.path != "/" && request.path != "/foxglove") return std::nullopt;
   auto accept = websocket_accept(request);
   if (!accept) return std::nullopt;
@@ -93,15 +111,16 @@ std::optional<Route> foxglove_client(const HttpRequest& request, ServerContext& 
                    "a WebSocket here needs the subprotocol foxglove.websocket.v1 or foxglove.sdk.v1; the page's is at "
                    "/live");
   }
-  const bool has_token = token_matches(opening_token(request), context.options.token);
-  return OpenWebSocket{std::move(*accept), has_token, std::string(*offered), data};
+  const TokenTries::Check checked = check_shown(opening_token(request), context, from);
+  if (checked.verdict == TokenTries::Verdict::unread) return too_many_wrong_tokens(context, checked.wait_s);
+  return OpenWebSocket{std::move(*accept), checked.right(), std::string(*offered), data};
 }
 
 // What only a gateway has; decided before the method is looked at.
-std::optional<Route> gateway_route(const HttpRequest& request, ServerContext& context) {
+std::optional<Route> gateway_route(const HttpRequest& request, ServerContext& context, const Requester& from) {
   if (context.gateway == nullptr) return std::nullopt;
-  if (auto found = foxglove_client(request, context)) return found;
-  if (request.path == "/api/command") return command(request, context);
+  if (auto found = foxglove_client(request, context, from)) return found;
+  if (request.path == "/api/command") return command(request, context, from);
   if (request.method != "GET" && request.method != "HEAD") return std::nullopt;
   if (request.path == "/") context.gateway->expect_pictures();
   if (auto found = snapshot(request, context)) return found;
@@ -112,10 +131,10 @@ std::optional<Route> gateway_route(const HttpRequest& request, ServerContext& co
 
 }  // namespace
 
-Route route(const HttpRequest& request, ServerContext& context) {
+Route route(const HttpRequest& request, ServerContext& context, const Requester& from) {
   if (auto answer = check_access(request, context)) return std::move(*answer);
-  if (request.path == "/live") return live(request, context);
-  if (auto found = gateway_route(request, context)) return std::move(*found);
+  if (request.path == "/live") return live(request, context, from);
+  if (auto found = gateway_route(request, context, from)) return std::move(*found);
   if (request.method != "GET" && request.method != "HEAD") {
     Answer answer = refused(context, 405, "only GET and HEAD are allowed");
     answer.headers.emplace_back("Allow", "GET, HEAD");

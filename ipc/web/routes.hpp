@@ -34,7 +34,13 @@ struct OpenWebSocket {
 };
 using Route = std::variant<Answer, Work, TakeSnapshot, TakeGeometry, ExecuteBody, OpenWebSocket>;
 
+// Whom the request is from: as of peer_of(), which is asked only where a token is to be checked.
+struct Requester {
+  std::function<std::string()> peer;
+  Timestamp now;
+};
+
 // Decides by the head alone, access checks included, before any of the body is read.
-[[nodiscard]] Route route(const HttpRequest& request, ServerContext& context);
+[[nodiscard]] Route route(const HttpRequest& request, ServerContext& context, const Requester& from);
 
 }  // namespace cellmirror::web

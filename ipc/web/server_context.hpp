@@ -5,12 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "ipc/web/access.hpp"
 #include "ipc/web/flow.hpp"
 #include "ipc/web/inbox.hpp"
 #include "ipc/web/job_pool.hpp"
 #include "ipc/web/places.hpp"
+#include "ipc/web/token_tries.hpp"
 #include "ipc/web/web_backend.hpp"
 #include "ipc/web/web_server.hpp"
 
@@ -25,6 +28,8 @@ struct Counters {
   std::atomic<std::uint64_t> refused{0};
   std::atomic<std::uint64_t> cut{0};
   std::atomic<std::uint64_t> commands{0};
+  std::atomic<std::uint64_t> wrong_tokens{0};
+  std::atomic<std::uint64_t> unread_tokens{0};
 };
 
 inline void count(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) {
@@ -42,9 +47,19 @@ struct ServerContext {
   // POST /api/command, all clients together, since each of these commands has its own connection. Server's thread.
   RateLimit posted_commands{kCommandsPerSecond};
   Places places{};  // of WebSockets; server's thread
+  TokenTries tries{};
   // Snapshots that are pending, those of closed connections included; counted down by the reply, possibly after the end
   // of the server.
   std::shared_ptr<std::atomic<std::uint64_t>> snapshots = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
+
+// Whether `given` is the token, in all the ways that a client can show it. `peer`: as of peer_of().
+inline TokenTries::Check check_token(ServerContext& context, std::string_view given, const std::string& peer,
+                                     Timestamp now) {
+  const TokenTries::Check checked = context.tries.check(given, context.options.token, peer, now);
+  if (checked.verdict == TokenTries::Verdict::wrong) count(context.counters.wrong_tokens);
+  if (checked.verdict == TokenTries::Verdict::unread) count(context.counters.unread_tokens);
+  return checked;
+}
 
 }  // namespace cellmirror::web

@@ -130,6 +130,7 @@ struct Server::Impl {
   void request_live(Timestamp now);
   void send_pictures(Timestamp now);
   void look_for_foxglove(Timestamp now);
+  void report_wrong_tokens(Timestamp now);
 };
 
 void Server::Impl::stop() {
@@ -185,6 +186,7 @@ void Server::Impl::serve() {
     request_live(now);
     send_pictures(now);
     look_for_foxglove(now);
+    report_wrong_tokens(now);
     std::erase_if(connections, [](const auto& connection) { return connection->over(); });
     if (ready > 0 && (polled[1].revents & POLLIN) != 0) accept_some(now);
   }
@@ -269,6 +271,15 @@ void Server::Impl::look_for_foxglove(Timestamp now) {
   for (const auto& connection : connections) connection->look_for_foxglove(now);
 }
 
+void Server::Impl::report_wrong_tokens(Timestamp now) {
+  for (const std::string& line : context->tries.take_reports(now)) {
+    log_warning("web.wrong-token",
+                "{}: clients need the token of this run, which cellmirror page prints; if it is no client of yours, "
+                "keep it from this port",
+                line);
+  }
+}
+
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Server::~Server() = default;
@@ -304,7 +315,7 @@ ServerStatus Server::status() const {
   const Counters& c = impl_->counters;
   return {read_counter(c.clients),           read_counter(c.requests), read_counter(c.pictures),
           read_counter(c.pictures_left_out), read_counter(c.refused),  read_counter(c.cut),
-          read_counter(c.commands)};
+          read_counter(c.commands),          read_counter(c.wrong_tokens), read_counter(c.unread_tokens)};
 }
 
 }  // namespace cellmirror::web

@@ -102,6 +102,58 @@ TEST_F(SharedServer, LeavesWebSocketsToOtherUsers) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << "1: it was refused; 2: it could not become another user";
 }
 
+// 12,000 a second were once looked at, without a word in the log.
+TEST_F(SharedServer, LooksAtFewWrongTokensOfAUserAndDelaysNoOther) {
+  if (::geteuid() != 0) GTEST_SKIP() << "skipped: needs root, to act as another user";
+  const int port = sut->port();
+  const auto post = [port](const std::string& authorization) {
+    RawClient client(port);
+    client.send("POST /api/command HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) + "\r\n" + authorization +
+                "Content-Length: 1\r\n\r\nA");
+    return client.read_to_end().value_or("");
+  };
+  const std::string wrong_bearer = "Authorization: Bearer 0123456789abcdef0123456789abcdee\r\n";
+  const auto count = [&](const std::string& status, const std::string& authorization, int tries) {
+    int found = 0;
+    for (int i = 0; i < tries; ++i) found += post(authorization).starts_with("HTTP/1.1 " + status) ? 1 : 0;
+    return found;
+  };
+  const std::string first = post(wrong_bearer);
+  EXPECT_TRUE(first.starts_with("HTTP/1.1 401 ")) << first;
+  EXPECT_EQ(count("401", {}, 100), 100) << "no token is no guess";
+  const int looked_at = count("401", wrong_bearer, 100);
+  // One more each ten seconds, on a slow machine too.
+  EXPECT_LT(looked_at, 20);
+  const std::string refused = post(wrong_bearer);
+  EXPECT_TRUE(refused.starts_with("HTTP/1.1 429 ")) << refused;
+  EXPECT_NE(refused.find("\r\nRetry-After: "), std::string::npos) << refused;
+  EXPECT_NE(refused.find("too many wrong tokens from your address"), std::string::npos) << refused;
+  // In each other way that a token can be shown.
+  EXPECT_GT(count("429", "Authorization: Basic YTpi\r\n", 10), 0);
+  EXPECT_EQ(open("Authorization: Bearer guess\r\n"), "HTTP/1.1 429 Too Many Requests");
+  EXPECT_EQ(open("Sec-WebSocket-Protocol: cellmirror.live, cellmirror.token.guess\r\n"),
+            "HTTP/1.1 429 Too Many Requests");
+  ASSERT_EQ(open(), kOpened) << "looking needs no token";
+  clients.back()->say(R"({"do": "hello", "token": "guess"})");
+  EXPECT_FALSE(clients.back()->read_until("too many wrong tokens from your address").empty());
+  EXPECT_GT(sut->status().unread_tokens, 50U);
+  EXPECT_GE(sut->status().wrong_tokens, 10U);
+
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    if (::setresuid(kNobody, kNobody, kNobody) != 0) ::_exit(2);
+    for (int i = 0; i < 20; ++i) {
+      if (!post(kWithBearer).starts_with("HTTP/1.1 200 ")) ::_exit(1);
+    }
+    RawClient client(port);
+    ::_exit(client.open_live(port, kWithBearer).starts_with(kOpened) ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "1: it was refused; 2: it could not become another user";
+}
+
 // 56.8 million of these were once accepted in 12 s: only whole messages were counted.
 TEST_F(SharedServer, EndsAClientThatSendsEmptyFragments) {
   RawClient client(sut->port());
