@@ -55,6 +55,13 @@ class Unit(unittest.TestCase):
         self.assertLessEqual(float(shown[1]), MOST_EXPOSED, done.stdout)
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_it_is_started_again_without_end_and_leaves_no_core(self):
+        self.assertEqual(lines_of("StartLimitIntervalSec"), ["0"])
+        self.assertEqual(lines_of("Restart"), ["always"])
+        self.assertEqual(lines_of("LimitCORE"), ["0"])
+        self.assertGreaterEqual(float(lines_of("RestartSec")[0]), 1, "a pause bounds the cost of a cell with an error")
+        self.assertRegex(lines_of("ExecReload")[0], "^/usr/bin/cellmirror check ", "before the gateway is ended")
+
     def test_the_loop_stays_real_time_and_pictures_are_drawn(self):
         self.assertEqual(lines_of("RestrictRealtime"), ["no"])
         self.assertEqual(lines_of("LimitMEMLOCK"), ["infinity"])
