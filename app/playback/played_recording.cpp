@@ -8,7 +8,7 @@
 namespace cellmirror::app {
 
 Result<std::unique_ptr<PlayedRecording>> PlayedRecording::open(const PlayOptions& options, const Clock& wall) {
-  auto run = RecordedRun::open(options.file);
+  auto run = RecordedRun::open(options.file, options.limits);
   if (!run) return std::unexpected(run.error());
   std::unique_ptr<PlayedRecording> out(new PlayedRecording(*std::move(run), wall));
   PlaybackControl::Range range = out->run_->range();

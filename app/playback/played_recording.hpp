@@ -20,6 +20,7 @@ struct PlayOptions {
   std::optional<double> to_s = {};  // likewise; none: to its end
   double speed = 1;
   bool playing = true;  // from the start
+  mcap::Limits limits = {};
 };
 
 class PlayedRecording {

@@ -22,12 +22,12 @@ constexpr int kMessagesForOffset = 20;
 
 }  // namespace
 
-Result<std::unique_ptr<RecordedRun>> RecordedRun::open(const std::filesystem::path& file) {
+Result<std::unique_ptr<RecordedRun>> RecordedRun::open(const std::filesystem::path& file, const mcap::Limits& limits) {
   std::unique_ptr<RecordedRun> out(new RecordedRun);
   auto source = mcap::FileSource::open(file);
   if (!source) return std::unexpected(source.error());
   out->source_ = *std::move(source);
-  auto reader = mcap::Reader::open(*out->source_);
+  auto reader = mcap::Reader::open(*out->source_, limits);
   if (!reader) return fail(file.string() + ": " + reader.error().what, reader.error().remedy);
   out->reader_.emplace(*std::move(reader));
   const bool has_inputs = std::ranges::any_of(out->reader_->catalogue().channels, [](const auto& one) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <ranges>
 #include <utility>
@@ -133,6 +134,13 @@ std::string recording_info_text(const std::string& file, std::uint64_t bytes, co
   if (!reader.indexed())
     out +=
         fmt::format("no summary is used: {}; repair it with: cellmirror recording recover\n", reader.why_not_indexed());
+  if (reader.chunks_left_out() > 0) {
+    out += fmt::format(
+        "{} of {} chunks are not counted: all of them have {:.1f} GB decompressed; read them too, if you know where the "
+        "file is from, with: --decompressed-limit {:.0f}\n",
+        reader.chunks_left_out(), reader.chunks().size(), 1e-9 * static_cast<double>(uncompressed_bytes(reader)),
+        std::ceil(1e-9 * static_cast<double>(uncompressed_bytes(reader))));
+  }
   const auto drops = reader.metadata(kDropsName);
   out += fmt::format("\n{:<{}} {:>10} {:>9} {:>9}  {}\n", "topic", kLongestTopic, "messages", "Hz", "dropped", "type");
   for (const mcap::Channel* channel : sorted_channels(reader.catalogue())) {
@@ -177,6 +185,7 @@ std::string recording_info_json(const std::string& file, std::uint64_t bytes, co
               {"duration_s", duration},
               {"indexed", reader.indexed()},
               {"why_not_indexed", reader.why_not_indexed()},
+              {"chunks_left_out", reader.chunks_left_out()},
               {"topics", std::move(topics)}};
   out.update(statistics_json(statistics));
   out["attachments"] = std::move(attachments);

@@ -1,5 +1,6 @@
 // cellmirror recording: what is in a recorded file, whether it is whole, its repair, and its messages as tables.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -18,6 +19,7 @@
 #include "app/recording/recording_export.hpp"
 #include "app/recording/recording_plot.hpp"
 #include "app/recording/recording_report.hpp"
+#include "app/subcommands/reading.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/record/recover.hpp"
@@ -40,6 +42,7 @@ struct RecordingOptions {
   double from_s = 0;
   std::optional<double> to_s;
   bool json = false;
+  std::optional<double> decompressed_gb;
 };
 
 int printed(const std::string& text) {
@@ -50,7 +53,11 @@ int printed(const std::string& text) {
 int recording_info(const RecordingOptions& options) {
   const auto source = mcap::FileSource::open(options.file);
   if (!source) return refuse(source.error().text());
-  const auto reader = mcap::Reader::open(**source);
+  ReadingWatch watch;
+  mcap::Limits limits = watch.watched(limits_of(options.decompressed_gb));
+  limits.leave_out_beyond = true;
+  const auto reader = mcap::Reader::open(**source, limits);
+  watch.end();
   if (!reader) return refuse(options.file + ": " + reader.error().text());
   const std::uint64_t bytes = (*source)->size();
   return printed(options.json ? recording_info_json(options.file, bytes, *reader)
@@ -60,7 +67,9 @@ int recording_info(const RecordingOptions& options) {
 int recording_check(const RecordingOptions& options) {
   const auto source = mcap::FileSource::open(options.file);
   if (!source) return refuse(source.error().text());
-  const auto check = check_recording(**source);
+  ReadingWatch watch;
+  const auto check = check_recording(**source, watch.watched(limits_of(options.decompressed_gb)));
+  watch.end();
   if (!check) return refuse(options.file + ": " + check.error().text());
   if (const int status = printed(options.json ? recording_check_json(options.file, *check)
                                               : recording_check_text(options.file, *check));
@@ -75,7 +84,10 @@ int recording_recover(const RecordingOptions& options) {
   if (!source) return refuse(source.error().text());
   auto sink = mcap::FileSink::create(options.output);
   if (!sink) return refuse(sink.error().text());
-  const auto report = mcap::recover(**source, **sink, *mcap::compression_of(options.compression));
+  ReadingWatch watch;
+  const auto report = mcap::recover(**source, **sink, *mcap::compression_of(options.compression),
+                                    watch.watched(limits_of(options.decompressed_gb)));
+  watch.end();
   if (!report) {
     std::remove(options.output.c_str());
     return refuse(options.file + ": " + report.error().text());
@@ -119,7 +131,8 @@ mcap::Filter filter_of(const RecordingOptions& options, const mcap::Reader& read
 int recording_export(const RecordingOptions& options) {
   const auto source = mcap::FileSource::open(options.file);
   if (!source) return refuse(source.error().text());
-  auto reader = mcap::Reader::open(**source);
+  ReadingWatch watch(!options.output.empty() || ::isatty(STDOUT_FILENO) == 0);
+  auto reader = mcap::Reader::open(**source, watch.watched(limits_of(options.decompressed_gb)));
   if (!reader) return refuse(options.file + ": " + reader.error().text());
   const mcap::Filter filter = filter_of(options, *reader);
   std::FILE* out = stdout;
@@ -132,6 +145,7 @@ int recording_export(const RecordingOptions& options) {
                       : options.joints ? export_postures(*reader, options.topic, filter, out)
                       : options.json   ? export_json(*reader, options.topic, filter, out)
                                        : export_csv(*reader, options.topic, filter, out);
+  watch.end();
   bool good = std::fflush(out) == 0 && std::ferror(out) == 0;
   if (out != stdout) good = std::fclose(out) == 0 && good;
   if (!totals) {
@@ -159,9 +173,11 @@ std::vector<std::string> divided(std::string_view text) {
 int recording_plot(const RecordingOptions& options) {
   const auto source = mcap::FileSource::open(options.file);
   if (!source) return refuse(source.error().text());
-  auto reader = mcap::Reader::open(**source);
+  ReadingWatch watch;
+  auto reader = mcap::Reader::open(**source, watch.watched(limits_of(options.decompressed_gb)));
   if (!reader) return refuse(options.file + ": " + reader.error().text());
   const auto figure = recording_figure(*reader, options.topic, divided(options.fields), filter_of(options, *reader));
+  watch.end();
   if (!figure) return refuse(options.file + ": " + figure.error().text());
   if (const auto written = plot::write_png(*figure, options.output); !written) return refuse(written.error().text());
   std::size_t lines = 0;
@@ -172,6 +188,7 @@ int recording_plot(const RecordingOptions& options) {
 
 void add_file(cli::Command& command, RecordingOptions& options) {
   command.option("file", options.file, "the recording, an .mcap file").required();
+  add_decompressed_limit(command, options.decompressed_gb);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "app/replay/verification.hpp"
 #include "app/subcommands/replay_cells.hpp"
 #include "app/subcommands/replay_gateway.hpp"
+#include "app/subcommands/reading.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/record/reader.hpp"
@@ -28,6 +29,7 @@ struct ReplayOptions {
   bool verify = false;
   bool force = false;
   bool json = false;
+  std::optional<double> decompressed_gb;
   std::string cell;
   std::string recorded_cell;
   double from_s = 0;
@@ -53,11 +55,13 @@ int replay(const ReplayOptions& options) {
     gateway.recorded_cell = options.recorded_cell;
     gateway.from_s = options.from_s;
     gateway.to_s = options.to_s;
+    gateway.limits = limits_of(options.decompressed_gb);
     return play_recording(gateway);
   }
   const auto source = mcap::FileSource::open(options.file);
   if (!source) return refuse(source.error().text());
-  auto reader = mcap::Reader::open(**source);
+  ReadingWatch watch(options.cell.empty());
+  auto reader = mcap::Reader::open(**source, watch.watched(limits_of(options.decompressed_gb)));
   if (!reader) return refuse(options.file + ": " + reader.error().text());
   const mcap::Filter filter = filter_of(options, *reader);
   if (!options.cell.empty())
@@ -68,6 +72,7 @@ int replay(const ReplayOptions& options) {
                               options.file, other));
   const SystemClock clock;
   const auto verification = verify(*reader, filter, clock);
+  watch.end();
   if (!verification) return refuse(options.file + ": " + verification.error().text());
   put(stdout, "{}{}", options.json ? verification_json(*verification) : verification_text(*verification),
       options.json ? "\n" : "");
@@ -82,6 +87,7 @@ void add_replay(cli::Command program, Action& action) {
   cli::Command sub =
       program.subcommand("replay", "Play a recording as if the gateway ran, compare each tick, or try another cell");
   sub.option("file", options->file, "the recording, an .mcap file").required();
+  add_decompressed_limit(sub, options->decompressed_gb);
   auto verifies =
       sub.flag("--verify", options->verify, "compare what each tick published, bit by bit; 1 if one differs");
   sub.flag("--force", options->force, "also where another build or processor has recorded");

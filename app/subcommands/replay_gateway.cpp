@@ -79,6 +79,7 @@ int play_recording(const ReplayGateway& options) {
   const SystemClock clock;
   PlayOptions play;
   play.file = options.file;
+  play.limits = options.limits;
   play.from_s = options.from_s;
   play.to_s = options.to_s;
   play.speed = options.speed;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "ipc/record/record_stream.hpp"
+
 namespace cellmirror::app {
 
 struct ReplayGateway {
@@ -19,6 +21,7 @@ struct ReplayGateway {
   bool publish = false;
   bool headless = false;
   std::optional<int> port;
+  mcap::Limits limits;  // of the recording
 
   [[nodiscard]] bool with_page() const { return page || port; }
 };

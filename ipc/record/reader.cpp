@@ -101,6 +101,7 @@ Result<Reader> Reader::open(const Source& source, const Limits& limits) {
   out.chunks_ = std::move(scanned->chunks);
   out.faults_ = std::move(scanned->faults);
   out.chunks_have_all_ = scanned->chunks_have_all;
+  out.chunks_left_out_ = scanned->chunks_left_out;
   out.attachments_ = std::move(indexer.attachments);
   out.metadata_ = std::move(indexer.metadata);
   return out;
@@ -130,8 +131,13 @@ Result<Bytes> Reader::record_at(std::uint64_t offset, std::uint64_t length, Opco
 
 Result<void> Reader::read_by_index(const Filter& filter, const Take& take) {
   Selection selection(filter, take);
-  ChunkOpener opener(limits_);
+  ChunkOpener opener(limits_, source_->size());
+  std::uint64_t total = 0;
+  std::uint64_t done = 0;
+  for (const ChunkIndex& index : chunks_) total += index.length;
   for (const ChunkIndex& index : chunks_) {
+    done += index.length;
+    if (limits_.progress != nullptr) (*limits_.progress)(done, total);
     if (index.start_time > filter.to || index.end_time < filter.from) continue;
     const bool wanted =
         index.message_index_offsets.empty() || std::ranges::any_of(index.message_index_offsets, [&](const auto& entry) {
@@ -144,7 +150,7 @@ Result<void> Reader::read_by_index(const Filter& filter, const Take& take) {
     const auto chunk = decode_chunk(*bytes);
     if (!chunk) return fail(fmt::format("at byte {}: a chunk that is cut off", index.offset));
     const auto content = opener.open(*chunk);
-    if (!content) return fail(fmt::format("at byte {}: {}", index.offset, content.error().what));
+    if (!content) return fail(fmt::format("at byte {}: {}", index.offset, content.error().what), content.error().remedy);
     RecordList records(*content);
     while (const auto record = records.next()) {
       if (!record->is(Opcode::message)) continue;
@@ -156,7 +162,7 @@ Result<void> Reader::read_by_index(const Filter& filter, const Take& take) {
       selection.on_message(*message, channel->second);
       if (selection.ended()) return {};
     }
-    if (!records.ok()) return fail(fmt::format("at byte {}: the chunk has a record that is cut off", index.offset));
+    if (!records.ok()) return fail(fmt::format("at byte {}: the chunk has no whole record at its byte {}", index.offset, records.offset()));
   }
   return {};
 }

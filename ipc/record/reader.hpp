@@ -46,6 +46,8 @@ class Reader {
   [[nodiscard]] bool indexed() const { return indexed_; }
   [[nodiscard]] const std::string& why_not_indexed() const { return why_not_; }
   [[nodiscard]] const Faults& faults() const { return faults_; }
+  // Chunks of a scan that are in chunks(), but not in the counts: Limits::leave_out_beyond.
+  [[nodiscard]] std::uint64_t chunks_left_out() const { return chunks_left_out_; }
 
  private:
   Reader(const Source& source, const Limits& limits) : source_(&source), limits_(limits) {}
@@ -62,6 +64,7 @@ class Reader {
   std::vector<AttachmentIndex> attachments_;
   std::vector<MetadataIndex> metadata_;
   Faults faults_;
+  std::uint64_t chunks_left_out_ = 0;
   bool indexed_ = false;
   bool chunks_have_all_ = false;  // of a scan: chunks_ are enough to read all messages
   std::string why_not_;

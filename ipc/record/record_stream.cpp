@@ -64,7 +64,7 @@ std::optional<RecordView> RecordList::next() {
   out.opcode = from.number<std::uint8_t>();
   out.offset = offset_;
   out.content = from.bytes(from.number<std::uint64_t>());
-  ok_ = from.ok();
+  ok_ = from.ok() && out.opcode != 0;
   if (!ok_) return std::nullopt;
   offset_ += kRecordHead + out.content.size();
   return out;

@@ -2,7 +2,10 @@
 // thread.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <optional>
 
 #include "ipc/record/byte_stream.hpp"
@@ -10,11 +13,27 @@
 
 namespace cellmirror::mcap {
 
+// How far the reading of a file has come, in bytes. Called often.
+using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
 // What a reader accepts. More than a recording of ours ever has.
 struct Limits {
   std::uint64_t record_bytes = std::uint64_t{1} << 30;   // one record, e.g. an attachment
   std::uint64_t chunk_bytes = std::uint64_t{256} << 20;  // decompressed
   std::uint64_t summary_bytes = std::uint64_t{256} << 20;
+  // Of all compressed chunks that are read in one go, decompressed: this, or so many times the bytes of the file where
+  // that is more. 200 MB of zeros are 6 kB in a file.
+  std::uint64_t decompressed_bytes = std::uint64_t{1} << 30;
+  std::uint64_t decompressed_ratio = 200;
+  // Of a scan: chunks beyond that are left out and counted; otherwise it fails there.
+  bool leave_out_beyond = false;
+  const ReadProgress* progress = nullptr;  // outlives the reader
+
+  [[nodiscard]] std::uint64_t most_decompressed(std::uint64_t file_bytes) const {
+    constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
+    const bool overflows = decompressed_ratio > 0 && file_bytes > kAny / decompressed_ratio;
+    return overflows ? kAny : std::max(decompressed_bytes, decompressed_ratio * file_bytes);
+  }
 };
 
 struct RecordView {
@@ -53,7 +72,8 @@ class RecordStream {
 class RecordList {
  public:
   explicit RecordList(View bytes) : bytes_(bytes) {}
-  // None at the end, and where a length is wrong: ok() is false then. Offsets are in the list.
+  // None at the end, and where a length is wrong or the kind is 0, which no record has: ok() is false then. Offsets are
+  // in the list.
   std::optional<RecordView> next();
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] std::size_t offset() const { return offset_; }

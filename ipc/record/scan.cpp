@@ -37,6 +37,16 @@ Result<View> ChunkOpener::open(const Chunk& chunk) {
     return fail(fmt::format("the chunk would have {} bytes decompressed, more than the {} that are accepted",
                             chunk.uncompressed_size, limits_.chunk_bytes));
   }
+  const bool compressed = !chunk.compression.empty();
+  exhausted_ = compressed && chunk.uncompressed_size > left_;
+  if (exhausted_) {
+    return fail(
+        fmt::format("the chunks up to here have more than {:.1f} GB decompressed, which is the limit for a file of {:.1f} MB",
+                    1e-9 * static_cast<double>(limits_.most_decompressed(file_bytes_)),
+                    1e-6 * static_cast<double>(file_bytes_)),
+        "if you know where the file is from, raise the limit: --decompressed-limit GB");
+  }
+  if (compressed) left_ -= chunk.uncompressed_size;
   auto content = decompressor_.decompress(chunk.compression, chunk.records, chunk.uncompressed_size);
   if (!content) return content;
   if (chunk.uncompressed_crc != 0 && chunk.uncompressed_crc != crc32(*content))
@@ -49,7 +59,7 @@ namespace {
 class Scanner {
  public:
   Scanner(const Source& source, const Limits& limits, Visitor& visitor)
-      : source_(source), limits_(limits), visitor_(visitor), opener_(limits) {}
+      : source_(source), limits_(limits), visitor_(visitor), opener_(limits, source.size()) {}
 
   Result<ScanReport> run();
 
@@ -60,13 +70,17 @@ class Scanner {
   std::optional<std::uint64_t> chunk_behind(std::uint64_t offset);
   void take(const RecordView& record);
   void take_chunk(const RecordView& record);
+  // A chunk that there is no room for.
+  void refuse_or_leave_out(const Chunk& chunk, const RecordView& record, const Error& why);
   void take_message(const Message& message, std::uint64_t offset);
   // Of the data section or a chunk; false: it is none of these kinds.
   bool take_inner(const RecordView& record, std::uint64_t offset);
   void look_at_end(std::uint64_t offset);
-  void fault(std::uint64_t offset, std::string what) {
+  template <class... Args>
+  void fault(std::uint64_t offset, fmt::format_string<Args...> what, Args&&... args) {
     if (in_chunk_) out_.chunks_have_all = false;
-    out_.faults.add(offset, std::move(what));
+    if (out_.faults.full()) return out_.faults.add_another();
+    out_.faults.add(offset, fmt::format(what, std::forward<Args>(args)...));
   }
 
   const Source& source_;
@@ -79,12 +93,13 @@ class Scanner {
   bool in_chunk_ = false;
   std::set<std::uint16_t> chunk_channels_;
   bool has_header_ = false;
+  std::optional<Error> refused_;  // the scan ends
 };
 
 void Scanner::take_message(const Message& message, std::uint64_t offset) {
   const auto channel = out_.catalogue.channels.find(message.channel);
   if (channel == out_.catalogue.channels.end())
-    return fault(offset, fmt::format("a message of the channel {}, which is not described", message.channel));
+    return fault(offset, "a message of the channel {}, which is not described", message.channel);
   if (message.log_time < last_time_) ++out_.out_of_order;
   last_time_ = message.log_time;
   if (in_chunk_) {
@@ -102,7 +117,7 @@ bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
     const auto schema = decode_schema(record.content);
     const std::string wrong = schema ? out_.catalogue.add(*schema) : "a schema that is cut off, or has the id 0";
     if (!wrong.empty()) {
-      fault(offset, wrong);
+      fault(offset, "{}", wrong);
     } else {
       visitor_.on_schema(*schema);
     }
@@ -112,7 +127,7 @@ bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
     const auto channel = decode_channel(record.content);
     const std::string wrong = channel ? out_.catalogue.add(*channel) : "a channel that is cut off";
     if (!wrong.empty()) {
-      fault(offset, wrong);
+      fault(offset, "{}", wrong);
     } else {
       visitor_.on_channel(*channel);
     }
@@ -129,6 +144,29 @@ bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
   return false;
 }
 
+ChunkIndex index_of(const Chunk& chunk, const RecordView& record) {
+  ChunkIndex index;
+  index.start_time = chunk.start_time;
+  index.end_time = chunk.end_time;
+  index.offset = record.offset;
+  index.length = kRecordHead + record.content.size();
+  index.compression = chunk.compression;
+  index.compressed_size = chunk.records.size();
+  index.uncompressed_size = chunk.uncompressed_size;
+  return index;
+}
+
+void Scanner::refuse_or_leave_out(const Chunk& chunk, const RecordView& record, const Error& why) {
+  out_.chunks_have_all = false;
+  if (!limits_.leave_out_beyond) {
+    refused_ = Error{fmt::format("at byte {}: {}", record.offset, why.what), why.remedy};
+    return;
+  }
+  ++out_.chunks_left_out;
+  out_.chunks.push_back(index_of(chunk, record));
+  ++out_.statistics.chunks;
+}
+
 void Scanner::take_chunk(const RecordView& record) {
   const auto chunk = decode_chunk(record.content);
   if (!chunk) {
@@ -137,28 +175,21 @@ void Scanner::take_chunk(const RecordView& record) {
   }
   const auto content = opener_.open(*chunk);
   if (!content) {
+    if (opener_.exhausted()) return refuse_or_leave_out(*chunk, record, content.error());
     ++out_.chunks_lost;
-    return fault(record.offset, content.error().what);
+    return fault(record.offset, "{}", content.error().what);
   }
   in_chunk_ = true;
   chunk_channels_.clear();
   RecordList records(*content);
   while (const auto inner = records.next()) {
     if (!take_inner(*inner, record.offset))
-      fault(record.offset,
-            fmt::format("the chunk has a record of kind {:#04x} at its byte {}", inner->opcode, inner->offset));
+      fault(record.offset, "the chunk has a record of kind {:#04x} at its byte {}", inner->opcode, inner->offset);
   }
   if (!records.ok())
-    fault(record.offset, fmt::format("the chunk has a record at its byte {} that is cut off", records.offset()));
+    fault(record.offset, "the chunk has no whole record at its byte {}", records.offset());
   in_chunk_ = false;
-  ChunkIndex index;
-  index.start_time = chunk->start_time;
-  index.end_time = chunk->end_time;
-  index.offset = record.offset;
-  index.length = kRecordHead + record.content.size();
-  index.compression = chunk->compression;
-  index.compressed_size = chunk->records.size();
-  index.uncompressed_size = chunk->uncompressed_size;
+  ChunkIndex index = index_of(*chunk, record);
   for (const std::uint16_t channel : chunk_channels_) index.message_index_offsets[channel] = 0;
   out_.chunks.push_back(std::move(index));
   ++out_.statistics.chunks;
@@ -210,7 +241,7 @@ bool Scanner::run_from(std::uint64_t offset) {
       // "at byte N: ..." is the stream's way to say it to those who have nothing else.
       const std::string& what = record.error().what;
       const std::size_t colon = what.starts_with("at byte") ? what.find(": ") : std::string::npos;
-      fault(stream.offset(), colon == std::string::npos ? what : what.substr(colon + 2));
+      fault(stream.offset(), "{}", colon == std::string::npos ? what : what.substr(colon + 2));
       return false;
     }
     if (!*record) {
@@ -224,6 +255,8 @@ bool Scanner::run_from(std::uint64_t offset) {
       return true;
     }
     take(**record);
+    if (refused_) return true;
+    if (limits_.progress != nullptr) (*limits_.progress)((*record)->end(), source_.size());
     if (!has_header_) {
       fault((*record)->offset, "the first record is no header");
       has_header_ = true;
@@ -255,6 +288,7 @@ Result<ScanReport> Scanner::run() {
     from = *next;
     out_.whole_until = from;
   }
+  if (refused_) return std::unexpected(*refused_);
   out_.statistics.schemas = static_cast<std::uint16_t>(out_.catalogue.schemas.size());
   out_.statistics.channels = static_cast<std::uint32_t>(out_.catalogue.channels.size());
   return std::move(out_);

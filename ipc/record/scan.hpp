@@ -26,8 +26,11 @@ class Faults {
   static constexpr std::size_t kKept = 100;
   void add(std::uint64_t offset, std::string what) {
     ++count_;
-    if (kept_.size() < kKept) kept_.push_back({offset, std::move(what)});
+    if (!full()) kept_.push_back({offset, std::move(what)});
   }
+  // One more whose text is not needed; only where they are full(): a text each would take longer than the reading.
+  void add_another() { ++count_; }
+  [[nodiscard]] bool full() const { return kept_.size() >= kKept; }
   [[nodiscard]] const std::vector<Fault>& first() const { return kept_; }
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
@@ -69,6 +72,7 @@ struct ScanReport {
   std::uint64_t messages_outside = 0;  // of no chunk
   std::uint64_t out_of_order = 0;      // messages with a log time before that of the message before
   std::uint64_t chunks_lost = 0;
+  std::uint64_t chunks_left_out = 0;  // Limits::leave_out_beyond
   std::uint64_t whole_until = 0;  // the end of the last whole record that was read in order
   bool ended = false;             // a footer and the closing magic are there
   Faults faults;
@@ -78,15 +82,22 @@ struct ScanReport {
 // the next call.
 class ChunkOpener {
  public:
-  explicit ChunkOpener(const Limits& limits) : limits_(limits) {}
+  ChunkOpener(const Limits& limits, std::uint64_t file_bytes)
+      : limits_(limits), file_bytes_(file_bytes), left_(limits.most_decompressed(file_bytes)) {}
   Result<View> open(const Chunk& chunk);
+  // The last failure was that this chunk and those before it have too many bytes, not that it is wrong.
+  [[nodiscard]] bool exhausted() const { return exhausted_; }
 
  private:
   Limits limits_;
+  std::uint64_t file_bytes_;
+  std::uint64_t left_;  // bytes
+  bool exhausted_ = false;
   Decompressor decompressor_;
 };
 
-// Fails where the source is no MCAP file at all. All other faults are in the report.
+// Fails where the source is no MCAP file at all, and where its chunks have more bytes than is accepted. All other faults
+// are in the report.
 [[nodiscard]] Result<ScanReport> scan(const Source& source, const Limits& limits, Visitor& visitor);
 
 }  // namespace cellmirror::mcap

@@ -6,6 +6,7 @@
 #include "ipc/record/encode.hpp"
 #include "ipc/record/reader.hpp"
 #include "ipc/record/record_stream.hpp"
+#include "ipc/record/recover.hpp"
 #include "tests/unit/record/record_parts.hpp"
 
 namespace cellmirror::mcap {
@@ -135,6 +136,118 @@ TEST(HostileRecording, AChunkThatBlowsUpIsRefused) {
     EXPECT_EQ(scanned(file, found).chunks_lost, 1U);
     EXPECT_TRUE(found.messages.empty());
   }
+}
+
+// A small file of `chunks` chunks, of `bytes` bytes each that are all `value`.
+Bytes blown_up(int chunks, std::size_t bytes, std::byte value) {
+  Compressor compressor(Compression::zstd);
+  const Bytes content(bytes, value);
+  const auto small = compressor.compress(content);
+  EXPECT_TRUE(small);
+  Bytes file = begun();
+  for (int i = 0; i < chunks; ++i) append(Chunk{0, 0, bytes, 0, "zstd", *small}, file);
+  append_data_end(0, file);
+  append(Footer{}, file);
+  append_magic(file);
+  return file;
+}
+
+constexpr std::uint64_t kMega = 1'000'000;
+
+TEST(HostileRecording, ChunksWithMoreBytesThanAreAcceptedInAllAreRefused) {
+  const Bytes file = blown_up(5, 8 * kMega, std::byte{0});
+  ASSERT_LT(file.size(), 10'000U);
+  const MemorySource source(file);
+  const Limits limits{.decompressed_bytes = 20 * kMega};
+  Collector found;
+  const auto refused = scan(source, limits, found);
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(refused.error().what.starts_with("at byte ")) << refused.error().what;
+  EXPECT_NE(refused.error().what.find("more than 0.0 GB decompressed"), std::string::npos) << refused.error().what;
+  EXPECT_NE(refused.error().remedy.find("--decompressed-limit"), std::string::npos) << refused.error().remedy;
+  EXPECT_FALSE(Reader::open(source, limits));
+  MemorySink out;
+  EXPECT_FALSE(recover(source, out, Compression::none, limits));
+  // For those who know where it is from.
+  EXPECT_EQ(scanned(file, found, {.decompressed_bytes = 40 * kMega}).chunks.size(), 5U);
+  EXPECT_EQ(scanned(file, found, {.decompressed_bytes = 0, .decompressed_ratio = 100'000}).chunks.size(), 5U);
+}
+
+TEST(HostileRecording, ChunksBeyondTheLimitCanBeLeftOutAndAreCounted) {
+  const Bytes file = blown_up(5, 8 * kMega, std::byte{0});
+  const MemorySource source(file);
+  const auto reader = Reader::open(source, {.decompressed_bytes = 20 * kMega, .leave_out_beyond = true});
+  ASSERT_TRUE(reader) << reader.error().text();
+  EXPECT_EQ(reader->chunks().size(), 5U);
+  EXPECT_EQ(reader->chunks_left_out(), 3U);
+  EXPECT_EQ(reader->statistics().chunks, 5U);
+}
+
+TEST(HostileRecording, AnIndexedFileIsReadByTheSameLimit) {
+  const Bytes file = small_recording(Compression::zstd);
+  const MemorySource source(file);
+  std::uint64_t bytes = 0;
+  const auto count = [&](const Message& message, const Channel&) {
+    bytes += message.data.size();
+    return true;
+  };
+  auto reader = Reader::open(source, {.decompressed_bytes = 3000, .decompressed_ratio = 0});
+  ASSERT_TRUE(reader && reader->indexed()) << "the index is read without any chunk";
+  const auto read = reader->read({}, count);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().remedy.find("--decompressed-limit"), std::string::npos) << read.error().text();
+  EXPECT_LE(bytes, 3000U);
+  // What is not compressed cannot blow up.
+  const Bytes plain = small_recording(Compression::none);
+  const MemorySource plain_source(plain);
+  auto plain_reader = Reader::open(plain_source, {.decompressed_bytes = 0, .decompressed_ratio = 0});
+  ASSERT_TRUE(plain_reader);
+  EXPECT_TRUE(plain_reader->read({}, count));
+}
+
+TEST(HostileRecording, NoRecordHasTheKindZero) {
+  Collector found;
+  const ScanReport report = scanned(blown_up(2, 8 * kMega, std::byte{0}), found);
+  EXPECT_EQ(report.faults.count(), 2U) << "one for each chunk, not one for each nine bytes";
+  EXPECT_NE(first_fault(report).find("no whole record at its byte 0"), std::string::npos) << first_fault(report);
+}
+
+TEST(HostileRecording, ManyFaultsAreCountedAndTheFirstAreKept) {
+  Bytes records;
+  constexpr int kMany = 100'000;
+  for (int i = 0; i < kMany; ++i) {
+    records.insert(records.end(), kRecordHead, std::byte{0});
+    records[records.size() - kRecordHead] = std::byte{0x80};
+  }
+  Bytes file = begun();
+  append(Chunk{0, 0, records.size(), 0, "", records}, file);
+  Collector found;
+  const ScanReport report = scanned(file, found);
+  EXPECT_EQ(report.faults.count(), kMany + 1U);  // with the end that is not there
+  EXPECT_EQ(report.faults.first().size(), Faults::kKept);
+}
+
+TEST(HostileRecording, TellsHowFarItsReadingHasCome) {
+  const Bytes file = small_recording(Compression::zstd);
+  std::uint64_t last = 0;
+  int calls = 0;
+  const ReadProgress progress = [&](std::uint64_t done, std::uint64_t total) {
+    EXPECT_GE(done, last);
+    EXPECT_LE(done, total);
+    last = done;
+    ++calls;
+  };
+  Collector found;
+  scanned(file, found, {.progress = &progress});
+  EXPECT_GT(calls, 5);
+  last = 0;
+  calls = 0;
+  const MemorySource source(file);
+  auto reader = Reader::open(source, {.progress = &progress});
+  ASSERT_TRUE(reader && reader->indexed());
+  EXPECT_EQ(calls, 0);
+  ASSERT_TRUE(reader->read({}, [](const Message&, const Channel&) { return true; }));
+  EXPECT_GT(calls, 3);
 }
 
 TEST(HostileRecording, TheDecompressorWritesNoMoreThanItIsGiven) {

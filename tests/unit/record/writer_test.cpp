@@ -59,7 +59,7 @@ TEST_P(RecordWriter, MessageIndexesLieBehindTheirChunksAndPointAtMessages) {
     RecordList at_chunk(View(file).subspan(chunk.offset, chunk.length));
     const auto record = at_chunk.next();
     ASSERT_TRUE(record && record->is(Opcode::chunk));
-    ChunkOpener opener({});
+    ChunkOpener opener({}, file.size());
     const auto opened = opener.open(*decode_chunk(record->content));
     ASSERT_TRUE(opened);
     std::uint64_t length = 0;

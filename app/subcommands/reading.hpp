@@ -1,0 +1,52 @@
+// How a subcommand reads a recording: within the limits that its user sets, with the progress on the terminal.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "app/console/progress_line.hpp"
+#include "config/command_line/command_line.hpp"
+#include "ipc/record/record_stream.hpp"
+
+namespace cellmirror::app {
+
+inline void add_decompressed_limit(cli::Command& command, std::optional<double>& gb) {
+  command
+      .option("--decompressed-limit", gb,
+              "read up to so many GB of decompressed chunks; otherwise 1.1 GB, or 200 times the file if that is more")
+      .between(0.001, 1e6);
+}
+
+[[nodiscard]] inline mcap::Limits limits_of(const std::optional<double>& decompressed_gb) {
+  mcap::Limits out;
+  if (decompressed_gb) out.decompressed_bytes = static_cast<std::uint64_t>(1e9 * *decompressed_gb);
+  if (decompressed_gb) out.decompressed_ratio = 0;
+  return out;
+}
+
+// Outlives the reader. `shown`: false where its line would be among rows on the same terminal.
+class ReadingWatch {
+ public:
+  explicit ReadingWatch(bool shown = true)
+      : progress_([this](std::uint64_t done, std::uint64_t total) {
+          constexpr std::uint64_t kKilo = 1000;
+          if (line_) line_->update(done / kKilo, total / kKilo);
+        }) {
+    if (shown) line_.emplace("kB of the recording");
+  }
+  ReadingWatch(const ReadingWatch&) = delete;
+  ReadingWatch& operator=(const ReadingWatch&) = delete;
+
+  [[nodiscard]] mcap::Limits watched(mcap::Limits limits) const {
+    limits.progress = &progress_;
+    return limits;
+  }
+  // Before anything else is written on the terminal.
+  void end() { line_.reset(); }
+
+ private:
+  std::optional<ProgressLine> line_;
+  mcap::ReadProgress progress_;
+};
+
+}  // namespace cellmirror::app
