@@ -239,11 +239,7 @@ DdsStreamConfig read_dds(TableReader& reader, const RobotFacts* robot) {
   config.domain = static_cast<int>(reader.integer("domain", 0, kHighestDomain).value_or(config.domain));
   config.topic = read_topic(reader, "topic").value_or(config.topic);
   if (config.topic.empty()) reader.error("topic", "the topic is empty", "ROS 2's joint states are on /joint_states");
-  config.interface_address = reader.text("interface_address").value_or(config.interface_address);
-  if (!is_address(config.interface_address)) {
-    reader.error("interface_address",
-                 fmt::format("\"{}\" is not a numeric address", printable(config.interface_address)), "e.g. 127.0.0.1");
-  }
+  config.interface_address = read_own_address(reader, "interface_address").value_or(config.interface_address);
   config.reliable = reader.boolean("reliable").value_or(false);
   config.partition = read_partition(reader, "partition");
   constexpr std::size_t kMostJoints = 64;

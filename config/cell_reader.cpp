@@ -170,11 +170,7 @@ void CellReader::read_dds_output(TableReader& top) {
   dds.enabled = table->boolean("enabled").value_or(true);
   constexpr long long kHighestDomain = 232;
   dds.domain = static_cast<int>(table->integer("domain", 0, kHighestDomain).value_or(dds.domain));
-  dds.interface_address = table->text("interface_address").value_or(dds.interface_address);
-  if (!is_address(dds.interface_address)) {
-    table->error("interface_address", fmt::format("\"{}\" is not a numeric address", printable(dds.interface_address)),
-                 "e.g. 127.0.0.1");
-  }
+  dds.interface_address = read_own_address(*table, "interface_address").value_or(dds.interface_address);
   dds.partition = read_partition(*table, "partition");
   dds.summary_topic = read_topic(*table, "summary_topic").value_or(dds.summary_topic);
   dds.joint_states_topic = read_topic(*table, "joint_states_topic").value_or(dds.joint_states_topic);

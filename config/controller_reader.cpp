@@ -81,10 +81,7 @@ std::optional<ControllerConfig> read_controller(TableReader& reader, const Robot
   config.name = read_controller_name(reader).value_or("");
   constexpr long long kHighestDomain = 232;
   config.domain = static_cast<int>(reader.integer("domain", 0, kHighestDomain).value_or(0));
-  config.interface_address = reader.text("interface_address").value_or(config.interface_address);
-  if (!is_address(config.interface_address))
-    reader.error("interface_address",
-                 fmt::format("\"{}\" is not a numeric address", printable(config.interface_address)), "e.g. 127.0.0.1");
+  config.interface_address = read_own_address(reader, "interface_address").value_or(config.interface_address);
   constexpr Range kSeconds{0.0, 3600.0};
   constexpr Range kStateRate{0.0, 500.0};
   config.goal_time = reader.number("goal_time_s", kSeconds).value_or(config.goal_time);

@@ -2,9 +2,12 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "rt_core/base/dds_topic.hpp"
 #include "rt_core/base/text.hpp"
@@ -59,6 +62,43 @@ bool is_address(std::string_view text) {
   in_addr v4{};
   in6_addr v6{};
   return inet_pton(AF_INET, address.c_str(), &v4) == 1 || inet_pton(AF_INET6, address.c_str(), &v6) == 1;
+}
+
+bool is_own_address(const std::string& address) {
+  const auto same = [&](int family, auto wanted, auto address_of) {
+    if (inet_pton(family, address.c_str(), &wanted) != 1) return false;
+    const decltype(wanted) any{};
+    if (std::memcmp(&wanted, &any, sizeof any) == 0) return true;
+    ifaddrs* list = nullptr;
+    if (getifaddrs(&list) != 0) return true;  // not known: no reason to warn
+    bool found = false;
+    for (const ifaddrs* entry = list; entry != nullptr && !found; entry = entry->ifa_next) {
+      if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != family) continue;
+      found = std::memcmp(&wanted, address_of(entry->ifa_addr), sizeof wanted) == 0;
+    }
+    freeifaddrs(list);
+    return found;
+  };
+  if (address.starts_with("127.") || address == "::1") return true;
+  return same(AF_INET, in_addr{},
+              [](const sockaddr* of) { return &reinterpret_cast<const sockaddr_in*>(of)->sin_addr; }) ||
+         same(AF_INET6, in6_addr{},
+              [](const sockaddr* of) { return &reinterpret_cast<const sockaddr_in6*>(of)->sin6_addr; });
+}
+
+std::optional<std::string> read_own_address(TableReader& reader, std::string_view key) {
+  auto address = reader.text(key);
+  if (!address) return std::nullopt;
+  if (!is_address(*address)) {
+    reader.error(key, fmt::format("\"{}\" is not a numeric address", printable(*address)), "e.g. 127.0.0.1");
+    return std::nullopt;
+  }
+  if (!is_own_address(*address)) {
+    reader.warning(key, fmt::format("no network interface of this machine has the address {}", *address),
+                   "correct it, or ignore this where the cell runs on another machine or the interface comes up later; "
+                   "the addresses of this machine: ip address");
+  }
+  return address;
 }
 
 std::optional<std::string> read_topic(TableReader& reader, std::string_view key) {

@@ -75,6 +75,10 @@ void TableReader::error(std::string_view key, std::string message, std::string r
   diagnostics_->error(place(key), where_.empty() ? std::move(message) : where_ + ": " + message, std::move(remedy));
 }
 
+void TableReader::warning(std::string_view key, std::string message, std::string remedy) const {
+  diagnostics_->warning(place(key), where_.empty() ? std::move(message) : where_ + ": " + message, std::move(remedy));
+}
+
 void TableReader::require(std::string_view key) {
   if (!has(key)) error({}, fmt::format("the key {} is missing", key));
 }

@@ -85,6 +85,7 @@ class TableReader {
   // The place of a key's value, or of the table where the key is missing.
   [[nodiscard]] Place place(std::string_view key = {}) const;
   void error(std::string_view key, std::string message, std::string remedy = {}) const;
+  void warning(std::string_view key, std::string message, std::string remedy = {}) const;
   [[nodiscard]] Diagnostics& diagnostics() const { return *diagnostics_; }
   [[nodiscard]] const std::string& file() const { return *file_; }
 

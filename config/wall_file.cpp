@@ -74,10 +74,7 @@ void read_wall_table(TableReader& top, WallSettings& out) {
   if (const auto port = table->integer("port", 1, 65535)) out.port = static_cast<int>(*port);
   out.address = read_page_address(*table, out.address);
   if (const auto domain = table->integer("domain", 0, 232)) out.domain = static_cast<int>(*domain);
-  out.interface_address = table->text("interface_address").value_or(out.interface_address);
-  if (!is_address(out.interface_address))
-    table->error("interface_address", fmt::format("\"{}\" is not a numeric address", printable(out.interface_address)),
-                 "e.g. 127.0.0.1");
+  out.interface_address = read_own_address(*table, "interface_address").value_or(out.interface_address);
   out.topic = read_topic(*table, "summary_topic").value_or(out.topic);
   if (const auto after = read_seconds(*table, "silent_after_s", 3600, false)) out.silent_after = *after;
   table->finish();

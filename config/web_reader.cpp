@@ -33,13 +33,9 @@ bool is_origin(std::string_view text) {
 }  // namespace
 
 std::string read_page_address(TableReader& table, const std::string& otherwise) {
-  const auto address = table.text("address");
+  const auto address = read_own_address(table, "address");
   const bool remote = table.boolean("allow_remote").value_or(false);
   if (!address) return otherwise;
-  if (!is_address(*address)) {
-    table.error("address", fmt::format("\"{}\" is not a numeric address", printable(*address)), "e.g. 127.0.0.1");
-    return otherwise;
-  }
   if (!is_loopback(*address) && !remote) {
     table.error("address", fmt::format("the page at {} would be reachable from other machines", printable(*address)),
                 "if intended, add allow_remote = true; the connection is not encrypted");

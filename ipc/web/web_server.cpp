@@ -63,12 +63,23 @@ Result<SocketAddress> socket_address(const std::string& address, int port) {
   return fail(fmt::format("{} is not a numeric address", address), "e.g. 127.0.0.1");
 }
 
+void allow_absent_address(int listener, int family) {
+  const int yes = 1;
+  if (family == AF_INET) {
+    ::setsockopt(listener, IPPROTO_IP, IP_FREEBIND, &yes, sizeof yes);
+  } else {
+    ::setsockopt(listener, IPPROTO_IPV6, IPV6_FREEBIND, &yes, sizeof yes);
+  }
+}
+
 Result<Descriptor> listen_at(const std::string& address, int port, bool of_gateway) {
   auto to = socket_address(address, port);
   if (!to) return std::unexpected(to.error());
   Descriptor listener(::socket(to->bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
   if (listener.valid()) ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  // An address of the cell file that no interface has yet, as at boot: clients reach it once one has it.
+  if (listener.valid() && of_gateway) allow_absent_address(listener.get(), to->bytes.ss_family);
   if (listener.valid() && ::bind(listener.get(), to->get(), to->length) == 0 && ::listen(listener.get(), kBacklog) == 0)
     return listener;
   const int why = errno;

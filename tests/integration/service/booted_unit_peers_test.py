@@ -16,7 +16,7 @@ sys.path.insert(0, str(g.SOURCE / "tests" / "integration" / "package"))
 
 UNIT = g.SOURCE / "config" / "systemd" / "cellmirror@.service"
 PROGRAMS = ("cellmirror", "cellmirror-mesh-reader", "cellmirror-volume-reader")
-LATE = "192.0.2.77"  # for documents (RFC 5737): no machine has it
+LATE = "203.0.113.77"  # for documents (RFC 5737): no machine has it
 # Five exits must fit into ten seconds; the unit's own pause alone would keep them apart. Where this machine lets nobody raise
 # limits, the loop runs without real time.
 QUICK = "[Service]\nRestartSec=100ms\n"
@@ -139,6 +139,16 @@ class BootedUnit(unittest.TestCase):
     def test_it_leaves_no_core(self):
         limits = self.sh(f"cat /proc/{self.start()}/limits")
         self.assertRegex(limits, r"Max core file size +0 +0 ")
+
+    def test_it_waits_for_the_address_of_dds(self):
+        late = "203.0.113.78"
+        self.file.write_text(self.good.replace("[dds_output]\n", f'[dds_output]\ninterface_address = "{late}"\n'))
+        self.assertIn(late, self.file.read_text())
+        self.sh(f"systemctl start --no-block {self.unit}")
+        self.becomes("NRestarts", lambda count: int(count) >= 6)
+        self.assertNotEqual(self.shown("ActiveState"), "failed")
+        self.sh(f"ip address add {late}/32 dev lo")
+        self.becomes("ActiveState", lambda state: state == "active")
 
     def test_an_address_may_come_after_the_gateway(self):
         port = 8467

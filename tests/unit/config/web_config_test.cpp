@@ -93,6 +93,24 @@ TEST_F(WebConfig, OriginsAreFew) {
   EXPECT_THAT(refusal("origins = [" + sixteen + "\"https://b\"]"), HasSubstr("17 origins, but at most 16"));
 }
 
+// 203.0.113.0/24 and 2001:db8::/32 are for documents (RFC 5737, RFC 3849): no machine has them.
+TEST_F(WebConfig, WarnsOfAnAddressThatThisMachineDoesNotHave) {
+  for (const char* absent : {"203.0.113.77", "2001:db8::7"}) {
+    const std::string address = "\"" + std::string(absent) + "\"";
+    EXPECT_TRUE(load("[web]\naddress = " + address + "\nallow_remote = true\n")) << "it may come later";
+    EXPECT_EQ(diagnostics.warnings(), 1U) << diagnostics.text();
+    EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:4:11: warning: "));
+    EXPECT_THAT(diagnostics.text(), HasSubstr("no network interface of this machine has the address " +
+                                              std::string(absent)));
+    EXPECT_TRUE(load("[dds_output]\ninterface_address = " + address + "\n"));
+    EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:4:21: warning: "));
+  }
+  for (const char* own : {"127.0.0.1", "127.8.8.8", "::1", "0.0.0.0", "::"}) {
+    EXPECT_TRUE(load("[web]\naddress = \"" + std::string(own) + "\"\nallow_remote = true\n"));
+    EXPECT_EQ(diagnostics.warnings(), 0U) << own << diagnostics.text();
+  }
+}
+
 TEST_F(WebConfig, AllThatIsWrongIsToldAtOnce) {
   EXPECT_FALSE(
       load("[web]\nenabled = 1\nport = 0\naddress = \"x\"\nread_only = \"no\"\norigins = [\"x\"]\ntls = true\n"));
