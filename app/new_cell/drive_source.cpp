@@ -49,9 +49,26 @@ bool is_default(const TpdoConfig& tpdo) {
          tpdo.entries[0].bits == 16 && tpdo.entries[1].index == kPositionActual && tpdo.entries[1].bits == 32;
 }
 
+// Tells what the device is instead.
+bool is_drive(const can::DeviceDescription& device, const std::string& file, Diagnostics& diagnostics) {
+  if (can::is_drive(device)) return true;
+  const auto type = device.objects.integer({0x1000, 0});
+  constexpr std::int64_t kIoProfile = 401;
+  const std::int64_t profile = type.value_or(0) & 0xFFFF;
+  const std::string kind = profile == kIoProfile ? "an I/O device (CiA 401)"
+                           : profile != 0        ? fmt::format("a device of profile {}", profile)
+                                                 : "a device without a profile";
+  diagnostics.error({file, 0, 0},
+                    fmt::format("the file describes {}, not a drive: it has no position actual value 0x6064", kind),
+                    profile == kIoProfile ? "give the EDS of a drive (CiA 402); I/O of the cell is an [[io_node]]"
+                                          : "give the EDS of a drive (CiA 402)");
+  return false;
+}
+
 // Notes what the TPDOs of the file hold. An identifier that another node has already makes them useless.
-void note_mapping(const can::DeviceDescription& device, std::set<std::uint32_t>& cob_ids, PlannedDrive& drive) {
-  const std::vector<TpdoConfig> tpdos = can::tpdos_of(device.objects, drive.node);
+void note_mapping(const can::DeviceDescription& device, const std::string& file, std::set<std::uint32_t>& cob_ids,
+                  PlannedDrive& drive, Diagnostics& diagnostics) {
+  const std::vector<TpdoConfig> tpdos = can::tpdos_of(device, drive.node, file, diagnostics);
   const bool free = std::ranges::none_of(tpdos, [&](const TpdoConfig& tpdo) { return cob_ids.contains(tpdo.cob_id); });
   drive.position_mapped = free && std::ranges::any_of(tpdos, holds_position);
   drive.default_mapping = !drive.position_mapped || std::ranges::any_of(tpdos, is_default);
@@ -90,9 +107,9 @@ std::vector<PlannedDrive> read_drive_sources(const NewCellRequest& request, cons
     if (!request.eds.empty()) {
       const fs::path& source = request.eds.size() == 1 ? request.eds.front() : request.eds[i];
       const auto device = can::read_eds(source.string(), drive.node, diagnostics);
-      if (!device) return {};
+      if (!device || !is_drive(*device, source.string(), diagnostics)) return {};
       drive.eds = add_description(source, files);
-      note_mapping(*device, cob_ids, drive);
+      note_mapping(*device, source.string(), cob_ids, drive, diagnostics);
       const auto per_turn = linear ? std::nullopt : increments_per_turn(device->objects);
       if (per_turn) drive.increments = *per_turn / kTurn;
       drive.increments_known = per_turn.has_value();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace cellmirror {
@@ -32,9 +34,16 @@ void Diagnostics::add(Diagnostic diagnostic) {
   if (diagnostic.severity == Severity::warning) ++warnings_;
   if (kept_.size() < kKept) {
     kept_.push_back(std::move(diagnostic));
-  } else {
-    ++dropped_;
+    return;
   }
+  ++dropped_;
+  // An error behind a thousand warnings takes the place of one of those. With more errors than places none is left.
+  if (diagnostic.severity != Severity::error || errors_ > kKept) return;
+  const auto other = std::find_if(kept_.rbegin(), kept_.rend(),
+                                  [](const Diagnostic& kept) { return kept.severity != Severity::error; });
+  if (other == kept_.rend()) return;
+  kept_.erase(std::next(other).base());
+  kept_.push_back(std::move(diagnostic));
 }
 
 void Diagnostics::error(Place place, std::string message, std::string remedy) {

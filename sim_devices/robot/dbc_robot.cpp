@@ -67,6 +67,12 @@ Result<std::unique_ptr<DbcRobot>> DbcRobot::make(const DbcRobotConfig& config, c
       robot->take_in(*message, *signal, wanted);
       continue;
     }
+    const can::DbcFault* fault = dbc.fault_of(message == nullptr ? wanted.message : message->name,
+                                              message == nullptr ? std::string() : wanted.signal);
+    if (fault != nullptr) {
+      problems += fmt::format("{}{}", problems.empty() ? "" : "; ", fault->why.message);
+      continue;
+    }
     std::vector<std::string> names;
     for (const can::DbcMessage& known : dbc.messages) {
       for (const can::DbcSignal& one : known.signals) names.push_back(known.name + "." + one.name);

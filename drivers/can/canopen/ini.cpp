@@ -15,11 +15,13 @@ class IniReader {
 
   void line(std::string_view text) {
     ++line_;
+    constexpr std::string_view kDosEnd = "\x1A";  // closes text files of DOS
     const std::string_view content = trimmed(text);
-    if (content.empty() || content.front() == ';') return;
+    if (content.empty() || content == kDosEnd) return;
+    if (content.front() == ';' || content.front() == '#' || content.starts_with("//")) return;
     const int column = static_cast<int>(content.data() - text.data()) + 1;
     if (content.size() > kMaxLine) {
-      diagnostics_->error({file_, line_, 0}, fmt::format("the line is longer than {} bytes", kMaxLine));
+      warn(0, fmt::format("the line is longer than {} bytes: ignored", kMaxLine));
     } else if (content.front() == '[') {
       section(content, column);
     } else {
@@ -30,11 +32,14 @@ class IniReader {
   IniFile take() { return std::move(sections_); }
 
  private:
+  // A vendor's file may hold any nonsense in what nobody uses.
+  void warn(int column, std::string message) { diagnostics_->warning({file_, line_, column}, std::move(message)); }
+
   void section(std::string_view content, int column) {
     current_ = nullptr;
     const std::size_t end = content.find(']');
     if (end == std::string_view::npos || end == 1) {
-      diagnostics_->error({file_, line_, column}, "a section needs a name and ends with ]");
+      warn(column, "a section needs a name and ends with ]: its keys are ignored");
       skipping_ = true;
       return;
     }
@@ -42,9 +47,8 @@ class IniReader {
     const auto [found, is_new] = sections_.try_emplace(lower_case(name));
     skipping_ = !is_new;
     if (!is_new) {
-      diagnostics_->warning({file_, line_, column},
-                            fmt::format("the section [{}] appears twice, first in line {}: this one is skipped",
-                                        printable(name), found->second.line));
+      warn(column, fmt::format("the section [{}] appears twice, first in line {}: this one is skipped", printable(name),
+                               found->second.line));
       return;
     }
     found->second.name = name;
@@ -55,19 +59,19 @@ class IniReader {
   void key(std::string_view content, int column) {
     const std::size_t equals = content.find('=');
     if (equals == std::string_view::npos || equals == 0) {
-      diagnostics_->error({file_, line_, column}, "expected [section], key=value or ; comment");
+      warn(column, "the line is neither [section], key=value nor ; comment: ignored");
       return;
     }
     if (current_ == nullptr) {
-      if (!skipping_) diagnostics_->error({file_, line_, column}, "a key before the first section");
+      if (!skipping_) warn(column, "a key before the first section: ignored");
       return;
     }
     const std::string_view value = trimmed(content.substr(equals + 1));
     const int value_column = column + static_cast<int>(equals) + 1;
     const std::string name = lower_case(trimmed(content.substr(0, equals)));
     if (!current_->values.try_emplace(name, IniValue{std::string(value), line_, value_column}).second) {
-      diagnostics_->warning({file_, line_, column}, fmt::format("{} appears twice in [{}]: the first counts",
-                                                                printable(name), printable(current_->name)));
+      warn(column,
+           fmt::format("{} appears twice in [{}]: the first counts", printable(name), printable(current_->name)));
     }
   }
 
@@ -89,9 +93,10 @@ const IniValue* IniSection::find(std::string_view key_in_lower_case) const {
 IniFile parse_ini(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   IniReader reader(file, diagnostics);
   while (!text.empty()) {
-    const std::size_t end = text.find('\n');
+    const std::size_t end = text.find_first_of("\r\n");  // either, or both
     reader.line(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    text.remove_prefix(end == std::string_view::npos ? text.size()
+                                                     : end + (text.substr(end).starts_with("\r\n") ? 2 : 1));
   }
   return reader.take();
 }

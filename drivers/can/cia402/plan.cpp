@@ -75,7 +75,10 @@ class Planner {
     }
     if (!node.eds_file.empty()) {
       const auto device = read_eds(node.eds_file, node.node_id, *diagnostics_);
-      return device ? tpdos_of(device->objects, node.node_id) : std::vector<TpdoConfig>{};
+      if (!device) return {};
+      std::vector<TpdoConfig> tpdos = tpdos_of(*device, node.node_id, node.eds_file, *diagnostics_);
+      warn_of_foreign_node(*device, tpdos, node.node_id, node.eds_file, *diagnostics_);
+      return tpdos;
     }
     TpdoConfig tpdo;
     tpdo.transmission_type = config_->sync_period.count() > 0 ? 1 : 255;

@@ -23,6 +23,7 @@ enum class DbcValueType : std::uint8_t { integer, float32, float64 };
 
 struct DbcSignal {
   std::string name;
+  std::string short_name;    // as that of a message
   std::uint16_t start = 0;   // bit, 0..511
   std::uint16_t length = 0;  // bits, 1..64
   ByteOrder order = ByteOrder::little_endian;
@@ -43,24 +44,36 @@ struct DbcSignal {
 
 struct DbcMessage {
   std::string name;
-  std::uint32_t id = 0;  // 11 or 29 bits
+  std::string short_name;  // what CANdb++ writes in place of a name of more than 32 characters; else empty
+  std::uint32_t id = 0;    // 11 or 29 bits
   bool extended = false;
   std::uint8_t length = 0;  // bytes, 0..64
   std::vector<DbcSignal> signals;
   int line = 0;
 
-  [[nodiscard]] const DbcSignal* find(std::string_view signal) const;
+  [[nodiscard]] const DbcSignal* find(std::string_view signal) const;  // by either name
   [[nodiscard]] const DbcSignal* multiplexer() const;
+};
+
+// A message, or a signal of one, that the file describes wrongly.
+struct DbcFault {
+  std::string message;
+  std::string signal;  // empty: the whole message
+  Diagnostic why;      // an error for who uses it
 };
 
 struct Dbc {
   std::vector<DbcMessage> messages;
+  std::vector<DbcFault> left_out;
 
-  [[nodiscard]] const DbcMessage* find(std::string_view message) const;
+  [[nodiscard]] const DbcMessage* find(std::string_view message) const;  // by either name
+  // Why a message, or one of its signals, is not there; nullptr where the file does not have it, or has no fault.
+  [[nodiscard]] const DbcFault* fault_of(std::string_view message, std::string_view signal) const;
 };
 
-// Reads the whole text; finds all errors in one pass. What could be read is returned even where there were errors.
-// Signals that reach beyond their message, doubled names and numbers out of range are errors; the signal is left out.
+// Reads the whole text; reports all findings in one pass. What cannot be read is a warning and is left out, since few
+// messages of a file are used: signals that reach beyond their message, doubled names, numbers out of range. An error
+// is a file without messages.
 [[nodiscard]] Dbc parse_dbc(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 // The same from a file; none where it cannot be read (told in `diagnostics`). At most 16 MiB.
 [[nodiscard]] std::optional<Dbc> read_dbc(const std::string& file, Diagnostics& diagnostics);

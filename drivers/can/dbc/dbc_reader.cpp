@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/dbc/dbc_scanner.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxDbcBytes = 16U << 20U;
 constexpr std::uint32_t kExtendedFlag = 0x8000'0000;
-// VECTOR__INDEPENDENT_SIG_MSG: a parking place for signals of no message.
+// A parking place for signals of no message. Tools give it an identifier of their choice, mostly 0xC0000000.
+constexpr std::string_view kNoMessage = "VECTOR__INDEPENDENT_SIG_MSG";
 constexpr std::uint32_t kNoMessageId = 0xC000'0000;
 constexpr std::size_t kMaxRanges = 256;
 
@@ -48,6 +50,10 @@ constexpr std::array<std::string_view, 24> kSkipped = {"CM_",
                                                        "FILTER",
                                                        "BU_SG_REL_"};
 
+// Statements that are read.
+constexpr std::array<std::string_view, 8> kRead = {"BO_",     "SG_", "SIG_VALTYPE_", "SG_MUL_VAL_",
+                                                   "VERSION", "NS_", "BS_",          "BU_"};
+
 class DbcReader {
  public:
   DbcReader(std::string_view text, const std::string& file, Diagnostics& diagnostics)
@@ -60,18 +66,32 @@ class DbcReader {
   }
 
  private:
-  void error(std::string message, std::string remedy = {}) {
-    diagnostics_->error({file_, in_.line(), in_.column()}, std::move(message), std::move(remedy));
+  // A message, or one of its signals (else empty), that cannot be used as the file has it. Nobody may need it: a
+  // warning here, an error for who uses it.
+  void spoil(const std::string& message, const std::string& signal, const Place& place, const std::string& what,
+             const std::string& remedy = {}) {
+    diagnostics_->warning(place, what + ": left out", remedy);
+    dbc_.left_out.push_back({message, signal, {Severity::error, place, what, remedy}});
+    spoiled_.emplace(message, signal);
   }
-  void error_at(int line, std::string message) { diagnostics_->error({file_, line, 0}, std::move(message)); }
+  [[nodiscard]] Place here() const { return {file_, in_.line(), in_.column()}; }
+  [[nodiscard]] Place line_place(int line) const { return {file_, line, 0}; }
 
-  // Says what was expected, skips the rest of the line.
+  // Says what was expected. What is read now, if it has a name yet, is left out.
   bool expect(bool found, std::string_view what) {
-    if (!found) error(fmt::format("expected {}", what));
-    return found;
+    if (found) return true;
+    const std::string text = fmt::format("expected {}", what);
+    if (reading_message_.empty()) {
+      diagnostics_->warning(here(), text + ": the line is left out");
+    } else {
+      spoil(reading_message_, reading_signal_, here(), text);
+    }
+    return false;
   }
 
   void statement() {
+    reading_message_.clear();
+    reading_signal_.clear();
     const std::string_view word = in_.word();
     if (word == "BO_") {
       if (!message()) in_.skip_line();
@@ -83,12 +103,13 @@ class DbcReader {
       if (!multiplexer_values()) skip_statement();
     } else if (word == "VERSION" && !in_.at_line_end()) {
       if (!expect(in_.string().has_value(), "a version in quotation marks")) in_.skip_line();
-    } else if (word == "NS_" || word == "BS_" || word == "BU_" || word == "SIG_VALTYPE_" || word == "SG_MUL_VAL_" ||
-               word == "VERSION") {
+    } else if (std::ranges::find(kRead, word) != kRead.end()) {
       in_.skip_line();
-    } else if (std::find(kSkipped.begin(), kSkipped.end(), word) != kSkipped.end()) {
+    } else if (std::ranges::find(kSkipped, word) != kSkipped.end()) {
       // Alone on its line it is a name of the list behind NS_.
-      if (!in_.at_line_end()) skip_statement();
+      if (in_.at_line_end()) return;
+      if (word == "BA_") long_name();
+      skip_statement();
     } else {
       unknown(word);
     }
@@ -97,30 +118,56 @@ class DbcReader {
   void unknown(std::string_view word) {
     const bool name_of_list = word.ends_with('_') && in_.at_line_end();
     if (!name_of_list) {
-      const std::string what =
-          word.empty() ? "no statement starts like this" : "unknown statement " + printable(word) + ", skipped";
-      diagnostics_->warning({file_, in_.line(), in_.column()}, what);
+      const std::string what = word.empty() ? "no statement starts like this: skipped"
+                                            : "unknown statement " + printable(word) + ": skipped";
+      diagnostics_->warning(here(), what);
     }
     in_.skip_line();
+  }
+
+  // Whether the next line begins a statement.
+  [[nodiscard]] bool at_statement() const {
+    DbcScanner probe = in_;
+    const std::string_view word = probe.word();
+    if (word.empty() || probe.at_line_end()) return false;
+    return std::ranges::find(kRead, word) != kRead.end() || std::ranges::find(kSkipped, word) != kSkipped.end();
   }
 
   // To the semicolon; strings may hold semicolons and line ends.
   void skip_statement() {
     const int first_line = in_.line();
+    const DbcScanner start = in_;
     while (!in_.at_end()) {
       if (in_.peek() == '"') {
-        if (!in_.string()) {
-          error_at(first_line, "a string that starts in this statement does not end");
-          return;
-        }
-      } else if (in_.peek() == ';') {
-        in_.advance();
+        if (in_.string()) continue;
+        diagnostics_->warning(line_place(first_line), "a string that starts in this statement does not end: skipped");
+        in_ = start;
+        in_.skip_line();
         return;
-      } else {
-        in_.advance();
       }
+      const char c = in_.peek();
+      in_.advance();
+      if (c == ';') return;
+      if (c == '\n' && at_statement()) break;
     }
-    error_at(first_line, "the statement does not end with a semicolon");
+    diagnostics_->warning(line_place(first_line), "the statement does not end with a semicolon");
+  }
+
+  // BA_ "SystemMessageLongSymbol" BO_ 256 "..." and BA_ "SystemSignalLongSymbol" SG_ 256 Short "...": CANdb++ cuts
+  // names to 32 characters and keeps the whole ones in these attributes.
+  void long_name() {
+    const auto attribute = in_.string();
+    const bool of_signal = attribute == "SystemSignalLongSymbol";
+    if (!of_signal && attribute != "SystemMessageLongSymbol") return;
+    if (in_.word() != (of_signal ? "SG_" : "BO_")) return;
+    const auto id = unsigned_number(0xFFFF'FFFF);
+    const std::string signal(of_signal ? in_.word() : std::string_view{});
+    const auto name = in_.string();
+    const bool fits = name && !name->empty() && name->size() <= kMaxName && name->find_first_of("\"\n") == name->npos;
+    if (!id || !fits) return;
+    const auto found = messages_by_id_.find(static_cast<std::uint32_t>(*id));
+    if (found == messages_by_id_.end()) return;
+    long_names_.push_back({dbc_.messages[found->second].name, signal, std::string(*name), in_.line()});
   }
 
   std::optional<std::uint64_t> unsigned_number(std::uint64_t most) {
@@ -135,57 +182,86 @@ class DbcReader {
 
   bool message() {
     current_ = kNone;
-    const int line = in_.line();
+    skipping_ = true;  // the signals, unless the message can be used
+    const Place place = line_place(in_.line());
     const auto raw_id = unsigned_number(0xFFFF'FFFF);
     if (!expect(raw_id.has_value(), "the identifier of the message as a decimal number")) return false;
     const std::string name(in_.word());
     if (!expect(!name.empty() && name.size() <= kMaxName, "the name of the message")) return false;
+    has_messages_ = true;
+    reading_message_ = name;
     if (!expect(in_.take(':'), "':' behind the message's name")) return false;
-    const auto length = unsigned_number(0xFFFF);
+    const auto length = unsigned_number(0xFFFF'FFFF);
     if (!expect(length.has_value(), "the message's length in bytes")) return false;
     in_.skip_line();  // the sender
     const auto id = static_cast<std::uint32_t>(*raw_id);
-    parked_ = id == kNoMessageId;
-    if (parked_) return true;
-    return add_message(id, name, *length, line);
+    if (id == kNoMessageId || name == kNoMessage) {
+      parked_ids_.insert(id);
+    } else {
+      add_message(id, name, *length, place);
+    }
+    return true;
   }
 
-  bool add_message(std::uint32_t id, const std::string& name, std::uint64_t length, int line) {
+  void add_message(std::uint32_t id, const std::string& name, std::uint64_t length, const Place& place) {
     DbcMessage message;
     message.name = name;
     message.extended = (id & kExtendedFlag) != 0;
     message.id = id & ~kExtendedFlag;
-    message.line = line;
+    message.line = place.line;
     if (message.id > (message.extended ? 0x1FFF'FFFFU : 0x7FFU)) {
-      error_at(line, fmt::format("message {}: {} is no CAN identifier", name, id));
-      return true;
+      parked_ids_.insert(id);
+      spoil(name, {}, place, fmt::format("message {}: {} is not a CAN identifier", name, id),
+            "write 0 to 2047, or an identifier of 29 bits plus 2147483648");
+      return;
     }
     if (length > kCanMaxData) {
-      error_at(line, fmt::format("message {}: {} bytes, a CAN frame holds at most 64", name, length));
-      return true;
+      parked_ids_.insert(id);
+      spoil(name, {}, place,
+            fmt::format("message {} has {} bytes, a CAN frame holds at most {}", name, length, kCanMaxData),
+            "messages of several frames (J1939 transport, ISO-TP) are not read");
+      return;
     }
     message.length = static_cast<std::uint8_t>(length);
-    if (!messages_by_id_.emplace(id, dbc_.messages.size()).second) {
-      error_at(line, fmt::format("message {}: the identifier {} appears twice", name, id));
+    if (const auto other = messages_by_id_.find(id); other != messages_by_id_.end()) {
+      spoil(name, {}, place,
+            fmt::format("message {} has the identifier {} of {}", name, id, dbc_.messages[other->second].name),
+            "give each message an identifier of its own");
+      return;
     }
-    if (!names_.insert(name).second) error_at(line, fmt::format("the message {} appears twice", name));
+    if (!names_.insert(name).second) {
+      parked_ids_.insert(id);
+      spoil(name, {}, place, fmt::format("the message {} appears twice", name), "give each message a name of its own");
+      return;
+    }
+    messages_by_id_.emplace(id, dbc_.messages.size());
     current_ = dbc_.messages.size();
+    skipping_ = false;
     signal_names_.clear();
     dbc_.messages.push_back(std::move(message));
-    return true;
   }
 
   bool signal() {
+    if (current_ == kNone) {
+      if (!skipping_) diagnostics_->warning(line_place(in_.line()), "the signal belongs to no message: left out");
+      return false;
+    }
     DbcSignal signal;
     signal.line = in_.line();
     signal.name = std::string(in_.word());
     if (!expect(!signal.name.empty() && signal.name.size() <= kMaxName, "the name of the signal")) return false;
+    reading_message_ = dbc_.messages[current_].name;
+    reading_signal_ = signal.name;
     if (!multiplexing(signal)) return false;
     if (!expect(in_.take(':'), "':' behind the signal's name")) return false;
     if (!layout(signal) || !scaling(signal)) return false;
-    const auto unit = in_.string();
-    if (!expect(unit.has_value(), "the unit in quotation marks")) return false;
-    signal.unit = std::string(unit->substr(0, kMaxName));
+    read_limits(signal);
+    if (const auto unit = in_.string()) {
+      signal.unit = std::string(unit->substr(0, kMaxName));
+    } else {
+      diagnostics_->warning(here(),
+                            fmt::format("signal {}: expected the unit in quotation marks: taken as none", signal.name));
+    }
     in_.skip_line();  // the receivers
     keep(std::move(signal));
     return true;
@@ -229,52 +305,78 @@ class DbcReader {
     return true;
   }
 
+  // Two numbers in brackets.
+  bool pair(std::string_view brackets, double& a, double& b) {
+    if (!in_.take(brackets[0])) return false;
+    const auto first = number();
+    if (!first || !in_.take(brackets[1])) return false;
+    const auto second = number();
+    if (!second || !in_.take(brackets[2])) return false;
+    a = *first;
+    b = *second;
+    return true;
+  }
+
   bool scaling(DbcSignal& signal) {
-    const auto pair = [this](char open, char middle, char close, double& a, double& b, std::string_view what) {
-      if (!expect(in_.take(open), what)) return false;
-      const auto first = number();
-      if (!expect(first && in_.take(middle), what)) return false;
-      const auto second = number();
-      if (!expect(second && in_.take(close), what)) return false;
-      a = *first;
-      b = *second;
-      return true;
-    };
-    if (!pair('(', ',', ')', signal.factor, signal.offset, "(factor,offset)")) return false;
-    if (!expect(signal.factor != 0.0, "a factor other than 0")) return false;
-    return pair('[', '|', ']', signal.minimum, signal.maximum, "[minimum|maximum]");
+    if (!expect(pair("(,)", signal.factor, signal.offset), "(factor,offset)")) return false;
+    return expect(signal.factor != 0.0, "a factor other than 0");
+  }
+
+  // Decoding does not need them, and tools write infinities of their own (1.#INF).
+  void read_limits(DbcSignal& signal) {
+    if (pair("[|]", signal.minimum, signal.maximum)) return;
+    signal.minimum = signal.maximum = 0.0;
+    diagnostics_->warning(here(), fmt::format("signal {}: expected [minimum|maximum]: taken as none", signal.name));
+    while (!in_.at_line_end() && in_.peek() != ']' && in_.peek() != '"') in_.advance();
+    in_.take(']');
   }
 
   void keep(DbcSignal signal) {
-    if (current_ == kNone) {
-      if (!parked_) error_at(signal.line, fmt::format("the signal {} belongs to no message", signal.name));
-      return;
-    }
     DbcMessage& message = dbc_.messages[current_];
+    const Place place = line_place(signal.line);
     if (bytes_needed(signal) > message.length) {
-      error_at(signal.line, fmt::format("the signal {} reaches to byte {}, the message {} has {} bytes", signal.name,
-                                        bytes_needed(signal), message.name, message.length));
+      spoil(message.name, signal.name, place,
+            fmt::format("the signal {} reaches to byte {}, the message {} has {} bytes", signal.name,
+                        bytes_needed(signal), message.name, message.length),
+            "check start bit, length and byte order");
       return;
     }
     if (!signal_names_.insert(signal.name).second) {
-      error_at(signal.line, fmt::format("the signal {} appears twice in {}", signal.name, message.name));
+      spoil(message.name, signal.name, place,
+            fmt::format("the signal {} appears twice in {}", signal.name, message.name),
+            "give each signal a name of its own");
+      return;
+    }
+    if (message.signals.size() >= kMaxSignals) {
+      spoil(message.name, signal.name, place,
+            fmt::format("the message {} has more than {} signals", message.name, kMaxSignals));
       return;
     }
     message.signals.push_back(std::move(signal));
   }
 
-  // The signal that "<id> <name>" names; told where there is none.
+  // The signal that "<id> <name>" names; told where there is none, but for those that are left out anyway.
   DbcSignal* named_signal() {
     const auto raw_id = unsigned_number(0xFFFF'FFFF);
     if (!expect(raw_id.has_value(), "the identifier of a message")) return nullptr;
     const std::string_view name = in_.word();
     const auto id = static_cast<std::uint32_t>(*raw_id);
-    if (const auto found = messages_by_id_.find(id); found != messages_by_id_.end()) {
-      for (DbcSignal& signal : dbc_.messages[found->second].signals) {
-        if (signal.name == name) return &signal;
+    const auto found = messages_by_id_.find(id);
+    if (found != messages_by_id_.end()) {
+      DbcMessage& message = dbc_.messages[found->second];
+      for (DbcSignal& signal : message.signals) {
+        if (signal.name != name) continue;
+        reading_message_ = message.name;
+        reading_signal_ = signal.name;
+        return &signal;
       }
     }
-    if (id != kNoMessageId) error(fmt::format("there is no signal {} in a message {}", printable(name), id));
+    const bool left_out =
+        id == kNoMessageId || parked_ids_.contains(id) ||
+        (found != messages_by_id_.end() && is_spoiled(dbc_.messages[found->second].name, std::string(name)));
+    if (!left_out) {
+      diagnostics_->warning(here(), fmt::format("there is no signal {} in a message {}: skipped", printable(name), id));
+    }
     return nullptr;
   }
 
@@ -286,7 +388,7 @@ class DbcReader {
     if (!expect(type.has_value(), "the type of the value, 0 to 3")) return false;
     if (*type == 1) signal->type = DbcValueType::float32;
     if (*type == 2) signal->type = DbcValueType::float64;
-    return expect(in_.take(';'), "';'");
+    return end_of_statement();
   }
 
   bool multiplexer_values() {
@@ -305,38 +407,118 @@ class DbcReader {
     signal->is_multiplexed = true;
     signal->multiplexer = std::move(multiplexer);
     signal->multiplexer_values = std::move(ranges);
-    return expect(in_.take(';'), "';'");
+    return end_of_statement();
+  }
+
+  // Everything was read: a missing semicolon is no loss at the end of a line.
+  bool end_of_statement() {
+    if (in_.take(';')) return true;
+    if (!in_.at_line_end()) return expect(false, "';'");
+    diagnostics_->warning(line_place(in_.line()), "the statement does not end with a semicolon");
+    return true;
   }
 
   void finish() {
     for (DbcMessage& message : dbc_.messages) {
-      std::erase_if(message.signals, [&](const DbcSignal& signal) { return !is_consistent(message, signal); });
+      std::erase_if(message.signals, [&](const DbcSignal& signal) { return !is_usable(message, signal); });
+    }
+    std::erase_if(dbc_.messages, [this](const DbcMessage& message) { return is_spoiled(message.name, {}); });
+    for (std::size_t i = 0; i < dbc_.messages.size(); ++i) numbers_.emplace(dbc_.messages[i].name, i);
+    for (const LongName& name : long_names_) rename(name);
+    rename_faults();
+    if (!has_messages_) {
+      diagnostics_->error({file_, 0, 0}, "the file describes no message (BO_)", "is it a DBC file?");
     }
   }
 
-  bool is_consistent(const DbcMessage& message, const DbcSignal& signal) {
+  bool is_usable(const DbcMessage& message, const DbcSignal& signal) {
+    if (is_spoiled(message.name, signal.name)) return false;
+    const Place place = line_place(signal.line);
     if ((signal.type == DbcValueType::float32 && signal.length != 32) ||
         (signal.type == DbcValueType::float64 && signal.length != 64)) {
-      error_at(signal.line, fmt::format("the signal {} is a float of {} bits", signal.name, signal.length));
+      spoil(message.name, signal.name, place,
+            fmt::format("the signal {} is a float of {} bits", signal.name, signal.length),
+            "floats have 32 or 64 bits: check its length and SIG_VALTYPE_");
       return false;
     }
     if (!signal.is_multiplexed) return true;
     const bool known =
         signal.multiplexer.empty() ? message.multiplexer() != nullptr : message.find(signal.multiplexer) != nullptr;
-    if (!known) error_at(signal.line, fmt::format("the signal {} has no multiplexer in {}", signal.name, message.name));
+    if (!known) {
+      spoil(message.name, signal.name, place,
+            fmt::format("the signal {} has no multiplexer in {}", signal.name, message.name),
+            "mark the multiplexer with M");
+    }
     return known;
   }
 
+  [[nodiscard]] bool is_spoiled(const std::string& message, const std::string& signal) const {
+    return spoiled_.contains({message, signal});
+  }
+
+  struct LongName {
+    std::string message;  // short
+    std::string signal;   // short; empty: the message itself
+    std::string name;
+    int line = 0;
+  };
+
+  // The whole name takes the place of the short one, by which it is still found.
+  void rename(const LongName& name) {
+    const auto replace = [&](auto& named, bool is_free) {
+      if (named.name == name.name) return;
+      if (!is_free) {
+        diagnostics_->warning(line_place(name.line), fmt::format("the long name {} of {} is that of another: ignored",
+                                                                 printable(name.name), named.name));
+      } else if (named.short_name.empty()) {
+        named.short_name = std::exchange(named.name, name.name);
+      }
+    };
+    const auto number = numbers_.find(name.message);
+    if (number == numbers_.end()) return;
+    DbcMessage& message = dbc_.messages[number->second];
+    if (name.signal.empty()) return replace(message, names_.insert(name.name).second);
+    const auto signal = std::ranges::find(message.signals, name.signal, &DbcSignal::name);
+    if (signal != message.signals.end()) replace(*signal, message.find(name.name) == nullptr);
+  }
+
+  // Who uses a long name of what is left out is told why, too: the fault stands there with either name.
+  void rename_faults() {
+    std::map<std::pair<std::string, std::string>, std::string> long_names;
+    for (const LongName& name : long_names_) long_names.try_emplace({name.message, name.signal}, name.name);
+    if (long_names.empty()) return;
+    const std::size_t count = dbc_.left_out.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      DbcFault other = dbc_.left_out[i];
+      const auto long_message = long_names.find({other.message, {}});
+      const auto long_signal = long_names.find({other.message, other.signal});
+      if (long_message != long_names.end()) other.message = long_message->second;
+      if (!other.signal.empty()) dbc_.left_out[i].message = other.message;  // the name that the message has now
+      if (long_signal != long_names.end() && !other.signal.empty()) other.signal = long_signal->second;
+      const bool differs = other.message != dbc_.left_out[i].message || other.signal != dbc_.left_out[i].signal;
+      if (differs) dbc_.left_out.push_back(std::move(other));
+    }
+  }
+
   static constexpr std::size_t kNone = ~std::size_t{0};
-  static constexpr std::size_t kMaxName = 128;
+  static constexpr std::size_t kMaxName = 256;
+  static constexpr std::size_t kMaxSignals = 4096;  // of a message
 
   DbcScanner in_;
   std::string file_;
   Diagnostics* diagnostics_;
   Dbc dbc_;
   std::size_t current_ = kNone;
-  bool parked_ = false;
-  std::map<std::uint32_t, std::size_t> messages_by_id_;  // with the flag of bit 31
+  bool skipping_ = false;
+  bool has_messages_ = false;
+  // What an unreadable place belongs to; empty where that has no name yet.
+  std::string reading_message_;
+  std::string reading_signal_;
+  std::vector<LongName> long_names_;
+  std::map<std::string, std::size_t> numbers_;             // of messages, by their short names
+  std::set<std::pair<std::string, std::string>> spoiled_;  // as in Dbc::left_out
+  std::set<std::uint32_t> parked_ids_;                     // of messages that are left out
+  std::map<std::uint32_t, std::size_t> messages_by_id_;    // with the flag of bit 31
   std::set<std::string> names_;
   std::set<std::string> signal_names_;
 };
@@ -344,7 +526,9 @@ class DbcReader {
 }  // namespace
 
 const DbcSignal* DbcMessage::find(std::string_view signal) const {
-  const auto found = std::find_if(signals.begin(), signals.end(), [&](const DbcSignal& s) { return s.name == signal; });
+  const auto found = std::find_if(signals.begin(), signals.end(), [&](const DbcSignal& s) {
+    return s.name == signal || (!s.short_name.empty() && s.short_name == signal);
+  });
   return found == signals.end() ? nullptr : &*found;
 }
 
@@ -355,12 +539,21 @@ const DbcSignal* DbcMessage::multiplexer() const {
 }
 
 const DbcMessage* Dbc::find(std::string_view message) const {
-  const auto found =
-      std::find_if(messages.begin(), messages.end(), [&](const DbcMessage& m) { return m.name == message; });
+  const auto found = std::find_if(messages.begin(), messages.end(), [&](const DbcMessage& m) {
+    return m.name == message || (!m.short_name.empty() && m.short_name == message);
+  });
   return found == messages.end() ? nullptr : &*found;
 }
 
+const DbcFault* Dbc::fault_of(std::string_view message, std::string_view signal) const {
+  const auto found = std::find_if(left_out.begin(), left_out.end(), [&](const DbcFault& fault) {
+    return fault.message == message && fault.signal == signal;
+  });
+  return found == left_out.end() ? nullptr : &*found;
+}
+
 Dbc parse_dbc(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   return DbcReader(text, file, diagnostics).read();
 }
 

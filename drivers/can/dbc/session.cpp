@@ -44,6 +44,17 @@ class SignalPlanner {
     diagnostics_->error(place, std::move(message), std::move(remedy));
   }
 
+  // Whether the DBC describes it wrongly; then that is an error, at its place in the DBC.
+  bool is_left_out(std::string_view message, std::string_view signal) {
+    const DbcFault* fault = plan_.dbc.fault_of(message, signal);
+    if (fault == nullptr) return false;
+    error(fault->why.place,
+          fmt::format("the stream uses {}{}{}: {}", printable(message), signal.empty() ? "" : ".", printable(signal),
+                      fault->why.message),
+          fault->why.remedy);
+    return true;
+  }
+
   void look_at_unit(const DbcSignalConfig& config, const DbcSignal& signal) {
     if (config.scale_given) return;
     const auto scale = si_scale_of(signal.unit);
@@ -65,12 +76,14 @@ class SignalPlanner {
       return;
     }
     const DbcMessage* message = plan_.dbc.find(config.message);
+    if (message == nullptr && is_left_out(config.message, {})) return;
     if (message == nullptr) {
       error(config.message_place, fmt::format("the DBC has no message {}", printable(config.message)),
             nearest_message(config.message));
       return;
     }
     const DbcSignal* signal = message->find(config.signal);
+    if (signal == nullptr && is_left_out(message->name, config.signal)) return;
     if (signal == nullptr) {
       error(config.place, fmt::format("the message {} has no signal {}", config.message, printable(config.signal)),
             nearest_signal(*message, config.signal));
@@ -86,6 +99,7 @@ class SignalPlanner {
 
   void protect_message(const E2eConfig& config) {
     const DbcMessage* message = plan_.dbc.find(config.message);
+    if (message == nullptr && is_left_out(config.message, {})) return;
     if (message == nullptr) {
       error(config.place, fmt::format("the DBC has no message {}", printable(config.message)),
             nearest_message(config.message));

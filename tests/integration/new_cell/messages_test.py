@@ -72,6 +72,25 @@ class Messages(unittest.TestCase):
         mapping = "[[stream.node.tpdo]]\nnumber = 1\nentries = [{ index = 0x6041, bits = 16 }, { index = 0x6064, bits = 32 }]\n"
         self.assertEqual(self.check(node + mapping, 0), [])
 
+    def test_a_vendors_file_is_refused_only_for_what_the_cell_uses(self):
+        eds = (g.CELLS / "can_cell/robots/axis_drive.eds").read_text()
+        node = DRIVE + '[[stream.node]]\nid = 3\njoint = "J_1"\nincrements_per_rad = 1000\neds = "vendor.eds"\n'
+        for odd in ("# made by a tool\n[2010]\nDataType=5\nAccessType=rw\nDefaultValue=0x1FF\n", "[2011]\nDefaultValue=1\n",
+                    "[2012]\nDataType=7\nAccessType=read and write\nDefaultValue=-1\n", "*** end ***\n"):
+            (self.home / "robots/vendor.eds").write_text(eds.replace("0x60640020", "0x60640020 ; position") + "\n" + odd)
+            self.assertTrue(self.check(node, 0), odd)
+        (self.home / "robots/vendor.eds").write_text(eds.replace("0x60640020", "0x6064002000000"))
+        self.assertIn("the stream uses 0x1A00:02", self.check(node, 1)[0][0])
+        axis = 'BO_ 256 Axis: 8 A\n SG_ Angle : 0|32@1- (0.001,0) [0|0] "rad" A\n'
+        signal = (DRIVE.replace("can-cia402", "can-dbc") + 'dbc = "vendor.dbc"\n[[stream.signal]]\nmessage = "Axis"\n'
+                  'signal = "Angle"\njoint = "J_1"\nscale = 1\n')
+        for odd in ('BO_ 257 Other: 2 A\n SG_ S : 8|16@1+ (1,0) [0|0] "" A\n', "BO_ 2566844926 Long: 200 A\n",
+                    'VAL_ 256 Angle 1 "one"'):
+            (self.home / "robots/vendor.dbc").write_text(axis + odd)
+            self.assertTrue(self.check(signal, 0), odd)
+        (self.home / "robots/vendor.dbc").write_text(axis.replace("0|32", "40|32"))
+        self.assertIn("the stream uses Axis.Angle", self.check(signal, 1)[0][0])
+
     def test_a_key_one_level_too_high(self):
         said = dict(self.check(DRIVE + 'increments_per_rad = 1000\neds = "a.eds"\nnumber = 1\n'
                                '[[stream.node]]\nid = 3\njoint = "J_1"\nrad_per_increment = 0.001\n', 3))

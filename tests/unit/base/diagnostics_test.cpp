@@ -20,6 +20,15 @@ TEST(Diagnostics, KeepsABoundedNumberAndCountsTheRest) {
   EXPECT_NE(sut.text().find("... and 7 more"), std::string::npos);
 }
 
+TEST(Diagnostics, AnErrorBehindManyWarningsIsKept) {
+  Diagnostics sut;
+  for (std::size_t i = 0; i < Diagnostics::kKept + 7; ++i) sut.warning({"f", 1, 1}, "odd");
+  sut.error({"f", 9, 1}, "wrong");
+  EXPECT_EQ(sut.all().size(), Diagnostics::kKept);
+  EXPECT_EQ(sut.text(Severity::error).substr(0, 18), "f:9:1: error: wron");
+  EXPECT_EQ(sut.warnings(), Diagnostics::kKept + 7);
+}
+
 TEST(Diagnostics, TakesOverWhatAnotherPassFoundWithItsCounts) {
   Diagnostics other;
   for (std::size_t i = 0; i < Diagnostics::kKept + 3; ++i) other.error({"f", 1, 1}, "wrong");

@@ -157,15 +157,101 @@ TEST(Dbc, TellsAllMistakesWithTheirPlaces) {
   const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
   const std::string told = diagnostics.text();
   for (const char* expected :
-       {"f.dbc:2: error: the signal Far reaches to byte 9, the message A has 8 bytes",
+       {"f.dbc:2: warning: the signal Far reaches to byte 9, the message A has 8 bytes",
         "f.dbc:3:", "a factor other than 0", "f.dbc:4:", "the byte order, 0 or 1",
-        "f.dbc:6: error: the signal Twice appears twice in A",
-        "f.dbc:7: error: the signal Alone has no multiplexer in A",
-        "f.dbc:8: error: message B: 4096 is no CAN identifier",
-        "f.dbc:9: error: message C: 65 bytes, a CAN frame holds at most 64",
-        "f.dbc:10: error: message D: the identifier 1 appears twice", "f.dbc:11:", "f.dbc:13: error: a string"}) {
+        "f.dbc:6: warning: the signal Twice appears twice in A",
+        "f.dbc:7: warning: the signal Alone has no multiplexer in A",
+        "f.dbc:8: warning: message B: 4096 is not a CAN identifier",
+        "f.dbc:9: warning: message C has 65 bytes, a CAN frame holds at most 64",
+        "f.dbc:10: warning: message D has the identifier 1 of A", "f.dbc:11:", "f.dbc:13: warning: a string"}) {
     EXPECT_THAT(told, HasSubstr(expected));
   }
+  EXPECT_TRUE(diagnostics.ok()) << "nobody uses these signals";
+  EXPECT_TRUE(sut.find("A")->signals.empty());
+}
+
+const std::string kAxisOnly = "BO_ 256 Axis: 8 A\n SG_ Angle : 0|32@1- (0.001,0) [0|0] \"rad\" A\n";
+
+TEST(Dbc, WhatNobodyUsesIsAWarning) {
+  for (const char* more :
+       {"BO_ 257 Other: 2 A\n SG_ S : 8|16@1+ (1,0) [0|0] \"\" A\n",
+        "BO_ 2566844926 Long: 200 A\n SG_ S : 800|16@1+ (1,0) [0|0] \"\" A\nSIG_VALTYPE_ 2566844926 S : 1;\n",
+        "BO_ 257 Axis: 8 A\n SG_ Angle : 0|8@1+ (1,0) [0|0] \"\" A\n BO_", "BO_ 1073742080 Strange: 8 A\n",
+        "BO_ 257 Other: 8 A\n SG_ \xC3\x96l : 0|8@1+ (1,0) [0|0] \"\" A\n", "CM_ \"never ends\n",
+        "VAL_ 256 Angle 1 \"one\"", "SIG_VALTYPE_ 999 Nobody : 1;\n", "SG_MUL_VAL_ 999 Nobody M 0-1;\n", "VERSION 3\n",
+        "BO_ 257 Other 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" A\n", "\xFF\xFE"}) {
+    Diagnostics diagnostics;
+    // A second message of the name is an error for who uses the first one, too: here it has another one.
+    std::string text = kAxisOnly + more;
+    if (const std::size_t at = text.find("257 Axis"); at != std::string::npos) text.replace(at, 8, "257 Oxis");
+    const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
+    EXPECT_TRUE(diagnostics.ok()) << more << diagnostics.text();
+    EXPECT_GE(diagnostics.warnings(), 1U) << more;
+    ASSERT_NE(sut.find("Axis"), nullptr) << more;
+    EXPECT_NE(sut.find("Axis")->find("Angle"), nullptr) << more;
+  }
+}
+
+TEST(Dbc, TheMessageOfIndependentSignalsIsIgnoredWhateverItsIdentifier) {
+  for (const char* id : {"1073741824", "3221225472", "0"}) {
+    Diagnostics diagnostics;
+    const std::string text =
+        "BO_ " + std::string(id) +
+        " VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ X : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+        "SIG_VALTYPE_ " +
+        id + " X : 1;\n" + kAxisOnly;
+    const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
+    EXPECT_EQ(diagnostics.text(), "");
+    ASSERT_EQ(sut.messages.size(), 1U);
+    EXPECT_EQ(sut.messages[0].name, "Axis");
+  }
+}
+
+TEST(Dbc, AStatementWithoutSemicolonEndsWithItsLine) {
+  Diagnostics diagnostics;
+  const std::string text = kAxisOnly + "VAL_ 256 Angle 1 \"one\"\nSIG_VALTYPE_ 256 Angle : 1\nVAL_ 256 Angle 1 \"one\"";
+  const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
+  EXPECT_EQ(sut.find("Axis")->find("Angle")->type, DbcValueType::float32) << "the statement behind is read";
+  EXPECT_EQ(diagnostics.warnings(), 3U) << diagnostics.text();
+  EXPECT_THAT(diagnostics.text(), HasSubstr("f.dbc:3: warning: the statement does not end with a semicolon"));
+}
+
+TEST(Dbc, LimitsThatAreNotNumbersAreNone) {
+  Diagnostics diagnostics;
+  const Dbc sut = parse_dbc("BO_ 1 A: 8 X\n SG_ S : 0|32@1- (1,0) [-1.#INF|1.#INF] \"deg\" X\n", "f.dbc", diagnostics);
+  ASSERT_NE(sut.find("A")->find("S"), nullptr);
+  EXPECT_EQ(sut.find("A")->find("S")->unit, "deg");
+  EXPECT_EQ(sut.find("A")->find("S")->maximum, 0.0);
+  EXPECT_EQ(diagnostics.warnings(), 1U);
+}
+
+TEST(Dbc, LongNamesOfCanDbTakeThePlaceOfTheShortOnes) {
+  Diagnostics diagnostics;
+  const std::string text =
+      "BO_ 256 Shoulder_Axis_Actual_Values_0000: 8 A\n"
+      " SG_ Shoulder_Axis_Position_Actua_0001 : 0|32@1- (0.001,0) [0|0] \"rad\" A\n"
+      " SG_ Broken_Value_0002 : 60|8@1- (0.001,0) [0|0] \"rad\" A\n"
+      "BA_DEF_ BO_ \"SystemMessageLongSymbol\" STRING ;\n"
+      "BA_ \"SystemMessageLongSymbol\" BO_ 256 \"Shoulder_Axis_Actual_Values_Of_The_Left_Arm\";\n"
+      "BA_ \"SystemSignalLongSymbol\" SG_ 256 Shoulder_Axis_Position_Actua_0001 "
+      "\"Shoulder_Axis_Position_Actual_Value\";\n"
+      "BA_ \"SystemSignalLongSymbol\" SG_ 256 Broken_Value_0002 \"Broken_Value_Of_The_Left_Arm\";\n";
+  const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
+  EXPECT_EQ(diagnostics.warnings(), 1U) << diagnostics.text();
+  const DbcMessage* message = sut.find("Shoulder_Axis_Actual_Values_Of_The_Left_Arm");
+  ASSERT_NE(message, nullptr);
+  EXPECT_EQ(message, sut.find("Shoulder_Axis_Actual_Values_0000"));
+  const DbcSignal* signal = message->find("Shoulder_Axis_Position_Actual_Value");
+  ASSERT_NE(signal, nullptr);
+  EXPECT_EQ(signal, message->find("Shoulder_Axis_Position_Actua_0001"));
+  for (const char* name : {"Broken_Value_Of_The_Left_Arm", "Broken_Value_0002"})
+    EXPECT_NE(sut.fault_of(message->name, name), nullptr) << name;
+}
+
+TEST(Dbc, AFileWithoutMessagesIsAnError) {
+  Diagnostics diagnostics;
+  (void)parse_dbc("VERSION \"\"\nBU_: A\n", "f.dbc", diagnostics);
+  EXPECT_THAT(diagnostics.text(), HasSubstr("error: the file describes no message (BO_); is it a DBC file?"));
 }
 
 TEST(Dbc, ReadsFilesOfOthers) {
@@ -384,6 +470,28 @@ TEST(DbcPlan, MistakesStandAtTheirPlaceInTheCellFile) {
                                "cell.toml:3:1: error: none of the signals is a position"}) {
     EXPECT_THAT(diagnostics.text(), HasSubstr(expected));
   }
+}
+
+TEST(DbcPlan, AFaultOfWhatTheStreamUsesIsAnErrorInTheDbc) {
+  const auto told = [](const std::string& text) {
+    Diagnostics diagnostics;
+    DbcStreamConfig config;
+    config.signals = {mapped("Axis", "Angle", 0)};
+    EXPECT_FALSE(plan_dbc(config, parse_dbc(text, "f.dbc", diagnostics), diagnostics)) << text;
+    EXPECT_EQ(diagnostics.errors(), 1U) << diagnostics.text();
+    return diagnostics.text(Severity::error);
+  };
+  EXPECT_THAT(told("BO_ 1 Axis: 2 A\n SG_ Angle : 8|16@1+ (1,0) [0|0] \"\" A\n SG_ B : 0|8@1+ (1,0) [0|0] \"\" A\n"),
+              HasSubstr("f.dbc:2: error: the stream uses Axis.Angle: the signal Angle reaches to byte 3"));
+  EXPECT_THAT(told("BO_ 1 Axis: 200 A\n SG_ Angle : 8|16@1+ (1,0) [0|0] \"\" A\n"),
+              HasSubstr("f.dbc:1: error: the stream uses Axis: message Axis has 200 bytes"));
+  EXPECT_THAT(told("BO_ 1 Axis: 8 A\n SG_ Angle : 8|16@1+ (x,0) [0|0] \"\" A\n"),
+              HasSubstr("error: the stream uses Axis.Angle: expected (factor,offset)"));
+  EXPECT_THAT(told(kAxisOnly + "SIG_VALTYPE_ 256 Angle : 9;\n"),
+              HasSubstr("error: the stream uses Axis.Angle: expected the type of the value"))
+      << "else a float would be read as an integer";
+  EXPECT_THAT(told(kAxisOnly + "BO_ 257 Axis: 8 A\n SG_ Angle : 0|8@1+ (1,0) [0|0] \"\" A\n"),
+              HasSubstr("error: the stream uses Axis: the message Axis appears twice"));
 }
 
 TEST(DbcPlan, MissingFileIsTold) {

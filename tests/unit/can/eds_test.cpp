@@ -49,7 +49,7 @@ TEST(Eds, GivesTheTpdosThatExist) {
   Diagnostics diagnostics;
   const auto sut = read_eds(can_data("drive.dcf"), 5, diagnostics);
   ASSERT_TRUE(sut);
-  const auto tpdos = tpdos_of(sut->objects, 5);
+  const auto tpdos = tpdos_of(*sut, 5, "drive.dcf", diagnostics);
   ASSERT_EQ(tpdos.size(), 1U) << "TPDO2 is switched off by bit 31";
   EXPECT_EQ(tpdos[0].number, 1);
   EXPECT_EQ(tpdos[0].cob_id, 0x185U);
@@ -80,14 +80,144 @@ TEST(Eds, TellsAllMistakesWithTheirPlaces) {
   const DeviceDescription sut = parse_eds(text, "f.eds", 1, diagnostics);
   const std::string told = diagnostics.text();
   for (const char* expected :
-       {"f.eds:1:1: error: a key before the first section", "f.eds:2:1: error: a section needs a name and ends with ]",
-        "f.eds:5:12: error: 'maybe' is no AccessType", "f.eds:6:14: error: '300' is no value of 1 bytes",
-        "f.eds:7:1: error: expected [section], key=value or ; comment", "f.eds:10:14: error: '$NODEID+12x' is no value",
-        "f.eds:11: warning: [1003] has the unknown DataType 0x99", "f.eds:14:3: warning: the object 0x6000 is listed",
-        "f.eds:15:3: error: 'nonsense' is no index"}) {
+       {"f.eds:1:1: warning: a key before the first section",
+        "f.eds:2:1: warning: a section needs a name and ends with ]",
+        "f.eds:5:12: warning: 'maybe' is not an AccessType",
+        "f.eds:6:14: warning: '300' is not a value that 1 byte can",
+        "f.eds:7:1: warning: the line is neither [section], key=value nor ; comment",
+        "f.eds:10:14: warning: '$NODEID+12x' is not a value", "f.eds:11: warning: [1003] has the unknown DataType 0x99",
+        "f.eds:14:3: warning: the object 0x6000 is listed", "f.eds:15:3: warning: 'nonsense' is not the index"}) {
     EXPECT_THAT(told, HasSubstr(expected));
   }
+  EXPECT_TRUE(diagnostics.ok()) << "nobody uses these objects";
   EXPECT_NE(sut.objects.find({0x1001, 0}), nullptr) << "what could be read is there";
+}
+
+// TPDO1 of statusword and position, with `more` lines of the file behind it.
+std::string drive_text(const std::string& more) {
+  return "[1A00]\nObjectType=9\nSubNumber=3\n"
+         "[1A00sub0]\nDataType=5\nDefaultValue=2\n"
+         "[1A00sub1]\nDataType=7\nDefaultValue=0x60410010\n" +
+         more;
+}
+const std::string kPosition = "[1A00sub2]\nDataType=7\nDefaultValue=0x60640020";
+
+struct ReadDrive {
+  Diagnostics diagnostics;
+  DeviceDescription device;
+  std::vector<TpdoConfig> tpdos;
+};
+ReadDrive read_drive(const std::string& text, std::uint8_t node = 3) {
+  ReadDrive read;
+  read.device = parse_eds(text, "f.eds", node, read.diagnostics);
+  read.tpdos = tpdos_of(read.device, node, "f.eds", read.diagnostics);
+  warn_of_foreign_node(read.device, read.tpdos, node, "f.eds", read.diagnostics);
+  return read;
+}
+
+TEST(Eds, CommentsOfEveryKindAreNoPartOfTheValues) {
+  for (const char* comment : {" ; position", "; position", "\t# position", " // position", ";"}) {
+    const ReadDrive sut = read_drive(
+        drive_text("# by a tool\n// 2024\n" + kPosition + comment + "\nPDOMapping=1;yes\nAccessType=rw ; always\n"));
+    EXPECT_EQ(sut.diagnostics.text(), "") << comment;
+    ASSERT_EQ(sut.tpdos.size(), 1U) << comment;
+    ASSERT_EQ(sut.tpdos[0].entries.size(), 2U);
+    EXPECT_EQ(sut.tpdos[0].entries[1].index, 0x6064);
+    EXPECT_TRUE(sut.device.objects.find({0x1A00, 2})->pdo_mappable);
+  }
+}
+
+TEST(Eds, ATextKeepsItsSemicolons) {
+  const ReadDrive sut = read_drive("[1008]\nDataType=9\nDefaultValue=AX;8 // rev #2\n");
+  const std::vector<std::uint8_t>& value = sut.device.objects.find({0x1008, 0})->value;
+  EXPECT_EQ(std::string(value.begin(), value.end()), "AX;8 // rev #2");
+}
+
+TEST(Eds, NumbersAreReadInEverySpellingOfTheTools) {
+  const ReadDrive sut = read_drive(
+      "[2000]\nDataType=7\nDefaultValue=0X3ED\n[2001]\nDataType=5\nDefaultValue=\"0x60\"\n"
+      "[2002]\nDataType=5\nDefaultValue=009\n[2003]\nDataType=7\nDefaultValue= $NodeID + 0x180 ; TPDO1\n");
+  EXPECT_EQ(sut.diagnostics.text(), "");
+  EXPECT_EQ(sut.device.objects.integer({0x2000, 0}), 0x3ED);
+  EXPECT_EQ(sut.device.objects.integer({0x2001, 0}), 0x60);
+  EXPECT_EQ(sut.device.objects.integer({0x2002, 0}), 9);
+  EXPECT_EQ(sut.device.objects.integer({0x2003, 0}), 0x183);
+}
+
+TEST(Eds, LinesThatNobodyUsesAreWarnings) {
+  for (const char* line :
+       {"[2010]\nDataType=5\nDefaultValue=0x1FF", "[2010]\nDataType=7\nDefaultValue=-1", "[2010]\nDefaultValue=1",
+        "[2010]\nDataType=5\nAccessType=read/write", "[2010]\nDataType=5\nCompactSubObj=300",
+        "[2010]\nDataType=5\nCompactSubObj=all", "[2010]\nDataType=8\nDefaultValue=one", "[2010", "****", "\x01\x02",
+        "[2010]\nDataType=5\nPDOMapping=yes", "[OptionalObjects]\n1=10 objects",
+        "[2010]\nDataType=7\nDefaultValue=$NODEID+0xFFFFFFFFFFFFFFFF",
+        "[1A03sub0]\nDataType=5\nDefaultValue=1\n[1A03sub1]\nDataType=7\nDefaultValue=0x20000010\n[1803sub3]\n"
+        "DataType=6\nDefaultValue=70000"}) {
+    const ReadDrive sut = read_drive(drive_text(kPosition + "\n" + line + "\n"));
+    EXPECT_TRUE(sut.diagnostics.ok()) << line << "\n" << sut.diagnostics.text();
+    EXPECT_GE(sut.diagnostics.warnings(), 1U) << line;
+    ASSERT_FALSE(sut.tpdos.empty()) << line;
+    EXPECT_EQ(sut.tpdos[0].entries.size(), 2U) << line;
+  }
+}
+
+TEST(Eds, LinesThatAStreamUsesAreErrorsWithTheirPlace) {
+  for (const auto& [line, place] : {std::pair("[1A00sub2]\nDataType=5\nDefaultValue=0x60640020", "f.eds:12:14"),
+                                    std::pair("[1A00sub2]\nDataType=7\nDefaultValue=x", "f.eds:12:14"),
+                                    std::pair("[1A00sub2]\nDefaultValue=0x60640020", "f.eds:10")}) {
+    const ReadDrive sut = read_drive(drive_text(line));
+    EXPECT_THAT(sut.diagnostics.text(Severity::error),
+                HasSubstr(std::string(place) + ": error: the stream uses 0x1A00:02: "))
+        << line;
+    EXPECT_TRUE(sut.tpdos.empty()) << line;
+  }
+  const ReadDrive cob_id = read_drive(drive_text(kPosition + "\n[1800sub1]\nDataType=7\nDefaultValue=abc\n"));
+  EXPECT_THAT(cob_id.diagnostics.text(), HasSubstr("f.eds:15:14: error: the stream uses 0x1800:01"));
+  const ReadDrive off = read_drive(
+      drive_text("[1A00sub2]\nDataType=7\nDefaultValue=x\n[1800sub1]\nDataType=7\nDefaultValue=0x80000180\n"));
+  EXPECT_TRUE(off.diagnostics.ok()) << "a TPDO that is switched off is used by nobody";
+}
+
+TEST(Eds, AGapInAMappingIsAnErrorSinceItMovesTheValuesBehindIt) {
+  const std::string text =
+      "[1A00sub0]\nDataType=5\nDefaultValue=2\n[1A00sub1]\nDataType=7\n[1A00sub2]\nDataType=7\n"
+      "DefaultValue=0x60640020\n";
+  EXPECT_THAT(read_drive(text).diagnostics.text(),
+              HasSubstr("error: the mapping of TPDO1 has a gap: 0x1A00:01 is 0 or missing, 0x1A00:02 is not"));
+}
+
+TEST(Eds, ADcfOfAnotherNodeIsReported) {
+  const std::string text =
+      drive_text(kPosition + "\n[1800sub1]\nDataType=7\nParameterValue=0x185\n" + "[DeviceComissioning]\nNodeID=5\n");
+  const ReadDrive own = read_drive(text, 5);
+  EXPECT_EQ(own.diagnostics.text(), "");
+  const ReadDrive other = read_drive(text, 3);
+  EXPECT_TRUE(other.diagnostics.ok());
+  EXPECT_THAT(other.diagnostics.text(), HasSubstr("f.eds:17:8: warning: the file was written for node 5"));
+  EXPECT_THAT(other.diagnostics.text(),
+              HasSubstr("TPDO1 of node 3 has the COB-ID 0x185, which CiA 301 gives to node 5"));
+}
+
+TEST(Eds, ADriveIsKnownByItsProfileOrItsPosition) {
+  const auto is_drive_of = [](const char* text) {
+    Diagnostics diagnostics;
+    return is_drive(parse_eds(text, "f.eds", 1, diagnostics));
+  };
+  EXPECT_TRUE(is_drive_of("[1000]\nDataType=7\nDefaultValue=0x00420192\n"));
+  EXPECT_TRUE(is_drive_of("[1000]\nDataType=7\nDefaultValue=0\n[6064]\nDataType=4\n"));
+  EXPECT_FALSE(is_drive_of("[1000]\nDataType=7\nDefaultValue=0x00030191\n"));
+  EXPECT_FALSE(is_drive_of("[1001]\nDataType=5\n"));
+}
+
+TEST(Eds, LineEndsOfEverySystemAreRead) {
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const char* line : {"[1000]", "DataType=7", "DefaultValue=402", "\x1A"}) text += line + std::string(end);
+    const ReadDrive sut = read_drive(text);
+    EXPECT_EQ(sut.diagnostics.text(), "");
+    EXPECT_EQ(sut.device.objects.integer({0x1000, 0}), 402);
+  }
+  EXPECT_THAT(read_drive("[1000]\r\nDataType=7\r\nDefaultValue=x\r\n").diagnostics.text(), HasSubstr("f.eds:3:14:"));
 }
 
 TEST(Eds, AFileWithoutObjectsIsAnError) {
@@ -103,14 +233,14 @@ TEST(Eds, ReadsFilesOfOthers) {
   Diagnostics diagnostics;
   const auto prbt = read_eds((folder / "pilz_prbt_0_1.dcf").string(), 3, diagnostics);
   ASSERT_TRUE(prbt);
-  const auto tpdos = tpdos_of(prbt->objects, 3);
+  const auto tpdos = tpdos_of(*prbt, 3, "prbt.dcf", diagnostics);
   ASSERT_EQ(tpdos.size(), 3U);
   EXPECT_EQ(tpdos[2].cob_id, 0x383U);
   EXPECT_EQ(tpdos[2].transmission_type, 1);
   EXPECT_EQ(tpdos[2].entries[0].index, 0x6064);
   const auto ipos = read_eds((folder / "ros2_canopen_cia402_slave.eds").string(), 3, diagnostics);
   ASSERT_TRUE(ipos);
-  EXPECT_EQ(tpdos_of(ipos->objects, 3).size(), 2U);
+  EXPECT_EQ(tpdos_of(*ipos, 3, "ipos.eds", diagnostics).size(), 2U);
   EXPECT_TRUE(diagnostics.ok()) << diagnostics.text();
 }
 
