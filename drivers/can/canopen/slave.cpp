@@ -21,7 +21,17 @@ constexpr std::uint16_t kErrorField = 0x1003;
 constexpr std::uint8_t kErrorHistory = 8;
 constexpr ObjectAddress kHeartbeatConsumer{0x1016, 1};
 constexpr std::uint16_t kHeartbeatProducer = 0x1017;
+constexpr std::uint16_t kStoreObject = 0x1010;
+constexpr std::uint16_t kRestoreObject = 0x1011;
+constexpr std::uint32_t kSave = 0x6576'6173;  // "save"
+constexpr std::uint32_t kLoad = 0x6461'6F6C;  // "load"
+constexpr std::uint16_t kSyncCounter = 0x1019;
+constexpr std::uint16_t kSyncPeriod = 0x1006;
+constexpr std::uint16_t kEmcyInhibit = 0x1015;
+constexpr std::size_t kMostEmergencies = 32;  // that wait; later ones are only listed
 constexpr std::uint16_t kEmcyPdoLength = 0x8210;
+constexpr std::uint16_t kEmcySyncLength = 0x8240;
+constexpr std::uint16_t kEmcyRpdoLate = 0x8250;
 constexpr std::uint16_t kEmcyMasterLost = 0x8130;
 constexpr std::uint8_t kErrorGeneric = 0x01;
 constexpr std::uint8_t kErrorCommunication = 0x10;
@@ -46,6 +56,17 @@ std::uint8_t error_register_of(std::uint16_t code) {
   }
 }
 
+void add_text(ObjectDictionary& objects, std::uint16_t index, const char* name, std::string_view value) {
+  ObjectEntry entry;
+  entry.name = name;
+  entry.type = DataType::visible_string;
+  entry.access = ObjectAccess::constant;
+  entry.value.assign(value.begin(), value.end());
+  objects.set({index, 0}, entry);
+}
+
+constexpr bool is_communication(ObjectAddress address) { return address.index >= 0x1000 && address.index <= 0x1FFF; }
+
 }  // namespace
 
 void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, const SlaveIdentity& identity) {
@@ -56,15 +77,20 @@ void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, con
     objects.set_integer({kErrorField, i}, DataType::unsigned32, kServedRo, 0, "error");
   }
   objects.set_integer({0x1005, 0}, DataType::unsigned32, kServedRw, kSyncCobId, "COB-ID SYNC");
-  ObjectEntry name;
-  name.name = "manufacturer device name";
-  name.type = DataType::visible_string;
-  name.access = ObjectAccess::constant;
-  name.value.assign(identity.name.begin(), identity.name.end());
-  objects.set({0x1008, 0}, name);
+  objects.set_integer({kSyncPeriod, 0}, DataType::unsigned32, kServedRw, 0, "communication cycle period");
+  add_text(objects, 0x1008, "manufacturer device name", identity.name);
+  add_text(objects, 0x1009, "manufacturer hardware version", "simulated");
+  add_text(objects, 0x100A, "manufacturer software version", "1");
   objects.set_integer({0x100C, 0}, DataType::unsigned16, kServedRw, 0, "guard time");
   objects.set_integer({0x100D, 0}, DataType::unsigned8, kServedRw, 0, "life time factor");
+  // Both are served on command (bit 0), for all parameters at once.
+  for (const auto& [index, object_name] :
+       {std::pair(kStoreObject, "store parameters"), std::pair(kRestoreObject, "restore defaults")}) {
+    objects.set_integer({index, 0}, DataType::unsigned8, kServedRo, 1, object_name);
+    objects.set_integer({index, 1}, DataType::unsigned32, kServedRw, 1, object_name);
+  }
   objects.set_integer({0x1014, 0}, DataType::unsigned32, kServedRo, kEmcyBase + node, "COB-ID EMCY");
+  objects.set_integer({kEmcyInhibit, 0}, DataType::unsigned16, kServedRw, 0, "inhibit time EMCY");
   objects.set_integer({kHeartbeatConsumer.index, 0}, DataType::unsigned8, kServedRo, 1, "heartbeats that are watched");
   objects.set_integer(kHeartbeatConsumer, DataType::unsigned32, kServedRw, 0, "node and time of a watched heartbeat");
   objects.set_integer({kHeartbeatProducer, 0}, DataType::unsigned16, kServedRw, identity.heartbeat_ms,
@@ -74,9 +100,12 @@ void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, con
   for (std::uint8_t i = 1; i <= 4; ++i) {
     objects.set_integer({0x1018, i}, DataType::unsigned32, kServedRo, i == 4 ? node : 0, kIdentity[i - 1]);
   }
-  objects.set_integer({0x1019, 0}, DataType::unsigned8, kServedRw, 0, "synchronous counter overflow value");
+  objects.set_integer({kSyncCounter, 0}, DataType::unsigned8, kServedRw, 0, "synchronous counter overflow value");
   objects.set_integer({0x1029, 0}, DataType::unsigned8, kServedRo, 1, "error behaviour");
   objects.set_integer({0x1029, 1}, DataType::unsigned8, kServedRw, 0, "communication error");
+  objects.set_integer({0x1200, 0}, DataType::unsigned8, kServedRo, 2, "SDO server");
+  objects.set_integer({0x1200, 1}, DataType::unsigned32, kServedRo, kSdoRequestBase + node, "COB-ID client to server");
+  objects.set_integer({0x1200, 2}, DataType::unsigned32, kServedRo, kSdoResponseBase + node, "COB-ID server to client");
 }
 
 CanopenSlave::CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectAddress event,
@@ -87,6 +116,7 @@ CanopenSlave::CanopenSlave(std::uint8_t node, ObjectDictionary defaults, ObjectA
       application_(&application),
       gate_(output),
       defaults_(std::move(defaults)),
+      factory_(defaults_),
       objects_(defaults_),
       server_(node, *this),
       pdos_(objects_, event, application, gate_) {
@@ -102,7 +132,7 @@ void CanopenSlave::power_on(NmtState first, Timestamp now) {
   now_ = now;
   powered_ = true;
   first_ = first;
-  reset(now);
+  reset(ResetKind::node, now);
 }
 
 void CanopenSlave::power_off() {
@@ -110,17 +140,39 @@ void CanopenSlave::power_off() {
   nmt_ = NmtState::boot_up;
 }
 
-void CanopenSlave::reset(Timestamp now) {
-  objects_ = defaults_;
+void CanopenSlave::reset_objects(ResetKind kind) {
+  communication_errors_ = 0;
+  emergencies_.clear();
+  emergency_sent_ = {};
+  const bool restores = std::exchange(restores_, false);
+  if (kind == ResetKind::node) {
+    if (restores) defaults_ = factory_;
+    objects_ = defaults_;
+    device_errors_ = 0;
+    return;
+  }
+  for (auto& [address, entry] : factory_.entries()) {
+    if (!is_communication(address)) continue;
+    if (restores) defaults_.set(address, entry);
+    objects_.set(address, *defaults_.find(address));
+  }
+  objects_.write_integer(kErrorRegister, error_register());
+}
+
+void CanopenSlave::reset(ResetKind kind, Timestamp now) {
+  reset_objects(kind);
   server_.reset();
   pdos_.load(now);
   ++identifiers_revision_;
   master_due_ = {};
   guard_due_ = {};
   guard_toggle_ = false;
-  length_error_ = false;
   nmt_ = NmtState::boot_up;
-  application_->on_reset(now);
+  if (kind == ResetKind::node) {
+    application_->on_reset(now);
+  } else {
+    static_cast<void>(application_->communication_lost(now));
+  }
   heartbeat_due_ = {};
   if (node_ == kNoNodeNumber) return;
   gate_.send(encode_heartbeat({node_, NmtState::boot_up}));
@@ -130,10 +182,15 @@ void CanopenSlave::reset(Timestamp now) {
 
 void CanopenSlave::enter(NmtState state, Timestamp now) {
   if (std::exchange(nmt_, state) == state) return;
-  if (state == NmtState::operational) pdos_.start(now);
+  if (state == NmtState::operational) {
+    pdos_.start(now);
+  } else {
+    pdos_.stop();
+    clear_error(rpdo_late);
+  }
   if (state == NmtState::stopped) {
     server_.reset();
-    application_->communication_lost(now);
+    static_cast<void>(application_->communication_lost(now));
   }
 }
 
@@ -162,7 +219,7 @@ void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
   follow_faults(now);
   if (gate_.is_dead()) return;
   if (frame.remote) {
-    if (node_ != kNoNodeNumber && !frame.extended && frame.id == kHeartbeatBase + node_) on_guarding(now);
+    on_request(frame, now);
     return;
   }
   if (!frame.extended && frame.id == kLssMasterCobId) {
@@ -174,7 +231,7 @@ void CanopenSlave::receive(const CanFrame& frame, Timestamp now) {
     if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
     return;
   }
-  if (is_sync(frame)) {
+  if (is_service_frame(frame) && frame.id == kSyncCobId) {
     on_sync(frame, now);
     return;
   }
@@ -201,10 +258,10 @@ void CanopenSlave::on_nmt(NmtCommand command, Timestamp now) {
       return;
     case NmtCommand::reset_node:
       renumber(first_node_);
-      return reset(now);
+      return reset(ResetKind::node, now);
     case NmtCommand::reset_communication:
       renumber(lss_.pending());
-      return reset(now);
+      return reset(ResetKind::communication, now);
   }
 }
 
@@ -214,13 +271,15 @@ void CanopenSlave::renumber(std::uint8_t node) {
   lss_.restart(node);
   if (std::exchange(node_, node) == node || node == kNoNodeNumber) return;
   server_.set_node(node);
-  std::vector<ObjectAddress> identifiers{{0x1014, 0}};
+  std::vector<ObjectAddress> identifiers{{0x1014, 0}, {0x1200, 1}, {0x1200, 2}};
   for (std::uint16_t i = 0; i < kSlavePdos; ++i) {
     identifiers.push_back({static_cast<std::uint16_t>(0x1400 + i), 1});
     identifiers.push_back({static_cast<std::uint16_t>(0x1800 + i), 1});
   }
   for (const ObjectAddress& address : identifiers) {
-    if (const auto value = defaults_.integer(address)) defaults_.write_integer(address, (*value & ~kNodeBits) | node);
+    for (ObjectDictionary* objects : {&defaults_, &factory_}) {
+      if (const auto value = objects->integer(address)) objects->write_integer(address, (*value & ~kNodeBits) | node);
+    }
   }
 }
 
@@ -231,9 +290,17 @@ LssSlave::Identity CanopenSlave::identity() const {
   return numbers;
 }
 
+// Its length is 1 where object 0x1019 says that SYNC has a counter, else 0 (CiA 301, 7.2.5). Another length is told,
+// and the SYNC counts all the same as one without a counter, but for frames that cannot be SYNC at all.
 void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {
-  if (nmt_ != NmtState::operational) return;
-  pdos_.send_on_sync(frame.length == 1 ? std::optional(frame.data[0]) : std::nullopt, now);
+  const bool counted = object(kSyncCounter) != 0;
+  if (frame.length == (counted ? 1 : 0)) {
+    clear_error(sync_length);
+  } else {
+    set_error(sync_length, kEmcySyncLength);
+  }
+  if (nmt_ != NmtState::operational || !is_sync(frame)) return;
+  pdos_.send_on_sync(counted && frame.length == 1 ? std::optional(frame.data[0]) : std::nullopt, now);
   written_.clear();
   pdos_.apply_on_sync(written_);
   if (!written_.empty()) after_write(written_, now);
@@ -242,22 +309,33 @@ void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {
 
 void CanopenSlave::on_rpdo(const CanFrame& frame, Timestamp now) {
   written_.clear();
-  const SlavePdos::Received received = pdos_.receive(frame, written_);
+  const SlavePdos::Received received = pdos_.receive(frame, written_, now);
   // Once, until one has the right length again: a flood is not answered by a flood.
-  if (received == SlavePdos::Received::too_short && !std::exchange(length_error_, true)) {
-    emergency(kEmcyPdoLength, kErrorGeneric | kErrorCommunication);
+  if (received == SlavePdos::Received::too_short) set_error(pdo_length, kEmcyPdoLength);
+  if (received == SlavePdos::Received::taken) {
+    clear_error(pdo_length);
+    if (!pdos_.is_late()) clear_error(rpdo_late);
   }
-  if (received == SlavePdos::Received::taken) length_error_ = false;
   if (!written_.empty()) after_write(written_, now);
 }
 
-// CiA 301, 7.2.8.3.2.1: the answer alternates bit 7, from 0.
+// Remote frames ask for a TPDO, or for the state (node guarding).
+void CanopenSlave::on_request(const CanFrame& frame, Timestamp now) {
+  if (node_ == kNoNodeNumber || frame.extended) return;
+  if (frame.id == kHeartbeatBase + node_) return on_guarding(now);
+  if (nmt_ == NmtState::operational) pdos_.request(frame.id, now);
+}
+
+// CiA 301, 7.2.8.3.2.1: the answer alternates bit 7, from 0. A node that produces heartbeats is not guarded
+// (7.2.8.3.2).
 void CanopenSlave::on_guarding(Timestamp now) {
+  if (object(kHeartbeatProducer) != 0) return;
   const auto state = static_cast<std::uint8_t>(static_cast<unsigned>(nmt_) | (guard_toggle_ ? 0x80U : 0U));
   guard_toggle_ = !guard_toggle_;
   gate_.send(make_frame(kHeartbeatBase + node_, {state}));
   const Nanoseconds life = std::chrono::milliseconds(object(0x100C) * object(0x100D));
   guard_due_ = life.count() > 0 ? now + life : Timestamp{};
+  clear_error(guarding_lost);
 }
 
 void CanopenSlave::on_heartbeat(const Heartbeat& heartbeat, Timestamp now) {
@@ -265,11 +343,15 @@ void CanopenSlave::on_heartbeat(const Heartbeat& heartbeat, Timestamp now) {
   const Nanoseconds time = std::chrono::milliseconds(watched & 0xFFFFU);
   if ((watched >> 16U & 0xFFU) != heartbeat.node || time.count() == 0) return;
   master_due_ = now + time;
+  clear_error(heartbeat_lost);
 }
 
-void CanopenSlave::master_lost(Timestamp now) {
-  emergency(kEmcyMasterLost, kErrorGeneric | kErrorCommunication);
-  application_->communication_lost(now);
+void CanopenSlave::master_lost(CommunicationError error, Timestamp now) {
+  set_error(error, kEmcyMasterLost);
+  if (application_->communication_lost(now)) {
+    device_errors_ = error_register();
+    communication_errors_ = static_cast<std::uint8_t>(communication_errors_ & ~error);
+  }
   // Object 0x1029: 0 pre-operational, 1 no change, 2 stopped.
   const std::int64_t behaviour = object(0x1029, 1);
   if (behaviour == 0 && nmt_ == NmtState::operational) enter(NmtState::pre_operational, now);
@@ -288,8 +370,17 @@ void CanopenSlave::after_write(std::span<const ObjectAddress> addresses, Timesta
   const bool has_parameter = std::ranges::any_of(addresses, SlavePdos::is_parameter);
   if (has_parameter) pdos_.load(now);
   if (has_parameter || has(kHeartbeatConsumer.index)) ++identifiers_revision_;
-  if (has(kHeartbeatProducer)) restart_heartbeat(now);
-  if (has(kHeartbeatConsumer.index)) master_due_ = {};
+  if (has(kHeartbeatProducer)) {
+    restart_heartbeat(now);
+    if (object(kHeartbeatProducer) != 0) {
+      guard_due_ = {};
+      clear_error(guarding_lost);
+    }
+  }
+  if (has(kHeartbeatConsumer.index)) {
+    master_due_ = {};
+    clear_error(heartbeat_lost);  // another master is watched now, or none
+  }
   if (has(kErrorField)) {
     for (std::uint8_t i = 1; i <= kErrorHistory; ++i) objects_.write_integer({kErrorField, i}, 0);
   }
@@ -304,6 +395,7 @@ std::expected<std::vector<std::uint8_t>, SdoAbort> CanopenSlave::read(ObjectAddr
 
 std::optional<SdoAbort> CanopenSlave::write(ObjectAddress address, std::span<const std::uint8_t> value) {
   if (const auto abort = check_write(objects_, address, value)) return abort;
+  if (address.index == kStoreObject || address.index == kRestoreObject) return store(address, value);
   const ObjectEntry& entry = *objects_.find(address);
   if (is_integer_type(entry.type)) {
     const std::uint64_t raw = get_le(value, value.size());
@@ -316,12 +408,30 @@ std::optional<SdoAbort> CanopenSlave::write(ObjectAddress address, std::span<con
   return {};
 }
 
+// CiA 301, 7.5.2.13 and 7.5.2.14: a signature protects the commands against mistakes; reading gives what they can do.
+std::optional<SdoAbort> CanopenSlave::store(ObjectAddress address, std::span<const std::uint8_t> value) {
+  const bool saves = address.index == kStoreObject;
+  if (get_le(value, value.size()) != (saves ? kSave : kLoad)) return SdoAbort::cannot_store;
+  if (!saves) {
+    restores_ = true;
+    return {};
+  }
+  restores_ = false;
+  for (const auto& [place, entry] : objects_.entries()) {
+    const bool is_own = place.index == kErrorField || place.index == kStoreObject || place.index == kRestoreObject;
+    if (is_own || entry.access != ObjectAccess::read_write || !application_->is_stored(place)) continue;
+    defaults_.find(place)->value = entry.value;
+  }
+  return {};
+}
+
 std::optional<SdoAbort> CanopenSlave::refuse(ObjectAddress address, std::int64_t value) {
   if (SlavePdos::is_parameter(address)) return pdos_.check(address, static_cast<std::uint64_t>(value));
   if (address == ObjectAddress{kErrorField, 0} && value != 0) return SdoAbort::invalid_value;
   // Other identifiers of SYNC are not supported, nor does a drive produce it.
   if (address.index == 0x1005 && value != static_cast<std::int64_t>(kSyncCobId)) return SdoAbort::invalid_value;
-  if (address.index == 0x1019 && (value == 1 || value > 240)) return SdoAbort::invalid_value;
+  if (address.index == kSyncCounter && (value == 1 || value > 240)) return SdoAbort::invalid_value;
+  if (address.index == kSyncCounter && object(kSyncPeriod) != 0) return SdoAbort::device_state;
   if (address == kHeartbeatConsumer && (value >> 16 & 0xFF) > kMaxNodeId) return SdoAbort::invalid_value;
   if (address.index == 0x1029 && value > 2) return SdoAbort::invalid_value;
   return application_->check(address, value);
@@ -342,7 +452,7 @@ void CanopenSlave::inject(const NodeFault& fault, Timestamp now) {
     if (reports_error_) emergency(fault.code, error_register);
   }
   if (fault.kind != NodeFaultKind::death) return;
-  objects_ = defaults_;
+  reset_objects(ResetKind::node);
   server_.reset();
   pdos_.load(now);
   nmt_ = NmtState::boot_up;
@@ -359,7 +469,7 @@ void CanopenSlave::follow_faults(Timestamp now) {
   const FaultGate::Ended ended = gate_.advance(now);
   if (ended.death) {
     renumber(first_node_);
-    reset(now);
+    reset(ResetKind::node, now);
   }
   if (ended.emergency && !gate_.is_dead() && std::exchange(reports_error_, false)) emergency(0, 0);
 }
@@ -376,12 +486,20 @@ void CanopenSlave::advance(Timestamp now) {
     heartbeat_due_ = heartbeat_due_ + period;
     if (heartbeat_due_ <= now) heartbeat_due_ = now + period;
   }
-  for (Timestamp* due : {&master_due_, &guard_due_}) {
+  for (const auto& [due, error] : {std::pair(&master_due_, heartbeat_lost), std::pair(&guard_due_, guarding_lost)}) {
     if (!due->known() || now < *due) continue;
     *due = {};
-    master_lost(now);
+    master_lost(error, now);
   }
-  if (nmt_ == NmtState::operational) pdos_.advance(now);
+  if (nmt_ == NmtState::operational) {
+    pdos_.advance(now);
+    if (pdos_.watch(now)) set_error(rpdo_late, kEmcyRpdoLate);
+  }
+  if (!emergencies_.empty() && now >= next_emergency()) {
+    gate_.send(emergencies_.front());
+    emergencies_.pop_front();
+    emergency_sent_ = now;
+  }
 }
 
 Timestamp CanopenSlave::next_due() const {
@@ -389,6 +507,7 @@ Timestamp CanopenSlave::next_due() const {
   Timestamp due = earlier_due(heartbeat_due_, earlier_due(master_due_, guard_due_));
   due = earlier_due(due, gate_.next_due());
   due = earlier_due(due, server_.next_due());
+  if (!emergencies_.empty()) due = earlier_due(due, next_emergency());
   return nmt_ == NmtState::operational ? earlier_due(due, pdos_.next_due()) : due;
 }
 
@@ -397,7 +516,34 @@ void CanopenSlave::changed(Timestamp now) {
 }
 
 void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
-  objects_.write_integer(kErrorRegister, error_register);
+  device_errors_ = error_register;
+  report(code);
+}
+
+void CanopenSlave::set_error(CommunicationError error, std::uint16_t code) {
+  // One that is late after another one is told, too.
+  const bool is_new = (communication_errors_ & error) == 0 || error == rpdo_late;
+  communication_errors_ = static_cast<std::uint8_t>(communication_errors_ | error);
+  if (is_new) report(code);
+}
+
+void CanopenSlave::clear_error(CommunicationError error) {
+  if ((communication_errors_ & error) == 0) return;
+  communication_errors_ = static_cast<std::uint8_t>(communication_errors_ & ~error);
+  report(0);
+}
+
+std::uint8_t CanopenSlave::error_register() const {
+  const unsigned communication = communication_errors_ != 0 ? kErrorGeneric | kErrorCommunication : 0;
+  return static_cast<std::uint8_t>(device_errors_ | communication);
+}
+
+Timestamp CanopenSlave::next_emergency() const {
+  return emergency_sent_ + std::chrono::microseconds(100) * object(kEmcyInhibit);
+}
+
+void CanopenSlave::report(std::uint16_t code) {
+  objects_.write_integer(kErrorRegister, error_register());
   if (code != 0) {
     const std::int64_t kept = std::min<std::int64_t>(object(kErrorField), kErrorHistory - 1);
     for (std::int64_t i = kept; i >= 1; --i) {
@@ -411,7 +557,13 @@ void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
   Emcy emcy;
   emcy.node = node_;
   emcy.code = code;
-  emcy.error_register = error_register;
+  emcy.error_register = error_register();
+  const bool waits = emergency_sent_.known() && now_ < next_emergency();
+  if (waits || !emergencies_.empty()) {
+    if (emergencies_.size() < kMostEmergencies) emergencies_.push_back(encode_emcy(emcy));
+    return;
+  }
+  emergency_sent_ = now_;
   gate_.send(encode_emcy(emcy));
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <expected>
 #include <optional>
 #include <span>
@@ -28,12 +29,15 @@ class SlaveApplication : public PdoEvents {
   [[nodiscard]] virtual std::optional<SdoAbort> check(ObjectAddress address, std::int64_t value) = 0;
   // Objects that one SDO or one PDO has just written, in the order of the PDO.
   virtual void written(std::span<const ObjectAddress> addresses, Timestamp now) = 0;
-  // NMT reset or power-on: all objects have their values of power-on again.
+  // NMT reset node or power-on: all objects have their values of power-on again.
   virtual void on_reset(Timestamp now) = 0;
+  // Whether object 0x1010 keeps a value that a master has written: of parameters, not of commands and targets.
+  [[nodiscard]] virtual bool is_stored(ObjectAddress /*address*/) const { return true; }
   // A SYNC: its TPDOs are sent, its RPDOs are written.
   virtual void synced(Timestamp now) = 0;
-  // The master's heartbeat or guarding ended, or it stopped this node.
-  virtual void communication_lost(Timestamp now) = 0;
+  // The master's heartbeat or guarding ended, it stopped this node, or it reset its communication. True: that is an
+  // error of the device now, which stays until emergency(0, ...), whether communication returns or not.
+  virtual bool communication_lost(Timestamp now) = 0;
   // A fault was injected: the device fails with this error. False: it only reports the error.
   virtual bool fail(std::uint16_t /*code*/, std::uint8_t /*error_register*/, Timestamp /*now*/) { return false; }
 };
@@ -41,7 +45,7 @@ class SlaveApplication : public PdoEvents {
 // Objects 0x1000 to 0x1029 that the slave serves itself, beside the PDOs' (slave_pdos.hpp).
 struct SlaveIdentity {
   std::uint32_t device_type = 0;   // object 0x1000
-  std::string name;                // object 0x1008
+  std::string name;                // object 0x1008; 0x1009 and 0x100A are those of the simulation
   std::uint16_t heartbeat_ms = 0;  // object 0x1017 at power-on; 0: none until it is written
 };
 void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, const SlaveIdentity& identity);
@@ -69,7 +73,8 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] Timestamp next_due() const;  // "never" while nothing is timed
   // The application has changed values of objects.
   void changed(Timestamp now);
-  // EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: the error is reset.
+  // An error of the device: EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: it is reset.
+  // Errors of communication (heartbeat, lengths, RPDOs that are late) are the slave's own, and end by themselves.
   void emergency(std::uint16_t code, std::uint8_t error_register);
 
   // A fault of this node from now on, at most FaultGate::kMostFaults at a time. Without power (death) it is deaf and
@@ -90,7 +95,10 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] std::optional<SdoAbort> write(ObjectAddress address, std::span<const std::uint8_t> value) override;
   [[nodiscard]] std::optional<SdoAbort> refuse(ObjectAddress address, std::int64_t value);
 
-  void reset(Timestamp now);
+  enum class ResetKind : std::uint8_t { communication, node };
+  // Objects 0x1000 to 0x1FFF, or all.
+  void reset(ResetKind kind, Timestamp now);
+  void reset_objects(ResetKind kind);
   void follow_faults(Timestamp now);
   // The node's number, and the identifiers at power-on that follow from it.
   void renumber(std::uint8_t node);
@@ -99,12 +107,27 @@ class CanopenSlave final : private SdoObjects {
   void enter(NmtState state, Timestamp now);
   void on_lss(const CanFrame& frame, Timestamp now);
   void on_sync(const CanFrame& frame, Timestamp now);
+  void on_request(const CanFrame& frame, Timestamp now);
   void on_guarding(Timestamp now);
   void on_heartbeat(const Heartbeat& heartbeat, Timestamp now);
   void on_rpdo(const CanFrame& frame, Timestamp now);
   void after_write(std::span<const ObjectAddress> addresses, Timestamp now);
   void restart_heartbeat(Timestamp now);
-  void master_lost(Timestamp now);
+  // Errors of communication that are there, as bits: object 0x1001 has them until they are over.
+  enum CommunicationError : std::uint8_t {
+    heartbeat_lost = 1,
+    guarding_lost = 2,
+    pdo_length = 4,
+    sync_length = 8,
+    rpdo_late = 16,
+  };
+  void set_error(CommunicationError error, std::uint16_t code);
+  void clear_error(CommunicationError error);
+  [[nodiscard]] std::uint8_t error_register() const;
+  void report(std::uint16_t code);  // EMCY with the error register as it is
+  [[nodiscard]] Timestamp next_emergency() const;
+  void master_lost(CommunicationError error, Timestamp now);
+  [[nodiscard]] std::optional<SdoAbort> store(ObjectAddress address, std::span<const std::uint8_t> value);
   void drain_server(Timestamp now);
   [[nodiscard]] std::int64_t object(std::uint16_t index, std::uint8_t subindex = 0) const;
 
@@ -112,8 +135,9 @@ class CanopenSlave final : private SdoObjects {
   std::uint8_t first_node_;  // at power-on, and after NMT reset node
   LssSlave lss_;
   SlaveApplication* application_;
-  FaultGate gate_;  // what is sent goes through it
-  ObjectDictionary defaults_;
+  FaultGate gate_;             // what is sent goes through it
+  ObjectDictionary defaults_;  // at power-on: factory_ with what a master has stored
+  ObjectDictionary factory_;
   ObjectDictionary objects_;
   SdoServer server_;
   SlavePdos pdos_;
@@ -122,7 +146,11 @@ class CanopenSlave final : private SdoObjects {
   NmtState nmt_ = NmtState::boot_up;
   NmtState first_ = NmtState::pre_operational;
   bool guard_toggle_ = false;
-  bool length_error_ = false;           // the newest RPDO was too short
+  bool restores_ = false;  // the next reset takes the values of factory_
+  std::uint8_t communication_errors_ = 0;
+  std::uint8_t device_errors_ = 0;    // error register of the application
+  std::deque<CanFrame> emergencies_;  // that wait for the inhibit time (0x1015)
+  Timestamp emergency_sent_;
   bool reports_error_ = false;          // an injected one that the application leaves to this
   Timestamp now_;                       // of the call under way, for writes that come through the SDO server
   Timestamp heartbeat_due_;             // of our own

@@ -173,6 +173,7 @@ void SlavePdos::load(Timestamp now) {
     const auto tpdo_index = static_cast<std::uint16_t>(kTpdoParameters + i);
     Tpdo& tpdo = tpdos_[i];
     tpdo.cob_id = number(tpdo_index, 1) & 0x7FFU;
+    tpdo.on_request = (number(tpdo_index, 1) & kCobIdNoRtr) == 0;
     tpdo.transmission_type = static_cast<std::uint8_t>(number(tpdo_index, 2));
     tpdo.inhibit = std::chrono::microseconds(100) * number(tpdo_index, 3);
     tpdo.event_timer = std::chrono::milliseconds(number(tpdo_index, 5));
@@ -191,6 +192,9 @@ void SlavePdos::load(Timestamp now) {
     rpdo.entries = mapping_of(static_cast<std::uint16_t>(kRpdoMapping + i));
     rpdo.valid = (number(rpdo_index, 1) & kCobIdInvalid) == 0 && is_valid_mapping(rpdo.entries);
     rpdo.waiting.reset();
+    rpdo.event_timer = std::chrono::milliseconds(number(rpdo_index, 5));
+    rpdo.due = {};
+    rpdo.late = false;
   }
 }
 
@@ -202,17 +206,48 @@ void SlavePdos::start(Timestamp now) {
   }
 }
 
+void SlavePdos::stop() {
+  for (Rpdo& rpdo : rpdos_) {
+    rpdo.due = {};
+    rpdo.late = false;
+  }
+}
+
 void SlavePdos::list_identifiers(std::vector<std::uint32_t>& identifiers) const {
   for (const Rpdo& rpdo : rpdos_) {
     if (rpdo.valid) identifiers.push_back(rpdo.cob_id);
   }
+  for (const Tpdo& tpdo : tpdos_) {
+    if (tpdo.valid && tpdo.on_request) identifiers.push_back(tpdo.cob_id);
+  }
 }
 
-SlavePdos::Received SlavePdos::receive(const CanFrame& frame, std::vector<ObjectAddress>& written) {
+void SlavePdos::request(std::uint32_t id, Timestamp now) {
+  for (Tpdo& tpdo : tpdos_) {
+    if (tpdo.valid && tpdo.on_request && tpdo.cob_id == id) return send(tpdo, now);
+  }
+}
+
+bool SlavePdos::watch(Timestamp now) {
+  bool found = false;
+  for (Rpdo& rpdo : rpdos_) {
+    if (!rpdo.due.known() || now < rpdo.due) continue;
+    rpdo.due = {};
+    rpdo.late = true;
+    found = true;
+  }
+  return found;
+}
+
+bool SlavePdos::is_late() const { return std::ranges::any_of(rpdos_, &Rpdo::late); }
+
+SlavePdos::Received SlavePdos::receive(const CanFrame& frame, std::vector<ObjectAddress>& written, Timestamp now) {
   if (frame.extended) return Received::none;
   for (Rpdo& rpdo : rpdos_) {
     if (!rpdo.valid || frame.id != rpdo.cob_id) continue;
     if (frame.length < pdo_length(rpdo.entries)) return Received::too_short;
+    rpdo.late = false;
+    rpdo.due = rpdo.event_timer.count() > 0 ? now + rpdo.event_timer : Timestamp{};
     if (rpdo.on_sync) {
       rpdo.waiting = frame;
     } else {
@@ -296,6 +331,7 @@ Timestamp SlavePdos::next_due() const {
     due = earlier_due(due, tpdo.event_due);
     if (tpdo.pending) due = earlier_due(due, tpdo.sent + tpdo.inhibit);
   }
+  for (const Rpdo& rpdo : rpdos_) due = earlier_due(due, rpdo.due);
   return due;
 }
 

@@ -49,11 +49,18 @@ class SlavePdos {
   void load(Timestamp now);
   // NMT operational begins: event-driven TPDOs are sent once.
   void start(Timestamp now);
+  void stop();  // it ends: RPDOs are not watched any more
 
-  // The identifiers of the RPDOs that exist, added to `identifiers`. They change with load() only.
+  // The identifiers of the RPDOs that exist, and of the TPDOs that may be asked for, added to `identifiers`. They
+  // change with load() only.
   void list_identifiers(std::vector<std::uint32_t>& identifiers) const;
   // An RPDO's values go into the dictionary now, or with the next SYNC; `written` gets the objects.
-  [[nodiscard]] Received receive(const CanFrame& frame, std::vector<ObjectAddress>& written);
+  [[nodiscard]] Received receive(const CanFrame& frame, std::vector<ObjectAddress>& written, Timestamp now);
+  // A remote frame with this identifier: sends the TPDO, if its COB-ID allows RTR.
+  void request(std::uint32_t id, Timestamp now);
+  // True where an RPDO has not come again within its event timer, which begins with the first one. Once for each time.
+  [[nodiscard]] bool watch(Timestamp now);
+  [[nodiscard]] bool is_late() const;  // one that watch() has told has not come yet
   // Sends the TPDOs of this SYNC; `counter` where the SYNC has one.
   void send_on_sync(std::optional<std::uint8_t> counter, Timestamp now);
   // Then the RPDOs that waited for it.
@@ -67,6 +74,7 @@ class SlavePdos {
   struct Tpdo {
     std::uint32_t cob_id = 0;
     bool valid = false;
+    bool on_request = false;  // RTR is allowed
     std::uint8_t transmission_type = 255;
     std::uint8_t sync_start = 0;  // counter of the SYNC that the count of SYNCs begins with; 0: any
     bool counting = true;
@@ -85,6 +93,9 @@ class SlavePdos {
     bool on_sync = false;
     std::vector<PdoEntryConfig> entries;
     std::optional<CanFrame> waiting;  // for the next SYNC
+    Nanoseconds event_timer{0};
+    Timestamp due;  // when the next one is late
+    bool late = false;
   };
 
   [[nodiscard]] std::uint32_t number(std::uint16_t index, std::uint8_t subindex) const;

@@ -55,13 +55,16 @@ void IoNode::on_reset(Timestamp /*now*/) {
 void IoNode::synced(Timestamp /*now*/) {}
 
 // CiA 401, error behaviour of outputs: the bits with error mode 1 take their error value.
-void IoNode::communication_lost(Timestamp /*now*/) {
+bool IoNode::communication_lost(Timestamp /*now*/) {
   const std::uint32_t mode = bits(kOutputErrorMode);
   outputs_.digital = (outputs_.digital & ~mode) | (bits(kOutputErrorValue) & mode);
   for (std::uint8_t i = 0; i < kOutputBytes; ++i)
     slave_.objects().write_integer({kDigitalOutputs, static_cast<std::uint8_t>(i + 1)},
                                    outputs_.digital >> (kBitsOfByte * i) & 0xFFU);
+  return false;
 }
+
+bool IoNode::is_stored(ObjectAddress address) const { return address.index != kDigitalOutputs; }
 
 bool IoNode::is_event(ObjectAddress address, std::uint64_t sent, std::uint64_t now) const {
   if (address.index == kDigitalInputs) {

@@ -49,7 +49,8 @@ class IoNode final : private SlaveApplication {
   void written(std::span<const ObjectAddress> addresses, Timestamp now) override;
   void on_reset(Timestamp now) override;
   void synced(Timestamp now) override;
-  void communication_lost(Timestamp now) override;
+  bool communication_lost(Timestamp now) override;
+  [[nodiscard]] bool is_stored(ObjectAddress address) const override;
   [[nodiscard]] bool is_event(ObjectAddress address, std::uint64_t sent, std::uint64_t now) const override;
 
   void write_inputs();

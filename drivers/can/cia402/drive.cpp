@@ -45,7 +45,11 @@ void Cia402Drive::on_reset(Timestamp now) {
 
 std::optional<SdoAbort> Cia402Drive::check(ObjectAddress /*address*/, std::int64_t /*value*/) { return {}; }
 
-void Cia402Drive::communication_lost(Timestamp /*now*/) {}
+bool Cia402Drive::communication_lost(Timestamp /*now*/) { return false; }
+
+bool Cia402Drive::is_stored(ObjectAddress address) const {
+  return address != kControlword && address != kModesOfOperation && address != kTargetPosition;
+}
 
 void Cia402Drive::synced(Timestamp now) { follow(now); }
 

@@ -75,7 +75,8 @@ class Cia402Drive final : private SlaveApplication {
   void written(std::span<const ObjectAddress> addresses, Timestamp now) override;
   void on_reset(Timestamp now) override;
   void synced(Timestamp now) override;
-  void communication_lost(Timestamp now) override;
+  bool communication_lost(Timestamp now) override;
+  [[nodiscard]] bool is_stored(ObjectAddress address) const override;
 
   void on_controlword(std::uint16_t controlword, Timestamp now);
   void on_mode();

@@ -81,7 +81,8 @@ TEST(ServoEds, GivesOnlyValuesThatEveryDriveHas) {
   ASSERT_TRUE(description);
   const IniFile ini = ini_of(source_dir() / kServoEds);
   for (const DriveConfig& config : {test_drive(), other}) {
-    for (const auto& [address, entry] : make_servo_objects(config, 0).entries()) {
+    const ObjectDictionary drive = make_servo_objects(config, 0);
+    for (const auto& [address, entry] : drive.entries()) {
       const bool is_simple = description->objects.find({address.index, 1}) == nullptr;
       const auto section = ini.find(is_simple ? fmt::format("{:04x}", address.index)
                                               : fmt::format("{:04x}sub{:x}", address.index, address.subindex));
@@ -107,8 +108,8 @@ TEST(ShippedEds, NumbersAreInTheFormThatOtherToolsRead) {
       const bool is_signed = std::stoi(type->text, nullptr, 0) <= 4 && value->text.starts_with('-');
       const std::string unsigned_text = is_signed ? value->text.substr(1) : value->text;
       EXPECT_TRUE(std::regex_match(unsigned_text, match, number)) << file << " [" << name << "] " << value->text;
-      const bool is_identifier =
-          name == "1014" || name == "1018sub4" || name.starts_with("14") || name.starts_with("18");
+      const bool is_identifier = name == "1014" || name == "1018sub4" || name.starts_with("1200") ||
+                                 name.starts_with("14") || name.starts_with("18");
       EXPECT_TRUE(is_identifier || !match[1].matched) << file << " [" << name << "] has nothing to do with the node";
     }
     for (const int node : {1, 127}) {

@@ -162,6 +162,28 @@ TEST_F(Safety, ALostMasterIsAFault) {
   EXPECT_NEAR(master.drive.joint_velocity(), 0, 1e-9);
 }
 
+TEST_F(Safety, ErrorsEndWithTheHeartbeatThatReturnsUnlessTheyAreAFault) {
+  for (const int option : {0, 1, 2, 3}) {
+    DriveMaster master;
+    EXPECT_EQ(master.write16(0x6007, option), 0U);
+    EXPECT_EQ(master.write(0x1016, 1, 0x007F0064, 4), 0U);
+    master.receive(frame(0x000, {0x01, 0x05}));
+    spin(master);
+    master.receive(frame(0x77F, {0x05}));
+    master.take();
+    master.run(300ms);
+    EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8130})) << option;
+    EXPECT_EQ(master.object(0x1001), 0x11) << option;
+    master.take();
+    master.receive(frame(0x77F, {0x05}));
+    const bool is_fault = option == 1;
+    EXPECT_EQ(master.object(0x1001), is_fault ? 0x11 : 0) << option;
+    EXPECT_EQ(master.emergencies().size(), is_fault ? 0U : 1U) << option;
+    if (is_fault) master.control(0x80);
+    EXPECT_EQ(master.object(0x1001), 0) << option;
+  }
+}
+
 TEST_F(Safety, NmtStopIsAFaultOfAMovingDriveByDefault) {
   for (const int option : {0, 1, 2, 3}) {
     DriveMaster master;

@@ -127,6 +127,7 @@ TEST_F(Slave, CountsSyncsFromTheStartValue) {
   EXPECT_EQ(write(0x1801, 1, 0x8000'0285, 4), 0U);
   EXPECT_EQ(write(0x1801, 2, 2, 1), 0U);
   EXPECT_EQ(write(0x1801, 6, 3, 1), 0U);
+  EXPECT_EQ(write(0x1019, 0, 10, 1), 0U);
   EXPECT_EQ(write(0x1801, 1, 0x0000'0285, 4), 0U);
   master.receive(frame(0x000, {0x01, 0x05}));
   std::vector<int> answered;
@@ -145,10 +146,145 @@ TEST_F(Slave, ShortPdosAreToldOnce) {
   master.take();
   for (int i = 0; i < 100; ++i) master.receive(frame(0x205, {0x06}));
   EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8210}));
+  EXPECT_EQ(master.object(0x1001), 0x11);
   master.receive(frame(0x205, {0x06, 0x00}));
+  EXPECT_EQ(master.object(0x1001), 0);
   master.receive(frame(0x205, {0x06}));
-  EXPECT_EQ(master.emergencies().size(), 2U);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8210, 0x0000, 0x8210}));
   EXPECT_EQ(master.object(0x1003, 0), 2);
+}
+
+TEST_F(Slave, ASyncOfWrongLengthIsToldOnceUntilOneIsRight) {
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.take();
+  for (int i = 0; i < 100; ++i) master.receive(frame(0x080, {0x01}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8240}));
+  EXPECT_EQ(master.object(0x1001), 0x11);
+  EXPECT_EQ(std::ranges::count(master.frames, 0x285U, &CanFrame::id), 100) << "it is a SYNC all the same";
+  master.take();
+  master.receive(frame(0x080, {}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x0000}));
+  EXPECT_EQ(master.object(0x1001), 0);
+  EXPECT_EQ(write(0x1019, 0, 10, 1), 0U);
+  master.take();
+  master.receive(frame(0x080, {}));
+  master.receive(frame(0x080, {0, 0, 0, 0, 0, 0, 0, 0}));
+  master.receive(frame(0x080, {0x01}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8240, 0x0000}));
+}
+
+TEST_F(Slave, ATpdoThatAllowsItIsSentOnRequest) {
+  CanFrame request = frame(0x285, {});
+  request.remote = true;
+  master.receive(request);
+  EXPECT_EQ(std::ranges::count(master.take(), 0x285U, &CanFrame::id), 0) << "not operational";
+  master.receive(frame(0x000, {0x01, 0x05}));
+  std::vector<std::uint32_t> listed;
+  master.drive.list_identifiers(listed);
+  EXPECT_NE(std::ranges::find(listed, 0x285U), listed.end());
+  master.take();
+  master.receive(request);
+  const Frames answer = master.take();
+  ASSERT_EQ(answer.size(), 1U);
+  EXPECT_EQ(answer[0].id, 0x285U);
+  EXPECT_EQ(answer[0].length, 6);
+  EXPECT_EQ(write(0x1801, 1, 0xC000'0285, 4), 0U);
+  EXPECT_EQ(write(0x1801, 1, 0x4000'0285, 4), 0U) << "bit 30: no RTR";
+  master.take();
+  master.receive(request);
+  EXPECT_TRUE(master.take().empty());
+}
+
+TEST_F(Slave, AnRpdoThatIsLateIsTold) {
+  EXPECT_EQ(write(0x1400, 5, 50, 2), 0U);
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.take();
+  master.run(200ms);
+  EXPECT_TRUE(master.emergencies().empty()) << "the time begins with the first one";
+  for (int i = 0; i < 5; ++i) {
+    master.receive(frame(0x205, {0x06, 0x00}));
+    master.run(40ms);
+  }
+  EXPECT_TRUE(master.emergencies().empty());
+  master.run(200ms);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8250}));
+  EXPECT_EQ(master.object(0x1001), 0x11);
+  master.receive(frame(0x205, {0x06, 0x00}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8250, 0x0000}));
+  EXPECT_EQ(master.object(0x1001), 0);
+  master.receive(frame(0x000, {0x80, 0x05}));
+  master.take();
+  master.run(200ms);
+  EXPECT_TRUE(master.emergencies().empty()) << "RPDOs are for operational nodes";
+}
+
+TEST_F(Slave, ResetCommunicationLeavesTheParametersOfTheDriveAlone) {
+  EXPECT_EQ(write(0x6081, 0, 1234, 4), 0U);
+  EXPECT_EQ(write(0x6060, 0, 1, 1), 0U);
+  EXPECT_EQ(write(0x1017, 0, 100, 2), 0U);
+  EXPECT_EQ(write(0x1400, 1, 0x8000'0205, 4), 0U);
+  master.receive(frame(0x000, {0x82, 0x05}));
+  EXPECT_EQ(master.frames.back(), frame(0x705, {0x00}));
+  EXPECT_EQ(master.object(0x6081), 1234);
+  EXPECT_EQ(master.object(0x6061), 1);
+  EXPECT_EQ(master.object(0x1017), 0);
+  EXPECT_EQ(master.object(0x1400, 1), 0x205);
+  master.receive(frame(0x000, {0x81, 0x05}));
+  EXPECT_NE(master.object(0x6081), 1234);
+  EXPECT_EQ(master.object(0x6061), 0);
+}
+
+TEST_F(Slave, StoresParametersOnCommandUntilTheyAreRestored) {
+  const std::int64_t usual = master.object(0x6081);
+  constexpr std::int64_t kSaveWord = 0x6576'6173;
+  constexpr std::int64_t kLoadWord = 0x6461'6F6C;
+  EXPECT_EQ(write(0x6081, 0, 1234, 4), 0U);
+  EXPECT_EQ(write(0x1017, 0, 100, 2), 0U);
+  EXPECT_EQ(write(0x607A, 0, 77, 4), 0U);
+  EXPECT_EQ(write(0x1010, 1, 1, 4), 0x0800'0020U) << "no signature";
+  EXPECT_EQ(write(0x1010, 1, kSaveWord, 4), 0U);
+  EXPECT_EQ(master.object(0x1010, 1), 1) << "what it can do, not what was written";
+  master.receive(frame(0x000, {0x81, 0x05}));
+  EXPECT_EQ(master.object(0x6081), 1234);
+  EXPECT_EQ(master.object(0x1017), 100);
+  EXPECT_EQ(master.object(0x607A), 0) << "a target is no parameter";
+  EXPECT_EQ(write(0x1011, 1, kSaveWord, 4), 0x0800'0020U);
+  EXPECT_EQ(write(0x1011, 1, kLoadWord, 4), 0U);
+  EXPECT_EQ(master.object(0x6081), 1234) << "in force after a reset";
+  master.receive(frame(0x000, {0x81, 0x05}));
+  EXPECT_EQ(master.object(0x6081), usual);
+  EXPECT_EQ(master.object(0x1017), 0);
+}
+
+TEST_F(Slave, EmergenciesKeepTheirInhibitTime) {
+  EXPECT_EQ(write(0x1015, 0, 200, 2), 0U);  // 20 ms
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.run(30ms);
+  master.take();
+  master.receive(frame(0x205, {0x06}));
+  master.receive(frame(0x205, {0x06, 0x00}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8210}));
+  master.run(15ms);
+  EXPECT_EQ(master.emergencies().size(), 1U);
+  master.run(10ms);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8210, 0x0000}));
+}
+
+TEST_F(Slave, HasTheObjectsThatMastersExpect) {
+  for (const auto& [index, subindex] :
+       {std::pair(0x1006, 0), std::pair(0x1009, 0), std::pair(0x100A, 0), std::pair(0x1010, 1), std::pair(0x1011, 1),
+        std::pair(0x1015, 0), std::pair(0x1200, 1), std::pair(0x1200, 2), std::pair(0x6078, 0), std::pair(0x6079, 0),
+        std::pair(0x607E, 0), std::pair(0x60FE, 1), std::pair(0x60FE, 2), std::pair(0x60B8, 0)}) {
+    EXPECT_EQ(master.read_abort(static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(subindex)), 0U)
+        << std::hex << index;
+  }
+  EXPECT_EQ(master.object(0x1200, 1), 0x605);
+  EXPECT_EQ(master.object(0x1200, 2), 0x585);
+  EXPECT_EQ(write(0x1006, 0, 10'000, 4), 0U);
+  EXPECT_EQ(write(0x1019, 0, 10, 1), 0x0800'0022U) << "the counter is not changed while SYNC has a period";
+  EXPECT_EQ(write(0x60B8, 0, 0, 2), 0U);
+  EXPECT_EQ(write(0x60B8, 0, 1, 2), 0x0609'0030U) << "it has no touch probe";
+  EXPECT_EQ(write(0x607E, 0, 0x80, 1), 0x0609'0030U);
 }
 
 TEST_F(Slave, ListsErrorsAndForgetsThemWhenAsked) {
@@ -171,6 +307,20 @@ TEST_F(Slave, AnswersNodeGuardingWithATogglingBit) {
   }
 }
 
+TEST_F(Slave, ANodeWithAHeartbeatIsNotGuarded) {
+  CanFrame request = frame(0x705, {});
+  request.remote = true;
+  EXPECT_EQ(write(0x100C, 0, 50, 2), 0U);
+  EXPECT_EQ(write(0x100D, 0, 2, 1), 0U);
+  master.receive(request);
+  EXPECT_EQ(write(0x1017, 0, 10'000, 2), 0U);
+  master.take();
+  master.receive(request);
+  EXPECT_TRUE(master.take().empty());
+  master.run(500ms);
+  EXPECT_TRUE(master.emergencies().empty());
+}
+
 TEST_F(Slave, LifeGuardingEndsWhereTheMasterIsSilent) {
   EXPECT_EQ(write(0x100C, 0, 50, 2), 0U);
   EXPECT_EQ(write(0x100D, 0, 2, 1), 0U);
@@ -182,6 +332,10 @@ TEST_F(Slave, LifeGuardingEndsWhereTheMasterIsSilent) {
   EXPECT_TRUE(master.emergencies().empty());
   master.run(20ms);
   EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8130}));
+  EXPECT_EQ(master.object(0x1001), 0x11);
+  master.receive(request);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8130, 0x0000}));
+  EXPECT_EQ(master.object(0x1001), 0);
 }
 
 TEST_F(Slave, KeepsItsHeartbeatPeriod) {

@@ -66,12 +66,15 @@ void ServoDrive::move(Timestamp now) {
 
 void ServoDrive::synced(Timestamp /*now*/) {}
 
-void ServoDrive::communication_lost(Timestamp now) {
+bool ServoDrive::is_stored(ObjectAddress address) const { return !is_servo_command(address); }
+
+bool ServoDrive::communication_lost(Timestamp now) {
   constexpr int kFault = 1;
   constexpr int kDisableVoltage = 2;
   constexpr int kQuickStop = 3;
-  if (!power_.is_powered()) return;
-  if (parameters_.connection_option == kFault) {
+  if (!power_.is_powered()) return false;
+  const bool is_fault = parameters_.connection_option == kFault;
+  if (is_fault) {
     error_code_ = kErrorMasterLost;
     power_.fault(parameters_);
   }
@@ -79,6 +82,7 @@ void ServoDrive::communication_lost(Timestamp now) {
   if (parameters_.connection_option == kQuickStop) power_.quick_stop(parameters_);
   write_objects();
   slave_.changed(now);
+  return is_fault;
 }
 
 bool ServoDrive::fail(std::uint16_t code, std::uint8_t error_register, Timestamp /*now*/) {

@@ -65,7 +65,8 @@ class ServoDrive final : private SlaveApplication {
   void written(std::span<const ObjectAddress> addresses, Timestamp now) override;
   void on_reset(Timestamp now) override;
   void synced(Timestamp now) override;
-  void communication_lost(Timestamp now) override;
+  bool communication_lost(Timestamp now) override;
+  [[nodiscard]] bool is_stored(ObjectAddress address) const override;
   bool fail(std::uint16_t code, std::uint8_t error_register, Timestamp now) override;
 
   void on_controlword(std::uint16_t controlword);

@@ -116,6 +116,7 @@ void ServoDrive::write_objects() {
   write(0x606C, increments(actual_velocity()));
   write(0x6074, per_mille);
   write(0x6077, per_mille);
+  write(0x6078, per_mille);  // torque is proportional to current
   write(0x60F4, increments(demand_.position - position));
   write(0x60FD, digital_inputs());
 }

@@ -68,6 +68,12 @@ void add_state_objects(std::vector<Row>& rows) {
                               {{0x6061, 0}, integer8, kServoRo, true, 0, "modes of operation display"},
                               {{0x6502, 0}, unsigned32, kServoRo, false, supported_modes(), "supported drive modes"},
                               {{0x60FD, 0}, unsigned32, kServoRo, true, 0, "digital inputs"},
+                              // Nothing is connected to the outputs.
+                              {{0x60FE, 0}, unsigned8, kServoRo, false, 2, "digital outputs"},
+                              {{0x60FE, 1}, unsigned32, kServoRw, true, 0, "physical outputs"},
+                              {{0x60FE, 2}, unsigned32, kServoRw, true, 0, "bit mask"},
+                              {{0x60B8, 0}, unsigned16, kServoRw, true, 0, "touch probe function"},
+                              {{0x60B9, 0}, unsigned16, kServoRo, true, 0, "touch probe status"},
                           });
 }
 
@@ -92,6 +98,7 @@ void add_position_objects(std::vector<Row>& rows, const DriveConfig& config) {
           {{0x607D, 0}, unsigned8, kServoRo, false, 2, "software position limit"},
           {{0x607D, 1}, integer32, kServoRw, true, std::min(a, b), "min position limit"},
           {{0x607D, 2}, integer32, kServoRw, true, std::max(a, b), "max position limit"},
+          {{0x607E, 0}, unsigned8, kServoRw, false, 0, "polarity"},
           {{0x60F4, 0}, integer32, kServoRo, true, 0, "following error actual value"},
           {{0x60C0, 0}, integer16, kServoRw, false, 0, "interpolation sub mode select"},
           {{0x60C1, 0}, unsigned8, kServoRo, false, 1, "interpolation data record"},
@@ -155,6 +162,8 @@ void add_torque_objects(std::vector<Row>& rows, const DriveConfig& config) {
                                whole<std::uint32_t>(1000 * config.rated_torque),
                                "motor rated torque"},
                               {{0x6077, 0}, integer16, kServoRo, true, 0, "torque actual value"},
+                              {{0x6078, 0}, integer16, kServoRo, true, 0, "current actual value"},
+                              {{0x6079, 0}, unsigned32, kServoRo, true, 48'000, "DC link circuit voltage"},
                               {{0x6087, 0}, unsigned32, kServoRw, true, 10'000, "torque slope"},
                               {{0x6088, 0}, integer16, kServoRw, true, 0, "torque profile type"},
                               {{0x60B2, 0}, integer16, kServoRw, true, 0, "torque offset"},
@@ -255,6 +264,9 @@ std::optional<SdoAbort> check_servo_object(ObjectAddress address, std::int64_t v
           std::ranges::any_of(kModes, [value](DriveMode mode) { return value == static_cast<int>(mode); });
       return known ? std::nullopt : std::optional(SdoAbort::invalid_value);
     }
+    // Directions are those of the cell file; there is no touch probe.
+    case 0x607E:
+    case 0x60B8:
     case 0x6086:
     case 0x6088:
     case 0x60C0:
