@@ -53,8 +53,10 @@ class Planner {
       error(node.place, fmt::format("{}: the joint has two nodes", name));
     }
     check_scales(node, name);
+    const std::size_t before = diagnostics_->errors();
     result.tpdos = mapping_of(node, name);
-    check_mapping(result, name);
+    const bool of_file = node.tpdos.empty() && !node.eds_file.empty();
+    check_mapping(result, name, !of_file || diagnostics_->errors() == before);
     return result;
   }
 
@@ -97,7 +99,8 @@ class Planner {
     }
   }
 
-  void check_mapping(const Cia402NodePlan& node, const std::string& name) {
+  // `known`: nothing is missing that could not be read, which was reported.
+  void check_mapping(const Cia402NodePlan& node, const std::string& name, bool known) {
     bool has_position = false;
     for (const TpdoConfig& tpdo : node.tpdos) {
       if (!is_valid_mapping(tpdo.entries)) {
@@ -111,7 +114,7 @@ class Planner {
         error(node.config.place, fmt::format("{}: the COB-ID 0x{:X} appears twice", name, id));
       has_position |= find_in_mapping(tpdo.entries, kPositionActual.index, kPositionActual.subindex).has_value();
     }
-    if (!has_position) {
+    if (!has_position && known) {
       const std::string of = node.config.eds_file.empty() ? "" : " of " + node.config.eds_file;
       error(
           node.config.place, fmt::format("{}: no TPDO{} holds the position actual value 0x6064", name, of),
