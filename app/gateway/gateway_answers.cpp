@@ -1,7 +1,9 @@
 // What a running gateway answers: status, the page's news, requests of the control socket.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -155,6 +157,33 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
         [this] { return output_counters(); }});
 }
 
+namespace {
+
+// What streams and I/O nodes wait for: "waits for can0 (robot A, I/O node 7); ...".
+std::string missing_interfaces(const CellState& cell) {
+  std::map<std::string, std::vector<std::string>> waiting;
+  std::map<std::string, std::string> reasons;
+  const auto look = [&](const JointStream& stream, std::string name) {
+    const JointStreamStatus status = stream.status();
+    if (status.waits_for.empty()) return;
+    waiting[status.waits_for].push_back(std::move(name));
+    reasons[status.waits_for] = status.condition;
+  };
+  for (const RobotSnapshot& robot : cell.robots) {
+    if (robot.stream) look(*robot.stream, "robot " + robot.id);
+  }
+  for (const IoNodeSnapshot& node : cell.io_nodes) {
+    if (node.stream) look(*node.stream, fmt::format("I/O node {}", node.config->node_id));
+  }
+  std::string out;
+  for (const auto& [missing, names] : waiting) {
+    out += fmt::format("{}{} ({})", out.empty() ? "" : "; ", reasons[missing], fmt::join(names, ", "));
+  }
+  return out;
+}
+
+}  // namespace
+
 Problems Gateway::Parts::problems() const {
   Problems out;
   const auto add = [&](const char* kind, std::string text) {
@@ -172,6 +201,7 @@ Problems Gateway::Parts::problems() const {
   }
   if (mqtt) add("mqtt", mqtt->problem());
   add_process_problems(out, sandbox_reports());
+  add("stream", missing_interfaces(*board.latest()));
   if (playback == nullptr && (guard == nullptr || !guard->running())) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
                                    "restart the gateway",

@@ -47,7 +47,7 @@ class CanTap::Channel final : public CanChannel {
 
 can::ChannelOpener CanTap::opener(std::string robot) {
   return [this, robot = std::move(robot)](const CanChannelConfig& config) -> Result<std::unique_ptr<CanChannel>> {
-    auto inner = can::open_can_channel(config);
+    auto inner = can::open_can_channel(config, can::WhereMissing::wait);
     if (!inner) return inner;
     auto line = std::make_shared<Line>();
     line->robot = robot;

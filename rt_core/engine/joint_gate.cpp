@@ -128,7 +128,9 @@ void JointGate::stand(JointSet joints) CELL_RT {
 void JointGate::take(const JointSample& sample, Timestamp now) CELL_RT {
   if (state_.mode != RobotMode::mirrored) return;
   ++state_.samples;
-  state_.sequence = sample.sequence;
+  const bool begins_anew = sample.sequence == JointSample::kBeginsAnew;
+  if (begins_anew) plausibility_.forget();
+  state_.sequence = begins_anew ? 0 : sample.sequence;
   state_.receive_time = sample.receive_time;
   const bool timed = sample.receive_time.known() && sample.receive_time - now < kFuture;
   for (std::size_t i = 0; i < state_.joint_count; ++i) {

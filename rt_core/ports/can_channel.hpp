@@ -48,16 +48,19 @@ struct CanChannelStatus {
   std::uint64_t error_frames = 0;
   std::uint64_t reopened = 0;  // number of recoveries
   std::string last_error;
+  std::string waits_for;  // the interface without which it is not open yet, or not any more; empty: none
 };
 
-enum class CanReceive : std::uint8_t { frame, timeout, down, end };
+// `again`: a log begins anew; what came before has nothing to do with what comes now.
+enum class CanReceive : std::uint8_t { frame, timeout, down, end, again };
 
 // All calls on one thread at a time. The channel recovers from ENETDOWN, a removed interface and the like: meanwhile
 // receive() returns `down` (after its timeout) and send() refuses.
 class CanChannel {
  public:
   virtual ~CanChannel() = default;
-  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end.
+  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end. `again` is told once for each pass
+  // behind the first.
   virtual CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) = 0;
   // Never waits. False where the frame could not be sent (counted).
   virtual bool send(const CanFrame& frame) = 0;

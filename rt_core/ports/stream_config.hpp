@@ -61,8 +61,13 @@ struct Cia402NodeConfig {
   double offset = 0.0;          // rad or m
   double velocity_scale = 0.0;  // rad/s (m/s) a unit of 0x606C; 0: same increments a second as `scale`
   double torque_scale =
-      0.0;               // Nm (N) a unit of 0x6077 (often a thousandth of the rated torque); 0: effort is not known
-  std::string eds_file;  // an EDS or DCF with the PDO mapping; may be empty
+      0.0;  // Nm (N) a unit of 0x6077 (often a thousandth of the rated torque); 0: effort is not known
+  // The joint turns without end: 0x6064 goes on where it wraps, at its bits or at the ends of the range (0x607B of the
+  // drive; both 0: it has none).
+  bool turns = false;
+  std::int64_t range_lower = 0;
+  std::int64_t range_upper = 0;
+  std::string eds_file;           // an EDS or DCF with the PDO mapping; may be empty
   std::vector<TpdoConfig> tpdos;  // from the cell file; they win over the EDS
   bool configure = false;         // write the mapping to the drive by SDO before NMT start
   Place place = {};               // of the node's table
@@ -95,6 +100,7 @@ struct DbcSignalConfig {
   double scale = 1.0;
   double offset = 0.0;
   bool scale_given = false;  // the cell file says the scale, so that 1 is meant
+  bool turns = false;        // the joint turns without end: an integer goes on where it wraps
   Place place = {};          // of the signal's name
   Place message_place = {};  // of the message's name
 };

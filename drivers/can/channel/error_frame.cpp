@@ -1,5 +1,6 @@
 #include "drivers/can/channel/error_frame.hpp"
 
+#include <fmt/format.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
 
@@ -10,6 +11,8 @@ namespace {
 
 // Older headers lack it.
 constexpr std::uint8_t kControllerActive = 0x40;
+constexpr std::uint32_t kErrorCounters = 0x200;  // CAN_ERR_CNT: bytes 6 and 7 are those of transmission and reception
+constexpr std::size_t kCountersEnd = 8;
 
 using Words = std::pair<std::uint32_t, const char*>;
 
@@ -62,7 +65,9 @@ std::string error_words(const CanFrame& frame) {
       if ((status & mask) != 0) append(text, words);
     }
   }
-  return text.empty() ? "error of an unknown class" : text;
+  if ((frame.id & kErrorCounters) != 0 && frame.length >= kCountersEnd)
+    append(text, fmt::format("error counters {} (transmit) and {} (receive)", frame.data[6], frame.data[7]).c_str());
+  return text.empty() ? fmt::format("error of the unknown class 0x{:X}", frame.id) : text;
 }
 
 const char* words(CanBusState state) {

@@ -14,6 +14,7 @@
 
 #include "drivers/can/channel/candump_line.hpp"
 #include "drivers/can/channel/error_frame.hpp"
+#include "drivers/can/channel/log_format.hpp"
 
 namespace cellmirror::can {
 namespace {
@@ -33,7 +34,7 @@ class LogChannel final : public CanChannel {
     const Timestamp deadline = clock_.now() + timeout;
     while (!next_) {
       if (ended_) return wait_and_end(timeout);
-      read_line();
+      if (!read_line() && !ended_) return CanReceive::again;
       if (clock_.now() > deadline) return CanReceive::timeout;  // a long run of broken lines
     }
     const Timestamp due = due_time();
@@ -94,11 +95,12 @@ class LogChannel final : public CanChannel {
     return pass_started_ + Nanoseconds(std::max<std::int64_t>(0, next_->time_ns - first_stamp_ns_));
   }
 
-  void read_line() {
+  // False at the end of the file.
+  bool read_line() {
     std::array<char, kCandumpLineCapacity + 2> buffer{};
     if (std::fgets(buffer.data(), static_cast<int>(buffer.size()), file_.get()) == nullptr) {
       start_again();
-      return;
+      return false;
     }
     ++line_;
     std::string_view text(buffer.data());
@@ -107,16 +109,17 @@ class LogChannel final : public CanChannel {
     } else if (std::feof(file_.get()) == 0) {
       skip_rest_of_line();
       broken("the line is too long or holds a NUL byte");
-      return;
+      return true;
     }
-    if (text.empty()) return;
+    if (text.empty()) return true;
     const auto parsed = parse_candump_line(text);
     if (!parsed) {
       broken(parsed.error());
-      return;
+      return true;
     }
     ++frames_of_pass_;
     next_ = Next{parsed->frame, parsed->time_ns};
+    return true;
   }
 
   void skip_rest_of_line() {
@@ -153,7 +156,7 @@ class LogChannel final : public CanChannel {
 }  // namespace
 
 Result<std::unique_ptr<CanChannel>> open_log_channel(const LogChannelOptions& options) {
-  struct stat info{};
+  struct stat info {};
   if (stat(options.file.c_str(), &info) != 0) {
     return fail(fmt::format("cannot read the log {}: {}", options.file, std::strerror(errno)), "check the path");
   }
@@ -162,7 +165,19 @@ Result<std::unique_ptr<CanChannel>> open_log_channel(const LogChannelOptions& op
   if (!file) {
     return fail(fmt::format("cannot read the log {}: {}", options.file, std::strerror(errno)), "check its permissions");
   }
+  std::array<char, kLogBeginning> beginning{};
+  const std::size_t read = std::fread(beginning.data(), 1, beginning.size(), file.get());
+  if (const auto known = check_log_beginning({beginning.data(), read}, read < beginning.size()); !known)
+    return fail(fmt::format("{}: {}", options.file, known.error().what), known.error().remedy);
+  std::rewind(file.get());
   return std::make_unique<LogChannel>(options, std::move(file));
+}
+
+Result<void> check_log(const std::string& file) {
+  LogChannelOptions options;
+  options.file = file;
+  if (auto opened = open_log_channel(options); !opened) return std::unexpected(opened.error());
+  return {};
 }
 
 }  // namespace cellmirror::can

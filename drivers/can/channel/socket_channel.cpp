@@ -69,6 +69,22 @@ void send_messages(int fd, std::span<mmsghdr> messages, std::span<int> errors) {
   }
 }
 
+Result<void> SocketChannel::open_or_wait() {
+  auto opened = open_socket();
+  if (opened) {
+    status_.waits_for.clear();
+  } else if (!status_.waits_for.empty()) {
+    wait_for_what_is_missing(opened.error());
+    return {};
+  }
+  return opened;
+}
+
+void SocketChannel::wait_for_what_is_missing(const Error& error) {
+  const std::string text = error.text();
+  go_down(status_.waits_for.empty() ? text : "waits for " + status_.waits_for + ": " + text);
+}
+
 CanReceive SocketChannel::receive(ReceivedCanFrame& frame, Nanoseconds timeout) {
   if (give(frame)) return CanReceive::frame;
   const Timestamp deadline = clock_.now() + timeout;
@@ -122,12 +138,13 @@ void SocketChannel::reopen_when_due(Timestamp now) {
   if (now < next_try_) return;
   last_dropped_ = 0;
   if (const auto opened = open_socket(); !opened) {
-    go_down(opened.error().text());
+    wait_for_what_is_missing(opened.error());
     back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kLongestBackOff);
     next_try_ = now + back_off_;
     return;
   }
   back_off_ = Nanoseconds{0};
+  status_.waits_for.clear();
   ++status_.reopened;
 }
 

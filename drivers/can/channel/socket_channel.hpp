@@ -55,10 +55,14 @@ class SocketChannel : public CanChannel {
   }
   [[nodiscard]] const CanChannelStatus& status() const final { return status_; }
 
+  // Opens, or begins to wait for what is missing. Fails where waiting does not help.
+  [[nodiscard]] Result<void> open_or_wait();
+
  protected:
   SocketChannel() = default;
 
-  // Opens or re-opens; leaves `socket_` closed where it fails.
+  // Opens or re-opens; leaves `socket_` closed where it fails. Names what is missing in `status_.waits_for` where it
+  // may come later.
   [[nodiscard]] virtual Result<void> open_socket() = 0;
   // Takes what has arrived into the batch, without waiting. False: the socket is of no use any more.
   [[nodiscard]] virtual bool fill() = 0;
@@ -82,6 +86,7 @@ class SocketChannel : public CanChannel {
 
  private:
   void reopen_when_due(Timestamp now);
+  void wait_for_what_is_missing(const Error& error);
   void check_interface(Timestamp now);
   void wait(Nanoseconds time);
   [[nodiscard]] bool give(ReceivedCanFrame& frame);

@@ -61,6 +61,23 @@ canfd_frame to_kernel(const CanFrame& frame) {
   return raw;
 }
 
+// A virtual interface is made by a command, a real one comes with its adapter: nobody is to create a can0 by hand.
+std::string remedy_for_missing(const std::string& interface) {
+  if (interface.starts_with("vcan"))
+    return fmt::format("create it: 'ip link add {} type vcan && ip link set {} up'", interface, interface);
+  return "connect the adapter or load its driver; 'ip link show type can' shows the interfaces that are there";
+}
+
+// What to do where the kernel does not take a frame.
+std::string send_problem(const std::string& interface, int error) {
+  if (error != ENOBUFS) return fmt::format("send: {}", std::strerror(error));
+  return fmt::format(
+      "the transmit queue of {} is full: nobody acknowledges, the bus is too slow for what is sent, or the queue is "
+      "too "
+      "short ('ip link set {} txqueuelen 1000')",
+      interface, interface);
+}
+
 // What reading and sending say when the interface of a bound socket was removed.
 bool is_gone(int error) { return error == ENODEV || error == ENXIO; }
 
@@ -85,9 +102,11 @@ class SocketCanChannel final : public SocketChannel {
 };
 
 Result<void> SocketCanChannel::open_socket() {
+  status_.waits_for.clear();
   Descriptor fd(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
   if (!fd.valid()) {
     if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
+      status_.waits_for = interface_;  // a module may be loaded
       return fail("this kernel has no CAN (AF_CAN)",
                   "load it with 'modprobe can_raw', boot a kernel that has it, or use a udp: or log: channel");
     }
@@ -95,8 +114,8 @@ Result<void> SocketCanChannel::open_socket() {
   }
   index_ = if_nametoindex(interface_.c_str());
   if (index_ == 0) {
-    return fail("there is no network interface " + interface_,
-                fmt::format("create it, e.g. 'ip link add {} type vcan && ip link set {} up'", interface_, interface_));
+    status_.waits_for = interface_;
+    return fail("there is no network interface " + interface_, remedy_for_missing(interface_));
   }
   const int on = 1;
   const can_err_mask_t errors = CAN_ERR_MASK;
@@ -111,6 +130,7 @@ Result<void> SocketCanChannel::open_socket() {
   if (bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     if (errno == ENODEV)
       return fail(interface_ + " is no CAN interface", "name one that 'ip -details link' shows as can or vcan");
+    status_.waits_for = interface_;
     return fail(fmt::format("cannot bind to {}: {}", interface_, std::strerror(errno)));
   }
   socket_ = std::move(fd);
@@ -223,14 +243,15 @@ void SocketCanChannel::send_all(std::span<const CanFrame> frames, std::span<bool
 void SocketCanChannel::refuse(int error) {
   if (error == ENETDOWN) go_down(switched_off());
   if (is_gone(error)) go_down(removed());
-  note_refused(fmt::format("send: {}", std::strerror(error)));
+  note_refused(send_problem(interface_, error));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<CanChannel>> open_socketcan_channel(const std::string& interface) {
+Result<std::unique_ptr<CanChannel>> open_socketcan_channel(const std::string& interface, bool waits) {
   auto channel = std::make_unique<SocketCanChannel>(interface);
-  if (const auto opened = channel->open_socket(); !opened) return std::unexpected(opened.error());
+  if (const auto opened = waits ? channel->open_or_wait() : channel->open_socket(); !opened)
+    return std::unexpected(opened.error());
   return channel;
 }
 

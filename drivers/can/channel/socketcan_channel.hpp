@@ -9,8 +9,9 @@
 
 namespace cellmirror::can {
 
-// Fails where the kernel has no CAN, the interface does not exist or is no CAN interface, or permission lacks. An
-// interface that is down, is deleted and comes back, a bus that goes bus-off: survived and told by status().
-[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_socketcan_channel(const std::string& interface);
+// Fails where the interface is no CAN interface, or permission lacks, and unless it `waits` where the kernel has no CAN
+// or the interface is not there. An interface that is down, is deleted and comes back, a bus that goes bus-off:
+// survived and told by status().
+[[nodiscard]] Result<std::unique_ptr<CanChannel>> open_socketcan_channel(const std::string& interface, bool waits);
 
 }  // namespace cellmirror::can

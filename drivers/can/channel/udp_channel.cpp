@@ -186,6 +186,7 @@ Result<Descriptor> UdpChannel::open_sender() const {
 }
 
 Result<void> UdpChannel::open_socket() {
+  status_.waits_for = interface_;  // also where it has no route or no address yet
   index_ = if_nametoindex(interface_.c_str());
   if (index_ == 0) return fail("there is no network interface " + interface_, "name one that 'ip link' shows");
   auto sender = open_sender();
@@ -199,6 +200,7 @@ Result<void> UdpChannel::open_socket() {
   sender_ = UdpSender(std::move(*sender));
   socket_ = std::move(*receiver);
   status_.bus = CanBusState::active;
+  status_.waits_for.clear();
   return {};
 }
 
@@ -289,7 +291,7 @@ void UdpChannel::send_all(std::span<const CanFrame> frames, std::span<bool> sent
 }  // namespace
 
 Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint, const std::string& interface,
-                                                     const std::vector<std::string>& allow_from) {
+                                                     const std::vector<std::string>& allow_from, bool waits) {
   std::vector<SourceAddress> allowed;
   for (const std::string& text : allow_from) {
     auto source = parse_source(text);
@@ -297,7 +299,8 @@ Result<std::unique_ptr<CanChannel>> open_udp_channel(const UdpEndpoint& endpoint
     allowed.push_back(std::move(*source));
   }
   auto channel = std::make_unique<UdpChannel>(endpoint, interface, std::move(allowed));
-  if (const auto opened = channel->open_socket(); !opened) return std::unexpected(opened.error());
+  if (const auto opened = waits ? channel->open_or_wait() : channel->open_socket(); !opened)
+    return std::unexpected(opened.error());
   return channel;
 }
 

@@ -163,6 +163,18 @@ DbcSession::DbcSession(DbcPlan plan, DbcSessionOutput& output) : plan_(std::move
   }
 }
 
+void DbcSession::restart() {
+  for (auto& [id, source] : sources_) {
+    for (Field& field : source.fields) field.senders = {};
+  }
+  for (const DbcPlan::Protection& protection : plan_.protections) {
+    const DbcMessage& message = plan_.dbc.messages.at(protection.message);
+    sources_.at({message.extended, message.id}).checker.emplace(protection.format);
+  }
+  velocity_ = {};
+  effort_ = {};
+}
+
 void DbcSession::receive(const CanFrame& frame, Timestamp now) {
   if (frame.error || frame.remote) return;
   const auto found = sources_.find({frame.extended, frame.id});

@@ -86,6 +86,9 @@ class DbcSession {
   DbcSession(const DbcSession&) = delete;  // points into its own plan
   DbcSession& operator=(const DbcSession&) = delete;
 
+  // The source begins anew: forgets its values, counters of protected messages, and who sent what.
+  void restart();
+
   // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with it
   // unless they are lost or were refused. Of a protected message nothing is taken whose counter or CRC is wrong: its
   // joints are refused; a repeated one makes no sample. What two senders give is in conflict. Frames shorter than the

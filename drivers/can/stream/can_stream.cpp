@@ -28,6 +28,7 @@ void describe_channel(const SharedChannel::Report& report, JointStreamStatus& st
   status.lost += bus.receive_dropped;
   status.rejected += bus.malformed + bus.foreign;
   if (const std::string condition = bus_condition(bus, report.ended); !condition.empty()) status.condition = condition;
+  status.waits_for = bus.waits_for;
   status.details.emplace_back("bus", words(bus.bus));
   status.details.emplace_back(
       "channel", fmt::format("{} received, {} sent, {} refused, {} dropped, {} malformed, {} error frames, {} reopened",
@@ -73,6 +74,7 @@ void CanStream::close() {
 void CanStream::start(Timestamp now) {
   rate_ = {};
   refused_ = 0;
+  begins_ = true;
   last_errors_.clear();
   published_errors_.writable().clear();
   published_errors_.publish();
@@ -86,7 +88,13 @@ void CanStream::publish() {
 
 void CanStream::push(const JointSample& sample) {
   rate_.count(clock_->now());
-  sink_->push(sample);
+  if (!std::exchange(begins_, false)) {
+    sink_->push(sample);
+    return;
+  }
+  JointSample first = sample;
+  first.sequence = JointSample::kBeginsAnew;
+  sink_->push(first);
 }
 
 void CanStream::note(Severity severity, std::string_view kind, const std::string& text) {

@@ -25,6 +25,15 @@ void ChannelMembers::remove(ChannelMember& member) {
   rebuild();
 }
 
+void ChannelMembers::restart(Timestamp now) {
+  for (Entry& entry : entries_) {
+    if (entry.member == nullptr) continue;
+    entry.member->start(now);
+    entry.called = true;
+  }
+  look_after_calls();
+}
+
 void ChannelMembers::receive(const CanFrame& frame, Timestamp now) {
   const std::span<const CanListener> listeners = routes_.of(frame);
   together_ = listeners.size() > 1;

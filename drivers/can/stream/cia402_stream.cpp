@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/can/channel/open_channel.hpp"
 #include "drivers/can/cia402/session.hpp"
 #include "drivers/can/stream/can_stream.hpp"
 #include "rt_core/rt/latest.hpp"
@@ -100,6 +101,7 @@ void check_stream(const Cia402StreamConfig& config, Diagnostics& diagnostics) {
     });
     if (node.node_id > 0 && !node.joint_name.empty() && !twice) sound.nodes.push_back(node);
   }
+  check_channel(config.channel, config.place, diagnostics);
   if (!sound.nodes.empty()) static_cast<void>(plan_cia402(sound, diagnostics));
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "drivers/can/channel/open_channel.hpp"
 #include "drivers/can/dbc/session.hpp"
 #include "drivers/can/stream/can_stream.hpp"
 #include "rt_core/base/counted.hpp"
@@ -18,7 +19,10 @@ class DbcProtocol final : public CanProtocol, private DbcSessionOutput {
   DbcProtocol(const DbcPlan& plan, CanProtocolHost& host)
       : host_(&host), ages_(plan.config.ages), session_(plan, *this) {}
 
-  void start(Timestamp now) override { started_ = now; }
+  void start(Timestamp now) override {
+    started_ = now;
+    session_.restart();
+  }
   void receive(const CanFrame& frame, Timestamp now, std::size_t /*node*/) override { session_.receive(frame, now); }
   void advance(Timestamp) override {}
   [[nodiscard]] Timestamp next_due() const override { return {}; }
@@ -90,6 +94,7 @@ void check_stream(const DbcStreamConfig& config, Diagnostics& diagnostics) {
   DbcStreamConfig sound = config;
   std::erase_if(sound.signals,
                 [](const DbcSignalConfig& signal) { return signal.message.empty() || signal.signal.empty(); });
+  check_channel(config.channel, config.place, diagnostics);
   if (sound.dbc_file.empty() || sound.signals.empty()) return;
   static_cast<void>(plan_dbc(sound, diagnostics));
 }

@@ -19,12 +19,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds kLongestWait = 50ms;  // how long a request may have to wait for the thread
+constexpr Nanoseconds kToldRefusedAgain = 10s;
 
 }  // namespace
 
 SharedChannel::SharedChannel(CanChannelConfig config, const Clock& clock, CanStreamOptions options)
     : config_(std::move(config)), clock_(&clock), options_(std::move(options)), members_(clock) {
-  if (!options_.open_channel) options_.open_channel = open_can_channel;
+  if (!options_.open_channel) {
+    options_.open_channel = [](const CanChannelConfig& what) { return open_can_channel(what, WhereMissing::wait); };
+  }
 }
 
 SharedChannel::~SharedChannel() { CELLMIRROR_EXPECTS(joined_ == 0); }
@@ -38,6 +41,9 @@ Result<void> SharedChannel::join(ChannelMember& member) {
     members_.set_channel(*channel_);
     bus_ = CanBusState::unknown;
     seen_due_ = {};
+    waited_ = !channel_->status().waits_for.empty();
+    refused_told_ = 0;
+    told_refused_ = {};
     stop_ = false;
     members_.add(member, clock_->now());
     publish(false);
@@ -98,6 +104,10 @@ void SharedChannel::run() {
     serve_request();
     const CanReceive received = channel_->receive(frame, longest_wait());
     const bool is_frame = received == CanReceive::frame;
+    const bool opened = waited_ && channel_->status().waits_for.empty();
+    if (opened) waited_ = false;
+    // Nothing that they knew holds any more, and nobody has heard what they sent.
+    if (opened || received == CanReceive::again) members_.restart(clock_->now());
     if (is_frame && !frame.frame.error) members_.receive(frame.frame, frame.receive_time);
     members_.deliver_waiting();
     advance_when_due(is_frame, frame.receive_time);
@@ -106,6 +116,7 @@ void SharedChannel::run() {
     if (!is_frame || is_error || last != CanReceive::frame) {
       watch_bus(is_error ? bus_state_of_error(frame.frame) : std::nullopt);
     }
+    watch_refused();
     last = received;
     publish(received == CanReceive::end);
   }
@@ -149,10 +160,29 @@ void SharedChannel::watch_bus(std::optional<CanBusState> reported) {
   const bool is_bad = bus_ != CanBusState::active && bus_ != CanBusState::unknown;
   if (!was_bad && !is_bad) return;
   const std::string place = "can.bus " + config_.endpoint;
-  const std::string text = fmt::format("bus: {}{}{}", words(bus_), is_bad && !status.last_error.empty() ? ": " : "",
-                                       is_bad ? status.last_error : "");
+  const bool adds = is_bad && !status.last_error.empty() && status.last_error != words(bus_);
+  const std::string text =
+      fmt::format("bus: {}{}{}", words(bus_), adds ? ": " : "", adds ? status.last_error : std::string());
   if (!is_bad) return log_info(place, "{}", text);
   log_warning(place, "{}", text);
+  members_.keep_error(text);
+}
+
+// Not for logs, which refuse everything, nor where the bus is down, which was told.
+void SharedChannel::watch_refused() {
+  const CanChannelStatus& status = channel_->status();
+  if (status.send_refused == refused_told_ || status.last_error.empty()) return;
+  if (bus_ == CanBusState::down || bus_ == CanBusState::bus_off) {
+    refused_told_ = status.send_refused;
+    return;
+  }
+  const Timestamp now = clock_->now();
+  if (told_refused_.known() && now - told_refused_ < kToldRefusedAgain) return;
+  const std::uint64_t more = status.send_refused - std::exchange(refused_told_, status.send_refused);
+  told_refused_ = now;
+  const std::string text =
+      fmt::format("{} frame{} not sent: {}", more, more == 1 ? " was" : "s were", status.last_error);
+  log_warning("can.send " + config_.endpoint, "{}", text);
   members_.keep_error(text);
 }
 

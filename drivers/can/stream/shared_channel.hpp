@@ -64,6 +64,7 @@ class SharedChannel {
   [[nodiscard]] Nanoseconds longest_wait() const;
   void advance_when_due(bool is_frame, Timestamp received);
   void watch_bus(std::optional<CanBusState> reported);
+  void watch_refused();
   void publish(bool ended);
 
   CanChannelConfig config_;
@@ -84,7 +85,10 @@ class SharedChannel {
   std::unique_ptr<CanChannel> channel_;
   ChannelMembers members_;
   CanBusState bus_ = CanBusState::unknown;
-  Timestamp seen_due_;  // when the thread first saw that a member is due
+  Timestamp seen_due_;   // when the thread first saw that a member is due
+  bool waited_ = false;  // it was never open yet
+  std::uint64_t refused_told_ = 0;
+  Timestamp told_refused_;
 
   std::thread thread_;
   mutable std::mutex report_mutex_;  // of those who ask for the report; never taken by the thread

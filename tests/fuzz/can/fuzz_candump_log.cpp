@@ -4,9 +4,12 @@
 #include <string_view>
 
 #include "drivers/can/channel/candump_line.hpp"
+#include "drivers/can/channel/log_format.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view text(reinterpret_cast<const char*>(data), size);
+  static_cast<void>(
+      cellmirror::can::check_log_beginning(text.substr(0, cellmirror::can::kLogBeginning), size % 2 == 0));
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     const auto line = cellmirror::can::parse_candump_line(text.substr(0, end));

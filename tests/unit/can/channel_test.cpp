@@ -15,6 +15,7 @@
 
 #include "drivers/can/channel/endpoint.hpp"
 #include "drivers/can/channel/error_frame.hpp"
+#include "drivers/can/channel/log_format.hpp"
 #include "drivers/can/channel/open_channel.hpp"
 #include "drivers/can/channel/socket_channel.hpp"
 #include "drivers/can/channel/virtual_bus.hpp"
@@ -151,16 +152,68 @@ TEST_F(LogTest, BusOffEndsWithTheFirstFrame) {
 TEST_F(LogTest, RepeatsFromTheStart) {
   const auto sut = open("(1.0) vcan0 123#\n(1.0) vcan0 124#\n", true, true);
   for (int i = 0; i < 10; ++i) {
+    if (i > 0 && i % 2 == 0) EXPECT_EQ(sut->receive(got, kLong), CanReceive::again);
     ASSERT_EQ(sut->receive(got, kLong), CanReceive::frame);
     EXPECT_EQ(got.frame.id, i % 2 == 0 ? 0x123U : 0x124U);
   }
 }
 
 TEST_F(LogTest, RepeatingALogWithoutFramesEnds) {
-  const auto sut = open("nonsense\n", true, true);
+  const auto sut = open("\n\n", true, true);
   CanReceive result = CanReceive::timeout;
   for (int i = 0; i < 10 && result != CanReceive::end; ++i) result = sut->receive(got, 1ms);
   EXPECT_EQ(result, CanReceive::end);
+}
+
+TEST(LogFormat, OtherLogsAreNamedWithTheirConverter) {
+  using namespace std::string_view_literals;
+  const std::pair<std::string_view, const char*> cases[] = {
+      {"date Wed Apr 14 10:00:00.000 2021\nbase hex  timestamps absolute\n", "asc2log"},
+      {"   0.015991 1  100x            Rx   d 8 11 22 33 44 55 66 77 88\n", "asc2log"},
+      {"LOGG\x90\0\0\0\x05"sv, "can_logconvert"},
+      {";$FILEVERSION=1.1\n;$STARTTIME=43000.1\n", "can_logconvert"},
+      {"timestamp,arbitration_id,extended,remote,error,dlc,data\n0.0,0x1,0,0,0,1,EQ==\n", "can_logconvert"},
+      {"\x1F\x8B\x08\0\0"sv, "gunzip"},
+      {"  vcan0  123   [8]  11 22 33 44 55 66 77 88\n", "candump -L"},
+      {" (1436509052.249713)  vcan0  123   [2]  11 22\n", "candump -L"},
+      {" (1436509052.249713)  vcan0  RX - -  123   [2]  11 22\n", "candump -L"},
+      {"nonsense\n", "candump -l"},
+  };
+  for (const auto& [text, remedy] : cases) {
+    const auto checked = check_log_beginning(text, true);
+    ASSERT_FALSE(checked) << text;
+    EXPECT_THAT(checked.error().remedy, HasSubstr(remedy)) << text;
+  }
+}
+
+TEST(LogFormat, ACandumpLogMayHaveBrokenLinesAndNothingAtAll) {
+  EXPECT_TRUE(check_log_beginning("", true));
+  EXPECT_TRUE(check_log_beginning("\n\n", true));
+  EXPECT_TRUE(check_log_beginning("nonsense\n(1.0) vcan0 123#\n", true));
+  EXPECT_TRUE(check_log_beginning("(1.0) vcan0 123#11\n(1.0) vcan0 12", false)) << "cut within a line";
+  EXPECT_FALSE(check_log_beginning(std::string(kLogBeginning, 'x'), false));
+}
+
+TEST(LogChannel, AForeignLogIsRefusedWithItsNameWhenItIsOpenedAndWhenItIsChecked) {
+  const std::string path = testing::TempDir() + "can_foreign_" + std::to_string(getpid()) + ".asc";
+  std::ofstream(path) << "date Wed Apr 14 10:00:00.000 2021\nbase hex  timestamps absolute\n";
+  CanChannelConfig config;
+  config.endpoint = "log:" + path;
+  const auto sut = open_can_channel(config);
+  ASSERT_FALSE(sut);
+  EXPECT_EQ(sut.error().what, path + ": the file is a log of Vector's tools (ASC)");
+  Diagnostics diagnostics;
+  check_channel(config, {"cell.toml", 3, 1}, diagnostics);
+  EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:3:1: error: " + path + ": the file is a log of Vector's"));
+  std::filesystem::remove(path);
+}
+
+TEST(ErrorFrame, CountersAreNumbersAndUnknownClassesAreNamed) {
+  CanFrame sut = frame(0x200, {0, 0, 0, 0, 0, 0, 96, 127});
+  sut.error = true;
+  EXPECT_EQ(error_words(sut), "error counters 96 (transmit) and 127 (receive)");
+  sut.id = 0x1000;
+  EXPECT_EQ(error_words(sut), "error of the unknown class 0x1000");
 }
 
 TEST(LogChannel, MissingFilesAndFoldersAreRefused) {
@@ -177,6 +230,48 @@ TEST(SocketCanChannel, WithoutCanOrInterfaceItFailsWithARemedy) {
   const auto sut = open_can_channel(config);
   ASSERT_FALSE(sut);
   EXPECT_FALSE(sut.error().remedy.empty());
+  EXPECT_THAT(sut.error().text(), testing::Not(HasSubstr("link add"))) << "nobody makes a real interface by hand";
+}
+
+TEST(SocketCanChannel, WaitsForAnInterfaceThatIsMissing) {
+  CanChannelConfig config;
+  config.endpoint = "socketcan:nosuchcan9";
+  const auto sut = open_can_channel(config, WhereMissing::wait);
+  ASSERT_TRUE(sut) << sut.error().text();
+  EXPECT_EQ((*sut)->status().waits_for, "nosuchcan9");
+  EXPECT_EQ((*sut)->status().bus, CanBusState::down);
+  EXPECT_THAT((*sut)->status().last_error, testing::StartsWith("waits for nosuchcan9: "));
+  ReceivedCanFrame got;
+  EXPECT_EQ((*sut)->receive(got, 1ms), CanReceive::down);
+  EXPECT_FALSE((*sut)->send(frame(1, {})));
+}
+
+// The interface appears while it is waited for.
+struct LateChannel final : SocketChannel {
+  Result<void> open_socket() override {
+    status_.waits_for = "late0";
+    if (!there) return fail("there is no network interface late0");
+    status_.waits_for.clear();
+    socket_ = Descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    return {};
+  }
+  bool fill() override { return true; }
+  bool is_current() override { return true; }
+  void send_all(std::span<const CanFrame> /*frames*/, std::span<bool> /*sent*/) override {}
+  void refuse(int /*error*/) override {}
+  bool there = false;
+};
+
+TEST(SocketChannel, IsOpenedOnceWhatItWaitsForIsThere) {
+  LateChannel sut;
+  ASSERT_TRUE(sut.open_or_wait());
+  ReceivedCanFrame got;
+  EXPECT_EQ(sut.receive(got, 1ms), CanReceive::down);
+  EXPECT_EQ(sut.status().waits_for, "late0");
+  sut.there = true;
+  for (int i = 0; i < 1000 && !sut.status().waits_for.empty(); ++i) static_cast<void>(sut.receive(got, 10ms));
+  EXPECT_EQ(sut.status().waits_for, "");
+  EXPECT_EQ(sut.status().reopened, 1U);
 }
 
 struct VirtualBusTest : testing::Test {
@@ -322,6 +417,9 @@ TEST(UdpChannel, UnknownInterfaceIsRefused) {
   config.endpoint = own_group();
   config.interface = "nosuchif9";
   EXPECT_THAT(open_can_channel(config).error().what, HasSubstr("nosuchif9"));
+  const auto waiting = open_can_channel(config, WhereMissing::wait);
+  ASSERT_TRUE(waiting);
+  EXPECT_EQ((*waiting)->status().waits_for, "nosuchif9");
 }
 
 }  // namespace

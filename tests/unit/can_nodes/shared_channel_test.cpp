@@ -8,7 +8,9 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include "drivers/can/canopen/bytes.hpp"
 #include "drivers/can/channel/virtual_bus.hpp"
@@ -350,6 +352,116 @@ TEST_F(SharedNodes, OpenAndCloseWhileTheOthersRunAndTheirStatusIsAskedFor) {
   one.join();
   other.join();
   EXPECT_EQ(count_passed(0x703), 1U) << "the drive that stays was not restarted";
+}
+
+// A channel whose interface appears, whose log is repeated, and whose queue is full, as the test says.
+struct StagedBus {
+  std::atomic<bool> there{false};
+  std::atomic<bool> refuses{false};
+  std::atomic<int> passes{0};
+  std::mutex mutex;
+  std::vector<std::uint32_t> sent;  // identifiers
+
+  std::size_t count(std::uint32_t id) {
+    const std::lock_guard lock(mutex);
+    return static_cast<std::size_t>(std::ranges::count(sent, id));
+  }
+};
+class StagedChannel final : public CanChannel {
+ public:
+  explicit StagedChannel(StagedBus& bus) : bus_(&bus) { look(); }
+  CanReceive receive(ReceivedCanFrame& /*frame*/, Nanoseconds /*timeout*/) override {
+    std::this_thread::sleep_for(1ms);
+    look();
+    if (passes_ < bus_->passes) {
+      ++passes_;
+      return CanReceive::again;
+    }
+    return status_.waits_for.empty() ? CanReceive::timeout : CanReceive::down;
+  }
+  bool send(const CanFrame& frame) override {
+    if (!status_.waits_for.empty()) return false;
+    if (bus_->refuses) {
+      ++status_.send_refused;
+      status_.last_error = "the transmit queue of late0 is full";
+      return false;
+    }
+    const std::lock_guard lock(bus_->mutex);
+    bus_->sent.push_back(frame.id);
+    return true;
+  }
+  [[nodiscard]] const CanChannelStatus& status() const override { return status_; }
+
+ private:
+  void look() {
+    status_.waits_for = bus_->there ? "" : "late0";
+    status_.bus = bus_->there ? CanBusState::active : CanBusState::down;
+    if (!bus_->there) status_.last_error = "waits for late0: there is no network interface late0";
+  }
+  StagedBus* bus_;
+  CanChannelStatus status_;
+  int passes_ = 0;
+};
+
+struct SampleSink final : JointSampleSink {
+  bool push(const JointSample& sample) noexcept override {
+    if (sample.sequence == JointSample::kBeginsAnew) ++beginnings;
+    ++count;
+    return true;
+  }
+  std::atomic<int> count{0};
+  std::atomic<int> beginnings{0};
+};
+
+struct StagedNodes : testing::Test {
+  StagedNodes() {
+    CanStreamOptions options;
+    options.open_channel = [this](const CanChannelConfig&) -> Result<std::unique_ptr<CanChannel>> {
+      return std::make_unique<StagedChannel>(bus);
+    };
+    CanChannelConfig config;
+    config.endpoint = "staged";
+    Cia402DeviceConfig device;
+    device.nodes.resize(1);
+    device.nodes[0].node_id = 9;
+    stream = *make_cia402_device(device, clock, make_shared_channel(config, clock, std::move(options)));
+  }
+  ~StagedNodes() override { stream->close(); }
+  bool error_tells(const std::string& part) {
+    return std::ranges::any_of(stream->status().last_errors,
+                               [&](const std::string& text) { return text.find(part) != std::string::npos; });
+  }
+  SystemClock clock;
+  StagedBus bus;
+  SampleSink sink;
+  std::unique_ptr<JointStream> stream;
+};
+
+TEST_F(StagedNodes, BootOnceTheInterfaceThatTheyWaitForIsThere) {
+  ASSERT_TRUE(stream->open(sink));
+  EXPECT_TRUE(becomes_true([&] { return sink.count > 0; })) << "the drive is there, the bus is not";
+  EXPECT_EQ(stream->status().waits_for, "late0");
+  EXPECT_THAT(stream->status().condition, testing::StartsWith("waits for late0"));
+  EXPECT_EQ(bus.count(0x709), 0U);
+  bus.there = true;
+  EXPECT_TRUE(becomes_true([&] { return bus.count(0x709) == 1; })) << "the boot-up message that nobody has heard";
+  EXPECT_TRUE(becomes_true([&] { return stream->status().waits_for.empty(); }));
+}
+
+TEST_F(StagedNodes, TellWhenALogBeginsAnew) {
+  bus.there = true;
+  ASSERT_TRUE(stream->open(sink));
+  EXPECT_TRUE(becomes_true([&] { return sink.count > 1; }));
+  EXPECT_EQ(sink.beginnings, 1) << "the stream was opened";
+  bus.passes = 1;
+  EXPECT_TRUE(becomes_true([&] { return sink.beginnings == 2; }));
+}
+
+TEST_F(StagedNodes, FramesThatTheKernelRefusesAreToldWithTheReason) {
+  bus.there = true;
+  bus.refuses = true;
+  ASSERT_TRUE(stream->open(sink));
+  EXPECT_TRUE(becomes_true([&] { return error_tells("not sent: the transmit queue of late0 is full"); }));
 }
 
 }  // namespace
