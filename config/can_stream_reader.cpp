@@ -73,6 +73,24 @@ double read_scale(TableReader& reader, JointKind kind) {
   return scale.value_or(1.0);
 }
 
+// Increments at which the drive's position starts anew (object 0x607B).
+void read_position_range(TableReader& reader, Cia402NodeConfig& node) {
+  constexpr long long kMost = 0xFFFF'FFFF;
+  const auto lower = reader.integer("position_range_min", -kMost, kMost);
+  const auto upper = reader.integer("position_range_max", -kMost, kMost);
+  if (!lower && !upper) return;
+  if (!lower || !upper || *lower >= *upper) {
+    reader.error({}, "position_range_min and position_range_max are not a range",
+                 "give both, as object 0x607B of the drive has them");
+    return;
+  }
+  if (!node.turns && !node.joint_name.empty())
+    reader.error("position_range_min", fmt::format("{} is not a joint that turns without end", node.joint_name),
+                 "leave the range out, or make its type continuous");
+  node.range_lower = *lower;
+  node.range_upper = *upper;
+}
+
 Cia402NodeConfig read_node(TableReader& reader, const RobotFacts* robot, const FileFinder& files) {
   Cia402NodeConfig node;
   node.place = reader.place();
@@ -93,6 +111,8 @@ Cia402NodeConfig read_node(TableReader& reader, const RobotFacts* robot, const F
     kind = joint->kind;
   }
   const bool prismatic = kind == JointKind::prismatic;
+  node.turns = kind == JointKind::continuous;
+  read_position_range(reader, node);
   node.scale = read_scale(reader, kind);
   if (const auto sign = reader.integer("sign", -1, 1)) {
     if (*sign == 0) reader.error("sign", "sign is 0, but must be 1 or -1");
@@ -143,6 +163,7 @@ DbcSignalConfig read_signal(TableReader& item, const RobotFacts* robot) {
   if (const auto joint = read_joint_reference(item, robot)) {
     signal.joint = joint->number;
     signal.joint_name = joint->name;
+    signal.turns = joint->kind == JointKind::continuous;
   }
   signal.quantity = item.choice<JointQuantity>("quantity", {{"position", JointQuantity::position},
                                                             {"velocity", JointQuantity::velocity},

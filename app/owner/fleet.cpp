@@ -214,7 +214,7 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
   }
   // The stream first: one that cannot be opened leaves the robot to what it does. Samples wait for the mode in the
   // inlet.
-  if (auto opened = robot.stream->open(engine_.inlet(robot.slot)); !opened) return opened;
+  if (auto opened = robot.stream->open(sink_of(robot)); !opened) return opened;
   if (auto sent = send(std::move(command)); !sent) {
     robot.stream->close();
     return std::unexpected(sent.error());
@@ -222,6 +222,21 @@ Result<void> Fleet::bring_online(FleetRobot& robot) {
   robot.online = true;
   robot.commanded = true;
   return {};
+}
+
+JointSampleSink& Fleet::sink_of(FleetRobot& robot) {
+  JointSampleSink& inlet = engine_.inlet(robot.slot);
+  const std::span<const JointKind> kinds = cell_.robot(robot.id)->joint_kinds();
+  std::uint32_t turning = 0;
+  for (std::size_t i = 0; i < kinds.size() && i < kMaxJointsPerRobot; ++i) {
+    if (kinds[i] == JointKind::continuous) turning |= 1U << i;
+  }
+  // A drive that answers a controller knows how far its joint has turned.
+  const auto config = streams_.find(robot.id);
+  const bool counts = config != streams_.end() && std::holds_alternative<Cia402DeviceConfig>(config->second);
+  if (turning == 0 || counts) return inlet;
+  robot.turns = std::make_shared<TurnUnwrapper>(inlet, turning);
+  return *robot.turns;
 }
 
 Result<void> Fleet::take_offline(FleetRobot& robot) {

@@ -155,6 +155,7 @@ struct RtdeJointConfig {
   std::size_t number = 0;  // of the controller's joints, from 0: the base
   double scale = 1.0;      // value = controller's * scale + offset
   double offset = 0.0;
+  double torque_nm_per_a = 0.0;  // effort = actual_current * this; 0: the moment that the controller aims at
 };
 
 struct RtdeStreamConfig {

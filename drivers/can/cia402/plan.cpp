@@ -54,7 +54,7 @@ class Planner {
     }
     check_scales(node, name);
     const std::size_t before = diagnostics_->errors();
-    result.tpdos = mapping_of(node, name);
+    result.tpdos = mapping_of(result.config, name);
     const bool of_file = node.tpdos.empty() && !node.eds_file.empty();
     check_mapping(result, name, !of_file || diagnostics_->errors() == before);
     return result;
@@ -69,7 +69,16 @@ class Planner {
     }
   }
 
-  std::vector<TpdoConfig> mapping_of(const Cia402NodeConfig& node, const std::string& name) {
+  // The EDS also has the range of the position, where the cell file does not give it.
+  static void take_range(const ObjectDictionary& objects, Cia402NodeConfig& node) {
+    const auto lower = objects.integer({0x607B, 1});
+    const auto upper = objects.integer({0x607B, 2});
+    if (!node.turns || node.range_lower < node.range_upper || !lower || !upper || *lower >= *upper) return;
+    node.range_lower = *lower;
+    node.range_upper = *upper;
+  }
+
+  std::vector<TpdoConfig> mapping_of(Cia402NodeConfig& node, const std::string& name) {
     if (!node.tpdos.empty()) {
       std::vector<TpdoConfig> tpdos = node.tpdos;
       for (TpdoConfig& tpdo : tpdos) fill_cob_id(tpdo, node, name);
@@ -79,6 +88,7 @@ class Planner {
       const auto device = read_eds(node.eds_file, node.node_id, *diagnostics_);
       if (!device) return {};
       std::vector<TpdoConfig> tpdos = tpdos_of(*device, node.node_id, node.eds_file, *diagnostics_);
+      take_range(device->objects, node);
       warn_of_foreign_node(*device, tpdos, node.node_id, node.eds_file, *diagnostics_);
       return tpdos;
     }

@@ -157,8 +157,29 @@ void Cia402Session::decode(const Tpdo& tpdo, const CanFrame& frame) {
     effort_.set(config.joint, config.sign * raw(tpdo.torque) * config.torque_scale, sample_.receive_time);
   }
   if (tpdo.position.bits != 0) {
-    take_position(tpdo.node, config.sign * raw(tpdo.position) * config.scale + config.offset);
+    const Quantity& field = tpdo.position;
+    const std::int64_t counter = sign_extended(get_bits(frame.payload(), field.first_bit, field.bits), field.bits);
+    take_position(tpdo.node, config.sign * unwrapped(node, counter, field.bits) * config.scale + config.offset);
   }
+}
+
+// By the shorter way: no drive goes half of its range between two frames.
+double Cia402Session::unwrapped(Node& node, std::int64_t counter, std::uint8_t bits) {
+  const Cia402NodeConfig& config = node.plan.config;
+  constexpr std::uint8_t kMostBits = 62;
+  const bool has_range = config.range_lower < config.range_upper;
+  if (!config.turns || (!has_range && bits > kMostBits)) return static_cast<double>(counter);
+  const std::int64_t span = has_range ? config.range_upper - config.range_lower + 1 : std::int64_t{1} << bits;
+  if (!node.counter) {
+    node.turned = counter;
+  } else {
+    std::int64_t step = (counter - *node.counter) % span;
+    if (step > span / 2) step -= span;
+    if (step < -(span / 2)) step += span;
+    node.turned += step;
+  }
+  node.counter = counter;
+  return static_cast<double>(node.turned);
 }
 
 void Cia402Session::take_position(std::size_t index, double position) {

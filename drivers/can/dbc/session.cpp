@@ -131,6 +131,14 @@ class SignalPlanner {
   Diagnostics* diagnostics_;
 };
 
+// What one round of the signal's counter is, in SI; 0 where it is none, or too long to come round.
+double span_of(const DbcSignal& signal, const DbcSignalConfig& config) {
+  constexpr std::uint16_t kLongest = 32;
+  const bool wraps = config.turns && config.quantity == JointQuantity::position &&
+                     signal.type == DbcValueType::integer && signal.length <= kLongest;
+  return wraps ? std::ldexp(std::abs(signal.factor * config.scale), signal.length) : 0.0;
+}
+
 }  // namespace
 
 std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics) {
@@ -156,6 +164,7 @@ DbcSession::DbcSession(DbcPlan plan, DbcSessionOutput& output) : plan_(std::move
     const DbcSignalConfig& config = mapped.config;
     source.fields.push_back(
         {&message.signals[mapped.signal], config.joint, config.quantity, config.scale, config.offset, false, {}, {}});
+    source.fields.back().span = span_of(message.signals[mapped.signal], config);
   }
   for (const DbcPlan::Protection& protection : plan_.protections) {
     const DbcMessage& message = plan_.dbc.messages.at(protection.message);
@@ -165,7 +174,10 @@ DbcSession::DbcSession(DbcPlan plan, DbcSessionOutput& output) : plan_(std::move
 
 void DbcSession::restart() {
   for (auto& [id, source] : sources_) {
-    for (Field& field : source.fields) field.senders = {};
+    for (Field& field : source.fields) {
+      field.senders = {};
+      field.last.reset();
+    }
   }
   for (const DbcPlan::Protection& protection : plan_.protections) {
     const DbcMessage& message = plan_.dbc.messages.at(protection.message);
@@ -253,6 +265,11 @@ void DbcSession::take(const Source& source, Field& field, const CanFrame& frame,
 }
 
 void DbcSession::take_position(const Source& source, Field& field, double value, Timestamp now) {
+  if (field.span > 0) {
+    // By the shorter way: no joint goes half of the counter's range between two frames.
+    if (field.last) value = *field.last + std::remainder(value - *field.last, field.span);
+    field.last = value;
+  }
   const std::uint32_t bit = 1U << field.joint;
   if (!field.senders.take(value, now)) {
     if (trouble_.conflict_signal == field.signal) trouble_.conflict = {};

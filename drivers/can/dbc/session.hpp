@@ -108,6 +108,9 @@ class DbcSession {
     bool outside = false;  // and that was reported
     Timestamp told;
     AlternationWatch senders = {};  // of positions
+    // Of a position that turns without end: what its counter holds, and the newest value; rad. 0: it does not wrap.
+    double span = 0;
+    std::optional<double> last = {};
   };
   struct Source {
     const DbcMessage* message = nullptr;

@@ -422,6 +422,26 @@ TEST_F(DbcSessionTest, ValuesBeyondTheLimitsOfTheDbcAreTakenAndToldOnceAnOccurre
   EXPECT_EQ(recorder.beyond.size(), 2U);
 }
 
+TEST(DbcTurns, ACounterOfAJointThatTurnsWithoutEndGoesOnWhereItWraps) {
+  Diagnostics diagnostics;
+  DbcStreamConfig config;
+  config.signals = {mapped("Axis", "Angle", 0)};
+  config.signals[0].turns = true;
+  SignalRecorder recorder;
+  auto plan = plan_dbc(
+      config, parse_dbc("BO_ 256 Axis: 2 A\n SG_ Angle : 0|16@1+ (0.001,0) [0|0] \"rad\" A\n", "f.dbc", diagnostics),
+      diagnostics);
+  ASSERT_TRUE(plan) << diagnostics.text();
+  DbcSession sut(std::move(*plan), recorder);
+  sut.receive(frame(256, {0xFA, 0xFF}), {1});  // 65530
+  sut.receive(frame(256, {0x04, 0x00}), {2});
+  ASSERT_EQ(recorder.samples.size(), 2U);
+  EXPECT_NEAR(recorder.samples[1].position[0] - recorder.samples[0].position[0], 0.010, 1e-9);
+  sut.restart();
+  sut.receive(frame(256, {0x04, 0x00}), {3});
+  EXPECT_NEAR(recorder.samples[2].position[0], 0.004, 1e-9) << "a log that begins anew counts anew";
+}
+
 TEST_F(DbcSessionTest, EqualLimitsAreNone) {
   sut->receive(extended_frame(2566844416U - 0x80000000U, {0x7F, 0xFF, 0, 0, 0, 0, 0, 0}), {1});
   ASSERT_EQ(recorder.samples.size(), 1U);

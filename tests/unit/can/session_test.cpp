@@ -46,6 +46,55 @@ TEST_F(SessionTest, EventDrivenTpdoMakesASampleAtOnce) {
   EXPECT_EQ(sut->nodes()[1].state, Cia402State::operation_enabled);
 }
 
+TEST_F(SessionTest, TheCounterOfAJointThatTurnsWithoutEndGoesOnWhereItWraps) {
+  config.nodes[0].turns = true;
+  start();
+  tpdo(3, std::numeric_limits<std::int32_t>::max() - 10);
+  tpdo(3, std::numeric_limits<std::int32_t>::min() + 9);
+  ASSERT_EQ(out.samples.size(), 2U);
+  EXPECT_NEAR(out.samples[1].position[0] - out.samples[0].position[0], 0.020, 1e-9);
+  tpdo(3, std::numeric_limits<std::int32_t>::max() - 10);
+  EXPECT_NEAR(out.samples[2].position[0], out.samples[0].position[0], 1e-9) << "and back";
+  tpdo(4, std::numeric_limits<std::int32_t>::max());
+  tpdo(4, std::numeric_limits<std::int32_t>::min());
+  EXPECT_LT(out.samples[4].position[1], 0) << "one with a range does not turn: a jump is shown as one";
+}
+
+TEST_F(SessionTest, CountersOfAnyLengthAndRangeGoOn) {
+  struct Case {
+    std::uint8_t bits;
+    std::int64_t lower, upper;
+    std::int64_t before, after, step;
+  };
+  for (const Case& one : {Case{16, 0, 0, 32'760, -32'770 + 4, 6 + 4}, Case{24, 0, 0, 8'388'600, -8'388'600, 16},
+                          Case{32, 0, 3599, 3590, 9, 19}, Case{32, -1800, 1799, -1795, 1790, -15}}) {
+    out.samples.clear();
+    config.nodes[0].turns = true;
+    config.nodes[0].range_lower = one.lower;
+    config.nodes[0].range_upper = one.upper;
+    config.nodes[0].tpdos = {{.number = 1, .entries = {{0x6064, 0, one.bits}}}};
+    start();
+    for (const std::int64_t counter : {one.before, one.after}) {
+      CanFrame sent = frame(0x183, {0, 0, 0, 0});
+      sent.length = one.bits / 8;
+      put_le(sent.data, static_cast<std::uint64_t>(counter), 4);
+      sut->receive(sent, now);
+    }
+    ASSERT_EQ(out.samples.size(), 2U);
+    EXPECT_NEAR(out.samples[1].position[0] - out.samples[0].position[0], 0.001 * static_cast<double>(one.step), 1e-9)
+        << int{one.bits};
+  }
+}
+
+TEST_F(SessionTest, ADriveThatBootsCountsAnew) {
+  config.nodes[0].turns = true;
+  start();
+  tpdo(3, std::numeric_limits<std::int32_t>::max() - 10);
+  sut->receive(frame(0x703, {0x00}), now);
+  tpdo(3, std::numeric_limits<std::int32_t>::min() + 10);
+  EXPECT_LT(out.samples.back().position[0], 0);
+}
+
 TEST_F(SessionTest, VelocityAndTorqueComeWithTheirScales) {
   config.nodes[0].tpdos = {{.number = 1, .entries = {{0x6064, 0, 32}, {0x606C, 0, 32}}},
                            {.number = 2, .entries = {{0x6077, 0, 16}}}};

@@ -106,6 +106,8 @@ class ServoDrive final : private SlaveApplication {
   [[nodiscard]] MotionPoint joint_of(const MotionPoint& demand) const;
   [[nodiscard]] HomingInputs homing_inputs() const;
   [[nodiscard]] double within_limits(double target);
+  // Where a target within that range lies for an axis that has gone round it: by 0x60F2, or `nearest`.
+  [[nodiscard]] double target_of(double wanted, bool nearest) const;
   [[nodiscard]] TorqueLimits torque_limits() const;
   [[nodiscard]] double halt_deceleration() const;
   [[nodiscard]] std::int64_t object(std::uint16_t index, std::uint8_t subindex = 0) const;

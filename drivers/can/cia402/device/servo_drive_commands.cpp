@@ -2,6 +2,7 @@
 #include "drivers/can/cia402/device/servo_drive.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace cellmirror::can {
@@ -106,7 +107,7 @@ void ServoDrive::on_mode_bits(std::uint16_t before, std::uint16_t controlword) {
 void ServoDrive::on_set_point(std::uint16_t controlword) {
   const bool relative = (controlword & kControlwordRelative) != 0;
   const auto wanted = static_cast<double>(object(0x607A));
-  const double target = within_limits(relative ? profile_position_.newest_target() + wanted : wanted);
+  const double target = within_limits(relative ? profile_position_.newest_target() + wanted : target_of(wanted, false));
   const bool immediately = (controlword & kControlwordImmediately) != 0;
   const bool pass = (controlword & kControlwordPass) != 0;
   if (!profile_position_.set_point(demand_, target, parameters_.profile, immediately, pass)) return;
@@ -163,7 +164,24 @@ void ServoDrive::take_targets() {
   }
 }
 
-void ServoDrive::take_position(double target) { cyclic_position_.aim(within_limits(target), parameters_.period); }
+// A cyclic target is never half a range away.
+void ServoDrive::take_position(double target) {
+  cyclic_position_.aim(within_limits(target_of(target, true)), parameters_.period);
+}
+
+double ServoDrive::target_of(double wanted, bool nearest) const {
+  constexpr int kNegative = 1;
+  constexpr int kPositive = 2;
+  constexpr int kShortest = 3;
+  const double span = parameters_.range_span;
+  const double at = demand_.position;
+  double target = wanted + span * std::floor((at - parameters_.range_lower) / span);
+  const int option = nearest ? kShortest : parameters_.rotary_option;
+  if (option == kShortest) target += span * std::round((at - target) / span);
+  if (option == kPositive && target < at) target += span;
+  if (option == kNegative && target > at) target -= span;
+  return target;
+}
 
 double ServoDrive::within_limits(double target) {
   const double inside = std::clamp(target, parameters_.lower, parameters_.upper);

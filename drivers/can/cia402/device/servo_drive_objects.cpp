@@ -12,6 +12,15 @@ constexpr std::uint16_t kHomingAttained = kStatuswordModeBit12;
 constexpr std::uint16_t kHomingError = kStatuswordModeBit13;
 constexpr int kSlowDown = 1;  // option code
 
+// Begins anew at both ends of a range.
+std::int64_t wrapped(double value, double lower, double span) {
+  constexpr double kMost = 9e15;  // whole numbers of a double
+  const auto whole = static_cast<std::int64_t>(std::llround(std::clamp(value, -kMost, kMost) - lower));
+  const auto length = static_cast<std::int64_t>(span);
+  const std::int64_t rest = whole % length;
+  return static_cast<std::int64_t>(lower) + (rest < 0 ? rest + length : rest);
+}
+
 std::int64_t increments(double value) {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
   return std::llround(std::clamp(value, -kMost, kMost));
@@ -109,9 +118,11 @@ void ServoDrive::write_objects() {
   write(0x603F, error_code_);
   write(0x6041, statusword());
   write(0x6061, static_cast<int>(mode_));
-  write(0x6062, increments(demand_.position));
-  write(0x6063, increments(position + shift_));
-  write(0x6064, increments(position));
+  constexpr double kLowest = std::numeric_limits<std::int32_t>::min();
+  constexpr double kAll = 4'294'967'296.0;  // that 32 bits count
+  write(0x6062, wrapped(demand_.position, parameters_.range_lower, parameters_.range_span));
+  write(0x6063, wrapped(position + shift_, kLowest, kAll));
+  write(0x6064, wrapped(position, parameters_.range_lower, parameters_.range_span));
   write(0x606B, increments(demand_.velocity));
   write(0x606C, increments(actual_velocity()));
   write(0x6074, per_mille);

@@ -81,8 +81,14 @@ void add_position_objects(std::vector<Row>& rows, const DriveConfig& config) {
   const double scale = config.increments_per_unit();
   const auto increments = [scale](double units) { return whole<std::int32_t>(units * scale); };
   const auto position = [&](double joint) { return increments(config.sign * (joint - config.offset)); };
-  const std::int64_t a = position(config.software_limits.lower);
-  const std::int64_t b = position(config.software_limits.upper);
+  // A joint that turns without end has no limits unless the cell file gives it some.
+  const DriveConfig unlimited;
+  const bool turns = !config.stops && config.software_limits.lower <= unlimited.software_limits.lower &&
+                     config.software_limits.upper >= unlimited.software_limits.upper;
+  constexpr std::int64_t kLowest = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int64_t kHighest = std::numeric_limits<std::int32_t>::max();
+  const std::int64_t a = turns ? kLowest : position(config.software_limits.lower);
+  const std::int64_t b = turns ? kHighest : position(config.software_limits.upper);
   rows.insert(
       rows.end(),
       {
@@ -95,10 +101,14 @@ void add_position_objects(std::vector<Row>& rows, const DriveConfig& config) {
           {{0x6068, 0}, unsigned16, kServoRw, true, 5, "position window time"},
           {{0x607A, 0}, integer32, kServoRw, true, 0, "target position"},
           {{0x607C, 0}, integer32, kServoRw, true, 0, "home offset"},
+          {{0x607B, 0}, unsigned8, kServoRo, false, 2, "position range limit"},
+          {{0x607B, 1}, integer32, kServoRw, false, 0, "min position range limit"},
+          {{0x607B, 2}, integer32, kServoRw, false, 0, "max position range limit"},
           {{0x607D, 0}, unsigned8, kServoRo, false, 2, "software position limit"},
           {{0x607D, 1}, integer32, kServoRw, true, std::min(a, b), "min position limit"},
           {{0x607D, 2}, integer32, kServoRw, true, std::max(a, b), "max position limit"},
           {{0x607E, 0}, unsigned8, kServoRw, false, 0, "polarity"},
+          {{0x60F2, 0}, unsigned16, kServoRw, false, 0, "positioning option code"},
           {{0x60F4, 0}, integer32, kServoRo, true, 0, "following error actual value"},
           {{0x60C0, 0}, integer16, kServoRw, false, 0, "interpolation sub mode select"},
           {{0x60C1, 0}, unsigned8, kServoRo, false, 1, "interpolation data record"},
@@ -264,6 +274,8 @@ std::optional<SdoAbort> check_servo_object(ObjectAddress address, std::int64_t v
           std::ranges::any_of(kModes, [value](DriveMode mode) { return value == static_cast<int>(mode); });
       return known ? std::nullopt : std::optional(SdoAbort::invalid_value);
     }
+    case 0x60F2:
+      return among({0, 0x40, 0x80, 0xC0});
     // Directions are those of the cell file; there is no touch probe.
     case 0x607E:
     case 0x60B8:
@@ -313,6 +325,15 @@ ServoParameters read_servo_parameters(const ObjectDictionary& objects) {
   out.quick_deceleration = std::min(at_least_one(0x6085), most_deceleration);
   out.lower = number(0x607D, 1);
   out.upper = std::max(out.lower, number(0x607D, 2));
+  // The ends of what 32 bits count limit nothing.
+  constexpr double kLowest = std::numeric_limits<std::int32_t>::min();
+  constexpr double kHighest = std::numeric_limits<std::int32_t>::max();
+  if (out.lower <= kLowest) out.lower = -std::numeric_limits<double>::infinity();
+  if (out.upper >= kHighest) out.upper = std::numeric_limits<double>::infinity();
+  const bool has_range = number(0x607B, 1) < number(0x607B, 2);
+  out.range_lower = has_range ? number(0x607B, 1) : kLowest;
+  out.range_span = (has_range ? number(0x607B, 2) : kHighest) - out.range_lower + 1;
+  out.rotary_option = (code(0x60F2) >> 6) & 3;
   const double window = number(0x6065);
   out.following_window = window == kNotWatched ? -1.0 : window;
   out.following_time = kMilli * number(0x6066);
