@@ -20,6 +20,7 @@ RtdeJointConfig read_joint(TableReader& item, const RobotFacts* robot, const Rtd
   joint.scale = item.number("scale").value_or(1.0);
   if (joint.scale == 0.0) item.error("scale", "scale is 0", "the value would always be the offset");
   joint.offset = item.number("offset").value_or(0.0);
+  joint.torque_nm_per_a = item.number("torque_nm_per_a").value_or(0.0);
   item.finish();
   const bool twice = reference && std::ranges::any_of(before.joints, [&](const RtdeJointConfig& other) {
                        return other.joint == joint.joint || other.number == joint.number;

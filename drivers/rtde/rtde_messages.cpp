@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kHead = 3;
 constexpr std::size_t kDataLength = 1 + 8 + 2 * kJoints * 8 + 2 * 4;
+constexpr std::size_t kAllDataLength = kDataLength + 2 * kJoints * 8 + 8 + 4;
 constexpr std::size_t kLongestText = 200;
 
 class Writer {
@@ -81,7 +82,7 @@ std::optional<Package> PackageSplitter::next() {
   const std::size_t left = bytes_.size() - used_;
   if (broken_ || left < kHead) return std::nullopt;
   const std::size_t length = static_cast<std::size_t>(bytes_[used_]) << 8U | bytes_[used_ + 1];
-  if (length < kHead) {
+  if (length < kHead || length > kLongestPackage) {
     broken_ = true;
     return std::nullopt;
   }
@@ -103,17 +104,27 @@ std::string robot_mode_text(std::int32_t mode) {
 }
 
 std::string safety_mode_text(std::int32_t mode) {
-  static constexpr std::array<std::string_view, 9> kTexts = {"normal",
-                                                             "reduced",
-                                                             "protective stop",
-                                                             "recovery",
-                                                             "safeguard stop",
-                                                             "system emergency stop",
-                                                             "robot emergency stop",
-                                                             "violation",
-                                                             "fault"};
-  if (mode < 1 || mode > 9) return fmt::format("safety mode {}", mode);
+  static constexpr std::array<std::string_view, 13> kTexts = {"normal",
+                                                              "reduced",
+                                                              "protective stop",
+                                                              "recovery",
+                                                              "safeguard stop",
+                                                              "system emergency stop",
+                                                              "robot emergency stop",
+                                                              "violation",
+                                                              "fault",
+                                                              "validating a joint",
+                                                              "undefined",
+                                                              "safeguard stop in automatic mode",
+                                                              "stop by the three-position enabling device"};
+  if (mode < 1 || mode > static_cast<std::int32_t>(kTexts.size())) return fmt::format("safety mode {}", mode);
   return std::string(kTexts[static_cast<std::size_t>(mode - 1)]);
+}
+
+std::string runtime_state_text(std::uint32_t state) {
+  static constexpr std::array<std::string_view, 6> kTexts = {"stopping", "stopped", "playing",
+                                                             "pausing",  "paused",  "resuming"};
+  return state < kTexts.size() ? std::string(kTexts[state]) : fmt::format("runtime state {}", state);
 }
 
 Bytes version_request(std::uint16_t version) { return Writer(PackageType::version).whole(version).finish(); }
@@ -135,7 +146,8 @@ std::optional<OutputsAnswer> decode_outputs(std::span<const std::uint8_t> payloa
 }
 
 std::optional<RobotData> decode_data(std::span<const std::uint8_t> payload, std::uint8_t recipe) {
-  if (payload.size() != kDataLength || payload[0] != recipe) return std::nullopt;
+  const bool known = payload.size() == kDataLength || payload.size() == kAllDataLength;
+  if (!known || payload[0] != recipe) return std::nullopt;
   Reader in(payload.subspan(1));
   RobotData data;
   data.timestamp_s = in.number();
@@ -143,6 +155,12 @@ std::optional<RobotData> decode_data(std::span<const std::uint8_t> payload, std:
   for (double& value : data.qd) value = in.number();
   data.robot_mode = static_cast<std::int32_t>(in.whole<std::uint32_t>());
   data.safety_mode = static_cast<std::int32_t>(in.whole<std::uint32_t>());
+  data.has_all = payload.size() == kAllDataLength;
+  if (!data.has_all) return data;
+  for (double& value : data.current) value = in.number();
+  for (double& value : data.moment) value = in.number();
+  data.speed_scaling = in.number();
+  data.runtime_state = in.whole<std::uint32_t>();
   return data;
 }
 
@@ -174,9 +192,11 @@ Bytes data_package(const RobotData& data, std::uint8_t recipe) {
   out.u8(recipe).number(data.timestamp_s);
   for (const double value : data.q) out.number(value);
   for (const double value : data.qd) out.number(value);
-  return out.whole(static_cast<std::uint32_t>(data.robot_mode))
-      .whole(static_cast<std::uint32_t>(data.safety_mode))
-      .finish();
+  out.whole(static_cast<std::uint32_t>(data.robot_mode)).whole(static_cast<std::uint32_t>(data.safety_mode));
+  if (!data.has_all) return out.finish();
+  for (const double value : data.current) out.number(value);
+  for (const double value : data.moment) out.number(value);
+  return out.number(data.speed_scaling).whole(data.runtime_state).finish();
 }
 
 }  // namespace cellmirror::rtde

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -50,6 +51,12 @@ class RtdeSession {
   [[nodiscard]] std::int32_t robot_mode() const { return robot_mode_; }
   [[nodiscard]] std::int32_t safety_mode() const { return safety_mode_; }
   [[nodiscard]] Timestamp last_sample() const { return last_sample_; }
+  // Nothing where the controller does not give them.
+  [[nodiscard]] std::optional<double> speed_scaling() const { return speed_scaling_; }
+  [[nodiscard]] std::optional<std::uint32_t> runtime_state() const { return runtime_state_; }
+  // When the newest package, or a part of one, came that made no sample, and why; never: the newest made one.
+  [[nodiscard]] Timestamp last_refused() const { return last_refused_; }
+  [[nodiscard]] const std::string& why_refused() const { return why_refused_; }
 
  private:
   void take(const Package& package, Timestamp now);
@@ -57,7 +64,13 @@ class RtdeSession {
   void take_outputs(std::span<const std::uint8_t> payload);
   void take_start(std::span<const std::uint8_t> payload);
   void take_data(std::span<const std::uint8_t> payload, Timestamp now);
+  // Whether the stamp follows the one before. One that does not is refused; where more follow it, the controller's time
+  // has begun anew.
+  [[nodiscard]] bool is_in_time(double timestamp_s, Timestamp now);
   void count_lost(double timestamp_s);
+  void note_sender(const RobotData& data);
+  // A package that nobody can make sense of: the bytes may be divided in the wrong places.
+  void reject_package(std::string_view why);
   void refuse(std::string_view why);
   void reject(std::string_view why);
 
@@ -67,7 +80,16 @@ class RtdeSession {
   Phase phase_ = Phase::asking_version;
   bool failed_ = false;
   std::uint8_t recipe_ = 0;
-  double controller_time_s_ = -1;  // of the newest package; negative: none yet
+  bool asked_for_all_ = true;                // else for what every controller has
+  std::optional<double> controller_time_s_;  // of the newest package
+  std::optional<double> other_time_s_;       // of the newest one that was not in time
+  unsigned others_ = 0;                      // in a row that follow each other, but not the one before them
+  unsigned unreadable_ = 0;                  // packages in a row
+  std::optional<double> speed_scaling_;
+  std::optional<std::uint32_t> runtime_state_;
+  Timestamp last_refused_;
+  std::string why_refused_;
+  Timestamp now_;  // of the bytes under way
   SessionCounters counters_;
   std::int32_t robot_mode_ = 7;
   std::int32_t safety_mode_ = 1;

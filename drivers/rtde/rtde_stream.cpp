@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <thread>
 #include <utility>
@@ -85,6 +86,9 @@ class RtdeStream final : public JointStream, private SessionOutput {
     if (report.connected) {
       status.details.emplace_back("robot", robot_mode_text(report.robot_mode));
       status.details.emplace_back("safety", safety_mode_text(report.safety_mode));
+      if (report.speed_scaling)
+        status.details.emplace_back("speed scaling", fmt::format("{:.0f} %", 100 * *report.speed_scaling));
+      if (report.runtime_state) status.details.emplace_back("program", runtime_state_text(*report.runtime_state));
     }
     status.last_errors = report.errors;
     return status;
@@ -102,6 +106,11 @@ class RtdeStream final : public JointStream, private SessionOutput {
     std::int32_t robot_mode = 7;
     std::int32_t safety_mode = 1;
     Timestamp last_sample;
+    Timestamp last_refused;
+    std::string why_refused;
+    Timestamp heard;  // any bytes
+    std::optional<double> speed_scaling;
+    std::optional<std::uint32_t> runtime_state;
     RateMeter rate;
   };
 
@@ -110,9 +119,14 @@ class RtdeStream final : public JointStream, private SessionOutput {
   [[nodiscard]] std::string condition(const Report& report, Timestamp now) const {
     if (!report.connected) return report.problem;
     if (report.phase != RtdeSession::Phase::running) return "connected, waiting for the controller's answer";
+    const bool sampled = report.last_sample.known() && now - report.last_sample <= config_.ages.stale_after;
+    // Packages that arrive and cannot be used are another thing than none.
+    if (!sampled && report.last_refused.known() && now - report.last_refused <= config_.ages.stale_after)
+      return "connected, packages are refused: " + report.why_refused;
+    if (!sampled && report.heard.known() && now - report.heard <= config_.ages.stale_after)
+      return "connected, bytes arrive that are not a whole package";
     if (!report.last_sample.known()) return "connected, no data yet";
-    if (now - report.last_sample > config_.ages.stale_after)
-      return fmt::format("connected, silent for {:.1f} s", seconds(now - report.last_sample));
+    if (!sampled) return fmt::format("connected, silent for {:.1f} s", seconds(now - report.heard));
     const std::string robot = robot_mode_text(report.robot_mode);
     return report.safety_mode == 1 ? robot : fmt::format("{}, {}", robot, safety_mode_text(report.safety_mode));
   }
@@ -159,6 +173,7 @@ class RtdeStream final : public JointStream, private SessionOutput {
       }
       if (*received > 0) {
         heard = now;
+        report_.heard = now;
         session_.receive(std::span(bytes).first(*received), now);
       }
       publish();
@@ -182,6 +197,10 @@ class RtdeStream final : public JointStream, private SessionOutput {
     report_.robot_mode = session_.robot_mode();
     report_.safety_mode = session_.safety_mode();
     report_.last_sample = session_.last_sample();
+    report_.last_refused = session_.last_refused();
+    report_.why_refused = session_.why_refused();
+    report_.speed_scaling = session_.speed_scaling();
+    report_.runtime_state = session_.runtime_state();
     published_.writable() = report_;
     published_.publish();
   }

@@ -16,6 +16,7 @@
 namespace cellmirror::sim {
 namespace {
 
+constexpr std::uint32_t kPlaying = 2;          // runtime state of a program
 constexpr std::size_t kMostWaiting = 1 << 20;  // of a client that does not read; then it is dropped
 
 }  // namespace
@@ -115,9 +116,11 @@ void RtdeRobot::answer(Client& client, const rtde::Package& package) {
                                          rtde::decode_version_request(package.payload) == rtde::kProtocolVersion));
     case PackageType::outputs: {
       const auto request = rtde::decode_outputs_request(package.payload);
-      const bool known = request && request->variables == rtde::kVariables;
+      client.has_all = request && request->variables == rtde::kAllVariables;
+      const bool known = client.has_all || (request && request->variables == rtde::kVariables);
+      const std::string_view types = client.has_all ? rtde::kAllVariableTypes : rtde::kVariableTypes;
       return send(client, rtde::outputs_answer({.recipe = FaultTraits<RtdeMessage>::kRecipe,
-                                                .types = std::string(known ? rtde::kVariableTypes : "NOT_FOUND")}));
+                                                .types = std::string(known ? types : "NOT_FOUND")}));
     }
     case PackageType::start:
       client.started = true;
@@ -150,7 +153,10 @@ void RtdeRobot::send_sample(Timestamp now) {
   for (std::size_t j = 0; j < rtde::kJoints; ++j) {
     message.data.q[j] = values_[j].position;
     message.data.qd[j] = values_[j].velocity;
+    message.data.moment[j] = values_[j].effort;
   }
+  message.data.runtime_state = kPlaying;
+  message.data.has_all = true;
   pipeline_.push(now, {now, {1, 0}, MessageKind::sample, std::move(message)});
 }
 
@@ -164,11 +170,12 @@ Result<void> RtdeRobot::check(const FaultSpec& spec) const {
 }
 
 bool RtdeRobot::transmit(const RtdeMessage& message) {
-  RtdeMessage encoded = message;
-  FaultTraits<RtdeMessage>::encode(encoded);
   bool any = false;
   for (Client& client : clients_) {
     if (!client.started || client.ended) continue;
+    RtdeMessage encoded = message;
+    encoded.data.has_all = client.has_all;  // a faulty one is encoded already
+    FaultTraits<RtdeMessage>::encode(encoded);
     send(client, encoded.bytes);
     any = true;
   }

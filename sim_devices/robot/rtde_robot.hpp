@@ -40,6 +40,7 @@ class RtdeRobot final : public FaultyDevice<RtdeMessage> {
     rtde::PackageSplitter splitter;
     rtde::Bytes waiting;  // to be sent
     bool started = false;
+    bool has_all = false;  // it has asked for kAllVariables
     bool ended = false;
   };
 

@@ -12,6 +12,8 @@ import mcap_structure
 JOINTS = 6
 VARIABLES = b"timestamp,actual_q,actual_qd,robot_mode,safety_mode"
 TYPES = b"DOUBLE,VECTOR6D,VECTOR6D,INT32,INT32"
+ALL_VARIABLES = VARIABLES + b",actual_current,target_moment,speed_scaling,runtime_state"
+ALL_TYPES = TYPES + b",VECTOR6D,VECTOR6D,DOUBLE,UINT32"
 
 
 def package(kind, payload=b""):
@@ -19,11 +21,12 @@ def package(kind, payload=b""):
 
 
 class Controller(threading.Thread):
-    """Answers one client after another. `types` is what it answers for the variables."""
+    """Answers one client after another. `types` is what it answers for the variables; an older one does not know all."""
 
-    def __init__(self, port, types=TYPES, rate=125.0):
+    def __init__(self, port, types=TYPES, rate=125.0, knows_all=False):
         super().__init__(daemon=True)
-        self.types, self.rate, self.q0 = types, rate, 0.0
+        self.types, self.rate, self.q0, self.knows_all = types, rate, 0.0, knows_all
+        self.ahead, self.recipe = 0.0, b"\x07"
         self.requests, self.sent, self.stop = [], [], threading.Event()
         self.listener = socket.create_server(("127.0.0.1", port))
         self.listener.settimeout(0.2)
@@ -60,14 +63,20 @@ class Controller(threading.Thread):
     def serve(self, client):
         self.request(client)
         client.sendall(package(86, b"\x01"))
-        self.request(client)
-        client.sendall(package(79, b"\x07" + self.types))
+        variables = self.request(client)[8:]
+        if variables == ALL_VARIABLES and not self.knows_all:
+            client.sendall(package(79, b"\x07" + TYPES + b",NOT_FOUND" * 4))
+            variables = self.request(client)[8:]
+        has_all = variables == ALL_VARIABLES
+        client.sendall(package(79, b"\x07" + (ALL_TYPES if has_all else self.types)))
         self.request(client)
         client.sendall(package(83, b"\x01"))
         start = time.monotonic()
         while not self.stop.wait(1 / self.rate):
             q = [self.q0, 0.2, 0.3, 0.4, 0.5, 0.6]
-            self.sent.append(b"\x07" + struct.pack(">d6d6dii", 100 + time.monotonic() - start, *q, *[0.0] * 6, 7, 1))
+            stamp = 100 + time.monotonic() - start + self.ahead
+            more = struct.pack(">6d6ddI", *[1.5] * 6, *[20.0] * 6, 0.25, 2) if has_all else b""
+            self.sent.append(self.recipe + struct.pack(">d6d6dii", stamp, *q, *[0.0] * 6, 7, 1) + more)
             client.sendall(package(85, self.sent[-1]))
 
     def close(self):
@@ -128,7 +137,7 @@ class Rtde(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: abs(self.position() - first) > 0.02))
         packages = self.packages(self.record(1.5, "--topics", "/inputs/rtde/*"))
         self.assertGreater(len(packages), 20)
-        decoded = [struct.unpack(">Bd6d6dii", data) for _, data in packages]
+        decoded = [struct.unpack_from(">Bd6d6dii", data) for _, data in packages]
         for before, after in zip(decoded, decoded[1:]):
             self.assertGreater(after[1], before[1], "the controller's time")
             self.assertLess(max(abs(a - b) for a, b in zip(before[2:8], after[2:8])), 0.61, "actual_q, rad")
@@ -157,13 +166,44 @@ class Rtde(unittest.TestCase):
             self.fresh()
             controller.q0 = 0.4
             self.assertTrue(g.eventually(lambda: abs(self.position() - 0.4) < 1e-9), self.position())
-            self.assertEqual([kind for kind, _ in controller.requests[:3]], [86, 79, 83])
+            self.assertEqual([kind for kind, _ in controller.requests[:4]], [86, 79, 79, 83])
             self.assertEqual(controller.requests[0][1], b"\x00\x02")
-            self.assertEqual(controller.requests[1][1], struct.pack(">d", 125.0) + VARIABLES)
+            self.assertEqual(controller.requests[1][1], struct.pack(">d", 125.0) + ALL_VARIABLES)
+            self.assertEqual(controller.requests[2][1], struct.pack(">d", 125.0) + VARIABLES)
             recorded = [data for _, data in self.packages(self.record(1, "--topics", "/inputs/rtde/*"))]
             self.assertGreater(len(recorded), 10)
             begin = controller.sent.index(recorded[0])
             self.assertEqual(recorded, controller.sent[begin:begin + len(recorded)], "each package, byte by byte")
+        finally:
+            controller.close()
+
+    def test_effort_speed_and_program_are_shown(self):
+        controller = Controller(self.port, knows_all=True)
+        controller.start()
+        try:
+            self.fresh()
+            self.assertAlmostEqual(self.scratch.robot("demo_arm")["joints"][0]["effort"], 20.0)
+            details = self.stream()["details"]
+            self.assertEqual(details["speed scaling"], "25 %")
+            self.assertEqual(details["program"], "playing")
+        finally:
+            controller.close()
+
+    def test_a_time_that_jumps_and_packages_that_are_refused(self):
+        controller = Controller(self.port)
+        controller.start()
+        try:
+            self.fresh()
+            controller.ahead = -50.0
+            controller.q0 = 0.3
+            self.assertTrue(g.eventually(lambda: abs(self.position() - 0.3) < 1e-9), self.stream())
+            controller.ahead = 5000.0
+            controller.q0 = 0.1
+            self.assertTrue(g.eventually(lambda: abs(self.position() - 0.1) < 1e-9), self.stream())
+            controller.recipe = b"\x09"
+            self.assertTrue(g.eventually(lambda: "another length or recipe" in self.stream()["condition"]), self.stream())
+            controller.recipe = b"\x07"
+            self.fresh()
         finally:
             controller.close()
 

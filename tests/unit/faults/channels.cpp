@@ -15,6 +15,7 @@
 #include "drivers/can/dbc/session.hpp"
 #include "drivers/dds/joint_state_router.hpp"
 #include "drivers/dds/ros2_messages.hpp"
+#include "drivers/rtde/rtde_session.hpp"
 #include "ipc/wire/script_message.hpp"
 #include "rt_core/engine/joint_gate.hpp"
 #include "rt_core/haptics/sample_validator.hpp"
@@ -202,6 +203,50 @@ class DdsChannel final : public Channel {
   dds::JointStateRouter router_;
 };
 
+class RtdeChannel final : public Channel, private rtde::SessionOutput {
+ public:
+  RtdeChannel() : session_(config(), *this) {
+    session_.begin(Timestamp{1});
+    receive_bytes(rtde::accepted(rtde::PackageType::version, true), Timestamp{1});
+    receive_bytes(rtde::outputs_answer({.recipe = kRecipe, .types = std::string(rtde::kAllVariableTypes)}),
+                  Timestamp{1});
+    receive_bytes(rtde::accepted(rtde::PackageType::start, true), Timestamp{1});
+  }
+  std::string name() const override { return "RTDE"; }
+  void receive(const Event& event) override {
+    constexpr double kPeriod_s = 0.01;
+    rtde::RobotData data{.timestamp_s = 1.0 + kPeriod_s * event.n};
+    data.has_all = true;
+    data.q[0] = value_of(event.n, event.content);
+    rtde::Bytes bytes = rtde::data_package(data, kRecipe);
+    constexpr std::size_t kPosition = 3 + 1 + 8;                         // behind head, recipe and time
+    if (event.content == Content::corrupt) bytes.at(kPosition) ^= 0x40;  // the highest bit of the exponent
+    receive_bytes(bytes, event.time);
+  }
+  std::string finding(Timestamp now) override {
+    if (std::string state = robot_.state(now); !state.empty()) return state;
+    if (session_.counters().lost > 0) return "lost";
+    return session_.counters().rejected > 0 ? "refused" : "";
+  }
+
+ private:
+  static constexpr std::uint8_t kRecipe = 1;
+  static RtdeStreamConfig config() {
+    RtdeStreamConfig config;
+    config.rate_hz = 100;
+    config.joints.push_back({.joint = 0, .number = 0});
+    return config;
+  }
+  void receive_bytes(const rtde::Bytes& bytes, Timestamp now) { session_.receive(bytes, now); }
+  void send(std::span<const std::uint8_t>) override {}
+  void sample(const JointSample& sample) override { robot_.push(sample); }
+  void rejected(const std::string&) override {}
+  void message(const std::string&) override {}
+
+  Robot robot_;
+  rtde::RtdeSession session_;
+};
+
 class ScriptChannel final : public Channel {
  public:
   std::string name() const override { return "System V queue, SCRIPT"; }
@@ -258,6 +303,7 @@ class HapticMemoryChannel final : public Channel {
 std::unique_ptr<Channel> make_cia402_channel() { return std::make_unique<Cia402Channel>(); }
 std::unique_ptr<Channel> make_protected_dbc_channel() { return std::make_unique<ProtectedDbcChannel>(); }
 std::unique_ptr<Channel> make_dds_channel() { return std::make_unique<DdsChannel>(); }
+std::unique_ptr<Channel> make_rtde_channel() { return std::make_unique<RtdeChannel>(); }
 std::unique_ptr<Channel> make_script_channel() { return std::make_unique<ScriptChannel>(); }
 std::unique_ptr<Channel> make_haptic_channel() { return std::make_unique<HapticMemoryChannel>(); }
 

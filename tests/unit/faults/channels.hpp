@@ -39,6 +39,7 @@ class Channel {
 [[nodiscard]] std::unique_ptr<Channel> make_cia402_channel();
 [[nodiscard]] std::unique_ptr<Channel> make_protected_dbc_channel();
 [[nodiscard]] std::unique_ptr<Channel> make_dds_channel();
+[[nodiscard]] std::unique_ptr<Channel> make_rtde_channel();
 [[nodiscard]] std::unique_ptr<Channel> make_script_channel();
 [[nodiscard]] std::unique_ptr<Channel> make_haptic_channel();
 

@@ -55,7 +55,10 @@ void without(Events& events, unsigned count) {
 }
 
 const std::array<Fault, 11> kFaults = {{
-    {"repetition", [](Events& e) { e.push_back({due(kFault) + kPeriod / 2, kFault, Content::good}); }},
+    {"repetition",
+     [](Events& e) {
+       e.push_back({due(kFault) + kPeriod / 2, kFault, Content::good});
+     }},
     {"loss", [](Events& e) { without(e, 1); }},
     {"delay",
      [](Events& e) {
@@ -95,8 +98,9 @@ std::string outcome(const std::function<std::unique_ptr<Channel>()>& make, const
 }
 
 std::string table() {
-  const std::array<std::function<std::unique_ptr<Channel>()>, 5> channels = {
-      make_cia402_channel, make_protected_dbc_channel, make_dds_channel, make_script_channel, make_haptic_channel};
+  const std::array<std::function<std::unique_ptr<Channel>()>, 6> channels = {
+      make_cia402_channel, make_protected_dbc_channel, make_dds_channel,
+      make_rtde_channel,   make_script_channel,        make_haptic_channel};
   std::string head = "| fault |";
   std::string line = "| --- |";
   for (const auto& make : channels) {
@@ -127,8 +131,8 @@ TEST(FaultTable, IsTheOneOfTheDocument) {
 
 TEST(FaultTable, ASoundChannelHasNoFinding) {
   const Fault none{"none", [](Events&) {}};
-  for (const auto& make :
-       {make_cia402_channel, make_protected_dbc_channel, make_dds_channel, make_script_channel, make_haptic_channel}) {
+  for (const auto& make : {make_cia402_channel, make_protected_dbc_channel, make_dds_channel, make_rtde_channel,
+                           make_script_channel, make_haptic_channel}) {
     EXPECT_EQ(outcome(make, none), "no") << make()->name();
   }
 }

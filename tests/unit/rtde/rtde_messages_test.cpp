@@ -55,6 +55,32 @@ TEST(RtdeMessages, DataComesBackAsItWasSent) {
   EXPECT_FALSE(decode_data(std::span(sent).subspan(4), 9));
 }
 
+TEST(RtdeMessages, AllDataComeBackAsTheyWereSent) {
+  RobotData data{.timestamp_s = 1.0};
+  data.has_all = true;
+  data.current = {1, 2, 3, 4, 5, 6};
+  data.moment = {-1, -2, -3, -4, -5, -6};
+  data.speed_scaling = 0.25;
+  data.runtime_state = 4;
+  const Bytes sent = data_package(data, 9);
+  ASSERT_EQ(sent.size(), 3U + 1 + 8 + 48 + 48 + 8 + 48 + 48 + 8 + 4);
+  EXPECT_EQ(Bytes(sent.end() - 12, sent.end()), bytes({0x3F, 0xD0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4}));
+  const auto read = decode_data(std::span(sent).subspan(3), 9);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->current, data.current);
+  EXPECT_EQ(read->moment, data.moment);
+  EXPECT_EQ(read->speed_scaling, 0.25);
+  EXPECT_EQ(runtime_state_text(read->runtime_state), "paused");
+}
+
+TEST(RtdeMessages, EveryModeOfTheGuideIsAWord) {
+  for (int mode = 1; mode <= 13; ++mode) EXPECT_EQ(safety_mode_text(mode).find("mode "), std::string::npos) << mode;
+  EXPECT_EQ(safety_mode_text(10), "validating a joint");
+  EXPECT_EQ(safety_mode_text(14), "safety mode 14");
+  for (std::uint32_t state = 0; state < 6; ++state)
+    EXPECT_EQ(runtime_state_text(state).find("runtime"), std::string::npos) << state;
+}
+
 TEST(RtdeMessages, PackagesAreDividedWhereverTheBytesAre) {
   Bytes stream = version_request(2);
   const Bytes more = outputs_request(500, kVariables);

@@ -44,7 +44,7 @@ struct Link {
   void receive(const Bytes& bytes, double s = 0) { session.receive(bytes, at(s)); }
   void run() {
     receive(accepted(PackageType::version, true));
-    receive(outputs_answer({.recipe = kRecipe, .types = std::string(kVariableTypes)}));
+    receive(outputs_answer({.recipe = kRecipe, .types = std::string(kAllVariableTypes)}));
     receive(accepted(PackageType::start, true));
   }
   void data(double timestamp_s, double q0 = 0) {
@@ -65,8 +65,8 @@ TEST(RtdeSession, AsksForVersionOutputsAndStartInTurn) {
   EXPECT_EQ(link.out.sent[0], version_request(2));
   link.receive(accepted(PackageType::version, true));
   ASSERT_EQ(link.out.sent.size(), 2U);
-  EXPECT_EQ(link.out.sent[1], outputs_request(125, kVariables));
-  link.receive(outputs_answer({.recipe = kRecipe, .types = std::string(kVariableTypes)}));
+  EXPECT_EQ(link.out.sent[1], outputs_request(125, kAllVariables));
+  link.receive(outputs_answer({.recipe = kRecipe, .types = std::string(kAllVariableTypes)}));
   ASSERT_EQ(link.out.sent.size(), 3U);
   EXPECT_EQ(link.out.sent[2], start_request());
   EXPECT_EQ(link.session.phase(), RtdeSession::Phase::starting);
@@ -138,6 +138,100 @@ TEST(RtdeSession, PackagesThatAreNotNewerAreRefused) {
   EXPECT_EQ(link.session.counters().samples, 2U);
 }
 
+TEST(RtdeSession, AnOlderControllerIsAskedForWhatItHas) {
+  Link link;
+  link.receive(accepted(PackageType::version, true));
+  link.receive(outputs_answer({.recipe = 1, .types = std::string(kVariableTypes) + ",NOT_FOUND"}));
+  ASSERT_EQ(link.out.sent.size(), 3U);
+  EXPECT_EQ(link.out.sent[2], outputs_request(125, kVariables));
+  link.receive(outputs_answer({.recipe = kRecipe, .types = std::string(kVariableTypes)}));
+  link.receive(accepted(PackageType::start, true));
+  link.data(1.0);
+  ASSERT_EQ(link.out.samples.size(), 1U);
+  EXPECT_EQ(link.out.samples[0].effort[5], 0.0) << "not known";
+  EXPECT_FALSE(link.session.speed_scaling());
+}
+
+TEST(RtdeSession, OneStampFarAheadIsRefusedAndThoseBehindItAreNot) {
+  Link link;
+  link.run();
+  link.data(1.000);
+  RobotData glitch{.timestamp_s = 1e9};
+  link.receive(data_package(glitch, kRecipe), 1.008);
+  EXPECT_NE(link.out.reasons.back().find("ahead"), std::string::npos);
+  for (int i = 2; i < 100; ++i) link.data(1.0 + 0.008 * i);
+  EXPECT_EQ(link.session.counters().samples, 99U);
+  EXPECT_EQ(link.session.counters().rejected, 1U);
+}
+
+TEST(RtdeSession, ATimeThatBeganAnewIsTakenAfterSomePackages) {
+  for (const double begin : {0.0, 1e6}) {
+    Link link;
+    link.run();
+    link.data(100.0);
+    for (int i = 1; i <= 10; ++i) {
+      RobotData robot{.timestamp_s = begin + 0.008 * i};
+      link.receive(data_package(robot, kRecipe), 100.0 + 0.008 * i);
+    }
+    EXPECT_EQ(link.session.counters().samples, 1U + 8U) << begin;
+    EXPECT_EQ(link.session.counters().rejected, 2U) << begin;
+    EXPECT_EQ(link.session.counters().lost, 0U) << "no gap: another time";
+    EXPECT_EQ(link.out.messages.size(), 1U);
+  }
+}
+
+TEST(RtdeSession, ALongPauseOfTheControllerIsNoOtherTime) {
+  Link link;
+  link.run();
+  link.data(1.0);
+  link.data(61.0);
+  EXPECT_EQ(link.session.counters().samples, 2U);
+  EXPECT_GT(link.session.counters().lost, 7000U);
+}
+
+TEST(RtdeSession, EffortSpeedAndProgramComeWithTheJoints) {
+  RtdeStreamConfig config;
+  config.joints.push_back({.joint = 0, .number = 0, .scale = -1});
+  config.joints.push_back({.joint = 1, .number = 1, .torque_nm_per_a = 12.5});
+  Link link(config);
+  link.run();
+  RobotData robot{.timestamp_s = 1.0};
+  robot.has_all = true;
+  robot.moment = {30, 31, 32, 33, 34, 35};
+  robot.current = {1, 2, 3, 4, 5, 6};
+  robot.speed_scaling = 0.5;
+  robot.runtime_state = 2;
+  link.receive(data_package(robot, kRecipe), 1.0);
+  ASSERT_EQ(link.out.samples.size(), 1U);
+  EXPECT_EQ(link.out.samples[0].effort[0], -30.0) << "the moment that the controller aims at, in the joint's direction";
+  EXPECT_EQ(link.out.samples[0].effort[1], 25.0) << "measured: current and constant";
+  EXPECT_EQ(link.session.speed_scaling(), 0.5);
+  EXPECT_EQ(runtime_state_text(*link.session.runtime_state()), "playing");
+}
+
+TEST(RtdeSession, PackagesThatAreRefusedAreKnownWithTheirReason) {
+  Link link;
+  link.run();
+  link.data(1.0);
+  EXPECT_FALSE(link.session.last_refused().known());
+  link.receive(data_package({.timestamp_s = 1.008}, kRecipe + 1), 1.008);
+  EXPECT_EQ(link.session.last_refused(), Link::at(1.008));
+  EXPECT_EQ(link.session.why_refused(), "a data package of another length or recipe");
+  link.data(1.016);
+  EXPECT_FALSE(link.session.last_refused().known()) << "the newest one was good";
+}
+
+TEST(RtdeSession, BytesThatAreDividedInTheWrongPlacesEndTheConnection) {
+  Link link;
+  link.run();
+  for (int i = 0; i < 100 && !link.session.failed(); ++i) link.receive({0, 5, 99, 1, 2});
+  EXPECT_TRUE(link.session.failed());
+  Link length;
+  length.run();
+  length.receive({0xFF, 0xFF, 85, 4});
+  EXPECT_TRUE(length.session.failed()) << "no package is that long";
+}
+
 TEST(RtdeSession, WhatAControllerRefusesEndsTheConnectionWithTheReason) {
   Link version;
   version.receive(accepted(PackageType::version, false));
@@ -145,6 +239,8 @@ TEST(RtdeSession, WhatAControllerRefusesEndsTheConnectionWithTheReason) {
   EXPECT_NE(version.out.reasons.back().find("version"), std::string::npos);
   Link variables;
   variables.receive(accepted(PackageType::version, true));
+  variables.receive(outputs_answer({.recipe = 0, .types = "DOUBLE,NOT_FOUND"}));
+  EXPECT_FALSE(variables.session.failed()) << "an older controller: it is asked for less";
   variables.receive(outputs_answer({.recipe = 0, .types = "DOUBLE,NOT_FOUND"}));
   EXPECT_TRUE(variables.session.failed());
   EXPECT_NE(variables.out.reasons.back().find("NOT_FOUND"), std::string::npos);
