@@ -201,7 +201,7 @@ Problems Gateway::Parts::problems() const {
   }
   if (mqtt) add("mqtt", mqtt->problem());
   add_process_problems(out, sandbox_reports());
-  add("stream", missing_interfaces(*board.latest()));
+  if (const auto cell = board.latest()) add("stream", missing_interfaces(*cell));
   if (playback == nullptr && (guard == nullptr || !guard->running())) {
     add("force_guard", fmt::format("the process that removes the forces of a killed gateway from shared memory {}; "
                                    "restart the gateway",

@@ -1,5 +1,7 @@
 #include "drivers/can/channel/open_channel.hpp"
 
+#include <filesystem>
+
 #include "drivers/can/channel/endpoint.hpp"
 #include "drivers/can/channel/log_channel.hpp"
 #include "drivers/can/channel/log_format.hpp"
@@ -28,7 +30,8 @@ Result<std::unique_ptr<CanChannel>> open_can_channel(const CanChannelConfig& con
 void check_channel(const CanChannelConfig& config, const Place& place, Diagnostics& diagnostics) {
   const auto endpoint = parse_endpoint(config.endpoint);
   const auto* log = endpoint ? std::get_if<LogEndpoint>(&*endpoint) : nullptr;
-  if (log == nullptr) return;  // the reader of the cell file has reported what is not an endpoint
+  // The reader of the cell file has reported what is not an endpoint, and a file that is not there.
+  if (log == nullptr || !std::filesystem::is_regular_file(log->file)) return;
   if (const auto known = check_log(log->file); !known)
     diagnostics.error(place, known.error().what, known.error().remedy);
 }

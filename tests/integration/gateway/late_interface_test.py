@@ -23,14 +23,21 @@ interface = "{LATE}"
 [[device.node]]
 id = 21
 joint = "TURN"
+encoder_increments = 65536
 [[device.node]]
 id = 22
 joint = "TILT"
+encoder_increments = 65536
 
 [[io_node]]
 id = 30
 channel = "{GROUP}"
 interface = "{LATE}"
+[[io_node.input]]
+bit = 0
+robot = "SCARA_1"
+joint = "J_1"
+above_rad = 0.5
 """
 
 
@@ -46,7 +53,7 @@ class LateInterface(unittest.TestCase):
         text = self.scratch.cell_file.read_text()
         first, table = text.split('[[stream]]\nrobot = "TABLE_1"')
         first = first.replace('channel = "socketcan:vcan0"', f'channel = "{GROUP}"\ninterface = "{LATE}"')
-        rest = table[table.index("\n[", table.rindex("[[stream.signal]]") + 20):] if "\n[" in table[table.rindex("[[stream.signal]]") + 20:] else ""
+        rest = "\n[startup]" + table.split("[startup]")[1]
         self.scratch.cell_file.write_text(first + OTHERS + rest)
         self.gateway = g.Gateway(self.scratch)
         self.addCleanup(self.gateway.close)
