@@ -73,7 +73,7 @@ double read_scale(TableReader& reader, JointKind kind) {
   return scale.value_or(1.0);
 }
 
-// Increments at which the drive's position starts anew (object 0x607B).
+// Increments at which the drive's position starts again (object 0x607B).
 void read_position_range(TableReader& reader, Cia402NodeConfig& node) {
   constexpr long long kMost = 0xFFFF'FFFF;
   const auto lower = reader.integer("position_range_min", -kMost, kMost);

@@ -1,4 +1,4 @@
-// Joints that turn without end, whose source starts anew after each turn: makes their positions go on. One source
+// Joints that turn without end, whose source starts again after each turn: makes their positions go on. One source
 // thread.
 #pragma once
 

@@ -65,7 +65,7 @@ class RtdeSession {
   void take_start(std::span<const std::uint8_t> payload);
   void take_data(std::span<const std::uint8_t> payload, Timestamp now);
   // Whether the stamp follows the one before. One that does not is refused; where more follow it, the controller's time
-  // has begun anew.
+  // has begun again.
   [[nodiscard]] bool is_in_time(double timestamp_s, Timestamp now);
   void count_lost(double timestamp_s);
   void note_sender(const RobotData& data);

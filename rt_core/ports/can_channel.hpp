@@ -51,7 +51,7 @@ struct CanChannelStatus {
   std::string waits_for;  // the interface without which it is not open yet, or not any more; empty: none
 };
 
-// `again`: a log begins anew; what came before has nothing to do with what comes now.
+// `again`: a log begins again; what came before has nothing to do with what comes now.
 enum class CanReceive : std::uint8_t { frame, timeout, down, end, again };
 
 // All calls on one thread at a time. The channel recovers from ENETDOWN, a removed interface and the like: meanwhile
@@ -59,7 +59,7 @@ enum class CanReceive : std::uint8_t { frame, timeout, down, end, again };
 class CanChannel {
  public:
   virtual ~CanChannel() = default;
-  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end. `again` is told once for each pass
+  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end. `again` comes once for each pass
   // behind the first.
   virtual CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) = 0;
   // Never waits. False where the frame could not be sent (counted).

@@ -31,7 +31,7 @@ inline constexpr std::size_t kDataStates = 7;
 // Joint values that one source sent for one robot at one instant. SI: rad, rad/s, Nm for revolute joints, m, m/s, N for
 // prismatic ones, after scale, sign and offset of the cell file. Index = the joint's number in the robot.
 struct JointSample {
-  // As the sequence: the source begins anew, so this value is not compared with those before.
+  // As the sequence: the source begins again, so this value is not compared with those before.
   static constexpr std::uint64_t kBeginsAnew = ~std::uint64_t{0};
 
   Timestamp receive_time;      // when its last byte was taken from the operating system

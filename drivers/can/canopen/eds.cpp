@@ -434,7 +434,7 @@ class TpdoReader {
     return any_fault([](ObjectAddress, const Diagnostic&) { return true; });
   }
 
-  // Whether the mapping holds values of a drive, or cannot be read well enough to tell.
+  // Whether the mapping holds values of a drive, or cannot be read well enough to be known.
   [[nodiscard]] bool may_be_used() const {
     const bool unreadable =
         any_fault([this](ObjectAddress address, const Diagnostic&) { return address.index == mapping_; });

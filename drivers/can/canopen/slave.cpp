@@ -290,8 +290,8 @@ LssSlave::Identity CanopenSlave::identity() const {
   return numbers;
 }
 
-// Its length is 1 where object 0x1019 says that SYNC has a counter, else 0 (CiA 301, 7.2.5). Another length is told,
-// and the SYNC counts all the same as one without a counter, but for frames that cannot be SYNC at all.
+// Its length is 1 where object 0x1019 says that SYNC has a counter, else 0 (CiA 301, 7.2.5). Another length is
+// reported, and the SYNC counts all the same as one without a counter, but for frames that cannot be SYNC at all.
 void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {
   const bool counted = object(kSyncCounter) != 0;
   if (frame.length == (counted ? 1 : 0)) {
@@ -408,7 +408,7 @@ std::optional<SdoAbort> CanopenSlave::write(ObjectAddress address, std::span<con
   return {};
 }
 
-// CiA 301, 7.5.2.13 and 7.5.2.14: a signature protects the commands against mistakes; reading gives what they can do.
+// CiA 301, 7.5.2.13 and 7.5.2.14: a signature protects the commands against accidents; reading gives what they can do.
 std::optional<SdoAbort> CanopenSlave::store(ObjectAddress address, std::span<const std::uint8_t> value) {
   const bool saves = address.index == kStoreObject;
   if (get_le(value, value.size()) != (saves ? kSave : kLoad)) return SdoAbort::cannot_store;
@@ -521,7 +521,7 @@ void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
 }
 
 void CanopenSlave::set_error(CommunicationError error, std::uint16_t code) {
-  // One that is late after another one is told, too.
+  // One that is late after another one is reported, too.
   const bool is_new = (communication_errors_ & error) == 0 || error == rpdo_late;
   communication_errors_ = static_cast<std::uint8_t>(communication_errors_ | error);
   if (is_new) report(code);

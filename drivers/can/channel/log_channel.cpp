@@ -156,7 +156,7 @@ class LogChannel final : public CanChannel {
 }  // namespace
 
 Result<std::unique_ptr<CanChannel>> open_log_channel(const LogChannelOptions& options) {
-  struct stat info {};
+  struct stat info{};
   if (stat(options.file.c_str(), &info) != 0) {
     return fail(fmt::format("cannot read the log {}: {}", options.file, std::strerror(errno)), "check the path");
   }

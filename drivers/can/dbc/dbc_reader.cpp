@@ -482,7 +482,7 @@ class DbcReader {
     if (signal != message.signals.end()) replace(*signal, message.find(name.name) == nullptr);
   }
 
-  // Who uses a long name of what is left out is told why, too: the fault stands there with either name.
+  // Who uses a long name of what is left out learns why, too: the fault stands there with either name.
   void rename_faults() {
     std::map<std::pair<std::string, std::string>, std::string> long_names;
     for (const LongName& name : long_names_) long_names.try_emplace({name.message, name.signal}, name.name);

@@ -86,7 +86,7 @@ class DbcSession {
   DbcSession(const DbcSession&) = delete;  // points into its own plan
   DbcSession& operator=(const DbcSession&) = delete;
 
-  // The source begins anew: forgets its values, counters of protected messages, and who sent what.
+  // The source begins again: forgets its values, counters of protected messages, and who sent what.
   void restart();
 
   // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with it

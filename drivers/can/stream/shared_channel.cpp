@@ -168,7 +168,7 @@ void SharedChannel::watch_bus(std::optional<CanBusState> reported) {
   members_.keep_error(text);
 }
 
-// Not for logs, which refuse everything, nor where the bus is down, which was told.
+// Not for logs, which refuse everything, nor where the bus is down, which was reported.
 void SharedChannel::watch_refused() {
   const CanChannelStatus& status = channel_->status();
   if (status.send_refused == refused_told_ || status.last_error.empty()) return;

@@ -55,10 +55,7 @@ void without(Events& events, unsigned count) {
 }
 
 const std::array<Fault, 11> kFaults = {{
-    {"repetition",
-     [](Events& e) {
-       e.push_back({due(kFault) + kPeriod / 2, kFault, Content::good});
-     }},
+    {"repetition", [](Events& e) { e.push_back({due(kFault) + kPeriod / 2, kFault, Content::good}); }},
     {"loss", [](Events& e) { without(e, 1); }},
     {"delay",
      [](Events& e) {

@@ -12,7 +12,7 @@ constexpr std::uint16_t kHomingAttained = kStatuswordModeBit12;
 constexpr std::uint16_t kHomingError = kStatuswordModeBit13;
 constexpr int kSlowDown = 1;  // option code
 
-// Begins anew at both ends of a range.
+// Begins again at both ends of a range.
 std::int64_t wrapped(double value, double lower, double span) {
   constexpr double kMost = 9e15;  // whole numbers of a double
   const auto whole = static_cast<std::int64_t>(std::llround(std::clamp(value, -kMost, kMost) - lower));
