@@ -234,7 +234,7 @@ export function scene_scenarios({opened, kCoarse, live, picture, shot, text_of, 
     // A recording that is played: where collisions and faults began, and the way there by keys alone.
     async playback() {
       const page = await opened();
-      await page.waitForFunction(() => document.getElementById("line-text").textContent === "replay");
+      await page.waitForFunction(() => document.getElementById("line-text").textContent === "replay, not live");
       await page.locator("#replay-bar").waitFor();
       await page.locator("#replay-marks i").nth(2).waitFor({state: "attached"});
       const drawn = await page.locator("#replay-marks i").evaluateAll((marks) => marks.map((mark) => [mark.dataset.kind, mark.style.left]));

@@ -1,6 +1,7 @@
 // Pictures, histories, the tree, tokens, numbers: what the page knows before it shows anything.
 import test from "node:test";
 import assert from "node:assert/strict";
+import {readFileSync} from "node:fs";
 import {left_out_in_words, record} from "./modules/charts.js";
 import * as format from "./modules/format.js";
 import {History} from "./modules/history.js";
@@ -28,6 +29,25 @@ test("robot programs are told by state, what they wait for, and time", () => {
   assert.equal(time_text({runs: 0, elapsed_s: 0, expected_s: null}), "");
   assert.equal(time_text({runs: 1, elapsed_s: 12.34, expected_s: null}), "12.3 s");
   assert.equal(time_text({runs: 2, elapsed_s: 2, expected_s: 45.6}), "2.0 s of 45.6 s");
+});
+
+test("the curve of a robot without data ends", () => {
+  const history = new History();
+  const live = (time_s, state) => ({time_s, collision_age_s: state === "lost" ? 9 : 0.01,
+    near: [{a: "A", b: "B", distance_m: 0.2}],
+    robots: [{id: "R", mode: "mirrored", state, joints: [{name: "J", position: 1.5, velocity: 0, state}]},
+      {id: "S", mode: "simulated", joints: [{name: "J", position: 2.5, velocity: 0, state: "none"}]}]});
+  ["fresh", "stale", "lost", "implausible", "fresh"].forEach((state, i) => record(history, live(i, state)));
+  const [, mirrored, simulated, near] = history.window(["q|R|J", "q|S|J", "near|A – B"], 10);
+  assert.deepEqual(mirrored, [1.5, 1.5, null, null, 1.5]);
+  assert.deepEqual(simulated, Array(5).fill(2.5));
+  assert.deepEqual(near.map((value) => value !== null), [true, true, false, true, true]);
+});
+
+test("the page begins with what is not known", () => {
+  const page = readFileSync(new URL("./index.html", import.meta.url), "utf8");
+  for (const id of ["no-touching", "no-near", "no-alarms", "no-alarm-history", "no-robots", "no-tissue-events"])
+    assert.match(page, new RegExp(`id="${id}" class="empty unknown">Not known yet`), id);
 });
 
 test("what is no picture is refused", () => {

@@ -23,6 +23,7 @@ class Modules(unittest.TestCase):
             place = pathlib.Path(folder)
             shutil.copytree(PAGE / "modules", place / "modules")
             shutil.copytree(WALL / "modules", place / "modules", dirs_exist_ok=True)
+            shutil.copy(PAGE / "index.html", place)
             (place / "package.json").write_text('{"type": "module"}')  # else node takes .js for its older kind
             for test in pathlib.Path(__file__).parent.glob("*_test.mjs"):
                 shutil.copy(test, place)

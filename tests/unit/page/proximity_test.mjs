@@ -1,7 +1,7 @@
 // What the head of the page says of collisions.
 import test from "node:test";
 import assert from "node:assert/strict";
-import {barrier_in_words, collisions_in_brief, cut_note, range_in_words, warned_count} from "./modules/proximity.js";
+import {barrier_in_words, collisions_in_brief, cut_note, nothing_in_words, range_in_words, warned_count} from "./modules/proximity.js";
 import {ShortNames} from "./modules/short_names.js";
 
 const pair = {a: "Arm.J_1", b: "Table", depth_m: 0.01};
@@ -15,6 +15,14 @@ test("fresh results are shown as they are", () => {
 test("nobody knows what touches where nothing is tested", () => {
   assert.deepEqual(collisions_in_brief({touching: null, touching_count: 0, collision_age_s: null}),
     {text: "collisions not known", state: "none", title: null});
+});
+
+test("an empty list says that nothing touches only while that is known", () => {
+  const said = (live, quiet) => nothing_in_words(live, "Nothing touches.", quiet);
+  assert.deepEqual(said({touching: [], collision_age_s: 0.003}), {text: "Nothing touches.", known: true});
+  assert.deepEqual(said({touching: null}), {text: "Not known: nothing is tested.", known: false});
+  assert.deepEqual(said({touching: [], collision_age_s: 3.14}), {text: "Not known: the newest result is 3.1 s old.", known: false});
+  assert.deepEqual(said({touching: [], collision_age_s: 0.003}, true), {text: "Not known: no news from the gateway.", known: false});
 });
 
 test("what is old is said", () => {

@@ -61,6 +61,20 @@ export class Alarms {
     this.shown_ = null;
   }
 
+  // Nothing comes from the gateway any more, or it does again.
+  show_quiet(quiet) {
+    this.quiet_ = quiet;
+    this.show_nothing_();
+  }
+
+  show_nothing_() {
+    if (this.document_ === null) return;  // what the page has from the beginning says that nothing is known
+    for (const [id, said] of [["no-alarms", "Nothing needs attention."], ["no-alarm-history", "No earlier alarms."]]) {
+      setText(byId(id), this.quiet_ ? "Not known: no news from the gateway." : said);
+      byId(id).classList.toggle("unknown", Boolean(this.quiet_));
+    }
+  }
+
   update(live, visible) {
     this.now_s_ = live.time_s ?? Date.now() / 1000;
     this.show_counts_(live.alarms);
@@ -98,6 +112,7 @@ export class Alarms {
     this.history_rows_.show(history.slice(0, kMostRows), (alarm) => alarm.id);
     byId("no-alarms").hidden = open.length > 0;
     byId("no-alarm-history").hidden = history.length > 0;
+    this.show_nothing_();
     const cut = (all) => (all > kMostRows ? `the newest ${kMostRows} of ${all}` : "");
     setText(byId("alarm-note"), [cut(open_count), not_listed ? `${not_listed} more have no place in the list` : ""].filter(Boolean).join("; "));
     setText(byId("alarm-history-note"), cut(history_count));

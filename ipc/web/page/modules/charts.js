@@ -24,14 +24,18 @@ const kQuantities = {
 };
 
 // What there is little of goes first: in a large cell not all joints find a place.
+const kOld_s = 0.5;
+
 export function record(history, live) {
   history.add(live.time_s ?? 0, (put) => {
     put("loop|wake-up p99", live.loop?.latency_p99_us);
     put("loop|tick p99", live.loop?.compute_p99_us);
     put("loop|missed periods", live.loop?.missed);
     for (const queue of live.queues ?? []) put(`queue|${queue.name}`, queue.dropped, kSpare);
-    for (const pair of live.near ?? []) put(`near|${pair.a} – ${pair.b}`, pair.distance_m);
-    for (const pair of live.touching ?? []) put(`near|${pair.a} – ${pair.b}`, 0);
+    // What is old is no curve that goes on.
+    const tested = !(live.collision_age_s > kOld_s);
+    for (const pair of live.near ?? []) put(`near|${pair.a} – ${pair.b}`, tested ? pair.distance_m : null);
+    for (const pair of live.touching ?? []) put(`near|${pair.a} – ${pair.b}`, tested ? 0 : null);
     // A doubtful distance is no measurement: something nearer may be there.
     for (const range of live.ranges ?? []) put(`range|${range.id}`, range.doubtful ? null : range.distance_m);
     for (const force of live.forces ?? []) put(`tcp|${force.robot}`, norm(force.tcp_force_n));
@@ -39,10 +43,17 @@ export function record(history, live) {
   });
 }
 
+// Whether a joint's value is its present one. Of a mirrored robot without data it is the last that was known: the curve
+// ends there.
+export function is_known(robot, joint) {
+  return robot.mode !== "mirrored" || ["fresh", "stale"].includes(joint.state ?? robot.state);
+}
+
 function record_joints(put, live) {
   for (const [prefix, quantity] of [["q", "position"], ["v", "velocity"]]) {
     for (const robot of live.robots ?? []) {
-      for (const joint of robot.joints ?? []) put(`${prefix}|${robot.id}|${joint.name}`, joint[quantity], kSpare);
+      for (const joint of robot.joints ?? [])
+        put(`${prefix}|${robot.id}|${joint.name}`, is_known(robot, joint) ? joint[quantity] : null, kSpare);
     }
   }
   for (const force of live.forces ?? []) {

@@ -40,7 +40,9 @@ live_address.protocol = live_address.protocol === "https:" ? "wss:" : "ws:";
 live_address.hash = "";
 const connection = new Connection(live_address.href, kept_token);
 
-const presence = new Presence(connection, {quiet: (whether) => charts.show_quiet(whether)});
+const presence = new Presence(connection, {quiet: (whether) => {
+  for (const panel of [charts, proximity, alarms]) panel.show_quiet(whether);
+}});
 const script = new Console(connection, {
   may_command: () => presence.may_command, why_not: () => presence.why_not()});
 const command = (text) => script.run(text);

@@ -15,7 +15,8 @@ export function commands_of(instance) {
 
 export class Presence {
   // `quiet(whether)`: all but the picture is what was last known, or no longer.
-  constructor(connection, {quiet = () => {}} = {}) {
+  constructor(connection, {quiet = () => {}, fetch = (...what) => window.fetch(...what)} = {}) {
+    this.fetch_ = fetch;
     this.connection_ = connection;
     this.show_quiet_ = quiet;
     this.quiet_ = false;
@@ -97,6 +98,7 @@ export class Presence {
 
   back_() {
     this.retry_at_ = null;
+    this.was_open_ = true;
     byId("gone").hidden = true;
     document.documentElement.classList.remove("gateway-gone");
     this.show_line_();
@@ -110,7 +112,29 @@ export class Presence {
     }
     document.documentElement.classList.add("gateway-gone");
     byId("gone").hidden = false;
+    this.show_why_(this.was_open_ ? "gone" : "unknown");
+    this.was_open_ = false;
+    this.ask_why_();
     this.tick_();
+  }
+
+  // The browser does not tell why a WebSocket was refused. A gateway that answers has no place for another page.
+  async ask_why_() {
+    let answers = false;
+    try {
+      answers = (await this.fetch_("healthz", {cache: "no-store"})).status > 0;
+    } catch {
+      answers = false;
+    }
+    if (!this.connection_.open) this.show_why_(answers ? "full" : "gone");
+  }
+
+  show_why_(why) {
+    const titles = {gone: "The gateway is gone.", full: "This page has no place at the gateway.", unknown: "There is no connection to the gateway."};
+    setText(byId("gone-title"), titles[why]);
+    byId("gone-full").hidden = why !== "full";
+    byId("gone-help").hidden = why === "full";
+    this.why_ = why;
   }
 
   tick_() {
@@ -125,8 +149,10 @@ export class Presence {
     // Pictures do not count: they come from another part of the gateway, which may continue alone.
     const silent = this.heard_ === null ? null : (performance.now() - this.heard_) / 1000;
     this.be_quiet_(silent !== null && (!this.connection_.open || silent > kLastKnown_s));
-    let [text, state] = [this.replay_ ? "replay" : "live", "fresh"];
-    if (!this.connection_.open) [text, state] = [this.heard_ === null ? "connecting" : "gateway gone", "lost"];
+    let [text, state] = this.replay_ ? ["replay, not live", "replay"] : ["live", "fresh"];
+    document.documentElement.classList.toggle("replay", Boolean(this.replay_));
+    const without = this.why_ === "full" ? "no place for this page" : this.heard_ === null ? "no connection" : "gateway gone";
+    if (!this.connection_.open) [text, state] = [this.retry_at_ === null ? "connecting" : without, "lost"];
     else if (silent === null) [text, state] = ["connecting", "none"];
     else if (silent > kQuiet_s) [text, state] = [`no news for ${age(silent)}`, "stale"];
     setText(byId("line-text"), text);

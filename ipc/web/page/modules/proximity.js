@@ -23,6 +23,17 @@ export function cut_note(shown, all) {
 
 const kOld_s = 0.5;
 
+const kNoNews = "Not known: no news from the gateway.";
+
+// What an empty list of pairs says, and whether that is known. `said`: for tests that are up to date; `quiet`: nothing has
+// come from the gateway for a while.
+export function nothing_in_words(live, said, quiet = false) {
+  if (quiet) return {text: kNoNews, known: false};
+  if (!Array.isArray(live.touching)) return {text: "Not known: nothing is tested.", known: false};
+  if (live.collision_age_s > kOld_s) return {text: `Not known: the newest result is ${age(live.collision_age_s)} old.`, known: false};
+  return {text: said, known: true};
+}
+
 // The collisions in the head. Untested and outdated are shown as such.
 export function collisions_in_brief(live) {
   if (!Array.isArray(live.touching)) return {text: "collisions not known", state: "none", title: null};
@@ -80,9 +91,9 @@ export class Proximity {
     this.barriers_.show((live.light_barriers ?? []).slice(0, kMostRows), (barrier) => barrier.name);
     this.forces_.show((live.forces ?? []).slice(0, kMostRows), (force) => force.robot);
     byId("no-touching").hidden = touching.length > 0;
-    setText(byId("no-touching"), live.touching ? "Nothing touches." : "Not known: nothing is tested.");
     byId("no-near").hidden = near.length > 0;
-    setText(byId("no-near"), live.touching ? "Nothing is near." : "Not known: nothing is tested.");
+    this.live_ = live;
+    this.show_nothing_();
     byId("range-part").hidden = (live.ranges ?? []).length === 0;
     byId("barrier-part").hidden = (live.light_barriers ?? []).length === 0;
     byId("force-part").hidden = (live.forces ?? []).length === 0;
@@ -94,6 +105,21 @@ export class Proximity {
     setText(byId("range-note"), cut_note(shown(live.ranges), live.ranges?.length ?? 0));
     setText(byId("barrier-note"), cut_note(shown(live.light_barriers), live.light_barriers?.length ?? 0));
     setText(byId("force-note"), cut_note(shown(live.forces), live.forces?.length ?? 0));
+  }
+
+  // Nothing comes from the gateway any more, or it does again.
+  show_quiet(quiet) {
+    this.quiet_ = quiet;
+    this.show_nothing_();
+  }
+
+  show_nothing_() {
+    for (const [id, said] of [["no-touching", "Nothing touches."], ["no-near", "Nothing is near."]]) {
+      if (!this.live_) continue;  // what the page has from the beginning says that nothing is known
+      const {text, known} = nothing_in_words(this.live_, said, this.quiet_);
+      setText(byId(id), text);
+      byId(id).classList.toggle("unknown", !known);
+    }
   }
 
   show_counts_(live) {

@@ -38,6 +38,8 @@ export class Robots {
     const robots = live.robots ?? [];
     this.cards_.show(robots, (robot) => robot.id);
     byId("no-robots").hidden = robots.length > 0;
+    setText(byId("no-robots"), "The cell has no robots.");
+    byId("no-robots").classList.remove("unknown");
     const doubtful = robots.filter((robot) => !["fresh", "simulated"].includes(state_of(robot))).length;
     setText(byId("robot-count"), doubtful ? `${robots.length}, ${doubtful} not fresh` : String(robots.length));
   }
@@ -91,9 +93,11 @@ export class Robots {
     setText(card.badge, kStateTexts[state] ?? state);
     setText(card.age, robot.mode === "mirrored" ? age(robot.age_s) : "");
     setText(card.flags, [robot.active ? "active" : "", robot.moving ? "moving" : ""].filter(Boolean).join(", "));
-    const note = typeof robot.condition === "string" ? robot.condition : "";
+    const refused = robot.refused_setpoints > 0 && robot.mode !== "mirrored"
+      ? `${robot.refused_setpoints} set points were beyond the limits of the joints and were not followed as given` : "";
+    const note = refused || (typeof robot.condition === "string" ? robot.condition : "");
     setText(card.note, note);
-    card.note.hidden = note === "" || state === "fresh" || state === "simulated";
+    card.note.hidden = note === "" || (refused === "" && (state === "fresh" || state === "simulated"));
     card.online.dataset.to = robot.mode === "mirrored" ? "offline" : "online";
     setText(card.online, robot.mode === "mirrored" ? "Take offline" : "Take online");
     card.online.hidden = robot.mode !== "mirrored" && robot.has_stream === false;

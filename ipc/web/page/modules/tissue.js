@@ -132,5 +132,7 @@ export class Tissue {
     byId("tissue-instrument-part").hidden = tissue.instruments.length === 0;
     byId("tissue-vessel-part").hidden = tissue.vessels.length === 0;
     byId("no-tissue-events").hidden = tissue.events.length > 0;
+    setText(byId("no-tissue-events"), "Nothing has happened yet.");
+    byId("no-tissue-events").classList.remove("unknown");
   }
 }
