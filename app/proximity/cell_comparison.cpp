@@ -86,7 +86,7 @@ std::optional<CellOverPostures> over_postures(const ProximityCell& cell, const s
   input.settings = cell.loaded.collision;
   input.settings.active = true;
   collision::PairDerivation derivation(std::make_shared<geometry::SolidLibrary>());
-  input.pairs = derivation.derive(*input.cell, input.settings);
+  input.pairs = derivation.derive(*input.cell, input.settings, rows->beyond());
   CellOverPostures out;
   out.cell = cell.loaded.name;
   const auto run =

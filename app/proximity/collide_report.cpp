@@ -7,6 +7,7 @@
 
 #include "app/console/display_names.hpp"
 #include "app/console/put.hpp"
+#include "app/proximity/pairs_report.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/microseconds.hpp"
 #include "rt_core/base/text.hpp"
@@ -19,6 +20,7 @@ constexpr std::uint64_t kPairsListed = 12;  // frames that are shown one by one
 constexpr std::uint64_t kMostChanges = 40;  // lines about frames in which something changes
 constexpr std::size_t kMostPairs = 30;      // of the summary: those that touch in most frames
 constexpr std::size_t kMostDoubt = 400;     // characters of a sentence
+constexpr std::size_t kMostLeftOut = 6;     // pairs that are named per reason
 
 std::size_t tested_pairs(const collision::PairTable& pairs) {
   return static_cast<std::size_t>(
@@ -71,6 +73,13 @@ CollideJson::CollideJson(const CollideHeading& heading, const collision::PairTab
       .member("pairs_left_out", pairs.pairs.size() - tested)
       .member("pairs_rigid", pairs.rigid_pairs)
       .member("warning_distance_m", heading.warning_distance_m)
+      .key("left_out")
+      .begin_array();
+  for (const collision::Pair& pair : pairs.pairs) {
+    if (collision::is_tested(pair.state)) continue;
+    begin_pair(json_, pairs, pair.a, pair.b).member("state", word_of(pair.state)).end_object();
+  }
+  json_.end_array()
       .key("frames")
       .begin_array();
   hand_out();
@@ -136,7 +145,24 @@ CollideText::CollideText(const CollideHeading& heading, const collision::PairTab
   put(out_, "{}: {}, {}; {} tested, {} left out (--pairs says why), {} rigid\n", printable(heading.cell),
       number_of(pairs.bodies.size(), "body", "bodies"), number_of(pairs.triangles, "triangle"),
       number_of(tested, "pair"), pairs.pairs.size() - tested, pairs.rigid_pairs);
+  left_out(pairs);
   for (const std::string& doubt : pairs.doubts) put(out_, "in doubt: {}\n", printable(doubt, kMostDoubt));
+}
+
+// One line per reason, so that nobody takes a pair for free that is not tested.
+void CollideText::left_out(const collision::PairTable& pairs) {
+  using collision::PairState;
+  for (const PairState state : {PairState::neighbours, PairState::always, PairState::never, PairState::rule_ignore}) {
+    std::size_t count = 0;
+    std::string named;
+    for (const collision::Pair& pair : pairs.pairs) {
+      if (pair.state != state) continue;
+      if (++count <= kMostLeftOut) named += (count == 1 ? "" : ", ") + pair_text(pair.a, pair.b);
+    }
+    if (count == 0) continue;
+    if (count > kMostLeftOut) named += fmt::format(" and {} more", count - kMostLeftOut);
+    put(out_, "  not tested, {} ({}): {}\n", word_of(state), count, named);
+  }
 }
 
 std::string CollideText::pair_text(std::uint32_t a, std::uint32_t b) const { return names_[a] + " - " + names_[b]; }

@@ -49,6 +49,7 @@ class CollideText {
   void changes(std::uint64_t number, const ProximityState& state);
   void change(const std::string& line);
   void touching_summary(const CollideTotals& totals);
+  void left_out(const collision::PairTable& pairs);
   [[nodiscard]] std::string pair_text(std::uint32_t a, std::uint32_t b) const;
 
   const CollideHeading heading_;

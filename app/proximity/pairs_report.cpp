@@ -31,8 +31,8 @@ constexpr std::array kStates{
     StateText{PairState::tested, "tested", "tested"},
     StateText{PairState::rule_test, "rule-test", "tested because of a rule"},
     StateText{PairState::neighbours, "neighbours", "left out: links of one robot with one joint between them"},
-    StateText{PairState::always, "always", "left out: touched in every sampled posture"},
-    StateText{PairState::never, "never", "left out: came near each other in no sampled posture"},
+    StateText{PairState::always, "always", "left out: proved to touch in every posture within the joint ranges"},
+    StateText{PairState::never, "never", "left out: proved to stay apart in every posture within the joint ranges"},
     StateText{PairState::rule_ignore, "rule-ignore", "left out because of a rule"},
     StateText{PairState::rigid, "rigid", "left out: no joint between them"},
 };

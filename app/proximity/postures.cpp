@@ -39,7 +39,9 @@ bool Postures::check(Diagnostics& diagnostics, const ReadProgress& progress) {
   PostureReader reader(in_, file_, cell_, found);
   if (reader.read_header()) {
     constexpr std::uint64_t kEvery = 4096;  // rows
+    const std::shared_ptr<const CompiledCell> compiled = cell_.compile();
     while (reader.read_row(q_)) {
+      (void)ranges_.note(*compiled, q_);
       if (progress && reader.rows() % kEvery == 0) progress(static_cast<std::uint64_t>(in_.tellg()), size);
     }
     reader.finish();

@@ -14,6 +14,7 @@
 #include "rt_core/base/diagnostics.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/cell/cell.hpp"
+#include "rt_core/collision/mechanism.hpp"
 
 namespace cellmirror::app {
 
@@ -32,6 +33,8 @@ class Postures {
   // the file is no longer what it was.
   Result<bool> next();
   [[nodiscard]] std::span<const JointValues> q() const { return q_; }  // by slot
+  // Robots that are outside of their joint ranges in a posture.
+  [[nodiscard]] const collision::SlotSet& beyond() const { return ranges_.beyond(); }
 
  private:
   Postures(std::string file, const Cell& cell);
@@ -44,6 +47,7 @@ class Postures {
   Diagnostics again_;  // of the second reading
   std::optional<PostureReader> reader_;
   std::vector<JointValues> q_;
+  collision::RangeWatch ranges_;
   std::uint64_t count_ = 1;
   std::uint64_t given_ = 0;
 };

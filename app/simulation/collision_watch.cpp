@@ -28,11 +28,16 @@ CollisionWatch::CollisionWatch(Timestamp begin, Nanoseconds period)
 
 void CollisionWatch::adopt(const CellState& cell_state) {
   const bool news = follower_.take_cell(cell_state.cell);
+  if (news) ranges_.clear();
   if (!news && settings_ == cell_state.collision) return;
+  derive(cell_state);
+}
+
+void CollisionWatch::derive(const CellState& cell_state) {
   settings_ = cell_state.collision;
   summary_.warning_distance_m = settings_->warning_distance_m;
   if (!settings_->active) return;
-  const auto pairs = derivation_.derive(*follower_.cell(), *settings_);
+  const auto pairs = derivation_.derive(*follower_.cell(), *settings_, ranges_.beyond());
   checker_.adopt(follower_.cell(), pairs, *settings_);
   checker_.limit_contacts(1, kContactPeriod);
   summary_.pairs = static_cast<std::size_t>(
@@ -62,6 +67,7 @@ void CollisionWatch::observe(const std::shared_ptr<const CellState>& cell_state,
     adopt(*cell_state);
   }
   if (settings_->active && !same_posture(tick) && follower_.take_posture(tick)) {
+    if (ranges_.note(*follower_.cell(), follower_.positions())) derive(*cell_state);
     const ProximityState& found = checker_.check(follower_.poses(), tick.time);
     const double now_s = seconds(tick.time - begin_);
     tested_ = true;

@@ -12,6 +12,7 @@
 #include "app/snapshot/cell_poser.hpp"
 #include "app/snapshot/cell_state.hpp"
 #include "rt_core/collision/checker.hpp"
+#include "rt_core/collision/mechanism.hpp"
 #include "rt_core/collision/pairs.hpp"
 #include "rt_core/engine/tick_state.hpp"
 
@@ -28,6 +29,7 @@ class CollisionWatch {
 
  private:
   void adopt(const CellState& cell_state);
+  void derive(const CellState& cell_state);
   [[nodiscard]] bool same_posture(const engine::TickState& tick);
   void take_events(const ProximityState& found, double now_s);
   void take_depths(const ProximityState& found, double now_s);
@@ -39,6 +41,7 @@ class CollisionWatch {
   collision::PairDerivation derivation_;
   collision::Checker checker_;
   CellPoser follower_{false};
+  collision::RangeWatch ranges_;  // since the cell was taken
   std::shared_ptr<const CellState> picture_;
   std::shared_ptr<const collision::Settings> settings_;
   bool tested_ = false;                                                      // the posture below

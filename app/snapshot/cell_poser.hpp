@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "app/snapshot/tick_poser.hpp"
@@ -36,6 +37,7 @@ class CellPoser {
   [[nodiscard]] const std::shared_ptr<const CompiledCell>& cell() const { return cell_; }
   // As of the last take_posture() that was true.
   [[nodiscard]] const CellPoses& poses() const { return poser_.poses(); }
+  [[nodiscard]] std::span<const JointValues> positions() const { return poser_.positions(); }  // by slot
   // Where everything will be `ahead` later at present velocities, those of mirrored robots only while their data is
   // fresh; null where nothing moves.
   [[nodiscard]] const CellPoses* later(const engine::TickState& tick, Nanoseconds ahead);

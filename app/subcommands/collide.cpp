@@ -92,7 +92,7 @@ int collide(const CollideOptions& options) {
   input.settings.active = true;  // asked for by name
   if (!options.warning.empty()) input.settings.warning_distance_m = *parse_number(options.warning);
   collision::PairDerivation derivation(std::make_shared<geometry::SolidLibrary>());
-  input.pairs = derivation.derive(*input.cell, input.settings);
+  input.pairs = derivation.derive(*input.cell, input.settings, postures->beyond());
   if (options.pairs) return report_pairs(options, cell->loaded.name, *input.pairs);
   return report_frames(options, input, cell->loaded.name, *postures);
 }

@@ -73,7 +73,8 @@ void CollisionWorker::adopt(const CellState& cell_state) {
     note_ = "pairs are being derived";
   }
   settings_ = cell_state.collision;
-  std::shared_ptr<const collision::PairTable> pairs = derivation_.derive(*follower_.cell(), *settings_);
+  std::shared_ptr<const collision::PairTable> pairs =
+      derivation_.derive(*follower_.cell(), *settings_, ranges_.beyond());
   checker_.adopt(follower_.cell(), pairs, *settings_);
   // Deep overlaps cost some milliseconds each; the rate of results comes first.
   checker_.limit_contacts(1, kContactPeriod);
@@ -86,11 +87,13 @@ void CollisionWorker::adopt(const CellState& cell_state) {
 
 void CollisionWorker::run(const CellState& cell_state, const engine::TickState& tick) {
   const bool news = follower_.take_cell(cell_state.cell);
+  if (news) ranges_.clear();
   const bool changed = news || settings_ != cell_state.collision;
   if (changed) adopt(cell_state);
   // A component that was just loaded: its robots reach the tick a moment later. After a long derivation the posture is
   // old: the next tick is better.
   if (changed || !follower_.take_posture(tick)) return;
+  if (ranges_.note(*follower_.cell(), follower_.positions())) adopt(cell_state);  // quick: nothing is proved anew
   check(cell_state, tick);
 }
 

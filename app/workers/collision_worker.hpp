@@ -14,6 +14,7 @@
 #include "app/workers/result_age.hpp"
 #include "app/workers/tick_worker.hpp"
 #include "rt_core/collision/checker.hpp"
+#include "rt_core/collision/mechanism.hpp"
 #include "rt_core/collision/pairs.hpp"
 #include "rt_core/engine/tick_reader.hpp"
 #include "rt_core/geometry/solid.hpp"
@@ -46,6 +47,7 @@ class CollisionWorker final : private TickJob {
   collision::PairDerivation derivation_;
   collision::Checker checker_;
   CellPoser follower_{false};
+  collision::RangeWatch ranges_;  // since the cell was taken
   std::shared_ptr<const collision::Settings> settings_;
   bool nothing_to_test_ = false;
   ObjectPool<ProximityState> states_;

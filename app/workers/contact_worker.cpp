@@ -46,13 +46,16 @@ ContactWorker::Finder& ContactWorker::finder_for(const HapticSnapshot& haptic) {
 bool ContactWorker::follow(const CellState& cell_state) {
   const std::shared_ptr<const CompiledCell> before = follower_.cell();
   const bool news = follower_.take_cell(cell_state.cell);
-  const bool other_settings = settings_ != cell_state.collision;
+  const bool other_settings = settings_ != cell_state.collision || ranges_news_;
   if (!news && !other_settings) return false;
   const Timestamp start = clock_.now();
   settings_ = cell_state.collision;
   // A new tool centre point leaves the pairs as they are, and the other instruments are not to wait for it.
-  if (other_settings || !before || !same_bodies(*before, *follower_.cell(), false))
-    pairs_ = derivation_.derive(*follower_.cell(), *settings_);
+  const bool other_bodies = !before || !same_bodies(*before, *follower_.cell(), false);
+  if (other_bodies) ranges_.clear();
+  ranges_news_ = false;
+  if (other_settings || other_bodies)
+    pairs_ = derivation_.derive(*follower_.cell(), *settings_, ranges_.beyond());
   for (Finder& finder : finders_) {
     if (finder.finder) finder.finder->adopt(follower_.cell(), pairs_);
   }
@@ -64,6 +67,10 @@ bool ContactWorker::follow(const CellState& cell_state) {
 void ContactWorker::run(const CellState& cell_state, const engine::TickState& tick) {
   // After a long derivation the posture is old, and a component that was just loaded reaches the tick a moment later.
   if (follow(cell_state) || !follower_.take_posture(tick)) return;
+  if (ranges_.note(*follower_.cell(), follower_.positions())) {
+    ranges_news_ = true;
+    (void)follow(cell_state);  // quick: nothing is proved anew
+  }
   const Timestamp start = clock_.now();
   for (const HapticSnapshot& haptic : cell_state.haptics) {
     if (!haptic.online || tick.haptics[haptic.channel].phase == HapticPhase::closed) continue;

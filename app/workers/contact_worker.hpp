@@ -13,6 +13,7 @@
 #include "app/snapshot/contact_report.hpp"
 #include "app/workers/result_age.hpp"
 #include "app/workers/tick_worker.hpp"
+#include "rt_core/collision/mechanism.hpp"
 #include "rt_core/collision/pairs.hpp"
 #include "rt_core/contact_model/contact_finder.hpp"
 #include "rt_core/engine/engine.hpp"
@@ -51,6 +52,8 @@ class ContactWorker final : private TickJob {
   // The worker's own.
   collision::PairDerivation derivation_;
   CellPoser follower_{false, true};  // planes are given at the tool centre point
+  collision::RangeWatch ranges_;     // since the bodies were taken
+  bool ranges_news_ = false;         // since the pairs were derived
   std::shared_ptr<const collision::Settings> settings_;
   std::shared_ptr<const collision::PairTable> pairs_;
   std::array<Finder, kMaxHapticDevices> finders_;

@@ -32,16 +32,60 @@ void append(std::string& bytes, const JointChain& chain) {
   append(bytes, chain.X_tail);
 }
 
+// A joint that turns without end, or farther than one turn, repeats its postures after a turn if all that it drives do.
+void restrict_to_a_turn(RelativeMotion& motion) {
+  constexpr double kPi = std::numbers::pi;
+  for (std::size_t i = 0; i < motion.variables.size(); ++i) {
+    SampledRange& range = motion.variables[i];
+    const bool endless = range.lower == -kPi && range.upper == kPi;
+    if (!endless && range.upper - range.lower <= 2.0 * kPi) continue;
+    bool repeats = true;
+    for (const JointChain* chain : {&motion.to_a, &motion.to_b}) {
+      for (const JointChain::Link& link : chain->links) {
+        if (link.variable != i) continue;
+        repeats =
+            repeats && link.kind != JointKind::prismatic && link.multiplier == std::round(link.multiplier);
+      }
+    }
+    if (repeats) {
+      range.lower = -kPi;
+      range.upper = kPi;
+    } else if (endless) {
+      range.whole = false;
+    }
+  }
+}
+
 }  // namespace
 
 SampledRange sampled_range(const CompiledRobot& robot, std::size_t joint) {
+  constexpr SampledRange kTurn{-std::numbers::pi, std::numbers::pi, true};
+  constexpr SampledRange kSomewhere{-10.0, 10.0, false};  // m: a linear joint without end
+  const bool linear = robot.joint_kinds[joint] == JointKind::prismatic;
+  if (robot.joint_kinds[joint] == JointKind::continuous) return kTurn;
   const double lower = robot.min_range[joint];
   const double upper = robot.max_range[joint];
-  const bool turns = robot.joint_kinds[joint] == JointKind::continuous;
-  const double most = robot.joint_kinds[joint] == JointKind::prismatic ? 100.0 : 2.0 * std::numbers::pi;
-  if (turns || !(upper >= lower) || !std::isfinite(lower) || !std::isfinite(upper))
-    return {-std::numbers::pi, std::numbers::pi};
-  return {std::clamp(lower, -most, most), std::clamp(upper, -most, most)};
+  if (!(upper >= lower) || !std::isfinite(lower) || !std::isfinite(upper)) return linear ? kSomewhere : kTurn;
+  const double tolerance = linear ? kLinearRangeTolerance : kRangeTolerance;
+  return {lower - tolerance, upper + tolerance, true};
+}
+
+bool RangeWatch::note(const CompiledCell& cell, std::span<const JointValues> q) {
+  bool news = false;
+  for (const CompiledRobot& robot : cell.robots) {
+    if (beyond_.test(robot.slot) || robot.slot >= q.size()) continue;
+    for (std::size_t joint = 0; joint < robot.joint_kinds.size(); ++joint) {
+      if (robot.joint_kinds[joint] == JointKind::continuous) continue;
+      const double tolerance =
+          robot.joint_kinds[joint] == JointKind::prismatic ? kLinearRangeTolerance : kRangeTolerance;
+      const double position = q[robot.slot][joint];
+      if (position >= robot.min_range[joint] - tolerance && position <= robot.max_range[joint] + tolerance) continue;
+      beyond_.set(robot.slot);
+      news = true;
+      break;
+    }
+  }
+  return news;
 }
 
 Pose JointChain::end(std::span<const double> values) const {
@@ -59,10 +103,15 @@ Pose RelativeMotion::X_AB(std::span<const double> values) const {
 void RelativeMotion::append_signature(std::string& bytes) const {
   append(bytes, to_a);
   append(bytes, to_b);
-  for (const SampledRange& range : variables) append(bytes, range);
+  for (const SampledRange& range : variables) {
+    append(bytes, range.lower);
+    append(bytes, range.upper);
+    append(bytes, range.whole);
+  }
 }
 
-Mechanism::Mechanism(const CompiledCell& cell) : cell_(cell), group_(cell.size(), 0), link_of_(cell.size(), -1) {
+Mechanism::Mechanism(const CompiledCell& cell, const SlotSet& beyond)
+    : cell_(cell), beyond_(beyond), group_(cell.size(), 0), link_of_(cell.size(), -1) {
   std::vector<std::int32_t> component_robot(cell.size(), -1);
   for (std::size_t i = 0; i < cell.robots.size(); ++i)
     component_robot[at(cell.robots[i].component)] = static_cast<std::int32_t>(i);
@@ -109,7 +158,9 @@ JointChain Mechanism::chain(std::int32_t above, std::int32_t below, RelativeMoti
     auto known = std::ranges::find(keys, key);
     if (known == keys.end()) {
       const CompiledRobot* robot = cell_.robot(joint.slot);
-      motion.variables.push_back(robot != nullptr ? sampled_range(*robot, joint.joint) : SampledRange{});
+      SampledRange range = robot != nullptr ? sampled_range(*robot, joint.joint) : SampledRange{};
+      range.whole = range.whole && robot != nullptr && !beyond_.test(joint.slot);
+      motion.variables.push_back(range);
       known = keys.insert(keys.end(), key);
     }
     chain.links.push_back(
@@ -132,6 +183,7 @@ RelativeMotion Mechanism::between(std::int32_t a, std::int32_t b) const {
   std::vector<std::uint32_t> keys;
   motion.to_a = chain(above_a, a, motion, keys);
   motion.to_b = chain(above_a, b, motion, keys);
+  restrict_to_a_turn(motion);
   return motion;
 }
 

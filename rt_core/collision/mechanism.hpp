@@ -2,22 +2,43 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bitset>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "rt_core/base/capacity.hpp"
 #include "rt_core/base/pose.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 
 namespace cellmirror::collision {
 
-// A joint's range as it is sampled: finite, at most one turn each way where nothing limits it.
+// Positions beyond a range by no more than this are covered by what is proved: streams are noisy at their stops.
+inline constexpr double kRangeTolerance = 0.01;         // rad
+inline constexpr double kLinearRangeTolerance = 0.001;  // m
+
+// A joint's range as it is sampled: finite, one turn where nothing limits it.
 struct SampledRange {
   double lower = 0;  // rad or m
   double upper = 0;
+  bool whole = true;  // false: the joint can reach postures outside of it, so that nothing can be proved
 };
 [[nodiscard]] SampledRange sampled_range(const CompiledRobot& robot, std::size_t joint);
+
+using SlotSet = std::bitset<kMaxRobots>;
+
+// Robots with a joint that was seen outside of its range: nothing is proved about these. One thread.
+class RangeWatch {
+ public:
+  // Takes the positions by slot. True: another robot has left its ranges, so that the pairs must be derived again.
+  bool note(const CompiledCell& cell, std::span<const JointValues> q);
+  void clear() { beyond_.reset(); }
+  [[nodiscard]] const SlotSet& beyond() const { return beyond_; }
+
+ private:
+  SlotSet beyond_;
+};
 
 // Joints and fixed poses from a node above to a node below, runs of fixed poses taken together.
 struct JointChain {
@@ -49,7 +70,8 @@ struct RelativeMotion {
 
 class Mechanism {
  public:
-  explicit Mechanism(const CompiledCell& cell);
+  // `beyond`: robots that have left their ranges.
+  explicit Mechanism(const CompiledCell& cell, const SlotSet& beyond = {});
 
   // No joint between them.
   [[nodiscard]] bool rigid(std::int32_t a, std::int32_t b) const { return group(a) == group(b); }
@@ -67,6 +89,7 @@ class Mechanism {
                                  std::vector<std::uint32_t>& keys) const;
 
   const CompiledCell& cell_;
+  SlotSet beyond_;
   std::vector<std::int32_t> group_;  // the joint that carries the node (itself where it is one), 0: the world
   std::vector<std::int32_t> link_of_;
 };

@@ -19,7 +19,7 @@ namespace cellmirror::collision {
 // the address of one that is known.
 struct PairDerivation::Memory {
   struct Entry {
-    SampledFinding finding;
+    PairFinding finding;
     std::vector<std::shared_ptr<const geometry::MeshTree>> kept;
   };
   std::map<std::string, Entry> entries;
@@ -43,14 +43,6 @@ void append_shape(std::string& bytes, const Body& body) {
     append(part.solid->size.data(), 3 * sizeof(double));
     append(part.X_NG.data(), 16 * sizeof(double));
   }
-}
-
-std::string never_text(const SampledFinding& finding) {
-  return fmt::format("never nearer than {:.3f} m in {} sampled postures", finding.least, finding.postures);
-}
-
-std::string always_text(const SampledFinding& finding) {
-  return fmt::format("touched in all {} sampled postures", finding.postures);
 }
 
 // Some postures of the whole cell, to see cheaply which pairs cannot be touching always.
@@ -101,11 +93,11 @@ class ProximityTest {
 class PairClassifier {
  public:
   PairClassifier(const CompiledCell& cell, const Settings& settings, const PairTable& table,
-                 PairDerivation::Memory& memory)
+                 PairDerivation::Memory& memory, const SlotSet& beyond)
       : cell_(cell),
         table_(table),
         memory_(memory),
-        mechanism_(cell),
+        mechanism_(cell, beyond),
         rules_(settings.rules, table),
         proximity_test_(cell, table.bodies) {}
 
@@ -129,19 +121,16 @@ class PairClassifier {
                                 (*cell_.paths)[static_cast<std::size_t>(joint)]);
       return pair;
     }
-    if (one_robot || proximity_test_.may_touch_always(a, b)) decide_by_sampling(pair, one_robot);
+    if (one_robot || proximity_test_.may_touch_always(a, b)) {
+      PairFinding finding = found(pair, one_robot);
+      pair.state = finding.state;
+      pair.reason = std::move(finding.reason);
+    }
     return pair;
   }
 
  private:
-  void decide_by_sampling(Pair& pair, bool one_robot) {
-    const SampledFinding finding = sampled(pair, one_robot);
-    pair.state = finding.state;
-    if (pair.state == PairState::never) pair.reason = never_text(finding);
-    if (pair.state == PairState::always) pair.reason = always_text(finding);
-  }
-
-  SampledFinding sampled(const Pair& pair, bool one_robot) {
+  PairFinding found(const Pair& pair, bool one_robot) {
     const Body& a = table_.bodies[pair.a];
     const Body& b = table_.bodies[pair.b];
     const RelativeMotion motion = mechanism_.between(a.node, b.node);
@@ -152,7 +141,7 @@ class PairClassifier {
     const auto known = memory_.entries.find(key);
     if (known != memory_.entries.end()) return known->second.finding;
     if (memory_.entries.size() >= kMaxRemembered) memory_.entries.clear();
-    PairDerivation::Memory::Entry entry{sample(motion, a, b, one_robot), {}};
+    PairDerivation::Memory::Entry entry{examine(motion, a, b, one_robot), {}};
     for (const Body* body : {&a, &b}) {
       for (const BodyPart& part : body->parts) {
         if (part.solid->tree) entry.kept.push_back(part.solid->tree);
@@ -174,7 +163,8 @@ PairDerivation::PairDerivation(std::shared_ptr<geometry::SolidLibrary> solids)
 
 PairDerivation::~PairDerivation() = default;
 
-std::shared_ptr<const PairTable> PairDerivation::derive(const CompiledCell& cell, const Settings& settings) {
+std::shared_ptr<const PairTable> PairDerivation::derive(const CompiledCell& cell, const Settings& settings,
+                                                        const SlotSet& beyond) {
   auto table = std::make_shared<PairTable>();
   table->revision = cell.revision;
   CollectedBodies found = collect_bodies(cell, *solids_);
@@ -189,7 +179,7 @@ std::shared_ptr<const PairTable> PairDerivation::derive(const CompiledCell& cell
   }
   table->names = std::move(names);
   table->short_names = std::make_shared<const std::vector<std::string>>(short_body_names(cell, nodes));
-  PairClassifier classifier(cell, settings, *table, *memory_);
+  PairClassifier classifier(cell, settings, *table, *memory_, beyond);
   const auto count = static_cast<std::uint32_t>(table->bodies.size());
   for (std::uint32_t a = 0; a < count; ++a) {
     for (std::uint32_t b = a + 1; b < count; ++b) {

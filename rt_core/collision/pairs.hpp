@@ -1,12 +1,14 @@
 // Which bodies there are in a cell, which pairs of them are tested, and why the others are not.
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "rt_core/base/capacity.hpp"
 #include "rt_core/base/pose.hpp"
 #include "rt_core/cell/compiled_cell.hpp"
 #include "rt_core/collision/settings.hpp"
@@ -30,8 +32,8 @@ enum class PairState : std::uint8_t {
   tested,
   rigid,        // no joint between them: they cannot move against each other
   neighbours,   // links of one robot with one joint between them
-  always,       // touched in every sampled posture
-  never,        // links of one robot that came near each other in no sampled posture
+  always,       // proved: they touch in every posture within the joint ranges
+  never,        // links of one robot; proved: they stay apart in every posture within the joint ranges
   rule_ignore,  // a rule of the cell file or of SET_COLLPAR
   rule_test,    // tested because of a rule
 };
@@ -44,7 +46,7 @@ struct Pair {
   std::uint32_t a = 0;  // index of a body; a < b
   std::uint32_t b = 0;
   PairState state = PairState::tested;
-  std::string reason;  // for people, e.g. "never nearer than 0.034 m in 2000 sampled postures"
+  std::string reason;  // for people: why it is left out, or what was found and not proved
 };
 
 // For one compiled cell. Immutable once made, shared between threads.
@@ -60,15 +62,18 @@ struct PairTable {
   std::vector<std::string> doubts;  // geometry that should be tested and cannot be, in words
 };
 
-// Makes pair tables. Remembers by component what it found out by sampling, so that neither the second robot of a kind
-// nor the next revision of the cell samples again. The same seed on every machine. One thread; takes up to a second for
-// a robot that was not sampled before.
+// Makes pair tables. Remembers by component what it found out, so that neither the second robot of a kind nor the next
+// revision of the cell is examined again. The same answer on every machine. One thread; takes up to some seconds for a
+// robot of a new kind.
 class PairDerivation {
  public:
   explicit PairDerivation(std::shared_ptr<geometry::SolidLibrary> solids);
   ~PairDerivation();
 
-  [[nodiscard]] std::shared_ptr<const PairTable> derive(const CompiledCell& cell, const Settings& settings);
+  // `beyond`: robots that have left their ranges (RangeWatch). Nothing is proved about them, so that their pairs are
+  // left out only as `rigid`, `neighbours` or by a rule.
+  [[nodiscard]] std::shared_ptr<const PairTable> derive(const CompiledCell& cell, const Settings& settings,
+                                                        const std::bitset<kMaxRobots>& beyond = {});
 
  private:
   friend class PairClassifier;

@@ -1,11 +1,14 @@
 #include "rt_core/collision/sampling.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include "rt_core/collision/body_proximity.hpp"
+#include "rt_core/collision/pair_proof.hpp"
 
 namespace cellmirror::collision {
 
@@ -27,29 +30,23 @@ class Sampler {
   Sampler(const RelativeMotion& motion, const Body& a, const Body& b)
       : motion_(motion), proximity_(a, b), values_(motion.variables.size()), nearest_(values_) {}
 
-  SampledFinding run(bool may_be_never) {
-    SampledFinding finding;
+  // What the postures suggest, not more than that.
+  PairState run(bool may_be_never) {
     for (int i = 0; i < kSampledPostures; ++i) {
       anywhere();
       try_posture();
-      if (apart_once_ && (!may_be_never || least_ <= kNeverMargin)) return finding;
+      if (apart_once_ && (!may_be_never || least_ <= kNeverMargin)) return PairState::tested;
     }
-    finding.postures = kSampledPostures;
-    if (!apart_once_) {
-      finding.state = PairState::always;
-      return finding;
-    }
+    if (!apart_once_) return PairState::always;
     double width = 0.1;
     for (int i = 0; i < kRefinedPostures; ++i, width *= 0.985) {
       around_nearest(width);
       try_posture();
-      if (least_ <= kNeverMargin) return finding;
+      if (least_ <= kNeverMargin) return PairState::tested;
     }
-    finding.postures += kRefinedPostures;
-    finding.state = PairState::never;
-    finding.least = least_;
-    return finding;
+    return PairState::never;
   }
+  [[nodiscard]] double least() const { return least_; }
 
  private:
   // Ends of ranges are where arms fold most, and no random number meets them.
@@ -89,8 +86,28 @@ class Sampler {
 
 }  // namespace
 
-SampledFinding sample(const RelativeMotion& motion, const Body& a, const Body& b, bool may_be_never) {
-  return Sampler(motion, a, b).run(may_be_never);
+PairFinding examine(const RelativeMotion& motion, const Body& a, const Body& b, bool may_be_never) {
+  Sampler sampler(motion, a, b);
+  PairFinding finding;
+  const PairState suggested = sampler.run(may_be_never);
+  if (suggested == PairState::never) {
+    const ProofResult result = prove_apart(motion, a, b, kNeverMargin);
+    if (result.proof == Proof::refuted) return finding;
+    if (result.proof == Proof::proved) finding.state = suggested;
+    finding.reason = result.proof == Proof::proved
+                         ? fmt::format("proved: nowhere within the joint ranges nearer than {:.3f} m", kNeverMargin)
+                         : fmt::format("never nearer than {:.3f} m in {} sampled postures, which is not proved",
+                                       sampler.least(), kSampledPostures + kRefinedPostures);
+  }
+  if (suggested == PairState::always) {
+    const ProofResult result = prove_touching(motion, a, b);
+    if (result.proof == Proof::refuted) return finding;
+    if (result.proof == Proof::proved) finding.state = suggested;
+    finding.reason = result.proof == Proof::proved
+                         ? std::string("proved: they touch in every posture within the joint ranges")
+                         : fmt::format("touched in all {} sampled postures, which is not proved", kSampledPostures);
+  }
+  return finding;
 }
 
 }  // namespace cellmirror::collision
