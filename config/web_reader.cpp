@@ -33,14 +33,23 @@ bool is_origin(std::string_view text) {
 }  // namespace
 
 std::string read_page_address(TableReader& table, const std::string& otherwise) {
-  const auto address = read_own_address(table, "address");
+  const auto given = read_own_address(table, "address");
   const bool remote = table.boolean("allow_remote").value_or(false);
-  if (!address) return otherwise;
-  if (!is_loopback(*address) && !remote) {
-    table.error("address", fmt::format("the page at {} would be reachable from other machines", printable(*address)),
+  const std::string address = given.value_or(otherwise);
+  if (is_loopback(address)) {
+    if (remote)
+      table.diagnostics().warning(table.place("allow_remote"),
+                                  fmt::format("allow_remote has no effect with the address {}", address),
+                                  "remove it, so that another address is refused until somebody decides for it");
+  } else if (remote) {
+    table.diagnostics().warning(
+        table.place("address"), fmt::format("the page at {} is reachable from other machines, without encryption", address),
+        "use 127.0.0.1 with a reverse proxy, unless the network is trusted");
+  } else {
+    table.error("address", fmt::format("the page at {} would be reachable from other machines", address),
                 "if intended, add allow_remote = true; the connection is not encrypted");
   }
-  return *address;
+  return address;
 }
 
 WebSettings read_web(TableReader& top) {
@@ -57,9 +66,16 @@ WebSettings read_web(TableReader& top) {
                                         kMostOrigins));
   }
   for (const std::string& origin : settings.origins) {
-    if (!is_origin(origin))
+    if (!is_origin(origin)) {
       table->error("origins", fmt::format("\"{}\" is not an origin", printable(origin)),
                    "e.g. https://monitor.example.org");
+    } else {
+      table->diagnostics().warning(
+          table->place("origins"),
+          fmt::format("pages of {} may show this cell, and command it for users who have the token",
+                      origin == "file://" ? "any HTML file on a user's machine" : printable(origin)),
+          "remove the origin from origins, unless its pages are trusted");
+    }
   }
   table->finish();
   return settings;

@@ -29,6 +29,7 @@
 #include "config/volume/voxel_memory.hpp"
 #include "drivers/dds/network.hpp"
 #include "drivers/dds/presence.hpp"
+#include "ipc/web/access.hpp"
 #include "rt_core/base/counted.hpp"
 #include "rt_core/base/log.hpp"
 #include "rt_core/base/wall_clock.hpp"
@@ -435,8 +436,10 @@ std::uint64_t Gateway::ticks() const { return parts_->loop->cycles(); }
 
 std::string Gateway::greeting() const {
   const Parts& parts = *parts_;
-  const std::string address = parts.page->report().address;
-  const std::string page = address.empty() ? std::string() : fmt::format("; monitor page {}", address);
+  const PageReport report = parts.page->report();
+  std::string page = report.address.empty() ? std::string() : fmt::format("; monitor page {}", report.address);
+  if (!report.address.empty() && !web::is_loopback(report.listens_on))
+    page += fmt::format(" (open to other machines: it listens on {})", report.listens_on);
   if (parts.playback != nullptr)
     return fmt::format("cell {} with {} is played from {}; instance {}{}; Ctrl-C ends it", parts.cell_name,
                        number_of(parts.board.latest()->robots.size(), "robot"), parts.playback->control().state().file,

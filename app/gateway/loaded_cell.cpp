@@ -28,6 +28,25 @@ void log_findings(const Diagnostics& diagnostics) {
   }
 }
 
+// The page of a replay is for this machine, at the port that the operator chooses.
+void keep_page_here(WebSettings& page) {
+  page.enabled = true;
+  page.address = WebSettings().address;
+  page.port.reset();
+  page.origins.clear();
+}
+
+// With --publish: DDS on loopback, no broker, and the queues of the instance.
+void keep_outputs_here(LoadedCell& cell) {
+  cell.mqtt.enabled = false;
+  cell.dds.interface_address = DdsOutputConfig().interface_address;
+  cell.dds.security = {};
+  cell.dds_network = {};
+  const std::optional<double> sensor_rate_hz = cell.queues.sensor_rate_hz;
+  cell.queues = {};
+  cell.queues.sensor_rate_hz = sensor_rate_hz;
+}
+
 }  // namespace
 
 Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
@@ -50,7 +69,11 @@ Result<LoadedCell> load_cell_of(const GatewayOptions& options) {
     loaded->home = *std::move(home);
   }
   if (options.rate_hz) loaded->loop.rate_hz = *options.rate_hz;
-  if (options.playback != nullptr) loaded->loop.rate_hz = options.playback->rate_hz();
+  if (options.playback != nullptr) {
+    loaded->loop.rate_hz = options.playback->rate_hz();
+    keep_page_here(loaded->web);
+  }
+  if (options.foreign_cell) keep_outputs_here(*loaded);
   return std::move(*loaded);
 }
 

@@ -39,6 +39,7 @@ void MonitorPage::open() {
     const std::scoped_lock lock(mutex_);
     server_ = std::move(*server);
     state_.address = page.url();
+    state_.listens_on = page.address;
   }
   // Without the file the page only shows, since nobody can know the token.
   if (const auto written = web::write_page_address(options_.folder, page); !written)

@@ -121,6 +121,13 @@ std::string gateway_value(const mcap::Reader& reader, std::string_view key) {
 
 fs::path recorded_cell_path(const mcap::Reader& reader) { return gateway_value(reader, kCellFileKey); }
 
+std::string recorded_cell_remedy(const mcap::Reader& reader) {
+  const fs::path recorded = recorded_cell_path(reader);
+  if (recorded.empty()) return "name the cell file with --recorded-cell";
+  return fmt::format("name the cell file with --recorded-cell; the recorded gateway had {}",
+                     printable(recorded.string()));
+}
+
 RecordedCell recorded_cell(const mcap::Reader& reader) {
   const auto list = reader.metadata(kCellFilesName);
   if (!list) return cell_without_list(reader);

@@ -32,6 +32,9 @@ struct RecordedCell {
 // Where the cell file was when it was recorded; empty: the recording does not say.
 [[nodiscard]] std::filesystem::path recorded_cell_path(const mcap::Reader& reader);
 
+// Which option names the cell file, and where it was. The path is for people: it comes from the recording.
+[[nodiscard]] std::string recorded_cell_remedy(const mcap::Reader& reader);
+
 struct ExtractedCell {
   std::filesystem::path cell_file;
   std::vector<std::string> missing;  // as above

@@ -15,6 +15,7 @@ nlohmann::json page_json(const PageReport& report) {
   return {{"on", report.on},
           {"address", report.address.empty() ? json(nullptr) : json(report.address)},
           {"problem", report.problem},
+          {"listens_on", report.listens_on},
           {"read_only", report.read_only},
           {"clients", server.clients},
           {"requests", server.requests},

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -65,24 +64,18 @@ std::vector<std::string> changed_files(const mcap::Reader& reader, const fs::pat
   return out;
 }
 
-// Where the cell is no longer, its files in the recording are used, in `folder`.
+// The file that the operator names, else the files in the recording, in `folder`. A path in a recording is not opened:
+// whoever made the file would decide what is read here.
 Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayCells& cells,
                                        std::optional<TemporaryFolder>& folder) {
   if (!cells.recorded.empty()) return cells.recorded;
-  const fs::path file = recorded_cell_path(reader);
-  if (file.empty())
-    return fail("the recording does not say where its cell was", "name the cell file with --recorded-cell");
-  std::error_code error;
-  if (fs::is_regular_file(file, error)) return file.string();
   auto made = TemporaryFolder::make();
   if (!made) return std::unexpected(made.error());
   folder.emplace(*std::move(made));
   const auto extracted = extract_cell(reader, folder->path());
   if (!extracted) {
-    return fail(
-        fmt::format("the recorded cell {} is not there any more, and the recording's own files cannot be used: {}",
-                    printable(file.string()), extracted.error().text()),
-        "name its cell file with --recorded-cell");
+    return fail(fmt::format("the cell in the recording cannot be used: {}", extracted.error().text()),
+                recorded_cell_remedy(reader));
   }
   for (const std::string& one : extracted->missing)
     put(stderr, "cellmirror: not in the recording: {}\n", printable(one));

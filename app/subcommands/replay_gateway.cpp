@@ -42,7 +42,7 @@ std::string not_whole(const Diagnostics& findings) {
   return "its attached files are not a whole cell";
 }
 
-// The attached files, where they are a whole cell; else the cell file where it was recorded, if it is still there.
+// The attached files. A path in a recording is not opened: whoever made the file would decide what is read here.
 Result<fs::path> cell_of(const mcap::Reader& reader, const ReplayGateway& options, const fs::path& folder) {
   if (!options.recorded_cell.empty()) return fs::path(options.recorded_cell);
   const auto attached = extract_cell(reader, folder);
@@ -52,12 +52,7 @@ Result<fs::path> cell_of(const mcap::Reader& reader, const ReplayGateway& option
     if (load_cell(attached->cell_file, findings)) return attached->cell_file;
     why = not_whole(findings);
   }
-  const fs::path recorded = recorded_cell_path(reader);
-  std::error_code error;
-  if (recorded.empty() || !fs::is_regular_file(recorded, error))
-    return fail(fmt::format("{}: {}", options.file, why), "name the cell file with --recorded-cell");
-  log_warning("replay.cell", "the cell is {} as it is now: of the recording, {}", printable(recorded.string()), why);
-  return recorded;
+  return fail(fmt::format("{}: {}", options.file, why), recorded_cell_remedy(reader));
 }
 
 // The signal that ended it; 0: the recording has ended.
@@ -106,6 +101,7 @@ int play_recording(const ReplayGateway& options) {
   if (!cell) return refuse(cell.error().text());
   GatewayOptions gateway_options;
   gateway_options.cell_file = *cell;
+  gateway_options.foreign_cell = options.recorded_cell.empty();
   gateway_options.state = state;
   gateway_options.instance = options.instance;
   gateway_options.headless = options.headless;

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import socket
 import struct
 import subprocess
@@ -215,6 +216,64 @@ class Controls(PlaybackCase):
         for bad in (b"\x03", b"\x03\x07" + bytes(17), b"\x03\x00" + struct.pack("<fBQI", -1, 0, 0, 0)):
             client.say_bytes(bad)
             client.until_op("status")
+
+
+def listening_at(port):
+    """The local addresses, in hexadecimal, at which anybody listens on this TCP port."""
+    found = []
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        for line in pathlib.Path(table).read_text().splitlines()[1:]:
+            local, state = line.split()[1], line.split()[3]
+            if state == "0A" and int(local.rsplit(":", 1)[1], 16) == port:
+                found.append(local.rsplit(":", 1)[0])
+    return found
+
+
+class StrangersFile(unittest.TestCase):
+    """A recording whose cell file opens the page to everybody, and whose cell lies in a folder that is not attached."""
+
+    def setUp(self):
+        self.scratch = g.Scratch()
+        self.addCleanup(self.scratch.remove)
+
+    def record(self, *arguments):
+        file = self.scratch.root / "stranger.mcap"
+        gateway = g.Gateway(self.scratch)
+        self.addCleanup(gateway.close)
+        done = self.scratch.cellmirror("record", "-o", str(file), "--for", "1", "--instance", self.scratch.instance, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        gateway.close()
+        return file
+
+    def test_its_web_table_opens_nothing(self):
+        with self.scratch.cell_file.open("a") as cell:
+            # Disabled, so that the gateway that records does not listen there.
+            cell.write('\n[web]\nenabled = false\naddress = "0.0.0.0"\nallow_remote = true\nport = 28431\norigins = ["https://evil.example"]\n')
+        checked = self.scratch.cellmirror("check", str(self.scratch.cell_file))
+        self.assertIn("is reachable from other machines", checked.stdout + checked.stderr)
+        self.assertIn("pages of https://evil.example", checked.stdout + checked.stderr)
+        replay = Replay(self.scratch, self.record(), "--paused", "--page")
+        self.addCleanup(replay.close)
+        page = replay.page()
+        self.assertNotEqual(page.port, 28431, "the port of the recording")
+        self.assertEqual(listening_at(page.port), ["0100007F"], "on loopback alone")
+        self.assertEqual(replay.status()["page"]["listens_on"], "127.0.0.1")
+        self.assertEqual(page.ask("/api/status")[0], 200)
+        self.assertEqual(page.ask("/api/status", headers={"Origin": "https://evil.example"})[0], 403)
+        self.assertEqual(page.ask("/api/status", headers={"Host": "evil.example"})[0], 421)
+
+    def test_a_path_in_it_is_not_opened(self):
+        file = self.record("--attach-mb", "0")
+        self.assertTrue(self.scratch.cell_file.is_file(), "the file that the recording names is there")
+        for arguments in (("--headless",), ("--cell", str(self.scratch.cell_file))):
+            refused = self.scratch.cellmirror("replay", str(file), *arguments)
+            self.assertEqual(refused.returncode, 1, refused.stdout)
+            self.assertIn("name the cell file with --recorded-cell", refused.stderr)
+            self.assertIn(str(self.scratch.cell_file), refused.stderr, "where it was, for people")
+        instance = "p" + os.urandom(6).hex()
+        named = self.scratch.cellmirror("replay", str(file), "--headless", "--speed", "10", "--instance", instance, "--recorded-cell",
+                                        str(self.scratch.cell_file))
+        self.assertEqual(named.returncode, 0, named.stderr)
 
 
 class BadFiles(PlaybackCase):

@@ -71,6 +71,20 @@ TEST_F(WebConfig, AddressesThatOthersReachHaveToBeMeant) {
     EXPECT_TRUE(load("[web]\naddress = \"" + std::string(address) + "\"\n")) << address;
 }
 
+TEST_F(WebConfig, WarnsOfWhatOthersReach) {
+  ASSERT_TRUE(load("[web]\nallow_remote = true\naddress = \"0.0.0.0\"\norigins = [\"https://a.example\", \"file://\"]\n"));
+  EXPECT_EQ(diagnostics.warnings(), 3U) << diagnostics.text();
+  EXPECT_THAT(diagnostics.text(), HasSubstr("the page at 0.0.0.0 is reachable from other machines"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("pages of https://a.example may show this cell"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("any HTML file"));
+  for (const char* here : {"", "address = \"127.0.0.1\"\n"}) {
+    ASSERT_TRUE(load("[web]\nallow_remote = true\n" + std::string(here)));
+    EXPECT_THAT(diagnostics.text(), HasSubstr("allow_remote has no effect with the address 127.0.0.1"));
+  }
+  ASSERT_TRUE(load("[web]\nport = 9001\n"));
+  EXPECT_EQ(diagnostics.warnings(), 0U) << diagnostics.text();
+}
+
 TEST_F(WebConfig, AddressesAreNumeric) {
   for (const char* address : {"localhost", "127.0.0.1:80", "", "127.0.0.256", "127.evil.example.org", "::g"})
     EXPECT_THAT(refusal("address = \"" + std::string(address) + "\""), HasSubstr("is not a numeric address"))
