@@ -220,8 +220,9 @@ void Gateway::Parts::start_sensing(const Eigen::Vector3d& gravity_W) {
   ranging = std::make_unique<RangingWorker>(readers->ranging, board, clock, period, solids, std::move(barriers));
   io = std::make_unique<IoWorker>(readers->io, board, ranging->board(), clock, period);
   contacts = std::make_unique<ContactWorker>(*engine, readers->contacts, board, clock, period, solids);
-  forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W);
-  tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period);
+  const Board<InstrumentLoads>* const loads = tissue ? &tissue->loads() : nullptr;
+  forces = std::make_unique<ForceWorker>(readers->forces, board, clock, period, gravity_W, loads);
+  tcp_force = std::make_unique<TcpForceWorker>(readers->tcp_force, board, clock, period, loads);
   traces = std::make_unique<TraceWorker>(readers->traces, board, clock, period);
   if (tissue) tissue->start(loop_settings.real_time, loop_settings.priority - 20);  // below the loop and the streams
 }

@@ -9,9 +9,11 @@
 namespace cellmirror::app {
 
 ForceWorker::ForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-                         Nanoseconds tick_period, const Eigen::Vector3d& gravity_W)
+                         Nanoseconds tick_period, const Eigen::Vector3d& gravity_W,
+                         const Board<InstrumentLoads>* loads)
     : clock_(clock),
       gravity_W_(gravity_W),
+      loads_(loads),
       computation_(gravity_W),
       worker_(*this, ticks, cell_states, clock, tick_period) {}
 
@@ -25,7 +27,8 @@ void ForceWorker::take_cell(const CellState& cell_state) {
 
 bool ForceWorker::wanted(const CellState& cell_state) {
   take_cell(cell_state);
-  const bool wanted = computation_.has_mechanisms() || !cell_state.haptics.empty() || !cell_state.robot_forces.empty();
+  const bool wanted = computation_.has_mechanisms() || !cell_state.haptics.empty() ||
+                      !cell_state.robot_forces.empty() || loads_ != nullptr;
   if (!wanted) {
     ages_.paused();
     show_nothing();
@@ -51,7 +54,8 @@ void ForceWorker::run(const CellState& cell_state, const engine::TickState& tick
   if (!read_motions(*cell_state.cell, tick, motions_)) return;
   const Timestamp start = clock_.now();
   std::shared_ptr<ForceState> state = states_.take();
-  computation_.compute(tick.time, motions_, tick.haptics, *state);
+  const std::shared_ptr<const InstrumentLoads> loads = loads_ == nullptr ? nullptr : loads_->latest();
+  computation_.compute(tick.time, motions_, tick.haptics, loads.get(), *state);
   compute_.record(clock_.now() - start);
   write_robot_forces(cell_state, tick, *state);
   state->sequence = ++sequence_;

@@ -14,15 +14,16 @@
 #include "app/workers/tick_worker.hpp"
 #include "rt_core/dynamics/force_computation.hpp"
 #include "rt_core/engine/tick_reader.hpp"
+#include "rt_core/ports/instrument_load.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 
 namespace cellmirror::app {
 
 class ForceWorker final : private TickJob {
  public:
-  // But for gravity_W (m/s2, in the world) not owned; they outlive the worker.
+  // But for gravity_W (m/s2, in the world) not owned; they outlive the worker. `loads`: of soft tissue; null: none.
   ForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-              Nanoseconds tick_period, const Eigen::Vector3d& gravity_W);
+              Nanoseconds tick_period, const Eigen::Vector3d& gravity_W, const Board<InstrumentLoads>* loads = nullptr);
 
   // Any thread.
   [[nodiscard]] ForceReport report() const;
@@ -36,6 +37,7 @@ class ForceWorker final : private TickJob {
 
   const Clock& clock_;
   const Eigen::Vector3d gravity_W_;
+  const Board<InstrumentLoads>* const loads_;
   dynamics::ForceComputation computation_;  // the worker's own
   std::vector<dynamics::RobotMotion> motions_;
   ObjectPool<ForceState> states_;

@@ -17,10 +17,13 @@ const HapticState* device_of(const CellState& cell_state, const engine::TickStat
   return state.phase == HapticPhase::closed ? nullptr : &state;
 }
 
+// Of a robot without masses what the load gives to the joints, as while a haptic device moves it: the opposite of what
+// the drives need.
 void write_computed(const RobotForces& robot, RobotForceChannel& channel) {
+  const double sign = robot.computed ? 1.0 : -1.0;
   JointValues efforts{};
   const std::size_t count = std::min(robot.joints.size(), efforts.size());
-  for (std::size_t i = 0; i < count; ++i) efforts[i] = robot.joints[i].effort;
+  for (std::size_t i = 0; i < count; ++i) efforts[i] = sign * robot.joints[i].effort;
   channel.write(robot.tcp_T.force, std::span(efforts).first(count));
 }
 
@@ -32,7 +35,7 @@ void write_robot_forces(const CellState& cell_state, const engine::TickState& ti
     if (const HapticState* device = device_of(cell_state, tick, buffer.robot)) {
       const std::size_t joints = tick.robots[device->slot].joint_count;
       buffer.channel->write(device->force_E, std::span(device->joint_torques).first(joints));
-    } else if (computed != forces.robots.end() && computed->computed) {
+    } else if (computed != forces.robots.end()) {
       write_computed(*computed, *buffer.channel);
     } else {
       buffer.channel->write(Eigen::Vector3d::Zero(), {});

@@ -9,14 +9,30 @@ namespace cellmirror::app {
 
 namespace {
 
-// The one whose instrument is the active robot; null: nothing tells of a force there.
-const HapticState* haptic_of_active(const CellState& cell_state, const engine::TickState& tick) {
-  const auto robot = std::ranges::find(cell_state.robots, cell_state.active_robot, &RobotSnapshot::id);
-  if (robot == cell_state.robots.end()) return nullptr;
+// The device that moves the robot; null: none does.
+const HapticState* haptic_of(std::size_t slot, const engine::TickState& tick) {
   const auto state = std::ranges::find_if(tick.haptics, [&](const HapticState& haptic) {
-    return haptic.phase != HapticPhase::closed && haptic.slot == robot->slot;
+    return haptic.phase != HapticPhase::closed && haptic.slot == slot;
   });
   return state == tick.haptics.end() ? nullptr : &*state;
+}
+
+void set_values(TcpForce& out, const Eigen::Vector3d& force, double axis_torque) {
+  for (std::size_t i = 0; i < 3; ++i) out.values[i] = static_cast<float>(force[static_cast<Eigen::Index>(i)]);
+  out.values[3] = static_cast<float>(axis_torque);
+  out.flags = kTcpForceValid;
+}
+
+// Of the device that moves the active robot, else of the tissue that this touches; without either nothing is known.
+void set_measured(TcpForce& out, const CellState& cell_state, const engine::TickState& tick,
+                  const InstrumentLoads* loads) {
+  const auto robot = std::ranges::find(cell_state.robots, cell_state.active_robot, &RobotSnapshot::id);
+  if (robot == cell_state.robots.end()) return;
+  if (const HapticState* haptic = haptic_of(robot->slot, tick)) {
+    set_values(out, haptic->force_E, haptic->axis_torque);
+  } else if (const InstrumentLoad* load = loads == nullptr ? nullptr : loads->find(robot->slot, tick.time)) {
+    set_values(out, load->force_T, load->torque_T.z());
+  }
 }
 
 bool is_beyond(const TcpForce& force, const ForceLimits& limits) {
@@ -28,7 +44,7 @@ bool is_beyond(const TcpForce& force, const ForceLimits& limits) {
 
 }  // namespace
 
-TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick) {
+TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick, const InstrumentLoads* loads) {
   TcpForce out;
   out.time = tick.time;
   out.process = static_cast<std::uint32_t>(getpid());
@@ -36,22 +52,21 @@ TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick
   if (cell_state.forces.test) {
     std::ranges::transform(*cell_state.forces.test, out.values.begin(), [](double v) { return static_cast<float>(v); });
     out.flags = kTcpForceValid | kTcpForceTest;
-  } else if (const HapticState* haptic = haptic_of_active(cell_state, tick)) {
-    for (std::size_t i = 0; i < 3; ++i)
-      out.values[i] = static_cast<float>(haptic->force_E[static_cast<Eigen::Index>(i)]);
-    out.values[3] = static_cast<float>(haptic->axis_torque);
-    out.flags = kTcpForceValid;
+  } else {
+    set_measured(out, cell_state, tick, loads);
   }
   if (is_beyond(out, cell_state.forces.limits)) out.flags |= kTcpForceBeyondLimit;
   return out;
 }
 
 TcpForceWorker::TcpForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-                               Nanoseconds tick_period)
-    : worker_(*this, ticks, cell_states, clock, tick_period) {}
+                               Nanoseconds tick_period, const Board<InstrumentLoads>* loads)
+    : loads_(loads),
+      worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 void TcpForceWorker::run(const CellState& cell_state, const engine::TickState& tick) {
-  TcpForce force = tcp_force_of(cell_state, tick);
+  const std::shared_ptr<const InstrumentLoads> loads = loads_ == nullptr ? nullptr : loads_->latest();
+  TcpForce force = tcp_force_of(cell_state, tick, loads.get());
   force.sequence = ++sequence_;
   cell_state.tcp_force->write(force);
 }

@@ -7,22 +7,25 @@
 #include "app/workers/tick_worker.hpp"
 #include "ipc/wire/tcp_force_block.hpp"
 #include "rt_core/engine/tick_reader.hpp"
+#include "rt_core/ports/instrument_load.hpp"
 
 namespace cellmirror::app {
 
-// From the state of the cell and the tick; without sequence.
-[[nodiscard]] TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick);
+// From the state of the cell and the tick; without sequence. `loads`: of soft tissue; null: none.
+[[nodiscard]] TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick,
+                                    const InstrumentLoads* loads = nullptr);
 
 class TcpForceWorker final : private TickJob {
  public:
-  // All are not owned and outlive the worker.
+  // All are not owned and outlive the worker. `loads`: of soft tissue; null: none.
   TcpForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-                 Nanoseconds tick_period);
+                 Nanoseconds tick_period, const Board<InstrumentLoads>* loads = nullptr);
 
  private:
   bool wanted(const CellState& cell_state) override { return cell_state.tcp_force != nullptr; }
   void run(const CellState& cell_state, const engine::TickState& tick) override;
 
+  const Board<InstrumentLoads>* const loads_;
   std::uint64_t sequence_ = 0;
   TickWorker worker_;  // last: it uses everything above
 };

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "app/snapshot/cell_poser.hpp"
@@ -28,6 +29,8 @@ class TissueStepper {
 
   [[nodiscard]] tissue::World& world() { return world_; }
   [[nodiscard]] const tissue::World& world() const { return world_; }
+  // As they stood in the last step.
+  [[nodiscard]] std::span<const tissue::InstrumentPose> instruments() const { return instruments_; }
 
  private:
   // A rigid body, and whether a joint can move it.

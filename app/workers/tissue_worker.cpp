@@ -110,6 +110,23 @@ void TissueWorker::publish_forces(const engine::TickState& tick) {
   }
 }
 
+void TissueWorker::publish_loads(const engine::TickState& tick) {
+  std::shared_ptr<InstrumentLoads> out = load_pool_.take();
+  out->posture_time = tick.time;
+  out->loads.clear();
+  for (const tissue::InstrumentResponse& response : stepper_.world().responses()) {
+    const auto instrument =
+        std::ranges::find(stepper_.instruments(), response.slot, &tissue::InstrumentPose::slot);
+    if (instrument == stepper_.instruments().end()) continue;
+    const Eigen::Matrix3d R_TW = instrument->X_WT.linear().transpose();
+    out->loads.push_back({.slot = static_cast<std::uint8_t>(response.slot),
+                          .force_T = R_TW * response.force_W,
+                          .torque_T = R_TW * response.torque_W,
+                          .contacts = response.contacts});
+  }
+  loads_.publish(std::move(out));
+}
+
 void TissueWorker::publish_report(Timestamp now) {
   if (reported_.known() && now - reported_ < kBetweenReports) return;
   reported_ = now;
@@ -145,6 +162,7 @@ Nanoseconds TissueWorker::step() {
   take_requests();
   if (stepper_.step(*cell_state_, tick)) {
     publish_forces(tick);
+    publish_loads(tick);
     ++steps_;
   }
   compute_.record(clock_.now() - begin);

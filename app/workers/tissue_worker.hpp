@@ -13,6 +13,7 @@
 
 #include "app/snapshot/board.hpp"
 #include "app/snapshot/cell_state.hpp"
+#include "app/snapshot/object_pool.hpp"
 #include "app/snapshot/tissue_port.hpp"
 #include "app/snapshot/tissue_report.hpp"
 #include "app/workers/tissue_stepper.hpp"
@@ -20,6 +21,7 @@
 #include "rt_core/base/real_time.hpp"
 #include "rt_core/base/time.hpp"
 #include "rt_core/engine/engine.hpp"
+#include "rt_core/ports/instrument_load.hpp"
 #include "rt_core/ports/tissue_state.hpp"
 #include "rt_core/rt/latency_histogram.hpp"
 #include "rt_core/rt/wake_signal.hpp"
@@ -53,6 +55,8 @@ class TissueWorker final : public TissuePort {
   Result<void> request(std::vector<tissue::Command> commands) override;
   // Any thread.
   [[nodiscard]] const Board<TissueReport>& reports() const { return reports_; }
+  // The newest of all instruments, also of those that no haptic device moves.
+  [[nodiscard]] const Board<InstrumentLoads>& loads() const { return loads_; }
   // The newest shapes; they are made some thirty times a second for a while after each call, else not at all: the first
   // call after a while waits for one, for a tenth of a second at most. Null before the first step.
   [[nodiscard]] std::shared_ptr<const TissueView> view();
@@ -62,6 +66,7 @@ class TissueWorker final : public TissuePort {
   void take_requests();
   Nanoseconds step();
   void publish_forces(const engine::TickState& tick);
+  void publish_loads(const engine::TickState& tick);
   void publish_report(Timestamp now);
   void publish_view(Timestamp now);
 
@@ -85,6 +90,8 @@ class TissueWorker final : public TissuePort {
   Timestamp reported_;
   Timestamp viewed_;
   Board<TissueReport> reports_;
+  ObjectPool<InstrumentLoads> load_pool_;
+  Board<InstrumentLoads> loads_;
   Board<TissueView> views_;
   std::atomic<std::int64_t> view_wanted_ns_{0};  // when it was asked for last
   std::mutex view_mutex_;                        // of view_time_ns_

@@ -139,21 +139,56 @@ void ForceComputation::check_limits(const RobotForces& robot) {
   }
 }
 
-void ForceComputation::compute_contact(const HapticState* haptic, std::size_t robot, RobotForces& out) {
-  out.tcp_known = haptic != nullptr;
+void ForceComputation::compute_contact(const HapticState* haptic, const InstrumentLoad* load, std::size_t robot,
+                                       RobotForces& out) {
+  out.tcp_known = haptic != nullptr || load != nullptr;
   out.tcp_T = {};
   out.X_WT = Pose::Identity();
-  if (haptic == nullptr) return;
   // The force on the hand is the force on the tip.
-  out.tcp_T = {haptic->force_E, Eigen::Vector3d(0, 0, haptic->axis_torque)};
+  if (haptic != nullptr) {
+    out.tcp_T = {haptic->force_E, Eigen::Vector3d(0, 0, haptic->axis_torque)};
+  } else if (load != nullptr) {
+    out.tcp_T = {load->force_T, load->torque_T};
+  } else {
+    return;
+  }
   const std::optional<Mechanism>& mechanism = mechanisms_[robot].mechanism;
   if (mechanism && mechanism->tip_link() >= 0) return;  // place_links() gave the pose
   compute_poses(*cell_, positions_, poses_);
   out.X_WT = tcp_poses(cell_->robots[robot], poses_).X_WT;
 }
 
+// Of a robot without masses: what its drives need against the wrench at the TCP, -J^T w (Siciliano et al., Robotics,
+// 3.8). After compute_contact(), which has placed the nodes.
+void ForceComputation::compute_joints_of_load(const CompiledRobot& robot, RobotForces& out) {
+  const Eigen::Vector3d force_W = out.X_WT.linear() * out.tcp_T.force;
+  const Eigen::Vector3d torque_W = out.X_WT.linear() * out.tcp_T.torque;
+  out.joints.assign(robot.joint_names.size(), JointForce{});
+  for (std::size_t i = 0; i < out.joints.size(); ++i) {
+    out.joints[i].name = robot.joint_names[i];
+    out.joints[i].kind = robot.joint_kinds[i];
+    out.joints[i].position = positions_[robot.slot][i];
+  }
+  for (std::int32_t node = robot.flange; node >= 0; node = cell_->parent[static_cast<std::size_t>(node)]) {
+    const std::int32_t of = cell_->joint_of[static_cast<std::size_t>(node)];
+    if (of < 0) continue;
+    const CompiledJoint& joint = cell_->joints[static_cast<std::size_t>(of)];
+    if (joint.slot != robot.slot || joint.joint >= out.joints.size()) continue;
+    const Pose& X_WJ = poses_.X_WN[static_cast<std::size_t>(node)];
+    const Eigen::Vector3d axis_W = X_WJ.linear() * joint.axis;
+    const Eigen::Vector3d arm = out.X_WT.translation() - X_WJ.translation();
+    const double effort =
+        joint.kind == JointKind::prismatic ? axis_W.dot(force_W) : axis_W.dot(arm.cross(force_W) + torque_W);
+    JointForce& to = out.joints[joint.joint];
+    to.effort -= joint.multiplier * effort;
+    to.X_WJ = X_WJ;
+    to.axis_J = joint.axis;
+  }
+}
+
 void ForceComputation::compute(Timestamp time, std::span<const RobotMotion> motions,
-                               std::span<const HapticState> haptics, ForceState& state) {
+                               std::span<const HapticState> haptics, const InstrumentLoads* loads,
+                               ForceState& state) {
   CELLMIRROR_EXPECTS(cell_ && motions.size() == cell_->robots.size());
   update_motions(motions);
   state.posture_time = time;
@@ -162,19 +197,22 @@ void ForceComputation::compute(Timestamp time, std::span<const RobotMotion> moti
     const CompiledRobot& robot = cell_->robots[i];
     const bool has_masses = mechanisms_[i].mechanism.has_value();
     const HapticState* haptic = haptic_of(haptics, robot.slot);
-    if (!has_masses && haptic == nullptr) continue;
+    const InstrumentLoad* load =
+        haptic != nullptr || loads == nullptr ? nullptr : loads->find(robot.slot, time);
+    if (!has_masses && haptic == nullptr && load == nullptr) continue;
     if (state.robots.size() == used) state.robots.emplace_back();
     RobotForces& out = state.robots[used++];
     out.id = robot.id;
     out.slot = static_cast<std::uint8_t>(robot.slot);
     out.computed = has_masses;
-    compute_contact(haptic, i, out);
+    compute_contact(haptic, load, i, out);
     if (has_masses) {
       compute_robot(mechanisms_[i], out);
       check_limits(out);
     } else {
       out.joints.clear();
       out.model_kg = out.payload_kg = 0;
+      if (load != nullptr) compute_joints_of_load(robot, out);
     }
   }
   state.robots.resize(used);

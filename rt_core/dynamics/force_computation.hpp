@@ -17,6 +17,7 @@
 #include "rt_core/dynamics/robot_mechanism.hpp"
 #include "rt_core/ports/force_state.hpp"
 #include "rt_core/ports/haptic_state.hpp"
+#include "rt_core/ports/instrument_load.hpp"
 
 namespace cellmirror::dynamics {
 
@@ -42,12 +43,12 @@ class ForceComputation {
 
   // True where the mechanisms are other ones than before.
   bool take_cell(const std::shared_ptr<const CompiledCell>& cell);
-  // Of each robot with masses the force at the TCP is that of the contact of its haptic device, if it has one, and of
-  // what is attached at or beyond the TCP's link (RobotMechanism::load).
-  // Robots with masses, or with the instrument of a haptic device, at `time`. `motions` are those of the robots of the
-  // cell, in its order; `haptics` the devices. After take_cell().
+  // Of each robot with masses the force at the TCP is that of the contact of its haptic device, if it has one, else of
+  // the tissue that it touches, and of what is attached at or beyond the TCP's link (RobotMechanism::load).
+  // Robots with masses, with the instrument of a haptic device or in tissue, at `time`. `motions` are those of the robots
+  // of the cell, in its order; `haptics` the devices; `loads` of tissue, null: none. After take_cell().
   void compute(Timestamp time, std::span<const RobotMotion> motions, std::span<const HapticState> haptics,
-               ForceState& state);
+               const InstrumentLoads* loads, ForceState& state);
 
   [[nodiscard]] bool has_mechanisms() const { return has_mechanisms_; }
   [[nodiscard]] const std::vector<NotComputed>& not_computed() const { return not_computed_; }
@@ -65,7 +66,8 @@ class ForceComputation {
   void update_motions(std::span<const RobotMotion> motions);
   void compute_robot(const RobotMechanism& robot, RobotForces& out);
   void place_links(const Mechanism& mechanism, std::span<const double> q);
-  void compute_contact(const HapticState* haptic, std::size_t robot, RobotForces& out);
+  void compute_contact(const HapticState* haptic, const InstrumentLoad* load, std::size_t robot, RobotForces& out);
+  void compute_joints_of_load(const CompiledRobot& robot, RobotForces& out);
   void add_load(const Mechanism& load, const DynamicsInput& motion, RobotForces& out);
   void check_limits(const RobotForces& robot);
 

@@ -76,7 +76,7 @@ abstract = "weight.mpc"
   engine::RobotTickState& lift() { return tick.robots[cell->robot("LIFTER")->slot()]; }
   const RobotForces& computed() {
     EXPECT_TRUE(read_motions(*compiled, tick, motions));
-    sut.compute(tick.time, motions, tick.haptics, state);
+    sut.compute(tick.time, motions, tick.haptics, &loads, state);
     return state.robots.at(0);
   }
   void next(std::int64_t ms) { tick.time = tick.time + Nanoseconds(ms * 1'000'000); }
@@ -84,6 +84,7 @@ abstract = "weight.mpc"
   std::optional<Cell> cell;
   engine::TickState tick{8};
   ForceState state;
+  InstrumentLoads loads;
   std::shared_ptr<const CompiledCell> compiled;
   std::vector<dynamics::RobotMotion> motions;
   dynamics::ForceComputation sut{Eigen::Vector3d(0, 0, -kG)};
@@ -195,7 +196,48 @@ struct WrittenForces final : RobotForceChannel {
   }
   Eigen::Vector3d force = Eigen::Vector3d::Constant(99);
   std::vector<double> efforts{99};
-};
+}
+TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
+  loads.posture_time = tick.time;
+  loads.loads = {{.slot = static_cast<std::uint8_t>(cell->robot("LIFTER")->slot()),
+                  .force_T = Eigen::Vector3d(0, 0, -20),
+                  .torque_T = Eigen::Vector3d(0, 0, 0.5)}};
+  EXPECT_NEAR(computed().joints[0].effort, 10.0 * kG + 20.0, 1e-12);
+  EXPECT_EQ(state.robots[0].tcp_T.force.z(), -20.0);
+  // A device that moves it knows better.
+  tick.haptics[1].phase = HapticPhase::active;
+  tick.haptics[1].slot = static_cast<std::uint8_t>(cell->robot("LIFTER")->slot());
+  tick.haptics[1].force_E = Eigen::Vector3d(0, 0, -3);
+  EXPECT_NEAR(computed().joints[0].effort, 10.0 * kG + 3.0, 1e-12);
+  tick.haptics[1].phase = HapticPhase::closed;
+  next(1000);
+  EXPECT_NEAR(computed().joints[0].effort, 10.0 * kG, 1e-12) << "the load is too old";
+}
+
+// Three axes: up along z, about z, about y, each 1 m after the other; the TCP 1 m beyond the last, at x = 3.
+TEST_F(ForceComputationTest, GivesTheLoadOfTissueToTheJointsOfARobotWithoutMasses) {
+  loads.posture_time = tick.time;
+  loads.loads = {{.slot = static_cast<std::uint8_t>(cell->robot("ARM")->slot()),
+                  .force_T = Eigen::Vector3d(0, 5, 2),
+                  .torque_T = Eigen::Vector3d(0, 0.25, 0)}};
+  computed();
+  const auto arm = std::ranges::find(state.robots, "ARM", &RobotForces::id);
+  ASSERT_NE(arm, state.robots.end());
+  EXPECT_FALSE(arm->computed);
+  ASSERT_EQ(arm->joints.size(), 3U);
+  EXPECT_NEAR(arm->joints[0].effort, -2.0, 1e-12);
+  EXPECT_NEAR(arm->joints[1].effort, -2.0 * 5.0, 1e-12);   // 2 m from its axis
+  EXPECT_NEAR(arm->joints[2].effort, 1.0 * 2.0 - 0.25, 1e-12);  // 1 m along x
+  const auto written = std::make_shared<WrittenForces>();
+  CellState cell_state;
+  cell_state.robot_forces.push_back({.robot = "ARM", .channel = written});
+  write_robot_forces(cell_state, tick, state);
+  EXPECT_EQ(written->force, Eigen::Vector3d(0, 5, 2));
+  ASSERT_EQ(written->efforts.size(), 3U);
+  EXPECT_NEAR(written->efforts[1], 10.0, 1e-12);
+}
+
+;
 
 TEST_F(ForceComputationTest, GoesIntoThePlainBuffersOfRobots) {
   ASSERT_TRUE(cell->connect("Weight", "TOP", cell->start_positions()));
@@ -237,7 +279,7 @@ TEST_F(ForceComputationTest, NamesTheTorquesThatABufferHasNoRoomFor) {
             "15 bytes hold the force and 0 of 1 joint torques; there is no room for LIFT: 16 bytes hold all");
   const CompiledRobot& arm = *compiled->robot(cell->robot("ARM")->slot());
   EXPECT_EQ(force_memory_remark(*compiled, arm, 500),
-            "the model of ARM has no masses, so its values are zero unless a haptic device moves it");
+            "the model of ARM has no masses, so its values are zero unless a haptic device moves it or it touches tissue");
 }
 
 TEST_F(ForceComputationTest, WaitsForRobotsThatTheTickDoesNotKnowYet) {

@@ -86,6 +86,22 @@ TEST_F(Haptics, NothingIsKnownOfOtherRobotsAndClosedDevices) {
   EXPECT_EQ(tcp_force_of(cell_state, tick).robot.view(), "");
 }
 
+TEST_F(Haptics, ForceAtTheTcpIsThatOfTissueWhereNoDeviceMovesTheRobot) {
+  InstrumentLoads loads{.posture_time = tick.time, .loads = {}};
+  loads.loads.push_back(
+      {.slot = kSlot, .force_T = Eigen::Vector3d(0, 0, -4.7), .torque_T = Eigen::Vector3d(1, 1, 0.1)});
+  EXPECT_EQ(tcp_force_of(cell_state, tick, &loads).values[0], 1.0F) << "of the device";
+  tick.haptics[kChannel].phase = HapticPhase::closed;
+  cell_state.forces.limits = {1, 0};  // SET_TORQUE_LIMIT 1 0
+  const TcpForce sut = tcp_force_of(cell_state, tick, &loads);
+  EXPECT_EQ(sut.values, (std::array<float, 4>{0, 0, -4.7F, 0.1F}));
+  EXPECT_EQ(sut.flags, kTcpForceValid | kTcpForceBeyondLimit);
+  cell_state.haptics.clear();
+  EXPECT_EQ(tcp_force_of(cell_state, tick, &loads).values, sut.values) << "a cell without devices";
+  tick.time = tick.time + Nanoseconds(300'000'000);
+  EXPECT_EQ(tcp_force_of(cell_state, tick, &loads).flags, 0U) << "the simulation has stalled";
+}
+
 TEST_F(Haptics, LimitsCountOnlyWhereTheyAreSet) {
   cell_state.forces.limits = {2.9, 0};  // the force is 3 N
   EXPECT_NE(tcp_force_of(cell_state, tick).flags & kTcpForceBeyondLimit, 0U);
