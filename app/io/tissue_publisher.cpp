@@ -8,6 +8,7 @@
 
 #include "app/snapshot/tissue_names.hpp"
 #include "rt_core/base/log.hpp"
+#include "rt_core/base/notice.hpp"
 #include "rt_core/base/units.hpp"
 
 namespace cellmirror::app {
@@ -83,7 +84,9 @@ std::string deed(const NamedTissueEvent& event) {
 void log_event(const NamedTissueEvent& event) {
   const TissueEventKind kind = event.event.kind;
   const bool harm = kind == TissueEventKind::tear || kind == TissueEventKind::bleed || kind == TissueEventKind::limit;
-  log_text(harm ? LogLevel::warning : LogLevel::info, fmt::format("tissue.{}", word(kind)), sentence(event));
+  const std::string of_kind = fmt::format("tissue.{}", word(kind));
+  if (harm) return log_text(LogLevel::warning, of_kind, sentence(event));
+  log_notice(of_kind, sentence(event));
 }
 
 }  // namespace

@@ -35,6 +35,12 @@ constexpr std::string_view kEventSchema = R"({
 "sequence":{"type":"integer"},"posture_time_ns":{"type":"integer"},"change":{"type":"string"},
 "a":{"type":"string"},"b":{"type":"string"},"distance_m":{"type":"number"}}})";
 
+constexpr std::string_view kTissueEventSchema = R"({
+"type":"object","title":"what an instrument did to tissue, or what became of tissue","properties":{
+"number":{"type":"integer"},"time_ns":{"type":"integer"},"event":{"type":"string"},"robot":{"type":"string"},
+"object":{"type":"string"},"part":{"type":"string"},"limit":{"type":"string"},
+"at_m":{"type":"array","items":{"type":"number"}},"value":{"type":"number"},"text":{"type":"string"}}})";
+
 constexpr std::string_view kForcesSchema = R"({
 "type":"object","title":"efforts of drives, and forces on tool centre points","properties":{
 "posture_time_ns":{"type":"integer"},"sequence":{"type":"integer"},
@@ -139,6 +145,9 @@ TopicPtr OutputTopics::collisions() {
 TopicPtr OutputTopics::collision_events() {
   return json_topic(std::string(kCollisionEventsTopic), "cellmirror.CollisionEvent", kEventSchema, Importance::event);
 }
+TopicPtr OutputTopics::tissue_events() {
+  return json_topic(std::string(kTissueEventsTopic), "cellmirror.TissueEvent", kTissueEventSchema, Importance::event);
+}
 TopicPtr OutputTopics::forces() {
   return json_topic("/cellmirror/forces", "cellmirror.Forces", kForcesSchema, Importance::bulk);
 }
@@ -235,6 +244,23 @@ std::string collision_event_message(const ProximityEvent& event) {
       .member("a", std::string_view(event.a))
       .member("b", std::string_view(event.b))
       .member("distance_m", event.distance_m)
+      .end_object();
+  return out.take();
+}
+
+std::string tissue_event_message(const NamedTissueEvent& event, std::string_view text, std::int64_t wall_ns) {
+  JsonWriter out;
+  out.begin_object()
+      .member("number", event.event.number)
+      .member("time_ns", wall_ns)
+      .member("event", word(event.event.kind))
+      .member("robot", std::string_view(event.robot))
+      .member("object", std::string_view(event.object))
+      .member("part", part_of(event.event))
+      .member("limit", event.event.kind == TissueEventKind::limit ? word(event.event.limit) : std::string_view())
+      .member("at_m", event.event.at)
+      .member("value", event.event.value)
+      .member("text", text)
       .end_object();
   return out.take();
 }

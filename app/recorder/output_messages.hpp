@@ -14,6 +14,7 @@
 #include "rt_core/ports/can_channel.hpp"
 #include "rt_core/ports/force_state.hpp"
 #include "rt_core/ports/proximity_state.hpp"
+#include "rt_core/ports/tissue_output.hpp"
 
 namespace cellmirror::app {
 
@@ -44,12 +45,16 @@ struct OutputTopics {
   static TopicPtr tissue(std::string_view object);
   static TopicPtr tissue_effects();
   static TopicPtr tissue_markers();
+  static TopicPtr tissue_events();
   // With "joint:NAME" = "ROBOT.JOINT" for each joint.
   static TopicPtr joint_states(mcap::Texts joints);
 };
 
 [[nodiscard]] std::string collisions_message(const ProximityState& state);
 [[nodiscard]] std::string collision_event_message(const ProximityEvent& event);
+// `text`: the event for people; `wall_ns`: when it happened.
+[[nodiscard]] std::string tissue_event_message(const NamedTissueEvent& event, std::string_view text,
+                                               std::int64_t wall_ns);
 [[nodiscard]] std::string forces_message(const ForceState& state);
 // `edges`: changes since the start; `on`: the inputs that are on, the first of them.
 [[nodiscard]] std::string foot_switches_message(std::uint64_t edges, std::span<const std::uint32_t> on);

@@ -82,7 +82,7 @@ void Recorder::loop(const std::stop_token& stop) {
     record_status(now);
     pictures_.look(now);
     alarms_.look(now);
-    tissue_.look(now);
+    tissue_.look(now, sources_.board.latest().get());
     // The tick that is due next, and a little later.
     const auto period = std::max(sources_.tick_period, Nanoseconds(static_cast<std::int64_t>(1e9 / rate_hz)));
     const std::int64_t ticks = std::max<std::int64_t>(1, (period + sources_.tick_period / 2) / sources_.tick_period);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "app/io/tissue_publisher.hpp"
 #include "app/recorder/output_messages.hpp"
+#include "app/snapshot/tissue_names.hpp"
 #include "drivers/dds/ros2_messages.hpp"
 
 namespace cellmirror::app {
@@ -27,12 +29,14 @@ bool has_passed(Timestamp now, Timestamp last, Nanoseconds period) {
 TissueRecorder::TissueRecorder(TissueSources sources, RecordingHub& hub)
     : sources_(std::move(sources)),
       hub_(hub),
+      events_topic_(OutputTopics::tissue_events()),
       markers_topic_(OutputTopics::tissue_markers()),
       markers_(kMostMarkerTriangles, kMarkerLifetime_ns) {
   effects_.topic = OutputTopics::tissue_effects();
 }
 
 void TissueRecorder::forget() {
+  newest_event_.reset();
   // Revisions go on: a file that goes on has those of before.
   for (auto& [object, written] : surfaces_) written.with_shape = {};
   effects_.with_shape = {};
@@ -47,7 +51,26 @@ bool TissueRecorder::wanted() const {
          std::ranges::any_of(surfaces_, [&](const auto& one) { return hub_.wants(*one.second.topic); });
 }
 
-void TissueRecorder::look(Timestamp now) {
+// Events are few, and recorded whatever the rate of shapes is.
+void TissueRecorder::record_events(const CellState& cell) {
+  const std::shared_ptr<const TissueReport> report = sources_.newest_report();
+  if (!report) return;
+  const std::vector<TissueEvent>& events = report->state.events;
+  const std::uint64_t newest = events.empty() ? 0 : events.back().number;
+  if (!newest_event_ || newest < *newest_event_) newest_event_ = newest;  // also: numbers of a new simulation
+  for (const TissueEvent& event : events) {
+    if (event.number <= *newest_event_) continue;
+    const NamedTissueEvent named{event, robot_name(cell, event.instrument),
+                                 object_name(report->state, event.object)};
+    const std::int64_t wall_ns = to_wall_clock_ns(event.time);
+    const std::string text = tissue_event_message(named, sentence(named), wall_ns);
+    if (hub_.wants(*events_topic_)) hub_.put(events_topic_, wall_ns, mcap::view_of(text));
+  }
+  newest_event_ = newest;
+}
+
+void TissueRecorder::look(Timestamp now, const CellState* cell) {
+  if (cell != nullptr) record_events(*cell);
   if (!sources_.view) return;
   const double rate_hz = hub_.tissue_rate_hz();
   if (!(rate_hz > 0)) return;

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/recorder/recording_hub.hpp"
 #include "app/recorder/topic.hpp"
 #include "app/recording_layout/tissue_messages.hpp"
+#include "app/snapshot/cell_state.hpp"
 #include "app/snapshot/tissue_sources.hpp"
 #include "drivers/dds/tissue_markers.hpp"
 #include "rt_core/base/time.hpp"
@@ -24,7 +26,8 @@ class TissueRecorder {
   // Does nothing where `sources` is empty. `hub` outlives it.
   TissueRecorder(TissueSources sources, RecordingHub& hub);
 
-  void look(Timestamp now);
+  // `cell`: names of the robots; null: none are known.
+  void look(Timestamp now, const CellState* cell = nullptr);
   // Nothing is recorded any more: what begins next has the shapes again.
   void forget();
 
@@ -38,6 +41,7 @@ class TissueRecorder {
     std::vector<std::byte> moving;  // the last message without a shape
   };
 
+  void record_events(const CellState& cell);
   [[nodiscard]] bool wanted() const;
   // Whether the shape is due: it has changed, is that of another file, or was written too long ago.
   bool take_shape(Written& written, std::vector<std::shared_ptr<const void>> shape, Timestamp now) const;
@@ -49,6 +53,8 @@ class TissueRecorder {
   RecordingHub& hub_;
   std::map<std::string, Written, std::less<>> surfaces_;  // by object
   Written effects_;
+  TopicPtr events_topic_;
+  std::optional<std::uint64_t> newest_event_;  // none: those of before the recording are not its own
   TopicPtr markers_topic_;
   dds::TissueMarkers markers_;
   dds::MarkerArray marker_message_;

@@ -27,6 +27,7 @@ inline constexpr std::string_view kLeftOut = "left out: ";
 inline constexpr std::string_view kJointsTopic = "/joint_states";
 inline constexpr std::string_view kAlarmsTopic = "/cellmirror/alarms";
 inline constexpr std::string_view kCollisionEventsTopic = "/cellmirror/collision_events";
+inline constexpr std::string_view kTissueEventsTopic = "/cellmirror/tissue_events";
 // The topic that has all that the tick took (docs/recording.md).
 inline constexpr std::string_view kInputsTopic = "/inputs/ticks";
 inline constexpr std::string_view kInputsEncoding = "cellmirror.inputs";

@@ -5,11 +5,13 @@
 
 #include <cstdlib>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
 #include <utility>
 
 #include "rt_core/base/journal.hpp"
+#include "rt_core/base/notice.hpp"
 #include "rt_core/base/time.hpp"
 
 namespace cellmirror {
@@ -30,13 +32,21 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
   return spdlog::level::err;
 }
 
+std::shared_ptr<spdlog::logger> make_logger(const char* name, spdlog::level::level_enum level) {
+  auto made = spdlog::stderr_color_mt(name);
+  made->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+  made->set_level(level);
+  return made;
+}
+
 spdlog::logger& logger() {
-  static const auto instance = [] {
-    auto made = spdlog::stderr_color_mt("cellmirror");
-    made->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
-    made->set_level(spdlog::level::warn);
-    return made;
-  }();
+  static const auto instance = make_logger("cellmirror", spdlog::level::warn);
+  return *instance;
+}
+
+// Which level it writes from is decided by that of logger().
+spdlog::logger& notice_logger() {
+  static const auto instance = make_logger("cellmirror-notices", spdlog::level::info);
   return *instance;
 }
 
@@ -102,6 +112,21 @@ LogObserver& current_observer() {
   return observer;
 }
 
+void write(spdlog::logger& to, LogLevel level, std::string_view kind, std::string_view message) {
+  static RateLimit limit;
+  std::uint64_t swallowed = 0;
+  if (!limit.pass(kind, swallowed)) return;
+  if (!journal().send({priority_of(level), kind, message, swallowed})) {
+    if (swallowed > 0) {
+      to.log(spdlog_level(level), "[{}] {} ({} more of this kind were not written)", kind, message, swallowed);
+    } else {
+      to.log(spdlog_level(level), "[{}] {}", kind, message);
+    }
+  }
+  const std::shared_lock lock(observing);
+  if (current_observer()) current_observer()(level, kind, message);
+}
+
 }  // namespace
 
 void set_log_observer(LogObserver observer) {
@@ -112,18 +137,11 @@ void set_log_observer(LogObserver observer) {
 void set_log_level(LogLevel level) { logger().set_level(spdlog_level(level)); }
 
 void log_text(LogLevel level, std::string_view kind, std::string_view message) {
-  static RateLimit limit;
-  if (!logger().should_log(spdlog_level(level))) return;
-  std::uint64_t swallowed = 0;
-  if (!limit.pass(kind, swallowed)) return;
-  if (journal().send({priority_of(level), kind, message, swallowed})) return;
-  if (swallowed > 0) {
-    logger().log(spdlog_level(level), "[{}] {} ({} more of this kind were not written)", kind, message, swallowed);
-  } else {
-    logger().log(spdlog_level(level), "[{}] {}", kind, message);
-  }
-  const std::shared_lock lock(observing);
-  if (current_observer()) current_observer()(level, kind, message);
+  if (logger().should_log(spdlog_level(level))) write(logger(), level, kind, message);
+}
+
+void log_notice(std::string_view kind, std::string_view message) {
+  if (logger().should_log(spdlog::level::warn)) write(notice_logger(), LogLevel::info, kind, message);
 }
 
 }  // namespace cellmirror

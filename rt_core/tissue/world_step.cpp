@@ -24,6 +24,7 @@ constexpr double kFixedStiffness = 800.0;       // N/m, of tissue whose nodes ar
 void WorldParts::move_instruments(std::span<const InstrumentPose> poses) {
   for (Instrument& one : instruments) {
     one.force.setZero();
+    one.pull.setZero();
     one.torque.setZero();
     one.directions.setZero();
     one.contacts = 0;

@@ -50,8 +50,9 @@ void release_grip(Instrument& instrument, EventLog& log) {
   const int object = static_cast<int>(instrument.held.front().point.object);
   instrument.held.clear();
   instrument.slipping = false;
+  // Of the step before: in this one it has not been computed.
   log.add(TissueEventKind::release, {.instrument = instrument.slot, .object = object}, instrument.X_end.translation(),
-          instrument.force.norm());
+          instrument.held_by);
 }
 
 void attach_grip_again(Instrument& instrument, std::span<DeformableObject> objects) {
@@ -91,6 +92,7 @@ void take_grip(const ConstraintSystem& system, Instrument& instrument, std::span
     held.force = std::max(held.force, hold.impulse.norm() * objects[held.point.object].substeps / kStep_s);
     const Vector3d force = -hold.impulse / kStep_s;
     instrument.force += force;
+    instrument.pull += force;
     instrument.torque += (instrument.X_start * held.p_T - tip).cross(force);
     instrument.directions += force.norm() / 3.0 * Eigen::Matrix3d::Identity();
   }
@@ -98,6 +100,7 @@ void take_grip(const ConstraintSystem& system, Instrument& instrument, std::span
 
 LimitActions finish_grip(Instrument& instrument, std::span<DeformableObject> objects, Limits& limits, EventLog& log) {
   LimitActions asked;
+  instrument.held_by = instrument.pull.norm();
   if (instrument.held.empty()) return asked;
   bool slips = false;
   const Pose X_TW = instrument.X_end.inverse();
@@ -119,7 +122,7 @@ LimitActions finish_grip(Instrument& instrument, std::span<DeformableObject> obj
     held.limited = false;
   }
   if (slips && !instrument.slipping) {
-    log.add(TissueEventKind::slip, {.instrument = instrument.slot, .object = object}, at, instrument.force.norm());
+    log.add(TissueEventKind::slip, {.instrument = instrument.slot, .object = object}, at, instrument.held_by);
   }
   if (slips) instrument.slipping = true;
   std::erase_if(instrument.held, [&](const HeldPoint& held) {
@@ -127,7 +130,7 @@ LimitActions finish_grip(Instrument& instrument, std::span<DeformableObject> obj
   });
   if (instrument.held.empty()) {
     instrument.slipping = false;
-    log.add(TissueEventKind::release, {.instrument = instrument.slot, .object = object}, at, instrument.force.norm());
+    log.add(TissueEventKind::release, {.instrument = instrument.slot, .object = object}, at, instrument.held_by);
   }
   return asked;
 }

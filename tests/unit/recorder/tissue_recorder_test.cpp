@@ -130,6 +130,57 @@ TEST_F(TissueRecorderTest, WithoutARateNobodyAsksForShapes) {
   EXPECT_TRUE(recorded("a.mcap").empty());
 }
 
+TEST_F(TissueRecorderTest, EventsAreRecordedOnceAndWithNames) {
+  CellState cell;
+  cell.robots.emplace_back();
+  cell.robots[0].id = "LAP";
+  cell.robots[0].slot = 3;
+  const auto report = [&](std::uint64_t first, std::uint64_t last) {
+    auto made = std::make_shared<TissueReport>();
+    made->state.objects.emplace_back();
+    made->state.objects[0].name = "liver";
+    for (std::uint64_t number = first; number <= last; ++number) {
+      TissueEvent event;
+      event.number = number;
+      event.kind = number % 2 == 0 ? TissueEventKind::release : TissueEventKind::grip;
+      event.time = now_;
+      event.instrument = 3;
+      event.object = 0;
+      event.value = 4.5;
+      made->state.events.push_back(event);
+    }
+    reports_.publish(std::move(made));
+  };
+  const auto look_at_cell = [&] {
+    now_ = now_ + Nanoseconds(20'000'000);
+    sut_.look(now_, &cell);
+  };
+  record("a.mcap", 0);  // whatever the rate of shapes is
+  report(1, 2);
+  look_at_cell();  // of before the recording
+  report(1, 4);
+  look_at_cell();
+  look_at_cell();
+  report(3, 5);
+  look_at_cell();
+  end();
+  const auto source = mcap::FileSource::open(folder_.path() / "a.mcap");
+  ASSERT_TRUE(source);
+  auto reader = mcap::Reader::open(**source);
+  ASSERT_TRUE(reader);
+  std::vector<std::string> texts;
+  ASSERT_TRUE(reader->read({.topics = {"/cellmirror/tissue_events"}}, [&](const mcap::Message& message, const auto&) {
+    texts.emplace_back(reinterpret_cast<const char*>(message.data.data()), message.data.size());
+    return true;
+  }));
+  ASSERT_EQ(texts.size(), 3U);
+  EXPECT_NE(texts[0].find(R"("number":3)"), std::string::npos) << texts[0];
+  EXPECT_NE(texts[0].find(R"("event":"grip","robot":"LAP","object":"liver")"), std::string::npos) << texts[0];
+  EXPECT_NE(texts[1].find(R"("event":"release")"), std::string::npos) << texts[1];
+  EXPECT_NE(texts[1].find(R"("value":4.5)"), std::string::npos) << texts[1];
+  EXPECT_NE(texts[2].find(R"("number":5)"), std::string::npos) << texts[2];
+}
+
 TEST_F(TissueRecorderTest, WhatCannotBeRecordedIsCounted) {
   record("a.mcap");
   view_->surfaces[0].normals.clear();
