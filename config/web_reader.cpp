@@ -40,10 +40,11 @@ std::string read_page_address(TableReader& table, const std::string& otherwise) 
     if (remote)
       table.diagnostics().warning(table.place("allow_remote"),
                                   fmt::format("allow_remote has no effect with the address {}", address),
-                                  "remove it, so that another address is refused until somebody decides for it");
+                                  "remove it, so that another address is refused until it is allowed on purpose");
   } else if (remote) {
     table.diagnostics().warning(
-        table.place("address"), fmt::format("the page at {} is reachable from other machines, without encryption", address),
+        table.place("address"),
+        fmt::format("the page at {} is reachable from other machines, without encryption", address),
         "use 127.0.0.1 with a reverse proxy, unless the network is trusted");
   } else {
     table.error("address", fmt::format("the page at {} would be reachable from other machines", address),

@@ -51,10 +51,10 @@ std::string force_memory_remark(const CompiledCell& cell, const CompiledRobot& r
   }
   if (!has_masses(cell, robot)) {
     if (!remark.empty()) remark += "; ";
-    remark +=
-        fmt::format("the model of {} has no masses, so its values are zero unless a haptic device moves it or it "
-                    "touches tissue",
-                    robot.id);
+    remark += fmt::format(
+        "the model of {} has no masses, so its values are zero unless a haptic device moves it or it "
+        "touches tissue",
+        robot.id);
   }
   return remark;
 }

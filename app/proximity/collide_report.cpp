@@ -79,9 +79,7 @@ CollideJson::CollideJson(const CollideHeading& heading, const collision::PairTab
     if (collision::is_tested(pair.state)) continue;
     begin_pair(json_, pairs, pair.a, pair.b).member("state", word_of(pair.state)).end_object();
   }
-  json_.end_array()
-      .key("frames")
-      .begin_array();
+  json_.end_array().key("frames").begin_array();
   hand_out();
 }
 

@@ -60,8 +60,7 @@ void TissueRecorder::record_events(const CellState& cell) {
   if (!newest_event_ || newest < *newest_event_) newest_event_ = newest;  // also: numbers of a new simulation
   for (const TissueEvent& event : events) {
     if (event.number <= *newest_event_) continue;
-    const NamedTissueEvent named{event, robot_name(cell, event.instrument),
-                                 object_name(report->state, event.object)};
+    const NamedTissueEvent named{event, robot_name(cell, event.instrument), object_name(report->state, event.object)};
     const std::int64_t wall_ns = to_wall_clock_ns(event.time);
     const std::string text = tissue_event_message(named, sentence(named), wall_ns);
     if (hub_.wants(*events_topic_)) hub_.put(events_topic_, wall_ns, mcap::view_of(text));

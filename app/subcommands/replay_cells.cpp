@@ -65,7 +65,7 @@ std::vector<std::string> changed_files(const mcap::Reader& reader, const fs::pat
 }
 
 // The file that the operator names, else the files in the recording, in `folder`. A path in a recording is not opened:
-// whoever made the file would decide what is read here.
+// its author would decide what is read here.
 Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayCells& cells,
                                        std::optional<TemporaryFolder>& folder) {
   if (!cells.recorded.empty()) return cells.recorded;

@@ -42,7 +42,7 @@ std::string not_whole(const Diagnostics& findings) {
   return "its attached files are not a whole cell";
 }
 
-// The attached files. A path in a recording is not opened: whoever made the file would decide what is read here.
+// The attached files. A path in a recording is not opened: its author would decide what is read here.
 Result<fs::path> cell_of(const mcap::Reader& reader, const ReplayGateway& options, const fs::path& folder) {
   if (!options.recorded_cell.empty()) return fs::path(options.recorded_cell);
   const auto attached = extract_cell(reader, folder);

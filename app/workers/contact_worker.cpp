@@ -54,8 +54,7 @@ bool ContactWorker::follow(const CellState& cell_state) {
   const bool other_bodies = !before || !same_bodies(*before, *follower_.cell(), false);
   if (other_bodies) ranges_.clear();
   ranges_news_ = false;
-  if (other_settings || other_bodies)
-    pairs_ = derivation_.derive(*follower_.cell(), *settings_, ranges_.beyond());
+  if (other_settings || other_bodies) pairs_ = derivation_.derive(*follower_.cell(), *settings_, ranges_.beyond());
   for (Finder& finder : finders_) {
     if (finder.finder) finder.finder->adopt(follower_.cell(), pairs_);
   }
@@ -69,7 +68,7 @@ void ContactWorker::run(const CellState& cell_state, const engine::TickState& ti
   if (follow(cell_state) || !follower_.take_posture(tick)) return;
   if (ranges_.note(*follower_.cell(), follower_.positions())) {
     ranges_news_ = true;
-    (void)follow(cell_state);  // quick: nothing is proved anew
+    (void)follow(cell_state);  // quick: without new proofs
   }
   const Timestamp start = clock_.now();
   for (const HapticSnapshot& haptic : cell_state.haptics) {

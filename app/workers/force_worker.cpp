@@ -9,8 +9,7 @@
 namespace cellmirror::app {
 
 ForceWorker::ForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
-                         Nanoseconds tick_period, const Eigen::Vector3d& gravity_W,
-                         const Board<InstrumentLoads>* loads)
+                         Nanoseconds tick_period, const Eigen::Vector3d& gravity_W, const Board<InstrumentLoads>* loads)
     : clock_(clock),
       gravity_W_(gravity_W),
       loads_(loads),

@@ -61,8 +61,7 @@ TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick
 
 TcpForceWorker::TcpForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                                Nanoseconds tick_period, const Board<InstrumentLoads>* loads)
-    : loads_(loads),
-      worker_(*this, ticks, cell_states, clock, tick_period) {}
+    : loads_(loads), worker_(*this, ticks, cell_states, clock, tick_period) {}
 
 void TcpForceWorker::run(const CellState& cell_state, const engine::TickState& tick) {
   const std::shared_ptr<const InstrumentLoads> loads = loads_ == nullptr ? nullptr : loads_->latest();

@@ -115,8 +115,7 @@ void TissueWorker::publish_loads(const engine::TickState& tick) {
   out->posture_time = tick.time;
   out->loads.clear();
   for (const tissue::InstrumentResponse& response : stepper_.world().responses()) {
-    const auto instrument =
-        std::ranges::find(stepper_.instruments(), response.slot, &tissue::InstrumentPose::slot);
+    const auto instrument = std::ranges::find(stepper_.instruments(), response.slot, &tissue::InstrumentPose::slot);
     if (instrument == stepper_.instruments().end()) continue;
     const Eigen::Matrix3d R_TW = instrument->X_WT.linear().transpose();
     out->loads.push_back({.slot = static_cast<std::uint8_t>(response.slot),

@@ -43,8 +43,7 @@ void restrict_to_a_turn(RelativeMotion& motion) {
     for (const JointChain* chain : {&motion.to_a, &motion.to_b}) {
       for (const JointChain::Link& link : chain->links) {
         if (link.variable != i) continue;
-        repeats =
-            repeats && link.kind != JointKind::prismatic && link.multiplier == std::round(link.multiplier);
+        repeats = repeats && link.kind != JointKind::prismatic && link.multiplier == std::round(link.multiplier);
       }
     }
     if (repeats) {

@@ -42,8 +42,8 @@ std::pair<MotionBound::JointBox, MotionBound::JointBox> halves(const MotionBound
   return out;
 }
 
-// Divides the range level by level until `decide` (of the motion within the box) calls every box proved, or one refuted.
-// `decide` adds to `tests` what it cost.
+// Divides the range level by level until `decide` (of the motion within the box) calls every box proved, or one
+// refuted. `decide` adds to `tests` what it cost.
 template <class Decide>
 ProofResult divide(MotionBound& bound, int most_tests, Decide decide) {
   ProofResult result;
@@ -119,7 +119,8 @@ MotionBound::MotionBound(const RelativeMotion& motion, const Body& a, const Body
       corners_a_(corners_of(box_around(a))),
       corners_b_(corners_of(box_around(b))),
       by_variable_(motion.variables.size(), 0.0) {
-  for (auto link = motion.to_a.links.rbegin(); link != motion.to_a.links.rend(); ++link) steps_.emplace_back().link = &*link;
+  for (auto link = motion.to_a.links.rbegin(); link != motion.to_a.links.rend(); ++link)
+    steps_.emplace_back().link = &*link;
   for (const JointChain::Link& link : motion.to_b.links) steps_.emplace_back().link = &link;
   // Lengths along the chain: no posture can stretch it further.
   const std::size_t of_a = motion.to_a.links.size();
@@ -183,8 +184,7 @@ Pose MotionBound::walk(const JointChain& chain, std::span<const double> values, 
 double MotionBound::moved(const Step& step, double half, const Corners& corners, double others, double most) {
   if (step.link->kind == JointKind::prismatic) return half * step.axis.norm();
   double reach = 0;
-  for (const Eigen::Vector3d& corner : corners)
-    reach = std::max(reach, (corner - step.origin).cross(step.axis).norm());
+  for (const Eigen::Vector3d& corner : corners) reach = std::max(reach, (corner - step.origin).cross(step.axis).norm());
   return 2.0 * std::sin(0.5 * std::min(half, std::numbers::pi)) * std::min(reach + others, most);
 }
 

@@ -187,8 +187,7 @@ void ForceComputation::compute_joints_of_load(const CompiledRobot& robot, RobotF
 }
 
 void ForceComputation::compute(Timestamp time, std::span<const RobotMotion> motions,
-                               std::span<const HapticState> haptics, const InstrumentLoads* loads,
-                               ForceState& state) {
+                               std::span<const HapticState> haptics, const InstrumentLoads* loads, ForceState& state) {
   CELLMIRROR_EXPECTS(cell_ && motions.size() == cell_->robots.size());
   update_motions(motions);
   state.posture_time = time;
@@ -197,8 +196,7 @@ void ForceComputation::compute(Timestamp time, std::span<const RobotMotion> moti
     const CompiledRobot& robot = cell_->robots[i];
     const bool has_masses = mechanisms_[i].mechanism.has_value();
     const HapticState* haptic = haptic_of(haptics, robot.slot);
-    const InstrumentLoad* load =
-        haptic != nullptr || loads == nullptr ? nullptr : loads->find(robot.slot, time);
+    const InstrumentLoad* load = haptic != nullptr || loads == nullptr ? nullptr : loads->find(robot.slot, time);
     if (!has_masses && haptic == nullptr && load == nullptr) continue;
     if (state.robots.size() == used) state.robots.emplace_back();
     RobotForces& out = state.robots[used++];

@@ -45,8 +45,8 @@ class ForceComputation {
   bool take_cell(const std::shared_ptr<const CompiledCell>& cell);
   // Of each robot with masses the force at the TCP is that of the contact of its haptic device, if it has one, else of
   // the tissue that it touches, and of what is attached at or beyond the TCP's link (RobotMechanism::load).
-  // Robots with masses, with the instrument of a haptic device or in tissue, at `time`. `motions` are those of the robots
-  // of the cell, in its order; `haptics` the devices; `loads` of tissue, null: none. After take_cell().
+  // Robots with masses, with the instrument of a haptic device or in tissue, at `time`. `motions` are those of the
+  // robots of the cell, in its order; `haptics` the devices; `loads` of tissue, null: none. After take_cell().
   void compute(Timestamp time, std::span<const RobotMotion> motions, std::span<const HapticState> haptics,
                const InstrumentLoads* loads, ForceState& state);
 

@@ -1,5 +1,5 @@
-// What soft tissue does to the instruments that act on it, whoever moves them: plain data from the simulation of tissue
-// to everything that tells of forces. SI.
+// What soft tissue does to the instruments that act on it, however they are moved: plain data from the simulation of
+// tissue to everything that tells of forces. SI.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 namespace cellmirror {
 
 struct InstrumentLoad {
-  std::uint8_t slot = 0;                                // of the robot
+  std::uint8_t slot = 0;                               // of the robot
   Eigen::Vector3d force_T = Eigen::Vector3d::Zero();   // N, of the tissue on the instrument, in the frame of the TCP
   Eigen::Vector3d torque_T = Eigen::Vector3d::Zero();  // Nm, of the same about the TCP
   std::uint32_t contacts = 0;

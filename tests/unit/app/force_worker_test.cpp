@@ -196,8 +196,7 @@ struct WrittenForces final : RobotForceChannel {
   }
   Eigen::Vector3d force = Eigen::Vector3d::Constant(99);
   std::vector<double> efforts{99};
-}
-TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
+} TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
   loads.posture_time = tick.time;
   loads.loads = {{.slot = static_cast<std::uint8_t>(cell->robot("LIFTER")->slot()),
                   .force_T = Eigen::Vector3d(0, 0, -20),
@@ -226,7 +225,7 @@ TEST_F(ForceComputationTest, GivesTheLoadOfTissueToTheJointsOfARobotWithoutMasse
   EXPECT_FALSE(arm->computed);
   ASSERT_EQ(arm->joints.size(), 3U);
   EXPECT_NEAR(arm->joints[0].effort, -2.0, 1e-12);
-  EXPECT_NEAR(arm->joints[1].effort, -2.0 * 5.0, 1e-12);   // 2 m from its axis
+  EXPECT_NEAR(arm->joints[1].effort, -2.0 * 5.0, 1e-12);        // 2 m from its axis
   EXPECT_NEAR(arm->joints[2].effort, 1.0 * 2.0 - 0.25, 1e-12);  // 1 m along x
   const auto written = std::make_shared<WrittenForces>();
   CellState cell_state;
@@ -278,8 +277,9 @@ TEST_F(ForceComputationTest, NamesTheTorquesThatABufferHasNoRoomFor) {
   EXPECT_EQ(force_memory_remark(*compiled, lifter, 15),
             "15 bytes hold the force and 0 of 1 joint torques; there is no room for LIFT: 16 bytes hold all");
   const CompiledRobot& arm = *compiled->robot(cell->robot("ARM")->slot());
-  EXPECT_EQ(force_memory_remark(*compiled, arm, 500),
-            "the model of ARM has no masses, so its values are zero unless a haptic device moves it or it touches tissue");
+  EXPECT_EQ(
+      force_memory_remark(*compiled, arm, 500),
+      "the model of ARM has no masses, so its values are zero unless a haptic device moves it or it touches tissue");
 }
 
 TEST_F(ForceComputationTest, WaitsForRobotsThatTheTickDoesNotKnowYet) {

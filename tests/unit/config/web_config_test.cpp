@@ -72,7 +72,8 @@ TEST_F(WebConfig, AddressesThatOthersReachHaveToBeMeant) {
 }
 
 TEST_F(WebConfig, WarnsOfWhatOthersReach) {
-  ASSERT_TRUE(load("[web]\nallow_remote = true\naddress = \"0.0.0.0\"\norigins = [\"https://a.example\", \"file://\"]\n"));
+  ASSERT_TRUE(
+      load("[web]\nallow_remote = true\naddress = \"0.0.0.0\"\norigins = [\"https://a.example\", \"file://\"]\n"));
   EXPECT_EQ(diagnostics.warnings(), 3U) << diagnostics.text();
   EXPECT_THAT(diagnostics.text(), HasSubstr("the page at 0.0.0.0 is reachable from other machines"));
   EXPECT_THAT(diagnostics.text(), HasSubstr("pages of https://a.example may show this cell"));

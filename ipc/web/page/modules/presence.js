@@ -118,7 +118,7 @@ export class Presence {
     this.tick_();
   }
 
-  // The browser does not tell why a WebSocket was refused. A gateway that answers has no place for another page.
+  // The browser does not report why a WebSocket was refused. A gateway that answers has no place for another page.
   async ask_why_() {
     let answers = false;
     try {
