@@ -126,7 +126,9 @@ export class Presence {
     } catch {
       answers = false;
     }
-    if (!this.connection_.open) this.show_why_(answers ? "full" : "gone");
+    if (this.connection_.open) return;
+    this.show_why_(answers ? "full" : "gone");
+    this.show_line_();
   }
 
   show_why_(why) {
