@@ -15,9 +15,9 @@
 namespace cellmirror::collision {
 
 // Postures tried for one proof. Beyond it the pair stays undecided, and is tested.
-inline constexpr int kMostApartTests = 20'000;
+inline constexpr int kMostApartTests = 6'000;
 inline constexpr int kMostTouchTests = 2'000;  // contacts of parts, which take longer
-inline constexpr int kMostConvexTouchTests = 100'000;
+inline constexpr int kMostConvexTouchTests = 50'000;
 
 enum class Proof : std::uint8_t { proved, refuted, undecided };
 
