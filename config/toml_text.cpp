@@ -130,7 +130,9 @@ std::optional<Unreadable> find_unreadable(std::string_view text) {
     const char c = text[at];
     if (!key.add(c)) {
       return Unreadable{
-          at, fmt::format("a key has more than {} parts between dots; at most {} are read", KeyParts::kMost, KeyParts::kMost),
+          at,
+          fmt::format("a key has more than {} parts between dots; at most {} are read", KeyParts::kMost,
+                      KeyParts::kMost),
           "write fewer tables in each other, or quote a name that has dots; the rest of the file was not read"};
     }
     const bool is_quote = c == '"' || c == '\'';

@@ -23,7 +23,7 @@ class RecordedRun {
  public:
   // Fails where it is no recording, has no inputs, or none that can be played.
   [[nodiscard]] static Result<std::unique_ptr<RecordedRun>> open(const std::filesystem::path& file,
-                                                                   const mcap::Limits& limits = {});
+                                                                 const mcap::Limits& limits = {});
 
   // All that can be played.
   [[nodiscard]] const PlaybackControl::Range& range() const { return range_; }

@@ -7,7 +7,8 @@
 namespace cellmirror::app {
 
 struct Problem {
-  // script_queue, reply_queue, sensor_queue, force_guard, command_log, alarm_log, recording, summary, mqtt, process, stream
+  // script_queue, reply_queue, sensor_queue, force_guard, command_log, alarm_log, recording, summary, mqtt, process,
+  // stream
   std::string kind;
   std::string text;  // with the remedy
 };

@@ -11,9 +11,9 @@
 
 #include "app/console/put.hpp"
 #include "app/replay/verification.hpp"
+#include "app/subcommands/reading.hpp"
 #include "app/subcommands/replay_cells.hpp"
 #include "app/subcommands/replay_gateway.hpp"
-#include "app/subcommands/reading.hpp"
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
 #include "ipc/record/reader.hpp"

@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "ipc/sandbox/child_process.hpp"
 #include "config/volume_message/slice_message.hpp"
+#include "ipc/sandbox/child_process.hpp"
 #include "rt_core/base/result.hpp"
 
 namespace cellmirror {

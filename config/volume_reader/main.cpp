@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 
-#include "ipc/sandbox/confinement.hpp"
 #include "config/volume_message/slice_message.hpp"
 #include "config/volume_reader/slice_head.hpp"
 #include "config/volume_reader/slice_pixels.hpp"
+#include "ipc/sandbox/confinement.hpp"
 #include "rt_core/base/text.hpp"
 
 // With AddressSanitizer, which does not work with an address limit: the largest permitted allocation.

@@ -150,7 +150,8 @@ Result<void> Reader::read_by_index(const Filter& filter, const Take& take) {
     const auto chunk = decode_chunk(*bytes);
     if (!chunk) return fail(fmt::format("at byte {}: a chunk that is cut off", index.offset));
     const auto content = opener.open(*chunk);
-    if (!content) return fail(fmt::format("at byte {}: {}", index.offset, content.error().what), content.error().remedy);
+    if (!content)
+      return fail(fmt::format("at byte {}: {}", index.offset, content.error().what), content.error().remedy);
     RecordList records(*content);
     while (const auto record = records.next()) {
       if (!record->is(Opcode::message)) continue;
@@ -162,7 +163,9 @@ Result<void> Reader::read_by_index(const Filter& filter, const Take& take) {
       selection.on_message(*message, channel->second);
       if (selection.ended()) return {};
     }
-    if (!records.ok()) return fail(fmt::format("at byte {}: the chunk has no whole record at its byte {}", index.offset, records.offset()));
+    if (!records.ok())
+      return fail(
+          fmt::format("at byte {}: the chunk has no whole record at its byte {}", index.offset, records.offset()));
   }
   return {};
 }

@@ -41,9 +41,10 @@ Result<View> ChunkOpener::open(const Chunk& chunk) {
   exhausted_ = compressed && chunk.uncompressed_size > left_;
   if (exhausted_) {
     return fail(
-        fmt::format("the chunks up to here have more than {:.1f} GB decompressed, which is the limit for a file of {:.1f} MB",
-                    1e-9 * static_cast<double>(limits_.most_decompressed(file_bytes_)),
-                    1e-6 * static_cast<double>(file_bytes_)),
+        fmt::format(
+            "the chunks up to here have more than {:.1f} GB decompressed, which is the limit for a file of {:.1f} MB",
+            1e-9 * static_cast<double>(limits_.most_decompressed(file_bytes_)),
+            1e-6 * static_cast<double>(file_bytes_)),
         "if you know where the file is from, raise the limit: --decompressed-limit GB");
   }
   if (compressed) left_ -= chunk.uncompressed_size;
@@ -186,8 +187,7 @@ void Scanner::take_chunk(const RecordView& record) {
     if (!take_inner(*inner, record.offset))
       fault(record.offset, "the chunk has a record of kind {:#04x} at its byte {}", inner->opcode, inner->offset);
   }
-  if (!records.ok())
-    fault(record.offset, "the chunk has no whole record at its byte {}", records.offset());
+  if (!records.ok()) fault(record.offset, "the chunk has no whole record at its byte {}", records.offset());
   in_chunk_ = false;
   ChunkIndex index = index_of(*chunk, record);
   for (const std::uint16_t channel : chunk_channels_) index.message_index_offsets[channel] = 0;

@@ -73,8 +73,8 @@ struct ScanReport {
   std::uint64_t out_of_order = 0;      // messages with a log time before that of the message before
   std::uint64_t chunks_lost = 0;
   std::uint64_t chunks_left_out = 0;  // Limits::leave_out_beyond
-  std::uint64_t whole_until = 0;  // the end of the last whole record that was read in order
-  bool ended = false;             // a footer and the closing magic are there
+  std::uint64_t whole_until = 0;      // the end of the last whole record that was read in order
+  bool ended = false;                 // a footer and the closing magic are there
   Faults faults;
 };
 
@@ -96,8 +96,8 @@ class ChunkOpener {
   Decompressor decompressor_;
 };
 
-// Fails where the source is no MCAP file at all, and where its chunks have more bytes than is accepted. All other faults
-// are in the report.
+// Fails where the source is no MCAP file at all, and where its chunks have more bytes than is accepted. All other
+// faults are in the report.
 [[nodiscard]] Result<ScanReport> scan(const Source& source, const Limits& limits, Visitor& visitor);
 
 }  // namespace cellmirror::mcap

@@ -70,7 +70,7 @@ void TokenTries::note_wrong(const std::string& name, Timestamp now) {
   count(peer, &Peer::wrong, now);
 }
 
-void TokenTries::count(Peer& peer, std::uint64_t Peer::*which, Timestamp now) {
+void TokenTries::count(Peer& peer, std::uint64_t Peer::* which, Timestamp now) {
   if (peer.wrong + peer.unread == 0) peer.first = now;
   ++(peer.*which);
   look_again(std::max(peer.due, now));

@@ -65,7 +65,7 @@ class TokenTries {
   [[nodiscard]] double wait_s(const Peer& peer, Timestamp now);
   void note_wrong(const std::string& name, Timestamp now);
   // Of the peer's attempts one more, counted in `which`.
-  void count(Peer& peer, std::uint64_t Peer::*which, Timestamp now);
+  void count(Peer& peer, std::uint64_t Peer::* which, Timestamp now);
   void look_again(Timestamp at) { next_report_ = next_report_ ? std::min(*next_report_, at) : at; }
   // Drops who has been quiet for long, or else who has been quiet longest.
   void make_room(Timestamp now);

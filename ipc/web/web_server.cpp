@@ -324,8 +324,8 @@ const std::string& Server::token() const { return impl_->context->options.token;
 
 ServerStatus Server::status() const {
   const Counters& c = impl_->counters;
-  return {read_counter(c.clients),           read_counter(c.requests), read_counter(c.pictures),
-          read_counter(c.pictures_left_out), read_counter(c.refused),  read_counter(c.cut),
+  return {read_counter(c.clients),           read_counter(c.requests),     read_counter(c.pictures),
+          read_counter(c.pictures_left_out), read_counter(c.refused),      read_counter(c.cut),
           read_counter(c.commands),          read_counter(c.wrong_tokens), read_counter(c.unread_tokens)};
 }
 

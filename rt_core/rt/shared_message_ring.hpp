@@ -2,9 +2,9 @@
 // trusted: whatever it writes there, and whenever, a side of the ring stays within the memory and its loops end.
 //
 // Memory order. `written` is stored with release after the bytes of a message and loaded with acquire before they are
-// read; `read` likewise in the other direction. A reader that is about to sleep sets `waits` and then looks at `written`
-// again; a writer stores `written` and then looks at `waits`. Both pairs are sequentially consistent, so that at least
-// one of the two sees the other: no message is left behind while its reader sleeps.
+// read; `read` likewise in the other direction. A reader that is about to sleep sets `waits` and then looks at
+// `written` again; a writer stores `written` and then looks at `waits`. Both pairs are sequentially consistent, so that
+// at least one of the two sees the other: no message is left behind while its reader sleeps.
 #pragma once
 
 #include <algorithm>
@@ -125,8 +125,7 @@ class SharedRingReader final : public SharedRingSide {
     if (there > capacity() || there < shared_ring::kHead) return RingResult::damaged;
     std::uint64_t length = 0;
     copy_out(read_, std::as_writable_bytes(std::span(&length, 1)));
-    if (length > longest || shared_ring::occupied(static_cast<std::size_t>(length)) > there)
-      return RingResult::damaged;
+    if (length > longest || shared_ring::occupied(static_cast<std::size_t>(length)) > there) return RingResult::damaged;
     out.resize(static_cast<std::size_t>(length));
     copy_out(read_ + shared_ring::kHead, out);
     read_ += shared_ring::occupied(out.size());

@@ -23,7 +23,7 @@
 
 namespace cellmirror::dds {
 
-// A reader or writer, as the link tells it of its events: by the link's thread, one at a time, and no more after
+// The events of a reader or writer: called by the link's thread, one at a time, and no more after
 // remove().
 class EndpointEvents {
  public:
@@ -96,7 +96,7 @@ class DomainLink {
   const RosPresence presence_;
   ServiceClients clients_;
   std::atomic<bool> ready_{false};  // the process knows the participant and all endpoints: others may follow
-  std::mutex mutex_;                // of what follows; held while an endpoint is told of an event
+  std::mutex mutex_;                // of what follows; held during the calls of EndpointEvents
   std::condition_variable changed_;
   std::map<std::uint32_t, Endpoint> endpoints_;
   std::uint32_t last_id_ = 0;

@@ -66,7 +66,7 @@ struct BrokerSession::Impl {
   bool tls = false;
   std::uint16_t port = 0;
   int keep_alive_s = 10;
-  Events tell;
+  Events report;
   std::optional<Error> end;
   std::map<int, std::int32_t> numbers;                 // cellmirror's, by the library's
   std::vector<std::pair<int, std::string>> confirmed;  // by the library's numbers; a refusal may be given
@@ -89,7 +89,7 @@ struct BrokerSession::Impl {
   static void on_connect(mosquitto*, void* object, int code, int /*flags*/, const mosquitto_property*) {
     Impl& self = of(object);
     if (code == 0) {
-      self.tell.accepted();
+      self.report.accepted();
     } else {
       self.ended(connect_refused(code, self.old_protocol));
     }
@@ -107,7 +107,7 @@ struct BrokerSession::Impl {
 
   static void on_subscribe(mosquitto*, void* object, int, int count, const int* granted, const mosquitto_property*) {
     for (int i = 0; i < count; ++i) {
-      if (granted[i] >= kFirstRefusal) of(object).tell.subscription_refused(mosquitto_reason_string(granted[i]));
+      if (granted[i] >= kFirstRefusal) of(object).report.subscription_refused(mosquitto_reason_string(granted[i]));
     }
   }
 
@@ -119,7 +119,7 @@ struct BrokerSession::Impl {
     event.response_topic = text_property(properties, MQTT_PROP_RESPONSE_TOPIC);
     event.correlation = binary_property(properties, MQTT_PROP_CORRELATION_DATA);
     const auto* first = static_cast<const std::byte*>(message->payload);
-    of(object).tell.received(event, {first, static_cast<std::size_t>(std::max(message->payloadlen, 0))});
+    of(object).report.received(event, {first, static_cast<std::size_t>(std::max(message->payloadlen, 0))});
   }
 
   static void on_log(mosquitto*, void* object, int level, const char* text) {
@@ -180,7 +180,7 @@ Result<std::unique_ptr<BrokerSession>> BrokerSession::make(const ConnectBroker& 
   impl->tls = wanted.tls;
   impl->port = wanted.port;
   impl->keep_alive_s = wanted.keep_alive_s;
-  impl->tell = std::move(events);
+  impl->report = std::move(events);
   impl->set_callbacks();
   if (const int code = impl->set_up(wanted); code != MOSQ_ERR_SUCCESS) {
     const Error why = connection_lost(code, impl->library_error);
@@ -217,7 +217,7 @@ void BrokerSession::publish(const PublishMessage& message, std::span<const std::
   if (code == MOSQ_ERR_SUCCESS) {
     impl_->numbers[number] = message.number;
   } else {
-    impl_->tell.confirmed({message.number, true, connection_lost(code, impl_->library_error).text()});
+    impl_->report.confirmed({message.number, true, connection_lost(code, impl_->library_error).text()});
   }
   report_confirmed();
 }
@@ -226,7 +226,7 @@ void BrokerSession::report_confirmed() {
   for (auto& [number, refusal] : std::exchange(impl_->confirmed, {})) {
     const auto found = impl_->numbers.find(number);
     if (found == impl_->numbers.end()) continue;
-    impl_->tell.confirmed({found->second, false, std::move(refusal)});
+    impl_->report.confirmed({found->second, false, std::move(refusal)});
     impl_->numbers.erase(found);
   }
 }

@@ -115,8 +115,8 @@ TEST_F(WebConfig, WarnsOfAnAddressThatThisMachineDoesNotHave) {
     EXPECT_TRUE(load("[web]\naddress = " + address + "\nallow_remote = true\n")) << "it may come later";
     EXPECT_EQ(diagnostics.warnings(), 1U) << diagnostics.text();
     EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:4:11: warning: "));
-    EXPECT_THAT(diagnostics.text(), HasSubstr("no network interface of this machine has the address " +
-                                              std::string(absent)));
+    EXPECT_THAT(diagnostics.text(),
+                HasSubstr("no network interface of this machine has the address " + std::string(absent)));
     EXPECT_TRUE(load("[dds_output]\ninterface_address = " + address + "\n"));
     EXPECT_THAT(diagnostics.text(), HasSubstr("cell.toml:4:21: warning: "));
   }
