@@ -87,6 +87,32 @@ Result<void> check_filling(const ObjectDescription& d, double volume) {
 }
 
 }  // namespace
+// Whether one tetrahedron of a file needs far more mass for a stable step than others of its material do: a sliver.
+Result<void> check_masses(const ObjectDescription& d, const RestMesh& mesh, const BodyState& now) {
+  constexpr double kMostOverMedian = 100;
+  const std::span<const ElementState> states = now.elements.states();
+  if (d.volume.tetrahedra.empty() || states.empty()) return {};
+  // By the shape alone: stiffer material needs more everywhere.
+  std::vector<double> by_shape;
+  for (const ElementState& s : states)
+    by_shape.push_back(s.mass_factor * s.material.density_kg_m3 / s.material.youngs_modulus_pa);
+  const auto worst = std::ranges::max_element(by_shape);
+  const auto element = static_cast<std::size_t>(worst - by_shape.begin());
+  const double largest = *worst;
+  const auto middle = by_shape.begin() + static_cast<std::ptrdiff_t>(by_shape.size() / 2);
+  std::ranges::nth_element(by_shape, middle);
+  const double factor = states[element].mass_factor;
+  if (factor <= kMostOverMedian || largest <= kMostOverMedian * *middle) return {};
+  const std::uint32_t tetrahedron = now.topology.elements()[element].tetrahedron;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  for (const std::uint32_t node : mesh.tetrahedra[tetrahedron].nodes) at += 250.0 * mesh.nodes[node];
+  return fail(
+      fmt::format("{}: tetrahedron {} at ({:.1f}, {:.1f}, {:.1f}) mm in the world is so flat that it would need {:.3g} "
+                  "times its mass for a stable step, more than {:g} times as much as most others",
+                  d.name, tetrahedron + 1, at.x(), at.y(), at.z(), factor, kMostOverMedian),
+      "let the mesher remove slivers (Gmsh: Mesh.Optimize, Mesh.OptimizeNetgen)");
+}
+
 
 Body::Body(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Body::Body(Body&&) noexcept = default;
@@ -104,6 +130,7 @@ Result<Body> Body::make(const ObjectDescription& description) {
   now.elements = Elements(parts->mesh, now.topology, materials_of(parts->description, parts->mesh, now.topology),
                           kStep_s, parts->description.most_substeps);
   if (auto filled = check_filling(parts->description, now.elements.volume()); !filled) {
+  if (auto alike = check_masses(parts->description, parts->mesh, now); !alike) return std::unexpected(alike.error());
     return std::unexpected(filled.error());
   }
   std::vector<std::uint32_t> all(now.topology.elements().size());

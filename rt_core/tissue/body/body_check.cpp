@@ -105,9 +105,19 @@ Result<void> check_tetrahedra(const ObjectDescription& d) {
     double longest = 0;
     for (const auto& [a, b] : kEdgeCorners) longest = std::max(longest, (nodes[n[a]] - nodes[n[b]]).norm());
     const double volume = std::abs(tetrahedron_volume(nodes[n[0]], nodes[n[1]], nodes[n[2]], nodes[n[3]]));
-    // A regular one has 0.118 of its edge's cube.
-    if (!(longest >= 1e-6) || !(volume >= 1e-6 * longest * longest * longest)) {
-      return fail(fmt::format("{}: tetrahedron {} is flat", d.name, t + 1), "let the mesher remove slivers");
+    constexpr double kRegular = 0.11785113;  // volume of a regular one, in cubes of its edge
+    const double quality = volume / (kRegular * longest * longest * longest);
+    if (!(longest >= 1e-6)) {
+      return fail(fmt::format("{}: tetrahedron {} is flat: its longest edge is {:g} m", d.name, t + 1, longest),
+                  "check the unit of the file, and write the mesh again");
+    }
+    if (!(quality >= kLeastQuality)) {
+      const Eigen::Vector3d at = 250.0 * (nodes[n[0]] + nodes[n[1]] + nodes[n[2]] + nodes[n[3]]);
+      return fail(
+          fmt::format("{}: tetrahedron {} at ({:.1f}, {:.1f}, {:.1f}) mm is flat: its quality is {:.2g} (a regular "
+                      "one has 1), at least {:g} is needed",
+                      d.name, t + 1, at.x(), at.y(), at.z(), quality, kLeastQuality),
+          "let the mesher remove slivers (Gmsh: Mesh.Optimize, Mesh.OptimizeNetgen)");
     }
   }
   return check_faces(d);

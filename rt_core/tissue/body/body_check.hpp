@@ -8,6 +8,9 @@
 namespace cellmirror::tissue {
 
 inline constexpr double kLargestCoordinate_m = 1000;
+// Volume of a tetrahedron over that of a regular one with its longest edge. A flatter one swings so fast that a stable
+// step would need many times its mass.
+inline constexpr double kLeastQuality = 0.001;
 
 // Figures, counts and indices; all but what only the lattice can say of the surface. An error names the object, the
 // place and a remedy.

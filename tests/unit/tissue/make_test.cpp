@@ -86,7 +86,7 @@ TEST(TissueMake, TetrahedraThatNoBodyHasAreRefused) {
   refused(d, "tetrahedron 5");
   d = good;
   d.volume.tetrahedra[4][2] = d.volume.tetrahedra[4][1];
-  refused(d, "tetrahedron 5 is flat");
+  refused(d, "tetrahedron 5 at (");
   d = good;
   d.volume.nodes[d.volume.tetrahedra[0][0]].z() = kInfinity;
   refused(d, "tetrahedron 1");
@@ -103,6 +103,28 @@ TEST(TissueMake, TetrahedraThatNoBodyHasAreRefused) {
   d = good;
   d.volume.tetrahedra.assign(2'000'000, d.volume.tetrahedra[0]);
   refused(d, "2000000 tetrahedra");
+}
+
+// A corner of one tetrahedron is moved nearly into the plane of its others, which leaves its neighbours sound.
+TEST(TissueMake, SliversAreRefusedWithTheirPlace) {
+  ObjectDescription d = block(Eigen::Vector3d(0.02, 0.02, 0.02), {2, 2, 2});
+  const auto add_sliver = [&d](double height) {
+    const auto first = static_cast<std::uint32_t>(d.volume.nodes.size());
+    for (const Eigen::Vector3d& p : {Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0.11, 0, 0),
+                                     Eigen::Vector3d(0.1, 0.01, 0), Eigen::Vector3d(0.103, 0.003, height)})
+      d.volume.nodes.push_back(p);
+    d.volume.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+  };
+  ObjectDescription good = d;
+  add_sliver(1e-6);
+  refused(d, "tetrahedron 49 at (103.");
+  refused(d, "mm is flat: its quality is 5e-05");
+  d = good;
+  add_sliver(3e-5);  // a quality of 0.0015
+  refused(d, "times its mass for a stable step");
+  d = good;
+  add_sliver(4e-3);
+  EXPECT_TRUE(Body::make(d));
 }
 
 TEST(TissueMake, TetrahedraThatAreInsideOutAreTurned) {
