@@ -362,6 +362,32 @@ script = "missing.spt"
   EXPECT_EQ(diagnostics.errors(), 4U) << told;
 }
 
+TEST_F(CellFile, countersOfJointsThatTurnWithoutEndAreMarkedAndMayHaveARange) {
+  home.write(
+      "envlib/turn.mpc",
+      "format = 1\n[[node]]\nname = \"T\"\njoint = { type = \"continuous\", axis = [0, 0, 1], velocity_rad_s = 1 }\n"
+      "[[node]]\nname = \"H\"\nparent = \"T\"\n"
+      "joint = { type = \"revolute\", axis = [0, 0, 1], range_rad = [-1, 1], velocity_rad_s = 1 }\n"
+      "[robot]\nid = \"TURN\"\nflange = \"H\"\n");
+  const auto nodes = [&](const std::string& more, const std::string& joint = "T") {
+    const auto sut = load(
+        "[[node]]\nname = \"Turn\"\nabstract = \"turn.mpc\"\n[[stream]]\nrobot = \"TURN\"\n"
+        "kind = \"can-cia402\"\nchannel = \"socketcan:can0\"\n[[stream.node]]\nid = 1\njoint = \"" +
+        joint + "\"\nincrements_per_rad = 1000\n" + more);
+    return sut ? std::get<Cia402StreamConfig>(sut->streams.at(0).config).nodes : std::vector<Cia402NodeConfig>();
+  };
+  const auto turning = nodes("position_range_min = 0\nposition_range_max = 3599\n");
+  ASSERT_EQ(turning.size(), 1U) << findings();
+  EXPECT_TRUE(turning[0].turns);
+  EXPECT_EQ(turning[0].range_upper, 3599);
+  const auto limited = nodes("", "H");
+  ASSERT_EQ(limited.size(), 1U) << findings();
+  EXPECT_FALSE(limited[0].turns);
+  EXPECT_TRUE(nodes("position_range_min = 0\n").empty()) << "half of a range";
+  EXPECT_TRUE(nodes("position_range_min = 5\nposition_range_max = 5\n").empty());
+  EXPECT_TRUE(nodes("position_range_min = 0\nposition_range_max = 3599\n", "H").empty()) << "it has limits";
+}
+
 TEST_F(CellFile, channelsHaveTheirForms) {
   home.write("run.log", "(1.0) can0 123#00\n");
   const auto channel = [&](const std::string& endpoint, const std::string& more = "") {
