@@ -318,7 +318,7 @@ TEST_F(StallTest, HeartbeatsThatCameInTimeCountThoughTheStreamIsLate) {
 
 TEST_F(StreamTest, AChannelThatCannotBeOpenedIsAnError) {
   options.open_channel = {};
-  config.channel.endpoint = "socketcan:nosuchcan9";
+  config.channel.endpoint = "log:/does/not/exist.log";
   auto made = make_cia402_stream(config, clock, options);
   ASSERT_TRUE(made);
   EXPECT_FALSE((*made)->open(sink));
