@@ -21,6 +21,12 @@ namespace cellmirror {
 namespace {
 
 constexpr std::uint64_t kMega = 1ULL << 20U;
+// Sanitizers keep what was freed, and a shadow of all memory.
+#if defined(CELLMIRROR_SANITIZED)
+constexpr std::uint64_t kOfSanitizers = 4;
+#else
+constexpr std::uint64_t kOfSanitizers = 1;
+#endif
 
 std::string signal_name(int signal) {
   const char* known = sigabbrev_np(signal);
@@ -136,7 +142,7 @@ std::optional<std::string> SandboxProcess::found(Timestamp now) {
   if (auto flood = floods(now)) return flood;
   const std::uint64_t memory = resident_bytes(child_.id());
   record_->measured(memory);
-  if (memory > memory_limit_) return ran_out_of_memory(memory_limit_);
+  if (memory > memory_limit_ * kOfSanitizers) return ran_out_of_memory(memory_limit_);
   return std::nullopt;
 }
 
