@@ -14,10 +14,10 @@ namespace cellmirror {
 namespace {
 
 constexpr int kMessagesPerRound = 4096;  // between two looks at the process and at stop()
-// Where messages come closer than this to each other, they are collected for kCollect before the thread sleeps again: a
-// wake for each would cost more than the messages.
+// Where messages come closer than this to each other, they are collected for kCollect at a time, and the thread sleeps
+// until it is woken only when there was none: a wake for each would cost more than the messages.
 constexpr Nanoseconds kClose{500'000};
-constexpr timespec kCollect{0, 200'000};
+constexpr timespec kCollect{0, 400'000};
 
 }  // namespace
 
@@ -106,11 +106,14 @@ void Sandbox::serve() {
     const Timestamp now = clock_.now();
     const bool close = now - last_woken_ < kClose;
     last_woken_ = now;
-    if (close) nanosleep(&kCollect, nullptr);
-    std::optional<std::string> why;
-    if (!take_messages()) why = process_->end("sent a message that it may not send");
-    if (!why) why = process_->look(clock_.now());
-    if (why) return note_end(*why);
+    bool more = false;
+    do {
+      if (close) nanosleep(&kCollect, nullptr);
+      std::optional<std::string> why;
+      if (!take_messages(more)) why = process_->end("sent a message that it may not send");
+      if (!why) why = process_->look(clock_.now());
+      if (why) return note_end(*why);
+    } while (close && more && !stop_.load());
   }
   say_farewell();
   record_->stopped();
@@ -122,14 +125,17 @@ void Sandbox::say_farewell() {
   if (events_.stopping) {
     events_.stopping();
     const Timestamp until = clock_.now() + kFarewell;
-    while (clock_.now() < until && !process_->channel().ended() && take_messages())
+    bool some = false;
+    while (clock_.now() < until && !process_->channel().ended() && take_messages(some))
       process_->wait(until - clock_.now(), -1);
   }
   static_cast<void>(process_->end("was stopped"));
 }
 
-bool Sandbox::take_messages() {
+bool Sandbox::take_messages(bool& some) {
+  some = false;
   for (int i = 0; i < kMessagesPerRound && process_->receive(message_); ++i) {
+    some = true;
     if (!events_.received(message_)) return false;
   }
   return true;

@@ -62,7 +62,8 @@ class Sandbox {
   void run();
   void serve();
   void say_farewell();
-  [[nodiscard]] bool take_messages();
+  // False: one that may not come. `some`: there were some.
+  [[nodiscard]] bool take_messages(bool& some);
   [[nodiscard]] bool launch();
   void pause_until(Timestamp when);
   void note_end(const std::string& why);

@@ -13,6 +13,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+ROUNDS = sys.argv.pop(1) if len(sys.argv) > 1 else "2000"  # load_bench reads its own arguments
 import gateway as g  # noqa: E402
 import load_bench  # noqa: E402
 
@@ -39,7 +40,7 @@ joint = [{", ".join(f'{{ joint = "J_{j}", ros_name = "J_{j}" }}' for j in range(
 
 
 def main():
-    rounds = sys.argv[1] if len(sys.argv) > 1 else "2000"
+    rounds = ROUNDS
     scratch = g.Scratch(startup=True)
     (scratch.home / "envlib" / "arm.mpc").write_text(load_bench.ARM)
     (scratch.home / "scripts" / "startup.spt").write_text("ROBOT R online;\nROBOT R send_on;\n")

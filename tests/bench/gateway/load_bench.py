@@ -129,9 +129,11 @@ def main():
     try:
         g.eventually(lambda: scratch.status()["script"]["done"] >= ROBOTS)
         recording = Recording(scratch, gateway.child.pid)
-        cpu, start = processor_s(gateway.child.pid), time.monotonic()
+        pids = [gateway.child.pid] + [one["pid"] for one in scratch.status().get("processes", [])]
+        before, start = [processor_s(pid) for pid in pids], time.monotonic()
         done = subprocess.run([str(part) for part in load(kind, seconds)], capture_output=True, text=True, check=True)
-        cpu, wall = processor_s(gateway.child.pid) - cpu, time.monotonic() - start
+        wall = time.monotonic() - start
+        cores = [(processor_s(pid) - then) / wall for pid, then in zip(pids, before)]
         time.sleep(1)
         status = scratch.status()
         sent = json.loads(done.stdout)
@@ -143,7 +145,8 @@ def main():
               f"rejected {sum(s['rejected'] for s in streams)}, dropped inside {sum(q['dropped'] for q in queues)}, "
               f"taken by the tick {sum(q['passed'] for q in queues)}")
         loop = status["loop"]
-        print(f"gateway: {cpu / wall:.2f} cores, {memory_mb(gateway.child.pid):.0f} MB; tick p99 {loop['compute_us']['p99']:.0f} us, "
+        print(f"gateway: {sum(cores):.2f} cores ({' + '.join(f'{one:.2f}' for one in cores)}: itself and its confined processes), "
+              f"{' + '.join(f'{memory_mb(pid):.0f}' for pid in pids)} MB; tick p99 {loop['compute_us']['p99']:.0f} us, "
               f"wake-up p99 {loop['wakeup_latency_us']['p99']:.0f} us, missed {loop['missed']} of {loop['ticks']}, "
               f"allocations in ticks {loop['allocations']}")
         recording.report()
