@@ -10,14 +10,16 @@ namespace cellmirror::app {
 nlohmann::json processes_json(std::span<const SandboxReport> reports) {
   nlohmann::json out = nlohmann::json::array();
   for (const SandboxReport& report : reports)
-    out.push_back({{"program", report.program},
-                   {"subject", report.subject},
-                   {"state", words(report.state)},
-                   {"pid", report.pid > 0 ? nlohmann::json(report.pid) : nlohmann::json(nullptr)},
-                   {"memory_bytes", report.memory_bytes},
-                   {"memory_limit_bytes", report.memory_limit_bytes},
-                   {"restarts", report.restarts},
-                   {"last_exit", report.last_exit}});
+    out.push_back(
+        {{"program", report.program},
+         {"subject", report.subject},
+         {"state", words(report.state)},
+         {"pid", report.pid > 0 ? nlohmann::json(report.pid) : nlohmann::json(nullptr)},
+         {"confined", {{"system_calls", report.confinement.system_calls}, {"files", report.confinement.files}}},
+         {"memory_bytes", report.memory_bytes},
+         {"memory_limit_bytes", report.memory_limit_bytes},
+         {"restarts", report.restarts},
+         {"last_exit", report.last_exit}});
   return out;
 }
 

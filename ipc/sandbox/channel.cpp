@@ -40,13 +40,15 @@ SharedMapping map(int memory, std::size_t size) {
 
 }  // namespace
 
-// The owner writes all but `beats` before the child starts, and never reads the rest again.
+// The owner writes all but the last three before the child starts, and never reads the rest again.
 struct Channel::Header {
   std::uint64_t magic = kMagic;
   std::uint64_t longest = 0;
   std::uint64_t to_child = 0;
   std::uint64_t to_owner = 0;
   alignas(SharedRingHeader::kLine) std::atomic<std::uint64_t> beats{0};
+  std::atomic<bool> confined_calls{false};
+  std::atomic<bool> confined_files{false};
 };
 
 SharedMapping::~SharedMapping() {
@@ -155,6 +157,16 @@ void Channel::wait(Nanoseconds timeout, std::span<pollfd> also) {
   if (ppoll(waited.data(), also.size() + 1, &limit, nullptr) > 0 && waited[0].revents != 0) drain_wakes();
   for (std::size_t i = 0; i < also.size(); ++i) also[i].revents = waited[i + 1].revents;
   in_.awake();
+}
+
+void Channel::set_confinement(const ConfinementOutcome& outcome) {
+  header().confined_calls.store(outcome.system_calls, std::memory_order_relaxed);
+  header().confined_files.store(outcome.files, std::memory_order_relaxed);
+}
+
+ConfinementOutcome Channel::confinement() const {
+  return {header().confined_calls.load(std::memory_order_relaxed),
+          header().confined_files.load(std::memory_order_relaxed)};
 }
 
 void Channel::beat() { header().beats.fetch_add(1, std::memory_order_relaxed); }

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "ipc/sandbox/confinement.hpp"
 #include "rt_core/base/descriptor.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -72,6 +73,9 @@ class Channel {
   // Bytes by which the other side woke this one in the last wait().
   [[nodiscard]] std::size_t wakes() const { return wakes_; }
 
+  // The child says what it has given up, before it reads bytes of strangers.
+  void set_confinement(const ConfinementOutcome& outcome);
+  [[nodiscard]] ConfinementOutcome confinement() const;
   // The child says that it is alive; the owner reads how often.
   void beat();
   [[nodiscard]] std::uint64_t beats() const;

@@ -107,11 +107,12 @@ class SystemCallFilter {
       add(BPF_STMT(kReturn, SECCOMP_RET_ERRNO | kNotPermitted));
     }
   }
-  // For the calling thread and those that it starts, or for all threads of the process.
-  void install(bool all_others_allowed, bool all_threads) {
+  // For the calling thread and those that it starts, or for all threads of the process. False: the kernel refuses it.
+  bool install(bool all_others_allowed, bool all_threads) {
     add(BPF_STMT(kReturn, all_others_allowed ? SECCOMP_RET_ALLOW : SECCOMP_RET_ERRNO | kNotPermitted));
     const sock_fprog filter{static_cast<unsigned short>(program_.size()), program_.data()};
-    syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, all_threads ? SECCOMP_FILTER_FLAG_TSYNC : 0, &filter);
+    return syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, all_threads ? SECCOMP_FILTER_FLAG_TSYNC : 0, &filter) == 0 ||
+           (!all_threads && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0);
   }
 
  private:
@@ -209,7 +210,7 @@ constexpr std::array kOpening{
 #endif
 };
 
-void allow_network_calls(bool tcp) {
+bool allow_network_calls(bool tcp) {
   constexpr std::uint32_t kAll = ~0U;
   SystemCallFilter filter;
   filter.allow(kReading);
@@ -225,7 +226,7 @@ void allow_network_calls(bool tcp) {
   // abort() shall end it with its own signal, and no other process.
   filter.allow_if(__NR_tgkill, 0, kAll, std::array{static_cast<std::uint32_t>(getpid())});
   filter.allow_if(__NR_prlimit64, 0, kAll, std::array<std::uint32_t, 1>{0});
-  filter.install(false, false);
+  return filter.install(false, false);
 }
 
 // --- files and addresses --------------------------------------------------------------------------------------------
@@ -277,9 +278,9 @@ void permit_reading(int rules, const char* path) {
   syscall(__NR_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &permitted, 0);
 }
 
-void restrict_files(const NetworkConfinement& limits) {
+bool restrict_files(const NetworkConfinement& limits) {
   const auto version = syscall(__NR_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
-  if (version < 1) return;
+  if (version < 1) return false;
   LandlockRules handled;
   handled.files = kFirstVersionRights;
   if (version >= 4) handled.ports = limits.tcp ? kBindTcp : kBindTcp | kConnectTcp;
@@ -288,10 +289,10 @@ void restrict_files(const NetworkConfinement& limits) {
   if (version >= 4) size = 2 * sizeof(std::uint64_t);
   if (version >= 6) size = sizeof handled;
   const Descriptor rules(static_cast<int>(syscall(__NR_landlock_create_ruleset, &handled, size, 0)));
-  if (!rules.valid()) return;
+  if (!rules.valid()) return false;
   for (const char* path : kSystemFiles) permit_reading(rules.get(), path);
   for (const std::string& path : limits.readable) permit_reading(rules.get(), path.c_str());
-  syscall(__NR_landlock_restrict_self, rules.get(), 0);
+  return syscall(__NR_landlock_restrict_self, rules.get(), 0) == 0;
 }
 
 }  // namespace
@@ -309,16 +310,16 @@ void confine_this_process(const Confinement& limits) {
   filter.install(false, false);
 }
 
-void confine_to_network(const NetworkConfinement& limits) {
+ConfinementOutcome confine_to_network(const NetworkConfinement& limits) {
   constexpr rlim_t kDescriptors = 256;
   drop_common_rights();
   close_range(kChildMemory + 1, ~0U, 0);
   std::set_new_handler([] { _exit(kOutOfMemoryStatus); });
-  if (kSanitized) return;
+  if (kSanitized) return {};
   limit(RLIMIT_NOFILE, kDescriptors);
   limit(RLIMIT_AS, limits.address_space_bytes);
-  restrict_files(limits);
-  if (kMachine != 0) allow_network_calls(limits.tcp);
+  const bool files = restrict_files(limits);
+  return {kMachine != 0 && allow_network_calls(limits.tcp), files};
 }
 
 void forbid_opening_files() {

@@ -28,11 +28,17 @@ struct NetworkConfinement {
   bool tcp = false;                            // it may connect to a TCP port; otherwise UDP only
 };
 
+// What of the below is in force. A kernel, or a service manager, may refuse it.
+struct ConfinementOutcome {
+  bool system_calls = false;
+  bool files = false;
+};
+
 // For a program that speaks to a network, which keeps descriptors 0 to 2 and kChildMemory: in two steps, each before
 // what it guards against.
 // 1. Before its library starts: no new privileges, bounds on memory and files, no file but those that are named, no
 //    program started, no signal to another process.
-void confine_to_network(const NetworkConfinement& limits);
+[[nodiscard]] ConfinementOutcome confine_to_network(const NetworkConfinement& limits);
 // 2. When the library has opened its files: it opens no other. All threads.
 void forbid_opening_files();
 

@@ -141,7 +141,7 @@ std::optional<std::string> SandboxProcess::found(Timestamp now) {
     return fmt::format("did not answer for {:.1f} s", seconds(kLookEvery * silent_looks_));
   if (auto flood = floods(now)) return flood;
   const std::uint64_t memory = resident_bytes(child_.id());
-  record_->measured(memory);
+  record_->measured(memory, channel_.confinement());
   if (memory > memory_limit_ * kOfSanitizers) return ran_out_of_memory(memory_limit_);
   return std::nullopt;
 }

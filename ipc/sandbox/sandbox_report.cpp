@@ -57,9 +57,10 @@ void SandboxRecord::started(pid_t pid) {
   report_.pid = pid;
 }
 
-void SandboxRecord::measured(std::uint64_t memory_bytes) {
+void SandboxRecord::measured(std::uint64_t memory_bytes, const ConfinementOutcome& confinement) {
   const std::scoped_lock lock(mutex_);
   report_.memory_bytes = memory_bytes;
+  report_.confinement = confinement;
 }
 
 void SandboxRecord::ended(const std::string& why, bool again) {

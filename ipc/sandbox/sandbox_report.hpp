@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "ipc/sandbox/confinement.hpp"
+
 namespace cellmirror {
 
 enum class SandboxState : std::uint8_t { starting, running, restarting, stopped };
@@ -22,8 +24,9 @@ struct SandboxReport {
   pid_t pid = 0;                   // 0: there is none now
   std::uint64_t memory_bytes = 0;  // resident; of the last look, at most about a second ago
   std::uint64_t memory_limit_bytes = 0;
-  std::uint64_t restarts = 0;  // because one ended that was not to end
-  std::string last_exit;       // why the last one ended by itself or was ended; empty: none has
+  ConfinementOutcome confinement;  // of the one that runs
+  std::uint64_t restarts = 0;      // because one ended that was not to end
+  std::string last_exit;           // why the last one ended by itself or was ended; empty: none has
 };
 
 // One process and those that take its place, as they are reported. Any thread.
@@ -35,7 +38,7 @@ class SandboxRecord {
 
   [[nodiscard]] SandboxReport report() const;
   void started(pid_t pid);
-  void measured(std::uint64_t memory_bytes);
+  void measured(std::uint64_t memory_bytes, const ConfinementOutcome& confinement);
   // `again`: another one takes its place.
   void ended(const std::string& why, bool again);
   // It was ended on purpose.

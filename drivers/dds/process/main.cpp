@@ -69,7 +69,7 @@ int run() {
   const DdsSecurityConfig& files = wanted->security;
   const std::vector<std::string> readable{files.identity_ca,    files.certificate, files.private_key,
                                           files.permissions_ca, files.governance,  files.permissions};
-  confine_to_network({.address_space_bytes = kAddresses, .readable = readable});
+  channel->set_confinement(confine_to_network({.address_space_bytes = kAddresses, .readable = readable}));
   EventSender sender(*channel);
   send_library_log(sender);
   ParticipantHost host(sender);

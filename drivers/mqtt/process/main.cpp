@@ -37,7 +37,8 @@ class Connection {
     const auto wanted = wanted_connection();
     if (!wanted) return;
     const std::vector<std::string> readable{wanted->ca_file, wanted->certificate, wanted->key};
-    confine_to_network({.address_space_bytes = kAddresses, .readable = readable, .tcp = true});
+    channel_.set_confinement(
+        confine_to_network({.address_space_bytes = kAddresses, .readable = readable, .tcp = true}));
     if (auto opened = open(*wanted); !opened) return send(ConnectionEnded{opened.error().what, opened.error().remedy});
     forbid_opening_files();
     send(BrokerAsked{});

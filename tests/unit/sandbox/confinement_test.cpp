@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "tests/unit/sandbox/sandbox_fixture.hpp"
 
 namespace cellmirror {
@@ -22,6 +25,19 @@ TEST_F(NetworkConfinementTest, ATakenOverProcessReachesNothing) {
     EXPECT_NE(answer, "unknown") << what;
     EXPECT_NE(answer, "") << what;
   }
+}
+
+TEST_F(NetworkConfinementTest, TheOutcomeIsReported) {
+  ASSERT_EQ(sut_.ask("echo"), "echo");
+  const ConfinementOutcome* outcome = nullptr;
+  SandboxReport report;
+  for (int i = 0; i < 600 && outcome == nullptr; ++i) {  // it is read with the memory
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    report = sut_.sandbox.report();
+    if (report.memory_bytes > 0) outcome = &report.confinement;
+  }
+  ASSERT_NE(outcome, nullptr);
+  EXPECT_TRUE(outcome->system_calls);
 }
 
 TEST_F(NetworkConfinementTest, ItMaySpeakUdpAndReadFilesOfTheSystem) {

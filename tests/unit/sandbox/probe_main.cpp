@@ -111,7 +111,7 @@ int run() {
   if (!channel || memory == nullptr) return 2;
   dup2(kept, kChildMemory);
   close(kept);
-  confine_to_network({.address_space_bytes = 256ULL << 20U});
+  channel->set_confinement(confine_to_network({.address_space_bytes = 256ULL << 20U}));
   std::vector<std::byte> message;
   while (!channel->ended()) {
     while (channel->receive(message) == RingResult::done) {
