@@ -11,7 +11,7 @@ import unittest
 
 import gateway as g
 
-PROGRAMS = [g.BIN / "cellmirror", g.BIN / "sim_robot"]
+PROGRAMS = [g.BIN / "cellmirror", g.BIN / "cellmirror-dds", g.BIN / "sim_robot"]
 # SPDX 2.3, clauses 6 to 11: what a document and a package must have.
 OF_A_DOCUMENT = {"spdxVersion", "dataLicense", "SPDXID", "name", "documentNamespace", "creationInfo", "packages", "relationships"}
 OF_A_PACKAGE = {"SPDXID", "name", "downloadLocation", "versionInfo", "filesAnalyzed", "licenseConcluded", "licenseDeclared", "copyrightText"}
