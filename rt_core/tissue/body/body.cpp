@@ -113,7 +113,6 @@ Result<void> check_masses(const ObjectDescription& d, const RestMesh& mesh, cons
       "let the mesher remove slivers (Gmsh: Mesh.Optimize, Mesh.OptimizeNetgen)");
 }
 
-
 Body::Body(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Body::Body(Body&&) noexcept = default;
 Body& Body::operator=(Body&&) noexcept = default;
@@ -130,7 +129,7 @@ Result<Body> Body::make(const ObjectDescription& description) {
   now.elements = Elements(parts->mesh, now.topology, materials_of(parts->description, parts->mesh, now.topology),
                           kStep_s, parts->description.most_substeps);
   if (auto filled = check_filling(parts->description, now.elements.volume()); !filled) {
-  if (auto alike = check_masses(parts->description, parts->mesh, now); !alike) return std::unexpected(alike.error());
+    if (auto alike = check_masses(parts->description, parts->mesh, now); !alike) return std::unexpected(alike.error());
     return std::unexpected(filled.error());
   }
   std::vector<std::uint32_t> all(now.topology.elements().size());
