@@ -196,7 +196,9 @@ struct WrittenForces final : RobotForceChannel {
   }
   Eigen::Vector3d force = Eigen::Vector3d::Constant(99);
   std::vector<double> efforts{99};
-} TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
+};
+
+TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
   loads.posture_time = tick.time;
   loads.loads = {{.slot = static_cast<std::uint8_t>(cell->robot("LIFTER")->slot()),
                   .force_T = Eigen::Vector3d(0, 0, -20),
