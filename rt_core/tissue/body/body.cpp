@@ -86,7 +86,6 @@ Result<void> check_filling(const ObjectDescription& d, double volume) {
               "set a smaller element_size_m: at most half of the thickness");
 }
 
-}  // namespace
 // Whether one tetrahedron of a file needs far more mass for a stable step than others of its material do: a sliver.
 Result<void> check_masses(const ObjectDescription& d, const RestMesh& mesh, const BodyState& now) {
   constexpr double kMostOverMedian = 100;
@@ -113,6 +112,8 @@ Result<void> check_masses(const ObjectDescription& d, const RestMesh& mesh, cons
       "let the mesher remove slivers (Gmsh: Mesh.Optimize, Mesh.OptimizeNetgen)");
 }
 
+}  // namespace
+
 Body::Body(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Body::Body(Body&&) noexcept = default;
 Body& Body::operator=(Body&&) noexcept = default;
@@ -129,9 +130,9 @@ Result<Body> Body::make(const ObjectDescription& description) {
   now.elements = Elements(parts->mesh, now.topology, materials_of(parts->description, parts->mesh, now.topology),
                           kStep_s, parts->description.most_substeps);
   if (auto filled = check_filling(parts->description, now.elements.volume()); !filled) {
-    if (auto alike = check_masses(parts->description, parts->mesh, now); !alike) return std::unexpected(alike.error());
     return std::unexpected(filled.error());
   }
+  if (auto alike = check_masses(parts->description, parts->mesh, now); !alike) return std::unexpected(alike.error());
   std::vector<std::uint32_t> all(now.topology.elements().size());
   std::iota(all.begin(), all.end(), 0U);
   now.surface.update(parts->mesh, now.topology, all);

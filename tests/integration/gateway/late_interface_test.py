@@ -18,6 +18,7 @@ SPACES = (["unshare", "--net"], ["unshare", "--map-root-user", "--net"])
 OTHERS = f"""
 [[device]]
 robot = "TABLE_1"
+protocol = "cia402"
 channel = "{GROUP}"
 interface = "{LATE}"
 [[device.node]]
