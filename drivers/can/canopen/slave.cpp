@@ -295,9 +295,9 @@ LssSlave::Identity CanopenSlave::identity() const {
 void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {
   const bool counted = object(kSyncCounter) != 0;
   if (frame.length == (counted ? 1 : 0)) {
-    clear_error(sync_length);
+    clear_error(wrong_sync_length);
   } else {
-    set_error(sync_length, kEmcySyncLength);
+    set_error(wrong_sync_length, kEmcySyncLength);
   }
   if (nmt_ != NmtState::operational || !is_sync(frame)) return;
   pdos_.send_on_sync(counted && frame.length == 1 ? std::optional(frame.data[0]) : std::nullopt, now);
@@ -311,9 +311,9 @@ void CanopenSlave::on_rpdo(const CanFrame& frame, Timestamp now) {
   written_.clear();
   const SlavePdos::Received received = pdos_.receive(frame, written_, now);
   // Once, until one has the right length again: a flood is not answered by a flood.
-  if (received == SlavePdos::Received::too_short) set_error(pdo_length, kEmcyPdoLength);
+  if (received == SlavePdos::Received::too_short) set_error(wrong_pdo_length, kEmcyPdoLength);
   if (received == SlavePdos::Received::taken) {
-    clear_error(pdo_length);
+    clear_error(wrong_pdo_length);
     if (!pdos_.is_late()) clear_error(rpdo_late);
   }
   if (!written_.empty()) after_write(written_, now);

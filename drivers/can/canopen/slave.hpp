@@ -117,8 +117,8 @@ class CanopenSlave final : private SdoObjects {
   enum CommunicationError : std::uint8_t {
     heartbeat_lost = 1,
     guarding_lost = 2,
-    pdo_length = 4,
-    sync_length = 8,
+    wrong_pdo_length = 4,
+    wrong_sync_length = 8,
     rpdo_late = 16,
   };
   void set_error(CommunicationError error, std::uint16_t code);
